@@ -1,0 +1,347 @@
+"""The component: ports, state and time of everything that touches a signal.
+
+Whoever writes one declares its ports as class attributes and three methods::
+
+    class Filter(Component):
+        time_constant = Parameter(1.0, "s", "time constant", min=1e-3)
+        u = Input("V", "signal")
+        y = Output("V", "filtered signal")
+
+        def start(self, t):
+            self.y = 0.0
+
+        def step(self, t, h):
+            self.y += (self.u - self.y) * -math.expm1(-h / self.time_constant)
+
+Whoever runs one (an FMU, the master in process) calls `setup`, `initialise`, `begin`, then
+`advance` again and again, with `write` and `read` in between; `refresh` and time snapping
+happen inside.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, ClassVar
+
+import numpy as np
+
+from .errors import InputError, SimulationError, unknown
+from .ports import Input, Output, Parameter, Port, Scalar, ScalarPort, lay_out
+
+__all__ = ["NS", "Component", "Input", "Noise", "Output", "Parameter", "seconds"]
+
+NS = 1_000_000_000
+"""Nanoseconds in a second: time is counted in whole nanoseconds everywhere."""
+
+
+_INSTANTIATED, _INITIALISING, _RUNNING = range(3)
+
+
+def seconds(ns: int) -> float:
+    """Return ``ns`` nanoseconds as the double nearest to that many seconds."""
+    return ns / NS
+
+
+class Component:
+    """Base of all components.
+
+    To write one, declare ports and override:
+
+    - ``start(t)``: set the state for time ``t``, parameters being known.
+    - ``step(t, h)``: read inputs as of ``t``, advance the state to ``t + h``.
+    - ``outputs(t)``: set outputs from inputs and state at ``t``, without changing the state.
+      It runs after `start`, after every `step`, and whenever inputs changed since.
+
+    All state lives in attributes that are plain data (numbers, strings, lists, dicts, arrays,
+    None), so that it can be copied, restored and serialised. ``transient`` names attributes
+    that are not state. A component with an outside world (a socket, firmware) sets
+    ``rolls_back = False``. ``feedthrough`` declares, per output port, the input ports that act
+    on it at the same instant.
+
+    Times are seconds, already snapped to the grid of the communication step.
+    """
+
+    feedthrough: ClassVar[Mapping[str, Sequence[str]]] = {}
+    rolls_back: ClassVar[bool] = True
+    transient: ClassVar[frozenset[str]] = frozenset({"name"})
+
+    ports: ClassVar[dict[str, Port]] = {}
+    scalars: ClassVar[tuple[ScalarPort, ...]] = ()
+    scalar_by_name: ClassVar[dict[str, ScalarPort]] = {}
+    _settable: ClassVar[dict[type, frozenset[int]]] = {}
+    _always_settable: ClassVar[dict[type, frozenset[int]]] = {}
+    _of_type: ClassVar[dict[type, frozenset[int]]] = {}
+    _real_outputs: ClassVar[tuple[int, ...]] = ()
+    _inputs: ClassVar[frozenset[int]] = frozenset()
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        declared: dict[str, Port] = {}
+        for base in reversed(cls.__mro__):
+            for name, value in vars(base).items():
+                if isinstance(value, Port):
+                    declared.pop(name, None)
+                    declared[name] = value
+        cls.ports, cls.scalars = lay_out(declared)
+        for name, port in cls.ports.items():
+            setattr(cls, name, port)
+        cls.scalar_by_name = {scalar.name: scalar for scalar in cls.scalars}
+        _check_feedthrough(cls)
+        for kind in (float, int, bool, str):
+            of_type = [s for s in cls.scalars if s.port.type is kind]
+            # A dict of its own per class: a shared one would mix the classes.
+            cls._of_type = {**cls._of_type, kind: frozenset(s.reference for s in of_type)}
+            inputs = [s for s in of_type if s.port.kind != "output"]
+            cls._settable = {**cls._settable, kind: frozenset(s.reference for s in inputs)}
+            always = [s for s in inputs if not _is_fixed(s.port)]
+            cls._always_settable = {
+                **cls._always_settable,
+                kind: frozenset(s.reference for s in always),
+            }
+        cls._inputs = frozenset(s.reference for s in cls.scalars if s.port.kind == "input")
+        cls._real_outputs = tuple(
+            s.reference for s in cls.scalars if s.port.kind == "output" and s.port.type is float
+        )
+
+    def __init__(self, name: str = "component") -> None:
+        self.name = name
+        self.values: list[Any] = [v for p in self.ports.values() for v in p.start]
+        self._now_ns = 0
+        self._phase = _INSTANTIATED
+        self._stale = True
+        self._restart = True
+
+    # ------------------------------------------------------------------ written by components
+
+    def start(self, t: float) -> None:
+        """Set the initial state. Parameters are known; inputs may still change."""
+
+    def step(self, t: float, h: float) -> None:
+        """Advance the state from ``t`` to ``t + h`` with inputs held as they are."""
+
+    def outputs(self, t: float) -> None:
+        """Set the outputs from inputs and state at ``t``; must not change the state."""
+
+    # ------------------------------------------------------------------ called by whoever runs it
+
+    @property
+    def now(self) -> float:
+        """Simulated time the component has reached, s."""
+        return seconds(self._now_ns)
+
+    @property
+    def now_ns(self) -> int:
+        """Simulated time the component has reached, ns."""
+        return self._now_ns
+
+    def set(self, name: str, value: Any) -> None:
+        """Set a port, whole or one scalar of it, by name.
+
+        Raises InputError if there is no such port, it cannot be set now, or the value does
+        not fit its type, axes or choices.
+        """
+        try:
+            if name in self.ports:
+                port = self.ports[name]
+                values = port._spread(value)
+                self._write(range(port.offset, port.offset + port.size), values, port.type)
+            elif name in self.scalar_by_name:
+                scalar = self.scalar_by_name[name]
+                self._write([scalar.reference], [scalar.port._scalar(value)], scalar.port.type)
+            else:
+                raise InputError(unknown("port", name, [*self.ports, *self.scalar_by_name]))
+        except (TypeError, ValueError) as error:
+            raise InputError(f"{self.name}.{name}: {error}") from None
+
+    def get(self, name: str) -> Any:
+        """Return a port's value (a list if it has axes) or one scalar's, by name."""
+        if name not in self.ports and name not in self.scalar_by_name:
+            raise InputError(unknown("port", name, [*self.ports, *self.scalar_by_name]))
+        self.refresh()
+        if name in self.ports:
+            return getattr(self, name)
+        return self.values[self.scalar_by_name[name].reference]
+
+    def write(self, references: Sequence[int], values: Sequence[Scalar], kind: type) -> None:
+        """Set scalars of one type by reference. Raises InputError as `set` does."""
+        self._write(references, values, kind)
+
+    def read(self, references: Sequence[int], kind: type) -> list[Any]:
+        """Return scalars of one type by reference, recomputed if inputs changed since."""
+        if not self._of_type[kind].issuperset(references):
+            raise InputError(f"{self.name}: {self._misfit(references, self._of_type[kind], kind)}")
+        if self._stale:
+            self.refresh()
+        values = self.values
+        return [values[r] for r in references]
+
+    def refresh(self) -> None:
+        """Recompute the outputs if an input or parameter was set since they were computed.
+
+        During initialisation a parameter set since the start starts the component again.
+        """
+        if self._stale and self._phase != _INSTANTIATED:
+            self._stale = False
+            if self._restart:
+                self._restart = False
+                self._check_parameters()
+                self.start(self.now)
+            self.outputs(self.now)
+
+    def setup(self, start_time: float) -> None:
+        """Say when the run starts, before `initialise`."""
+        self._now_ns = round(start_time * NS)
+
+    def initialise(self) -> None:
+        """Start; inputs and parameters may still be set, and outputs read, until `begin`.
+
+        Raises InputError for a parameter outside its min, max or choices.
+        """
+        self._phase = _INITIALISING
+        self._restart = self._stale = True
+        self.refresh()
+
+    def begin(self) -> None:
+        """End the initialisation: from now on fixed parameters cannot be set."""
+        self.refresh()
+        self._phase = _RUNNING
+
+    def advance(self, t: float, h: float) -> None:
+        """Step from ``t`` to ``t + h`` (s), both as the caller's doubles have them.
+
+        Time is snapped: the component counts whole nanoseconds itself and takes the caller's
+        ``t`` for the time it has reached, if they differ by less than 1 % of ``h``.
+
+        Raises SimulationError if an output is not finite afterwards.
+        """
+        h_ns = round(h * NS)
+        given = round(t * NS)
+        if abs(given - self._now_ns) > max(1, h_ns // 100):
+            self._now_ns = given
+        self.step(self.now, seconds(h_ns))
+        self._now_ns += h_ns
+        self._stale = False
+        self.outputs(self.now)
+        self._check_outputs()
+
+    def get_state(self) -> dict[str, Any]:
+        """Return a copy of the whole state, hidden variables included, as plain data.
+
+        Raises TypeError naming an attribute that is not plain data.
+        """
+        return {
+            name: _copied(value, f"{self.name}.{name}")
+            for name, value in vars(self).items()
+            if name not in self.transient
+        }
+
+    def set_state(self, state: Mapping[str, Any]) -> None:
+        """Restore what `get_state` returned; ``state`` may be used again afterwards."""
+        for name in [n for n in vars(self) if n not in self.transient and n not in state]:
+            delattr(self, name)
+        for name, value in state.items():
+            setattr(self, name, _copied(value, name))
+
+    # ------------------------------------------------------------------ inside
+
+    def _write(self, references: Sequence[int], values: Sequence[Scalar], kind: type) -> None:
+        running = self._phase == _RUNNING
+        allowed = (self._always_settable if running else self._settable)[kind]
+        if not allowed.issuperset(references):
+            raise InputError(f"{self.name}: {self._misfit(references, allowed, kind)}")
+        if kind is float and not math.isfinite(sum(values)):  # type: ignore[arg-type]
+            for reference, value in zip(references, values, strict=True):
+                if not math.isfinite(value):  # type: ignore[arg-type]
+                    raise InputError(
+                        f"{self.name}.{self.scalars[reference].name}: {value} is not a finite number"
+                    )
+        own = self.values
+        for reference, value in zip(references, values, strict=True):
+            own[reference] = value
+        self._stale = True
+        if self._phase == _INITIALISING and not self._inputs.issuperset(references):
+            self._restart = True
+
+    def _misfit(self, references: Iterable[int], allowed: frozenset[int], kind: type) -> str:
+        reference = next(r for r in references if r not in allowed)
+        if not 0 <= reference < len(self.scalars):
+            return f"there is no variable with value reference {reference}"
+        scalar = self.scalars[reference]
+        if scalar.port.type is not kind:
+            return f"{scalar.name} is of type {scalar.port.type.__name__}, not {kind.__name__}"
+        if scalar.port.kind == "output":
+            return f"{scalar.name} is an output and cannot be set"
+        return f"{scalar.name} is a fixed parameter and cannot change once the run has started"
+
+    def _check_parameters(self) -> None:
+        for port in self.ports.values():
+            if not isinstance(port, Parameter):
+                continue
+            for name, index in zip(port.scalar_names, range(port.size), strict=True):
+                value = self.values[port.offset + index]
+                if port.choices is not None and value not in port.choices:
+                    raise InputError(
+                        f"{self.name}.{unknown(f'value of {name}', value, port.choices)}"
+                    )
+                low, high = port.limit("min", index), port.limit("max", index)
+                if (low is not None and value < low) or (high is not None and value > high):
+                    raise InputError(
+                        f"{self.name}.{name} is {value!r} {port.unit}, "
+                        f"allowed {_range_text(low, high)} {port.unit}"
+                    )
+
+    def _check_outputs(self) -> None:
+        values = self.values
+        if not math.isfinite(sum([values[r] for r in self._real_outputs])):
+            for reference in self._real_outputs:
+                if not math.isfinite(values[reference]):
+                    raise SimulationError(
+                        f"{self.name}: output {self.scalars[reference].name} is "
+                        f"{values[reference]} at t = {self.now!r} s"
+                    )
+
+
+class Noise:
+    """Mix-in for a component with randomness: numbers keyed by (seed, sample index).
+
+    Never keyed by how often it was asked, so that a rerun, a half step or a rollback draws
+    the same noise. Philox 4x64 with the seed as its key and the index as its counter.
+    """
+
+    seed = Parameter(1.0, "1", "seed of this instance's noise (a whole number)", min=0.0)
+
+    def generator(self, index: int) -> np.random.Generator:
+        """Return the generator of sample ``index``; draw all that the sample needs from it."""
+        bits = np.random.Philox(key=int(self.seed), counter=[0, 0, 0, index])
+        return np.random.Generator(bits)
+
+
+def _is_fixed(port: Port) -> bool:
+    return isinstance(port, Parameter) and not port.tunable
+
+
+def _check_feedthrough(cls: type[Component]) -> None:
+    for output, inputs in cls.feedthrough.items():
+        for name, kind in [(output, "output"), *((i, "input") for i in inputs)]:
+            if name not in cls.ports or cls.ports[name].kind != kind:
+                raise TypeError(f"{cls.__name__}.feedthrough names {name!r}: no such {kind}")
+
+
+def _range_text(low: float | None, high: float | None) -> str:
+    if low is None:
+        return f"at most {high!r}"
+    return f"at least {low!r}" if high is None else f"{low!r} to {high!r}"
+
+
+def _copied(value: Any, where: str) -> Any:
+    """Return a deep copy of plain data; raise TypeError for anything else."""
+    if value is None or isinstance(value, (bool, int, float, str)):
+        return value
+    if isinstance(value, np.ndarray):
+        return value.copy()
+    if isinstance(value, (list, tuple)):
+        return type(value)(_copied(v, where) for v in value)
+    if isinstance(value, dict):
+        return {k: _copied(v, where) for k, v in value.items()}
+    raise TypeError(f"state attribute {where} is not plain data: {type(value).__name__}")

@@ -1,0 +1,31 @@
+"""The errors that a user of seatrial meets."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+
+class SeatrialError(Exception):
+    """Base of every error that carries a message meant for the user."""
+
+
+class InputError(SeatrialError):
+    """Something the user wrote is wrong: a file, a key, a name, a unit, a value."""
+
+
+class SimulationError(SeatrialError):
+    """A simulation could not go on: a component raised, refused a step or produced no number."""
+
+
+def unknown(what: str, found: object, allowed: Iterable[str]) -> str:
+    """Return 'unknown WHAT FOUND' with near misses, or with all that is allowed.
+
+    >>> unknown("port", "atitude", ["attitude", "force"])
+    "unknown port 'atitude'; did you mean 'attitude'? (known: attitude, force)"
+    """
+    names = sorted(set(allowed))
+    near = difflib.get_close_matches(str(found), names, n=2, cutoff=0.6)
+    hint = f"; did you mean {' or '.join(map(repr, near))}?" if near else ";"
+    shown = ", ".join(names[:30]) + (f", ... ({len(names)} in all)" if len(names) > 30 else "")
+    return f"unknown {what} {str(found)!r}{hint} (known: {shown or 'none'})"

@@ -1,0 +1,132 @@
+"""From a plant's equations, written once as CasADi expressions, to compiled functions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import Any
+
+import casadi as ca
+import numpy as np
+from numpy.typing import NDArray
+
+from .ports import Port
+
+Vector = NDArray[np.float64]
+Equations = Callable[
+    [SimpleNamespace, SimpleNamespace, SimpleNamespace], tuple[Mapping[str, Any], Mapping[str, Any]]
+]
+
+
+@dataclass(frozen=True)
+class Model:
+    """Compiled equations: CasADi functions of stacked vectors, and their names.
+
+    ``rhs(x, u, p)`` is dx/dt, ``rk4(x, u, p, h)`` one classical Runge-Kutta step,
+    ``out(x, u, p)`` the outputs that are not states, ``jacobians(x, u, p)`` the matrices
+    A, B, C, D. x, u, p stack the states, inputs and real parameters as declared.
+    """
+
+    rhs: ca.Function
+    rk4: ca.Function
+    out: ca.Function
+    jacobians: ca.Function
+    x_names: tuple[str, ...]
+    u_names: tuple[str, ...]
+    y_names: tuple[str, ...]
+
+
+def compile_model(
+    name: str,
+    equations: Equations,
+    states: Sequence[Port],
+    inputs: Sequence[Port],
+    parameters: Sequence[Port],
+    outputs: Sequence[Port],
+    texts: Mapping[str, str],
+) -> Model:
+    """Compile ``equations`` for the given ports; ``texts`` are the text parameters' values.
+
+    Raises TypeError if the equations' result does not match the ports.
+    """
+    x, u, p = (_symbols(ports) for ports in (states, inputs, parameters))
+    named_p = SimpleNamespace(**vars(p.named), **texts)
+    derivatives, other = equations(x.named, u.named, named_p)
+    dx = _stacked(f"{name}: derivatives", derivatives, states)
+    y = _stacked(f"{name}: outputs", other, outputs)
+    rhs = ca.Function("rhs", [x.all, u.all, p.all], [ca.cse(dx)])
+    h = ca.SX.sym("h")
+    k1 = rhs(x.all, u.all, p.all)
+    k2 = rhs(x.all + h / 2 * k1, u.all, p.all)
+    k3 = rhs(x.all + h / 2 * k2, u.all, p.all)
+    k4 = rhs(x.all + h * k3, u.all, p.all)
+    stepped = ca.cse(x.all + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4))
+    matrices = [ca.densify(ca.jacobian(f, v)) for f in (dx, y) for v in (x.all, u.all)]
+    return Model(
+        rhs=rhs,
+        rk4=ca.Function("rk4", [x.all, u.all, p.all, h], [stepped]),
+        out=ca.Function("out", [x.all, u.all, p.all], [ca.densify(y)]),
+        jacobians=ca.Function("jacobians", [x.all, u.all, p.all], matrices),
+        x_names=_names(states),
+        u_names=_names(inputs),
+        y_names=_names(outputs),
+    )
+
+
+def undeclared_feedthrough(
+    model: Model,
+    inputs: Sequence[Port],
+    outputs: Sequence[Port],
+    declared: Mapping[str, Sequence[str]],
+) -> list[tuple[str, str]]:
+    """Return the (output, input) port pairs that the expressions couple and nobody declared."""
+    rows, columns = model.out.jac_sparsity(0, 1).get_triplet()
+    owner_y = [port.name for port in outputs for _ in range(port.size)]
+    owner_u = [port.name for port in inputs for _ in range(port.size)]
+    pairs = {(owner_y[r], owner_u[c]) for r, c in zip(rows, columns, strict=True)}
+    return sorted(pair for pair in pairs if pair[1] not in declared.get(pair[0], ()))
+
+
+def bind(
+    function: ca.Function, arguments: Sequence[Vector], result: Vector
+) -> tuple[Any, Callable[[], None]]:
+    """Bind a function to arrays; the returned callable evaluates it from and into them.
+
+    The caller keeps the arrays and the first element of the pair alive.
+    """
+    buffer, evaluate = function.buffer()
+    for index, argument in enumerate(arguments):
+        if argument.size:
+            buffer.set_arg(index, memoryview(argument))
+    if result.size:
+        buffer.set_res(0, memoryview(result))
+    return buffer, evaluate
+
+
+@dataclass(frozen=True)
+class _Symbols:
+    all: ca.SX
+    named: SimpleNamespace
+
+
+def _symbols(ports: Sequence[Port]) -> _Symbols:
+    named = {port.name: ca.SX.sym(port.name, port.size) for port in ports}
+    return _Symbols(ca.vertcat(*named.values()) if named else ca.SX(0, 1), SimpleNamespace(**named))
+
+
+def _names(ports: Sequence[Port]) -> tuple[str, ...]:
+    return tuple(name for port in ports for name in port.scalar_names)
+
+
+def _stacked(what: str, values: Mapping[str, Any], ports: Sequence[Port]) -> ca.SX:
+    expected = {port.name: port for port in ports}
+    if set(values) != set(expected):
+        raise TypeError(f"{what}: {sorted(values)} do not match the ports {sorted(expected)}")
+    parts = []
+    for name, port in expected.items():
+        part = ca.SX(values[name])
+        if part.shape != (port.size, 1):
+            raise TypeError(f"{what}: {name} has shape {part.shape}, its port {(port.size, 1)}")
+        parts.append(part)
+    return ca.densify(ca.vertcat(*parts)) if parts else ca.SX(0, 1)

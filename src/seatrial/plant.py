@@ -1,0 +1,308 @@
+"""Plants: components with continuous states, written as CasADi expressions.
+
+A plant says its equations once. From them come the fixed-step integrator that runs inside a
+communication step, a variable-step reference, exact Jacobians, linearisation and trim.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import Any, ClassVar
+
+import numpy as np
+
+from .component import Component, Output, Parameter
+from .model import Model, Vector, bind, compile_model, undeclared_feedthrough
+from .ports import Port
+
+InputFunction = Callable[[float, SimpleNamespace], Mapping[str, Any]]
+
+
+class State(Output):
+    """A continuous state, published as an output; its start value is ``NAME_start``."""
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        super().__set_name__(owner, name)
+        start = Parameter(
+            self.start[0] if self.axes is None else tuple(self.start),
+            self.unit,
+            f"start value of {name}: {self.description}",
+            axes=self.axes,
+        )
+        start.__set_name__(owner, f"{name}_start")
+        setattr(owner, f"{name}_start", start)
+
+
+@dataclass(frozen=True)
+class Linearisation:
+    """x' = A x + B u, y = C x + D u about a point; y are the outputs that are not states."""
+
+    A: Vector
+    B: Vector
+    C: Vector
+    D: Vector
+    x_names: tuple[str, ...]
+    u_names: tuple[str, ...]
+    y_names: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Reference:
+    """A variable-step solution: ``t`` (n,), ``x`` (n, states) and the states' names."""
+
+    t: Vector
+    x: Vector
+    x_names: tuple[str, ...]
+
+    def __getitem__(self, name: str) -> Vector:
+        """Return one scalar state over time, by name."""
+        return self.x[:, self.x_names.index(name)]
+
+
+class Plant(Component):
+    """Base of components with continuous states.
+
+    Declare ports with `State`, `Input`, `Output`, `Parameter` and override `equations`.
+    Steps use the classical Runge-Kutta method of order 4 with equal sub-steps no longer than
+    ``max_step``, inputs held. Feed-through is found in the expressions. Text parameters choose
+    between equations and reach `equations` as text.
+    """
+
+    max_step = Parameter(0.01, "s", "longest integration sub-step", min=1e-6)
+
+    transient = Component.transient | {"_model", "_buffers", "_u", "_p", "_h", "_x1", "_y"}
+
+    state_ports: ClassVar[tuple[Port, ...]] = ()
+    input_ports: ClassVar[tuple[Port, ...]] = ()
+    output_ports: ClassVar[tuple[Port, ...]] = ()
+    """Outputs that are not states."""
+    _texts: ClassVar[tuple[str, ...]] = ()
+    _u_slice: ClassVar[slice] = slice(0, 0)
+    _p_references: ClassVar[tuple[int, ...]] = ()
+    _has_tunables: ClassVar[bool] = False
+    _models: ClassVar[dict[tuple[str, ...], Model]] = {}
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        ports = list(cls.ports.values())
+        for port in ports:
+            if port.kind != "parameter" and port.type is not float:
+                raise TypeError(f"{cls.__name__}.{port.name}: a plant's ports are real numbers")
+        cls._models = {}
+        cls.state_ports = tuple(p for p in ports if isinstance(p, State))
+        cls.input_ports = tuple(p for p in ports if p.kind == "input")
+        cls.output_ports = tuple(
+            p for p in ports if p.kind == "output" and not isinstance(p, State)
+        )
+        cls._texts = tuple(p.name for p in ports if p.kind == "parameter" and p.type is str)
+        # Ports of one kind stand side by side in the flat list of values.
+        places = [s.reference for s in cls.scalars if s.port.kind == "input"]
+        cls._u_slice = slice(places[0], places[-1] + 1) if places else slice(0, 0)
+        reals = [s for s in cls.scalars if isinstance(s.port, Parameter) and s.port.type is float]
+        cls._p_references = tuple(s.reference for s in reals)
+        cls._has_tunables = any(isinstance(p, Parameter) and p.tunable for p in ports)
+
+    def equations(
+        self, x: SimpleNamespace, u: SimpleNamespace, p: SimpleNamespace
+    ) -> tuple[Mapping[str, Any], Mapping[str, Any]]:
+        """Return (derivatives by state, values by other output), from symbols by port name.
+
+        ``x``, ``u``, ``p`` hold one CasADi column vector per state, input and parameter; a
+        text parameter is a plain string. ``self`` carries no values: the result is compiled
+        once per class and choice of text parameters.
+        """
+        raise TypeError(f"{type(self).__name__} does not say its equations")
+
+    # ------------------------------------------------------------------ running
+
+    def start(self, t: float) -> None:
+        self._x = self._start_state()
+        self._build_buffers()
+
+    def step(self, t: float, h: float) -> None:
+        count = max(1, math.ceil(h / self.max_step - 1e-9))
+        self._load()
+        self._h[0] = h / count
+        advance = self._buffers["rk4"][1]
+        for _ in range(count):
+            advance()
+            self._x[:] = self._x1
+
+    def outputs(self, t: float) -> None:
+        self._publish(self.state_ports, self._x.tolist())
+        if self.output_ports:
+            self._load()
+            self._buffers["out"][1]()
+            self._publish(self.output_ports, self._y.tolist())
+
+    def set_state(self, state: Mapping[str, Any]) -> None:
+        # Compiled functions read the state at a fixed address, so they are bound anew.
+        super().set_state(state)
+        if "_x" in state:
+            self._build_buffers()
+
+    # ------------------------------------------------------------------ tools
+
+    def derivatives(self, x: Vector, u: Vector | None = None) -> Vector:
+        """Return dx/dt at stacked state ``x`` and stacked inputs ``u`` (default: as set)."""
+        return np.asarray(self._compiled().rhs(x, self._stacked_u(u), self._stacked_p())).ravel()
+
+    def linearise(self, x: Vector, u: Vector | None = None) -> Linearisation:
+        """Return the exact linearisation at stacked state ``x``, inputs ``u`` (default: as set)."""
+        model = self._compiled()
+        parts = [np.asarray(m) for m in model.jacobians(x, self._stacked_u(u), self._stacked_p())]
+        return Linearisation(*parts, model.x_names, model.u_names, model.y_names)
+
+    def trim(
+        self, guess: Vector, u: Vector | None = None, *, hold: Sequence[str] = (), tol: float = 1e-12
+    ) -> Vector:
+        """Return a stacked state near ``guess`` where dx/dt = 0, with inputs ``u`` (as set).
+
+        States named in ``hold`` keep their guess. Levenberg-Marquardt with the exact Jacobian.
+        Raises ArithmeticError if no such state is found (largest |dx/dt| above ``tol`` times
+        its scale at the guess, or 1).
+        """
+        from scipy.optimize import root
+
+        model = self._compiled()
+        free = [i for i, name in enumerate(model.x_names) if name not in hold]
+        x = np.array(guess, dtype=float)
+
+        def full(z: Vector) -> Vector:
+            x[free] = z
+            return x
+
+        result = root(
+            lambda z: self.derivatives(full(z), u),
+            x[free].copy(),
+            jac=lambda z: self.linearise(full(z), u).A[:, free],
+            method="lm",
+            options={"xtol": 1e-15, "ftol": 1e-15},
+        )
+        residual = np.abs(self.derivatives(full(result.x), u)).max()
+        if residual > tol * max(1.0, np.abs(self.derivatives(guess, u)).max()):
+            raise ArithmeticError(f"no trim found: largest |dx/dt| is {residual:.3g}")
+        return x
+
+    def reference(
+        self,
+        t: Sequence[float] | Vector,
+        u: InputFunction | None = None,
+        breaks: Sequence[float] = (),
+        *,
+        method: str = "DOP853",
+        rtol: float = 1e-10,
+        atol: float = 1e-12,
+    ) -> Reference:
+        """Integrate from the start values with a variable step, piecewise between ``breaks``.
+
+        ``u(t, x)`` returns values by input port name, ``x`` having one array per state port;
+        inputs it does not name keep what was set. At the end of a piece it is asked just
+        before the break, so that a jump there belongs to the next piece. ``method`` is one of
+        SciPy's solve_ivp (RK23, RK45, DOP853, Radau, ...). Raises ArithmeticError if the
+        integration fails.
+        """
+        from scipy.integrate import solve_ivp
+
+        times = np.asarray(t, dtype=float)
+        model, p, x = self._compiled(), self._stacked_p(), self._start_state()
+        arguments, dx = [x.copy(), self._stacked_u(None), p], np.zeros(len(x))
+        _buffer, evaluate = bind(model.rhs, arguments, dx)
+        edges = [times[0], *sorted({b for b in breaks if times[0] < b < times[-1]}), times[-1]]
+        out = np.empty((len(times), len(x)))
+        for a, b in zip(edges[:-1], edges[1:], strict=True):
+            last = float(np.nextafter(b, a))
+
+            def slope(time: float, x: Vector, last: float = last) -> Vector:
+                arguments[0][:] = x
+                if u is not None:
+                    arguments[1][:] = self._with_inputs(u(min(time, last), self._named(x)))
+                evaluate()
+                return dx.copy()
+
+            inside = (times >= a) & ((times < b) | (b == times[-1]))
+            grid = np.append(times[inside], b)
+            solution = solve_ivp(slope, (a, b), x, method, np.unique(grid), rtol=rtol, atol=atol)
+            if not solution.success:
+                raise ArithmeticError(f"integration stopped at t = {solution.t[-1]}: {solution.message}")
+            out[inside] = solution.y.T[: inside.sum()]
+            x = solution.y[:, -1]
+        return Reference(times, out, model.x_names)
+
+    # ------------------------------------------------------------------ inside
+
+    def _compiled(self) -> Model:
+        key = tuple(getattr(self, name) for name in self._texts)
+        if key not in self._models:
+            self._models[key] = self._compile(dict(zip(self._texts, key, strict=True)))
+        return self._models[key]
+
+    @classmethod
+    def _compile(cls, texts: Mapping[str, str]) -> Model:
+        stub = cls.__new__(cls)  # has the methods and no values
+        reals = [p for p in cls.ports.values() if isinstance(p, Parameter) and p.type is float]
+        model = compile_model(
+            cls.__name__,
+            stub.equations,
+            cls.state_ports,
+            cls.input_ports,
+            reals,
+            cls.output_ports,
+            texts,
+        )
+        missing = undeclared_feedthrough(model, cls.input_ports, cls.output_ports, cls.feedthrough)
+        if missing:
+            raise TypeError(f"{cls.__name__}.feedthrough lacks (output, input) {missing}")
+        return model
+
+    def _build_buffers(self) -> None:
+        # A buffer does not keep its arrays alive: they stay attributes of the instance.
+        model = self._model = self._compiled()
+        self._u, self._p = self._stacked_u(None), self._stacked_p()
+        self._h, self._x1 = np.zeros(1), np.zeros(len(model.x_names))
+        self._y = np.zeros(len(model.y_names))
+        self._buffers = {
+            "rk4": bind(model.rk4, [self._x, self._u, self._p, self._h], self._x1),
+            "out": bind(model.out, [self._x, self._u, self._p], self._y),
+        }
+
+    def _load(self) -> None:
+        """Copy inputs and tunable parameters into the arrays that the functions read."""
+        self._u[:] = self.values[self._u_slice]
+        if self._has_tunables:
+            self._p[:] = self._stacked_p()
+
+    def _publish(self, ports: Sequence[Port], stacked: list[float]) -> None:
+        place = 0
+        for port in ports:
+            self.values[port.offset : port.offset + port.size] = stacked[place : place + port.size]
+            place += port.size
+
+    def _start_state(self) -> Vector:
+        starts = [self.ports[f"{s.name}_start"] for s in self.state_ports]
+        return np.array([v for p in starts for v in self.values[p.offset : p.offset + p.size]])
+
+    def _stacked_u(self, u: Vector | None) -> Vector:
+        return np.array(self.values[self._u_slice] if u is None else u, dtype=float)
+
+    def _stacked_p(self) -> Vector:
+        return np.array([self.values[r] for r in self._p_references], dtype=float)
+
+    def _named(self, x: Vector) -> SimpleNamespace:
+        named: dict[str, Any] = {}
+        place = 0
+        for port in self.state_ports:
+            named[port.name] = x[place : place + port.size] if port.axes else x[place]
+            place += port.size
+        return SimpleNamespace(**named)
+
+    def _with_inputs(self, inputs: Mapping[str, Any]) -> Vector:
+        values = self._stacked_u(None)
+        for name, value in inputs.items():
+            port = self.ports[name]
+            first = port.offset - self._u_slice.start
+            values[first : first + port.size] = value
+        return values

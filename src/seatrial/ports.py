@@ -1,0 +1,185 @@
+"""Ports: what a component says of each of its signals and parameters, once."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+Kind = Literal["parameter", "input", "output"]
+Scalar = float | int | bool | str
+Limit = float | tuple[float, ...] | None
+
+_TYPES: tuple[type, ...] = (float, int, bool, str)
+
+
+class Port:
+    """A named, typed value of a component: a scalar, or a vector whose elements have axis names.
+
+    As a class attribute it is a descriptor: reading gives a float, int, bool or str, or a list
+    of them if the port has axes; assigning converts to the port's type and checks the length.
+
+    Values are SI with angles in radians; ``unit`` is written as in FMI (``N.m``, ``kg.m2``,
+    ``rad/s``, ``1`` for none).
+    """
+
+    kind: Kind
+
+    def __init__(
+        self,
+        unit: str,
+        description: str,
+        *,
+        start: Any,
+        axes: Sequence[str] | None = None,
+        type: type = float,
+        min: Limit = None,
+        max: Limit = None,
+        nominal: Limit = None,
+    ) -> None:
+        if type not in _TYPES:
+            raise TypeError(f"a port's type is float, int, bool or str, not {type!r}")
+        self.name = ""
+        self.unit = unit
+        self.description = description
+        self.axes = tuple(axes) if axes is not None else None
+        self.type = type
+        self.size = 1 if self.axes is None else len(self.axes)
+        self.start = self._spread(start)
+        self.min, self.max, self.nominal = min, max, nominal
+        self.offset = -1
+
+    def _spread(self, value: Any) -> list[Any]:
+        """Return ``value`` as a list of ``size`` scalars of the port's type."""
+        if self.axes is None:
+            return [self._scalar(value)]
+        values = list(value) if _is_sequence(value) else [value] * self.size
+        if len(values) != self.size:
+            raise ValueError(
+                f"port {self.name or self.description!r} has {self.size} axes "
+                f"({', '.join(self.axes)}), got {len(values)} values"
+            )
+        return [self._scalar(v) for v in values]
+
+    def _scalar(self, value: Any) -> Scalar:
+        if self.type is str:
+            if not isinstance(value, str):
+                raise TypeError(f"port {self.name!r} holds text, got {value!r}")
+            return value
+        if isinstance(value, str):
+            raise TypeError(f"port {self.name!r} holds a number, got {value!r}")
+        return self.type(value)  # type: ignore[no-any-return]
+
+    @property
+    def scalar_names(self) -> list[str]:
+        """Names of the port's scalars: ``force.x``, ``force.y``, ...; or just ``force``."""
+        if self.axes is None:
+            return [self.name]
+        return [f"{self.name}.{axis}" for axis in self.axes]
+
+    def limit(self, which: Literal["min", "max", "nominal"], index: int) -> float | None:
+        """Return one scalar's min, max or nominal, None where the port declares none."""
+        value = getattr(self, which)
+        return value[index] if isinstance(value, tuple) else value
+
+    def placed(self, offset: int) -> Port:
+        """Return a copy whose values start at ``offset`` in a component's list of values."""
+        port = copy.copy(self)
+        port.offset = offset
+        return port
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.name = name
+
+    def __get__(self, component: Any, owner: type | None = None) -> Any:
+        if component is None:
+            return self
+        if self.axes is None:
+            return component.values[self.offset]
+        return component.values[self.offset : self.offset + self.size]
+
+    def __set__(self, component: Any, value: Any) -> None:
+        component.values[self.offset : self.offset + self.size] = self._spread(value)
+
+
+class Parameter(Port):
+    """A value fixed before a run, or between steps if ``tunable``: a Real or a String.
+
+    Numbers are Real whatever the start value's type, because some masters can set nothing
+    else; text may be limited to ``choices``.
+    """
+
+    kind: Kind = "parameter"
+
+    def __init__(
+        self,
+        start: Any,
+        unit: str,
+        description: str,
+        *,
+        axes: Sequence[str] | None = None,
+        min: Limit = None,
+        max: Limit = None,
+        nominal: Limit = None,
+        tunable: bool = False,
+        choices: Sequence[str] | None = None,
+    ) -> None:
+        if isinstance(start, bool):
+            raise TypeError("a parameter is a number or a text: give 0.0 or 1.0 for a flag")
+        kind = str if isinstance(start, str) else float
+        super().__init__(
+            unit, description, start=start, axes=axes, type=kind, min=min, max=max, nominal=nominal
+        )
+        self.tunable = tunable
+        self.choices = tuple(choices) if choices is not None else None
+
+
+class Input(Port):
+    """A value that arrives over at most one wire; ``start`` holds while nothing is connected."""
+
+    kind: Kind = "input"
+
+    def __init__(self, unit: str, description: str, **options: Any) -> None:
+        options.setdefault("start", "" if options.get("type") is str else 0)
+        super().__init__(unit, description, **options)
+
+
+class Output(Port):
+    """A value that a component publishes, valid at the time it was computed for."""
+
+    kind: Kind = "output"
+
+    def __init__(self, unit: str, description: str, **options: Any) -> None:
+        options.setdefault("start", "" if options.get("type") is str else 0)
+        super().__init__(unit, description, **options)
+
+
+@dataclass(frozen=True)
+class ScalarPort:
+    """One scalar of a port: what FMI calls a scalar variable."""
+
+    name: str
+    reference: int
+    port: Port
+    index: int
+
+
+def lay_out(ports: dict[str, Port]) -> tuple[dict[str, Port], tuple[ScalarPort, ...]]:
+    """Place ports in one flat list: parameters, then inputs, then outputs, as declared.
+
+    Returns the placed ports by name and every scalar; a scalar's ``reference`` is its place.
+    """
+    placed: dict[str, Port] = {}
+    scalars: list[ScalarPort] = []
+    for kind in ("parameter", "input", "output"):
+        for name, port in ports.items():
+            if port.kind == kind:
+                placed[name] = port.placed(len(scalars))
+                for index, scalar in enumerate(port.scalar_names):
+                    scalars.append(ScalarPort(scalar, len(scalars), placed[name], index))
+    return placed, tuple(scalars)
+
+
+def _is_sequence(value: Any) -> bool:
+    return hasattr(value, "__len__") and not isinstance(value, str)
