@@ -63,7 +63,6 @@ def unit(text: str) -> Unit:
     except Exception:
         raise InputError(f"{text!r} is not a unit (examples: N.m, kg.m2, rad/s, deg, ms)") from None
     names = {long: short for short, long in _BASE.items()}
-    names["gram"] = "kg"
     exponents: dict[str, int] = {}
     for name, power in one.unit_items():
         if name not in names or power != int(power):

@@ -1,0 +1,1 @@
+"""Autopilots and what they are made of."""

@@ -1,0 +1,1 @@
+"""The master: rigs of slaves, stepped and recorded."""

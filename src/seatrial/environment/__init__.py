@@ -1,0 +1,1 @@
+"""What surrounds a craft: rotor wakes, wind, waves, current."""

@@ -1,0 +1,1 @@
+"""FMUs: components put behind FMI, and FMUs loaded."""

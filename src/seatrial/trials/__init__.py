@@ -1,0 +1,1 @@
+"""Trials: a rig, what happens to it, what must hold, and the report."""
