@@ -185,7 +185,7 @@ class Component:
             self._stale = False
             if self._restart:
                 self._restart = False
-                self._check_parameters()
+                self.check_parameters()
                 self.start(self.now)
             self.outputs(self.now)
 
@@ -201,6 +201,24 @@ class Component:
         self._phase = _INITIALISING
         self._restart = self._stale = True
         self.refresh()
+
+    def check_parameters(self) -> None:
+        """Raise InputError for a parameter outside its min, max or choices."""
+        for port in self.ports.values():
+            if not isinstance(port, Parameter):
+                continue
+            for name, index in zip(port.scalar_names, range(port.size), strict=True):
+                value = self.values[port.offset + index]
+                if port.choices is not None and value not in port.choices:
+                    raise InputError(
+                        f"{self.name}.{unknown(f'value of {name}', value, port.choices)}"
+                    )
+                low, high = port.limit("min", index), port.limit("max", index)
+                if (low is not None and value < low) or (high is not None and value > high):
+                    raise InputError(
+                        f"{self.name}.{name} is {value!r} {port.unit}, "
+                        f"allowed {_range_text(low, high)} {port.unit}"
+                    )
 
     def begin(self) -> None:
         """End the initialisation: from now on fixed parameters cannot be set."""
@@ -273,23 +291,6 @@ class Component:
         if scalar.port.kind == "output":
             return f"{scalar.name} is an output and cannot be set"
         return f"{scalar.name} is a fixed parameter and cannot change once the run has started"
-
-    def _check_parameters(self) -> None:
-        for port in self.ports.values():
-            if not isinstance(port, Parameter):
-                continue
-            for name, index in zip(port.scalar_names, range(port.size), strict=True):
-                value = self.values[port.offset + index]
-                if port.choices is not None and value not in port.choices:
-                    raise InputError(
-                        f"{self.name}.{unknown(f'value of {name}', value, port.choices)}"
-                    )
-                low, high = port.limit("min", index), port.limit("max", index)
-                if (low is not None and value < low) or (high is not None and value > high):
-                    raise InputError(
-                        f"{self.name}.{name} is {value!r} {port.unit}, "
-                        f"allowed {_range_text(low, high)} {port.unit}"
-                    )
 
     def _check_outputs(self) -> None:
         values = self.values

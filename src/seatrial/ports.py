@@ -40,6 +40,9 @@ class Port:
     ) -> None:
         if type not in _TYPES:
             raise TypeError(f"a port's type is float, int, bool or str, not {type!r}")
+        for axis in axes or ():
+            if not axis.isidentifier():  # FMI's structured names allow nothing else
+                raise ValueError(f"axis {axis!r} is not an identifier (a letter first)")
         self.name = ""
         self.unit = unit
         self.description = description

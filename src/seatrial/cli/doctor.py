@@ -1,0 +1,99 @@
+"""``seatrial doctor``: what is missing on this machine, and how to load a Python FMU."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import platform
+import sys
+import sysconfig
+from collections.abc import Callable
+from pathlib import Path
+
+import typer
+from rich.markup import escape
+
+from ..fmi.cache import cache_folder, is_safe
+from .show import console
+
+_PLATFORMS = {("Linux", "x86_64"), ("Windows", "AMD64")}
+
+
+def doctor() -> None:
+    """Say what works on this machine, what is missing, and how to mend it."""
+    checks: list[tuple[str, Callable[[], tuple[bool, str]]]] = [
+        ("Python", _python),
+        ("platform", _platform),
+        ("packages", _packages),
+        ("FMU cache", _cache),
+        ("libpython", _libpython),
+    ]
+    missing = 0
+    for name, check in checks:
+        good, text = check()
+        missing += not good
+        mark = "[green]ok[/green]     " if good else "[red]missing[/red]"
+        console.print(f"{mark}  {name}: {escape(text)}", soft_wrap=True)
+    console.print("\nTo load a Python FMU in a program without Python, start it as:")
+    console.print(f"  {preload_line()} PROGRAM", soft_wrap=True, markup=False)
+    if missing:
+        raise typer.Exit(1)
+
+
+def preload_line() -> str:
+    """Return the environment that lets a program without Python load a Python FMU."""
+    library = find_libpython()
+    packages = sysconfig.get_path("purelib")
+    return f"LD_PRELOAD={library or 'libpython3.x.so (not found)'} PYTHONPATH={packages}"
+
+
+def find_libpython() -> Path | None:
+    """Return the shared library of this interpreter, or of the system's equal version."""
+    name = f"libpython{sys.version_info.major}.{sys.version_info.minor}.so"
+    folders = [
+        Path(str(sysconfig.get_config_var("LIBDIR") or "")),
+        Path(sys.base_prefix) / "lib",
+        Path("/usr/lib") / str(sysconfig.get_config_var("MULTIARCH") or ""),
+    ]
+    for folder in folders:
+        for candidate in (folder / f"{name}.1.0", folder / name):
+            if candidate.is_file():
+                return candidate
+    return None
+
+
+def _python() -> tuple[bool, str]:
+    return sys.version_info >= (3, 11), f"{platform.python_version()} in {sys.prefix}"
+
+
+def _platform() -> tuple[bool, str]:
+    here = (platform.system(), platform.machine())
+    text = f"{here[0]} {here[1]}"
+    if here in _PLATFORMS:
+        return True, text
+    return False, f"{text}: Python FMUs have binaries for Linux and Windows on x86-64 only"
+
+
+def _packages() -> tuple[bool, str]:
+    wanted = ("casadi", "fmpy", "numpy", "pint", "plotly", "pydantic", "pythonfmu", "scipy")
+    found, lacking = [], []
+    for name in wanted:
+        try:
+            found.append(f"{name} {importlib.metadata.version(name)}")
+        except importlib.metadata.PackageNotFoundError:
+            lacking.append(name)
+    if lacking:
+        return False, f"install with  {sys.executable} -m pip install {' '.join(lacking)}"
+    return True, ", ".join(found)
+
+
+def _cache() -> tuple[bool, str]:
+    folder = cache_folder("fmus").parent
+    return is_safe(folder), str(folder)
+
+
+def _libpython() -> tuple[bool, str]:
+    library = find_libpython()
+    if library is None:
+        version = f"{sys.version_info.major}.{sys.version_info.minor}"
+        return False, f"none for Python {version}; on Debian: apt install libpython{version}"
+    return True, str(library)

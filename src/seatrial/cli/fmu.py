@@ -1,0 +1,164 @@
+"""``seatrial fmu``: list, build, check and describe FMUs."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from fmpy.validation import validate_fmu
+from rich.markup import escape
+from rich.table import Table
+
+from ..cosim.parameters import load_vehicle
+from ..cosim.system import settable
+from ..cosim.values import from_entry
+from ..errors import InputError
+from ..fmi.direct import DirectInstance
+from ..fmi.export import build_fmu
+from ..fmi.instance import Variable
+from ..fmi.load import FmuInstance, LoadedFmu, load_fmu
+from ..fmi.source import ComponentSource, find_source, shipped_sources
+from .show import console, summary
+
+fmu_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
+
+Named = Annotated[str, typer.Argument(metavar="FMU", help="A shipped name, x.fmu or my.py:Class.")]
+
+
+@fmu_app.command("list")
+def list_fmus() -> None:
+    """List the FMUs that are shipped."""
+    for name, source in shipped_sources().items():
+        console.print(f"{name:20} {escape(summary(source.component_class()))}", soft_wrap=True)
+
+
+@fmu_app.command()
+def build(
+    names: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="FMU...", help="Shipped names or my.py:Class; default: all shipped."),
+    ] = None,
+    out: Annotated[Path, typer.Option(help="Folder for the .fmu files.")] = Path("."),
+    parameters: Annotated[
+        str | None, typer.Option(help="Bake in a vehicle's parameters: VEHICLE or VEHICLE.TABLE.")
+    ] = None,
+    variant: Annotated[str | None, typer.Option(help="Variant of the vehicle's parameters.")] = None,
+) -> None:
+    """Build .fmu files that any FMI 2.0 tool loads."""
+    for name in names or list(shipped_sources()):
+        source = _buildable(name)
+        values = _start_values(source, parameters, variant) if parameters else None
+        path = build_fmu(source, out / f"{source.name}.fmu", values)
+        console.print(f"{path}  ({path.stat().st_size / 1000:.0f} kB)", soft_wrap=True)
+
+
+@fmu_app.command()
+def check(
+    names: Annotated[
+        list[str] | None, typer.Argument(metavar="FMU...", help="As for build; or x.fmu files.")
+    ] = None,
+) -> None:
+    """Validate FMUs with FMPy, instantiate them and step them once."""
+    problems = 0
+    for name in names or list(shipped_sources()):
+        found = _problems(name)
+        problems += len(found)
+        console.print(f"{name}: {'no problem found' if not found else ''}", soft_wrap=True)
+        for problem in found:
+            console.print(f"  {escape(problem)}", soft_wrap=True)
+    if problems:
+        raise typer.Exit(1)
+
+
+@fmu_app.command()
+def describe(name: Named) -> None:
+    """Show an FMU's variables: causality, type, unit, start value, limits."""
+    found = find_source(name, Path.cwd())
+    if isinstance(found, Path):
+        fmu = load_fmu(found)
+        title, variables = fmu.description.description or found.name, fmu.variables
+        through = fmu.feedthrough
+    else:
+        instance = DirectInstance(found.component_class()(found.name))
+        title, variables = summary(type(instance.component)), instance.variables
+        through = instance.feedthrough
+    console.print(f"[bold]{escape(name)}[/bold]: {escape(title)}", soft_wrap=True)
+    table = Table(box=None, padding=(0, 2, 0, 0))
+    for heading in ("variable", "causality", "type", "unit", "start", "min", "max", "description"):
+        table.add_column(heading)
+    for variable in variables.values():
+        table.add_row(*(escape(cell) for cell in _cells(variable)))
+    console.print(table)
+    for output, inputs in through.items():
+        console.print(f"{output} depends at once on {', '.join(inputs)}", soft_wrap=True)
+
+
+def _cells(variable: Variable) -> list[str]:
+    def shown(value: object) -> str:
+        return "" if value is None else str(value)
+
+    kind = variable.causality
+    if kind == "parameter" and variable.variability == "tunable":
+        kind = "tunable"
+    return [
+        variable.name,
+        kind,
+        variable.type.__name__,
+        variable.unit,
+        shown(variable.start),
+        shown(variable.minimum),
+        shown(variable.maximum),
+        variable.description,
+    ]
+
+
+def _buildable(name: str) -> ComponentSource:
+    source = find_source(name, Path.cwd())
+    if isinstance(source, Path):
+        raise InputError(f"{name} is an FMU already; name a shipped FMU or my.py:Class")
+    return source
+
+
+def _start_values(
+    source: ComponentSource, parameters: str, variant: str | None
+) -> dict[str, float | int | bool | str]:
+    vehicle, _, table = parameters.partition(".")
+    chosen = load_vehicle(vehicle).parameter_set(table or source.name, variant)
+    variables = DirectInstance(source.component_class()(source.name)).variables
+    values = {}
+    for port, entry in chosen.values.items():
+        scalars = settable(variables, port, chosen.origin)
+        given = from_entry(entry, scalars, chosen.origin)
+        values.update({name: one.value for name, one in given.items()})
+    return values
+
+
+def _problems(name: str) -> list[str]:
+    with tempfile.TemporaryDirectory() as folder:
+        source = find_source(name, Path.cwd())
+        path = source if isinstance(source, Path) else build_fmu(source, Path(folder) / "x.fmu")
+        problems = list(validate_fmu(str(path)))
+        return problems or _run_once(load_fmu(path))
+
+
+def _run_once(fmu: LoadedFmu) -> list[str]:
+    """Step an instance twice; its errors are the problems."""
+    from ..errors import SimulationError
+
+    instance = None
+    try:
+        instance = FmuInstance(fmu, "check")
+        instance.initialise(0.0, 1.0)
+        instance.begin()
+        instance.step(0.0, 0.01)
+        instance.step(0.01, 0.01)
+        instance.reader([v.name for v in fmu.variables.values() if v.causality == "output"])()
+        instance.terminate()
+    except SimulationError as error:
+        return [str(error)]
+    finally:
+        if instance is not None:
+            instance.free()
+    return []

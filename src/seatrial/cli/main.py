@@ -1,0 +1,214 @@
+"""The commands and how their errors reach the user."""
+
+from __future__ import annotations
+
+import signal
+import sys
+import tomllib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from .. import __version__
+from ..cosim.files import available
+from ..cosim.system import Engine
+from ..errors import InputError, SeatrialError, SimulationError
+from ..fmi.source import shipped_sources
+from ..trials.campaign import Campaign, Case, load_campaign, run_campaign
+from ..trials.compare import compare as compare_runs
+from ..trials.report import write_campaign_report, write_report
+from ..trials.run import Hooks, Result, new_folder, run_trial
+from ..trials.trial import load_trial
+from .doctor import doctor
+from .fmu import fmu_app
+from .show import Watch, console, print_case, print_listing, print_verdicts
+
+_FAILED, _BAD_INPUT, _BROKEN = 1, 2, 3
+
+app = typer.Typer(
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    help="Sea trials before the water: co-simulated trials of marine vehicles.",
+)
+app.add_typer(fmu_app, name="fmu", help="List, build, check and describe FMUs.")
+
+
+def main() -> None:
+    """Run the command line; every error meant for the user is one message and a status."""
+    try:
+        app()
+    except InputError as error:
+        _complain(error, _BAD_INPUT)
+    except SeatrialError as error:
+        _complain(error, _BROKEN)
+    except KeyboardInterrupt:
+        _complain(SimulationError("stopped"), _BROKEN)
+
+
+def _complain(error: SeatrialError, status: int) -> None:
+    print(f"seatrial: {error}", file=sys.stderr)
+    sys.exit(status)
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        print(f"seatrial {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version.")
+    ] = False,
+) -> None:
+    """Options before the command."""
+
+
+@app.command()
+def run(
+    trial: Annotated[str, typer.Argument(help="A trial or campaign: a name or a .toml file.")],
+    settings: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="Set component.port, or a trial's key."),
+    ] = None,
+    engine: Annotated[
+        str, typer.Option(help="'fmu': every component is an FMU; 'direct': in process.")
+    ] = "fmu",
+    out: Annotated[
+        Path | None, typer.Option(help="Folder of the run (default: runs/NAME-DATE-TIME).")
+    ] = None,
+) -> None:
+    """Run a trial, or a campaign of trials, and say what holds."""
+    if engine not in ("fmu", "direct"):
+        raise InputError(f"--engine: 'fmu' or 'direct' is needed, found {engine!r}")
+    chosen: Engine = "direct" if engine == "direct" else "fmu"
+    changes = dict(_setting(text) for text in settings or [])
+    if _is_campaign(trial):
+        campaign = load_campaign(trial)
+        if changes:
+            raise InputError("--set works with a trial; a campaign sets its own parameters")
+        _run_campaign(campaign, out or new_folder(campaign.read_from.name), chosen)
+        return
+    loaded = load_trial(trial).changed(changes, "--set")
+    folder = out or new_folder(loaded.name)
+    with _stoppable() as stop, Watch(loaded.name) as watch:
+        hooks = Hooks(watch.building, watch.progress, stop)
+        result = run_trial(loaded, folder, engine=chosen, hooks=hooks)
+    print_verdicts(result)
+    report_page = write_report(result.folder)
+    console.print(f"report: {report_page}", soft_wrap=True)
+    _exit_with([result])
+
+
+def _run_campaign(campaign: Campaign, folder: Path, engine: Engine) -> None:
+    cases = campaign.cases()
+    with _stoppable() as stop, Watch(campaign.read_from.name) as watch:
+
+        def done(case: Case, result: Result) -> None:
+            watch.log(lambda: print_case(case, result))
+            write_report(result.folder)
+
+        hooks = Hooks(watch.building, watch.progress, stop)
+        watch.expect(len(cases))
+        finished = run_campaign(campaign, folder, engine=engine, hooks=hooks, done=done)
+    page = write_campaign_report(folder)
+    passed = sum(result.passed for _, result in finished)
+    console.print(f"{passed} of {len(cases)} cases pass")
+    console.print(f"report: {page}", soft_wrap=True)
+    _exit_with([result for _, result in finished])
+
+
+@app.command("list")
+def list_all() -> None:
+    """List the trials, campaigns, rigs, vehicles, profiles and FMUs that can be named."""
+    print_listing(
+        {
+            "trials": available("harness/trials"),
+            "campaigns": available("harness/campaigns"),
+            "rigs": available("harness/rigs"),
+            "vehicles": available("vehicles"),
+            "profiles": available("hil_profiles"),
+        },
+        {name: source.component_class() for name, source in shipped_sources().items()},
+    )
+
+
+@app.command()
+def report(
+    folder: Annotated[Path, typer.Argument(metavar="RUN", help="Folder of a run or campaign.")],
+) -> None:
+    """Write the report of a run again."""
+    is_campaign = (folder / "campaign.json").is_file()
+    page = write_campaign_report(folder) if is_campaign else write_report(folder)
+    console.print(f"report: {page}", soft_wrap=True)
+
+
+@app.command()
+def compare(
+    run_a: Annotated[Path, typer.Argument(help="Folder of a run.")],
+    run_b: Annotated[Path, typer.Argument(help="Folder of another run.")],
+) -> None:
+    """Compare two runs signal by signal; status 1 if their signals differ."""
+    comparison = compare_runs(run_a, run_b)
+    console.print(comparison.table())
+    console.print(comparison.summary)
+    if not comparison.identical:
+        raise typer.Exit(_FAILED)
+
+
+app.command("doctor")(doctor)
+
+
+def _is_campaign(name: str) -> bool:
+    if name.endswith(".toml"):
+        path = Path(name)
+        return path.is_file() and "trials" in _top_keys(path)
+    return name in available("harness/campaigns") and name not in available("harness/trials")
+
+
+def _top_keys(path: Path) -> set[str]:
+    try:
+        return set(tomllib.loads(path.read_text("utf-8")))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError, OSError):
+        return set()  # the reader of the trial will say what is wrong
+
+
+def _setting(text: str) -> tuple[str, Any]:
+    """Return ``KEY=VALUE`` parsed; the value is TOML if it can be, else a text."""
+    key, equals, value = text.partition("=")
+    if not equals or not key:
+        raise InputError(f"--set: KEY=VALUE is needed, found {text!r}")
+    try:
+        return key.strip(), tomllib.loads(f"x = {value}")["x"]
+    except tomllib.TOMLDecodeError:
+        return key.strip(), value.strip()
+
+
+def _exit_with(results: list[Result]) -> None:
+    if any(result.status == "failed" for result in results):
+        first = next(result.error for result in results if result.status == "failed")
+        raise SimulationError(str(first))
+    if any(result.status == "stopped" for result in results):
+        raise SimulationError("stopped; the signals recorded so far are on disk")
+    if not all(result.passed for result in results):
+        raise typer.Exit(_FAILED)
+
+
+@contextmanager
+def _stoppable() -> Iterator[Any]:
+    """Make Ctrl-C and a termination signal end the run after the current step."""
+    asked: list[int] = []
+    before = {
+        number: signal.signal(number, lambda number, _frame: asked.append(number))
+        for number in (signal.SIGINT, signal.SIGTERM)
+    }
+    try:
+        yield lambda: bool(asked)
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

@@ -1,0 +1,127 @@
+"""What the terminal shows: progress, verdicts, listings."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from types import TracebackType
+
+from rich.console import Console
+from rich.markup import escape
+from rich.progress import BarColumn, Progress, TextColumn
+from rich.table import Table
+
+from ..component import Component
+from ..trials.campaign import Case
+from ..trials.run import Result
+
+console = Console(highlight=False)
+
+
+class Watch:
+    """A progress bar with simulated time and real-time factor; silent if not on a terminal."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+        self._cases, self._case = 1, 0
+        self._started = time.perf_counter()
+        self._progress = Progress(
+            TextColumn("{task.description}"),
+            BarColumn(),
+            TextColumn("{task.fields[state]}"),
+            console=console,
+            transient=True,
+        )
+        self._task = self._progress.add_task(escape(name), total=1.0, state="")
+
+    def __enter__(self) -> Watch:
+        if console.is_terminal:
+            self._progress.start()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._progress.stop()
+
+    def expect(self, cases: int) -> None:
+        """Say how many runs there will be."""
+        self._cases = cases
+
+    def building(self, what: str) -> None:
+        """Show which component is being built or loaded."""
+        self._progress.update(self._task, state=escape(f"loading {what}"))
+        self._started = time.perf_counter()
+
+    def progress(self, t: float, stop: float) -> None:
+        """Show how far the run is."""
+        elapsed = time.perf_counter() - self._started
+        factor = t / elapsed if elapsed > 0 else 0.0
+        case = f" ({self._case + 1} of {self._cases})" if self._cases > 1 else ""
+        share = (self._case + t / stop) / self._cases if stop else 1.0
+        state = f"{t:.1f} of {stop:g} s, {factor:.1f} x real time{case}"
+        self._progress.update(self._task, completed=share, state=state)
+
+    def log(self, show: Callable[[], None]) -> None:
+        """Print something above the bar, at the end of a case."""
+        self._case += 1
+        show()
+
+
+def print_verdicts(result: Result) -> None:
+    """Print the verdict of each criterion and how the run went."""
+    for note in result.notes:
+        console.print(f"[dim]note: {escape(note)}[/dim]", soft_wrap=True)
+    table = Table(box=None, padding=(0, 2, 0, 0))
+    for title in ("", "criterion", "check", "result"):
+        table.add_column(title)
+    for name, check, verdict in result.verdicts:
+        mark = "[green]PASS[/green]" if verdict.passed else "[red]FAIL[/red]"
+        table.add_row(mark, escape(name), escape(check), escape(verdict.detail))
+    if result.verdicts:
+        console.print(table)
+    elif result.status == "complete":
+        console.print("the trial has no criteria")
+    if result.status != "complete":
+        console.print(f"[red]{result.status.upper()}[/red]")
+
+
+def print_case(case: Case, result: Result) -> None:
+    """Print one line for a finished case of a campaign."""
+    failed = [name for name, _, verdict in result.verdicts if not verdict.passed]
+    mark = "[green]PASS[/green]" if result.passed else "[red]FAIL[/red]"
+    if result.status != "complete":
+        mark = f"[red]{result.status.upper()}[/red]"
+    why = f"  ({', '.join(failed)})" if failed else ""
+    console.print(f"{mark}  {escape(case.name)}{escape(why)}", soft_wrap=True)
+
+
+def print_listing(
+    files: Mapping[str, Mapping[str, Path]], components: Mapping[str, type[Component]]
+) -> None:
+    """Print all that can be named on the command line and in files."""
+    for kind, found in files.items():
+        console.print(f"[bold]{kind}[/bold]")
+        for name, path in found.items():
+            console.print(f"  {name:28} [dim]{escape(_title(path))}[/dim]", soft_wrap=True)
+    console.print("[bold]FMUs[/bold]")
+    for name, component in components.items():
+        console.print(f"  {name:28} [dim]{escape(summary(component))}[/dim]", soft_wrap=True)
+
+
+def summary(component: type[Component]) -> str:
+    """Return the first line of a component's description."""
+    return (component.__doc__ or "").strip().partition("\n")[0]
+
+
+def _title(path: Path) -> str:
+    import tomllib
+
+    try:
+        return str(tomllib.loads(path.read_text("utf-8")).get("title", ""))
+    except (tomllib.TOMLDecodeError, OSError, UnicodeDecodeError):
+        return "(cannot be read)"

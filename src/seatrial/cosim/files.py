@@ -1,0 +1,126 @@
+"""Reading the TOML files that a person writes: every mistake names the file and the key."""
+
+from __future__ import annotations
+
+import hashlib
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeVar
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from ..errors import InputError, unknown
+from ..shipped import shipped_folder
+
+Model = TypeVar("Model", bound=BaseModel)
+
+
+class FileModel(BaseModel):
+    """Base of the files' models: unknown keys are refused, values are not coerced."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, populate_by_name=True)
+
+
+@dataclass(frozen=True)
+class Source:
+    """A file as it was read: its name for messages and manifests, its path, its hash."""
+
+    name: str
+    path: Path
+    sha256: str
+
+
+def find_file(kind: str, name: str, relative_to: Path | None = None) -> Path:
+    """Return the TOML file that ``name`` means.
+
+    A path (with ``.toml``) wins, relative to ``relative_to`` or the current folder; a bare name
+    is looked for in ``KIND`` (such as ``harness/rigs``) below the current folder, then among
+    the shipped files. Raises InputError with near misses.
+    """
+    if name.endswith(".toml"):
+        path = ((relative_to or Path.cwd()) / name).resolve()
+        if not path.is_file():
+            raise InputError(f"there is no file {path}")
+        return path
+    folders = searched_folders(kind)
+    for folder in folders:
+        path = folder / f"{name}.toml"
+        if path.is_file():
+            return path
+    what = kind.rpartition("/")[2].rstrip("s") if "/" in kind else kind.rstrip("s")
+    raise InputError(unknown(what, name, available(kind)) + "; or give a path ending in .toml")
+
+
+def searched_folders(kind: str) -> list[Path]:
+    """Return the folders where files of ``kind`` are looked for, in order."""
+    top, _, below = kind.partition("/")
+    shipped = shipped_folder(top) / below if below else shipped_folder(top)
+    return [p for p in dict.fromkeys([Path.cwd() / kind, shipped]) if p.is_dir()]
+
+
+def available(kind: str) -> dict[str, Path]:
+    """Return the files of ``kind`` by name, the ones that `find_file` would return."""
+    found: dict[str, Path] = {}
+    for folder in searched_folders(kind):
+        for path in sorted(folder.glob("*.toml")):
+            found.setdefault(path.stem, path)
+    return dict(sorted(found.items()))
+
+
+def read_toml(path: Path) -> tuple[dict[str, Any], Source]:
+    """Return a TOML file's content and what it was read from.
+
+    Raises InputError naming file, line and column if it is not TOML.
+    """
+    try:
+        data = path.read_bytes()
+        content = tomllib.loads(data.decode("utf-8"))
+    except OSError as error:
+        raise InputError(f"{path}: {error.strerror}") from None
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path}: not UTF-8 text at byte {error.start}") from None
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"{path}: not TOML: {error}") from None
+    return content, Source(path.stem, path, hashlib.sha256(data).hexdigest())
+
+
+def validated(model: type[Model], content: Any, path: Path) -> Model:
+    """Return ``content`` as ``model``; raise InputError naming each key that does not fit."""
+    try:
+        return model.model_validate(content)
+    except ValidationError as error:
+        lines = [_explained(model, problem) for problem in error.errors()]
+        raise InputError("\n".join(f"{path}: {line}" for line in lines)) from None
+
+
+def _explained(model: type[BaseModel], problem: Any) -> str:
+    keys = [str(key) for key in problem["loc"]]
+    place = ".".join(f'"{k}"' if "." in k else k for k in keys) or "(top level)"
+    if problem["type"] == "extra_forbidden":
+        return f"{place}: {unknown('key', keys[-1], _known_keys(model, keys[:-1]))}"
+    if problem["type"] == "missing":
+        return f"{place}: this key is missing"
+    return f"{place}: {problem['msg']}, found {problem['input']!r}"
+
+
+def _known_keys(model: type[BaseModel], keys: list[str]) -> list[str]:
+    """Return the keys allowed at ``keys`` inside ``model``, as far as they can be followed."""
+    current: Any = model
+    for key in keys:
+        field = getattr(current, "model_fields", {}).get(key)
+        annotation = field.annotation if field is not None else current
+        candidates = [a for a in _flattened(annotation) if _is_model(a)]
+        if candidates:
+            current = candidates[0]
+    fields = getattr(current, "model_fields", {})
+    return [field.alias or name for name, field in fields.items()]
+
+
+def _flattened(annotation: Any) -> list[Any]:
+    arguments = getattr(annotation, "__args__", ())
+    return [annotation, *(a for argument in arguments for a in _flattened(argument))]
+
+
+def _is_model(annotation: Any) -> bool:
+    return isinstance(annotation, type) and issubclass(annotation, BaseModel)

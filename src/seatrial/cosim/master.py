@@ -1,0 +1,342 @@
+"""The master: steps instances, moves values along wires, and knows nothing of boats.
+
+Time is a whole number of nanoseconds. At each communication point the values that are valid
+there are moved, feed-through outputs are read again in dependency order (so that a controller
+adds no hidden delay), then every instance steps with its inputs held (Jacobi). With
+``plain-jacobi`` nothing is read again, as in libcosim and ecos: one step of delay per hop.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from operator import itemgetter
+from typing import Any, Literal
+
+from ..component import seconds
+from ..errors import SimulationError
+from ..fmi.instance import Reader, Writer
+from .order import loops_on_itself, ordered_groups
+from .system import Part, System
+
+Algorithm = Literal["jacobi", "plain-jacobi"]
+Name = tuple[str, str]
+
+_LOOP_TOLERANCE = 1e-12
+_LOOP_ITERATIONS = 200
+
+
+@dataclass
+class _Reads:
+    """Outputs of one type of one instance, side by side in the master's signals."""
+
+    start: int
+    stop: int
+    read: Reader
+    is_real: bool
+
+
+@dataclass
+class _Writes:
+    """Connected inputs of one type of one instance."""
+
+    names: list[str]
+    places: list[int]
+    write: Writer
+    scales: list[tuple[int, float, float]]
+    gather: Any = None
+
+
+@dataclass
+class _Node:
+    part: Part
+    h: float
+    reads: list[_Reads] = field(default_factory=list)
+    writes: list[_Writes] = field(default_factory=list)
+
+
+@dataclass
+class _Visit:
+    """Feed-through outputs to read again after the inputs they depend on were moved."""
+
+    node: _Node
+    names: list[str]
+    places: list[int]
+    read: Reader
+
+
+class Master:
+    """Runs an assembled system.
+
+    ``signals`` holds the current value of every output; ``names`` says which is which. A value
+    is valid at ``time``.
+    """
+
+    def __init__(self, system: System, start_ns: int = 0, stop_ns: int = 0) -> None:
+        self.system = system
+        self.algorithm: Algorithm = system.rig.file.algorithm
+        self.step_ns = system.rig.step_ns
+        self.start_ns, self.stop_ns = start_ns, stop_ns
+        self.steps = 0
+        self.names: list[Name] = []
+        self.signals: list[Any] = []
+        self._pins: dict[int, Any] = {}
+        self._nodes: dict[str, _Node] = {}
+        self._groups: list[tuple[list[_Visit], bool]] = []
+
+    @property
+    def time_ns(self) -> int:
+        """Simulated time, ns."""
+        return self.start_ns + self.steps * self.step_ns
+
+    @property
+    def time(self) -> float:
+        """Simulated time, s."""
+        return seconds(self.time_ns)
+
+    def initialise(self) -> None:
+        """Set parameters, start every instance and solve the wires at the start time.
+
+        Raises SimulationError if an instance refuses or a feed-through loop has no solution.
+        """
+        parts = self.system.parts.values()
+        for part in parts:
+            part.instance.set_start({name: given.value for name, given in part.given.items()})
+        for part in parts:
+            part.instance.initialise(seconds(self.start_ns), seconds(self.stop_ns))
+        self._prepare()
+        groups = self._feedthrough_groups()
+        self._settle(groups)
+        for part in parts:
+            part.instance.begin()
+        self._settle(groups)
+        self._groups = groups if self.algorithm == "jacobi" else []
+
+    def step(self) -> None:
+        """Advance everything by one communication step. Raises SimulationError."""
+        nodes, t, k = self._nodes.values(), self.time, self.steps
+        for node in nodes:
+            if k % node.part.every == 0:
+                self._write(node)
+                node.part.instance.step(t, node.h)
+        self.steps = k = k + 1
+        for node in nodes:
+            if k % node.part.every == 0:
+                self._read(node)
+        if self._pins:
+            self._apply_pins()
+        self._propagate(self._groups)
+
+    def set(self, component: str, names: Sequence[str], values: Sequence[Any]) -> None:
+        """Set tunable parameters or unconnected inputs now. Raises SimulationError."""
+        self.system.parts[component].instance.writer(names)(values)
+        self._propagate(self._groups)
+
+    def override(self, component: str, name: str, value: Any) -> None:
+        """Replace an output for all its readers, or one connected input, until `release`."""
+        self._pin(component, name, value)
+        self._propagate(self._groups)
+
+    def release(self, component: str, name: str) -> None:
+        """End an override: the wire carries its own value again."""
+        self._pin(component, name, None)
+        self._propagate(self._groups)
+
+    def is_connected(self, component: str, name: str) -> bool:
+        """Say if a wire reaches the input ``name``."""
+        return any(wire.target == (component, name) for wire in self.system.wires)
+
+    def terminate(self) -> None:
+        """Tell every instance that the run has ended. Raises SimulationError."""
+        for part in self.system.parts.values():
+            part.instance.terminate()
+
+    # ------------------------------------------------------------------ preparation
+
+    def _prepare(self) -> None:
+        places: dict[Name, int] = {}
+        for name, part in self.system.parts.items():
+            node = _Node(part, seconds(part.every * self.step_ns))
+            self._nodes[name] = node
+            outputs = [v for v in part.instance.variables.values() if v.causality == "output"]
+            for kind in dict.fromkeys(v.type for v in outputs):
+                of_kind = [v.name for v in outputs if v.type is kind]
+                start = len(self.signals)
+                for output in of_kind:
+                    places[name, output] = len(self.names)
+                    self.names.append((name, output))
+                    self.signals.append(None)
+                reader = part.instance.reader(of_kind)
+                node.reads.append(_Reads(start, len(self.signals), reader, kind is float))
+        self._places = places
+        for name, node in self._nodes.items():
+            self._prepare_writes(name, node)
+
+    def _prepare_writes(self, name: str, node: _Node) -> None:
+        variables = node.part.instance.variables
+        wires = [w for w in self.system.wires if w.target[0] == name]
+        for kind in dict.fromkeys(variables[w.target[1]].type for w in wires):
+            of_kind = [w for w in wires if variables[w.target[1]].type is kind]
+            names = [w.target[1] for w in of_kind]
+            scales = [
+                (i, w.factor, w.offset)
+                for i, w in enumerate(of_kind)
+                if (w.factor, w.offset) != (1.0, 0.0)
+            ]
+            places = [self._places[w.source] for w in of_kind]
+            writes = _Writes(names, places, node.part.instance.writer(names), scales)
+            writes.gather = _gatherer(places)
+            node.writes.append(writes)
+
+    def _feedthrough_groups(self) -> list[tuple[list[_Visit], bool]]:
+        """Return visits in dependency order; True marks a group that is a loop."""
+        source_of = {wire.target: wire.source for wire in self.system.wires}
+        depends: dict[Name, list[Name]] = {}
+        for name, node in self._nodes.items():
+            through = node.part.instance.feedthrough
+            for output, inputs in through.items():
+                sources = [source_of[name, i] for i in inputs if (name, i) in source_of]
+                if sources:
+                    depends[name, output] = sources
+        groups = [g for g in ordered_groups(depends) if any(n in depends for n in g)]
+        scheduled = _scheduled(groups, depends)
+        return [
+            (self._visits([n for n in group if n in depends]), loops_on_itself(group, depends))
+            for group in scheduled
+        ]
+
+    def _visits(self, outputs: Sequence[Name]) -> list[_Visit]:
+        visits = []
+        for component in dict.fromkeys(component for component, _ in outputs):
+            names = [output for c, output in outputs if c == component]
+            node = self._nodes[component]
+            places = [self._places[component, n] for n in names]
+            visits.append(_Visit(node, names, places, node.part.instance.reader(names)))
+        return visits
+
+    # ------------------------------------------------------------------ running
+
+    def _settle(self, groups: list[tuple[list[_Visit], bool]]) -> None:
+        for node in self._nodes.values():
+            self._read(node)
+        self._propagate(groups)
+        for node in self._nodes.values():
+            self._write(node)
+            self._read(node)
+
+    def _propagate(self, groups: list[tuple[list[_Visit], bool]]) -> None:
+        for visits, is_loop in groups:
+            if is_loop:
+                self._solve(visits)
+            else:
+                for visit in visits:
+                    self._visit(visit)
+
+    def _visit(self, visit: _Visit) -> None:
+        if self.steps % visit.node.part.every:
+            return
+        self._write(visit.node)
+        signals = self.signals
+        for place, value in zip(visit.places, visit.read(), strict=True):
+            signals[place] = value
+        if self._pins:
+            self._apply_pins()
+
+    def _solve(self, visits: list[_Visit]) -> None:
+        """Fixed-point iteration over a feed-through loop."""
+        places = [p for visit in visits for p in visit.places]
+        for _ in range(_LOOP_ITERATIONS):
+            before = [self.signals[p] for p in places]
+            for visit in visits:
+                self._visit(visit)
+            if all(_close(a, self.signals[p]) for a, p in zip(before, places, strict=True)):
+                return
+        names = ", ".join(".".join(self.names[p]) for p in places)
+        raise SimulationError(
+            f"at t = {self.time!r} s the loop through {names} does not settle within "
+            f"{_LOOP_ITERATIONS} iterations; break it with a component that has a state"
+        )
+
+    def _write(self, node: _Node) -> None:
+        for writes in node.writes:
+            values = writes.gather(self.signals)
+            if writes.scales:
+                values = list(values)
+                for i, factor, offset in writes.scales:
+                    values[i] = values[i] * factor + offset
+            writes.write(values)
+
+    def _read(self, node: _Node) -> None:
+        for reads in node.reads:
+            values = reads.read()
+            if reads.is_real and not math.isfinite(sum(values)):
+                self._refuse_not_finite(reads, values)
+            self.signals[reads.start : reads.stop] = values
+
+    def _refuse_not_finite(self, reads: _Reads, values: Sequence[float]) -> None:
+        for place, value in zip(range(reads.start, reads.stop), values, strict=True):
+            if not math.isfinite(value):
+                name = ".".join(self.names[place])
+                raise SimulationError(f"{name} is {value} at t = {self.time!r} s")
+
+    def _pin(self, component: str, name: str, value: Any) -> None:
+        if (component, name) in self._places:
+            place = self._places[component, name]
+            if value is None:
+                self._pins.pop(place, None)
+                self._read(self._nodes[component])
+            else:
+                self._pins[place] = value
+            self._apply_pins()
+            return
+        source = next(w.source for w in self.system.wires if w.target == (component, name))
+        for writes in self._nodes[component].writes:
+            if name in writes.names:
+                index = writes.names.index(name)
+                if value is None:
+                    writes.places[index] = self._places[source]
+                else:
+                    writes.places[index] = len(self.signals)
+                    self.signals.append(value)
+                writes.gather = _gatherer(writes.places)
+
+    def _apply_pins(self) -> None:
+        for place, value in self._pins.items():
+            self.signals[place] = value
+
+
+def _gatherer(places: Sequence[int]) -> Any:
+    if len(places) == 1:
+        place = places[0]
+        return lambda signals: (signals[place],)
+    return itemgetter(*places)
+
+
+def _scheduled(groups: list[list[Name]], depends: Mapping[Name, Sequence[Name]]) -> list[list[Name]]:
+    """Join groups of one instance that can be read together, keeping the dependency order."""
+    waiting, scheduled = list(groups), []
+    moving = {name for group in groups for name in group}
+    while waiting:
+        ready = [
+            g
+            for g in waiting
+            if not any(d in moving and d not in g for n in g for d in depends.get(n, ()))
+        ]
+        first = ready[0]
+        if loops_on_itself(first, depends):
+            taken = [first]
+        else:
+            taken = [
+                g for g in ready if g[0][0] == first[0][0] and not loops_on_itself(g, depends)
+            ]
+        scheduled.append([name for group in taken for name in group])
+        waiting = [g for g in waiting if g not in taken]
+        moving -= {name for group in taken for name in group}
+    return scheduled
+
+
+def _close(a: Any, b: Any) -> bool:
+    if not isinstance(b, float) or not isinstance(a, float):
+        return bool(a == b)
+    return abs(a - b) <= _LOOP_TOLERANCE * max(1.0, abs(a), abs(b))

@@ -1,0 +1,78 @@
+"""Parameter sets of vehicles: ``vehicles/*.toml``, every value with unit, source and mark."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Literal
+
+from pydantic import Field
+
+from ..errors import InputError, unknown
+from .files import FileModel, Source, find_file, read_toml, validated
+
+Mark = Literal["stated", "corrected", "assumed"]
+
+
+class Entry(FileModel):
+    """One value: a number, a list of numbers for a port with axes, or a text."""
+
+    value: float | int | str | list[float | int]
+    unit: str = "1"
+    source: str
+    mark: Mark
+
+
+class VehicleFile(FileModel):
+    """A vehicle's parameter file; its other tables are one per component."""
+
+    title: str
+    source: str
+    default: str | None = None
+    variants: dict[str, dict[str, dict[str, Entry]]] = Field(default_factory=dict)
+    presets: dict[str, dict[str, dict[str, Entry]]] = Field(default_factory=dict)
+    components: dict[str, dict[str, Entry]] = Field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class ParameterSet:
+    """Values for one component, by port name, and presets for whole ports."""
+
+    values: dict[str, Entry] = field(default_factory=dict)
+    presets: dict[str, dict[str, Entry]] = field(default_factory=dict)
+    origin: str = ""
+
+
+@dataclass(frozen=True)
+class Vehicle:
+    """A vehicle's parameter file."""
+
+    file: VehicleFile
+    read_from: Source
+
+    def parameter_set(self, table: str, variant: str | None) -> ParameterSet:
+        """Return the values for the component ``table`` in ``variant`` (None: the default).
+
+        Raises InputError if the file has no such table or variant.
+        """
+        file, path = self.file, self.read_from.path
+        chosen = variant or file.default
+        if chosen is not None and chosen not in file.variants:
+            raise InputError(f"{path}: {unknown('variant', chosen, file.variants)}")
+        changes = file.variants[chosen].get(table, {}) if chosen else {}
+        if table not in file.components and not changes:
+            raise InputError(f"{path}: {unknown('component table', table, file.components)}")
+        values = {**file.components.get(table, {}), **changes}
+        suffix = f", variant {chosen}" if chosen else ""
+        origin = f"vehicles/{path.name} [{table}]{suffix}"
+        return ParameterSet(values, file.presets.get(table, {}), origin)
+
+
+def load_vehicle(name: str, relative_to: Path | None = None) -> Vehicle:
+    """Read the vehicle file ``name`` (shipped, or a path). Raises InputError."""
+    path = find_file("vehicles", name, relative_to)
+    content, read_from = read_toml(path)
+    known = {"title", "source", "default", "variants", "presets"}
+    components = {key: value for key, value in content.items() if key not in known}
+    top: dict[str, Any] = {key: value for key, value in content.items() if key in known}
+    return Vehicle(validated(VehicleFile, {**top, "components": components}, path), read_from)

@@ -1,0 +1,263 @@
+"""A rig assembled: instances of its FMUs with their parameters, and its wires."""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Literal
+
+from ..errors import InputError, unknown
+from ..fmi.direct import DirectInstance
+from ..fmi.export import cached_fmu
+from ..fmi.instance import Instance, Variable
+from ..fmi.load import FmuInstance, load_fmu
+from ..fmi.source import find_source
+from ..units import conversion
+from .parameters import ParameterSet, load_vehicle
+from .profile import Profile, load_profile
+from .rig import ComponentEntry, Rig, duration_ns
+from .values import Given, from_entry, from_written, port_names, port_scalars
+
+Engine = Literal["fmu", "direct"]
+
+
+@dataclass
+class Part:
+    """One component of an assembled rig."""
+
+    name: str
+    fmu: str
+    instance: Instance
+    sha256: str
+    every: int
+    """It steps once in so many communication steps."""
+    given: dict[str, Given] = field(default_factory=dict)
+    """Values set by the rig's user, by variable name; the others keep the FMU's start values."""
+    presets: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Wire:
+    """One scalar connection; the target gets factor * value + offset."""
+
+    source: tuple[str, str]
+    target: tuple[str, str]
+    factor: float = 1.0
+    offset: float = 0.0
+
+
+@dataclass
+class System:
+    """An assembled rig: what the master steps."""
+
+    rig: Rig
+    engine: Engine
+    seed: int
+    variant: str | None
+    parts: dict[str, Part]
+    wires: list[Wire]
+
+    def set(self, key: str, written: Any, origin: str) -> None:
+        """Set ``component.port`` to what a person wrote, before the run.
+
+        Raises InputError for an unknown component or port, or a value that does not fit.
+        """
+        part, scalars = self._settable(key, origin)
+        presets = part.presets.get(key.partition(".")[2], {})
+        part.given.update(from_written(written, scalars, presets, f"{origin}: {key}"))
+
+    def scale(self, key: str, factor: float, origin: str) -> None:
+        """Multiply the number ``component.port``, as set so far, by ``factor``.
+
+        Raises InputError for an unknown component or port, or one that holds no number.
+        """
+        part, scalars = self._settable(key, origin)
+        for variable in scalars:
+            given = part.given.get(variable.name)
+            value = variable.start if given is None else given.value
+            if not isinstance(value, float):
+                raise InputError(f"{origin}: {key} is not a real number and cannot be scaled")
+            before = "start value of the FMU" if given is None else given.origin
+            part.given[variable.name] = Given(value * factor, f"{origin}: {factor!r} times {before}")
+
+    def _settable(self, key: str, origin: str) -> tuple[Part, list[Variable]]:
+        name, _, port = key.partition(".")
+        if name not in self.parts:
+            raise InputError(f"{origin}: {unknown('component', name, self.parts)}")
+        part = self.parts[name]
+        return part, settable(part.instance.variables, port, f"{origin}: {name}")
+
+    def unconnected_inputs(self) -> list[str]:
+        """Return the inputs that no wire reaches and nobody set."""
+        wired = {wire.target for wire in self.wires}
+        return [
+            f"{name}.{v.name}"
+            for name, part in self.parts.items()
+            for v in part.instance.variables.values()
+            if v.causality == "input" and (name, v.name) not in wired and v.name not in part.given
+        ]
+
+    def free(self) -> None:
+        """Release all instances."""
+        for part in self.parts.values():
+            part.instance.free()
+
+
+def settable(variables: Mapping[str, Variable], port: str, where: str) -> list[Variable]:
+    """Return the scalars of a parameter or input port. Raises InputError."""
+    scalars = port_scalars(variables, port)
+    if not scalars:
+        raise InputError(f"{where}: {unknown('port', port, port_names(variables))}")
+    if scalars[0].causality not in ("parameter", "input"):
+        raise InputError(f"{where}.{port} is a {scalars[0].causality} and cannot be set")
+    return scalars
+
+
+def assemble(
+    rig: Rig,
+    engine: Engine = "fmu",
+    *,
+    variant: str | None = None,
+    seed: int = 1,
+    progress: Callable[[str], None] = lambda _: None,
+) -> System:
+    """Load, or build, every FMU of ``rig``, and check its wires.
+
+    ``variant`` replaces the rig's; ``seed`` is what the components' own seeds derive from,
+    where a component has one. Raises InputError for anything in the files that does not fit.
+    """
+    system = System(rig, engine, seed, variant or rig.file.variant, {}, [])
+    folder = rig.read_from.path.parent
+    profile = load_profile(rig.file.profile, folder) if rig.file.profile else None
+    try:
+        for name, entry in rig.file.components.items():
+            progress(f"{name} ({entry.fmu})")
+            part = _part(rig, name, entry, engine)
+            system.parts[name] = part
+            _give_parameters(system, part, entry, profile)
+        system.wires = _wires(system)
+    except BaseException:
+        system.free()
+        raise
+    return system
+
+
+def _part(rig: Rig, name: str, entry: ComponentEntry, engine: Engine) -> Part:
+    path = rig.read_from.path
+    where = f"{path}: components.{name}"
+    try:
+        source = find_source(entry.fmu, path.parent)
+    except InputError as error:
+        raise InputError(f"{where}.fmu: {error}") from None
+    every = 1
+    if entry.step is not None:
+        step_ns = duration_ns(entry.step, f"{where}.step")
+        every, rest = divmod(step_ns, rig.step_ns)
+        if every < 1 or rest:
+            raise InputError(
+                f"{where}.step: {entry.step!r} is not a multiple of the rig's {rig.file.step!r}"
+            )
+    instance: Instance
+    if engine == "direct":
+        if isinstance(source, Path):
+            raise InputError(f"{where}.fmu: {source.name} can only run with the engine 'fmu'")
+        instance, sha256 = DirectInstance(source.component_class()(name)), ""
+    else:
+        fmu = load_fmu(source if isinstance(source, Path) else cached_fmu(source))
+        instance, sha256 = FmuInstance(fmu, name), fmu.sha256
+    return Part(name, entry.fmu, instance, sha256, every)
+
+
+def _give_parameters(
+    system: System, part: Part, entry: ComponentEntry, profile: Profile | None
+) -> None:
+    path, variables = system.rig.read_from.path, part.instance.variables
+    where = f"{path}: components.{part.name}"
+    if "seed" in variables:
+        # Each instance has noise of its own, yet the same in every tool and run.
+        seed = zlib.crc32(f"{system.seed}/{part.name}".encode())
+        part.given["seed"] = Given(float(seed), f"derived from seed {system.seed}")
+    if entry.parameters is not None:
+        values = _parameter_set(system, entry, where)
+        part.presets = values.presets
+        for port, value in values.values.items():
+            scalars = settable(variables, port, values.origin)
+            part.given.update(from_entry(value, scalars, f"{values.origin}"))
+    if entry.profile is not None:
+        if profile is None:
+            raise InputError(f"{where}.profile: the rig names no profile")
+        for port, value in profile.parameters(entry.profile).items():
+            scalars = settable(variables, port, f"{where}.profile {entry.profile}")
+            origin = f"profile {system.rig.file.profile} [{entry.profile}]"
+            part.given.update(from_written(value, scalars, {}, origin))
+    for port, written in entry.set.items():
+        system.set(f"{part.name}.{port}", written, f"{where}.set")
+
+
+def _parameter_set(system: System, entry: ComponentEntry, where: str) -> ParameterSet:
+    assert entry.parameters is not None
+    name, _, table = entry.parameters.partition(".")
+    if entry.parameters.endswith(".toml"):
+        name, table = entry.parameters, ""
+    try:
+        vehicle = load_vehicle(name, system.rig.read_from.path.parent)
+        return vehicle.parameter_set(table or entry.fmu, system.variant)
+    except InputError as error:
+        raise InputError(f"{where}.parameters: {error}") from None
+
+
+def _wires(system: System) -> list[Wire]:
+    wires: list[Wire] = []
+    taken: dict[tuple[str, str], str] = {}
+    for written_source, written_target in system.rig.connections():
+        where = f'{system.rig.read_from.path}: connections."{written_source}"'
+        sources = _end(system, written_source, "output", where)
+        targets = _end(system, written_target, "input", where)
+        if len(sources) != len(targets):
+            raise InputError(
+                f"{where}: {written_source} has {len(sources)} scalars, "
+                f"{written_target} has {len(targets)}"
+            )
+        for source, target in zip(sources, targets, strict=True):
+            key = (written_target.partition(".")[0], target.name)
+            if key in taken:
+                raise InputError(
+                    f"{where}: {key[0]}.{key[1]} is already fed by {taken[key]}; "
+                    "an input takes one wire"
+                )
+            taken[key] = written_source
+            origin = (written_source.partition(".")[0], source.name)
+            wires.append(Wire(origin, key, *_converting(source, target, where)))
+    return wires
+
+
+def _end(system: System, written: str, causality: str, where: str) -> list[Variable]:
+    name, _, port = written.partition(".")
+    if name not in system.parts:
+        raise InputError(f"{where}: {unknown('component', name, system.parts)}")
+    variables = system.parts[name].instance.variables
+    scalars = port_scalars(variables, port)
+    if not scalars:
+        wanted = {n: v for n, v in variables.items() if v.causality == causality}
+        raise InputError(f"{where}: {name}: {unknown(causality, port, port_names(wanted))}")
+    for variable in scalars:
+        if variable.causality != causality:
+            raise InputError(f"{where}: {written} is a {variable.causality}, not an {causality}")
+    return scalars
+
+
+def _converting(source: Variable, target: Variable, where: str) -> tuple[float, float]:
+    """Return the factor and offset between two ends; raise InputError if they do not fit."""
+    if source.type is not target.type and (source.type, target.type) != (int, float):
+        raise InputError(
+            f"{where}: {source.name} is {source.type.__name__}, "
+            f"{target.name} is {target.type.__name__}"
+        )
+    if not source.unit or not target.unit or target.type is not float:
+        return 1.0, 0.0
+    try:
+        return conversion(source.unit, target.unit)
+    except InputError as error:
+        raise InputError(f"{where}: {source.name} to {target.name}: {error}") from None

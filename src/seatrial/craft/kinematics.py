@@ -1,0 +1,96 @@
+"""Rotations between north-east-down and body axes, and Euler-angle rates.
+
+Frames: {n} x north, y east, z down; {b} x bow, y starboard, z down. An attitude is
+(phi, theta, psi): roll, pitch and yaw in rad, of the rotation psi about z, then theta about y,
+then phi about x (Fossen; source 004, eq. 10). phi > 0: starboard down; theta > 0: bow up;
+psi > 0: clockwise seen from above.
+
+Functions of plain floats serve components that step in Python; those that take and return
+CasADi columns (`rotation_matrix`, `euler_rate_matrix`, `skew`) serve equations of motion.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import casadi as ca
+
+Vector3 = tuple[float, float, float]
+Rows = tuple[Vector3, Vector3, Vector3]
+
+
+def rotation(phi: float, theta: float, psi: float) -> Rows:
+    """Return the rows of R(phi, theta, psi), with v_n = R v_b. Angles in rad."""
+    angles = (phi, theta, psi)
+    return _rows([math.sin(a) for a in angles], [math.cos(a) for a in angles])  # type: ignore[return-value]
+
+
+def to_ned(attitude: Sequence[float], v: Sequence[float]) -> Vector3:
+    """Return R v: the vector with body components ``v``, in north-east-down."""
+    a, b, c = rotation(*attitude)
+    x, y, z = v
+    return (
+        a[0] * x + a[1] * y + a[2] * z,
+        b[0] * x + b[1] * y + b[2] * z,
+        c[0] * x + c[1] * y + c[2] * z,
+    )
+
+
+def to_body(attitude: Sequence[float], v: Sequence[float]) -> Vector3:
+    """Return R^T v: the vector with north-east-down components ``v``, in body axes."""
+    a, b, c = rotation(*attitude)
+    x, y, z = v
+    return (
+        a[0] * x + b[0] * y + c[0] * z,
+        a[1] * x + b[1] * y + c[1] * z,
+        a[2] * x + b[2] * y + c[2] * z,
+    )
+
+
+def cross(a: Sequence[float], b: Sequence[float]) -> Vector3:
+    """Return a x b."""
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def wrap_angle(angle: float) -> float:
+    """Return the angle (rad) less whole turns, in [-pi, pi]; exact, odd in its argument."""
+    return math.remainder(angle, math.tau)
+
+
+def rotation_matrix(attitude: Any) -> Any:
+    """Return R (3, 3) of a CasADi column (phi, theta, psi), with v_n = R v_b."""
+    angles = ca.vertsplit(attitude)
+    rows = _rows([ca.sin(a) for a in angles], [ca.cos(a) for a in angles])
+    return ca.vertcat(*(ca.horzcat(*row) for row in rows))
+
+
+def euler_rate_matrix(attitude: Any) -> Any:
+    """Return T (3, 3) of a CasADi column (phi, theta, psi): Euler-angle rates are T (p, q, r).
+
+    Singular at theta = +-pi/2, where Euler angles do not describe an attitude uniquely.
+    """
+    phi, theta, _psi = ca.vertsplit(attitude)
+    return ca.vertcat(
+        ca.horzcat(1, ca.sin(phi) * ca.tan(theta), ca.cos(phi) * ca.tan(theta)),
+        ca.horzcat(0, ca.cos(phi), -ca.sin(phi)),
+        ca.horzcat(0, ca.sin(phi) / ca.cos(theta), ca.cos(phi) / ca.cos(theta)),
+    )
+
+
+def skew(a: Any) -> Any:
+    """Return S (3, 3) of a CasADi column, with S(a) b = a x b (source 004, eq. 20)."""
+    x, y, z = ca.vertsplit(a)
+    return ca.vertcat(ca.horzcat(0, -z, y), ca.horzcat(z, 0, -x), ca.horzcat(-y, x, 0))
+
+
+def _rows(sines: Sequence[Any], cosines: Sequence[Any]) -> tuple[tuple[Any, Any, Any], ...]:
+    """Return R by rows from the sines and cosines of (phi, theta, psi), numbers or symbols."""
+    sphi, sth, spsi = sines
+    cphi, cth, cpsi = cosines
+    return (
+        (cpsi * cth, -spsi * cphi + cpsi * sth * sphi, spsi * sphi + cpsi * cphi * sth),
+        (spsi * cth, cpsi * cphi + sphi * sth * spsi, -cpsi * sphi + sth * spsi * cphi),
+        (-sth, cth * sphi, cth * cphi),
+    )

@@ -1,0 +1,44 @@
+"""Depth sensor."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from ..component import Input, Parameter
+from ..craft.kinematics import to_ned
+from .sensor import Measured, Sensor
+
+
+class Depth(Sensor):
+    """Depth from water pressure, at the sensor: m, positive down, from the free surface.
+
+        depth = (density / assumed_density) max(0, z + (R place)_z)
+
+    with the errors of `Sensor` on top: the pressure is density g d, and the instrument turns it
+    into depth with the density it was told. Out of the water it reads 0. ``place`` is the
+    lever arm of the sensor from the body origin, body axes (x bow, y starboard, z down), m;
+    z the depth of the body origin below the surface at rest.
+
+    Defaults: Blue Robotics Bar30 (TE MS5837-30BA): resolution 0.2 mbar, 2 mm of water; noise of
+    the same size; slow error 20 mm (assumed, after zeroing at the surface); 20 Hz, conversion
+    time 20 ms. Its absolute accuracy before zeroing is +-200 mbar: set ``depth_bias``.
+    Not modelled: waves, dynamic pressure, temperature.
+    """
+
+    period = Parameter(0.05, "s", "sample period", min=1e-6)
+    delay = Parameter(0.02, "s", "time from measurement to output", min=0.0)
+    density = Parameter(1025.0, "kg/m3", "density of the water", min=0.0)
+    assumed_density = Parameter(1025.0, "kg/m3", "density the instrument was told", min=1e-6)
+    place = Parameter(0.0, "m", "sensor from the body origin, body axes", axes="xyz")
+
+    position = Input("m", "body origin in north-east-down", axes="xyz")
+    attitude = Input("rad", "Euler angles, ZYX", axes=("phi", "theta", "psi"))
+    depth = Measured(
+        "m", "depth of the sensor, positive down", noise=0.002, instability=0.02, resolution=0.002
+    )
+
+    feedthrough: ClassVar = {"depth": ("position", "attitude")}
+
+    def measure(self) -> list[float]:
+        below = self.position[2] + to_ned(self.attitude, self.place)[2]
+        return [self.density / self.assumed_density * max(0.0, below)]

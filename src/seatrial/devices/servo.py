@@ -1,0 +1,95 @@
+"""A hobby servo: pulse width in, shaft angle out."""
+
+from __future__ import annotations
+
+import math
+
+from ..component import NS, Input, Output, Parameter
+from ..errors import InputError
+from ..sampled import Sampled
+
+
+class Servo(Sampled):
+    """Position servo driven by a pulse every ``period`` (50 Hz frames).
+
+    At each frame (counted in whole nanoseconds from the start of the run, whatever the
+    communication step) the servo takes the pulse then present. Its angle wanted is linear in
+    the pulse on either side of neutral: ``pulse_min`` -> ``angle_min``, ``pulse_neutral`` ->
+    half-way, ``pulse_max`` -> ``angle_max``, held at the ends beyond (a reversed servo has
+    ``angle_min`` > ``angle_max``). If it is further away than the dead band, the shaft turns
+    at constant ``rate`` until it is within the dead band, where the motor rests:
+
+        angle(t) = angle_k + sign(e) min(rate (t - t_k), |e| - band),  e = wanted - angle_k
+
+    with band = ``dead_band`` as an angle, at the mean slope of the whole range. So it stops
+    short by ``dead_band``, from either side. A pulse width of 0 (no pulse) holds the shaft
+    where it is. Defaults: a standard analogue servo, as HS-422 class data sheets give it at
+    4.8 V: 1500 +- 400 us for +- 45 degrees, 0.21 s per 60 degrees, dead band 8 us.
+
+    Angles rad, rate rad/s, pulses s. The angle never reacts to the pulse at the same instant.
+    Not modelled: acceleration, load torque, backlash.
+
+    Raises InputError at the start if the pulses do not rise or ``angle_start`` lies outside
+    the range.
+    """
+
+    period = Parameter(0.02, "s", "period of the pulse frames", min=1e-6)
+    pulse_min = Parameter(1.1e-3, "s", "pulse of angle_min", min=0.0)
+    pulse_neutral = Parameter(1.5e-3, "s", "pulse of the middle of the range", min=0.0)
+    pulse_max = Parameter(1.9e-3, "s", "pulse of angle_max", min=0.0)
+    angle_min = Parameter(-math.pi / 4, "rad", "angle at pulse_min")
+    angle_max = Parameter(math.pi / 4, "rad", "angle at pulse_max")
+    angle_start = Parameter(0.0, "rad", "angle at the start of the run")
+    rate = Parameter(math.radians(60.0) / 0.21, "rad/s", "speed of the shaft", min=1e-9)
+    dead_band = Parameter(8e-6, "s", "error of the pulse at which the motor rests", min=0.0)
+
+    pulse = Input("s", "width of the servo pulse, 0 for none", start=1.5e-3)
+    angle = Output("rad", "angle of the shaft")
+
+    def reset(self, t: float) -> None:
+        if not self.pulse_min < self.pulse_neutral < self.pulse_max:
+            raise InputError(
+                f"{self.name}: pulse_min, pulse_neutral and pulse_max must rise, got "
+                f"{self.pulse_min!r}, {self.pulse_neutral!r}, {self.pulse_max!r} s"
+            )
+        low, high = sorted((self.angle_min, self.angle_max))
+        if not low <= self.angle_start <= high:
+            raise InputError(
+                f"{self.name}.angle_start is {self.angle_start!r} rad, allowed {low!r} to {high!r}"
+            )
+        self._from = self._to = self.angle_start
+        self._since_ns = self.now_ns
+
+    def update(self, t: float, k: int) -> None:
+        self._from, self._since_ns = self._angle_at(round(t * NS)), round(t * NS)
+        self._to = self._resting_angle(self._from)
+
+    def hold(self, t: float) -> None:
+        self.angle = self._angle_at(round(t * NS))
+
+    def _angle_at(self, time_ns: int) -> float:
+        turned = self.rate * (time_ns - self._since_ns) / NS
+        if turned >= abs(self._to - self._from):
+            return self._to
+        return self._from + math.copysign(turned, self._to - self._from)
+
+    def _resting_angle(self, angle: float) -> float:
+        """Return where the shaft, now at ``angle``, comes to rest if the pulse stays."""
+        if self.pulse <= 0.0:
+            return angle
+        slope = abs(self.angle_max - self.angle_min) / (self.pulse_max - self.pulse_min)
+        band = slope * self.dead_band
+        error = self._wanted(self.pulse) - angle
+        if abs(error) <= band:
+            return angle
+        return angle + math.copysign(abs(error) - band, error)
+
+    def _wanted(self, pulse: float) -> float:
+        middle = 0.5 * (self.angle_min + self.angle_max)
+        if pulse < self.pulse_neutral:
+            share = (self.pulse_neutral - pulse) / (self.pulse_neutral - self.pulse_min)
+            end = self.angle_min
+        else:
+            share = (pulse - self.pulse_neutral) / (self.pulse_max - self.pulse_neutral)
+            end = self.angle_max
+        return middle + min(share, 1.0) * (end - middle)

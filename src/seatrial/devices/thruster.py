@@ -1,0 +1,87 @@
+"""An electric thruster behind a speed controller, driven by a servo pulse."""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_right
+from collections.abc import Sequence
+
+from ..component import Component, Input, Output, Parameter
+from .t200 import CURRENT, FORCE, PULSE
+
+NEUTRAL = 1.5e-3
+"""Pulse that stops the thruster, s."""
+SHORTEST_SIGNAL, LONGEST_SIGNAL = 0.8e-3, 2.2e-3
+"""Pulses outside these, s, are not a signal to a speed controller (assumed, BLHeli-like)."""
+
+
+class Thruster(Component):
+    """Blue Robotics T200 with a Basic ESC: pulse width in, thrust and current out.
+
+    Steady state, from the published bollard table at 16 V (`seatrial.devices.t200`), linear in
+    the pulse between its rows, at supply voltage V:
+
+        thrust = F(pulse) (V / 16 V)^1.15,    current = I(pulse) (V / 16 V)^1.15
+
+    and both follow it with a first-order lag, solved exactly for the pulse held over a step:
+    y(t + h) = y_inf + (y(t) - y_inf) exp(-h / time_constant). So neither output reacts to an
+    input at the same instant.
+
+    **Signal.** Dead band of the table: 1472 to 1528 us gives nothing. Beyond 1100 and 1900 us
+    the controller is at full power. A width of 0, or outside 800 to 2200 us, is no signal:
+    target zero at once. A real Basic ESC (BLHeli_S) also stops when its signal fails, after
+    some tenths of a second, and then wants a neutral pulse before it runs again; neither the
+    wait nor the rearming is modelled.
+
+    **Supply.** The exponent is fitted to full-throttle thrust published for 12 to 20 V: within
+    2 % ahead and 5 % astern. (A pure V^2 law, right for a motor without resistance, would
+    lose 20 % too much at 12 V.) Unverified at part throttle and outside 12 to 20 V; the dead
+    band is that of 16 V. A voltage of 0 or less is no supply.
+
+    **Not modelled:** loss of thrust with the speed of the water through the propeller, with
+    ventilation near the surface, inrush current.
+
+    ``thrust`` is along the thruster's axis, positive ahead. ``reversed`` = 1 is a motor with
+    two leads swapped: the pulse acts mirrored about 1500 us. ``time_constant`` is assumed:
+    0.1 to 0.2 s is usual for this class of thruster; no source gives it for the T200.
+    """
+
+    time_constant = Parameter(0.15, "s", "time constant of thrust and current", min=1e-6)
+    reversed = Parameter(0.0, "1", "1 if the motor turns the other way", min=0.0, max=1.0)
+
+    pulse = Input("s", "width of the servo pulse, 0 for none", start=NEUTRAL)
+    supply_voltage = Input("V", "voltage at the speed controller", start=16.0)
+    thrust = Output("N", "thrust along the axis, positive ahead")
+    current = Output("A", "supply current")
+
+    def start(self, t: float) -> None:
+        self._thrust = self._current = 0.0
+
+    def step(self, t: float, h: float) -> None:
+        pulse = self._effective_pulse()
+        supply = (max(self.supply_voltage, 0.0) / 16.0) ** 1.15
+        kept = math.exp(-h / self.time_constant)
+        thrust, current = supply * interpolate(pulse, FORCE), supply * interpolate(pulse, CURRENT)
+        self._thrust = thrust + (self._thrust - thrust) * kept
+        self._current = current + (self._current - current) * kept
+
+    def outputs(self, t: float) -> None:
+        self.thrust, self.current = self._thrust, self._current
+
+    def _effective_pulse(self) -> float:
+        pulse: float = self.pulse
+        if not SHORTEST_SIGNAL <= pulse <= LONGEST_SIGNAL:
+            return NEUTRAL
+        return 2.0 * NEUTRAL - pulse if self.reversed else pulse
+
+
+def interpolate(pulse: float, values: Sequence[float]) -> float:
+    """Return ``values``, given at the table's pulses, at ``pulse`` (s), held beyond the ends."""
+    right = bisect_right(PULSE, pulse)
+    if right == 0:
+        return values[0]
+    if right == len(PULSE):
+        return values[-1]
+    left = right - 1
+    share = (pulse - PULSE[left]) / (PULSE[right] - PULSE[left])
+    return values[left] + share * (values[right] - values[left])

@@ -1,0 +1,236 @@
+"""What an FMU carries: its script and the import closure of it, under names of their own.
+
+All FMUs of a process share one interpreter and one ``sys.modules``. So everything bundled lives
+in one package whose name carries the hash of its content, and the script's name carries it
+too: FMUs of different versions, or of different users with files of the same name, never run
+each other's code.
+"""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+import importlib.metadata
+import importlib.util
+import re
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..errors import InputError
+
+_NO_INIT = b'"""Part of pythonfmu (MIT licence, beside this file)."""\n'
+
+
+@dataclass(frozen=True)
+class Bundle:
+    """Files for an FMU's ``resources`` by relative path, and the name of its script."""
+
+    files: dict[str, bytes]
+    script: str
+    requirements: tuple[str, ...]
+    """Third-party distributions that the files import, as pip requirements."""
+
+
+def bundle(stem: str, source: bytes, folder: Path) -> Bundle:
+    """Bundle a slave script with all it imports from seatrial, pythonfmu and ``folder``.
+
+    ``source`` is the script's text, ``stem`` its name; modules beside it in ``folder`` count
+    as its own. Imports inside functions are left out: what they bring is for builds and tools.
+
+    Raises InputError for a file that is not Python or an import that is found nowhere.
+    """
+    local = _Local(folder)
+    modules, third_party = _closure(source, f"{stem}.py", local)
+    digest = hashlib.sha256()
+    for name, (path, text) in sorted(modules.items()):
+        digest.update(f"{name}\0{path.name}\0".encode() + text + b"\0")
+    needed = {name: _requirement(name) for name in sorted(third_party)}
+    requirements = tuple(needed.values())
+    digest.update(stem.encode() + b"\0" + source + "\0".join(requirements).encode())
+    tag = digest.hexdigest()[:12]
+    root = f"bundle_{tag}"
+    own = {name.partition(".")[0] for name in modules}
+    files = {f"{root}/__init__.py": _preflight(stem, needed)}
+    for name, (path, text) in modules.items():
+        place = name.replace(".", "/") + ("/__init__.py" if path.name == "__init__.py" else ".py")
+        files[f"{root}/{place}"] = _renamed(text, str(path), own, root)
+    if "pythonfmu" in own:
+        files[f"{root}/pythonfmu/LICENSE"] = _pythonfmu_licence()
+    script = f"{stem}_{tag}"
+    files[f"{script}.py"] = _renamed(source, f"{stem}.py", own, root)
+    files["slavemodule.txt"] = script.encode()
+    files["requirements.txt"] = "".join(f"{r}\n" for r in requirements).encode()
+    return Bundle(files, script, requirements)
+
+
+class _Local:
+    """Finds the modules that travel: seatrial's, pythonfmu's and those beside the script."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.roots = {"seatrial": Path(__file__).parents[1], "pythonfmu": _package("pythonfmu")}
+
+    def find(self, name: str) -> Path | None:
+        """Return the file of module ``name``, None if it is not one that travels."""
+        top, *rest = name.split(".")
+        base = self.roots.get(top, self.folder / top)
+        path = base.joinpath(*rest)
+        for candidate in (path / "__init__.py", path.with_suffix(".py")):
+            if candidate.is_file():
+                return candidate
+        return None
+
+    def is_namespace(self, name: str) -> bool:
+        """Say if ``name`` is a folder beside the script without an ``__init__.py``."""
+        return "." not in name and (self.folder / name).is_dir() and self.find(name) is None
+
+
+def _package(name: str) -> Path:
+    spec = importlib.util.find_spec(name)
+    assert spec is not None
+    assert spec.origin is not None
+    return Path(spec.origin).parent
+
+
+def _closure(
+    source: bytes, file: str, local: _Local
+) -> tuple[dict[str, tuple[Path, bytes]], set[str]]:
+    """Return the travelling modules by name, and the third-party packages they import."""
+    modules: dict[str, tuple[Path, bytes]] = {}
+    third_party: set[str] = set()
+    todo = [(name, file) for name in _imports(source, file, "", False)]
+    while todo:
+        name, importer = todo.pop()
+        path = local.find(name)
+        if path is None:
+            top = name.partition(".")[0]
+            if local.find(top) is None and top not in sys.stdlib_module_names:
+                if importlib.util.find_spec(top) is None or local.is_namespace(top):
+                    raise InputError(
+                        f"{importer}: imports {top!r}, which is neither installed nor a module "
+                        f"beside it in {local.folder}"
+                    )
+                third_party.add(top)
+            continue
+        if name in modules:
+            continue
+        text = path.read_bytes()
+        if name == "pythonfmu":
+            text = _NO_INIT  # its __init__ imports the builder, which an FMU does not need
+        modules[name] = (path, text)
+        package = path.name == "__init__.py"
+        todo += [(n, str(path)) for n in _imports(text, str(path), name, package)]
+        if "." in name:
+            todo.append((name.rpartition(".")[0], str(path)))
+    return modules, third_party
+
+
+def _imports(source: bytes, file: str, module: str, is_package: bool) -> Iterator[str]:
+    """Yield every module that ``source`` imports at module level, and ``from`` names too."""
+    for node in _module_level(_parsed(source, file)):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            base = node.module or ""
+            if node.level:
+                parts = module.split(".") if is_package else module.split(".")[:-1]
+                parts = parts[: len(parts) - node.level + 1]
+                base = ".".join([*parts, base] if base else parts)
+            yield base
+            # A name may be a submodule; the closure drops those that are not.
+            yield from (f"{base}.{alias.name}" for alias in node.names)
+
+
+def _module_level(tree: ast.AST) -> Iterator[ast.AST]:
+    for node in ast.iter_child_nodes(tree):
+        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)):
+            continue
+        if isinstance(node, ast.If) and ast.unparse(node.test).endswith("TYPE_CHECKING"):
+            continue
+        yield node
+        yield from _module_level(node)
+
+
+def _parsed(source: bytes, file: str) -> ast.Module:
+    try:
+        return ast.parse(source)
+    except (SyntaxError, ValueError) as error:
+        line = getattr(error, "lineno", None)
+        raise InputError(f"{file}{f', line {line}' if line else ''}: not Python: {error}") from None
+
+
+def _renamed(source: bytes, file: str, own: set[str], root: str) -> bytes:
+    """Return ``source`` with absolute imports of ``own`` packages made imports from ``root``."""
+    tree = _parsed(source, file)
+    lines = source.decode("utf-8").splitlines(keepends=True)
+    statements = [n for n in ast.walk(tree) if isinstance(n, (ast.Import, ast.ImportFrom))]
+    for node in sorted(statements, key=lambda n: (n.lineno, n.col_offset), reverse=True):
+        new = _renamed_statement(node, own, root)
+        if new is None:
+            continue
+        first, last = node.lineno - 1, (node.end_lineno or node.lineno) - 1
+        # Columns count bytes; what stands before and after on these lines stays.
+        before = lines[first].encode()[: node.col_offset].decode()
+        after = lines[last].encode()[node.end_col_offset :].decode()
+        filler = ["\n"] * (last - first)  # keep the line numbers of tracebacks
+        lines[first : last + 1] = [before + new + after, *filler]
+    return "".join(lines).encode()
+
+
+def _renamed_statement(node: ast.Import | ast.ImportFrom, own: set[str], root: str) -> str | None:
+    if isinstance(node, ast.ImportFrom):
+        if node.level or (node.module or "").partition(".")[0] not in own:
+            return None
+        return ast.unparse(ast.ImportFrom(f"{root}.{node.module}", node.names, 0))
+    if not any(alias.name.partition(".")[0] in own for alias in node.names):
+        return None
+    parts = []
+    for alias in node.names:
+        top = alias.name.partition(".")[0]
+        if top not in own:
+            parts.append(ast.unparse(ast.Import([alias])))
+        elif alias.asname:
+            parts.append(f"import {root}.{alias.name} as {alias.asname}")
+        else:  # 'import a.b' binds 'a'
+            parts += [f"import {root}.{alias.name}", f"from {root} import {top}"]
+    return "; ".join(parts)
+
+
+def _requirement(package: str) -> str:
+    """Return the pip requirement of an imported package, with seatrial's own bounds on it."""
+    distributions = importlib.metadata.packages_distributions().get(package, [package])
+    distribution = sorted(set(distributions))[0]
+    for line in importlib.metadata.requires("seatrial") or []:
+        name = re.match(r"[A-Za-z0-9._-]+", line)
+        if name and name.group().lower() == distribution.lower() and ";" not in line:
+            return line
+    return distribution
+
+
+def _preflight(stem: str, needed: dict[str, str]) -> bytes:
+    """Return the bundle's ``__init__``: it names what the target machine lacks."""
+    return f'''"""Code and data of the FMU {stem}; its name carries the hash of its content."""
+
+import importlib.util
+import sys
+
+_needed = {needed!r}
+_missing = {{p: r for p, r in _needed.items() if importlib.util.find_spec(p) is None}}
+if _missing:
+    _message = (
+        "the FMU {stem} needs the Python package(s) " + ", ".join(_missing) + " in "
+        + sys.prefix + ": install them with  python3 -m pip install "
+        + " ".join(chr(34) + r + chr(34) for r in _missing.values())
+    )
+    print(_message, file=sys.stderr)  # a host with logging off would lose it
+    raise ImportError(_message)
+'''.encode()
+
+
+def _pythonfmu_licence() -> bytes:
+    for file in importlib.metadata.files("pythonfmu") or []:
+        if file.name == "LICENSE":
+            return file.read_binary()
+    return b"MIT License; see the pythonfmu distribution.\n"

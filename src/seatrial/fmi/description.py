@@ -1,0 +1,135 @@
+"""The modelDescription.xml of a component: pythonfmu's, with all that it leaves out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+from xml.etree.ElementTree import Element, SubElement
+
+from pythonfmu.default_experiment import DefaultExperiment
+from pythonfmu.enums import Fmi2Causality, Fmi2Initial, Fmi2Variability
+from pythonfmu.variables import Boolean, Integer, Real, String
+
+from ..component import Component, Parameter
+from ..errors import InputError
+from ..ports import ScalarPort
+from ..units import unit
+
+if TYPE_CHECKING:
+    from .slave import Slave
+
+_VARIABLES = {float: Real, int: Integer, bool: Boolean, str: String}
+_CAUSALITY = {
+    "parameter": Fmi2Causality.parameter,
+    "input": Fmi2Causality.input,
+    "output": Fmi2Causality.output,
+}
+
+
+def describe(slave: Slave, base: Callable[[dict[str, str]], Element]) -> Element:
+    """Return the model description of ``slave``, ``base`` being pythonfmu's own ``to_xml``.
+
+    Adds units, min, max, nominal, exact start values, variability, output dependencies and
+    InitialUnknowns, and names the capabilities that the component really has.
+
+    Raises InputError for a unit that cannot be written in FMI's base units.
+    """
+    component = slave.component
+    _register(slave)
+    able = str(component.rolls_back).lower()
+    root = base({"canGetAndSetFMUstate": able, "canSerializeFMUstate": able})
+    root.attrib.pop("generationDateAndTime", None)
+    variables = root.find("ModelVariables")
+    assert variables is not None
+    for scalar, element in zip(component.scalars, variables, strict=True):
+        _complete_variable(component, scalar, element[0])
+    _insert_units(root, component)
+    structure = root.find("ModelStructure")
+    assert structure is not None
+    structure.clear()
+    _add_unknowns(structure, component)
+    return root
+
+
+def _register(slave: Slave) -> None:
+    component = slave.component
+    slave.modelName = type(slave).__module__
+    slave.description = (type(component).__doc__ or "").strip().splitlines()[0]
+    slave.default_experiment = DefaultExperiment(start_time=0.0, stop_time=10.0, step_size=0.01)
+    slave.vars.clear()
+    for scalar in component.scalars:
+        port, reference = scalar.port, scalar.reference
+        output = port.kind == "output"
+        variable = _VARIABLES[port.type](
+            scalar.name,
+            causality=_CAUSALITY[port.kind],
+            variability=_variability(scalar),
+            initial=Fmi2Initial.calculated if output else None,
+            description=port.description,
+            getter=lambda reference=reference: component.values[reference],
+        )
+        slave.register_variable(variable, nested=False)
+
+
+def _variability(scalar: ScalarPort) -> Fmi2Variability:
+    port = scalar.port
+    if isinstance(port, Parameter):
+        return Fmi2Variability.tunable if port.tunable else Fmi2Variability.fixed
+    return Fmi2Variability.continuous if port.type is float else Fmi2Variability.discrete
+
+
+def _complete_variable(component: Component, scalar: ScalarPort, element: Element) -> None:
+    port = scalar.port
+    value = component.values[scalar.reference]
+    if "start" in element.attrib:
+        element.set("start", str(value).lower() if port.type is bool else _text(value))
+    if port.type is float:
+        element.set("unit", unit(port.unit).text)
+        for name in ("min", "max", "nominal"):
+            limit = port.limit(name, scalar.index)  # type: ignore[arg-type]
+            if limit is not None:
+                element.set(name, repr(float(limit)))
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, str) and any(ord(c) < 32 and c not in "\t\n\r" for c in value):
+        raise InputError(f"start value {value!r} has a character that XML cannot hold")
+    return value if isinstance(value, str) else repr(value)
+
+
+def _insert_units(root: Element, component: Component) -> None:
+    used = {unit(s.port.unit).text: unit(s.port.unit) for s in component.scalars if s.port.type is float}
+    if not used:
+        return
+    definitions = Element("UnitDefinitions")
+    for text, one in sorted(used.items()):
+        definition = SubElement(definitions, "Unit", {"name": text})
+        attributes = {name: str(power) for name, power in one.exponents.items()}
+        if one.factor != 1.0:
+            attributes["factor"] = repr(one.factor)
+        if one.offset != 0.0:
+            attributes["offset"] = repr(one.offset)
+        SubElement(definition, "BaseUnit", attributes)
+    root.insert(1, definitions)  # the schema wants it right after CoSimulation
+
+
+def _add_unknowns(structure: Element, component: Component) -> None:
+    outputs = [s for s in component.scalars if s.port.kind == "output"]
+    if not outputs:
+        return
+    fixed = [s for s in component.scalars if s.port.kind == "parameter"]
+    listed = SubElement(structure, "Outputs")
+    initial = SubElement(structure, "InitialUnknowns")
+    for scalar in outputs:
+        ports = component.feedthrough.get(scalar.port.name, ())
+        through = [s for s in component.scalars if s.port.kind == "input" and s.port.name in ports]
+        _add_unknown(listed, scalar, through)
+        _add_unknown(initial, scalar, [*fixed, *through])
+
+
+def _add_unknown(parent: Element, scalar: ScalarPort, known: list[ScalarPort]) -> None:
+    # Index in ModelVariables counts from one; references follow the same order from zero.
+    dependencies = " ".join(str(k.reference + 1) for k in known)
+    SubElement(
+        parent, "Unknown", {"index": str(scalar.reference + 1), "dependencies": dependencies}
+    )

@@ -1,0 +1,123 @@
+"""A component run in process, without FMI: for sweeps, tests and identification."""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from ..component import Component
+from ..errors import InputError, SimulationError
+from ..ports import Parameter, Scalar, ScalarPort
+from .instance import Reader, Variable, Writer, by_type, combined_reader, combined_writer
+
+
+class DirectInstance:
+    """A component as the master sees it; the same calls in the same order as for its FMU."""
+
+    def __init__(self, component: Component) -> None:
+        self.component = component
+        self.name = component.name
+        self.variables = {s.name: _variable(component, s) for s in component.scalars}
+        self.feedthrough = scalar_feedthrough(component)
+        self.rolls_back = component.rolls_back
+
+    def set_start(self, values: Mapping[str, Scalar]) -> None:
+        """Set parameters and start values by variable name, before `initialise`."""
+        for name, value in values.items():
+            self._call("set", lambda name=name, value=value: self.component.set(name, value))
+
+    def initialise(self, start_time: float, stop_time: float) -> None:
+        """Start at ``start_time``."""
+        self._call("setup", lambda: self.component.setup(start_time))
+        self._call("initialise", self.component.initialise)
+
+    def begin(self) -> None:
+        """End the initialisation."""
+        self._call("begin", self.component.begin)
+
+    def reader(self, names: Sequence[str]) -> Reader:
+        """Return a callable that returns the values of ``names``, in that order."""
+        parts = [
+            (places, self._reader(references, kind))
+            for kind, places, references in by_type(self.variables, names)
+        ]
+        return combined_reader(parts, len(names))
+
+    def writer(self, names: Sequence[str]) -> Writer:
+        """Return a callable that sets ``names`` to a sequence of values."""
+        parts = [
+            (places, self._writer(references, kind))
+            for kind, places, references in by_type(self.variables, names)
+        ]
+        return combined_writer(parts)
+
+    def step(self, t: float, h: float) -> None:
+        """Advance from ``t`` to ``t + h``, s."""
+        try:
+            self.component.advance(t, h)
+        except Exception as error:
+            raise self._error("step", error) from error
+
+    def get_state(self) -> Any:
+        """Return a copy of the whole state."""
+        return self._call("get_state", self.component.get_state)
+
+    def set_state(self, state: Any) -> None:
+        """Restore a state."""
+        self._call("set_state", lambda: self.component.set_state(state))
+
+    def terminate(self) -> None:
+        """End the run: nothing to do in process."""
+
+    def free(self) -> None:
+        """Release everything: nothing to do in process."""
+
+    def _reader(self, references: list[int], kind: type) -> Reader:
+        component = self.component
+        return lambda: self._call("read", lambda: component.read(references, kind))
+
+    def _writer(self, references: list[int], kind: type) -> Writer:
+        component = self.component
+        return lambda values: self._call("write", lambda: component.write(references, values, kind))
+
+    def _call(self, what: str, call: Callable[[], Any]) -> Any:
+        try:
+            return call()
+        except Exception as error:
+            raise self._error(what, error) from error
+
+    def _error(self, what: str, error: BaseException) -> SimulationError:
+        if isinstance(error, (InputError, SimulationError)):
+            return SimulationError(str(error))
+        text = "".join(traceback.format_exception(error)).strip()
+        return SimulationError(f"{self.name}: {what} at t = {self.component.now!r} s raised\n{text}")
+
+
+def scalar_feedthrough(component: Component) -> dict[str, list[str]]:
+    """Return the declared feed-through by scalar names."""
+    ports = component.ports
+    return {
+        scalar: [name for port in inputs for name in ports[port].scalar_names]
+        for output, inputs in component.feedthrough.items()
+        for scalar in ports[output].scalar_names
+    }
+
+
+def _variable(component: Component, scalar: ScalarPort) -> Variable:
+    port = scalar.port
+    tunable = isinstance(port, Parameter) and port.tunable
+    varying = "continuous" if port.type is float else "discrete"
+    return Variable(
+        name=scalar.name,
+        causality=port.kind,
+        variability=("tunable" if tunable else "fixed") if port.kind == "parameter" else varying,
+        type=port.type,
+        reference=scalar.reference,
+        unit=port.unit if port.type is float else "",
+        start=None if port.kind == "output" else component.values[scalar.reference],
+        minimum=port.limit("min", scalar.index),
+        maximum=port.limit("max", scalar.index),
+        nominal=port.limit("nominal", scalar.index),
+        description=port.description,
+    )

@@ -1,0 +1,118 @@
+"""Components to FMUs: self-contained, reproducible ``.fmu`` files."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import json
+import os
+import tempfile
+import zipfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+from xml.etree.ElementTree import Element, indent, tostring
+
+import pythonfmu
+
+from .. import __version__
+from ..errors import InputError
+from .bundle import Bundle, bundle
+from .cache import cache_folder
+from .slave import START_VALUES
+from .source import ComponentSource
+
+_TIMESTAMP = (1980, 1, 1, 0, 0, 0)
+_BINARIES = Path(pythonfmu.__file__).parent / "resources" / "binaries"
+
+
+def build_fmu(
+    source: ComponentSource, destination: Path, start_values: Mapping[str, Any] | None = None
+) -> Path:
+    """Build the FMU of ``source`` at ``destination`` (a file) and return its path.
+
+    ``start_values`` (by port name, SI) are baked in as start values. The same input gives the
+    same bytes. Raises InputError for a component that cannot be imported, or a start value
+    that does not fit its port; nothing is written then.
+    """
+    content = fmu_bytes(source, start_values)
+    destination.parent.mkdir(parents=True, exist_ok=True)
+    _replace(destination, content)
+    return destination
+
+
+def cached_fmu(source: ComponentSource) -> Path:
+    """Return the FMU of ``source`` in the user's cache, built if it is not there yet."""
+    tag = bundle(source.stem, source.script, source.folder).script
+    path = cache_folder("fmus") / f"{tag}-{_tool_tag()}.fmu"
+    return path if path.is_file() else build_fmu(source, path)
+
+
+def fmu_bytes(source: ComponentSource, start_values: Mapping[str, Any] | None = None) -> bytes:
+    """Return the content of the FMU file; see `build_fmu`."""
+    carried = bundle(source.stem, source.script, source.folder)
+    files = {f"resources/{name}": data for name, data in carried.files.items()}
+    if start_values:
+        text = json.dumps(dict(sorted(start_values.items())), indent=1)
+        files[f"resources/{START_VALUES}"] = text.encode()
+    identifier = source.stem
+    for binary in sorted(_BINARIES.rglob("*pythonfmu-export.*")):
+        folder = binary.parent.name
+        files[f"binaries/{folder}/{identifier}{binary.suffix}"] = binary.read_bytes()
+    description = _model_description(source, carried, files, start_values or {})
+    return _zipped({"modelDescription.xml": description, **files})
+
+
+def _model_description(
+    source: ComponentSource,
+    carried: Bundle,
+    files: Mapping[str, bytes],
+    start_values: Mapping[str, Any],
+) -> bytes:
+    source.component_class()  # says what is wrong with a class that is no component
+    slave = source.slave_class()(instance_name=source.name, resources="")
+    for name, value in start_values.items():
+        slave.component.set(name, value)
+    slave.component.check_parameters()
+    root: Element = slave.to_xml()
+    root.set("modelName", source.name)
+    root.set("generationTool", f"seatrial {__version__}, pythonfmu {pythonfmu.__version__}")
+    simulation = root.find("CoSimulation")
+    assert simulation is not None
+    simulation.set("modelIdentifier", source.stem)
+    root.set("guid", "")
+    digest = hashlib.sha256(tostring(root))
+    for name, data in sorted(files.items()):
+        digest.update(name.encode() + b"\0" + hashlib.sha256(data).digest())
+    root.set("guid", f"{{{digest.hexdigest()[:32]}}}")
+    indent(root)
+    return tostring(root, encoding="UTF-8", xml_declaration=True)
+
+
+def _zipped(files: Mapping[str, bytes]) -> bytes:
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED, compresslevel=6) as archive:
+        for name, data in sorted(files.items()):
+            info = zipfile.ZipInfo(name, _TIMESTAMP)
+            info.compress_type = zipfile.ZIP_DEFLATED
+            info.create_system = 3
+            info.external_attr = 0o644 << 16
+            archive.writestr(info, data)
+    return buffer.getvalue()
+
+
+def _tool_tag() -> str:
+    """Return a tag of what besides the bundle decides an FMU's bytes."""
+    text = f"{__version__} {pythonfmu.__version__}"
+    return hashlib.sha256(text.encode()).hexdigest()[:8]
+
+
+def _replace(path: Path, content: bytes) -> None:
+    """Write a file whole or not at all."""
+    try:
+        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=".building-")
+    except OSError as error:
+        raise InputError(f"cannot write {path}: {error.strerror}") from None
+    with os.fdopen(handle, "wb") as file:
+        file.write(content)
+    os.replace(temporary, path)

@@ -1,0 +1,117 @@
+"""What the master sees of a component, whichever way it runs: an instance and its variables."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from ..ports import Scalar
+
+Reader = Callable[[], list[Any]]
+Writer = Callable[[Sequence[Any]], None]
+
+
+@dataclass(frozen=True)
+class Variable:
+    """One scalar variable of an FMU, as its model description has it."""
+
+    name: str
+    causality: str
+    """parameter, calculatedParameter, input, output, local or independent."""
+    variability: str
+    type: type
+    """float, int, bool or str."""
+    reference: int
+    unit: str
+    """Empty if the FMU says none."""
+    start: Scalar | None
+    minimum: float | None
+    maximum: float | None
+    nominal: float | None
+    description: str
+
+
+class Instance(Protocol):
+    """A running component: an FMU or a component in process, stepped by the master.
+
+    Call order: `set_start` as often as needed, `initialise`, reads and writes, `begin`, then
+    steps with reads and writes in between, `terminate`, `free`. Every method raises
+    SimulationError, naming the instance and what it said, when the component refuses.
+    """
+
+    name: str
+    variables: Mapping[str, Variable]
+    feedthrough: Mapping[str, Sequence[str]]
+    """Per output, the inputs that act on it at the same instant."""
+    rolls_back: bool
+
+    def set_start(self, values: Mapping[str, Scalar]) -> None:
+        """Set parameters and start values by variable name, before `initialise`."""
+
+    def initialise(self, start_time: float, stop_time: float) -> None:
+        """Start at ``start_time``; outputs can be read and inputs written from now on."""
+
+    def begin(self) -> None:
+        """End the initialisation."""
+
+    def reader(self, names: Sequence[str]) -> Reader:
+        """Return a fast callable that returns the values of ``names``, in that order."""
+
+    def writer(self, names: Sequence[str]) -> Writer:
+        """Return a fast callable that sets ``names`` to a sequence of values."""
+
+    def step(self, t: float, h: float) -> None:
+        """Advance from ``t`` to ``t + h``, s."""
+
+    def get_state(self) -> Any:
+        """Return a handle of the whole state."""
+
+    def set_state(self, state: Any) -> None:
+        """Restore a state; the handle stays valid."""
+
+    def terminate(self) -> None:
+        """End the run."""
+
+    def free(self) -> None:
+        """Release everything; the instance cannot be used afterwards."""
+
+
+def by_type(
+    variables: Mapping[str, Variable], names: Sequence[str]
+) -> list[tuple[type, list[int], list[int]]]:
+    """Group ``names`` by type: (type, places in ``names``, value references)."""
+    groups: dict[type, tuple[list[int], list[int]]] = {}
+    for place, name in enumerate(names):
+        variable = variables[name]
+        places, references = groups.setdefault(variable.type, ([], []))
+        places.append(place)
+        references.append(variable.reference)
+    return [(kind, *both) for kind, both in groups.items()]
+
+
+def combined_reader(parts: Sequence[tuple[list[int], Reader]], size: int) -> Reader:
+    """Return one reader of readers of single types, each with its places in the result."""
+    if len(parts) == 1:
+        return parts[0][1]
+
+    def read() -> list[Any]:
+        values: list[Any] = [None] * size
+        for places, part in parts:
+            for place, value in zip(places, part(), strict=True):
+                values[place] = value
+        return values
+
+    return read
+
+
+def combined_writer(parts: Sequence[tuple[list[int], Writer]]) -> Writer:
+    """Return one writer of writers of single types, each with its places in the sequence."""
+    if len(parts) == 1:
+        return parts[0][1]
+
+    def write(values: Sequence[Any]) -> None:
+        for places, part in parts:
+            part([values[p] for p in places])
+
+    return write

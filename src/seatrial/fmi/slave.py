@@ -1,0 +1,225 @@
+"""The slave: a component behind pythonfmu, hardened against what its binary cannot take.
+
+pythonfmu's binary turns any Python exception into fmi2Fatal and frees the instance while the
+host still holds it. So nothing raises here: errors are logged with their traceback, kept in
+``last_error``, and the next step is discarded.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import math
+import sys
+import traceback
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, ClassVar
+from xml.etree.ElementTree import Element
+
+import numpy as np
+from pythonfmu.enums import Fmi2Status
+from pythonfmu.fmi2slave import Fmi2Slave
+
+from ..component import Component
+from ..errors import InputError, SimulationError
+
+START_VALUES = "start_values.json"
+"""File in an FMU's resources: start values by port name, baked in when it was built."""
+
+
+class Slave(Fmi2Slave):  # type: ignore[misc]
+    """A component as an FMI 2.0 co-simulation slave.
+
+    A subclass names its ``component_class`` and defines an ``__init__`` of its own, in the
+    script of the FMU: pythonfmu's binary releases the script's globals once too often, and
+    only a function defined there keeps them alive at the second instantiation.
+    """
+
+    component_class: ClassVar[type[Component]]
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        while self.resources in sys.path:
+            sys.path.remove(self.resources)
+        self.last_error: str | None = None
+        self._failed = False
+        self.component = self.component_class(self.instance_name)
+        self._guarded(self._apply_start_values)
+
+    # ------------------------------------------------------------------ calls of the host
+
+    def setup_experiment(
+        self, start_time: float, stop_time: float | None = None, tolerance: float | None = None
+    ) -> None:
+        """Take the start time."""
+        self._guarded(lambda: self.component.setup(start_time))
+
+    def enter_initialization_mode(self) -> None:
+        """Start the component."""
+        self._guarded(self.component.initialise)
+
+    def exit_initialization_mode(self) -> None:
+        """Freeze the fixed parameters."""
+        self._guarded(self.component.begin)
+
+    def do_step(self, current_time: float, step_size: float) -> bool:
+        """Advance; False (fmi2Discard) after an error, from now on until reset or rollback."""
+        if not self._failed:
+            self._guarded(lambda: self.component.advance(current_time, step_size))
+        elif self.last_error is not None:
+            self._log(f"step refused after an earlier error: {self.last_error}")
+        return not self._failed
+
+    def terminate(self) -> None:
+        """End the run."""
+
+    def get_real(self, vrs: list[int]) -> list[float]:
+        """Return Real variables; zeros after an error, which the next step reports."""
+        return self._read(vrs, float, 0.0)
+
+    def get_integer(self, vrs: list[int]) -> list[int]:
+        """Return Integer variables; zeros after an error, which the next step reports."""
+        values = self._read(vrs, int, 0)
+        if any(not -(2**31) <= v < 2**31 for v in values):
+            self._fail(f"{self.instance_name}: an Integer output does not fit 32 bits: {values}")
+            return [0] * len(vrs)
+        return values
+
+    def get_boolean(self, vrs: list[int]) -> list[bool]:
+        """Return Boolean variables; False after an error, which the next step reports."""
+        return self._read(vrs, bool, False)
+
+    def get_string(self, vrs: list[int]) -> list[str]:
+        """Return String variables; empty after an error, which the next step reports."""
+        values = self._read(vrs, str, "")
+        for value in values:
+            if "\0" in value or not _is_utf8(value):
+                self._fail(f"{self.instance_name}: a String output is not C text: {value!r}")
+                return [""] * len(vrs)
+        return values
+
+    def set_real(self, vrs: list[int], values: list[float]) -> None:
+        """Set Real variables; an error is reported by the next step."""
+        self._guarded(lambda: self.component.write(vrs, values, float))
+
+    def set_integer(self, vrs: list[int], values: list[int]) -> None:
+        """Set Integer variables; an error is reported by the next step."""
+        self._guarded(lambda: self.component.write(vrs, values, int))
+
+    def set_boolean(self, vrs: list[int], values: list[bool]) -> None:
+        """Set Boolean variables; an error is reported by the next step."""
+        self._guarded(lambda: self.component.write(vrs, values, bool))
+
+    def set_string(self, vrs: list[int], values: list[str]) -> None:
+        """Set String variables; an error is reported by the next step."""
+        self._guarded(lambda: self.component.write(vrs, values, str))
+
+    def to_xml(self, model_options: Mapping[str, str] | None = None) -> Element:
+        """Return the model description, with all that pythonfmu leaves out."""
+        from .description import describe  # only a build needs it: not bundled
+
+        return describe(self, super().to_xml)
+
+    # ------------------------------------------------------------------ state
+
+    def _get_fmu_state(self) -> dict[str, Any]:
+        state: dict[str, Any] = {"failed": self._failed, "last_error": self.last_error}
+        if not self.component.rolls_back:
+            self._fail(f"{self.instance_name} reaches outside the simulation: it has no state to save")
+        else:
+            self._guarded(lambda: state.update(component=self.component.get_state()))
+        return state
+
+    def _set_fmu_state(self, state: dict[str, Any]) -> None:
+        if "component" not in state:
+            self._fail(f"{self.instance_name}: this state cannot be restored")
+            return
+        self._failed, self.last_error = state["failed"], state["last_error"]
+        self._guarded(lambda: self.component.set_state(state["component"]))
+
+    @staticmethod
+    def _fmu_state_to_bytes(state: dict[str, Any]) -> bytes:
+        return json.dumps(_to_json(state)).encode()
+
+    @staticmethod
+    def _fmu_state_from_bytes(state: bytes) -> dict[str, Any]:
+        try:
+            restored = _from_json(json.loads(state.decode()))
+        except (ValueError, KeyError, TypeError):
+            return {}  # an exception here would be fatal; setting this state fails instead
+        return restored if isinstance(restored, dict) else {}
+
+    # ------------------------------------------------------------------ inside
+
+    def _apply_start_values(self) -> None:
+        path = Path(self.resources or "") / START_VALUES
+        if path.is_file():
+            for name, value in json.loads(path.read_text("utf-8")).items():
+                self.component.set(name, value)
+
+    def _read(self, vrs: Sequence[int], kind: type, default: Any) -> list[Any]:
+        try:
+            return self.component.read(vrs, kind)
+        except BaseException as error:
+            self._fail(_explained(error))
+            return [default] * len(vrs)
+
+    def _guarded(self, call: Callable[[], Any]) -> None:
+        try:
+            call()
+        except BaseException as error:
+            self._fail(_explained(error))
+
+    def _fail(self, message: str) -> None:
+        self._failed = True
+        self.last_error = message
+        self._log(message)
+
+    def _log(self, message: str) -> None:
+        # FMI's message is a printf format.
+        text = message.replace("\0", "\\0").replace("%", "%%")
+        self.log(text.encode("utf-8", "replace").decode(), Fmi2Status.error)
+
+
+def _explained(error: BaseException) -> str:
+    """Return an error's message; with the traceback unless it is written for users."""
+    if isinstance(error, (InputError, SimulationError)):
+        return str(error)
+    return "".join(traceback.format_exception(error)).strip()
+
+
+def _is_utf8(text: str) -> bool:
+    with contextlib.suppress(UnicodeEncodeError):
+        text.encode("utf-8")
+        return True
+    return False
+
+
+def _to_json(value: Any) -> Any:
+    """Return plain data as JSON's types: arrays, tuples and odd keys are tagged."""
+    if isinstance(value, np.ndarray):
+        return {"array": [_to_json(v) for v in value.ravel().tolist()], "shape": list(value.shape)}
+    if isinstance(value, tuple):
+        return {"tuple": [_to_json(v) for v in value]}
+    if isinstance(value, list):
+        return [_to_json(v) for v in value]
+    if isinstance(value, dict):
+        return {"dict": [[_to_json(k), _to_json(v)] for k, v in value.items()]}
+    if isinstance(value, float) and not math.isfinite(value):
+        return {"float": repr(value)}
+    return value
+
+
+def _from_json(value: Any) -> Any:
+    if isinstance(value, list):
+        return [_from_json(v) for v in value]
+    if not isinstance(value, dict):
+        return value
+    if "array" in value:
+        return np.array(_from_json(value["array"]), dtype=float).reshape(value["shape"])
+    if "tuple" in value:
+        return tuple(_from_json(v) for v in value["tuple"])
+    if "float" in value:
+        return float(value["float"])
+    return {_from_json(k): _from_json(v) for k, v in value["dict"]}

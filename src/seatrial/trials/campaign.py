@@ -1,0 +1,140 @@
+"""Campaigns: one or more trials over a set of parameters (``harness/campaigns/*.toml``)."""
+
+from __future__ import annotations
+
+import itertools
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from pydantic import Field
+
+from ..cosim.files import FileModel, Source, find_file, read_toml, validated
+from ..cosim.system import Engine
+from ..errors import InputError
+from .run import Hooks, Result, make_folder, run_trial, write_json
+from .trial import Trial, load_trial
+
+
+class CampaignFile(FileModel):
+    """The content of a campaign file.
+
+    Every combination of ``grid`` values is one case of every trial. With ``scale``, each case
+    is run as it is and then with one parameter at a time multiplied by each factor.
+    """
+
+    title: str = ""
+    trials: list[str] = Field(min_length=1)
+    set: dict[str, Any] = Field(default_factory=dict)
+    grid: dict[str, list[Any]] = Field(default_factory=dict)
+    scale: dict[str, list[float]] = Field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Case:
+    """One run of a campaign."""
+
+    name: str
+    trial: Trial
+    set: dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Campaign:
+    """A campaign file, read, with its trials."""
+
+    file: CampaignFile
+    read_from: Source
+    trials: tuple[Trial, ...]
+
+    def cases(self) -> list[Case]:
+        """Return all cases, in the order of the file."""
+        return [case for trial in self.trials for case in self._cases(trial)]
+
+    def _cases(self, trial: Trial) -> Iterator[Case]:
+        origin = str(self.read_from.path)
+        base = trial.changed(self.file.set, f"{origin}: set")
+        for values in itertools.product(*self.file.grid.values()):
+            chosen = dict(zip(self.file.grid, values, strict=True))
+            varied = base.changed(chosen, f"{origin}: grid")
+            yield Case(_name(trial, chosen), varied, {**self.file.set, **chosen})
+            for key, factors in self.file.scale.items():
+                for factor in factors:
+                    scaled = varied.scaled(key, factor, f"{origin}: scale")
+                    shown = {**chosen, f"{key} times": factor}
+                    yield Case(_name(trial, shown), scaled, {**self.file.set, **shown})
+
+
+def load_campaign(name: str) -> Campaign:
+    """Read the campaign ``name`` (shipped, in ``harness/campaigns``, or a path).
+
+    Raises InputError for anything wrong in it or in its trials.
+    """
+    path = find_file("harness/campaigns", name)
+    content, read_from = read_toml(path)
+    file = validated(CampaignFile, content, path)
+    trials = []
+    for trial in file.trials:
+        try:
+            trials.append(load_trial(trial, path.parent))
+        except InputError as error:
+            raise InputError(f"{path}: trials: {error}") from None
+    return Campaign(file, read_from, tuple(trials))
+
+
+def run_campaign(
+    campaign: Campaign,
+    out: Path,
+    *,
+    engine: Engine = "fmu",
+    hooks: Hooks | None = None,
+    done: Callable[[Case, Result], None] = lambda _case, _result: None,
+) -> list[tuple[Case, Result]]:
+    """Run every case into a folder of its own below ``out``, which must not hold anything yet.
+
+    ``done`` is called after each case. Stops after the case that was asked to stop.
+    Raises InputError for bad input; cases before it stay on disk.
+    """
+    hooks = hooks or Hooks()
+    make_folder(out)
+    finished = []
+    for number, case in enumerate(campaign.cases(), start=1):
+        folder = out / f"{number:02d}-{_slug(case.name)}"
+        result = run_trial(case.trial, folder, engine=engine, hooks=hooks)
+        finished.append((case, result))
+        _write_index(campaign, out, finished)
+        done(case, result)
+        if result.status == "stopped":
+            break
+    return finished
+
+
+def _write_index(campaign: Campaign, out: Path, finished: list[tuple[Case, Result]]) -> None:
+    cases = [
+        {
+            "name": case.name,
+            "folder": result.folder.name,
+            "trial": case.trial.name,
+            "set": case.set,
+            "passed": result.passed,
+            "status": result.status,
+            "verdicts": [
+                {"name": name, "check": check, **asdict(verdict)}
+                for name, check, verdict in result.verdicts
+            ],
+        }
+        for case, result in finished
+    ]
+    index = {"name": campaign.read_from.name, "title": campaign.file.title, "cases": cases}
+    write_json(out / "campaign.json", index)
+
+
+def _name(trial: Trial, chosen: dict[str, Any]) -> str:
+    parts = [f"{key.rpartition('.')[2]} {value}" for key, value in chosen.items()]
+    return ", ".join([trial.name, *parts])
+
+
+def _slug(name: str) -> str:
+    return re.sub(r"[^A-Za-z0-9.]+", "-", name).strip("-")

@@ -1,0 +1,393 @@
+"""Arithmetic and conditions over recorded signals, with units: what a criterion is made of.
+
+Every value is SI while it is computed. An angle is a unit of its own, as in FMI: a product of
+an angular velocity and a length is ``m.rad/s``, and ``/ 1 rad`` makes it a velocity.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from ..units import unit
+from .readable import person_unit
+
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+Value = float | FloatArray
+Values = Mapping[str, FloatArray]
+Units = Mapping[str, str]
+Exponents = dict[str, int]
+
+MAX_DEPTH = 100
+
+
+class Limit(NamedTuple):
+    """A bound that a criterion puts on one signal, to be drawn into its plot."""
+
+    signal: str
+    value: float
+    """SI."""
+    kind: str
+    """``max``, ``min``, or ``band`` for an edge of the band in which the signal must settle."""
+
+
+@dataclass(frozen=True)
+class Literal:
+    """A number with its unit; ``value`` is SI."""
+
+    value: float
+    unit: str
+
+    def leaves(self) -> Iterator[Literal | Signal]:
+        """Yield this literal."""
+        yield self
+
+    def exponents(self, units: Units) -> Exponents:
+        """Return the exponents of the base units."""
+        return unit(self.unit).exponents
+
+    def evaluate(self, values: Values) -> Value:
+        """Return the SI value."""
+        return self.value
+
+
+@dataclass(frozen=True)
+class Signal:
+    """A recorded signal."""
+
+    name: str
+
+    def leaves(self) -> Iterator[Literal | Signal]:
+        """Yield this signal."""
+        yield self
+
+    def exponents(self, units: Units) -> Exponents:
+        """Return the exponents of the base units."""
+        return unit(units[self.name]).exponents
+
+    def evaluate(self, values: Values) -> Value:
+        """Return the SI values."""
+        return values[self.name]
+
+
+@dataclass(frozen=True)
+class Operation:
+    """An operator or function applied to expressions."""
+
+    name: str
+    arguments: tuple[Expression, ...]
+
+    def leaves(self) -> Iterator[Literal | Signal]:
+        """Yield all literals and signals, from left to right."""
+        for argument in self.arguments:
+            yield from argument.leaves()
+
+    def exponents(self, units: Units) -> Exponents:
+        """Return the exponents of the base units.
+
+        Raises InputError if the arguments' units do not go together.
+        """
+        rule = _OPERATIONS[self.name].rule
+        return rule(self, [a.exponents(units) for a in self.arguments], units)
+
+    def evaluate(self, values: Values) -> Value:
+        """Return the SI values."""
+        result: Value = _OPERATIONS[self.name].function(
+            *[a.evaluate(values) for a in self.arguments]
+        )
+        return result
+
+
+Expression = Literal | Signal | Operation
+
+
+def signal_names(node: Expression | Condition) -> set[str]:
+    """Return the names of all signals that occur in ``node``."""
+    return {leaf.name for leaf in node.leaves() if isinstance(leaf, Signal)}
+
+
+def depth(node: Expression | Condition) -> int:
+    """Return how many levels the tree has."""
+    if isinstance(node, (Literal, Signal)):
+        return 1
+    parts = (node.left, node.right) if isinstance(node, Comparison) else node.arguments
+    return 1 + max(depth(part) for part in parts)
+
+
+def unit_of(node: Expression | Comparison, units: Units, exponents: Exponents) -> str:
+    """Return the unit in which a person would state values of ``node``.
+
+    That is the unit of its first literal that measures the same, else of such a signal (degrees
+    for radians), else the product of base units.
+    """
+    leaves = sorted(node.leaves(), key=lambda leaf: isinstance(leaf, Signal))
+    for leaf in leaves:
+        text = leaf.unit if isinstance(leaf, Literal) else person_unit(units[leaf.name])
+        if unit(text).exponents == exponents:
+            return text
+    return person_unit(_product_text(exponents))
+
+
+# ---------------------------------------------------------------------- units of operations
+
+
+def _same(node: Operation, exponents: list[Exponents], units: Units) -> Exponents:
+    first = node.arguments[0]
+    for argument, own in zip(node.arguments[1:], exponents[1:], strict=True):
+        check_same(f"{node.name!r}", (first, exponents[0]), (argument, own), units)
+    return exponents[0]
+
+
+def _product(node: Operation, exponents: list[Exponents], units: Units) -> Exponents:
+    return _combined(exponents[0], exponents[1], 1)
+
+
+def _quotient(node: Operation, exponents: list[Exponents], units: Units) -> Exponents:
+    return _combined(exponents[0], exponents[1], -1)
+
+
+def _root(node: Operation, exponents: list[Exponents], units: Units) -> Exponents:
+    if any(power % 2 for power in exponents[0].values()):
+        raise InputError(f"{unit_of(node.arguments[0], units, exponents[0])!r} has no square root")
+    return {base: power // 2 for base, power in exponents[0].items()}
+
+
+def _combined(a: Exponents, b: Exponents, sign: int) -> Exponents:
+    powers = {base: a.get(base, 0) + sign * b.get(base, 0) for base in a | b}
+    return {base: power for base, power in powers.items() if power}
+
+
+def _product_text(exponents: Exponents) -> str:
+    # Positive powers first: a leading one lets a person's unit stand in for rad.
+    powers = sorted(exponents.items(), key=lambda item: item[1] < 0)
+    return ".".join(b if p == 1 else f"{b}{p}" for b, p in powers) or "1"
+
+
+def check_same(
+    what: str,
+    a: tuple[Expression, Exponents],
+    b: tuple[Expression, Exponents],
+    units: Units,
+) -> None:
+    """Raise InputError, with both units, if two expressions do not measure the same."""
+    if a[1] != b[1]:
+        left, right = (_described(node, exponents, units) for node, exponents in (a, b))
+        raise InputError(f"{what} needs values of one kind, got {left} and {right}")
+
+
+def _described(node: Expression, exponents: Exponents, units: Units) -> str:
+    if isinstance(node, Signal):
+        return f"{node.name} in {units[node.name]!r}"
+    text = node.unit if isinstance(node, Literal) else unit_of(node, units, exponents)
+    return "a number without a unit" if text == "1" else f"a value in {text!r}"
+
+
+class _Rule(NamedTuple):
+    function: Callable[..., Any]
+    rule: Callable[[Operation, list[Exponents], Units], Exponents]
+
+
+def _greatest(*values: Value) -> Any:
+    return np.maximum.reduce(np.broadcast_arrays(*values))
+
+
+def _least(*values: Value) -> Any:
+    return np.minimum.reduce(np.broadcast_arrays(*values))
+
+
+_OPERATIONS = {
+    "+": _Rule(np.add, _same),
+    "-": _Rule(np.subtract, _same),
+    "*": _Rule(np.multiply, _product),
+    "/": _Rule(np.divide, _quotient),
+    "negative": _Rule(np.negative, _same),
+    "abs": _Rule(np.abs, _same),
+    "max": _Rule(_greatest, _same),
+    "min": _Rule(_least, _same),
+    "sqrt": _Rule(np.sqrt, _root),
+}
+FUNCTIONS = ("abs", "max", "min", "sqrt")
+
+
+# ---------------------------------------------------------------------- conditions
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """``left < right`` or ``<= > >=``.
+
+    ``measured`` is the side with signals (the left one if both have some), ``bound`` the other.
+    """
+
+    operator: str
+    left: Expression
+    right: Expression
+
+    @property
+    def measured(self) -> Expression:
+        """The side that varies."""
+        return self.left if signal_names(self.left) else self.right
+
+    @property
+    def bound(self) -> Expression:
+        """The side that the measured one is held against."""
+        return self.right if signal_names(self.left) else self.left
+
+    @property
+    def kind(self) -> str:
+        """``max`` if the measured side must stay below the bound, else ``min``."""
+        return "max" if (self.measured is self.left) == (self.operator in ("<", "<=")) else "min"
+
+    def leaves(self) -> Iterator[Literal | Signal]:
+        """Yield all literals and signals, from left to right."""
+        yield from self.left.leaves()
+        yield from self.right.leaves()
+
+    def check(self, units: Units) -> None:
+        """Raise InputError if the two sides do not measure the same."""
+        left, right = self.left.exponents(units), self.right.exponents(units)
+        check_same(f"{self.operator!r}", (self.left, left), (self.right, right), units)
+
+    def unit(self, units: Units) -> str:
+        """Return the unit in which a person would state both sides."""
+        return unit_of(self, units, self.left.exponents(units))
+
+    def holds(self, values: Values) -> BoolArray:
+        """Return, per row, whether the comparison is true."""
+        left, right = self.left.evaluate(values), self.right.evaluate(values)
+        result: BoolArray = np.asarray(_COMPARE[self.operator](left, right))
+        return result
+
+    def margin(self, values: Values) -> FloatArray:
+        """Return, per row, how far the comparison is from turning, in units of a fixed bound.
+
+        Positive where it holds. Without a fixed bound, or with a bound of zero, SI.
+        """
+        gap = np.subtract(self.bound.evaluate(values), self.measured.evaluate(values))
+        scale = 1.0
+        if not signal_names(self.bound):
+            scale = abs(float(self.bound.evaluate({}))) or 1.0
+        signed = gap if self.kind == "max" else -gap
+        result: FloatArray = np.asarray(signed / scale)
+        return result
+
+    def comparisons(self) -> list[Comparison]:
+        """Return this comparison alone."""
+        return [self]
+
+    def decisive(self, values: Values) -> Comparison:
+        """Return this comparison."""
+        return self
+
+    def limits(self) -> list[Limit]:
+        """Return the bounds on single signals, where the comparison is as simple as that."""
+        if signal_names(self.bound):
+            return []
+        bound = float(self.bound.evaluate({}))
+        return _limits(self.measured, bound, self.kind) if math.isfinite(bound) else []
+
+
+@dataclass(frozen=True)
+class Logic:
+    """``and``, ``or`` or ``not`` of conditions.
+
+    Its margin is the least, the greatest or the negative one of its parts.
+    """
+
+    name: str
+    arguments: tuple[Condition, ...]
+
+    def leaves(self) -> Iterator[Literal | Signal]:
+        """Yield all literals and signals, from left to right."""
+        for argument in self.arguments:
+            yield from argument.leaves()
+
+    def check(self, units: Units) -> None:
+        """Raise InputError if the sides of a comparison do not measure the same."""
+        for argument in self.arguments:
+            argument.check(units)
+
+    def holds(self, values: Values) -> BoolArray:
+        """Return, per row, whether the condition is true."""
+        parts = [a.holds(values) for a in self.arguments]
+        result: BoolArray = _LOGIC[self.name](*parts)
+        return result
+
+    def margin(self, values: Values) -> FloatArray:
+        """Return, per row, the margin of the part that decides."""
+        parts = [a.margin(values) for a in self.arguments]
+        if self.name == "not":
+            return -parts[0]
+        result: FloatArray = (np.minimum if self.name == "and" else np.maximum)(*parts)
+        return result
+
+    def comparisons(self) -> list[Comparison]:
+        """Return all comparisons, from left to right."""
+        return [c for argument in self.arguments for c in argument.comparisons()]
+
+    def decisive(self, values: Values) -> Comparison:
+        """Return the comparison that decides in the single row ``values``."""
+        holds = bool(np.all(self.holds(values)))
+        want = holds != (self.name == "not")
+        parts = [a for a in self.arguments if bool(np.all(a.holds(values))) == want]
+        by_margin = min if self.name == "and" else max
+        return by_margin(parts, key=lambda a: float(np.max(a.margin(values)))).decisive(values)
+
+    def limits(self) -> list[Limit]:
+        """Return the bounds on single signals; none for what is not a plain conjunction."""
+        if self.name != "and":
+            return []
+        return [limit for argument in self.arguments for limit in argument.limits()]
+
+
+Condition = Comparison | Logic
+
+_COMPARE: dict[str, Callable[..., Any]] = {
+    "<": np.less,
+    "<=": np.less_equal,
+    ">": np.greater,
+    ">=": np.greater_equal,
+}
+_LOGIC: dict[str, Callable[..., Any]] = {
+    "and": np.logical_and,
+    "or": np.logical_or,
+    "not": np.logical_not,
+}
+
+
+def _limits(measured: Expression, bound: float, kind: str) -> list[Limit]:
+    if isinstance(measured, Signal):
+        return [Limit(measured.name, bound, kind)]
+    if not isinstance(measured, Operation):
+        return []
+    name, arguments = measured.name, measured.arguments
+    if name == "negative":
+        return _limits(arguments[0], -bound, "min" if kind == "max" else "max")
+    if name == "abs" and kind == "max":
+        return [*_limits(arguments[0], bound, "max"), *_limits(arguments[0], -bound, "min")]
+    if name == kind:
+        # The greatest stays below a bound if each one does, the least above it likewise.
+        return [limit for a in arguments for limit in _limits(a, bound, kind)]
+    return []
+
+
+def literal(text: str, unit_text: str) -> Literal:
+    """Return the literal ``text`` in the unit ``unit_text``.
+
+    Raises InputError if that is no unit or the value is not finite.
+    """
+    measure = unit(unit_text)
+    try:
+        value = float(text) * measure.factor + measure.offset
+    except OverflowError:
+        value = math.inf
+    if not math.isfinite(value):
+        raise InputError(f"{text} {unit_text} is not a finite number")
+    return Literal(value, unit_text)

@@ -1,0 +1,68 @@
+"""The manifest of a run: everything that decides its signals, and where it came from."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import platform
+from typing import Any
+
+from .. import __version__
+from ..component import seconds
+from ..cosim.files import Source
+from ..cosim.system import Engine, Part, System
+from .trial import Trial
+
+_LIBRARIES = ("casadi", "fmpy", "numpy", "pythonfmu")
+
+
+def manifest(trial: Trial, system: System, engine: Engine) -> dict[str, Any]:
+    """Return the manifest's content: same content, same bytes of ``signals.csv``."""
+    versions = {name: importlib.metadata.version(name) for name in _LIBRARIES}
+    return {
+        "format": 1,
+        "seatrial": __version__,
+        "versions": {"python": platform.python_version(), **versions},
+        "trial": {**_file(trial.read_from), "title": trial.file.title},
+        "rig": {**_file(trial.rig.read_from), "title": trial.rig.file.title},
+        "engine": engine,
+        "algorithm": trial.rig.file.algorithm,
+        "variant": system.variant,
+        "seed": system.seed,
+        "start": seconds(trial.start_ns),
+        "stop": seconds(trial.stop_ns),
+        "step": seconds(trial.rig.step_ns),
+        "record": trial.file.record.model_dump(),
+        "components": {
+            name: _component(part, seconds(part.every * trial.rig.step_ns))
+            for name, part in system.parts.items()
+        },
+        "connections": [list(pair) for pair in trial.rig.connections()],
+        "signals": {
+            f"{name}.{v.name}": {"unit": v.unit, "description": v.description}
+            for name, part in system.parts.items()
+            for v in part.instance.variables.values()
+            if v.causality == "output"
+        },
+        "criteria": [entry.model_dump() for entry in trial.file.criteria],
+        "events": [entry.model_dump() for entry in trial.file.events],
+    }
+
+
+def _file(source: Source) -> dict[str, str]:
+    return {"name": source.name, "file": source.path.name, "sha256": source.sha256}
+
+
+def _component(part: Part, step: float) -> dict[str, Any]:
+    parameters = {}
+    for variable in part.instance.variables.values():
+        given = part.given.get(variable.name)
+        if variable.causality != "parameter" and given is None:
+            continue
+        parameters[variable.name] = {
+            "value": variable.start if given is None else given.value,
+            "unit": variable.unit,
+            "from": "start value of the FMU" if given is None else given.origin,
+            "source": "" if given is None else given.source,
+            "mark": "" if given is None else given.mark,
+        }
+    return {"fmu": part.fmu, "sha256": part.sha256, "step": step, "parameters": parameters}

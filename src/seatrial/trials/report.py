@@ -1,0 +1,280 @@
+"""The report of a run: one self-contained page with verdicts, plots, parameters and timing."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from plotly.offline import get_plotlyjs
+
+from ..errors import InputError
+from ..units import quantity
+from .decks import deck, pads
+from .plots import Line, Mark, Panel, deck_figure, figure_json, time_figure, track_figure
+from .readable import from_si, number, person_scale
+from .run_folder import Run, load_run
+
+REPORT = "report.html"
+_MOTION = ("position", "attitude")
+_FORCE_UNITS = ("N", "N.m")
+_TEXT_ROWS = 20
+
+
+@dataclass(frozen=True)
+class Section:
+    """A heading with a figure, tables of text signals, or both."""
+
+    title: str
+    figure: str | None
+    """JSON for Plotly."""
+    texts: Sequence[TextSignal] = ()
+    folded: bool = False
+
+
+@dataclass(frozen=True)
+class TextSignal:
+    """A signal that holds text: its first changes, as (time, value)."""
+
+    name: str
+    changes: Sequence[tuple[str, str]]
+    more: int
+    """Changes that are not listed."""
+
+
+@dataclass(frozen=True)
+class Port:
+    """The recorded scalars of one port."""
+
+    component: str
+    name: str
+    signals: tuple[str, ...]
+
+    def axis(self, signal: str) -> str:
+        """Return a signal's name within the port."""
+        return signal.removeprefix(f"{self.component}.{self.name}").lstrip(".") or self.name
+
+
+def write_report(folder: Path | str) -> Path:
+    """Write ``report.html`` into a run folder and return its path. Raises InputError."""
+    run = load_run(folder)
+    page = render(
+        "report.html.j2",
+        run=run,
+        manifest=run.manifest,
+        title=run.manifest["trial"].get("title") or run.name,
+        verdicts=run.verdicts,
+        sections=list(_sections(run)),
+        parameters=_parameter_tables(run),
+        timing=list(_flat(run.timing)),
+        events=[_event_text(event) for event in run.manifest.get("events", [])],
+    )
+    path = run.folder / REPORT
+    path.write_text(page, encoding="utf-8")
+    return path
+
+
+def render(template: str, **content: Any) -> str:
+    """Return a page from a template of this package; ``content`` is escaped there."""
+    return _environment().get_template(template).render(plotly_js=get_plotlyjs(), **content)
+
+
+@cache
+def _environment() -> Environment:
+    loader = FileSystemLoader(Path(__file__).parent / "templates")
+    environment = Environment(
+        loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True
+    )
+    environment.filters["number"] = number
+    return environment
+
+
+# ---------------------------------------------------------------------- sections
+
+
+def _sections(run: Run) -> Iterator[Section]:
+    """Yield what a person looks at first, then every other signal by component."""
+    ports = list(_ports(run))
+    numeric = [port for port in ports if not isinstance(run.signals[port.signals[0]], list)]
+    craft = {port.component for port in numeric if port.name in _MOTION}
+    motion = [p for p in numeric if p.name in _MOTION]
+    units = {p: run.units[p.signals[0]] for p in numeric}
+    speeds = [p for p in numeric if p.component in craft and units[p] in ("m/s", "rad/s")]
+    forces = [p for p in numeric if units[p] in _FORCE_UNITS]
+
+    pads_found = pads(run.manifest)
+    if pads_found:
+        points = [(pad.component, pad, run.passed) for pad in pads_found]
+        figure = deck_figure([deck("", points)])
+        yield Section("The deck from above", figure_json(figure))
+    for title, chosen in (("Motion", motion), ("Velocities", speeds)):
+        for component in dict.fromkeys(p.component for p in chosen):
+            own = [p for p in chosen if p.component == component]
+            panels = [[_panel(run, p, (s,)) for s in p.signals] for p in own]
+            yield Section(f"{title} of {component}", _over_time(run, panels))
+    tracks = list(_tracks(run, motion))
+    if tracks:
+        yield Section("Track from above", figure_json(track_figure(tracks)))
+    if forces:
+        columns = [
+            [_panel(run, p, p.signals) for p in forces if units[p] == u] for u in _FORCE_UNITS
+        ]
+        yield Section("Forces and moments", _over_time(run, [c for c in columns if c]))
+    shown = {*motion, *speeds, *forces}
+    yield from _rest(run, [p for p in ports if p not in shown])
+
+
+def _rest(run: Run, ports: Sequence[Port]) -> Iterator[Section]:
+    for component in dict.fromkeys(p.component for p in ports):
+        own = [p for p in ports if p.component == component]
+        texts = [
+            _text_signal(run, signal)
+            for port in own
+            for signal in port.signals
+            if isinstance(run.signals[signal], list)
+        ]
+        panels = [p for port in own for p in _panels_by_unit(run, port)]
+        columns = [column for column in (panels[::2], panels[1::2]) if column]
+        figure = _over_time(run, columns) if columns else None
+        yield Section(f"Other signals of {component}", figure, texts, folded=True)
+
+
+def _ports(run: Run) -> Iterator[Port]:
+    grouped: dict[tuple[str, str], list[str]] = {}
+    for signal in run.signals:
+        component, _, rest = signal.partition(".")
+        grouped.setdefault((component, rest.partition(".")[0]), []).append(signal)
+    for (component, name), signals in grouped.items():
+        yield Port(component, name, tuple(signals))
+
+
+def _panels_by_unit(run: Run, port: Port) -> Iterator[Panel]:
+    numeric = [s for s in port.signals if not isinstance(run.signals[s], list)]
+    for unit in dict.fromkeys(run.units[s] for s in numeric):
+        yield _panel(run, port, tuple(s for s in numeric if run.units[s] == unit))
+
+
+def _panel(run: Run, port: Port, signals: Sequence[str]) -> Panel:
+    """Return the signals, all of one unit, in one panel with the limits set on them."""
+    factor, unit = person_scale(run.units[signals[0]])
+    lines = [Line(port.axis(s), run.signals[s] * factor) for s in signals]
+    marks = [
+        Mark(
+            f"{'limit' if kind != 'band' else kind} of {verdict['name']}",
+            from_si(value, unit),
+            is_band=kind == "band",
+        )
+        for verdict in run.verdicts
+        for signal, value, kind in verdict["limits"]
+        if signal in signals
+    ]
+    title = signals[0] if len(signals) == 1 else f"{port.component}.{port.name}"
+    return Panel(title, unit, lines, marks)
+
+
+def _over_time(run: Run, columns: Sequence[Sequence[Panel]]) -> str:
+    events = [at for at in map(_event_time, run.manifest.get("events", [])) if at is not None]
+    return figure_json(time_figure(run.time, columns, events))
+
+
+def _tracks(run: Run, motion: Iterable[Port]) -> Iterator[tuple[str, Any, Any]]:
+    for port in motion:
+        north, east = (f"{port.component}.position.{axis}" for axis in "xy")
+        if port.name == "position" and {north, east} <= set(port.signals) and len(run.time):
+            yield port.component, run.signals[north], run.signals[east]
+
+
+def _text_signal(run: Run, signal: str) -> TextSignal:
+    values: list[str] = run.signals[signal]
+    changes = [
+        (number(run.time[row], 9), value[:200])
+        for row, value in enumerate(values)
+        if row == 0 or value != values[row - 1]
+    ]
+    return TextSignal(signal, changes[:_TEXT_ROWS], max(0, len(changes) - _TEXT_ROWS))
+
+
+# ---------------------------------------------------------------------- tables
+
+
+@dataclass
+class ParameterRow:
+    """A parameter, whole: the values of all its axes and where they come from."""
+
+    name: str
+    axes: list[str]
+    values: list[str]
+    unit: str
+    origin: str
+    source: str
+    mark: str
+
+
+def _parameter_tables(run: Run) -> list[tuple[str, list[ParameterRow]]]:
+    return [
+        (name, _parameter_rows(component["parameters"]))
+        for name, component in run.manifest["components"].items()
+    ]
+
+
+def _parameter_rows(parameters: dict[str, dict[str, Any]]) -> list[ParameterRow]:
+    """Return one row per port: scalars that share name, unit and origin are put together."""
+    rows: list[ParameterRow] = []
+    for name, entry in parameters.items():
+        base, _, axis = name.partition(".")
+        row = ParameterRow(
+            base,
+            [axis] if axis else [],
+            [_value_text(entry["value"])],
+            entry["unit"],
+            entry.get("from") or "",
+            entry.get("source") or "",
+            entry.get("mark") or "",
+        )
+        last = rows[-1] if rows else None
+        if last and axis and _alike(last, row):
+            last.axes += row.axes
+            last.values += row.values
+        else:
+            rows.append(row)
+    return rows
+
+
+def _alike(a: ParameterRow, b: ParameterRow) -> bool:
+    return (a.name, a.unit, a.origin, a.source, a.mark) == (
+        b.name, b.unit, b.origin, b.source, b.mark,
+    )  # fmt: skip
+
+
+def _value_text(value: Any) -> str:
+    return number(value, 8) if isinstance(value, float) else str(value)
+
+
+def _event_time(event: Any) -> float | None:
+    try:
+        return quantity(event["at"], "s")
+    except (InputError, KeyError, TypeError):
+        return None
+
+
+def _event_text(event: Any) -> tuple[str, str]:
+    """Return when an event happens and what, both as text."""
+    if not isinstance(event, dict):
+        return "", str(event)
+    actions = {key: value for key, value in event.items() if key != "at" and value}
+    what = "; ".join(f"{key} {json.dumps(value)}" for key, value in actions.items())
+    return str(event.get("at", "")), what
+
+
+def _flat(content: Any, prefix: str = "") -> Iterator[tuple[str, str]]:
+    """Yield the leaves of nested tables as (path, text)."""
+    if isinstance(content, dict):
+        for key, value in content.items():
+            yield from _flat(value, f"{prefix}.{key}" if prefix else str(key))
+    else:
+        yield prefix, _value_text(np.round(content, 6) if isinstance(content, float) else content)

@@ -1,0 +1,244 @@
+"""Running a trial: from its files to a run folder with signals, manifest and verdicts."""
+
+from __future__ import annotations
+
+import datetime
+import json
+import time
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+from ..component import seconds
+from ..cosim.master import Master
+from ..cosim.recorder import Recorder
+from ..cosim.system import Engine, System, assemble, settable
+from ..cosim.values import from_written, port_scalars
+from ..errors import InputError, SimulationError, unknown
+from .manifest import manifest
+from .run_folder import load_run
+from .trial import Event, Trial
+from .verdict import Verdict
+
+Progress = Callable[[float, float], None]
+"""Called now and then with simulated time reached and stop time, s."""
+
+
+@dataclass(frozen=True)
+class Hooks:
+    """What a caller may watch or stop."""
+
+    building: Callable[[str], None] = lambda _: None
+    progress: Progress = lambda _t, _stop: None
+    stop_requested: Callable[[], bool] = lambda: False
+
+
+@dataclass
+class Result:
+    """A finished run."""
+
+    folder: Path
+    status: str
+    """complete, stopped or failed."""
+    error: str | None
+    verdicts: list[tuple[str, str, Verdict]]
+    """(name, check, verdict) of each criterion; empty if the run failed."""
+    notes: list[str]
+    wall: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def passed(self) -> bool:
+        """True if the run is complete and every criterion holds."""
+        return self.status == "complete" and all(v.passed for _, _, v in self.verdicts)
+
+
+def run_trial(
+    trial: Trial, out: Path, *, engine: Engine = "fmu", hooks: Hooks | None = None
+) -> Result:
+    """Run ``trial`` and leave the run folder ``out``, which must not hold anything yet.
+
+    Everything written in the trial's files is checked before ``out`` is made. A run that fails
+    or is stopped leaves the signals recorded so far, and says so in its manifest.
+
+    Raises InputError for bad input.
+    """
+    hooks = hooks or Hooks()
+    begun = time.perf_counter()
+    system = assemble(
+        trial.rig,
+        engine,
+        variant=trial.file.variant,
+        seed=trial.file.seed,
+        progress=hooks.building,
+    )
+    try:
+        for key, written, origin in trial.settings():
+            system.set(key, written, origin)
+        for key, factor, origin in trial.scales:
+            system.scale(key, factor, origin)
+        units = _check_criteria(trial, system)
+        _check_events(trial, system)
+        make_folder(out)
+        wall = {"assemble": time.perf_counter() - begun}
+        status, error = _simulate(trial, system, out, engine, hooks, wall)
+    finally:
+        system.free()
+    verdicts = [] if status == "failed" else _judge(trial, out, units)
+    notes = [f"unconnected input {name} keeps its start value" for name in system.unconnected_inputs()]
+    return Result(out, status, error, verdicts, notes, wall)
+
+
+def make_folder(out: Path) -> None:
+    """Create the folder of a run. Raises InputError if it holds something already."""
+    if out.exists() and (not out.is_dir() or any(out.iterdir())):
+        raise InputError(f"{out} exists and is not an empty folder; name another with --out")
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"cannot create {out}: {error.strerror}") from None
+
+
+def new_folder(name: str) -> Path:
+    """Return a folder for a run that does not exist yet: ``runs/NAME-DATE-TIME``."""
+    stamp = datetime.datetime.now().strftime("%Y%m%d-%H%M%S")
+    base = Path("runs") / f"{name}-{stamp}"
+    candidate, count = base, 1
+    while candidate.exists():
+        count += 1
+        candidate = base.with_name(f"{base.name}-{count}")
+    return candidate
+
+
+def write_json(path: Path, content: Any) -> None:
+    """Write a JSON file whole or not at all."""
+    temporary = path.with_suffix(".tmp")
+    temporary.write_text(json.dumps(content, indent=1, ensure_ascii=False) + "\n", "utf-8")
+    temporary.replace(path)
+
+
+def _simulate(
+    trial: Trial, system: System, out: Path, engine: Engine, hooks: Hooks, wall: dict[str, float]
+) -> tuple[str, str | None]:
+    content = manifest(trial, system, engine)
+    write_json(out / "manifest.json", {**content, "status": "running", "error": None})
+    started = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
+    begun = time.perf_counter()
+    status, error, master = "complete", None, None
+    try:
+        master = Master(system, trial.start_ns, trial.stop_ns)
+        status = _loop(trial, master, out, hooks, wall, begun)
+    except SimulationError as problem:
+        status, error = "failed", str(problem)
+    wall["run"] = time.perf_counter() - begun
+    simulated = seconds(master.time_ns - master.start_ns) if master else 0.0
+    timing = {
+        "started": started,
+        "wall_s": wall,
+        "simulated_s": simulated,
+        "steps": master.steps if master else 0,
+        "real_time_factor": simulated / wall["run"],
+    }
+    write_json(out / "timing.json", timing)
+    write_json(out / "manifest.json", {**content, "status": status, "error": error})
+    return status, error
+
+
+def _loop(
+    trial: Trial, master: Master, out: Path, hooks: Hooks, wall: dict[str, float], begun: float
+) -> str:
+    master.initialise()
+    wall["initialise"] = time.perf_counter() - begun
+    record = trial.file.record
+    recorder = Recorder(out / "signals.csv", master, record.signals, trial.record_every)
+    events = trial.events()
+    stop, steps = seconds(trial.stop_ns), trial.steps
+    shown = time.perf_counter()
+    try:
+        while True:
+            while events and events[0].at_ns <= master.time_ns:
+                _apply(events.pop(0), master)
+            recorder.record()
+            if master.steps >= steps:
+                break
+            if hooks.stop_requested():
+                return "stopped"
+            master.step()
+            if master.steps % 16 == 0 and time.perf_counter() - shown > 0.1:
+                shown = time.perf_counter()
+                hooks.progress(master.time, stop)
+        hooks.progress(master.time, stop)
+        master.terminate()
+    finally:
+        recorder.close()
+    return "complete"
+
+
+def _apply(event: Event, master: Master) -> None:
+    component, _, port = event.key.partition(".")
+    variables = master.system.parts[component].instance.variables
+    scalars = port_scalars(variables, port)
+    if event.action == "release":
+        for variable in scalars:
+            master.release(component, variable.name)
+        return
+    presets = master.system.parts[component].presets.get(port, {})
+    given = from_written(event.written, scalars, presets, f"event {event.key}")
+    if event.action == "set":
+        master.set(component, list(given), [g.value for g in given.values()])
+    else:
+        for name, value in given.items():
+            master.override(component, name, value.value)
+
+
+def _check_events(trial: Trial, system: System) -> None:
+    """Raise InputError for an event that could not be applied when its time comes."""
+    wired = {wire.target for wire in system.wires}
+    for event in trial.events():
+        where = f"{trial.read_from.path}: event at {seconds(event.at_ns):g} s: {event.action}"
+        component, _, port = event.key.partition(".")
+        if component not in system.parts:
+            raise InputError(f"{where}: {unknown('component', component, system.parts)}")
+        part = system.parts[component]
+        scalars = port_scalars(part.instance.variables, port)
+        connected = any((component, v.name) in wired for v in scalars)
+        if event.action == "set":
+            scalars = settable(part.instance.variables, port, f"{where}: {component}")
+            if connected:
+                raise InputError(f"{where}: {event.key} is fed by a wire; use override")
+            if scalars[0].causality == "parameter" and scalars[0].variability != "tunable":
+                raise InputError(f"{where}: {event.key} is fixed and cannot change during a run")
+        elif not scalars or not (connected or scalars[0].causality == "output"):
+            raise InputError(f"{where}: {event.key} is neither an output nor a connected input")
+        if event.action != "release":
+            from_written(event.written, scalars, part.presets.get(port, {}), where)
+
+
+def _check_criteria(trial: Trial, system: System) -> dict[str, str]:
+    """Return the signals' units; raise InputError if a criterion does not fit them."""
+    units = {
+        f"{name}.{v.name}": v.unit
+        for name, part in system.parts.items()
+        for v in part.instance.variables.values()
+        if v.causality == "output"
+    }
+    for name, criterion in trial.criteria:
+        where = f"{trial.read_from.path}: criterion {name!r}"
+        try:
+            for signal in criterion.signals:
+                if signal not in units:
+                    raise InputError(unknown("signal", signal, units))
+            criterion.check_units(units)
+        except InputError as error:
+            raise InputError(f"{where}: {error}") from None
+    return units
+
+
+def _judge(trial: Trial, out: Path, units: dict[str, str]) -> list[tuple[str, str, Verdict]]:
+    run = load_run(out)
+    verdicts = []
+    for entry, (name, criterion) in zip(trial.file.criteria, trial.criteria, strict=True):
+        verdicts.append((name, entry.check, criterion.evaluate(run.time, run.signals, units)))
+    rows = [{"name": name, "check": check, **asdict(verdict)} for name, check, verdict in verdicts]
+    write_json(out / "verdicts.json", rows)
+    return verdicts

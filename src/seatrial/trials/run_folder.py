@@ -1,0 +1,211 @@
+"""Reading the folder that a run leaves: the record, what was run, the verdicts, the timing."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..errors import InputError
+from .expressions import FloatArray
+
+SIGNALS = "signals.csv"
+MANIFEST = "manifest.json"
+VERDICTS = "verdicts.json"
+TIMING = "timing.json"
+
+FORMAT = 1
+_MANIFEST_KEYS = ("trial", "rig", "components", "connections", "signals", "criteria", "status")
+_CHUNK_ROWS = 10_000
+
+
+@dataclass(frozen=True)
+class Run:
+    """A run folder, read; `load_run` makes one.
+
+    ``time`` in s; ``signals`` by name, arrays of numbers (Booleans are 0 and 1) or lists of
+    text; ``units`` by name; ``manifest``, ``verdicts`` and ``timing`` as the files have them.
+    """
+
+    folder: Path
+    time: FloatArray
+    signals: dict[str, Any]
+    units: dict[str, str]
+    manifest: dict[str, Any]
+    verdicts: list[dict[str, Any]]
+    timing: dict[str, Any]
+    truncated: bool
+    """The last line of the record was cut, and was dropped."""
+    notes: tuple[str, ...]
+    """For a person: what the folder lacks."""
+
+    @property
+    def name(self) -> str:
+        """Name of the trial."""
+        return str(self.manifest["trial"]["name"])
+
+    @property
+    def passed(self) -> bool | None:
+        """Whether the run is complete and every criterion passed; None without criteria."""
+        if self.manifest["status"] != "complete":
+            return False
+        if not self.manifest["criteria"]:
+            return None
+        return bool(self.verdicts) and all(verdict["passed"] for verdict in self.verdicts)
+
+
+def load_run(folder: Path | str) -> Run:
+    """Read a run folder. One that was killed may lack verdicts, timing and its last line.
+
+    Raises InputError for a folder that is not a run, and for files that cannot be read or
+    contradict each other.
+    """
+    folder = Path(folder)
+    manifest = read_manifest(folder)
+    path = folder / SIGNALS
+    if not path.is_file():
+        raise InputError(f"{folder} has no {SIGNALS}")
+    time, signals, truncated = _read_signals(path)
+    notes = [f"{name} is missing" for name in (VERDICTS, TIMING) if not (folder / name).is_file()]
+    if truncated:
+        notes.append(f"the last line of {SIGNALS} is cut and was dropped")
+    return Run(
+        folder=folder,
+        time=time,
+        signals=signals,
+        units=_units(folder, signals, manifest),
+        manifest=manifest,
+        verdicts=_optional(folder / VERDICTS, list),
+        timing=_optional(folder / TIMING, dict),
+        truncated=truncated,
+        notes=tuple(notes),
+    )
+
+
+def _optional(path: Path, kind: type) -> Any:
+    return read_json(path, kind) if path.is_file() else kind()
+
+
+def _units(folder: Path, signals: Iterable[str], manifest: dict[str, Any]) -> dict[str, str]:
+    described = manifest["signals"]
+    for name in signals:
+        if name not in described:
+            raise InputError(f"{folder}: {SIGNALS} has {name!r}, which {MANIFEST} does not know")
+    return {name: described[name]["unit"] for name in signals}
+
+
+def read_manifest(folder: Path) -> dict[str, Any]:
+    """Return the manifest of a run folder.
+
+    Raises InputError if there is none, or it is not one of this format.
+    """
+    path = folder / MANIFEST
+    if not path.is_file():
+        raise InputError(f"{folder} is not a run folder: it has no {MANIFEST}")
+    manifest: dict[str, Any] = read_json(path, dict)
+    if manifest.get("format") != FORMAT:
+        raise InputError(f"{path}: format {manifest.get('format')!r}, this version reads {FORMAT}")
+    missing = [key for key in _MANIFEST_KEYS if key not in manifest]
+    if missing:
+        raise InputError(f"{path} lacks {', '.join(missing)}")
+    return manifest
+
+
+def read_json(path: Path, kind: type) -> Any:
+    """Return what a JSON file holds. Raises InputError if that is not a ``kind``."""
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise InputError(f"{path} cannot be read: {error}") from None
+    if not isinstance(content, kind):
+        raise InputError(f"{path} holds a {type(content).__name__}, not a {kind.__name__}")
+    return content
+
+
+def _read_signals(path: Path) -> tuple[FloatArray, dict[str, Any], bool]:
+    """Return times, columns by name, and whether the last line was cut.
+
+    A column is numbers if every cell is one; otherwise it is text.
+    """
+    with path.open(encoding="utf-8", errors="replace", newline="") as file:
+        header = next(csv.reader(file), [])
+    if not header or header[0] != "time":
+        raise InputError(f"{path}: the first column is not 'time'")
+    if len(set(header)) != len(header):
+        raise InputError(f"{path}: a column occurs twice")
+
+    rows = _Rows(path, len(header))
+    chunks: list[list[FloatArray]] = [[np.empty(0)] for _ in header]
+    text: dict[int, list[str]] = {}
+    iterator = iter(rows)
+    while chunk := list(islice(iterator, _CHUNK_ROWS)):
+        for index, cells in enumerate(zip(*chunk, strict=True)):
+            if index not in text:
+                try:
+                    chunks[index].append(np.array(cells, dtype=float))
+                except ValueError:
+                    text[index] = []
+    if 0 in text:
+        raise InputError(f"{path}: a time is not a number")
+    if text:
+        for row in rows:
+            for index, column in text.items():
+                column.append(row[index])
+    columns: dict[str, Any] = {
+        name: text[index] if index in text else np.concatenate(chunks[index])
+        for index, name in enumerate(header)
+    }
+    return columns.pop("time"), columns, rows.cut
+
+
+class _Rows:
+    """The rows of a CSV file below its header, all of the same width; a cut last one left out."""
+
+    def __init__(self, path: Path, width: int) -> None:
+        self.path, self.width = path, width
+        self.cut = not _ends_with_newline(path)
+
+    def __iter__(self) -> Iterator[list[str]]:
+        rows = self._parsed()
+        line, row = next(rows, (0, None))
+        while row is not None:
+            next_line, following = next(rows, (0, None))
+            last = following is None
+            if len(row) != self.width and not last:
+                raise InputError(
+                    f"{self.path}, line {line}: {len(row)} values, the header has {self.width}"
+                )
+            if last and len(row) != self.width:
+                self.cut = True
+            elif not (last and self.cut):
+                yield row
+            line, row = next_line, following
+
+    def _parsed(self) -> Iterator[tuple[int, list[str] | None]]:
+        with self.path.open(encoding="utf-8", errors="replace", newline="") as file:
+            reader = csv.reader(file, strict=True)
+            next(reader, None)
+            try:
+                for row in reader:
+                    yield reader.line_num, row
+            except csv.Error as error:
+                if file.read(1):
+                    raise InputError(f"{self.path}, line {reader.line_num}: {error}") from None
+                # A text that the end of the file cuts; it counts as a row without values.
+                self.cut = True
+                yield reader.line_num, []
+
+
+def _ends_with_newline(path: Path) -> bool:
+    with path.open("rb") as file:
+        file.seek(0, 2)
+        if file.tell() == 0:
+            return True
+        file.seek(-1, 2)
+        return file.read(1) == b"\n"

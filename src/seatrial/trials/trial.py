@@ -1,0 +1,186 @@
+"""Trials: which rig, how long, what happens, what must hold (``harness/trials/*.toml``)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Literal
+
+from pydantic import Field
+
+from ..cosim.files import FileModel, Source, find_file, read_toml, validated
+from ..cosim.rig import Rig, duration_ns, load_rig
+from ..errors import InputError, unknown
+from .criteria import Criterion, parse
+
+
+class RecordEntry(FileModel):
+    """What is recorded: signal patterns, and how often (default: every communication step)."""
+
+    signals: list[str] = Field(default_factory=lambda: ["*"])
+    every: str | None = None
+
+
+class CriterionEntry(FileModel):
+    """A named condition that must hold."""
+
+    name: str
+    check: str
+
+
+class EventEntry(FileModel):
+    """Something that happens at a time: a port set, overridden or released."""
+
+    at: str
+    set: dict[str, Any] = Field(default_factory=dict)
+    override: dict[str, Any] = Field(default_factory=dict)
+    release: list[str] = Field(default_factory=list)
+
+
+class TrialFile(FileModel):
+    """The content of a trial file."""
+
+    title: str = ""
+    rig: str
+    start: str = "0 s"
+    stop: str
+    variant: str | None = None
+    seed: int = Field(default=1, ge=0)
+    set: dict[str, Any] = Field(default_factory=dict)
+    record: RecordEntry = Field(default_factory=RecordEntry)
+    criteria: list[CriterionEntry] = Field(default_factory=list)
+    events: list[EventEntry] = Field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class Event:
+    """An event with its time in ns."""
+
+    at_ns: int
+    action: Literal["set", "override", "release"]
+    key: str
+    written: Any
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A trial file, read, with its rig and its criteria parsed."""
+
+    file: TrialFile
+    read_from: Source
+    rig: Rig
+    criteria: tuple[tuple[str, Criterion], ...]
+    overrides: tuple[tuple[str, Any, str], ...] = ()
+    """Settings from outside the file: (component.port, what was written, who says so)."""
+    scales: tuple[tuple[str, float, str], ...] = ()
+    """Parameters to multiply after all settings: (component.port, factor, who says so)."""
+
+    @property
+    def name(self) -> str:
+        """Name of the trial."""
+        return self.read_from.name
+
+    @property
+    def start_ns(self) -> int:
+        """Start time, ns."""
+        return duration_ns(self.file.start, f"{self.read_from.path}: start")
+
+    @property
+    def stop_ns(self) -> int:
+        """Stop time, ns."""
+        return duration_ns(self.file.stop, f"{self.read_from.path}: stop")
+
+    @property
+    def steps(self) -> int:
+        """Number of communication steps."""
+        return (self.stop_ns - self.start_ns) // self.rig.step_ns
+
+    @property
+    def record_every(self) -> int:
+        """Steps between recorded rows."""
+        written = self.file.record.every
+        if written is None:
+            return 1
+        where = f"{self.read_from.path}: record.every"
+        return _multiple(duration_ns(written, where), self.rig.step_ns, where, written)
+
+    def settings(self) -> list[tuple[str, Any, str]]:
+        """Return what the trial sets: (component.port, as written, who says so)."""
+        where = f"{self.read_from.path}: set"
+        return [*((k, v, where) for k, v in self.file.set.items()), *self.overrides]
+
+    def events(self) -> list[Event]:
+        """Return all events in time order, as written where times are equal."""
+        events = []
+        for index, entry in enumerate(self.file.events):
+            where = f"{self.read_from.path}: events.{index}.at"
+            at_ns = duration_ns(entry.at, where)
+            if not self.start_ns <= at_ns <= self.stop_ns:
+                raise InputError(f"{where}: {entry.at!r} is outside the trial's time")
+            _multiple(at_ns - self.start_ns, self.rig.step_ns, where, entry.at)
+            events += [Event(at_ns, "set", k, v) for k, v in entry.set.items()]
+            events += [Event(at_ns, "override", k, v) for k, v in entry.override.items()]
+            events += [Event(at_ns, "release", k, None) for k in entry.release]
+        return sorted(events, key=lambda event: event.at_ns)
+
+    def scaled(self, key: str, factor: float, origin: str) -> Trial:
+        """Return the trial with the number ``component.port`` multiplied by ``factor``."""
+        return replace(self, scales=(*self.scales, (key, factor, origin)))
+
+    def changed(self, changes: Mapping[str, Any], origin: str) -> Trial:
+        """Return the trial with settings changed: ``component.port``, or a key of the trial.
+
+        Keys of the trial are variant, seed, start and stop. Raises InputError.
+        """
+        keys = ("variant", "seed", "start", "stop")
+        own, overrides = {}, list(self.overrides)
+        for key, value in changes.items():
+            if "." in key:
+                overrides.append((key, value, origin))
+            elif key in keys:
+                own[key] = value
+            else:
+                raise InputError(f"{origin}: {unknown('key', key, keys)}, or component.port")
+        content = {**self.file.model_dump(), **own}
+        file = validated(TrialFile, content, self.read_from.path)
+        return _checked(replace(self, file=file, overrides=tuple(overrides)))
+
+
+def load_trial(name: str, relative_to: Path | None = None) -> Trial:
+    """Read the trial ``name`` (shipped, in ``harness/trials``, or a path) and its rig.
+
+    Raises InputError for anything wrong in either file, or in a criterion.
+    """
+    path = find_file("harness/trials", name, relative_to)
+    content, read_from = read_toml(path)
+    file = validated(TrialFile, content, path)
+    try:
+        rig = load_rig(file.rig, path.parent)
+    except InputError as error:
+        raise InputError(f"{path}: rig: {error}") from None
+    criteria = []
+    for index, entry in enumerate(file.criteria):
+        try:
+            criteria.append((entry.name, parse(entry.check)))
+        except InputError as error:
+            raise InputError(f"{path}: criteria.{index} ({entry.name}): {error}") from None
+    return _checked(Trial(file, read_from, rig, tuple(criteria)))
+
+
+def _checked(trial: Trial) -> Trial:
+    where = f"{trial.read_from.path}: stop"
+    _multiple(trial.stop_ns - trial.start_ns, trial.rig.step_ns, where, trial.file.stop)
+    _ = trial.record_every
+    trial.events()
+    return trial
+
+
+def _multiple(length_ns: int, step_ns: int, where: str, written: str) -> int:
+    count, rest = divmod(length_ns, step_ns)
+    if rest or count < 0 or (count == 0 and not where.endswith(".at")):
+        raise InputError(
+            f"{where}: {written!r} is not a whole number of communication steps of "
+            f"{step_ns / 1e6:g} ms"
+        )
+    return count

@@ -1,0 +1,30 @@
+"""Shared fixtures. Everything that tests write goes below pytest's temporary folder."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _cache(tmp_path_factory: pytest.TempPathFactory) -> None:
+    """Keep built and unpacked FMUs out of the user's cache; workers of one run share them."""
+    base = tmp_path_factory.getbasetemp()
+    if os.environ.get("PYTEST_XDIST_WORKER"):
+        base = base.parent
+    os.environ["SEATRIAL_CACHE"] = str(base / "seatrial-cache")
+
+
+@pytest.fixture()
+def write(tmp_path: Path):
+    """Return a function that writes a file below the test's folder and returns its path."""
+
+    def write(name: str, text: str) -> Path:
+        path = tmp_path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, "utf-8")
+        return path
+
+    return write

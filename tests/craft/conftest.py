@@ -1,0 +1,71 @@
+"""The Hydrone, built from its parameter file, and runs of it that several tests look at."""
+
+import tomllib
+from functools import cache
+from importlib.resources import files
+
+import numpy as np
+import pytest
+
+from seatrial.craft.marine_craft import MarineCraft
+from seatrial.environment.downwash import Downwash
+
+PARAMETERS = tomllib.loads((files("seatrial") / "vehicles/hydrone.toml").read_text())
+DAMPING = (
+    *("linear_damping_force", "linear_damping_moment"),
+    *("quadratic_damping_force", "quadratic_damping_moment"),
+)
+
+
+class Hydrone:
+    """Builds and runs the Hydrone with its HUAUV."""
+
+    def __init__(self):
+        self.parameters = PARAMETERS
+        pads = PARAMETERS["presets"]["downwash"]["pad"]
+        self.pads = {name: entry["value"] for name, entry in pads.items()}
+
+    def craft(self, variant, **changes):
+        return self._set(MarineCraft("craft"), "marine-craft", variant, changes)
+
+    def undamped(self, variant, **changes):
+        return self.craft(variant, **dict.fromkeys(DAMPING, 0.0), **changes)
+
+    def downwash(self, variant, phase="landing", pad="nominal", **changes):
+        scenario = {"phase": phase, "pad": self.pads[pad]}
+        return self._set(Downwash("downwash"), "downwash", variant, {**scenario, **changes})
+
+    def _set(self, component, table, variant, changes):
+        shared, own = self.parameters[table], self.parameters["variants"][variant][table]
+        for name, entry in {**shared, **own}.items():
+            component.set(name, entry["value"])
+        for name, value in changes.items():
+            component.set(name, value)
+        return component
+
+    def follow(self, craft, downwash, t, breaks=(), **options):
+        """Integrate the craft under the load, which feels its attitude at every instant."""
+
+        def load(time, x):
+            force, moment = downwash.wrench(time, x.attitude.tolist())
+            return {"load_force": force, "load_moment": moment}
+
+        return craft.reference(t, load, [*breaks, *downwash.breaks()], **options)
+
+    @cache  # noqa: B019 (the fixture lives as long as the session)
+    def run(self, variant, phase, pad, scaled="", factor=1.0):
+        """20 s every 10 ms, one parameter of the craft scaled.
+
+        Every tenth of a second ends a step of the integrator: between its steps it
+        interpolates, with an error that nobody controls.
+        """
+        craft = self.craft(variant)
+        if scaled:
+            craft.set(scaled, factor * craft.get(scaled))
+        grid = np.arange(2001) / 100
+        return self.follow(craft, self.downwash(variant, phase, pad), grid, grid[::10])
+
+
+@pytest.fixture(scope="session")
+def hydrone():
+    return Hydrone()

@@ -1,0 +1,164 @@
+"""FMUs side by side in one process, their bytes, and what they need on the target machine."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from seatrial.errors import InputError
+from seatrial.fmi.export import build_fmu, fmu_bytes
+from seatrial.fmi.source import find_source, shipped_sources
+
+from . import boats
+from .conftest import Raw, source
+
+
+def test_two_versions_of_one_fmu_each_run_their_own_code(write, tmp_path: Path) -> None:
+    raws = []
+    for version, number in (("old", 1.0), ("new", 2.0)):
+        text = boats.USES_HELPER.replace("constants.NUMBER +", f"{number} +")
+        file = write(f"{version}/boat.py", text)
+        write(f"{version}/constants.py", "NUMBER = 0.0\n")
+        path = build_fmu(source(file, "Boat"), tmp_path / f"{version}.fmu")
+        raws.append(Raw(path, tmp_path / f"{version}-unpacked"))
+    slaves = [raw.start() for raw in raws]
+    assert [raw.get("value") for raw in raws] == [1.0, 2.0]
+    for slave in slaves:
+        slave.freeInstance()
+
+
+def test_equal_script_and_helper_names_do_not_meet(write, tmp_path: Path) -> None:
+    raws = []
+    for owner, number in (("ana", 111.0), ("bia", 222.0), ("eva", 333.0)):
+        file = write(f"{owner}/boat.py", boats.USES_HELPER)
+        write(f"{owner}/constants.py", f"NUMBER = {number}\n")
+        path = build_fmu(source(file, "Boat"), tmp_path / f"{owner}.fmu")
+        raws.append(Raw(path, tmp_path / f"{owner}-unpacked"))
+    slaves = [raw.start() for raw in raws]
+    assert [raw.get("value") for raw in raws] == [111.0, 222.0, 333.0]
+    for slave in slaves:
+        slave.freeInstance()
+    assert not {"boat", "constants"} & set(sys.modules)
+
+
+def test_the_same_fmu_twice_in_one_process(counter_fmu: Path, tmp_path: Path) -> None:
+    first, second = Raw(counter_fmu, tmp_path / "1"), Raw(counter_fmu, tmp_path / "2")
+    a, b = first.start(u=1.0), second.start(u=2.0)
+    for k in range(3):
+        a.doStep(k * 0.1, 0.1)
+        b.doStep(k * 0.1, 0.1)
+    assert (first.get("total"), second.get("total")) == (3.0, 6.0)
+    a.freeInstance()
+    b.freeInstance()
+
+
+def test_a_thin_script_is_refused_with_the_reason(write, tmp_path: Path) -> None:
+    """Without a function of its own a script crashes pythonfmu's binary at the second life."""
+    from dataclasses import replace
+
+    thin = shipped_sources()["thruster"].script.decode()
+    thin = thin[: thin.index("    def __init__")]
+    with pytest.raises(InputError, match="__init__ of its own"):
+        build_fmu(replace(shipped_sources()["thruster"], script=thin.encode()), tmp_path / "x.fmu")
+
+
+def test_builds_are_identical_whatever_the_folder_process_and_hash_seed(
+    write, tmp_path: Path
+) -> None:
+    here = write("a/counter.py", boats.COUNTER)
+    there = write("somewhere else/counter.py", boats.COUNTER)
+    own = fmu_bytes(source(here, "Counter"))
+    assert fmu_bytes(source(there, "Counter")) == own
+    code = (
+        "import sys; from pathlib import Path; from seatrial.fmi.source import find_source; "
+        "from seatrial.fmi.export import build_fmu; "
+        "build_fmu(find_source('counter.py:Counter', Path(sys.argv[1])), Path(sys.argv[2]))"
+    )
+    target = tmp_path / "elsewhere.fmu"
+    environment = {**os.environ, "PYTHONHASHSEED": "12345", "TZ": "Asia/Tokyo"}
+    command = [sys.executable, "-c", code, str(there.parent), str(target)]
+    subprocess.run(command, check=True, env=environment)
+    assert target.read_bytes() == own
+
+
+def test_building_leaves_the_process_as_it_was(write, tmp_path: Path) -> None:
+    file = write("boat.py", boats.USES_HELPER)
+    write("constants.py", "NUMBER = 1.0\n")
+    paths, folder = list(sys.path), Path.cwd()
+    build_fmu(source(file, "Boat"), tmp_path / "boat.fmu")
+    assert (sys.path, Path.cwd()) == (paths, folder)
+    assert not {"boat", "constants"} & set(sys.modules)
+    assert {p.name for p in tmp_path.iterdir()} == {"boat.py", "constants.py", "boat.fmu"}
+
+
+def test_an_fmu_carries_no_more_than_it_imports(counter_fmu: Path) -> None:
+    with zipfile.ZipFile(counter_fmu) as archive:
+        names = archive.namelist()
+    for absent in ("plant.py", "units.py", "export.py", "builder.py"):
+        assert not any(name.endswith(f"/{absent}") for name in names)
+    assert {n.split("/")[1] for n in names if n.startswith("binaries/")} == {"linux64", "win64"}
+
+
+def test_a_missing_package_is_named_with_its_cure(write, tmp_path: Path) -> None:
+    write("packages/only_here/__init__.py", "X = 1\n")
+    file = write(
+        "boat.py",
+        "import only_here\nfrom seatrial.component import Component\n\n\n"
+        'class Boat(Component):\n    """Needs a package."""\n',
+    )
+    build = (
+        "import sys; from pathlib import Path; from seatrial.fmi.source import find_source; "
+        "from seatrial.fmi.export import build_fmu; "
+        "build_fmu(find_source('boat.py:Boat', Path(sys.argv[1])), Path(sys.argv[2]))"
+    )
+    fmu = tmp_path / "boat.fmu"
+    with_package = {**os.environ, "PYTHONPATH": str(tmp_path / "packages")}
+    subprocess.run(
+        [sys.executable, "-c", build, str(file.parent), str(fmu)], check=True, env=with_package
+    )
+    load = (
+        "import sys; from pathlib import Path; from seatrial.fmi.load import *; "
+        "FmuInstance(load_fmu(Path(sys.argv[1])), 'b')"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", load, str(fmu)], capture_output=True, text=True, check=False
+    )
+    assert "needs the Python package(s) only_here" in done.stderr
+    assert 'pip install "only_here"' in done.stderr
+    assert "could not be instantiated" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("def broken(:\n", r"boat\.py, line 1: not Python"),
+        ("import nowhere_at_all\nclass Boat: pass\n", "nowhere_at_all"),
+        ("x = 1\n", "cannot import name 'Boat'"),
+        ("class Boat: pass\n", "not a subclass of seatrial's Component"),
+        ("raise RuntimeError('on import')\n", "on import"),
+    ],
+)
+def test_bad_scripts_are_named(text: str, message: str, write, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=message):
+        build_fmu(source(write("boat.py", text), "Boat"), tmp_path / "boat.fmu")
+    assert not (tmp_path / "boat.fmu").exists()
+
+
+@pytest.mark.parametrize(
+    ("named", "message"),
+    [
+        ("nothing.py:Boat", "there is no file"),
+        ("x.fmu", "there is no FMU"),
+        ("trhuster", "did you mean 'thruster'"),
+        ("json.py:Boat", "would hide a library"),
+    ],
+)
+def test_sources_that_do_not_exist(named: str, message: str, write, tmp_path: Path) -> None:
+    write("json.py", "")
+    with pytest.raises(InputError, match=message):
+        find_source(named, tmp_path)

@@ -1,0 +1,84 @@
+"""The model description against FMPy's checker and against what was declared."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from fmpy import read_model_description
+from fmpy.validation import validate_fmu
+
+from seatrial.errors import InputError
+from seatrial.fmi.export import build_fmu
+from seatrial.fmi.source import shipped_sources
+
+from .conftest import source
+
+
+@pytest.mark.parametrize("name", shipped_sources())
+def test_fmpy_finds_no_problem_in_a_shipped_fmu(name: str, tmp_path: Path) -> None:
+    path = build_fmu(shipped_sources()[name], tmp_path / f"{name}.fmu")
+    assert validate_fmu(str(path)) == []
+    assert read_model_description(str(path)).modelName == name
+
+
+def test_declarations_arrive_exactly(counter_fmu: Path) -> None:
+    assert validate_fmu(str(counter_fmu)) == []
+    description = read_model_description(str(counter_fmu))
+    variables = {v.name: v for v in description.modelVariables}
+    assert variables["bias.b"].start == repr(1.0 / 3.0)
+    assert float(variables["bias.b"].start) == 1.0 / 3.0
+    assert variables["gain"].start == "0.1"
+    u = variables["u"]
+    assert (u.unit, u.min, u.max, u.nominal) == ("m", "-1000.0", "1000.0", "2.5")
+    assert variables["label"].start == "plain"
+    assert variables["knob"].variability == "tunable"
+    assert variables["gain"].variability == "fixed"
+    assert {v.variability for v in variables.values() if v.type != "Real"} <= {"fixed", "discrete"}
+    (metre,) = [u for u in description.unitDefinitions if u.name == "m"]
+    assert metre.baseUnit.m == 1
+    simulation = description.coSimulation
+    assert simulation.canGetAndSetFMUstate
+    assert simulation.canSerializeFMUstate
+
+
+def test_dependencies_say_direct_feedthrough_only(counter_fmu: Path) -> None:
+    description = read_model_description(str(counter_fmu))
+    depends = {u.variable.name: [d.name for d in u.dependencies] for u in description.outputs}
+    assert depends == {
+        "total": [], "through": ["u"], "steps": [], "was_on": ["on"], "said": ["say"]
+    }  # fmt: skip
+
+
+def test_no_empty_unit_definitions_and_no_outputs(write, tmp_path: Path) -> None:
+    file = write(
+        "mute.py",
+        "from seatrial.component import Component, Parameter\n\n\n"
+        "class Mute(Component):\n"
+        '    """Says nothing."""\n\n'
+        '    text = Parameter("a<&b", "1", "t")\n',
+    )
+    path = build_fmu(source(file, "Mute"), tmp_path / "mute.fmu")
+    assert validate_fmu(str(path)) == []
+    assert read_model_description(str(path)).unitDefinitions == []
+
+
+@pytest.mark.parametrize(
+    ("declaration", "message"),
+    [
+        ('x = Output("furlong3.xyz", "d")', "'furlong3.xyz' is not a unit"),
+        ('x = Output("m", "d", axes=("1",))', "axis '1' is not an identifier"),
+        ('x = Parameter("a\\0b", "1", "d")', "cannot hold"),
+    ],
+)
+def test_what_cannot_be_described_is_refused(
+    declaration: str, message: str, write, tmp_path: Path
+) -> None:
+    file = write(
+        "odd.py",
+        "from seatrial.component import Component, Output, Parameter\n\n\n"
+        f'class Odd(Component):\n    """Odd."""\n\n    {declaration}\n',
+    )
+    with pytest.raises(InputError, match=message):
+        build_fmu(source(file, "Odd"), tmp_path / "odd.fmu")
+    assert not (tmp_path / "odd.fmu").exists()
