@@ -6,6 +6,7 @@ communication step, a variable-step reference, exact Jacobians, linearisation an
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -201,36 +202,43 @@ class Plant(Component):
 
         ``u(t, x)`` returns values by input port name, ``x`` having one array per state port;
         inputs it does not name keep what was set. At the end of a piece it is asked just
-        before the break, so that a jump there belongs to the next piece. ``method`` is one of
-        SciPy's solve_ivp (RK23, RK45, DOP853, Radau, ...). Raises ArithmeticError if the
-        integration fails.
+        before the break, so that a jump there belongs to the next piece. Every time in ``t``
+        ends a step of the integrator too: between its steps it could only interpolate, with
+        an error that nobody controls. ``method`` is one of SciPy's RK23, RK45, DOP853, Radau
+        and BDF. Raises ArithmeticError if the integration fails.
         """
-        from scipy.integrate import solve_ivp
+        from scipy import integrate
 
+        solver_class = getattr(integrate, method)
         times = np.asarray(t, dtype=float)
         model, p, x = self._compiled(), self._stacked_p(), self._start_state()
         arguments, dx = [x.copy(), self._stacked_u(None), p], np.zeros(len(x))
         _buffer, evaluate = bind(model.rhs, arguments, dx)
-        edges = [times[0], *sorted({b for b in breaks if times[0] < b < times[-1]}), times[-1]]
-        out = np.empty((len(times), len(x)))
-        for a, b in zip(edges[:-1], edges[1:], strict=True):
+        last = times[-1]
+
+        def slope(time: float, x: Vector) -> Vector:
+            arguments[0][:] = x
+            if u is not None:
+                arguments[1][:] = self._with_inputs(u(min(time, last), self._named(x)))
+            evaluate()
+            return dx.copy()
+
+        inner = {b for b in breaks if times[0] < b < times[-1]}
+        solved = {times[0]: x}
+        edges = sorted({*times.tolist(), *inner})
+        first_step = None
+        for a, b in itertools.pairwise(edges):
             last = float(np.nextafter(b, a))
-
-            def slope(time: float, x: Vector, last: float = last) -> Vector:
-                arguments[0][:] = x
-                if u is not None:
-                    arguments[1][:] = self._with_inputs(u(min(time, last), self._named(x)))
-                evaluate()
-                return dx.copy()
-
-            inside = (times >= a) & ((times < b) | (b == times[-1]))
-            grid = np.append(times[inside], b)
-            solution = solve_ivp(slope, (a, b), x, method, np.unique(grid), rtol=rtol, atol=atol)
-            if not solution.success:
-                raise ArithmeticError(f"integration stopped at t = {solution.t[-1]}: {solution.message}")
-            out[inside] = solution.y.T[: inside.sum()]
-            x = solution.y[:, -1]
-        return Reference(times, out, model.x_names)
+            if first_step is not None:
+                first_step = min(first_step, b - a)
+            solver = solver_class(slope, a, x, b, rtol=rtol, atol=atol, first_step=first_step)
+            while solver.status == "running":
+                message = solver.step()
+            if solver.status != "finished":
+                raise ArithmeticError(f"integration stopped at t = {solver.t}: {message}")
+            solved[b] = x = solver.y
+            first_step = None if b in inner else solver.h_abs
+        return Reference(times, np.array([solved[time] for time in times.tolist()]), model.x_names)
 
     # ------------------------------------------------------------------ inside
 

@@ -101,7 +101,10 @@ def quantity(text: str | float | int, target: str) -> float:
             raise InputError(f"{text!r} has no unit; write for example '{number:g} {target}'")
         written = "1"
     factor, offset = conversion(written, target)
-    return number * factor + offset if (factor, offset) != (1.0, 0.0) else number
+    parts = round(1.0 / factor)
+    # 1100 us is 1100 / 1000000 s to the last digit; 1100 * 1e-6 is not.
+    exact = parts > 1 and 1.0 / parts == factor
+    return (number / parts if exact else number * factor) + offset
 
 
 def _to_pint(text: str) -> str:

@@ -43,27 +43,23 @@ class Hydrone:
             component.set(name, value)
         return component
 
-    def follow(self, craft, downwash, t, breaks=(), **options):
+    def follow(self, craft, downwash, t, **options):
         """Integrate the craft under the load, which feels its attitude at every instant."""
 
         def load(time, x):
             force, moment = downwash.wrench(time, x.attitude.tolist())
             return {"load_force": force, "load_moment": moment}
 
-        return craft.reference(t, load, [*breaks, *downwash.breaks()], **options)
+        return craft.reference(t, load, downwash.breaks(), **options)
 
-    @cache  # noqa: B019 (the fixture lives as long as the session)
+    @cache  # noqa: B019 (the fixture lives as long as the tests run)
     def run(self, variant, phase, pad, scaled="", factor=1.0):
-        """20 s every 10 ms, one parameter of the craft scaled.
-
-        Every tenth of a second ends a step of the integrator: between its steps it
-        interpolates, with an error that nobody controls.
-        """
+        """20 s every 10 ms, one parameter of the craft scaled."""
         craft = self.craft(variant)
         if scaled:
             craft.set(scaled, factor * craft.get(scaled))
         grid = np.arange(2001) / 100
-        return self.follow(craft, self.downwash(variant, phase, pad), grid, grid[::10])
+        return self.follow(craft, self.downwash(variant, phase, pad), grid)
 
 
 @pytest.fixture(scope="session")

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from seatrial.craft import kinematics
+from seatrial.craft import kinematics, symbolic
 
 ATTITUDES = [(0.3, -0.5, 2.0), (-2.0, 1.2, -3.0), (0.0, 0.0, 0.0), (3.0, -1.4, 0.1)]
 
@@ -39,16 +39,16 @@ def test_signs_of_the_angles():
 @pytest.mark.parametrize("attitude", ATTITUDES)
 def test_symbols_and_floats_agree(attitude):
     numbers = ca.DM(attitude)
-    symbolic = np.array(kinematics.rotation_matrix(numbers))
-    np.testing.assert_array_equal(symbolic, kinematics.rotation(*attitude))
+    expressed = np.array(symbolic.rotation_matrix(numbers))
+    np.testing.assert_array_equal(expressed, kinematics.rotation(*attitude))
 
 
 def test_euler_rates_turn_the_rotation_matrix_at_the_angular_velocity():
     # dR/dt = R S(omega) defines omega in body axes; the Euler rates must produce it.
     attitude, omega = ca.SX.sym("attitude", 3), ca.SX.sym("omega", 3)
-    R = kinematics.rotation_matrix(attitude)
-    rate = kinematics.euler_rate_matrix(attitude) @ omega
-    difference = ca.reshape(ca.jtimes(R, attitude, rate), 3, 3) - R @ kinematics.skew(omega)
+    R = symbolic.rotation_matrix(attitude)
+    rate = symbolic.euler_rate_matrix(attitude) @ omega
+    difference = ca.reshape(ca.jtimes(R, attitude, rate), 3, 3) - R @ symbolic.skew(omega)
     evaluate = ca.Function("difference", [attitude, omega], [difference])
     for angles in ATTITUDES:
         assert np.abs(np.array(evaluate(angles, [0.3, -0.7, 1.1]))).max() < 1e-14
@@ -58,7 +58,7 @@ def test_skew_and_cross_are_the_vector_product():
     a, b = (1.0, -2.0, 3.0), (0.5, 4.0, -1.0)
     assert kinematics.cross(a, b) == tuple(np.cross(a, b))
     np.testing.assert_array_equal(
-        np.array(kinematics.skew(ca.DM(a)) @ ca.DM(b)).ravel(), np.cross(a, b)
+        np.array(symbolic.skew(ca.DM(a)) @ ca.DM(b)).ravel(), np.cross(a, b)
     )
 
 

@@ -20,11 +20,6 @@ PADS = {
     "transversal": (0.0, 0.25, -0.2),
     "diagonal_fore": (0.319, 0.25, -0.2),
 }
-CRITERIA = {
-    "roll stays below 10 degrees": "abs(hull.attitude.phi) < 10 deg",
-    "pitch stays below 5 degrees": "abs(hull.attitude.theta) < 5 deg",
-    "heave settles": "hull.position.z settles within 5 s after 4 s",
-}
 COLUMNS = {
     "hull.position.x": ("x", "m"),
     "hull.position.y": ("y", "m"),
@@ -49,6 +44,16 @@ def reference(phase: str, scenario: str, variant: str = "source") -> dict[str, A
         REFERENCE / f"hydrone_{variant}_{phase}_{scenario}.csv", delimiter=",", names=True
     )
     return {"time": data["t"]} | {name: data[column] for name, (column, _) in COLUMNS.items()}
+
+
+def criteria(phase: str) -> dict[str, str]:
+    """Return the limits of the source, table 7, by name."""
+    start = {"landing": "4 s", "takeoff": "10.5 s"}[phase]
+    return {
+        "roll stays below 10 degrees": "abs(hull.attitude.phi) < 10 deg",
+        "pitch stays below 5 degrees": "abs(hull.attitude.theta) < 5 deg",
+        "heave settles": f"hull.position.z settles within 5 s after {start}",
+    }
 
 
 def _parameter(value: Any, unit: str, **where: str) -> dict[str, Any]:
@@ -109,7 +114,7 @@ def _manifest(phase: str, scenario: str, signals: Mapping[str, str]) -> dict[str
         "signals": {
             name: {"unit": unit, "description": f"signal {name}"} for name, unit in signals.items()
         },
-        "criteria": [{"name": name, "check": check} for name, check in CRITERIA.items()],
+        "criteria": [{"name": name, "check": check} for name, check in criteria(phase).items()],
         "events": [],
         "status": "complete",
         "error": None,
@@ -141,7 +146,7 @@ def write_run_folder(
     manifest = _manifest(phase, scenario, units) | dict(changes or {})
     verdicts = [
         {"name": name, "check": check, **_plain(parse(check).evaluate(time, columns, units))}
-        for name, check in CRITERIA.items()
+        for name, check in criteria(phase).items()
     ]
     timing = {"wall_s": {"assemble": 0.2, "run": 0.05}, "steps": 2000, "real_time_factor": 400.0}
     for name, content in (("manifest", manifest), ("verdicts", verdicts), ("timing", timing)):

@@ -138,6 +138,7 @@ class StationKeeping(Sampled):
     # ------------------------------------------------------------------ running
 
     def reset(self, t: float) -> None:
+        """Start idle; raises InputError for radii or pulses out of order."""
         if not self.capture_radius < self.hold_radius:
             raise InputError(
                 f"{self.name}: capture_radius ({self.capture_radius!r} m) must be less than "
@@ -156,11 +157,13 @@ class StationKeeping(Sampled):
         self.distance, self.mode = 0.0, IDLE
 
     def sample(self, t: float, k: int) -> None:
+        """Command the thrusters."""
         decision = self._decide()
         self._command(decision.surge, decision.moment)
         self.distance, self.mode = math.hypot(*self._error_ne()), decision.mode
 
     def update(self, t: float, k: int) -> None:
+        """Remember mode, integrals and the age of what was heard."""
         decision = self._decide()
         self._integrate(decision)
         self._mode, self._backwards = decision.mode, decision.backwards
@@ -198,8 +201,8 @@ class StationKeeping(Sampled):
         if not self.position_valid and self._position_age >= self.timeout:
             return HEADING_ONLY
         distance = math.hypot(*self._error_ne())
-        returning = self._mode == RETURN
-        return RETURN if distance > (self.capture_radius if returning else self.hold_radius) else HOLD
+        radius = self.capture_radius if self._mode == RETURN else self.hold_radius
+        return RETURN if distance > radius else HOLD
 
     def _error_ne(self) -> list[float]:
         return [s - p for s, p in zip(self.station, self.position_n[:2], strict=True)]
@@ -210,10 +213,14 @@ class StationKeeping(Sampled):
         heading = self.heading
         speed = _along(heading, self.velocity_n[:2])
         learnt = _along(heading, self._integral_ne)
-        return self.surge_gain * error + learnt - self.surge_damping * speed  # type: ignore[no-any-return]
+        wanted: float = self.surge_gain * error + learnt - self.surge_damping * speed
+        return wanted
 
     def _wanted_moment(self, error: float) -> float:
-        return self.yaw_gain * error + self._integral_yaw - self.yaw_damping * self.yaw_rate  # type: ignore[no-any-return]
+        wanted: float = (
+            self.yaw_gain * error + self._integral_yaw - self.yaw_damping * self.yaw_rate
+        )
+        return wanted
 
     def _limited(self, surge: float, moment: float) -> tuple[float, float]:
         """Return what the limits and the thrusters leave of a demand, moment first."""

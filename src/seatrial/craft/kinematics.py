@@ -5,8 +5,7 @@ Frames: {n} x north, y east, z down; {b} x bow, y starboard, z down. An attitude
 then phi about x (Fossen; source 004, eq. 10). phi > 0: starboard down; theta > 0: bow up;
 psi > 0: clockwise seen from above.
 
-Functions of plain floats serve components that step in Python; those that take and return
-CasADi columns (`rotation_matrix`, `euler_rate_matrix`, `skew`) serve equations of motion.
+For components that step in Python: plain floats. Equations of motion use `symbolic`.
 """
 
 from __future__ import annotations
@@ -15,8 +14,6 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-import casadi as ca
-
 Vector3 = tuple[float, float, float]
 Rows = tuple[Vector3, Vector3, Vector3]
 
@@ -24,7 +21,7 @@ Rows = tuple[Vector3, Vector3, Vector3]
 def rotation(phi: float, theta: float, psi: float) -> Rows:
     """Return the rows of R(phi, theta, psi), with v_n = R v_b. Angles in rad."""
     angles = (phi, theta, psi)
-    return _rows([math.sin(a) for a in angles], [math.cos(a) for a in angles])  # type: ignore[return-value]
+    return rotation_rows([math.sin(a) for a in angles], [math.cos(a) for a in angles])  # type: ignore[return-value]
 
 
 def to_ned(attitude: Sequence[float], v: Sequence[float]) -> Vector3:
@@ -59,33 +56,7 @@ def wrap_angle(angle: float) -> float:
     return math.remainder(angle, math.tau)
 
 
-def rotation_matrix(attitude: Any) -> Any:
-    """Return R (3, 3) of a CasADi column (phi, theta, psi), with v_n = R v_b."""
-    angles = ca.vertsplit(attitude)
-    rows = _rows([ca.sin(a) for a in angles], [ca.cos(a) for a in angles])
-    return ca.vertcat(*(ca.horzcat(*row) for row in rows))
-
-
-def euler_rate_matrix(attitude: Any) -> Any:
-    """Return T (3, 3) of a CasADi column (phi, theta, psi): Euler-angle rates are T (p, q, r).
-
-    Singular at theta = +-pi/2, where Euler angles do not describe an attitude uniquely.
-    """
-    phi, theta, _psi = ca.vertsplit(attitude)
-    return ca.vertcat(
-        ca.horzcat(1, ca.sin(phi) * ca.tan(theta), ca.cos(phi) * ca.tan(theta)),
-        ca.horzcat(0, ca.cos(phi), -ca.sin(phi)),
-        ca.horzcat(0, ca.sin(phi) / ca.cos(theta), ca.cos(phi) / ca.cos(theta)),
-    )
-
-
-def skew(a: Any) -> Any:
-    """Return S (3, 3) of a CasADi column, with S(a) b = a x b (source 004, eq. 20)."""
-    x, y, z = ca.vertsplit(a)
-    return ca.vertcat(ca.horzcat(0, -z, y), ca.horzcat(z, 0, -x), ca.horzcat(-y, x, 0))
-
-
-def _rows(sines: Sequence[Any], cosines: Sequence[Any]) -> tuple[tuple[Any, Any, Any], ...]:
+def rotation_rows(sines: Sequence[Any], cosines: Sequence[Any]) -> tuple[tuple[Any, Any, Any], ...]:
     """Return R by rows from the sines and cosines of (phi, theta, psi), numbers or symbols."""
     sphi, sth, spsi = sines
     cphi, cth, cpsi = cosines

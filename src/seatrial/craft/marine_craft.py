@@ -14,7 +14,7 @@ from ..errors import InputError
 from ..model import Vector
 from ..plant import Plant, State
 from ..ports import Output
-from .kinematics import euler_rate_matrix, rotation_matrix, skew
+from .symbolic import euler_rate_matrix, rotation_matrix, skew
 
 _TENSOR = ("xx", "yy", "zz", "xy", "xz", "yz")
 _EULER = ("phi", "theta", "psi")

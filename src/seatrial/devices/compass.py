@@ -46,12 +46,14 @@ class Compass(Sensor):
     feedthrough: ClassVar = {"heading": ("attitude",)}
 
     def measure(self) -> list[float]:
+        """Return the heading as the deviated needle shows it."""
         magnetic = self.attitude[2] - self.variation
         b, c, d, e = self.deviation
         once = b * math.sin(magnetic) + c * math.cos(magnetic)
         return [magnetic - once - d * math.sin(2.0 * magnetic) - e * math.cos(2.0 * magnetic)]
 
     def finish(self, values: list[float]) -> list[float]:
+        """Return the heading in [0, 2 pi)."""
         wrapped = values[0] % math.tau
         # Python's % gives tau itself for a tiny negative angle.
         return [wrapped if wrapped < math.tau else 0.0]

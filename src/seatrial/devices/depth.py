@@ -40,5 +40,6 @@ class Depth(Sensor):
     feedthrough: ClassVar = {"depth": ("position", "attitude")}
 
     def measure(self) -> list[float]:
+        """Return the depth that the pressure at the sensor is taken for."""
         below = self.position[2] + to_ned(self.attitude, self.place)[2]
         return [self.density / self.assumed_density * max(0.0, below)]

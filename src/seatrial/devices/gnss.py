@@ -60,6 +60,7 @@ class Gnss(Sensor):
     }
 
     def measure(self) -> list[float]:
+        """Return the antenna's position and velocity."""
         attitude, antenna = self.attitude, self.antenna
         arm = to_ned(attitude, antenna)
         swing = cross(self.rates, antenna)

@@ -38,9 +38,7 @@ class Imu(Sensor):
 
     attitude = Input("rad", "Euler angles, ZYX", axes=("phi", "theta", "psi"))
     rates = Input("rad/s", "angular velocity, body axes", axes=("p", "q", "r"))
-    acceleration = Input(
-        "m/s2", "inertial acceleration of the body origin, body axes", axes="xyz"
-    )
+    acceleration = Input("m/s2", "inertial acceleration of the body origin, body axes", axes="xyz")
 
     gyro = Measured(
         "rad/s",
@@ -73,6 +71,7 @@ class Imu(Sensor):
     }
 
     def measure(self) -> list[float]:
+        """Return rates, specific force, roll and pitch."""
         attitude = self.attitude
         weight = to_body(attitude, (0.0, 0.0, self.gravity))
         force = [a - g for a, g in zip(self.acceleration, weight, strict=True)]

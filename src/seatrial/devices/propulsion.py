@@ -9,7 +9,7 @@ from ..component import Component, Input, Output, Parameter
 from ..craft.kinematics import cross
 from ..errors import InputError
 
-_NUMBERS = ("1", "2", "3", "4")
+_NUMBERS = (1, 2, 3, 4)
 
 
 class Propulsion(Component):
@@ -36,23 +36,27 @@ class Propulsion(Component):
     direction_3 = Parameter(0.0, "1", "direction of thruster 3's positive thrust", axes="xyz")
     direction_4 = Parameter(0.0, "1", "direction of thruster 4's positive thrust", axes="xyz")
 
-    thrust = Input("N", "thrust of each thruster along its direction", axes=_NUMBERS)
+    thrust = Input(
+        "N", "thrust of each thruster along its direction", axes=("t1", "t2", "t3", "t4")
+    )
     force = Output("N", "force on the craft, body axes", axes="xyz")
     moment = Output("N.m", "moment on the craft about the body origin, body axes", axes="xyz")
 
     feedthrough: ClassVar = {"force": ("thrust",), "moment": ("thrust",)}
 
     def start(self, t: float) -> None:
+        """Work out each thruster's force and moment; raises InputError for a bad direction."""
         self._effects = [self._effect(number) for number in _NUMBERS]
 
     def outputs(self, t: float) -> None:
+        """Sum the thrusters."""
         total = [0.0] * 6
         for thrust, effect in zip(self.thrust, self._effects, strict=True):
             for i, part in enumerate(effect):
                 total[i] += part * thrust
         self.force, self.moment = total[:3], total[3:]
 
-    def _effect(self, number: str) -> list[float]:
+    def _effect(self, number: int) -> list[float]:
         """Return force and moment per newton of a thruster's thrust: (d, r x d)."""
         position = getattr(self, f"position_{number}")
         direction = getattr(self, f"direction_{number}")

@@ -97,6 +97,7 @@ class Sensor(Noise, Sampled):
     # ------------------------------------------------------------------ running
 
     def reset(self, t: float) -> None:
+        """Start with nothing published."""
         self._delay_ns = round(self.delay * NS)
         self._noise, self._bias, self._instability, self._resolution = (
             [v for port in self.measured for v in self._error(port, error)]
@@ -111,10 +112,12 @@ class Sensor(Noise, Sampled):
         self._publish(self._last, 0, False)
 
     def sample(self, t: float, k: int) -> None:
+        """Publish the measurement, if nothing delays it."""
         if self._delay_ns == 0:
             self._publish(*self._measurement())
 
     def update(self, t: float, k: int) -> None:
+        """Queue the measurement if it is delayed, and draw the next one's random numbers."""
         now_ns = round(t * NS)
         values, self._count, arrived = self._measurement()
         self._last = values
@@ -131,6 +134,7 @@ class Sensor(Noise, Sampled):
         ]
 
     def hold(self, t: float) -> None:
+        """Publish the last measurement that fell due."""
         now_ns = round(t * NS)
         due = [entry for entry in self._queue if entry[0] <= now_ns]
         if due:

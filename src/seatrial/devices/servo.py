@@ -15,8 +15,8 @@ class Servo(Sampled):
     At each frame (counted in whole nanoseconds from the start of the run, whatever the
     communication step) the servo takes the pulse then present. Its angle wanted is linear in
     the pulse on either side of neutral: ``pulse_min`` -> ``angle_min``, ``pulse_neutral`` ->
-    half-way, ``pulse_max`` -> ``angle_max``, held at the ends beyond (a reversed servo has
-    ``angle_min`` > ``angle_max``). If it is further away than the dead band, the shaft turns
+    half-way, ``pulse_max`` -> ``angle_max``, held at the ends beyond; ``reversed`` = 1
+    turns the other way about the middle. If it is further away than the dead band, the shaft turns
     at constant ``rate`` until it is within the dead band, where the motor rests:
 
         angle(t) = angle_k + sign(e) min(rate (t - t_k), |e| - band),  e = wanted - angle_k
@@ -29,14 +29,15 @@ class Servo(Sampled):
     Angles rad, rate rad/s, pulses s. The angle never reacts to the pulse at the same instant.
     Not modelled: acceleration, load torque, backlash.
 
-    Raises InputError at the start if the pulses do not rise or ``angle_start`` lies outside
-    the range.
+    Raises InputError at the start if pulses or angles do not rise, or ``angle_start`` lies
+    outside the range.
     """
 
     period = Parameter(0.02, "s", "period of the pulse frames", min=1e-6)
     pulse_min = Parameter(1.1e-3, "s", "pulse of angle_min", min=0.0)
     pulse_neutral = Parameter(1.5e-3, "s", "pulse of the middle of the range", min=0.0)
     pulse_max = Parameter(1.9e-3, "s", "pulse of angle_max", min=0.0)
+    reversed = Parameter(0.0, "1", "1 if the servo turns the other way", min=0.0, max=1.0)
     angle_min = Parameter(-math.pi / 4, "rad", "angle at pulse_min")
     angle_max = Parameter(math.pi / 4, "rad", "angle at pulse_max")
     angle_start = Parameter(0.0, "rad", "angle at the start of the run")
@@ -47,28 +48,37 @@ class Servo(Sampled):
     angle = Output("rad", "angle of the shaft")
 
     def reset(self, t: float) -> None:
+        """Start at rest; raises InputError for pulses or angles out of order."""
         if not self.pulse_min < self.pulse_neutral < self.pulse_max:
             raise InputError(
                 f"{self.name}: pulse_min, pulse_neutral and pulse_max must rise, got "
                 f"{self.pulse_min!r}, {self.pulse_neutral!r}, {self.pulse_max!r} s"
             )
-        low, high = sorted((self.angle_min, self.angle_max))
-        if not low <= self.angle_start <= high:
+        if not self.angle_min < self.angle_max:
             raise InputError(
-                f"{self.name}.angle_start is {self.angle_start!r} rad, allowed {low!r} to {high!r}"
+                f"{self.name}: angle_min must be less than angle_max, got {self.angle_min!r} and "
+                f"{self.angle_max!r} rad"
             )
-        self._from = self._to = self.angle_start
+        if not self.angle_min <= self.angle_start <= self.angle_max:
+            raise InputError(
+                f"{self.name}.angle_start is {self.angle_start!r} rad, allowed "
+                f"{self.angle_min!r} to {self.angle_max!r} rad"
+            )
+        self._from: float = self.angle_start
+        self._to: float = self.angle_start
         self._since_ns = self.now_ns
 
     def update(self, t: float, k: int) -> None:
+        """Take the pulse of this frame."""
         self._from, self._since_ns = self._angle_at(round(t * NS)), round(t * NS)
         self._to = self._resting_angle(self._from)
 
     def hold(self, t: float) -> None:
+        """Publish the angle reached."""
         self.angle = self._angle_at(round(t * NS))
 
     def _angle_at(self, time_ns: int) -> float:
-        turned = self.rate * (time_ns - self._since_ns) / NS
+        turned: float = self.rate * (time_ns - self._since_ns) / NS
         if turned >= abs(self._to - self._from):
             return self._to
         return self._from + math.copysign(turned, self._to - self._from)
@@ -77,19 +87,19 @@ class Servo(Sampled):
         """Return where the shaft, now at ``angle``, comes to rest if the pulse stays."""
         if self.pulse <= 0.0:
             return angle
-        slope = abs(self.angle_max - self.angle_min) / (self.pulse_max - self.pulse_min)
+        slope = (self.angle_max - self.angle_min) / (self.pulse_max - self.pulse_min)
         band = slope * self.dead_band
-        error = self._wanted(self.pulse) - angle
+        error = self._wanted() - angle
         if abs(error) <= band:
             return angle
         return angle + math.copysign(abs(error) - band, error)
 
-    def _wanted(self, pulse: float) -> float:
+    def _wanted(self) -> float:
+        """Return the angle that the pulse asks for."""
         middle = 0.5 * (self.angle_min + self.angle_max)
-        if pulse < self.pulse_neutral:
-            share = (self.pulse_neutral - pulse) / (self.pulse_neutral - self.pulse_min)
-            end = self.angle_min
-        else:
-            share = (pulse - self.pulse_neutral) / (self.pulse_max - self.pulse_neutral)
-            end = self.angle_max
-        return middle + min(share, 1.0) * (end - middle)
+        away = self.pulse - self.pulse_neutral
+        span = (self.pulse_max if away > 0.0 else self.pulse_min) - self.pulse_neutral
+        share = math.copysign(min(away / span, 1.0), away)
+        half_range = 0.5 * (self.angle_max - self.angle_min)
+        wanted: float = middle + (-share if self.reversed else share) * half_range
+        return wanted

@@ -5,6 +5,7 @@ fifth row and the edges of the dead band. Bollard thrust: the thruster held stil
 on a Basic ESC.
 """
 
+# fmt: off
 PULSE = (
     0.0011, 0.00112, 0.00114, 0.00116, 0.00118, 0.0012, 0.00122, 0.00124, 0.00126, 0.00128,
     0.0013, 0.00132, 0.00134, 0.00136, 0.00138, 0.0014, 0.00142, 0.00144, 0.00146, 0.001468,

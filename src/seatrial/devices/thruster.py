@@ -7,10 +7,9 @@ from bisect import bisect_right
 from collections.abc import Sequence
 
 from ..component import Component, Input, Output, Parameter
+from ..errors import InputError
 from .t200 import CURRENT, FORCE, PULSE
 
-NEUTRAL = 1.5e-3
-"""Pulse that stops the thruster, s."""
 SHORTEST_SIGNAL, LONGEST_SIGNAL = 0.8e-3, 2.2e-3
 """Pulses outside these, s, are not a signal to a speed controller (assumed, BLHeli-like)."""
 
@@ -27,11 +26,13 @@ class Thruster(Component):
     y(t + h) = y_inf + (y(t) - y_inf) exp(-h / time_constant). So neither output reacts to an
     input at the same instant.
 
-    **Signal.** Dead band of the table: 1472 to 1528 us gives nothing. Beyond 1100 and 1900 us
-    the controller is at full power. A width of 0, or outside 800 to 2200 us, is no signal:
-    target zero at once. A real Basic ESC (BLHeli_S) also stops when its signal fails, after
-    some tenths of a second, and then wants a neutral pulse before it runs again; neither the
-    wait nor the rearming is modelled.
+    **Signal.** Dead band of the table: 1472 to 1528 us gives nothing. Beyond ``pulse_min`` and
+    ``pulse_max`` the controller is at full power. A width of 0, or outside 800 to 2200 us, is
+    no signal: target zero at once. A real Basic ESC (BLHeli_S) also stops when its signal
+    fails, but after some tenths of a second, and then wants a neutral pulse before it runs
+    again; neither the wait nor the rearming is modelled. A controller calibrated to another
+    range (``pulse_min``, ``pulse_neutral``, ``pulse_max``) has the table stretched to it on
+    either side of neutral, dead band included.
 
     **Supply.** The exponent is fitted to full-throttle thrust published for 12 to 20 V: within
     2 % ahead and 5 % astern. (A pure V^2 law, right for a motor without resistance, would
@@ -41,24 +42,36 @@ class Thruster(Component):
     **Not modelled:** loss of thrust with the speed of the water through the propeller, with
     ventilation near the surface, inrush current.
 
-    ``thrust`` is along the thruster's axis, positive ahead. ``reversed`` = 1 is a motor with
-    two leads swapped: the pulse acts mirrored about 1500 us. ``time_constant`` is assumed:
+    ``thrust`` is along the thruster's axis, N, positive ahead. ``reversed`` = 1 is a motor with
+    two leads swapped: the pulse acts mirrored about neutral. ``time_constant`` is assumed:
     0.1 to 0.2 s is usual for this class of thruster; no source gives it for the T200.
+
+    Raises InputError at the start if the pulses do not rise.
     """
 
     time_constant = Parameter(0.15, "s", "time constant of thrust and current", min=1e-6)
+    pulse_min = Parameter(1.1e-3, "s", "pulse of full power astern", min=0.0)
+    pulse_neutral = Parameter(1.5e-3, "s", "pulse that stops it", min=0.0)
+    pulse_max = Parameter(1.9e-3, "s", "pulse of full power ahead", min=0.0)
     reversed = Parameter(0.0, "1", "1 if the motor turns the other way", min=0.0, max=1.0)
 
-    pulse = Input("s", "width of the servo pulse, 0 for none", start=NEUTRAL)
+    pulse = Input("s", "width of the servo pulse, 0 for none", start=1.5e-3)
     supply_voltage = Input("V", "voltage at the speed controller", start=16.0)
     thrust = Output("N", "thrust along the axis, positive ahead")
     current = Output("A", "supply current")
 
     def start(self, t: float) -> None:
+        """Start at rest; raises InputError if the pulses do not rise."""
+        if not self.pulse_min < self.pulse_neutral < self.pulse_max:
+            raise InputError(
+                f"{self.name}: pulse_min, pulse_neutral and pulse_max must rise, got "
+                f"{self.pulse_min!r}, {self.pulse_neutral!r}, {self.pulse_max!r} s"
+            )
         self._thrust = self._current = 0.0
 
     def step(self, t: float, h: float) -> None:
-        pulse = self._effective_pulse()
+        """Follow the table's values for the pulse and voltage as they are."""
+        pulse = self._table_pulse()
         supply = (max(self.supply_voltage, 0.0) / 16.0) ** 1.15
         kept = math.exp(-h / self.time_constant)
         thrust, current = supply * interpolate(pulse, FORCE), supply * interpolate(pulse, CURRENT)
@@ -66,13 +79,18 @@ class Thruster(Component):
         self._current = current + (self._current - current) * kept
 
     def outputs(self, t: float) -> None:
+        """Publish thrust and current."""
         self.thrust, self.current = self._thrust, self._current
 
-    def _effective_pulse(self) -> float:
+    def _table_pulse(self) -> float:
+        """Return the pulse that has the same effect in the table's calibration, s."""
         pulse: float = self.pulse
+        neutral: float = self.pulse_neutral
         if not SHORTEST_SIGNAL <= pulse <= LONGEST_SIGNAL:
-            return NEUTRAL
-        return 2.0 * NEUTRAL - pulse if self.reversed else pulse
+            return 1.5e-3
+        span: float = (self.pulse_max if pulse > neutral else self.pulse_min) - neutral
+        away = math.copysign(0.4e-3 * (pulse - neutral) / span, pulse - neutral)
+        return 1.5e-3 - away if self.reversed else 1.5e-3 + away
 
 
 def interpolate(pulse: float, values: Sequence[float]) -> float:

@@ -100,7 +100,7 @@ def time_figure(
         cols=len(columns),
         shared_xaxes="all",
         vertical_spacing=min(0.2, 38 / height),
-        horizontal_spacing=0.07,
+        horizontal_spacing=0.09,
     )
     for c, column in enumerate(columns, start=1):
         for r, panel in enumerate(column, start=1):
@@ -212,7 +212,7 @@ def deck_figure(decks: Sequence[Deck]) -> go.Figure:
             y1=half_length,
             line={"color": "#4a5a68", "width": 1.5},
             fillcolor="#f1f4f7",
-            layer="below",
+            layer="between",
             row=1,
             col=col,
         )
@@ -243,12 +243,14 @@ def deck_figure(decks: Sequence[Deck]) -> go.Figure:
         figure.update_xaxes(
             title_text="starboard, m",
             range=[-half_beam - margin, half_beam + margin],
+            constrain="domain",
             row=1,
             col=col,
         )
         figure.update_yaxes(
             title_text="forward, m",
             range=[-half_length - margin, half_length + margin],
+            constrain="domain",
             scaleanchor=x_anchor,
             scaleratio=1,
             row=1,
@@ -305,6 +307,7 @@ def _layout(hovermode: str = "x") -> dict[str, Any]:
         "ticks": "outside",
         "tickcolor": "#9aa5af",
         "automargin": True,
+        "exponentformat": "power",
         "title_standoff": 6,
     }
     template = go.layout.Template(layout={"xaxis": axis, "yaxis": axis})
@@ -314,5 +317,6 @@ def _layout(hovermode: str = "x") -> dict[str, Any]:
         "font": {"family": "system-ui, -apple-system, 'Segoe UI', sans-serif", "size": 12},
         "paper_bgcolor": "rgba(0,0,0,0)",
         "plot_bgcolor": "#ffffff",
+        "modebar": {"bgcolor": "rgba(0,0,0,0)", "color": "#b4bdc5", "activecolor": "#4a5a68"},
         "margin": {"l": 50, "r": 15, "t": 40, "b": 45},
     }

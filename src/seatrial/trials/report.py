@@ -100,7 +100,7 @@ def _environment() -> Environment:
 def _sections(run: Run) -> Iterator[Section]:
     """Yield what a person looks at first, then every other signal by component."""
     ports = list(_ports(run))
-    numeric = [port for port in ports if not isinstance(run.signals[port.signals[0]], list)]
+    numeric = [port for port in ports if _is_uniform(run, port)]
     craft = {port.component for port in numeric if port.name in _MOTION}
     motion = [p for p in numeric if p.name in _MOTION]
     units = {p: run.units[p.signals[0]] for p in numeric}
@@ -151,6 +151,12 @@ def _ports(run: Run) -> Iterator[Port]:
         grouped.setdefault((component, rest.partition(".")[0]), []).append(signal)
     for (component, name), signals in grouped.items():
         yield Port(component, name, tuple(signals))
+
+
+def _is_uniform(run: Run, port: Port) -> bool:
+    """Return whether all of a port is numbers in one unit."""
+    has_text = any(isinstance(run.signals[signal], list) for signal in port.signals)
+    return not has_text and len({run.units[signal] for signal in port.signals}) == 1
 
 
 def _panels_by_unit(run: Run, port: Port) -> Iterator[Panel]:

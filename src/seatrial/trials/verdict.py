@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Literal
 
@@ -136,11 +137,12 @@ def judge_settling(
 
     exponents = subject.exponents(units)
     unit = unit_of(subject, units, exponents)
-    final_text = quantity_text(from_si(final, unit), unit)
-    width_text = quantity_text(from_si(width, unit) - from_si(0.0, unit), unit, 3)
+    shown_width = from_si(width, unit) - from_si(0.0, unit)
+    final_text = quantity_text(_rounded(from_si(final, unit), shown_width), unit)
+    width_text = quantity_text(shown_width, unit, 3)
     took_text, allowed_text = distinct(took, allowed, "s")
     detail = (
-        f"settles in {took_text} (at {number(settled, 6)} s), limit {allowed_text}; "
+        f"settles in {took_text} (at {number(settled)} s), limit {allowed_text}; "
         f"final value {final_text}, band ±{width_text}"
     )
     limits: tuple[Limit, ...] = ()
@@ -237,6 +239,11 @@ def _last_crossing(time: FloatArray, distance: FloatArray, width: float, rows: B
     edge = np.copysign(width, distance[row])
     share = (distance[row] - edge) / (distance[row] - distance[row + 1])
     return float(time[row] + share * (time[row + 1] - time[row]))
+
+
+def _rounded(value: float, width: float) -> float:
+    """Return ``value`` without digits that are small against ``width``."""
+    return round(value, 2 - math.floor(math.log10(width))) if width > 0 else value
 
 
 def _range(time: FloatArray) -> str:

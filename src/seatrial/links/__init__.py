@@ -1,0 +1,1 @@
+"""Protocols as components, and what they share."""

@@ -1,0 +1,138 @@
+"""Bytes in String ports: the codec between components that exchange serial bytes or frames.
+
+FMI 2 has no binary type, so bytes cross as text, each chunk with the simulated time at which it
+was sent, in whole nanoseconds. A port holds its last value for ever: a sequence number before
+the chunks tells a reader new from old. The text is
+
+    SEQUENCE;TIME:BASE64;TIME:BASE64;...
+
+with decimal numbers and standard base64, for example ``3;1500000000:JEhFSERULA==``. The empty
+text is a port nothing was ever sent through (sequence 0). Chunks are opaque: serial bytes as
+they are, or one bus operation each.
+
+Both ends must step equally: a reader that sees every value misses no number.
+"""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import re
+from collections.abc import Iterable
+from typing import Any
+
+from ..errors import InputError, SimulationError
+
+Chunk = tuple[int, bytes]
+"""Simulated time, ns, and bytes."""
+
+_TEXT = re.compile(r"(0|[1-9][0-9]*)((?:;(?:0|[1-9][0-9]*):[A-Za-z0-9+/=]*)*)")
+
+
+def encode(sequence: int, chunks: Iterable[Chunk]) -> str:
+    """Return the text for ``chunks``, (time in ns, bytes) each, under number ``sequence``.
+
+    Raises InputError for a negative sequence or time.
+    """
+    parts = [str(sequence)]
+    if sequence < 0:
+        raise InputError(f"a sequence number cannot be negative: {sequence}")
+    for time_ns, data in chunks:
+        if time_ns < 0:
+            raise InputError(f"the time of a chunk cannot be negative: {time_ns} ns")
+        parts.append(f"{time_ns}:{base64.b64encode(data).decode()}")
+    return ";".join(parts)
+
+
+def decode(text: str) -> tuple[int, list[Chunk]]:
+    """Return the sequence number and chunks of a port's text; (0, []) for the empty text.
+
+    Raises InputError, showing where, if the text is not what `encode` writes.
+    """
+    if not text:
+        return 0, []
+    match = _TEXT.fullmatch(text)
+    if match is None:
+        raise InputError(
+            f"{_shown(text)} is not a bytes text such as '3;1500000000:SGVsbG8=' "
+            "(SEQUENCE;TIME in ns:BASE64;...)"
+        )
+    chunks = []
+    for part in match.group(2).split(";")[1:]:
+        time_text, _, data = part.partition(":")
+        try:
+            chunks.append((int(time_text), base64.b64decode(data, validate=True)))
+        except binascii.Error as error:
+            raise InputError(f"{_shown(data)} in a bytes text is not base64: {error}") from None
+    return int(match.group(1)), chunks
+
+
+class Outbox:
+    """The sending end of a String port: numbers what is sent.
+
+    ``memory`` is a dict that belongs to the component's state, empty at the start; the box is
+    only a view of it and need not be kept.
+    """
+
+    def __init__(self, memory: dict[str, Any]) -> None:
+        self._memory = memory
+        memory.setdefault("sequence", 0)
+        memory.setdefault("waiting", [])
+        memory.setdefault("text", "")
+
+    @property
+    def text(self) -> str:
+        """What the port holds: as of the last `flush`."""
+        text: str = self._memory["text"]
+        return text
+
+    def put(self, time_ns: int, data: bytes) -> None:
+        """Add bytes sent at simulated time ``time_ns`` (ns, not negative) to what waits."""
+        # As text already: bytes are not plain data of a component's state.
+        self._memory["waiting"].append(encode(0, [(time_ns, data)]).partition(";")[2])
+
+    def flush(self) -> str:
+        """Publish what waits under a new number, once at the end of a step; return `text`.
+
+        With nothing waiting the port keeps what it holds.
+        """
+        memory = self._memory
+        if memory["waiting"]:
+            memory["sequence"] += 1
+            memory["text"] = ";".join([str(memory["sequence"]), *memory["waiting"]])
+            memory["waiting"] = []
+        return self.text
+
+
+class Inbox:
+    """The receiving end of a String port: gives each text's chunks once.
+
+    ``memory`` is a dict that belongs to the component's state, empty at the start.
+    """
+
+    def __init__(self, memory: dict[str, Any]) -> None:
+        self._memory = memory
+        memory.setdefault("sequence", 0)
+
+    def take(self, text: str) -> list[Chunk]:
+        """Return the chunks of a port's text that are new, [] if it is the text before.
+
+        Raises InputError if the text is malformed, SimulationError if a number was missed or
+        numbers run backwards: sender and reader do not step equally, or one was rolled back
+        without the other.
+        """
+        sequence, chunks = decode(text)
+        last = self._memory["sequence"]
+        if sequence == last:
+            return []
+        if sequence != last + 1:
+            raise SimulationError(
+                f"bytes were lost: text number {sequence} came after number {last}; both ends of "
+                "a bytes connection must step equally"
+            )
+        self._memory["sequence"] = sequence
+        return chunks
+
+
+def _shown(text: str) -> str:
+    return repr(text if len(text) <= 60 else f"{text[:57]}...")

@@ -1,0 +1,118 @@
+"""The report of a campaign: cases against criteria, and the deck with every landing point."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote
+
+from ..errors import InputError
+from .decks import Pad, deck, pads
+from .plots import deck_figure, figure_json
+from .readable import quantity_text
+from .report import REPORT, render
+from .run_folder import read_json, read_manifest
+
+CAMPAIGN = "campaign.json"
+
+
+@dataclass(frozen=True)
+class Case:
+    """One row of the table."""
+
+    name: str
+    link: str | None
+    """Relative address of the run's own report, if it is there."""
+    status: str
+    passed: bool | None
+    settings: dict[str, Any]
+    verdicts: dict[str, dict[str, Any]]
+    """By name of the criterion."""
+    pads: list[Pad]
+    phase: str
+    note: str
+
+
+def write_campaign_report(folder: Path | str) -> Path:
+    """Write ``report.html`` into a campaign folder and return its path.
+
+    Raises InputError if the folder has no ``campaign.json``, or not one that can be read.
+    """
+    folder = Path(folder)
+    if not (folder / CAMPAIGN).is_file():
+        raise InputError(f"{folder} is not a campaign folder: it has no {CAMPAIGN}")
+    campaign = read_json(folder / CAMPAIGN, dict)
+    try:
+        cases = [_case(folder, entry) for entry in campaign["cases"]]
+        title = campaign.get("title") or campaign["name"]
+    except KeyError as error:
+        raise InputError(f"{folder / CAMPAIGN} lacks {error}") from None
+    page = render(
+        "campaign.html.j2",
+        title=title,
+        cases=cases,
+        settings=list(dict.fromkeys(key for case in cases for key in case.settings)),
+        criteria=_criteria(cases),
+        deck=_deck(cases),
+        worst_text=_worst_text,
+    )
+    path = folder / REPORT
+    path.write_text(page, encoding="utf-8")
+    return path
+
+
+def _case(folder: Path, entry: dict[str, Any]) -> Case:
+    run = folder / entry["folder"]
+    try:
+        manifest = read_manifest(run)
+        note, found, judged = "", pads(manifest), bool(manifest["criteria"])
+        trial = str(manifest["trial"].get("title") or manifest["trial"]["name"])
+    except InputError:
+        note, found, judged, trial = f"no readable run in {entry['folder']}", [], True, ""
+    verdicts = {verdict["name"]: verdict for verdict in entry["verdicts"]}
+    has_report = (run / REPORT).is_file()
+    return Case(
+        name=entry["name"],
+        link=quote(f"{entry['folder']}/{REPORT}") if has_report else None,
+        status=entry["status"],
+        passed=entry["passed"] if judged or not entry["passed"] else None,
+        settings=entry["set"],
+        verdicts=verdicts,
+        pads=found,
+        phase=next((pad.phase for pad in found if pad.phase), trial),
+        note=note,
+    )
+
+
+def _criteria(cases: list[Case]) -> dict[str, list[str]]:
+    """Return all criteria by name, each with what it checks: trials may differ in that."""
+    criteria: dict[str, list[str]] = {}
+    for case in cases:
+        for name, verdict in case.verdicts.items():
+            checks = criteria.setdefault(name, [])
+            if verdict["check"] not in checks:
+                checks.append(verdict["check"])
+    return criteria
+
+
+def _deck(cases: list[Case]) -> str | None:
+    """Return the decks, one for each phase, or None if no case has a landing point."""
+    phases = list(dict.fromkeys(case.phase for case in cases if case.pads))
+    if not phases:
+        return None
+    return figure_json(deck_figure([deck(phase, _landings(cases, phase)) for phase in phases]))
+
+
+def _landings(cases: list[Case], phase: str) -> Iterator[tuple[str, Pad, bool | None]]:
+    for case in cases:
+        for pad in case.pads:
+            if case.phase == phase:
+                yield case.name, pad, case.passed
+
+
+def _worst_text(verdict: dict[str, Any]) -> str:
+    """Return a verdict's worst value with its unit, or a dash if there is none."""
+    worst = verdict.get("worst")
+    return "–" if worst is None else quantity_text(worst, verdict.get("unit") or "1", 3)
