@@ -51,7 +51,7 @@ class StationKeeping(Sampled):
         N = yaw_gain e_psi + N_I - yaw_damping r
 
     limited to ``surge_limit`` and ``moment_limit`` and to what the thrusters can give, moment
-    first. The integral terms grow with surge_integral e_x (in hold only) and
+    first. The integral terms grow at surge_integral e_x a (within ``hold_radius`` only) and
     yaw_integral e_psi, and back-calculation at the rate integral / gain removes what was cut
     off. X_I is kept in north and east, so that what was learnt of wind and current stays true
     when the craft turns.
@@ -130,7 +130,7 @@ class StationKeeping(Sampled):
         "pulse_port": _ACTING,
         "pulse_starboard": _ACTING,
         "surge_force": _ACTING,
-        "yaw_moment": _ACTING,
+        "yaw_moment": tuple(name for name in _ACTING if name != "velocity_n"),
         "distance": ("station", "position_n"),
         "mode": ("enabled", "station", "position_n", "position_valid", "heading_valid"),
     }
@@ -160,7 +160,7 @@ class StationKeeping(Sampled):
         """Command the thrusters."""
         decision = self._decide()
         self._command(decision.surge, decision.moment)
-        self.distance, self.mode = math.hypot(*self._error_ne()), decision.mode
+        self.distance, self.mode = self._distance(), decision.mode
 
     def update(self, t: float, k: int) -> None:
         """Remember mode, integrals and the age of what was heard."""
@@ -188,9 +188,10 @@ class StationKeeping(Sampled):
         moment = self._wanted_moment(heading_error)
         surge_error = surge = 0.0
         if mode != HEADING_ONLY:
-            surge_error = min(max(_along(heading, error_ne), -self.reach), self.reach)
             alignment = max(0.0, math.cos(heading_error)) if mode == RETURN else 1.0
-            surge = self._wanted_surge(surge_error * alignment)
+            ahead = _along(heading, error_ne)
+            surge_error = alignment * min(max(ahead, -self.reach), self.reach)
+            surge = self._wanted_surge(surge_error)
         given = self._limited(surge, moment)
         return _Decision(mode, backwards, surge_error, heading_error, surge, moment, *given)
 
@@ -200,12 +201,14 @@ class StationKeeping(Sampled):
             return IDLE
         if not self.position_valid and self._position_age >= self.timeout:
             return HEADING_ONLY
-        distance = math.hypot(*self._error_ne())
         radius = self.capture_radius if self._mode == RETURN else self.hold_radius
-        return RETURN if distance > radius else HOLD
+        return RETURN if self._distance() > radius else HOLD
 
     def _error_ne(self) -> list[float]:
         return [s - p for s, p in zip(self.station, self.position_n[:2], strict=True)]
+
+    def _distance(self) -> float:
+        return math.hypot(*self._error_ne())
 
     # ------------------------------------------------------------------ control
 
@@ -240,7 +243,7 @@ class StationKeeping(Sampled):
             decision.heading_error + (decision.moment - decision.wanted_moment) / self.yaw_gain
         )
         self._integral_yaw += self.period * rate
-        if decision.mode == HOLD:
+        if decision.mode != HEADING_ONLY and self._distance() < self.hold_radius:
             rate = self.surge_integral * (
                 decision.surge_error + (decision.surge - decision.wanted_surge) / self.surge_gain
             )

@@ -54,7 +54,10 @@ def _in_si(written: Any, target: str, low: float | None, high: float | None) -> 
     except InputError as error:
         raise _refused(str(error)) from None
     if (low is not None and value < low) or (high is not None and value > high):
-        least, most = f"{low:g}" if low is not None else "...", f"{high:g}" if high else "..."
+        least, most = (
+            f"{low:g}" if low is not None else "...",
+            f"{high:g}" if high is not None else "...",
+        )
         raise _refused(f"allowed {least} to {most} {target}")
     return value
 
@@ -146,16 +149,28 @@ class Profile:
         A list has one value per axis. An actuator gives ``pulse_min``, ``pulse_neutral``,
         ``pulse_max`` (s) and ``reversed`` (0 or 1). Raises InputError for an unknown section.
         """
+        entry = self._section(section)
+        if not isinstance(entry, Actuator):
+            values: dict[str, float | list[float]] = entry.model_dump(
+                exclude={"kind", "source"}, exclude_unset=True
+            )
+            return values
+        pulses = ("pulse_min", "pulse_neutral", "pulse_max")
+        return {**{p: getattr(entry, p) for p in pulses}, "reversed": float(entry.reversed)}
+
+
+    def source(self, section: str) -> str:
+        """Return where a section's values come from. Raises InputError as `parameters`."""
+        return str(self._section(section).source)
+
+    def _section(self, section: str) -> Any:
         if section not in self.sections():
             path = self.read_from.path
             raise InputError(f"{path}: {unknown('section', section, self.sections())}")
         kind, _, name = section.partition(".")
         if kind == "sensors":
-            entry: FileModel = getattr(self.file.sensors, name)
-            return entry.model_dump(exclude={"kind", "source"}, exclude_unset=True)
-        actuator = self.file.actuators[name]
-        pulses = ("pulse_min", "pulse_neutral", "pulse_max")
-        return {**{p: getattr(actuator, p) for p in pulses}, "reversed": float(actuator.reversed)}
+            return getattr(self.file.sensors, name)
+        return self.file.actuators[name]
 
 
 def load_profile(name: str | Path, relative_to: Path | None = None) -> Profile:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -90,14 +90,18 @@ class System:
         return part, settable(part.instance.variables, port, f"{origin}: {name}")
 
     def unconnected_inputs(self) -> list[str]:
-        """Return the inputs that no wire reaches and nobody set."""
+        """Return the inputs that no wire reaches and nobody set; whole ports by their name."""
         wired = {wire.target for wire in self.wires}
-        return [
-            f"{name}.{v.name}"
-            for name, part in self.parts.items()
-            for v in part.instance.variables.values()
-            if v.causality == "input" and (name, v.name) not in wired and v.name not in part.given
-        ]
+        found = []
+        for name, part in self.parts.items():
+            inputs = [n for n, v in part.instance.variables.items() if v.causality == "input"]
+            loose = [n for n in inputs if (name, n) not in wired and n not in part.given]
+            for variable in loose:
+                port = variable.rpartition(".")[0]
+                siblings = [n for n in inputs if port and n.startswith(f"{port}.")]
+                whole = siblings and all(n in loose for n in siblings)
+                found.append(f"{name}.{port if whole else variable}")
+        return list(dict.fromkeys(found))
 
     def free(self) -> None:
         """Release all instances."""
@@ -188,12 +192,25 @@ def _give_parameters(
     if entry.profile is not None:
         if profile is None:
             raise InputError(f"{where}.profile: the rig names no profile")
-        for port, value in profile.parameters(entry.profile).items():
-            scalars = settable(variables, port, f"{where}.profile {entry.profile}")
-            origin = f"profile {system.rig.file.profile} [{entry.profile}]"
-            part.given.update(from_written(value, scalars, {}, origin))
+        _give_profile(system, part, entry.profile, profile, f"{where}.profile")
     for port, written in entry.set.items():
         system.set(f"{part.name}.{port}", written, f"{where}.set")
+
+
+def _give_profile(system: System, part: Part, section: str, profile: Profile, where: str) -> None:
+    variables = part.instance.variables
+    values = profile.parameters(section)
+    if section.startswith("actuators."):
+        # A channel says what its driver and what its actuator need: each takes its share.
+        values = {port: value for port, value in values.items() if port in variables}
+        if not values:
+            raise InputError(f"{where}: nothing in {section} is a parameter of {part.fmu}")
+    origin = f"hil_profiles/{profile.read_from.path.name} [{section}]"
+    source = profile.source(section)
+    for port, value in values.items():
+        scalars = settable(variables, port, f"{where}: {part.name}")
+        for name, given in from_written(value, scalars, {}, origin).items():
+            part.given[name] = replace(given, source=source)
 
 
 def _parameter_set(system: System, entry: ComponentEntry, where: str) -> ParameterSet:

@@ -7,9 +7,12 @@ host still holds it. So nothing raises here: errors are logged with their traceb
 
 from __future__ import annotations
 
+import _ctypes
 import contextlib
+import ctypes
 import json
 import math
+import os
 import sys
 import traceback
 from collections.abc import Callable, Mapping, Sequence
@@ -42,6 +45,7 @@ class Slave(Fmi2Slave):  # type: ignore[misc]
         super().__init__(**kwargs)
         while self.resources in sys.path:
             sys.path.remove(self.resources)
+        _drop_interpreter_handle(self.resources)
         self.last_error: str | None = None
         self._failed = False
         self.component = self.component_class(self.instance_name)
@@ -180,6 +184,20 @@ class Slave(Fmi2Slave):  # type: ignore[misc]
         # FMI's message is a printf format.
         text = message.replace("\0", "\\0").replace("%", "%%")
         self.log(text.encode("utf-8", "replace").decode(), Fmi2Status.error)
+
+
+def _drop_interpreter_handle(resources: str | None) -> None:
+    """Release the binary's handle of the interpreter now, because at unloading it does so twice.
+
+    The second release writes to freed memory: a process can die of it after all work is done.
+    Where the binary itself started the interpreter it still needs the handle, to end it.
+    """
+    if not resources or not sys.orig_argv or sys.platform != "linux":
+        return
+    for path in (Path(resources).parent / "binaries" / "linux64").glob("*.so"):
+        library = ctypes.CDLL(str(path), mode=os.RTLD_NOLOAD | os.RTLD_LAZY)
+        library.finalizePythonInterpreter()
+        _ctypes.dlclose(library._handle)
 
 
 def _explained(error: BaseException) -> str:

@@ -34,7 +34,7 @@ class Difference:
     relative: float | None = None
     """The same as a share of the greatest magnitude in the column."""
     time: float | None = None
-    """When that was, s."""
+    """When that was, s; None if there is no difference."""
     note: str = ""
 
 
@@ -72,6 +72,8 @@ class Comparison:
             return "identical bytes"
         if self.worst is None:
             return "nothing in common to compare"
+        if self.worst == np.inf:
+            return "not equal: only one run has a number somewhere"
         equal = f"equal within {number(self.worst, 2)} of each signal's greatest value"
         alone = sum(bool(d.note) for d in self.differences)
         return f"{equal}; {alone} signals not compared" if alone else equal
@@ -92,15 +94,15 @@ class Comparison:
     def _signal_table(self) -> Table:
         title = escape(" / ".join(self.names))
         table = Table("signal", "unit", title=title, title_justify="left")
-        for heading in ("greatest difference", "of greatest value", "at s"):
+        for heading in ("greatest difference", "share of greatest value", "at s"):
             table.add_column(heading, justify="right")
         for d in sorted(self.differences, key=_rank, reverse=True):
             if d.note:
-                table.add_row(d.signal, d.unit, escape(d.note))
+                table.add_row(escape(d.signal), d.unit, escape(d.note))
                 continue
             absolute = "text" if d.absolute is None else number(d.absolute, 3)
             time = "" if d.time is None else number(d.time, 9)
-            table.add_row(d.signal, d.unit, absolute, number(d.relative or 0.0, 3), time)
+            table.add_row(escape(d.signal), d.unit, absolute, number(d.relative or 0.0, 3), time)
         return table
 
     def _change_table(self) -> Table:
@@ -151,7 +153,7 @@ def _difference(name: str, run_a: Run, run_b: Run, in_a: Any, in_b: Any) -> Diff
     magnitude = np.abs(np.concatenate([a, b]))
     scale = float(np.max(magnitude, initial=0.0, where=np.isfinite(magnitude)))
     relative = absolute / scale if scale else absolute
-    return Difference(name, unit, absolute, relative, float(time[row]))
+    return Difference(name, unit, absolute, relative, float(time[row]) if absolute else None)
 
 
 def _gap(a: FloatArray, b: FloatArray) -> FloatArray:

@@ -85,7 +85,8 @@ def run_trial(
     finally:
         system.free()
     verdicts = [] if status == "failed" else _judge(trial, out, units)
-    notes = [f"unconnected input {name} keeps its start value" for name in system.unconnected_inputs()]
+    loose = system.unconnected_inputs()
+    notes = [f"inputs that nothing feeds keep their start values: {', '.join(loose)}"] if loose else []
     return Result(out, status, error, verdicts, notes, wall)
 
 

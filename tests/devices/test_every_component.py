@@ -1,0 +1,148 @@
+"""What holds of every device and controller."""
+
+import random
+
+import pytest
+
+from seatrial.component import Component
+from seatrial.control.station_keeping import StationKeeping
+from seatrial.devices.compass import Compass
+from seatrial.devices.depth import Depth
+from seatrial.devices.gnss import Gnss
+from seatrial.devices.imu import Imu
+from seatrial.devices.propulsion import Propulsion
+from seatrial.devices.servo import Servo
+from seatrial.devices.thruster import Thruster
+from seatrial.units import unit
+
+from .running import run, started
+
+# With settings that bring everything to life.
+CLASSES = {
+    Thruster: {},
+    Propulsion: {"direction_1": [1, 0, 0], "position_1": [-0.45, -0.4, 0.15]},
+    Servo: {},
+    Imu: {"delay": 0.013, "dropout": 0.2},
+    Compass: {"delay": 0.03, "dropout": 0.2},
+    Gnss: {"dropout": 0.2, "antenna": [0.2, 0.1, -0.3]},
+    Depth: {"dropout": 0.2, "place": [0.2, 0.1, 0.3]},
+    StationKeeping: {
+        "enabled": True,
+        "hold_radius": 2.0,
+        "surge_gain": 40.0,
+        "surge_limit": 200.0,
+        "moment_limit": 100.0,
+    },
+}
+every = pytest.mark.parametrize("cls", CLASSES, ids=lambda cls: cls.__name__)
+
+
+def some_value(port, random):
+    """Return a value that a port could have."""
+    if port.type is bool:
+        return random.random() < 0.7
+    if port.unit == "s":
+        values = [random.uniform(1.1e-3, 1.9e-3) for _ in range(port.size)]
+    else:
+        values = [random.uniform(-3, 3) for _ in range(port.size)]
+    return values if port.axes else values[0]
+
+
+def some_inputs(cls, seed):
+    generator = random.Random(seed)
+    inputs = [p for p in cls.ports.values() if p.kind == "input"]
+    return {p.name: some_value(p, generator) for p in inputs}
+
+
+def names(cls, kind):
+    return [p.name for p in cls.ports.values() if p.kind == kind]
+
+
+@every
+def test_every_unit_is_a_unit(cls):
+    for port in cls.ports.values():
+        unit(port.unit)
+
+
+@every
+def test_every_port_says_what_it_is(cls):
+    assert all(port.description for port in cls.ports.values())
+
+
+@every
+def test_restored_state_goes_on_identically(cls):
+    component = started(cls, **CLASSES[cls])
+    outputs = names(cls, "output")
+
+    def inputs(t_ms):
+        return some_inputs(cls, t_ms)
+
+    run(component, outputs, 433, 1, inputs)
+    state = component.get_state()
+    went_on = run(component, outputs, 1433, 10, inputs, first_ms=433)
+    component.set_state(state)
+    again = run(component, outputs, 1433, 10, inputs, first_ms=433)
+    other = cls(cls.__name__)
+    other.set_state(state)
+    elsewhere = run(other, outputs, 1433, 10, inputs, first_ms=433)
+    assert went_on == again == elsewhere
+
+
+@every
+def test_two_runs_are_identical(cls):
+    outputs = names(cls, "output")
+    runs = [
+        run(started(cls, **CLASSES[cls]), outputs, 1000, 10, lambda t: some_inputs(cls, t))
+        for _ in range(2)
+    ]
+    assert runs[0] == runs[1]
+
+
+@every
+def test_reading_twice_changes_nothing(cls):
+    component = started(cls, **CLASSES[cls])
+    inputs = some_inputs(cls, 1)
+    for name, value in inputs.items():
+        component.set(name, value)
+    state = component.get_state()
+    first = [component.get(name) for name in names(cls, "output")]
+    for name, value in inputs.items():
+        component.set(name, value)
+    assert [component.get(name) for name in names(cls, "output")] == first
+    hidden = {k: v for k, v in state.items() if k not in ("values", "_stale")}
+    after = component.get_state()
+    assert {k: after[k] for k in hidden} == hidden
+
+
+def ideal(cls):
+    """Return settings without delay and dropout: feed-through is as direct as it can be."""
+    settings = dict(CLASSES[cls])
+    if "delay" in cls.ports:
+        settings |= {"delay": 0.0, "dropout": 0.0}
+    return settings
+
+
+@every
+def test_only_declared_inputs_act_at_once(cls):
+    found: dict[str, set[str]] = {}
+    for seed in range(100):
+        component: Component = started(cls, **ideal(cls), **some_inputs_but(cls, seed))
+        generator = random.Random(1000 + seed)
+        before = {name: component.get(name) for name in names(cls, "output")}
+        for name in names(cls, "input"):
+            old = component.get(name)
+            component.set(name, some_value(cls.ports[name], generator))
+            for output, value in before.items():
+                if component.get(output) != value:
+                    found.setdefault(output, set()).add(name)
+            component.set(name, old)
+    declared = {output: set(inputs) for output, inputs in cls.feedthrough.items()}
+    for output, inputs in found.items():
+        assert inputs <= declared.get(output, set()), output
+    # And nothing is declared that never acts.
+    assert found == declared
+
+
+def some_inputs_but(cls, seed):
+    """Return inputs, apart from those that the settings fix."""
+    return {k: v for k, v in some_inputs(cls, seed).items() if k not in CLASSES[cls]}

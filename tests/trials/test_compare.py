@@ -1,0 +1,114 @@
+"""Comparing runs."""
+
+from __future__ import annotations
+
+import io
+
+import numpy as np
+import pytest
+from rich.console import Console
+
+from seatrial.trials.compare import compare
+from seatrial.trials.run_folder import load_run
+
+
+def both(write_run, one, other):
+    return compare(load_run(write_run("a", **one)), load_run(write_run("b", **other)))
+
+
+def text(comparison):
+    file = io.StringIO()
+    Console(file=file, width=140, color_system=None).print(comparison)
+    return file.getvalue()
+
+
+def test_identical_runs(write_run):
+    found = both(write_run, {}, {})
+    assert (found.identical, found.verdict, found.worst) == (True, "identical bytes", 0.0)
+    assert found.rows == (201, 201, 201)
+    assert found.changes == ()
+    assert found.within(0.0)
+    assert "identical bytes (201 common times of 201 and 201)" in text(found)
+
+
+def test_greatest_difference_and_its_time(write_run):
+    ramp = np.linspace(0, 40, 201)
+    bent = ramp.copy()
+    bent[50] += 0.04
+    found = both(write_run, {"extra": {"a.b": ("m", ramp)}}, {"extra": {"a.b": ("m", bent)}})
+    [row] = [d for d in found.differences if d.signal == "a.b"]
+    assert row.absolute == pytest.approx(0.04)
+    assert row.relative == pytest.approx(0.001)
+    assert row.time == 5.0
+    assert found.verdict == "equal within 0.001 of each signal's greatest value"
+    assert found.within(0.0011)
+    assert not found.within(0.0009)
+    assert text(found).index("a.b") < text(found).index("hull.position.x")
+
+
+def test_signals_of_one_run_only_and_other_units(write_run):
+    ones = np.ones(201)
+    found = both(
+        write_run,
+        {"extra": {"a.b": ("m", ones), "a.c": ("m", ones)}},
+        {"extra": {"a.b": ("cm", ones), "a.d": ("m", ones)}},
+    )
+    notes = {d.signal: d.note for d in found.differences if d.note}
+    assert notes == {"a.b": "b has it in cm", "a.c": "not in b", "a.d": "not in a"}
+    assert found.verdict.endswith("; 3 signals not compared")
+    assert not found.within(1.0)
+    assert "not in b" in text(found)
+
+
+def test_text_and_what_is_not_a_number(write_run):
+    gap = np.ones(201)
+    gap[7] = np.nan
+    words = ["same"] * 201
+    other = [*words[:-2], "else", "else"]
+    found = both(
+        write_run,
+        {"extra": {"a.gap": ("m", gap), "a.same": ("m", gap), "a.word": ("1", words)}},
+        {"extra": {"a.gap": ("m", np.ones(201)), "a.same": ("m", gap), "a.word": ("1", other)}},
+    )
+    rows = {d.signal: d for d in found.differences}
+    assert (rows["a.gap"].absolute, rows["a.gap"].time) == (np.inf, pytest.approx(0.7))
+    assert found.verdict == "not equal: only one run has a number somewhere"
+    assert rows["a.same"].absolute == 0.0
+    assert rows["a.word"].absolute is None
+    assert rows["a.word"].relative == pytest.approx(2 / 201)
+    assert rows["a.word"].time == pytest.approx(19.9)
+
+
+def test_only_common_times_count(write_run):
+    folder = write_run("b")
+    lines = (folder / "signals.csv").read_text().splitlines(keepends=True)
+    (folder / "signals.csv").write_text("".join([lines[0], *lines[1::10]]))
+    found = compare(load_run(write_run("a")), load_run(folder))
+    assert found.rows == (21, 201, 21)
+    assert (found.identical, found.worst) == (False, 0.0)
+    (folder / "signals.csv").write_text(lines[0])
+    assert compare(load_run(write_run("c")), load_run(folder)).verdict == (
+        "nothing in common to compare"
+    )
+
+
+def test_what_was_set_differently(write_run):
+    found = both(write_run, {}, {"scenario": "diagonal_fore", "changes": {"engine": "fmu"}})
+    assert [(c.name, c.a, c.b) for c in found.changes] == [
+        ("engine", "direct", "fmu"),
+        ("downwash.pad.x", 0.0, 0.319),
+    ]
+    assert "downwash.pad.x" in text(found)
+
+
+def test_names_are_not_taken_for_markup(write_run):
+    a = load_run(write_run("[red]a"))
+    b = load_run(write_run("b", changes={"variant": "[bold]x"}))
+    assert "[red]a" in text(compare(a, b))
+    assert "[bold]x" in text(compare(a, b))
+
+
+def test_a_signal_that_is_zero_in_both(write_run):
+    zeros = np.zeros(201)
+    found = both(write_run, {"extra": {"a.b": ("m", zeros)}}, {"extra": {"a.b": ("m", zeros)}})
+    assert found.differences[-1].relative == 0.0

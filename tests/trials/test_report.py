@@ -1,0 +1,352 @@
+"""Reports: whole, self-contained, and safe with any text."""
+
+from __future__ import annotations
+
+import base64
+import json
+import re
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+
+from seatrial.errors import InputError
+from seatrial.trials.campaign_report import write_campaign_report
+from seatrial.trials.plots import MAX_POINTS, Line, Panel, decimate, time_figure
+from seatrial.trials.report import write_report
+
+from .conftest import PADS, write_run_folder
+
+VOID = {"meta", "br", "link", "img", "hr", "input"}
+REFERENCES = {"src", "href", "action", "data", "poster", "srcset", "formaction", "xlink:href"}
+EVIL = '<script>alert("x")</script>'
+
+
+class Page(HTMLParser):
+    """A page taken apart: tags must nest; texts, figures and references are kept."""
+
+    def __init__(self, path):
+        super().__init__(convert_charrefs=True)
+        self.open, self.references, self.figures, self.tags = [], [], [], []
+        self.text = self.style = ""
+        self.feed(path.read_text(encoding="utf-8"))
+        self.close()
+        assert self.open == []
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append(tag)
+        self.references += [value for name, value in attrs if name in REFERENCES]
+        assert not any(name.startswith("on") for name, _ in attrs)
+        if tag not in VOID:
+            self.open.append((tag, dict(attrs).get("type")))
+
+    def handle_endtag(self, tag):
+        assert self.open.pop()[0] == tag
+
+    def handle_data(self, data):
+        inside = self.open[-1] if self.open else ("", None)
+        if inside == ("script", "application/json"):
+            self.figures.append(json.loads(data))
+        elif inside[0] == "style":
+            self.style += data
+        elif inside[0] != "script":
+            self.text += " ".join(data.split()) + " "
+
+    def figure_text(self):
+        return json.dumps(self.figures)
+
+    def titles(self):
+        notes = [note for f in self.figures for note in f["layout"].get("annotations", [])]
+        return [re.sub("<.*?>", "", note["text"]) for note in notes]
+
+
+def numbers(array):
+    """Return the numbers that Plotly's JSON holds as base64 or as a list."""
+    if isinstance(array, dict):
+        return np.frombuffer(base64.b64decode(array["bdata"]), array["dtype"])
+    return np.array(array, dtype=float)
+
+
+def trace(page, name):
+    [found] = [t for f in page.figures for t in f["data"] if t.get("name") == name]
+    return found
+
+
+def assert_self_contained(page):
+    assert not [r for r in page.references if re.match(r"[a-z]*:|//", r or "")]
+    assert "url(" not in page.style
+    assert "@import" not in page.style
+    assert not {"link", "iframe", "img", "object", "embed"} & set(page.tags)
+    # Three scripts of code at most: Plotly and what draws the figures.
+    assert page.tags.count("script") == 2 + len(page.figures)
+
+
+# ---------------------------------------------------------------------- a run
+
+
+def test_a_report_is_one_page_with_everything(write_run):
+    folder = write_run(extra={"downwash.height": ("m", np.ones(201))})
+    path = write_report(folder)
+    assert path == folder / "report.html"
+    page = Page(path)
+    assert_self_contained(page)
+    for heading in (
+        "Hydrone, landing, transversal pad",
+        "✗ FAILED",
+        "✓ passed",
+        "worst 10.9 deg at 20 s, limit 10 deg",
+        "downwash.force",
+        "Motion of hull",
+        "Velocities of hull",
+        "Track from above",
+        "The deck from above",
+        "Forces and moments",
+        "Other signals of downwash",
+        "004, table 5",
+        "stated",
+        "1.1, 17.59, 17.59",
+        "real_time_factor",
+    ):
+        assert heading in page.text
+    manifest = json.loads((folder / "manifest.json").read_text())
+    titles = " ".join(page.titles())
+    for signal in manifest["signals"]:
+        assert signal in page.text
+        assert signal in titles or signal.rpartition(".")[0] in titles
+
+
+def test_angles_are_in_degrees_with_their_limits(write_run):
+    page = Page(write_report(write_run()))
+    roll = numbers(trace(page, "phi")["y"])
+    assert roll[-1] == pytest.approx(10.865027, abs=1e-5)
+    limits = [
+        trace["y"][0]
+        for figure in page.figures
+        for trace in figure["data"]
+        if trace.get("name") == "limit of roll stays below 10 degrees"
+    ]
+    assert limits == pytest.approx([10.0, -10.0])
+    assert "hull.attitude.phi, deg" in page.titles()
+    assert "hull.rates.p, deg/s" in page.titles()
+
+
+@pytest.mark.parametrize(
+    ("scenario", "verdict"), [("nominal", "passed"), ("transversal", "FAILED")]
+)
+def test_the_pad_is_marked_by_its_verdict(write_run, scenario, verdict):
+    page = Page(write_report(write_run(scenario=scenario)))
+    pad = trace(page, "downwash")
+    assert (pad["x"], pad["y"]) == ([PADS[scenario][1]], [PADS[scenario][0]])
+    assert pad["text"] == [verdict]
+
+
+def test_a_rig_without_a_craft(write_run):
+    components = {"tank": {"fmu": "tank", "sha256": "4" * 64, "step": 0.01, "parameters": {}}}
+    signals = {name: {"unit": "1", "description": ""} for name in ("tank.level", "tank.log")}
+    folder = write_run(
+        changes={"components": components, "connections": [], "signals": signals, "criteria": []}
+    )
+    (folder / "signals.csv").write_text("time,tank.level,tank.log\n0.0,1.0,idle\n0.1,2.0,full\n")
+    (folder / "verdicts.json").write_text("[]")
+    page = Page(write_report(folder))
+    assert_self_contained(page)
+    assert "Other signals of tank" in page.text
+    assert "The trial has no criteria" in page.text
+    assert "NO CRITERIA" in page.text
+    assert "idle" in page.text
+    assert "full" in page.text
+    assert page.titles() == ["tank.level"]
+    assert "deck" not in page.text
+
+
+def test_nothing_written_by_others_becomes_markup(write_run):
+    name = f"box{EVIL}"
+    folder = write_run(
+        extra={
+            f"{name}.x": ("m", np.ones(201)),
+            f"{name}.note": (EVIL, [EVIL] * 201),
+            f"{name}.force.x": ("N", np.ones(201)),
+            f"{name}.force.y": ("N", np.ones(201)),
+        },
+        changes={
+            "trial": {"name": EVIL, "title": EVIL, "file": EVIL, "sha256": EVIL},
+            "error": EVIL,
+            "status": "failed",
+            "events": [{"at": EVIL, "set": {EVIL: EVIL}}, EVIL],
+            "connections": [[EVIL, f"{name}.u"]],
+            "components": {
+                name: {
+                    "fmu": EVIL,
+                    "sha256": EVIL,
+                    "step": 0.01,
+                    "parameters": {
+                        EVIL: {"value": EVIL, "unit": EVIL, "from": EVIL, "source": EVIL}
+                    },
+                }
+            },
+        },
+    )
+    verdicts = [{"name": EVIL, "check": EVIL, "passed": False, "detail": EVIL, "limits": []}]
+    (folder / "verdicts.json").write_text(json.dumps(verdicts))
+    path = write_report(folder)
+    page = Page(path)
+    assert_self_contained(page)
+    assert page.text.count(EVIL) > 15
+    assert "<script" not in page.figure_text()
+    assert "&lt;script&gt;" in page.figure_text()
+
+
+@pytest.mark.parametrize("status", ["failed", "running"])
+def test_a_run_that_did_not_end_well(write_run, status):
+    folder = write_run(changes={"status": status, "error": "hull: output z is nan at t = 3.1 s"})
+    for name in ("verdicts.json", "timing.json"):
+        (folder / name).unlink()
+    path = folder / "signals.csv"
+    path.write_bytes(path.read_bytes()[:-7])
+    page = Page(write_report(folder))
+    assert "✗ FAILED" in page.text
+    assert "output z is nan" in page.text
+    assert "verdicts.json is missing" in page.text
+    assert "the last line of signals.csv is cut" in page.text
+    assert "The run was not judged" in page.text
+
+
+def test_an_empty_record(write_run):
+    folder = write_run()
+    path = folder / "signals.csv"
+    path.write_text(path.read_text().splitlines()[0] + "\n")
+    assert "nothing recorded" in Page(write_report(folder)).text
+
+
+def test_events_are_listed_and_drawn(write_run):
+    events = [{"at": "12 s", "set": {"hull.current": [1, 0, 0]}, "override": {}, "release": []}]
+    page = Page(write_report(write_run(changes={"events": events})))
+    assert 'set {"hull.current": [1, 0, 0]}' in page.text
+    assert any(shape["x0"] == 12 for f in page.figures for shape in f["layout"].get("shapes", []))
+
+
+def test_same_run_same_page(write_run):
+    one, other = write_report(write_run("a")), write_report(write_run("b"))
+    assert one.read_bytes() == other.read_bytes()
+
+
+def test_not_a_run(tmp_path):
+    with pytest.raises(InputError, match="not a run folder"):
+        write_report(tmp_path)
+
+
+# ---------------------------------------------------------------------- long records
+
+
+def test_decimation_keeps_every_extreme():
+    time = np.arange(1_000_000) * 0.01
+    values = np.sin(time)
+    values[654_321], values[123_456] = 9.0, -9.0
+    values[500_000] = np.nan
+    short_time, short = decimate(time, values)
+    assert len(short) <= MAX_POINTS
+    assert (np.nanmax(short), np.nanmin(short)) == (9.0, -9.0)
+    assert (short_time[0], short_time[-1]) == (time[0], time[-1])
+    assert (np.diff(short_time) > 0).all()
+
+
+def test_short_records_are_drawn_whole():
+    time = np.arange(MAX_POINTS, dtype=float)
+    assert decimate(time, time)[0] is time
+
+
+def test_a_gap_stays_a_gap():
+    values = np.full(10 * MAX_POINTS, np.nan)
+    assert np.isnan(decimate(np.arange(len(values), dtype=float), values)[1]).all()
+
+
+def test_columns_of_different_length():
+    time = np.arange(3.0)
+    panel = Panel("a.b", "m", [Line("a.b", time)])
+    figure = time_figure(time, [[panel, panel], [panel]])
+    assert len(figure.data) == 3
+
+
+# ---------------------------------------------------------------------- a campaign
+
+
+@pytest.fixture
+def campaign(tmp_path):
+    cases = []
+    for phase in ("landing", "takeoff"):
+        for scenario in PADS:
+            folder = tmp_path / f"{phase}-{scenario}"
+            write_run_folder(folder, phase, scenario)
+            verdicts = json.loads((folder / "verdicts.json").read_text())
+            cases.append(
+                {
+                    "name": f"{phase}, pad {scenario}",
+                    "folder": folder.name,
+                    "set": {"downwash.pad": scenario},
+                    "passed": all(verdict["passed"] for verdict in verdicts),
+                    "verdicts": verdicts,
+                    "status": "complete",
+                }
+            )
+    write_campaign(tmp_path, cases)
+    return tmp_path, cases
+
+
+def write_campaign(folder, cases, name="pads"):
+    (folder / "campaign.json").write_text(json.dumps({"name": name, "cases": cases}))
+
+
+def test_a_campaign_has_every_case_and_pad(campaign):
+    folder, cases = campaign
+    write_report(folder / cases[0]["folder"])
+    page = Page(write_campaign_report(folder))
+    assert_self_contained(page)
+    assert page.references == ["landing-nominal/report.html"]
+    for case in cases:
+        assert case["name"] in page.text
+        assert case["set"]["downwash.pad"] in page.text
+    for text in ("8 cases", "✓ 3 passed", "✗ 5 failed", "✗ 14.3 deg", "✓ 2.15 s"):
+        assert text in page.text
+    [deck] = page.figures
+    pads = {(t["xaxis"], t["x"][0], t["y"][0]): t["text"][0] for t in deck["data"] if "text" in t}
+    assert len(pads) == 8
+    assert pads["x", 0.0, 0.319] == "passed"
+    assert pads["x2", 0.0, 0.319] == "FAILED"
+    assert {"landing", "takeoff"} <= set(page.titles())
+
+
+def test_cases_at_one_pad_are_counted(campaign):
+    folder, cases = campaign
+    again = {**cases[0], "name": "heavier", "passed": False, "set": {"hull.mass times": 1.2}}
+    write_campaign(folder, [*cases, again])
+    page = Page(write_campaign_report(folder))
+    marks = [t["text"][0] for t in page.figures[0]["data"] if "text" in t]
+    assert "1 of 2 passed" in marks
+    assert "hull.mass times" in page.text
+
+
+def test_a_case_without_a_run(campaign):
+    folder, cases = campaign
+    lost = {**cases[0], "folder": "lost", "passed": False, "verdicts": [], "status": "failed"}
+    write_campaign(folder, [lost])
+    page = Page(write_campaign_report(folder))
+    assert "no readable run in lost" in page.text
+    assert "run failed" in page.text
+    assert page.figures == []
+
+
+def test_names_in_a_campaign_are_escaped(campaign):
+    folder, cases = campaign
+    evil = {**cases[0], "name": EVIL, "set": {EVIL: EVIL}, "status": EVIL}
+    write_campaign(folder, [evil], name=EVIL)
+    page = Page(write_campaign_report(folder))
+    assert_self_contained(page)
+    assert page.text.count(EVIL) >= 4
+
+
+def test_not_a_campaign(tmp_path):
+    with pytest.raises(InputError, match="not a campaign folder"):
+        write_campaign_report(tmp_path)
+    (tmp_path / "campaign.json").write_text('{"name": "x"}')
+    with pytest.raises(InputError, match="lacks 'cases'"):
+        write_campaign_report(tmp_path)
