@@ -17,7 +17,7 @@ def _cache(tmp_path_factory: pytest.TempPathFactory) -> None:
     os.environ["SEATRIAL_CACHE"] = str(base / "seatrial-cache")
 
 
-@pytest.fixture()
+@pytest.fixture
 def write(tmp_path: Path):
     """Return a function that writes a file below the test's folder and returns its path."""
 

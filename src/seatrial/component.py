@@ -271,9 +271,8 @@ class Component:
         if kind is float and not math.isfinite(sum(values)):  # type: ignore[arg-type]
             for reference, value in zip(references, values, strict=True):
                 if not math.isfinite(value):  # type: ignore[arg-type]
-                    raise InputError(
-                        f"{self.name}.{self.scalars[reference].name}: {value} is not a finite number"
-                    )
+                    name = self.scalars[reference].name
+                    raise InputError(f"{self.name}.{name}: {value} is not a finite number")
         own = self.values
         for reference, value in zip(references, values, strict=True):
             own[reference] = value

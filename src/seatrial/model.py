@@ -96,11 +96,12 @@ def bind(
     The caller keeps the arrays and the first element of the pair alive.
     """
     buffer, evaluate = function.buffer()
+    bound: Any = buffer  # CasADi's own annotations describe the C signature
     for index, argument in enumerate(arguments):
         if argument.size:
-            buffer.set_arg(index, memoryview(argument))
+            bound.set_arg(index, argument.data)
     if result.size:
-        buffer.set_res(0, memoryview(result))
+        bound.set_res(0, result.data)
     return buffer, evaluate
 
 

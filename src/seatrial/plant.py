@@ -120,10 +120,12 @@ class Plant(Component):
     # ------------------------------------------------------------------ running
 
     def start(self, t: float) -> None:
+        """Start from the start values; compile the equations if nobody has yet."""
         self._x = self._start_state()
         self._build_buffers()
 
     def step(self, t: float, h: float) -> None:
+        """Integrate over ``h`` with inputs held."""
         count = max(1, math.ceil(h / self.max_step - 1e-9))
         self._load()
         self._h[0] = h / count
@@ -133,6 +135,7 @@ class Plant(Component):
             self._x[:] = self._x1
 
     def outputs(self, t: float) -> None:
+        """Publish the states and what follows from them and the inputs."""
         self._publish(self.state_ports, self._x.tolist())
         if self.output_ports:
             self._load()
@@ -140,6 +143,7 @@ class Plant(Component):
             self._publish(self.output_ports, self._y.tolist())
 
     def set_state(self, state: Mapping[str, Any]) -> None:
+        """Restore what `get_state` returned."""
         # Compiled functions read the state at a fixed address, so they are bound anew.
         super().set_state(state)
         if "_x" in state:
@@ -154,11 +158,17 @@ class Plant(Component):
     def linearise(self, x: Vector, u: Vector | None = None) -> Linearisation:
         """Return the exact linearisation at stacked state ``x``, inputs ``u`` (default: as set)."""
         model = self._compiled()
-        parts = [np.asarray(m) for m in model.jacobians(x, self._stacked_u(u), self._stacked_p())]
-        return Linearisation(*parts, model.x_names, model.u_names, model.y_names)
+        matrices = model.jacobians(x, self._stacked_u(u), self._stacked_p())
+        a, b, c, d = (np.asarray(matrix) for matrix in matrices)
+        return Linearisation(a, b, c, d, model.x_names, model.u_names, model.y_names)
 
     def trim(
-        self, guess: Vector, u: Vector | None = None, *, hold: Sequence[str] = (), tol: float = 1e-12
+        self,
+        guess: Vector,
+        u: Vector | None = None,
+        *,
+        hold: Sequence[str] = (),
+        tol: float = 1e-12,
     ) -> Vector:
         """Return a stacked state near ``guess`` where dx/dt = 0, with inputs ``u`` (as set).
 

@@ -83,7 +83,7 @@ class Port:
 
     def limit(self, which: Literal["min", "max", "nominal"], index: int) -> float | None:
         """Return one scalar's min, max or nominal, None where the port declares none."""
-        value = getattr(self, which)
+        value: Limit = getattr(self, which)
         return value[index] if isinstance(value, tuple) else value
 
     def placed(self, offset: int) -> Port:

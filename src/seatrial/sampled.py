@@ -33,17 +33,20 @@ class Sampled(Component):
         """Set outputs that change between instants (a delayed value that falls due)."""
 
     def start(self, t: float) -> None:
+        """Start counting instants and reset the memory."""
         self._start_ns = self.now_ns
         self._period_ns = max(1, round(self.period * NS))
         self._next = 0
         self.reset(t)
 
     def outputs(self, t: float) -> None:
+        """Sample at an instant; hold otherwise."""
         if self._instant_ns() == round(t * NS):
             self.sample(t, self._next)
         self.hold(t)
 
     def step(self, t: float, h: float) -> None:
+        """Run the instants from ``t`` to before ``t + h``."""
         end_ns = round(t * NS) + round(h * NS)
         while self._instant_ns() < end_ns:
             instant = seconds(self._instant_ns())
@@ -52,4 +55,5 @@ class Sampled(Component):
             self._next += 1
 
     def _instant_ns(self) -> int:
-        return self._start_ns + self._next * self._period_ns
+        instant: int = self._start_ns + self._next * self._period_ns
+        return instant

@@ -38,7 +38,7 @@ class Unit:
 def _registry() -> Any:
     import pint
 
-    registry = pint.UnitRegistry(cache_folder=None)
+    registry: Any = pint.UnitRegistry(cache_folder=None, on_redefinition="ignore")
     # In pint a radian is a pure number; FMI keeps it as a base unit, and so do we: it is what
     # tells an angle from a count on a wire.
     registry.define("radian = [angle] = rad")

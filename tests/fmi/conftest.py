@@ -55,17 +55,17 @@ class Raw:
         return self.slave.getReal([self.vr[name]])[0]
 
 
-@pytest.fixture()
+@pytest.fixture
 def counter(write) -> ComponentSource:
     return source(write("counter.py", boats.COUNTER), "Counter")
 
 
-@pytest.fixture()
+@pytest.fixture
 def counter_fmu(counter: ComponentSource, tmp_path: Path) -> Path:
     return build_fmu(counter, tmp_path / "counter.fmu")
 
 
-@pytest.fixture()
+@pytest.fixture
 def raw(counter_fmu: Path, tmp_path: Path) -> Iterator[Raw]:
     it = Raw(counter_fmu, tmp_path / "raw")
     yield it

@@ -11,9 +11,8 @@ import os
 import sys
 from typing import Any
 
-from libcosimpy.CosimEnums import CosimLogLevel
 from libcosimpy.CosimExecution import CosimExecution
-from libcosimpy.CosimLogging import log_output_level
+from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
 from libcosimpy.CosimObserver import CosimObserver
 from libcosimpy.CosimSlave import CosimLocalSlave
 
@@ -31,7 +30,7 @@ def run(job: dict[str, Any]) -> list[list[float]]:
                 assert set_initial(number, int(reference), value)
     for source, vr_out, target, vr_in, kind in job["wires"]:
         connect = getattr(execution, f"connect_{kind}_variables")
-        assert connect(index[source], vr_out, index[target], vr_in)
+        assert connect(index[source], vr_out, index[target], vr_in) == 0
     observer = CosimObserver.create_last_value()
     assert execution.add_observer(observer=observer)
     groups = [(index[name], references) for name, references in job["watch"]]

@@ -46,7 +46,13 @@ def job(system: System, steps: int) -> dict[str, Any]:
         source = system.parts[wire.source[0]].instance.variables[wire.source[1]]
         target = system.parts[wire.target[0]].instance.variables[wire.target[1]]
         wires.append(
-            [wire.source[0], source.reference, wire.target[0], target.reference, _KINDS[target.type]]
+            [
+                wire.source[0],
+                source.reference,
+                wire.target[0],
+                target.reference,
+                _KINDS[target.type],
+            ]
         )
     step = seconds(system.rig.step_ns)
     return {"slaves": slaves, "wires": wires, "step": step, "steps": steps, "watch": watch}

@@ -93,6 +93,7 @@ def _manifest(phase: str, scenario: str, signals: Mapping[str, str]) -> dict[str
                     "added_mass.y": _parameter(17.59, "kg", source="004, eq. 39", **stated),
                     "added_mass.z": _parameter(17.59, "kg", source="004, eq. 39", **stated),
                     "restoring": _parameter("surface-linear", "1"),
+                    "start_attitude.psi": _parameter(0.5235987755982988, "rad"),
                 },
             },
             "downwash": {

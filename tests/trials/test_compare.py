@@ -9,22 +9,21 @@ import pytest
 from rich.console import Console
 
 from seatrial.trials.compare import compare
-from seatrial.trials.run_folder import load_run
 
 
 def both(write_run, one, other):
-    return compare(load_run(write_run("a", **one)), load_run(write_run("b", **other)))
+    return compare(write_run("a", **one), write_run("b", **other))
 
 
 def text(comparison):
     file = io.StringIO()
-    Console(file=file, width=140, color_system=None).print(comparison)
+    Console(file=file, width=140, color_system=None).print(comparison.table(), comparison.summary)
     return file.getvalue()
 
 
 def test_identical_runs(write_run):
     found = both(write_run, {}, {})
-    assert (found.identical, found.verdict, found.worst) == (True, "identical bytes", 0.0)
+    assert (found.identical, found.worst) == (True, 0.0)
     assert found.rows == (201, 201, 201)
     assert found.changes == ()
     assert found.within(0.0)
@@ -40,7 +39,7 @@ def test_greatest_difference_and_its_time(write_run):
     assert row.absolute == pytest.approx(0.04)
     assert row.relative == pytest.approx(0.001)
     assert row.time == 5.0
-    assert found.verdict == "equal within 0.001 of each signal's greatest value"
+    assert found.summary.startswith("equal within 0.001 of each signal's greatest value (201")
     assert found.within(0.0011)
     assert not found.within(0.0009)
     assert text(found).index("a.b") < text(found).index("hull.position.x")
@@ -55,7 +54,7 @@ def test_signals_of_one_run_only_and_other_units(write_run):
     )
     notes = {d.signal: d.note for d in found.differences if d.note}
     assert notes == {"a.b": "b has it in cm", "a.c": "not in b", "a.d": "not in a"}
-    assert found.verdict.endswith("; 3 signals not compared")
+    assert "; 3 signals not compared (201" in found.summary
     assert not found.within(1.0)
     assert "not in b" in text(found)
 
@@ -72,7 +71,7 @@ def test_text_and_what_is_not_a_number(write_run):
     )
     rows = {d.signal: d for d in found.differences}
     assert (rows["a.gap"].absolute, rows["a.gap"].time) == (np.inf, pytest.approx(0.7))
-    assert found.verdict == "not equal: only one run has a number somewhere"
+    assert found.summary.startswith("not equal: only one run has a number somewhere")
     assert rows["a.same"].absolute == 0.0
     assert rows["a.word"].absolute is None
     assert rows["a.word"].relative == pytest.approx(2 / 201)
@@ -83,13 +82,12 @@ def test_only_common_times_count(write_run):
     folder = write_run("b")
     lines = (folder / "signals.csv").read_text().splitlines(keepends=True)
     (folder / "signals.csv").write_text("".join([lines[0], *lines[1::10]]))
-    found = compare(load_run(write_run("a")), load_run(folder))
+    found = compare(write_run("a"), folder)
     assert found.rows == (21, 201, 21)
     assert (found.identical, found.worst) == (False, 0.0)
     (folder / "signals.csv").write_text(lines[0])
-    assert compare(load_run(write_run("c")), load_run(folder)).verdict == (
-        "nothing in common to compare"
-    )
+    found = compare(write_run("c"), folder)
+    assert found.summary == "nothing in common to compare (0 common times of 201 and 0)"
 
 
 def test_what_was_set_differently(write_run):
@@ -102,10 +100,9 @@ def test_what_was_set_differently(write_run):
 
 
 def test_names_are_not_taken_for_markup(write_run):
-    a = load_run(write_run("[red]a"))
-    b = load_run(write_run("b", changes={"variant": "[bold]x"}))
-    assert "[red]a" in text(compare(a, b))
-    assert "[bold]x" in text(compare(a, b))
+    found = compare(write_run("[red]a"), write_run("b", changes={"variant": "[bold]x"}))
+    assert "[red]a" in text(found)
+    assert "[bold]x" in text(found)
 
 
 def test_a_signal_that_is_zero_in_both(write_run):

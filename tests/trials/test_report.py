@@ -128,6 +128,7 @@ def test_angles_are_in_degrees_with_their_limits(write_run):
     assert limits == pytest.approx([10.0, -10.0])
     assert "hull.attitude.phi, deg" in page.titles()
     assert "hull.rates.p, deg/s" in page.titles()
+    assert "start_attitude .psi 30 deg" in " ".join(page.text.split())
 
 
 @pytest.mark.parametrize(
@@ -216,6 +217,12 @@ def test_an_empty_record(write_run):
     path = folder / "signals.csv"
     path.write_text(path.read_text().splitlines()[0] + "\n")
     assert "nothing recorded" in Page(write_report(folder)).text
+
+
+def test_a_run_without_a_record(write_run):
+    folder = write_run(changes={"status": "failed", "error": "hull: no start"})
+    (folder / "signals.csv").unlink()
+    assert "hull: no start" in Page(write_report(folder)).text
 
 
 def test_events_are_listed_and_drawn(write_run):

@@ -53,6 +53,15 @@ def test_text_columns_stay_text(write_run):
     assert run.signals["hull.position.x"].dtype == float
 
 
+def test_a_run_that_failed_at_its_start_has_no_record(write_run):
+    folder = write_run(changes={"status": "failed", "error": "hull: no start"})
+    for name in ("signals.csv", "verdicts.json"):
+        (folder / name).unlink()
+    run = load_run(folder)
+    assert (len(run.time), run.signals, run.passed) == (0, {}, False)
+    assert run.notes == ("signals.csv is missing", "verdicts.json is missing")
+
+
 def test_a_column_is_text_if_any_cell_is(write_run, monkeypatch):
     monkeypatch.setattr(run_folder, "_CHUNK_ROWS", 10)
     texts = [str(i) for i in range(150)] + ["word"] * 51

@@ -38,13 +38,17 @@ def list_fmus() -> None:
 def build(
     names: Annotated[
         list[str] | None,
-        typer.Argument(metavar="FMU...", help="Shipped names or my.py:Class; default: all shipped."),
+        typer.Argument(
+            metavar="FMU...", help="Shipped names or my.py:Class; default: all shipped."
+        ),
     ] = None,
     out: Annotated[Path, typer.Option(help="Folder for the .fmu files.")] = Path("."),
     parameters: Annotated[
         str | None, typer.Option(help="Bake in a vehicle's parameters: VEHICLE or VEHICLE.TABLE.")
     ] = None,
-    variant: Annotated[str | None, typer.Option(help="Variant of the vehicle's parameters.")] = None,
+    variant: Annotated[
+        str | None, typer.Option(help="Variant of the vehicle's parameters.")
+    ] = None,
 ) -> None:
     """Build .fmu files that any FMI 2.0 tool loads."""
     for name in names or list(shipped_sources()):

@@ -18,8 +18,8 @@ from ..cosim.system import Engine
 from ..errors import InputError, SeatrialError, SimulationError
 from ..fmi.source import shipped_sources
 from ..trials.campaign import Campaign, Case, load_campaign, run_campaign
-from ..trials.compare import compare as compare_runs
 from ..trials.campaign_report import write_campaign_report
+from ..trials.compare import compare as compare_runs
 from ..trials.report import write_report
 from ..trials.run import Hooks, Result, new_folder, run_trial
 from ..trials.trial import load_trial

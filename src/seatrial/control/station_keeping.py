@@ -152,7 +152,7 @@ class StationKeeping(Sampled):
         self._mode, self._backwards = IDLE, False
         self._integral_ne, self._integral_yaw = [0.0, 0.0], 0.0
         # Nothing has been heard yet: lost until first valid.
-        self._position_age = self._heading_age = math.inf
+        self._position_missed = self._heading_missed = math.inf
         self._command(0.0, 0.0)
         self.distance, self.mode = 0.0, IDLE
 
@@ -167,8 +167,8 @@ class StationKeeping(Sampled):
         decision = self._decide()
         self._integrate(decision)
         self._mode, self._backwards = decision.mode, decision.backwards
-        self._position_age = 0.0 if self.position_valid else self._position_age + self.period
-        self._heading_age = 0.0 if self.heading_valid else self._heading_age + self.period
+        self._position_missed = 0.0 if self.position_valid else self._position_missed + 1.0
+        self._heading_missed = 0.0 if self.heading_valid else self._heading_missed + 1.0
 
     # ------------------------------------------------------------------ guidance
 
@@ -196,13 +196,17 @@ class StationKeeping(Sampled):
         return _Decision(mode, backwards, surge_error, heading_error, surge, moment, *given)
 
     def _next_mode(self) -> int:
-        heading_lost = not self.heading_valid and self._heading_age >= self.timeout
-        if not self.enabled or heading_lost:
+        if not self.enabled or self._lost(self.heading_valid, self._heading_missed):
             return IDLE
-        if not self.position_valid and self._position_age >= self.timeout:
+        if self._lost(self.position_valid, self._position_missed):
             return HEADING_ONLY
         radius = self.capture_radius if self._mode == RETURN else self.hold_radius
         return RETURN if self._distance() > radius else HOLD
+
+    def _lost(self, valid: bool, missed: float) -> bool:
+        """Say if a signal, not valid at so many instants before this one, counts as lost."""
+        since = (missed + 1.0) * self.period
+        return not valid and since > self.timeout * (1.0 + 1e-9)
 
     def _error_ne(self) -> list[float]:
         return [s - p for s, p in zip(self.station, self.position_n[:2], strict=True)]

@@ -313,7 +313,9 @@ def _gatherer(places: Sequence[int]) -> Any:
     return itemgetter(*places)
 
 
-def _scheduled(groups: list[list[Name]], depends: Mapping[Name, Sequence[Name]]) -> list[list[Name]]:
+def _scheduled(
+    groups: list[list[Name]], depends: Mapping[Name, Sequence[Name]]
+) -> list[list[Name]]:
     """Join groups of one instance that can be read together, keeping the dependency order."""
     waiting, scheduled = list(groups), []
     moving = {name for group in groups for name in group}
@@ -327,9 +329,7 @@ def _scheduled(groups: list[list[Name]], depends: Mapping[Name, Sequence[Name]])
         if loops_on_itself(first, depends):
             taken = [first]
         else:
-            taken = [
-                g for g in ready if g[0][0] == first[0][0] and not loops_on_itself(g, depends)
-            ]
+            taken = [g for g in ready if g[0][0] == first[0][0] and not loops_on_itself(g, depends)]
         scheduled.append([name for group in taken for name in group])
         waiting = [g for g in waiting if g not in taken]
         moving -= {name for group in taken for name in group}

@@ -53,12 +53,10 @@ def _in_si(written: Any, target: str, low: float | None, high: float | None) -> 
         value = quantity(written, target)
     except InputError as error:
         raise _refused(str(error)) from None
-    if (low is not None and value < low) or (high is not None and value > high):
-        least, most = (
-            f"{low:g}" if low is not None else "...",
-            f"{high:g}" if high is not None else "...",
-        )
-        raise _refused(f"allowed {least} to {most} {target}")
+    if low is not None and value < low:
+        raise _refused(f"at least {low:g} {target} needed")
+    if high is not None and value > high:
+        raise _refused(f"at most {high:g} {target} needed")
     return value
 
 
@@ -157,7 +155,6 @@ class Profile:
             return values
         pulses = ("pulse_min", "pulse_neutral", "pulse_max")
         return {**{p: getattr(entry, p) for p in pulses}, "reversed": float(entry.reversed)}
-
 
     def source(self, section: str) -> str:
         """Return where a section's values come from. Raises InputError as `parameters`."""

@@ -11,6 +11,28 @@ from typing import Any
 
 from ..errors import InputError
 from .master import Master
+from .system import System
+
+
+def output_names(system: System) -> list[str]:
+    """Return the names of all outputs, ``component.port``, in the order of their declaration."""
+    return [
+        f"{name}.{variable.name}"
+        for name, part in system.parts.items()
+        for variable in part.instance.variables.values()
+        if variable.causality == "output"
+    ]
+
+
+def matching(names: Sequence[str], patterns: Sequence[str]) -> list[str]:
+    """Return the names that one of ``patterns`` (such as ``hull.*``) matches, in order.
+
+    Raises InputError for a pattern that matches nothing.
+    """
+    for pattern in patterns:
+        if not any(fnmatchcase(name, pattern) for name in names):
+            raise InputError(f"no signal matches {pattern!r}")
+    return [name for name in names if any(fnmatchcase(name, p) for p in patterns)]
 
 
 class Recorder:
@@ -21,16 +43,11 @@ class Recorder:
     """
 
     def __init__(self, path: Path, master: Master, patterns: Sequence[str], every: int) -> None:
-        names = [".".join(name) for name in master.names]
         self.every = every
         self._master = master
-        self._places = [
-            i for i, name in enumerate(names) if any(fnmatchcase(name, p) for p in patterns)
-        ]
-        for pattern in patterns:
-            if not any(fnmatchcase(name, pattern) for name in names):
-                raise InputError(f"record: no signal matches {pattern!r}")
-        self.names = [names[i] for i in self._places]
+        self.names = matching(output_names(master.system), patterns)
+        places = {".".join(name): i for i, name in enumerate(master.names)}
+        self._places = [places[name] for name in self.names]
         self._booleans = [
             column for column, i in enumerate(self._places) if isinstance(master.signals[i], bool)
         ]

@@ -80,7 +80,9 @@ class System:
             if not isinstance(value, float):
                 raise InputError(f"{origin}: {key} is not a real number and cannot be scaled")
             before = "start value of the FMU" if given is None else given.origin
-            part.given[variable.name] = Given(value * factor, f"{origin}: {factor!r} times {before}")
+            part.given[variable.name] = Given(
+                value * factor, f"{origin}: {factor!r} times {before}"
+            )
 
     def _settable(self, key: str, origin: str) -> tuple[Part, list[Variable]]:
         name, _, port = key.partition(".")
@@ -149,12 +151,7 @@ def assemble(
 
 
 def _part(rig: Rig, name: str, entry: ComponentEntry, engine: Engine) -> Part:
-    path = rig.read_from.path
-    where = f"{path}: components.{name}"
-    try:
-        source = find_source(entry.fmu, path.parent)
-    except InputError as error:
-        raise InputError(f"{where}.fmu: {error}") from None
+    where = f"{rig.read_from.path}: components.{name}"
     every = 1
     if entry.step is not None:
         step_ns = duration_ns(entry.step, f"{where}.step")
@@ -163,15 +160,22 @@ def _part(rig: Rig, name: str, entry: ComponentEntry, engine: Engine) -> Part:
             raise InputError(
                 f"{where}.step: {entry.step!r} is not a multiple of the rig's {rig.file.step!r}"
             )
-    instance: Instance
+    try:
+        instance, sha256 = _instance(entry.fmu, name, rig.read_from.path.parent, engine)
+    except InputError as error:
+        raise InputError(f"{where}.fmu: {error}") from None
+    return Part(name, entry.fmu, instance, sha256, every)
+
+
+def _instance(fmu: str, name: str, folder: Path, engine: Engine) -> tuple[Instance, str]:
+    """Return an instance and the hash of its FMU file (none in process)."""
+    source = find_source(fmu, folder)
     if engine == "direct":
         if isinstance(source, Path):
-            raise InputError(f"{where}.fmu: {source.name} can only run with the engine 'fmu'")
-        instance, sha256 = DirectInstance(source.component_class()(name)), ""
-    else:
-        fmu = load_fmu(source if isinstance(source, Path) else cached_fmu(source))
-        instance, sha256 = FmuInstance(fmu, name), fmu.sha256
-    return Part(name, entry.fmu, instance, sha256, every)
+            raise InputError(f"{source.name} can only run with the engine 'fmu'")
+        return DirectInstance(source.component_class()(name)), ""
+    loaded = load_fmu(source if isinstance(source, Path) else cached_fmu(source))
+    return FmuInstance(loaded, name), loaded.sha256
 
 
 def _give_parameters(
@@ -261,7 +265,9 @@ def _end(system: System, written: str, causality: str, where: str) -> list[Varia
         raise InputError(f"{where}: {name}: {unknown(causality, port, port_names(wanted))}")
     for variable in scalars:
         if variable.causality != causality:
-            raise InputError(f"{where}: {written} is a {variable.causality}, not an {causality}")
+            raise InputError(
+                f"{where}: causality of {written} is {variable.causality}, {causality} is needed"
+            )
     return scalars
 
 

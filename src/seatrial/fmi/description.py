@@ -86,7 +86,7 @@ def _complete_variable(component: Component, scalar: ScalarPort, element: Elemen
     if port.type is float:
         element.set("unit", unit(port.unit).text)
         for name in ("min", "max", "nominal"):
-            limit = port.limit(name, scalar.index)  # type: ignore[arg-type]
+            limit = port.limit(name, scalar.index)
             if limit is not None:
                 element.set(name, repr(float(limit)))
 
@@ -98,7 +98,9 @@ def _text(value: Any) -> str:
 
 
 def _insert_units(root: Element, component: Component) -> None:
-    used = {unit(s.port.unit).text: unit(s.port.unit) for s in component.scalars if s.port.type is float}
+    used = {
+        unit(s.port.unit).text: unit(s.port.unit) for s in component.scalars if s.port.type is float
+    }
     if not used:
         return
     definitions = Element("UnitDefinitions")

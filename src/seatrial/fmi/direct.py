@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import traceback
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 from ..component import Component
@@ -20,12 +21,11 @@ class DirectInstance:
         self.name = component.name
         self.variables = {s.name: _variable(component, s) for s in component.scalars}
         self.feedthrough = scalar_feedthrough(component)
-        self.rolls_back = component.rolls_back
 
     def set_start(self, values: Mapping[str, Scalar]) -> None:
         """Set parameters and start values by variable name, before `initialise`."""
         for name, value in values.items():
-            self._call("set", lambda name=name, value=value: self.component.set(name, value))
+            self._call("set", partial(self.component.set, name, value))
 
     def initialise(self, start_time: float, stop_time: float) -> None:
         """Start at ``start_time``."""
@@ -91,7 +91,9 @@ class DirectInstance:
         if isinstance(error, (InputError, SimulationError)):
             return SimulationError(str(error))
         text = "".join(traceback.format_exception(error)).strip()
-        return SimulationError(f"{self.name}: {what} at t = {self.component.now!r} s raised\n{text}")
+        return SimulationError(
+            f"{self.name}: {what} at t = {self.component.now!r} s raised\n{text}"
+        )
 
 
 def scalar_feedthrough(component: Component) -> dict[str, list[str]]:

@@ -86,7 +86,8 @@ def _model_description(
         digest.update(name.encode() + b"\0" + hashlib.sha256(data).digest())
     root.set("guid", f"{{{digest.hexdigest()[:32]}}}")
     indent(root)
-    return tostring(root, encoding="UTF-8", xml_declaration=True)
+    text: bytes = tostring(root, encoding="UTF-8", xml_declaration=True)
+    return text
 
 
 def _zipped(files: Mapping[str, bytes]) -> bytes:

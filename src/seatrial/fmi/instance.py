@@ -40,11 +40,17 @@ class Instance(Protocol):
     SimulationError, naming the instance and what it said, when the component refuses.
     """
 
-    name: str
-    variables: Mapping[str, Variable]
-    feedthrough: Mapping[str, Sequence[str]]
-    """Per output, the inputs that act on it at the same instant."""
-    rolls_back: bool
+    @property
+    def name(self) -> str:
+        """Name in the rig."""
+
+    @property
+    def variables(self) -> Mapping[str, Variable]:
+        """Variables by name."""
+
+    @property
+    def feedthrough(self) -> Mapping[str, Sequence[str]]:
+        """Per output, the inputs that act on it at the same instant."""
 
     def set_start(self, values: Mapping[str, Scalar]) -> None:
         """Set parameters and start values by variable name, before `initialise`."""

@@ -28,7 +28,12 @@ from .cache import cache_folder
 from .instance import Reader, Variable, Writer, by_type, combined_reader, combined_writer
 
 _TYPES = {"Real": float, "Integer": int, "Enumeration": int, "Boolean": bool, "String": str}
-_CTYPES = {float: ctypes.c_double, int: ctypes.c_int, bool: ctypes.c_int, str: ctypes.c_char_p}
+_CTYPES: dict[type, Any] = {
+    float: ctypes.c_double,
+    int: ctypes.c_int,
+    bool: ctypes.c_int,
+    str: ctypes.c_char_p,
+}
 _FMI_NAMES = {float: "Real", int: "Integer", bool: "Boolean", str: "String"}
 _STATUS = ("ok", "warning", "discard", "error", "fatal", "pending")
 _WARNING, _ERROR, _FATAL = 1, 3, 4
@@ -84,7 +89,6 @@ class FmuInstance:
         self.fmu = fmu
         self.variables, self.feedthrough = fmu.variables, fmu.feedthrough
         simulation = fmu.description.coSimulation
-        self.rolls_back = bool(simulation.canGetAndSetFMUstate)
         self._ours = (fmu.description.generationTool or "").startswith("seatrial")
         self._time = 0.0
         self._fatal = False
@@ -221,7 +225,8 @@ class FmuInstance:
             if status > _WARNING:
                 self._refuse(function, status)
             if kind is float or kind is int:
-                return values[:]
+                plain: list[Any] = values[:]
+                return plain
             if kind is bool:
                 return [bool(v) for v in values]
             return [(v or b"").decode("utf-8", "replace") for v in values]
@@ -245,9 +250,8 @@ class FmuInstance:
 
     def _refuse(self, what: str, status: int) -> None:
         self._fatal = status == _FATAL
-        raise SimulationError(
-            f"{self.name}: {what} returned {_STATUS[status] if status < 6 else status}{self._said()}"
-        )
+        word = _STATUS[status] if status < len(_STATUS) else str(status)
+        raise SimulationError(f"{self.name}: {what} returned {word}{self._said()}")
 
     def _refuse_logged_errors(self, what: str) -> None:
         """Raise for an error that our own FMUs log instead of returning it (see `Slave`)."""
@@ -262,7 +266,9 @@ class FmuInstance:
 
     def _forward(self) -> None:
         for status, text in self._messages:
-            level = logging.ERROR if status >= _ERROR else logging.WARNING if status else logging.INFO
+            level = (
+                logging.ERROR if status >= _ERROR else logging.WARNING if status else logging.INFO
+            )
             self._logger.log(level, "%s", text)
         self._messages = []
 

@@ -130,7 +130,9 @@ class Slave(Fmi2Slave):  # type: ignore[misc]
     def _get_fmu_state(self) -> dict[str, Any]:
         state: dict[str, Any] = {"failed": self._failed, "last_error": self.last_error}
         if not self.component.rolls_back:
-            self._fail(f"{self.instance_name} reaches outside the simulation: it has no state to save")
+            self._fail(
+                f"{self.instance_name} reaches outside the simulation: it has no state to save"
+            )
         else:
             self._guarded(lambda: state.update(component=self.component.get_state()))
         return state

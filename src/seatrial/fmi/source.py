@@ -64,7 +64,8 @@ class ComponentSource:
         from .slave import Slave
 
         found = [
-            v for v in vars(module).values()
+            v
+            for v in vars(module).values()
             if isinstance(v, type) and issubclass(v, Slave) and v is not Slave
         ]
         if len(found) != 1:

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
-from rich.console import Console, ConsoleOptions, RenderResult
+from rich.console import Group
 from rich.markup import escape
 from rich.table import Table
 
 from ..component import NS
 from .expressions import FloatArray
 from .readable import number
-from .run_folder import SIGNALS, Run
+from .run_folder import SIGNALS, Run, load_run
 
 _SETTINGS = ("seatrial", "engine", "variant", "seed", "start", "stop", "step", "algorithm")
 
@@ -49,7 +50,7 @@ class Change:
 
 @dataclass(frozen=True)
 class Comparison:
-    """What `compare` found; print it with rich."""
+    """What `compare` found."""
 
     names: tuple[str, str]
     identical: bool
@@ -66,8 +67,12 @@ class Comparison:
         return max(relative, default=None)
 
     @property
-    def verdict(self) -> str:
-        """``identical bytes``, or how nearly equal the records are."""
+    def summary(self) -> str:
+        """``identical bytes``, or how nearly equal the records are, and on how many times."""
+        common, rows_a, rows_b = self.rows
+        return f"{self._likeness()} ({common} common times of {rows_a} and {rows_b})"
+
+    def _likeness(self) -> str:
         if self.identical:
             return "identical bytes"
         if self.worst is None:
@@ -83,18 +88,17 @@ class Comparison:
         complete = all(d.relative is not None for d in self.differences)
         return self.identical or (complete and self.worst is not None and self.worst <= tolerance)
 
-    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        """Yield the tables and the verdict."""
-        yield self._signal_table()
-        if self.changes:
-            yield self._change_table()
-        common, rows_a, rows_b = self.rows
-        yield f"[bold]{self.verdict}[/bold] ({common} common times of {rows_a} and {rows_b})"
+    def table(self) -> Group:
+        """Return tables for rich: signals, the least alike first, and what was set differently."""
+        changes = [self._change_table()] if self.changes else []
+        return Group(self._signal_table(), *changes)
 
     def _signal_table(self) -> Table:
         title = escape(" / ".join(self.names))
-        table = Table("signal", "unit", title=title, title_justify="left")
-        for heading in ("greatest difference", "share of greatest value", "at s"):
+        table = Table(title=title, title_justify="left")
+        table.add_column("signal", overflow="fold")
+        table.add_column("unit")
+        for heading in ("difference", "of maximum", "at s"):
             table.add_column(heading, justify="right")
         for d in sorted(self.differences, key=_rank, reverse=True):
             if d.note:
@@ -113,19 +117,28 @@ class Comparison:
         return table
 
 
-def compare(run_a: Run, run_b: Run) -> Comparison:
-    """Return how two runs differ, signal by signal on their common times."""
-    bytes_a, bytes_b = ((run.folder / SIGNALS).read_bytes() for run in (run_a, run_b))
+def compare(folder_a: Path | str, folder_b: Path | str) -> Comparison:
+    """Return how two runs differ, signal by signal on their common times.
+
+    Raises InputError for a folder that is not a run.
+    """
+    run_a, run_b = load_run(folder_a), load_run(folder_b)
+    bytes_a, bytes_b = _record(run_a), _record(run_b)
     ticks_a, ticks_b = (np.round(run.time * NS).astype(np.int64) for run in (run_a, run_b))
     _, in_a, in_b = np.intersect1d(ticks_a, ticks_b, return_indices=True)
     names = list(dict.fromkeys([*run_a.signals, *run_b.signals]))
     return Comparison(
         names=(run_a.folder.name, run_b.folder.name),
-        identical=bytes_a == bytes_b,
+        identical=bytes_a is not None and bytes_a == bytes_b,
         rows=(len(in_a), len(ticks_a), len(ticks_b)),
         differences=tuple(_difference(name, run_a, run_b, in_a, in_b) for name in names),
         changes=tuple(_changes(run_a.manifest, run_b.manifest)),
     )
+
+
+def _record(run: Run) -> bytes | None:
+    path = run.folder / SIGNALS
+    return path.read_bytes() if path.is_file() else None
 
 
 def _rank(difference: Difference) -> float:

@@ -233,11 +233,12 @@ def _parameter_rows(parameters: dict[str, dict[str, Any]]) -> list[ParameterRow]
     rows: list[ParameterRow] = []
     for name, entry in parameters.items():
         base, _, axis = name.partition(".")
+        value, unit = _for_person(entry["value"], entry["unit"])
         row = ParameterRow(
             base,
             [axis] if axis else [],
-            [_value_text(entry["value"])],
-            entry["unit"],
+            [_value_text(value)],
+            unit,
             entry.get("from") or "",
             entry.get("source") or "",
             entry.get("mark") or "",
@@ -255,6 +256,13 @@ def _alike(a: ParameterRow, b: ParameterRow) -> bool:
     return (a.name, a.unit, a.origin, a.source, a.mark) == (
         b.name, b.unit, b.origin, b.source, b.mark,
     )  # fmt: skip
+
+
+def _for_person(value: Any, unit: str) -> tuple[Any, str]:
+    if not isinstance(value, float):
+        return value, unit
+    factor, readable = person_scale(unit)
+    return value * factor, readable
 
 
 def _value_text(value: Any) -> str:

@@ -12,7 +12,7 @@ from typing import Any
 
 from ..component import seconds
 from ..cosim.master import Master
-from ..cosim.recorder import Recorder
+from ..cosim.recorder import Recorder, matching
 from ..cosim.system import Engine, System, assemble, settable
 from ..cosim.values import from_written, port_scalars
 from ..errors import InputError, SimulationError, unknown
@@ -86,7 +86,9 @@ def run_trial(
         system.free()
     verdicts = [] if status == "failed" else _judge(trial, out, units)
     loose = system.unconnected_inputs()
-    notes = [f"inputs that nothing feeds keep their start values: {', '.join(loose)}"] if loose else []
+    notes = (
+        [f"inputs that nothing feeds keep their start values: {', '.join(loose)}"] if loose else []
+    )
     return Result(out, status, error, verdicts, notes, wall)
 
 
@@ -223,12 +225,18 @@ def _check_criteria(trial: Trial, system: System) -> dict[str, str]:
         for v in part.instance.variables.values()
         if v.causality == "output"
     }
+    try:
+        recorded = matching(list(units), trial.file.record.signals)
+    except InputError as error:
+        raise InputError(f"{trial.read_from.path}: record.signals: {error}") from None
     for name, criterion in trial.criteria:
         where = f"{trial.read_from.path}: criterion {name!r}"
         try:
             for signal in criterion.signals:
                 if signal not in units:
                     raise InputError(unknown("signal", signal, units))
+                if signal not in recorded:
+                    raise InputError(f"{signal} is not recorded; see record.signals")
             criterion.check_units(units)
         except InputError as error:
             raise InputError(f"{where}: {error}") from None

@@ -61,18 +61,25 @@ class Run:
 
 
 def load_run(folder: Path | str) -> Run:
-    """Read a run folder. One that was killed may lack verdicts, timing and its last line.
+    """Read a run folder.
+
+    A run that was killed may lack verdicts, timing and its last line; one that failed at its
+    start, the whole record, which then is empty.
 
     Raises InputError for a folder that is not a run, and for files that cannot be read or
     contradict each other.
     """
     folder = Path(folder)
     manifest = read_manifest(folder)
-    path = folder / SIGNALS
-    if not path.is_file():
+    files = (SIGNALS, VERDICTS, TIMING)
+    notes = [f"{name} is missing" for name in files if not (folder / name).is_file()]
+    time: FloatArray = np.empty(0)
+    signals: dict[str, Any] = {}
+    truncated = False
+    if (folder / SIGNALS).is_file():
+        time, signals, truncated = _read_signals(folder / SIGNALS)
+    elif manifest["status"] in ("complete", "stopped"):
         raise InputError(f"{folder} has no {SIGNALS}")
-    time, signals, truncated = _read_signals(path)
-    notes = [f"{name} is missing" for name in (VERDICTS, TIMING) if not (folder / name).is_file()]
     if truncated:
         notes.append(f"the last line of {SIGNALS} is cut and was dropped")
     return Run(

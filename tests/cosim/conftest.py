@@ -1,0 +1,54 @@
+"""Rigs of users' small components, in either carrier."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from seatrial.cosim.master import Master
+from seatrial.cosim.rig import load_rig
+from seatrial.cosim.system import System, assemble
+
+from . import users
+
+
+class Bench:
+    """Writes a rig file beside the components and assembles it."""
+
+    def __init__(self, folder: Path, engine: str) -> None:
+        self.folder, self.engine = folder, engine
+        (folder / "users.py").write_text(users.CHAIN, "utf-8")
+        self.systems: list[System] = []
+
+    def system(
+        self, components: str, connections: str = "", top: str = 'step = "100 ms"'
+    ) -> System:
+        path = self.folder / "rig.toml"
+        path.write_text(f"{top}\n[components]\n{components}\n[connections]\n{connections}\n")
+        self.systems.append(assemble(load_rig(str(path)), self.engine))
+        return self.systems[-1]
+
+    def master(self, *arguments: str, **options: str) -> Master:
+        master = Master(self.system(*arguments, **options))
+        master.initialise()
+        return master
+
+
+@pytest.fixture(params=["fmu", "direct"])
+def bench(request: pytest.FixtureRequest, tmp_path: Path):
+    bench = Bench(tmp_path, request.param)
+    yield bench
+    for system in bench.systems:
+        system.free()
+
+
+@pytest.fixture
+def direct(tmp_path: Path) -> Callable[..., System]:
+    return Bench(tmp_path, "direct")
+
+
+def value(master: Master, name: str):
+    component, _, port = name.partition(".")
+    return master.signals[master.names.index((component, port))]

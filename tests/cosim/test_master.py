@@ -1,0 +1,210 @@
+"""The master against closed forms: delays, loops, rates, units, overrides."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from seatrial.errors import InputError, SimulationError
+
+from .conftest import Bench, value
+
+LENGTH = 10
+ADDERS = 'ramp = { fmu = "users.py:Ramp" }\n' + "\n".join(
+    f'a{i} = {{ fmu = "users.py:Add" }}' for i in range(LENGTH)
+)
+# Declared back to front: the order of the file must not matter.
+CHAINED = "\n".join(
+    f'"{"ramp.y" if i == 0 else f"a{i - 1}.y"}" = "a{i}.u"' for i in reversed(range(LENGTH))
+)
+
+
+def test_feedthrough_adds_no_delay(bench: Bench) -> None:
+    master = bench.master(ADDERS, CHAINED)
+    for k in range(20):
+        assert value(master, f"a{LENGTH - 1}.y") == k / 10 + LENGTH
+        master.step()
+
+
+def test_plain_jacobi_delays_each_hop_by_one_step(bench: Bench) -> None:
+    top = 'step = "100 ms"\nalgorithm = "plain-jacobi"'
+    master = bench.master(ADDERS, CHAINED, top=top)
+    for _ in range(30):
+        master.step()
+    # Hop i shows the ramp of i + 1 steps ago.
+    for i in range(LENGTH):
+        assert value(master, f"a{i}.y") == pytest.approx((30 - i - 1) / 10 + i + 1, abs=1e-14)
+
+
+def test_initial_loop_is_solved(bench: Bench) -> None:
+    master = bench.master(
+        'a = { fmu = "users.py:Scale" }\nb = { fmu = "users.py:Scale", set = { gain = -0.4 } }',
+        '"a.y" = "b.u"\n"b.y" = "a.u"',
+    )
+    # y_a = 0.5 y_b + 1, y_b = -0.4 y_a + 1
+    assert value(master, "a.y") == pytest.approx(1.25, abs=1e-11)
+    assert value(master, "b.y") == pytest.approx(0.5, abs=1e-11)
+    master.step()
+    assert value(master, "a.y") == pytest.approx(1.25, abs=1e-11)
+
+
+def test_loop_without_a_solution_names_its_wires(bench: Bench) -> None:
+    with pytest.raises(SimulationError, match=r"loop through a\.y, b\.y does not settle"):
+        bench.master(
+            'a = { fmu = "users.py:Scale", set = { gain = 2.0 } }\n'
+            'b = { fmu = "users.py:Scale", set = { gain = 2.0 } }',
+            '"a.y" = "b.u"\n"b.y" = "a.u"',
+        )
+
+
+def test_slow_component_steps_at_its_own_rate(bench: Bench) -> None:
+    master = bench.master(
+        'ramp = { fmu = "users.py:Ramp" }\nfast = { fmu = "users.py:Sum" }\n'
+        'slow = { fmu = "users.py:Sum", step = "500 ms" }',
+        '"ramp.y" = ["fast.u", "slow.u"]',
+    )
+    fast, slow = [], []
+    for _ in range(20):
+        master.step()
+        fast.append(value(master, "fast.x"))
+        slow.append(value(master, "slow.x"))
+    assert fast[-1] == pytest.approx(0.1 * sum(k / 10 for k in range(20)), abs=1e-12)
+    held = [0.0] * 4 + [0.0] * 5 + [0.25] * 5 + [0.75] * 5 + [1.5]
+    assert slow == pytest.approx(held, abs=1e-12)
+
+
+def test_sampled_component_keeps_its_own_instants(bench: Bench) -> None:
+    """Period 0.15 s in steps of 0.1 s: instants between the steps see the held input."""
+    master = bench.master(
+        'ramp = { fmu = "users.py:Ramp" }\nclock = { fmu = "users.py:Clock", set = { period = 0.15 } }',
+        '"ramp.y" = "clock.u"',
+    )
+    seen = []
+    for _ in range(10):
+        master.step()
+        seen.append((value(master, "clock.y"), value(master, "clock.k")))
+    # instants 0, 0.15, 0.3, 0.45, ...: at 0.3 the fresh value, at 0.15 the one held from 0.1
+    expected = [(0.0, 1), (0.1, 2), (0.3, 2), (0.3, 3), (0.4, 4), (0.6, 4), (0.6, 5), (0.7, 6), (0.9, 6), (0.9, 7)]  # fmt: skip
+    assert [y for y, _ in seen] == pytest.approx([y for y, _ in expected], abs=1e-15)
+    assert [k for _, k in seen] == [k for _, k in expected]
+
+
+def test_units_are_converted_on_the_wire(bench: Bench) -> None:
+    master = bench.master(
+        'turn = { fmu = "users.py:Turn" }\nsum = { fmu = "users.py:Sum" }',
+        '"turn.a" = "sum.angle"\n"turn.flag" = "sum.on"',
+    )
+    assert value(master, "sum.seen") == pytest.approx(math.pi / 2, rel=1e-15)
+    for _ in range(9):
+        master.step()
+    assert value(master, "sum.seen") == pytest.approx(math.radians(99.0), rel=1e-15)
+    assert value(master, "turn.flag") is True
+    assert value(master, "turn.text") == 'at "0.90", é'
+
+
+def test_override_and_release_of_outputs_and_inputs(bench: Bench) -> None:
+    master = bench.master(
+        'ramp = { fmu = "users.py:Ramp" }\nadd = { fmu = "users.py:Add" }\nsum = { fmu = "users.py:Sum" }',
+        '"ramp.y" = ["add.u", "sum.u"]',
+    )
+    master.override("ramp", "y", 5.0)
+    assert (value(master, "ramp.y"), value(master, "add.y")) == (5.0, 6.0)
+    master.step()
+    assert (value(master, "ramp.y"), value(master, "sum.x")) == (5.0, 0.5)
+    master.release("ramp", "y")
+    assert (value(master, "ramp.y"), value(master, "add.y")) == (0.1, 1.1)
+    master.override("add", "u", -1.0)
+    master.step()
+    assert (value(master, "ramp.y"), value(master, "add.y")) == (0.2, 0.0)
+    master.release("add", "u")
+    assert value(master, "add.y") == 1.2
+    master.set("sum", ["rate"], [100.0])
+    before = value(master, "sum.x")
+    master.step()
+    assert value(master, "sum.x") == pytest.approx(before + 100.0 * 0.1 * 0.2, abs=1e-12)
+
+
+@pytest.mark.parametrize("how", ["raise", "nan"])
+def test_a_failing_component_ends_the_run_with_its_name(bench: Bench, how: str) -> None:
+    master = bench.master(f'boat = {{ fmu = "users.py:Bad", set = {{ how = "{how}" }} }}')
+    with pytest.raises(SimulationError, match="boat") as error:
+        for _ in range(10):
+            master.step()
+    assert master.time == 0.5
+    assert {"raise": "the boat has sunk", "nan": "output y is nan"}[how] in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("components", "connections", "message"),
+    [
+        ('a = { fmu = "users.py:Add" }', '"a.y" = "b.u"', "unknown component 'b'"),
+        ('a = { fmu = "users.py:Add" }', '"a.z" = "a.u"', "unknown output 'z'"),
+        (
+            'a = { fmu = "users.py:Add" }',
+            '"a.u" = "a.y"',
+            "causality of a.u is input, output is needed",
+        ),
+        (
+            'r = { fmu = "users.py:Ramp" }\ns = { fmu = "users.py:Sum" }',
+            '"r.y" = "s.angle"',
+            "unit 'm' cannot be converted to 'rad'",
+        ),
+        (
+            't = { fmu = "users.py:Turn" }\ns = { fmu = "users.py:Sum" }',
+            '"t.text" = "s.u"',
+            "text is str, u is float",
+        ),
+        (
+            'r = { fmu = "users.py:Ramp" }\nq = { fmu = "users.py:Ramp" }\na = { fmu = "users.py:Add" }',
+            '"r.y" = "a.u"\n"q.y" = "a.u"',
+            "already fed by r.y",
+        ),
+        ('a = { fmu = "users.py:Add", step = "150 ms" }', "", "not a multiple"),
+        ('a = { fmu = "users.py:Ad" }', "", "cannot import name 'Ad'"),
+        ('a = { fmu = "users.py:Add", set = { gain = 1 } }', "", "unknown port 'gain'"),
+        ('a = { fmu = "users.py:Add", set = { y = 1 } }', "", "output and cannot be set"),
+        ('a = { fmu = "users.py:Scale", set = { bias = "3 kg" } }', "", "'kg' cannot be converted"),
+        ('a = { fmu = "users.py:Scale", set = { bias = [1, 2] } }', "", "1 values are needed"),
+        ('a = { fmu = "users.py:Scale", set = { bias = "plenty" } }', "", "not a quantity"),
+        ('a = { fmu = "users.py:Scale", parameters = "hydrone" }', "", "component table"),
+        ('a = { fmu = "users.py:Scale", profile = "sensors.gnss" }', "", "names no profile"),
+        ('"a b" = { fmu = "users.py:Scale" }', "", "letters, digits"),
+        ('a = { fmuu = "users.py:Scale" }', "", "did you mean 'fmu'"),
+    ],
+)
+def test_mistakes_in_a_rig_are_named(
+    direct, components: str, connections: str, message: str
+) -> None:
+    with pytest.raises(InputError, match=message) as error:
+        direct.system(components, connections)
+    assert "rig.toml" in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("top", "message"),
+    [
+        ('step = "10"', "has no unit"),
+        ('step = "10 kg"', "cannot be converted to 's'"),
+        ('step = "0 ms"', "must be positive"),
+        ('step = "10 ms"\nalgorithm = "jakobi"', "algorithm"),
+        ('stepp = "10 ms"', "did you mean 'step'"),
+        ('step = "10 ms', r"line 1"),
+    ],
+)
+def test_mistakes_at_the_top_of_a_rig_are_named(direct, top: str, message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        direct.system("", "", top=top)
+
+
+def test_values_that_a_component_refuses_are_named(bench: Bench) -> None:
+    with pytest.raises(SimulationError, match="unknown value of how 'explode'"):
+        bench.master('boat = { fmu = "users.py:Bad", set = { how = "explode" } }')
+
+
+def test_unconnected_inputs_are_reported(direct) -> None:
+    system = direct.system(
+        'ramp = { fmu = "users.py:Ramp" }\nsum = { fmu = "users.py:Sum", set = { on = true } }',
+        '"ramp.y" = "sum.u"',
+    )
+    assert system.unconnected_inputs() == ["sum.angle"]

@@ -1,0 +1,226 @@
+import math
+from pathlib import Path
+
+import pytest
+
+from seatrial.cosim.profile import SENSORS, load_profile
+from seatrial.devices.servo import Servo
+from seatrial.devices.thruster import Thruster
+from seatrial.errors import InputError
+
+GOOD = """\
+title = "A boat"
+
+[identity]
+system_id = 7
+component_id = 1
+vehicle_type = "surface_boat"
+autopilot_type = "px4"
+firmware_version = "1.2.3-dev"
+uid = 0xFFFF_FFFF_FFFF_FFFF
+
+[home]
+latitude = "-31.78 deg"
+longitude = "-0.5 rad"
+altitude = "120 cm"
+date = 2026-02-05
+source = "assumed"
+
+[actuators.port]
+channel = 1
+port = "port_thruster.pulse"
+pulse_min = "1100 us"
+pulse_neutral = "1.5 ms"
+pulse_max = "0.0019 s"
+source = "data sheet"
+
+[actuators.rudder]
+channel = 2
+port = "rudder.pulse"
+pulse_min = "1000 us"
+pulse_neutral = "1500 us"
+pulse_max = "2000 us"
+reversed = true
+source = "data sheet"
+
+[sensors.gnss]
+kind = "gnss"
+source = "data sheet"
+period = "200 ms"
+antenna = ["10 cm", "0 m", "-300 mm"]
+position_n_noise = "2 cm"
+dropout = 0.01
+
+[sensors.heading]
+kind = "compass"
+source = "data sheet"
+heading_noise = "0.5 deg"
+"""
+
+
+@pytest.fixture
+def load(write):
+    """Return a function that reads GOOD with one text replaced by another."""
+
+    def load(old="", new=""):
+        assert not old or GOOD.count(old) == 1
+        return load_profile("boat.toml", write("boat.toml", GOOD.replace(old, new)).parent)
+
+    return load
+
+
+def test_values_are_si(load):
+    profile = load()
+    assert profile.file.identity.uid == 2**64 - 1
+    assert profile.file.home.latitude == pytest.approx(math.radians(-31.78))
+    assert profile.file.home.longitude == -0.5
+    assert profile.file.home.altitude == pytest.approx(1.2)
+    assert profile.parameters("sensors.gnss") == {
+        "period": 0.2,
+        "antenna": [0.1, 0.0, -0.3],
+        "position_n_noise": 0.02,
+        "dropout": 0.01,
+    }
+    assert profile.parameters("sensors.heading") == {"heading_noise": math.radians(0.5)}
+    assert profile.parameters("actuators.port") == {
+        "pulse_min": 1.1e-3,
+        "pulse_neutral": 1.5e-3,
+        "pulse_max": 1.9e-3,
+        "reversed": 0.0,
+    }
+    assert profile.parameters("actuators.rudder")["reversed"] == 1.0
+
+
+def test_sections(load):
+    sections = ["actuators.port", "actuators.rudder", "sensors.gnss", "sensors.heading"]
+    assert load().sections() == sections
+
+
+def test_unknown_section_has_near_misses(load):
+    with pytest.raises(
+        InputError, match=r"boat\.toml: unknown section 'sensors.gps'; did you mean"
+    ):
+        load().parameters("sensors.gps")
+
+
+def test_a_sensorless_profile_is_fine(write):
+    text = GOOD[: GOOD.index("[actuators.port]")]
+    assert load_profile("bare.toml", write("bare.toml", text).parent).sections() == []
+
+
+# Each mistake, and what the message must say of it.
+MISTAKES = {
+    "unknown key": (
+        ("system_id", "sytem_id"),
+        ["identity.sytem_id", "did you mean 'system_id'"],
+    ),
+    "missing key": (("uid = 0xFFFF_FFFF_FFFF_FFFF\n", ""), ["identity.uid", "missing"]),
+    "unknown table": (("[home]", "[hone]"), ["hone", "did you mean 'home'"]),
+    "id out of range": (("system_id = 7", "system_id = 256"), ["identity.system_id", "255", "256"]),
+    "id as text": (("system_id = 7", 'system_id = "7"'), ["identity.system_id", "integer", "'7'"]),
+    "vehicle type": (
+        ('"surface_boat"', '"surfaceboat"'),
+        ["identity.vehicle_type", "'surfaceboat'", "did you mean 'surface_boat'", "submarine"],
+    ),
+    "autopilot type": (('"px4"', '"pixhawk"'), ["identity.autopilot_type", "ardupilotmega, gen"]),
+    "version": (('"1.2.3-dev"', '"v1"'), ["identity.firmware_version", "4.5.0-dev", "'v1'"]),
+    "no unit": (('"-31.78 deg"', '"-31.78"'), ["home.latitude", "no unit", "'-31.78'"]),
+    "bare number": (('"-31.78 deg"', "-31.78"), ["home.latitude", "unit", "-31.78"]),
+    "latitude": (
+        ('"-31.78 deg"', '"-91 deg"'),
+        ["home.latitude", "at least -1.5708 rad", "-91 deg"],
+    ),
+    "date": (("2026-02-05", '"yesterday"'), ["home.date", "yesterday"]),
+    "wrong unit": (('"1.5 ms"', '"1.5 m"'), ["actuators.port.pulse_neutral", "'m'", "'s'"]),
+    "not a unit": (('"1.5 ms"', '"1.5 mx"'), ["actuators.port.pulse_neutral", "'mx'"]),
+    "pulse range": (('"1.5 ms"', '"15 ms"'), ["actuators.port.pulse_neutral", "at most 0.0025 s"]),
+    "pulse order": (('"1.5 ms"', '"2 ms"'), ["actuators.port", "must rise", "0.002"]),
+    "channel range": (("channel = 2", "channel = 0"), ["actuators.rudder.channel", "1", "found 0"]),
+    "channel twice": (
+        ("channel = 2", "channel = 1"),
+        ["actuators.rudder.channel", "1 is already actuators.port's"],
+    ),
+    "port twice": (
+        ('"rudder.pulse"', '"port_thruster.pulse"'),
+        ["actuators.rudder.port", "already driven by actuators.port"],
+    ),
+    "not a port": (
+        ('"rudder.pulse"', '"rudder"'),
+        ["actuators.rudder.port", "port_thruster.pulse"],
+    ),
+    "reversed as number": (("reversed = true", "reversed = 1"), ["actuators.rudder.reversed", "1"]),
+    "kind": (('"compass"', '"compas"'), ["sensors.heading.kind", "did you mean 'compass'"]),
+    "no kind": (('kind = "compass"\n', ""), ["sensors.heading.kind", "missing"]),
+    "no source": (
+        ('kind = "compass"\nsource = "data sheet"', 'kind = "compass"'),
+        ["source", "missing"],
+    ),
+    "sensor key": (
+        ("heading_noise", "heading_nose"),
+        ["sensors.heading.heading_nose", "did you mean 'heading_noise'"],
+    ),
+    "seed": (("dropout = 0.01", "seed = 1"), ["sensors.gnss.seed", "unknown key"]),
+    "sensor without unit": (('"2 cm"', "0.02"), ["sensors.gnss.position_n_noise", "'1 m'", "0.02"]),
+    "sensor limit": (
+        ("dropout = 0.01", "dropout = 2"),
+        ["sensors.gnss.dropout", "at most 1", "found 2"],
+    ),
+    "negative noise": (('"2 cm"', '"-2 cm"'), ["sensors.gnss.position_n_noise", "at least 0 m"]),
+    "axes": (
+        ('["10 cm", "0 m", "-300 mm"]', '["10 cm", "0 m"]'),
+        ["sensors.gnss.antenna", "3 (x, y, z)"],
+    ),
+    "list for a scalar": (('"200 ms"', '["200 ms"]'), ["sensors.gnss.period", "one value needed"]),
+    "unit in a list": (('"-300 mm"', '"-300 ms"'), ["sensors.gnss.antenna", "'ms'"]),
+    "sensor no table": (("[sensors.heading]", "[sensors]\nx = 3\n[sensors.y]"), ["sensors.x.kind"]),
+    "not TOML": (('title = "A boat"', "title = A boat"), ["not TOML", "line 1"]),
+}
+
+
+@pytest.mark.parametrize("mistake", MISTAKES)
+def test_mistake_names_file_key_and_remedy(mistake, load):
+    (old, new), said = MISTAKES[mistake]
+    with pytest.raises(InputError) as caught:
+        load(old, new)
+    message = str(caught.value)
+    for text in ["boat.toml", *said]:
+        assert text in message
+
+
+def test_every_mistake_is_reported(load):
+    with pytest.raises(InputError) as caught:
+        load('altitude = "120 cm"\ndate = 2026-02-05', 'altitude = "120 kg"\ndate = 3')
+    assert len(str(caught.value).splitlines()) == 2
+
+
+def test_file_that_is_not_there():
+    with pytest.raises(InputError, match="no file"):
+        load_profile("nowhere.toml")
+    with pytest.raises(InputError, match="did you mean 'hydrone'"):
+        load_profile("hydron")
+
+
+# ------------------------------------------------------------------ shipped
+
+
+SHIPPED = sorted((Path(__file__).parents[2] / "hil_profiles").glob("*.toml"))
+
+
+@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
+def test_shipped_profile_fits_its_components(path):
+    profile = load_profile(str(path))
+    for section in profile.sections():
+        kind, _, name = section.partition(".")
+        if kind == "sensors":
+            classes = [SENSORS[getattr(profile.file.sensors, name).kind]]
+        else:
+            classes = [Thruster, Servo]
+        for cls in classes:
+            component = cls(name)
+            for parameter, value in profile.parameters(section).items():
+                component.set(parameter, value)
+            component.initialise()
+
+
+def test_hydrone_is_shipped():
+    assert load_profile("hydrone").sections()[:2] == ["actuators.port", "actuators.starboard"]

@@ -1,0 +1,241 @@
+"""Running trials: both carriers, reruns, failures, events, mistakes in trial files."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+
+import pytest
+
+from seatrial.errors import InputError
+from seatrial.trials.campaign import load_campaign, run_campaign
+from seatrial.trials.run import Hooks, run_trial
+from seatrial.trials.trial import load_trial
+
+BOAT = '''
+"""A boat for trials."""
+from seatrial.component import Component, Input, Noise, Output, Parameter
+from seatrial.sampled import Sampled
+
+
+class Boat(Noise, Sampled):
+    """Drifts with noise, and may fail."""
+
+    fail_at = Parameter(1e9, "s", "time of a failure")
+    how = Parameter("raise", "1", "how", choices=("raise", "nan"))
+    push = Input("N", "force")
+    trim = Parameter(1.0, "rad", "trim", tunable=True)
+    mode = Parameter("calm", "1", "mode", choices=("calm", "storm"))
+    x = Output("m", "place")
+    angle = Output("rad", "an angle")
+    label = Output("1", "text", type=str)
+    wet = Output("1", "flag", type=bool)
+
+    def reset(self, t):
+        self.place = 0.0
+
+    def sample(self, t, k):
+        self.x = self.place + 0.01 * self.generator(k).standard_normal()
+        self.angle = self.trim
+        self.wet = self.place > 0.1
+        self.label = f'{self.mode}, "{k}"'
+
+    def update(self, t, k):
+        if t >= self.fail_at:
+            if self.how == "raise":
+                raise OSError("the radio is on fire")
+            self.place = float("nan")
+        self.place += 0.01 * (1.0 + self.push)
+'''
+RIG = """
+step = "10 ms"
+[components]
+boat = { fmu = "boat.py:Boat" }
+twin = { fmu = "boat.py:Boat" }
+"""
+TRIAL = """
+rig = "rig.toml"
+stop = "1 s"
+[[criteria]]
+name = "stays near"
+check = "abs(boat.x) < 2 m"
+"""
+
+
+@pytest.fixture()
+def bench(write):
+    write("boat.py", BOAT)
+    write("rig.toml", RIG)
+
+    def trial(text: str = TRIAL) -> str:
+        return str(write("trial.toml", text))
+
+    return trial
+
+
+def test_both_carriers_and_a_rerun_give_the_same_bytes(bench, tmp_path: Path) -> None:
+    trial = load_trial(bench())
+    records = []
+    for number, engine in enumerate(("fmu", "direct", "fmu")):
+        result = run_trial(trial, tmp_path / str(number), engine=engine)
+        assert result.passed
+        records.append((result.folder / "signals.csv").read_bytes())
+    assert records[0] == records[1] == records[2]
+    manifests = [json.loads((tmp_path / n / "manifest.json").read_text()) for n in ("0", "2")]
+    assert manifests[0] == manifests[1]
+
+
+@pytest.mark.parametrize("name", ["hydrone-landing", "hydrone-open-takeoff"])
+def test_a_shipped_trial_gives_the_same_bytes_in_both_carriers(name: str, tmp_path: Path) -> None:
+    trial = load_trial(name)
+    for engine in ("fmu", "direct"):
+        run_trial(trial, tmp_path / engine, engine=engine)
+    record = (tmp_path / "fmu" / "signals.csv").read_bytes()
+    assert record == (tmp_path / "direct" / "signals.csv").read_bytes()
+    assert record.count(b"\n") == 2002
+
+
+def test_seeds_give_each_instance_its_own_noise(bench, tmp_path: Path) -> None:
+    def column(seed: int, name: str) -> list[str]:
+        folder = tmp_path / f"{seed}-{name}-{len(list(tmp_path.iterdir()))}"
+        run_trial(load_trial(bench()).changed({"seed": seed}, "test"), folder, engine="direct")
+        rows = [line.split(",") for line in (folder / "signals.csv").read_text().splitlines()]
+        return [row[rows[0].index(f"{name}.x")] for row in rows[1:]]
+
+    assert column(1, "boat") != column(1, "twin")
+    assert column(1, "boat") != column(2, "boat")
+
+
+@pytest.mark.parametrize("engine", ["fmu", "direct"])
+@pytest.mark.parametrize(
+    ("how", "said"), [("raise", "the radio is on fire"), ("nan", "output x is nan")]
+)
+def test_a_failure_keeps_what_was_recorded(engine, how, said, bench, tmp_path: Path) -> None:
+    settings = {"boat.fail_at": 0.5, "boat.how": how}
+    result = run_trial(
+        load_trial(bench()).changed(settings, "test"), tmp_path / "run", engine=engine
+    )
+    assert result.status == "failed"
+    assert "boat" in result.error
+    assert said in result.error
+    assert not result.passed
+    rows = (tmp_path / "run" / "signals.csv").read_text().splitlines()
+    assert len(rows) - 1 == 51  # times 0 to 0.5 s
+    manifest = json.loads((tmp_path / "run" / "manifest.json").read_text())
+    assert (manifest["status"], manifest["error"]) == ("failed", result.error)
+
+
+def test_a_stopped_run_is_whole(bench, tmp_path: Path) -> None:
+    polls = iter(range(1000))
+    hooks = Hooks(stop_requested=lambda: next(polls) >= 30)
+    result = run_trial(load_trial(bench()), tmp_path / "run", engine="direct", hooks=hooks)
+    assert (result.status, result.passed) == ("stopped", False)
+    assert len((tmp_path / "run" / "signals.csv").read_text().splitlines()) == 32
+
+
+def test_events_set_override_and_release(bench, tmp_path: Path) -> None:
+    events = """
+[[events]]
+at = "200 ms"
+set = { "boat.push" = "2 N", "boat.trim" = "180 deg" }
+[[events]]
+at = "500 ms"
+override = { "twin.angle" = "90 deg" }
+[[events]]
+at = "700 ms"
+release = ["twin.angle"]
+"""
+    run_trial(load_trial(bench(TRIAL + events)), tmp_path / "run", engine="direct")
+    with (tmp_path / "run" / "signals.csv").open(newline="") as file:
+        rows = list(csv.reader(file))
+    column = {name: i for i, name in enumerate(rows[0])}
+
+    def at(t: float, name: str) -> float:
+        row = next(r for r in rows[1:] if float(r[0]) == t)
+        return float(row[column[name]])
+
+    pi = 3.141592653589793
+    assert at(0.19, "boat.angle") == 1.0
+    assert at(0.21, "boat.angle") == pi
+    assert [at(t, "twin.angle") for t in (0.49, 0.5, 0.69, 0.7)] == [1.0, pi / 2, pi / 2, 1.0]
+    assert at(1.0, "boat.x") == pytest.approx(0.01 * (20 + 80 * 3), abs=0.06)
+
+
+def test_what_is_recorded_can_be_chosen(bench, tmp_path: Path) -> None:
+    record = '[record]\nsignals = ["boat.*", "twin.label"]\nevery = "50 ms"\n'
+    run_trial(load_trial(bench(TRIAL + record)), tmp_path / "run", engine="direct")
+    lines = (tmp_path / "run" / "signals.csv").read_text().splitlines()
+    assert lines[0] == "time,boat.x,boat.angle,boat.label,boat.wet,twin.label"
+    assert len(lines) == 22
+    assert lines[2].startswith("0.05,")
+    assert lines[2].endswith(',"calm, ""5""",0,"calm, ""5"""')
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ('rig = "nowhere.toml"\nstop = "1 s"', "there is no file"),
+        ('rig = "hydrnoe"\nstop = "1 s"', "did you mean 'hydrone'"),
+        ('rig = "rig.toml"', "stop: this key is missing"),
+        ('rig = "rig.toml"\nstop = "1.005 s"', "whole number of communication steps"),
+        ('rig = "rig.toml"\nstop = "0 s"', "whole number of communication steps"),
+        ('rig = "rig.toml"\nstop = "1 m"', "'m' cannot be converted to 's'"),
+        ('rig = "rig.toml"\nstop = "1 s"\nseed = -1', "seed"),
+        ('rig = "rig.toml"\nstop = "1 s"\ncritera = []', "did you mean 'criteria'"),
+        (TRIAL.replace("name", "nmae"), r"criteria\.0.*did you mean 'name'"),
+        (TRIAL.replace("2 m", "2 deg"), "stays near"),
+        (TRIAL.replace("boat.x", "boat.y"), "unknown signal 'boat.y'"),
+        (TRIAL.replace("< 2", "<< 2"), "stays near"),
+        (TRIAL + '[set]\n"boat.trmi" = 1', "did you mean 'trim'"),
+        (TRIAL + '[set]\n"bote.trim" = 1', "did you mean 'boat'"),
+        (TRIAL + '[set]\n"boat.trim" = "3 kg"', "'kg' cannot be converted to 'rad'"),
+        (TRIAL + '[set]\n"boat.mode" = 3', "a text is needed"),
+        (TRIAL + '[record]\nsignals = ["boot.*"]', "no signal matches 'boot"),
+        (TRIAL + '[record]\nsignals = ["twin.*"]', "boat.x is not recorded"),
+        (TRIAL + '[[events]]\nat = "2 s"\nset = { "boat.push" = "1 N" }', "outside the trial"),
+        (TRIAL + '[[events]]\nat = "15 ms"\nset = { "boat.push" = "1 N" }', "whole number"),
+        (TRIAL + '[[events]]\nat = "0.5 s"\nset = { "boat.mode" = "storm" }', "is fixed"),
+        (TRIAL + '[[events]]\nat = "0.5 s"\noverride = { "boat.push" = "1 N" }', "neither"),
+        (TRIAL + '[[events]]\nat = "0.5 s"\nset = { "boat.push" = "1 rad" }', "'rad' cannot"),
+        ("rig = 3", "rig: .*found 3"),
+        ("rig = ", "not TOML: .*end of document"),
+    ],
+)
+def test_mistakes_in_a_trial_are_named_and_leave_nothing(
+    text: str, message: str, bench, tmp_path: Path
+) -> None:
+    path = bench(text)
+    with pytest.raises(InputError, match=message) as error:
+        run_trial(load_trial(path), tmp_path / "run", engine="direct")
+    assert "trial.toml" in str(error.value)
+    assert not (tmp_path / "run").exists()
+
+
+def test_a_folder_with_something_in_it_is_never_written_to(bench, tmp_path: Path) -> None:
+    (tmp_path / "run").mkdir()
+    (tmp_path / "run" / "precious").write_text("data")
+    with pytest.raises(InputError, match="is not an empty folder"):
+        run_trial(load_trial(bench()), tmp_path / "run", engine="direct")
+    assert [p.name for p in (tmp_path / "run").iterdir()] == ["precious"]
+
+
+def test_a_campaign_runs_every_combination_and_each_scaling(bench, write, tmp_path: Path) -> None:
+    bench()
+    path = write(
+        "campaign.toml",
+        'trials = ["trial.toml"]\n[grid]\n"boat.mode" = ["calm", "storm"]\n'
+        '"boat.push" = ["0 N", "5 N"]\n[scale]\n"boat.trim" = [0.5, 2.0]\n',
+    )
+    finished = run_campaign(load_campaign(str(path)), tmp_path / "out", engine="direct")
+    assert len(finished) == 12
+    index = json.loads((tmp_path / "out" / "campaign.json").read_text())
+    assert [case["passed"] for case in index["cases"]] == [True, True, True, False, False, False] * 2
+    trims = []
+    for case in index["cases"]:
+        manifest = json.loads((tmp_path / "out" / case["folder"] / "manifest.json").read_text())
+        parameters = manifest["components"]["boat"]["parameters"]
+        trims.append((parameters["mode"]["value"], parameters["trim"]["value"]))
+    assert trims == [("calm", v) for v in (1.0, 0.5, 2.0)] * 2 + [
+        ("storm", v) for v in (1.0, 0.5, 2.0)
+    ] * 2
