@@ -180,14 +180,17 @@ def _top_keys(path: Path) -> set[str]:
 
 
 def _setting(text: str) -> tuple[str, Any]:
-    """Return ``KEY=VALUE`` parsed; the value is TOML if it can be, else a text."""
+    """Return ``KEY=VALUE`` parsed: a number, a list, true or false as in TOML; else a text."""
     key, equals, value = text.partition("=")
     if not equals or not key:
         raise InputError(f"--set: KEY=VALUE is needed, found {text!r}")
+    plain = value.strip()
+    if plain.lstrip("+-") in ("nan", "inf"):  # TOML takes these words for numbers
+        return key.strip(), plain
     try:
         return key.strip(), tomllib.loads(f"x = {value}")["x"]
     except tomllib.TOMLDecodeError:
-        return key.strip(), value.strip()
+        return key.strip(), plain
 
 
 def _exit_with(results: list[Result]) -> None:

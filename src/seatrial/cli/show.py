@@ -10,7 +10,6 @@ from types import TracebackType
 from rich.console import Console
 from rich.markup import escape
 from rich.progress import BarColumn, Progress, TextColumn
-from rich.table import Table
 
 from ..component import Component
 from ..trials.campaign import Case
@@ -46,7 +45,8 @@ class Watch:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        self._progress.stop()
+        if console.is_terminal:
+            self._progress.stop()
 
     def expect(self, cases: int) -> None:
         """Say how many runs there will be."""
@@ -76,15 +76,10 @@ def print_verdicts(result: Result) -> None:
     """Print the verdict of each criterion and how the run went."""
     for note in result.notes:
         console.print(f"[dim]note: {escape(note)}[/dim]", soft_wrap=True)
-    table = Table(box=None, padding=(0, 2, 0, 0))
-    for title in ("", "criterion", "check", "result"):
-        table.add_column(title)
-    for name, check, verdict in result.verdicts:
+    for name, _, verdict in result.verdicts:
         mark = "[green]PASS[/green]" if verdict.passed else "[red]FAIL[/red]"
-        table.add_row(mark, escape(name), escape(check), escape(verdict.detail))
-    if result.verdicts:
-        console.print(table)
-    elif result.status == "complete":
+        console.print(f"{mark}  {escape(name)}: {escape(verdict.detail)}", soft_wrap=True)
+    if not result.verdicts and result.status == "complete":
         console.print("the trial has no criteria")
     if result.status != "complete":
         console.print(f"[red]{result.status.upper()}[/red]")

@@ -62,7 +62,7 @@ class StationKeeping(Sampled):
         |pulse - pulse_neutral| = dead_band + (span - dead_band) (|T| / T_max)^0.75
 
     span and T_max being those of the side (ahead: pulse_max, ``thrust_ahead``). With the
-    defaults this inverts the T200's 16 V table within 3 % of full thrust (largest error 1.5 N).
+    defaults this inverts the T200's 16 V table within 3 % of full thrust (largest error 1.52 N).
 
     **Safety**: starts idle; ``enabled`` false gives neutral pulses and clears the integrals, as
     does a heading not valid for longer than ``timeout``. A position not valid for that long

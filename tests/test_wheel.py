@@ -1,0 +1,36 @@
+"""The wheel in an empty environment: a trial from an empty folder."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+
+
+def test_the_wheel_alone_runs_a_trial(tmp_path: Path) -> None:
+    build = [sys.executable, "-m", "pip", "wheel", "--no-deps", "--quiet"]
+    subprocess.run([*build, "--wheel-dir", str(tmp_path), str(ROOT)], check=True)
+    (wheel,) = tmp_path.glob("*.whl")
+    with zipfile.ZipFile(wheel) as archive:
+        names = archive.namelist()
+    for shipped in ("fmus/marine_craft.py", "harness/trials/hydrone-landing.toml", "hil_profiles/hydrone.toml"):
+        assert f"seatrial/_shipped/{shipped}" in names
+    assert "seatrial/vehicles/hydrone.toml" in names
+    environment = tmp_path / "environment"
+    subprocess.run([sys.executable, "-m", "venv", str(environment)], check=True)
+    pip = [str(environment / "bin" / "python"), "-m", "pip", "install", "--quiet"]
+    subprocess.run([*pip, str(wheel)], check=True)
+    empty = tmp_path / "empty"
+    empty.mkdir()
+    done = subprocess.run(
+        [str(environment / "bin" / "seatrial"), "run", "hydrone-landing", "--out", "run"],
+        cwd=empty, capture_output=True, text=True, check=False,
+        env={**os.environ, "SEATRIAL_CACHE": str(tmp_path / "cache")},
+    )  # fmt: skip
+    assert done.returncode == 1, done.stderr  # the published verdict: it heels too far
+    assert "roll stays below 10 degrees" in done.stdout
+    assert (empty / "run" / "report.html").stat().st_size > 1_000_000
