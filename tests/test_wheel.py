@@ -17,7 +17,11 @@ def test_the_wheel_alone_runs_a_trial(tmp_path: Path) -> None:
     (wheel,) = tmp_path.glob("*.whl")
     with zipfile.ZipFile(wheel) as archive:
         names = archive.namelist()
-    for shipped in ("fmus/marine_craft.py", "harness/trials/hydrone-landing.toml", "hil_profiles/hydrone.toml"):
+    for shipped in (
+        "fmus/marine_craft.py",
+        "harness/trials/hydrone-landing.toml",
+        "hil_profiles/hydrone.toml",
+    ):
         assert f"seatrial/_shipped/{shipped}" in names
     assert "seatrial/vehicles/hydrone.toml" in names
     environment = tmp_path / "environment"

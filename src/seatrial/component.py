@@ -21,6 +21,7 @@ happen inside.
 from __future__ import annotations
 
 import math
+import zlib
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, ClassVar
 
@@ -182,12 +183,12 @@ class Component:
         During initialisation a parameter set since the start starts the component again.
         """
         if self._stale and self._phase != _INSTANTIATED:
-            self._stale = False
             if self._restart:
-                self._restart = False
                 self.check_parameters()
                 self.start(self.now)
+                self._restart = False
             self.outputs(self.now)
+            self._stale = False
 
     def setup(self, start_time: float) -> None:
         """Say when the run starts, before `initialise`."""
@@ -306,14 +307,16 @@ class Noise:
     """Mix-in for a component with randomness: numbers keyed by (seed, sample index).
 
     Never keyed by how often it was asked, so that a rerun, a half step or a rollback draws
-    the same noise. Philox 4x64 with the seed as its key and the index as its counter.
+    the same noise. Philox 4x64 with the seed and the kind of component as its key, so that
+    different sensors of one seed differ, and the index as its counter.
     """
 
     seed = Parameter(1.0, "1", "seed of this instance's noise (a whole number)", min=0.0)
 
     def generator(self, index: int) -> np.random.Generator:
         """Return the generator of sample ``index``; draw all that the sample needs from it."""
-        bits = np.random.Philox(key=int(self.seed), counter=[0, 0, 0, index])
+        kind = zlib.crc32(type(self).__name__.encode())
+        bits = np.random.Philox(key=[int(self.seed), kind], counter=[0, 0, 0, index])
         return np.random.Generator(bits)
 
 

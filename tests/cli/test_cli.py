@@ -44,7 +44,7 @@ def seatrial(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
     )
 
 
-@pytest.fixture()
+@pytest.fixture
 def boat(write, tmp_path: Path) -> Path:
     write("bad.py", BAD)
     write("rig.toml", 'step = "10 ms"\n[components]\nboat = { fmu = "bad.py:Bad" }\n')

@@ -63,7 +63,7 @@ check = "abs(boat.x) < 2 m"
 """
 
 
-@pytest.fixture()
+@pytest.fixture
 def bench(write):
     write("boat.py", BOAT)
     write("rig.toml", RIG)
@@ -230,12 +230,20 @@ def test_a_campaign_runs_every_combination_and_each_scaling(bench, write, tmp_pa
     finished = run_campaign(load_campaign(str(path)), tmp_path / "out", engine="direct")
     assert len(finished) == 12
     index = json.loads((tmp_path / "out" / "campaign.json").read_text())
-    assert [case["passed"] for case in index["cases"]] == [True, True, True, False, False, False] * 2
+    assert [case["passed"] for case in index["cases"]] == [
+        True,
+        True,
+        True,
+        False,
+        False,
+        False,
+    ] * 2
     trims = []
     for case in index["cases"]:
         manifest = json.loads((tmp_path / "out" / case["folder"] / "manifest.json").read_text())
         parameters = manifest["components"]["boat"]["parameters"]
         trims.append((parameters["mode"]["value"], parameters["trim"]["value"]))
-    assert trims == [("calm", v) for v in (1.0, 0.5, 2.0)] * 2 + [
-        ("storm", v) for v in (1.0, 0.5, 2.0)
-    ] * 2
+    assert (
+        trims
+        == [("calm", v) for v in (1.0, 0.5, 2.0)] * 2 + [("storm", v) for v in (1.0, 0.5, 2.0)] * 2
+    )
