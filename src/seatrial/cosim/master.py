@@ -200,10 +200,9 @@ class Master:
                 if sources:
                     depends[name, output] = sources
         groups = [g for g in ordered_groups(depends) if any(n in depends for n in g)]
-        scheduled = _scheduled(groups, depends)
         return [
-            (self._visits([n for n in group if n in depends]), loops_on_itself(group, depends))
-            for group in scheduled
+            (self._visits([n for n in group if n in depends]), is_loop)
+            for group, is_loop in _scheduled(groups, depends)
         ]
 
     def _visits(self, outputs: Sequence[Name]) -> list[_Visit]:
@@ -315,9 +314,13 @@ def _gatherer(places: Sequence[int]) -> Any:
 
 def _scheduled(
     groups: list[list[Name]], depends: Mapping[Name, Sequence[Name]]
-) -> list[list[Name]]:
-    """Join groups of one instance that can be read together, keeping the dependency order."""
-    waiting, scheduled = list(groups), []
+) -> list[tuple[list[Name], bool]]:
+    """Join groups of one instance that can be read together, keeping the dependency order.
+
+    True marks a group that is a loop.
+    """
+    waiting = list(groups)
+    scheduled: list[tuple[list[Name], bool]] = []
     moving = {name for group in groups for name in group}
     while waiting:
         ready = [
@@ -326,11 +329,12 @@ def _scheduled(
             if not any(d in moving and d not in g for n in g for d in depends.get(n, ()))
         ]
         first = ready[0]
-        if loops_on_itself(first, depends):
+        is_loop = loops_on_itself(first, depends)
+        if is_loop:
             taken = [first]
         else:
             taken = [g for g in ready if g[0][0] == first[0][0] and not loops_on_itself(g, depends)]
-        scheduled.append([name for group in taken for name in group])
+        scheduled.append(([name for group in taken for name in group], is_loop))
         waiting = [g for g in waiting if g not in taken]
         moving -= {name for group in taken for name in group}
     return scheduled

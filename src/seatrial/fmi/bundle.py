@@ -16,6 +16,7 @@ import re
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 from ..errors import InputError
@@ -198,6 +199,7 @@ def _renamed_statement(node: ast.Import | ast.ImportFrom, own: set[str], root: s
     return "; ".join(parts)
 
 
+@cache
 def _requirement(package: str) -> str:
     """Return the pip requirement of an imported package, with seatrial's own bounds on it."""
     distributions = importlib.metadata.packages_distributions().get(package, [package])
