@@ -36,6 +36,8 @@ NS = 1_000_000_000
 """Nanoseconds in a second: time is counted in whole nanoseconds everywhere."""
 
 
+_LATEST = 2e6  # s: up to 2**51 ns, a double of seconds gives its nanoseconds back
+
 _INSTANTIATED, _INITIALISING, _RUNNING = range(3)
 
 
@@ -69,6 +71,7 @@ class Component:
 
     ports: ClassVar[dict[str, Port]] = {}
     scalars: ClassVar[tuple[ScalarPort, ...]] = ()
+    _declared: ClassVar[frozenset[str]] = frozenset()
     scalar_by_name: ClassVar[dict[str, ScalarPort]] = {}
     _settable: ClassVar[dict[type, frozenset[int]]] = {}
     _always_settable: ClassVar[dict[type, frozenset[int]]] = {}
@@ -78,13 +81,8 @@ class Component:
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
-        declared: dict[str, Port] = {}
-        for base in reversed(cls.__mro__):
-            for name, value in vars(base).items():
-                if isinstance(value, Port):
-                    declared.pop(name, None)
-                    declared[name] = value
-        cls.ports, cls.scalars = lay_out(declared)
+        cls._declared = frozenset(n for n, v in vars(cls).items() if isinstance(v, Port))
+        cls.ports, cls.scalars = lay_out(_declared_ports(cls))
         for name, port in cls.ports.items():
             setattr(cls, name, port)
         cls.scalar_by_name = {scalar.name: scalar for scalar in cls.scalars}
@@ -152,7 +150,7 @@ class Component:
                 self._write([scalar.reference], [scalar.port._scalar(value)], scalar.port.type)
             else:
                 raise InputError(unknown("port", name, [*self.ports, *self.scalar_by_name]))
-        except (TypeError, ValueError) as error:
+        except (TypeError, ValueError, OverflowError) as error:
             raise InputError(f"{self.name}.{name}: {error}") from None
 
     def get(self, name: str) -> Any:
@@ -191,7 +189,12 @@ class Component:
             self._stale = False
 
     def setup(self, start_time: float) -> None:
-        """Say when the run starts, before `initialise`."""
+        """Say when the run starts, before `initialise`. Raises InputError if that is too late."""
+        if not abs(start_time) < _LATEST:
+            raise InputError(
+                f"{self.name}: start time is {start_time!r} s; times are exact to the nanosecond "
+                f"up to {_LATEST:g} s only"
+            )
         self._now_ns = round(start_time * NS)
 
     def initialise(self) -> None:
@@ -205,21 +208,8 @@ class Component:
 
     def check_parameters(self) -> None:
         """Raise InputError for a parameter outside its min, max or choices."""
-        for port in self.ports.values():
-            if not isinstance(port, Parameter):
-                continue
-            for name, index in zip(port.scalar_names, range(port.size), strict=True):
-                value = self.values[port.offset + index]
-                if port.choices is not None and value not in port.choices:
-                    raise InputError(
-                        f"{self.name}.{unknown(f'value of {name}', value, port.choices)}"
-                    )
-                low, high = port.limit("min", index), port.limit("max", index)
-                if (low is not None and value < low) or (high is not None and value > high):
-                    raise InputError(
-                        f"{self.name}.{name} is {value!r} {port.unit}, "
-                        f"allowed {_range_text(low, high)} {port.unit}"
-                    )
+        for scalar in self.scalars:
+            self._check_parameter(scalar, self.values[scalar.reference])
 
     def begin(self) -> None:
         """End the initialisation: from now on fixed parameters cannot be set."""
@@ -274,12 +264,28 @@ class Component:
                 if not math.isfinite(value):  # type: ignore[arg-type]
                     name = self.scalars[reference].name
                     raise InputError(f"{self.name}.{name}: {value} is not a finite number")
+        if not self._inputs.issuperset(references):
+            if running:  # a tunable parameter; before, all are checked at the start
+                for reference, value in zip(references, values, strict=True):
+                    self._check_parameter(self.scalars[reference], value)
+            elif self._phase == _INITIALISING:
+                self._restart = True
         own = self.values
         for reference, value in zip(references, values, strict=True):
             own[reference] = value
         self._stale = True
-        if self._phase == _INITIALISING and not self._inputs.issuperset(references):
-            self._restart = True
+
+    def _check_parameter(self, scalar: ScalarPort, value: Any) -> None:
+        name, port = scalar.name, scalar.port
+        if not isinstance(port, Parameter):
+            return
+        if port.choices is not None and value not in port.choices:
+            raise InputError(f"{self.name}.{unknown(f'value of {name}', value, port.choices)}")
+        low, high = port.limit("min", scalar.index), port.limit("max", scalar.index)
+        if (low is not None and value < low) or (high is not None and value > high):
+            unit = "" if port.unit == "1" else f" {port.unit}"
+            allowed = _range_text(low, high)
+            raise InputError(f"{self.name}.{name} is {value!r}{unit}, allowed {allowed}{unit}")
 
     def _misfit(self, references: Iterable[int], allowed: frozenset[int], kind: type) -> str:
         reference = next(r for r in references if r not in allowed)
@@ -311,10 +317,14 @@ class Noise:
     different sensors of one seed differ, and the index as its counter.
     """
 
-    seed = Parameter(1.0, "1", "seed of this instance's noise (a whole number)", min=0.0)
+    seed = Parameter(
+        1.0, "1", "seed of this instance's noise (a whole number)", min=0.0, max=2.0**53
+    )
 
     def generator(self, index: int) -> np.random.Generator:
         """Return the generator of sample ``index``; draw all that the sample needs from it."""
+        if self.seed % 1.0:
+            raise InputError(f"seed is {self.seed!r}, a whole number is needed")
         kind = zlib.crc32(type(self).__name__.encode())
         bits = np.random.Philox(key=[int(self.seed), kind], counter=[0, 0, 0, index])
         return np.random.Generator(bits)
@@ -322,6 +332,26 @@ class Noise:
 
 def _is_fixed(port: Port) -> bool:
     return isinstance(port, Parameter) and not port.tunable
+
+
+def _declared_ports(cls: type[Component]) -> dict[str, Port]:
+    """Return the ports that a class and its bases declare, the nearest declaration of each."""
+    ports: dict[str, Port] = {}
+    others = {"name", "values"}
+    for base in reversed(cls.__mro__):
+        # A component class also holds placed copies of inherited ports: they declare nothing.
+        own = vars(base).get("_declared", vars(base))
+        for name, value in vars(base).items():
+            if not isinstance(value, Port):
+                others.add(name)
+            elif name in own:
+                ports.pop(name, None)
+                ports[name] = value
+            if name in ports and name in others:
+                raise TypeError(f"{cls.__name__}.{name} is a port and something else too")
+            if name in ports and ports[name].name != name:
+                raise TypeError(f"{cls.__name__}.{name} is the same port as {ports[name].name}")
+    return ports
 
 
 def _check_feedthrough(cls: type[Component]) -> None:
@@ -341,9 +371,9 @@ def _copied(value: Any, where: str) -> Any:
     """Return a deep copy of plain data; raise TypeError for anything else."""
     if value is None or isinstance(value, (bool, int, float, str)):
         return value
-    if isinstance(value, np.ndarray):
+    if isinstance(value, np.ndarray) and not value.dtype.hasobject:
         return value.copy()
-    if isinstance(value, (list, tuple)):
+    if type(value) in (list, tuple):
         return type(value)(_copied(v, where) for v in value)
     if isinstance(value, dict):
         return {k: _copied(v, where) for k, v in value.items()}

@@ -16,6 +16,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from .component import Component, Output, Parameter
+from .errors import InputError, unknown
 from .model import Model, Vector, bind, compile_model, undeclared_feedthrough
 from .ports import Port
 
@@ -92,6 +93,8 @@ class Plant(Component):
         for port in ports:
             if port.kind != "parameter" and port.type is not float:
                 raise TypeError(f"{cls.__name__}.{port.name}: a plant's ports are real numbers")
+            if isinstance(port, Parameter) and port.type is str and port.tunable:
+                raise TypeError(f"{cls.__name__}.{port.name}: equations cannot change in a run")
         cls._models = {}
         cls.state_ports = tuple(p for p in ports if isinstance(p, State))
         cls.input_ports = tuple(p for p in ports if p.kind == "input")
@@ -172,14 +175,18 @@ class Plant(Component):
     ) -> Vector:
         """Return a stacked state near ``guess`` where dx/dt = 0, with inputs ``u`` (as set).
 
-        States named in ``hold`` keep their guess. Levenberg-Marquardt with the exact Jacobian.
-        Raises ArithmeticError if no such state is found (largest |dx/dt| above ``tol`` times
-        its scale at the guess, or 1).
+        States named in ``hold``, whole ports or scalars, keep their guess. Levenberg-Marquardt
+        with the exact Jacobian. Raises ArithmeticError if no such state is found (largest
+        |dx/dt| above ``tol`` times its scale at the guess, or 1), InputError for an unknown name.
         """
         from scipy.optimize import root
 
         model = self._compiled()
-        free = [i for i, name in enumerate(model.x_names) if name not in hold]
+        known = [*model.x_names, *(port.name for port in self.state_ports)]
+        for name in hold:
+            if name not in known:
+                raise InputError(f"{self.name}: {unknown('state', name, known)}")
+        free = [i for i, n in enumerate(model.x_names) if not {n, n.partition(".")[0]} & set(hold)]
         x = np.array(guess, dtype=float)
 
         def full(z: Vector) -> Vector:
@@ -215,7 +222,8 @@ class Plant(Component):
         before the break, so that a jump there belongs to the next piece. Every time in ``t``
         ends a step of the integrator too: between its steps it could only interpolate, with
         an error that nobody controls. ``method`` is one of SciPy's RK23, RK45, DOP853, Radau
-        and BDF. Raises ArithmeticError if the integration fails.
+        and BDF. Raises ArithmeticError if the integration fails, InputError if ``u`` names
+        something that is no input.
         """
         from scipy import integrate
 
@@ -320,6 +328,9 @@ class Plant(Component):
     def _with_inputs(self, inputs: Mapping[str, Any]) -> Vector:
         values = self._stacked_u(None)
         for name, value in inputs.items():
+            if name not in self.ports or self.ports[name].kind != "input":
+                known = [port.name for port in self.input_ports]
+                raise InputError(f"{self.name}: {unknown('input', name, known)}")
             port = self.ports[name]
             first = port.offset - self._u_slice.start
             values[first : first + port.size] = value

@@ -43,6 +43,8 @@ class Port:
         for axis in axes or ():
             if not axis.isidentifier():  # FMI's structured names allow nothing else
                 raise ValueError(f"axis {axis!r} is not an identifier (a letter first)")
+        if len(set(axes or ())) != len(axes or ()):
+            raise ValueError(f"two axes of {tuple(axes or ())} have the same name")
         self.name = ""
         self.unit = unit
         self.description = description
@@ -51,6 +53,9 @@ class Port:
         self.size = 1 if self.axes is None else len(self.axes)
         self.start = self._spread(start)
         self.min, self.max, self.nominal = min, max, nominal
+        for limit in (min, max, nominal):
+            if isinstance(limit, tuple) and len(limit) != self.size:
+                raise ValueError(f"{limit} needs one element for each of {self.size} values")
         self.offset = -1
 
     def _spread(self, value: Any) -> list[Any]:
@@ -72,6 +77,8 @@ class Port:
             return value
         if isinstance(value, str):
             raise TypeError(f"port {self.name!r} holds a number, got {value!r}")
+        if self.type is int and value != int(value):
+            raise ValueError(f"port {self.name!r} holds a whole number, got {value!r}")
         return self.type(value)  # type: ignore[no-any-return]
 
     @property

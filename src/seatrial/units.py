@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cache, lru_cache
+from pathlib import Path
 from typing import Any
 
 from .errors import InputError
@@ -28,22 +31,36 @@ class Unit:
     """A unit as FMI's UnitDefinitions has it: SI value = factor * value + offset."""
 
     text: str
-    factor: float
-    offset: float
+    exact_factor: Fraction
+    exact_offset: Fraction
     exponents: dict[str, int]
     """Exponent of each base unit that occurs; radian counts as one."""
+
+    @property
+    def factor(self) -> float:
+        """The double nearest to the factor."""
+        return float(self.exact_factor)
+
+    @property
+    def offset(self) -> float:
+        """The double nearest to the offset."""
+        return float(self.exact_offset)
 
 
 @cache
 def _registry() -> Any:
     import pint
 
-    registry: Any = pint.UnitRegistry(cache_folder=None, on_redefinition="ignore")
+    # Loaded without a cache of dimensions, which the change of the radian below would not reach.
+    registry: Any = pint.UnitRegistry(
+        None, system="mks", cache_folder=None, on_redefinition="ignore", non_int_type=Fraction
+    )
+    registry.load_definitions(Path(pint.__file__).with_name("default_en.txt"))
     # In pint a radian is a pure number; FMI keeps it as a base unit, and so do we: it is what
     # tells an angle from a count on a wire.
     registry.define("radian = [angle] = rad")
-    registry.define("degree = π / 180 * radian = deg = °")
-    registry.define("revolution = 2 * π * radian = rev")
+    registry.define("@alias degree = °")
+    registry.define("@alias revolution = rev")
     return registry
 
 
@@ -51,15 +68,15 @@ def _registry() -> Any:
 def unit(text: str) -> Unit:
     """Return the unit written ``text``: FMI style (``kg.m2/s``), pint style, ``1`` or ``%``.
 
-    Raises InputError if it is not a unit.
+    Raises InputError if it is not a unit, or not a linear one (dB).
     """
     registry = _registry()
     if text.strip() in ("", "1"):
-        return Unit("1", 1.0, 0.0, {})
+        return Unit("1", Fraction(1), Fraction(0), {})
     try:
         parsed = registry.Unit(_to_pint(text))
-        one = registry.Quantity(1.0, parsed).to_base_units()
-        zero = registry.Quantity(0.0, parsed).to_base_units()
+        # Logarithmic units fail here, for a fraction has no logarithm.
+        zero, one = (registry.Quantity(Fraction(k), parsed).to_base_units() for k in (0, 1))
     except Exception:
         raise InputError(f"{text!r} is not a unit (examples: N.m, kg.m2, rad/s, deg, ms)") from None
     names = {long: short for short, long in _BASE.items()}
@@ -68,8 +85,7 @@ def unit(text: str) -> Unit:
         if name not in names or power != int(power):
             raise InputError(f"unit {text!r} cannot be written in FMI's base units")
         exponents[names[name]] = int(power)
-    factor = one.magnitude - zero.magnitude
-    return Unit(text, float(factor), float(zero.magnitude), exponents)
+    return Unit(text, one.magnitude - zero.magnitude, zero.magnitude, exponents)
 
 
 def conversion(source: str, target: str) -> tuple[float, float]:
@@ -77,38 +93,55 @@ def conversion(source: str, target: str) -> tuple[float, float]:
 
     Raises InputError if the two do not measure the same thing.
     """
+    factor, offset = _exact_conversion(source, target)
+    return float(factor), float(offset)
+
+
+def _exact_conversion(source: str, target: str) -> tuple[Fraction, Fraction]:
     a, b = unit(source), unit(target)
     if a.exponents != b.exponents:
         raise InputError(f"unit {source!r} cannot be converted to {target!r}")
-    return a.factor / b.factor, (a.offset - b.offset) / b.factor
+    return a.exact_factor / b.exact_factor, (a.exact_offset - b.exact_offset) / b.exact_factor
 
 
 def quantity(text: str | float | int, target: str) -> float:
     """Return what ``text`` says (``"10 deg"``, or a bare number already in ``target``).
 
-    Raises InputError if it is not a number with a unit that converts to ``target``.
+    The result is the double nearest to what is written. Raises InputError if it is not a
+    finite number with a unit that converts to ``target``.
     """
     if isinstance(text, bool) or not isinstance(text, (str, int, float)):
         raise InputError(f"{text!r} is not a quantity such as '10 {target}'")
-    if not isinstance(text, str):
-        return float(text)
+    try:
+        value = _written(text, target) if isinstance(text, str) else float(text)
+    except OverflowError:
+        value = math.inf
+    if not math.isfinite(value):
+        raise InputError(f"{text!r} is not a finite number")
+    return value
+
+
+def _written(text: str, target: str) -> float:
     match = _NUMBER.match(text)
     if match is None:
         raise InputError(f"{text!r} is not a quantity such as '10 {target}'")
-    number, written = float(match.group(1)), match.group(2)
+    digits, written = match.groups()
+    number = float(digits)
     if not written:
         if unit(target).exponents:
             raise InputError(f"{text!r} has no unit; write for example '{number:g} {target}'")
-        written = "1"
-    factor, offset = conversion(written, target)
-    parts = round(1.0 / factor)
+        return number
+    factor, offset = _exact_conversion(written, target)
+    if number == 0.0 or math.isinf(number):  # never a fraction of 1e-999999999
+        return number + float(offset)
     # 1100 us is 1100 / 1000000 s to the last digit; 1100 * 1e-6 is not.
-    exact = parts > 1 and 1.0 / parts == factor
-    return (number / parts if exact else number * factor) + offset
+    return float(factor * Fraction(digits) + offset)
 
 
 def _to_pint(text: str) -> str:
     """Rewrite FMI's ``kg.m2/s`` as pint's ``kg*m**2/s``."""
     text = text.strip().replace("%", "percent").replace("·", "*")
     text = re.sub(r"(?<=[A-Za-z0-9])\.(?=[A-Za-z])", "*", text)
+    if re.search(r"(?<!\d)\.|\.(?!\d)|(?<![A-Za-z])[\d.]+[eE]", text):
+        raise ValueError("a stray point, or a number such as 1e3, which pint takes for units")
     return re.sub(r"(?<=[A-Za-z])(-?\d+)", r"**(\1)", text)

@@ -81,6 +81,8 @@ def test_a_criterion_that_fails_is_status_one(tmp_path: Path) -> None:
         (["run", "hydrone-landing", "--set", "downwash.pad=aft"], "unknown preset 'aft'"),
         (["run", "hydrone-landing", "--set", "vairant=source"], "did you mean 'variant'"),
         (["run", "hydrone-landing", "--set", "variant=sauce"], "did you mean 'source'"),
+        (["run", "hydrone-landing", "--set", "hull.mass=-3"], "not in its range 0.0 <= mass"),
+        (["run", "hydrone-landing", "--set", "hull.coriolis=fulll"], "did you mean 'full'"),
         (["run", "hydrone-landing", "--set", "nonsense"], "KEY=VALUE is needed"),
         (["run", "hydrone-landing", "--set", "hull.velocity=3"], "output and cannot be set"),
         (["run", "hydrone-landing", "--engine", "warp"], "'fmu' or 'direct'"),

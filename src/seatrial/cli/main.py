@@ -46,6 +46,9 @@ def main() -> None:
         _complain(error, _BAD_INPUT)
     except SeatrialError as error:
         _complain(error, _BROKEN)
+    except OSError as error:
+        where = f" {error.filename}" if error.filename else ""
+        _complain(SimulationError(f"cannot read or write{where}: {error.strerror}"), _BROKEN)
     except KeyboardInterrupt:
         _complain(SimulationError("stopped"), _BROKEN)
 

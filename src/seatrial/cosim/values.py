@@ -48,6 +48,7 @@ def from_entry(entry: Entry, scalars: Sequence[Variable], origin: str) -> dict[s
             resolved: Scalar = _text(variable, value, origin)
         else:
             resolved = _converted(float(value), entry.unit, variable, origin)
+        _check_limits(variable, resolved, origin)
         given[variable.name] = Given(resolved, origin, entry.source, entry.mark)
     return given
 
@@ -72,10 +73,12 @@ def from_written(
             raise InputError(f"{origin}: {hint}")
     values = written if isinstance(written, list) else [written] * len(scalars)
     _check_count(len(values), scalars, origin)
-    return {
-        variable.name: Given(_scalar(variable, value, origin), origin)
-        for variable, value in zip(scalars, values, strict=True)
-    }
+    given = {}
+    for variable, value in zip(scalars, values, strict=True):
+        resolved = _scalar(variable, value, origin)
+        _check_limits(variable, resolved, origin)
+        given[variable.name] = Given(resolved, origin)
+    return given
 
 
 def _scalar(variable: Variable, value: Any, origin: str) -> Scalar:
@@ -110,6 +113,19 @@ def _converted(value: float, unit: str, variable: Variable, origin: str) -> floa
     except InputError as error:
         raise InputError(f"{origin}: {error}") from None
     return value if (factor, offset) == (1.0, 0.0) else value * factor + offset
+
+
+def _check_limits(variable: Variable, value: Scalar, origin: str) -> None:
+    """Raise InputError for a parameter outside what its FMU allows."""
+    low, high = variable.minimum, variable.maximum
+    if variable.causality != "parameter" or not isinstance(value, float):
+        return
+    if (low is not None and value < low) or (high is not None and value > high):
+        least, most = "" if low is None else f"{low!r} <= ", "" if high is None else f" <= {high!r}"
+        raise InputError(
+            f"{origin}: {variable.name} = {value!r} {variable.unit} is not in its range "
+            f"{least}{variable.name}{most}"
+        )
 
 
 def _check_count(count: int, scalars: Sequence[Variable], origin: str) -> None:

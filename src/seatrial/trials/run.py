@@ -58,10 +58,11 @@ def run_trial(
 ) -> Result:
     """Run ``trial`` and leave the run folder ``out``, which must not hold anything yet.
 
-    Everything written in the trial's files is checked before ``out`` is made. A run that fails
-    or is stopped leaves the signals recorded so far, and says so in its manifest.
+    Everything written in the trial's files is checked, and the components are started, before
+    ``out`` is made. A run that fails or is stopped afterwards leaves the signals recorded so
+    far, and says so in its manifest.
 
-    Raises InputError for bad input.
+    Raises InputError for bad input, or a rig that cannot start with it.
     """
     hooks = hooks or Hooks()
     begun = time.perf_counter()
@@ -79,9 +80,10 @@ def run_trial(
             system.scale(key, factor, origin)
         units = _check_criteria(trial, system)
         _check_events(trial, system)
-        make_folder(out)
         wall = {"assemble": time.perf_counter() - begun}
-        status, error = _simulate(trial, system, out, engine, hooks, wall)
+        master = _started(trial, system, wall)
+        make_folder(out)
+        status, error = _simulate(trial, master, out, engine, hooks, wall)
     finally:
         system.free()
     verdicts = [] if status == "failed" else _judge(trial, out, units)
@@ -120,26 +122,36 @@ def write_json(path: Path, content: Any) -> None:
     temporary.replace(path)
 
 
+def _started(trial: Trial, system: System, wall: dict[str, float]) -> Master:
+    begun = time.perf_counter()
+    master = Master(system, trial.start_ns, trial.stop_ns)
+    try:
+        master.initialise()
+    except SimulationError as error:
+        raise InputError(f"{trial.rig.read_from.path}: the rig cannot start: {error}") from None
+    wall["initialise"] = time.perf_counter() - begun
+    return master
+
+
 def _simulate(
-    trial: Trial, system: System, out: Path, engine: Engine, hooks: Hooks, wall: dict[str, float]
+    trial: Trial, master: Master, out: Path, engine: Engine, hooks: Hooks, wall: dict[str, float]
 ) -> tuple[str, str | None]:
-    content = manifest(trial, system, engine)
+    content = manifest(trial, master.system, engine)
     write_json(out / "manifest.json", {**content, "status": "running", "error": None})
     started = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
     begun = time.perf_counter()
-    status, error, master = "complete", None, None
+    status, error = "complete", None
     try:
-        master = Master(system, trial.start_ns, trial.stop_ns)
-        status = _loop(trial, master, out, hooks, wall, begun)
+        status = _loop(trial, master, out, hooks)
     except SimulationError as problem:
         status, error = "failed", str(problem)
     wall["run"] = time.perf_counter() - begun
-    simulated = seconds(master.time_ns - master.start_ns) if master else 0.0
+    simulated = seconds(master.time_ns - master.start_ns)
     timing = {
         "started": started,
         "wall_s": wall,
         "simulated_s": simulated,
-        "steps": master.steps if master else 0,
+        "steps": master.steps,
         "real_time_factor": simulated / wall["run"],
     }
     write_json(out / "timing.json", timing)
@@ -147,11 +159,7 @@ def _simulate(
     return status, error
 
 
-def _loop(
-    trial: Trial, master: Master, out: Path, hooks: Hooks, wall: dict[str, float], begun: float
-) -> str:
-    master.initialise()
-    wall["initialise"] = time.perf_counter() - begun
+def _loop(trial: Trial, master: Master, out: Path, hooks: Hooks) -> str:
     record = trial.file.record
     recorder = Recorder(out / "signals.csv", master, record.signals, trial.record_every)
     events = trial.events()
