@@ -283,9 +283,10 @@ class Component:
             raise InputError(f"{self.name}.{unknown(f'value of {name}', value, port.choices)}")
         low, high = port.limit("min", scalar.index), port.limit("max", scalar.index)
         if (low is not None and value < low) or (high is not None and value > high):
-            unit = "" if port.unit == "1" else f" {port.unit}"
-            allowed = _range_text(low, high)
-            raise InputError(f"{self.name}.{name} is {value!r}{unit}, allowed {allowed}{unit}")
+            raise InputError(
+                f"{self.name}.{name} is {value!r} {port.unit}, "
+                f"allowed {_range_text(low, high)} {port.unit}"
+            )
 
     def _misfit(self, references: Iterable[int], allowed: frozenset[int], kind: type) -> str:
         reference = next(r for r in references if r not in allowed)

@@ -125,6 +125,20 @@ def test_override_and_release_of_outputs_and_inputs(bench: Bench) -> None:
     assert value(master, "sum.x") == pytest.approx(before + 100.0 * 0.1 * 0.2, abs=1e-12)
 
 
+def test_release_between_the_steps_of_a_slow_component_shows_no_future(bench: Bench) -> None:
+    master = bench.master(
+        'ramp = { fmu = "users.py:Ramp", step = "500 ms" }\nadd = { fmu = "users.py:Add" }',
+        '"ramp.y" = "add.u"',
+    )
+    for _ in range(6):
+        master.step()
+    master.override("ramp", "y", 7.0)
+    master.step()
+    assert value(master, "add.y") == 8.0
+    master.release("ramp", "y")
+    assert (value(master, "ramp.y"), value(master, "add.y")) == (0.5, 1.5)
+
+
 @pytest.mark.parametrize("how", ["raise", "nan"])
 def test_a_failing_component_ends_the_run_with_its_name(bench: Bench, how: str) -> None:
     master = bench.master(f'boat = {{ fmu = "users.py:Bad", set = {{ how = "{how}" }} }}')

@@ -75,28 +75,32 @@ def read_toml(path: Path) -> tuple[dict[str, Any], Source]:
     """
     try:
         data = path.read_bytes()
-        content = tomllib.loads(data.decode("utf-8"))
+        content = tomllib.loads(data.decode("utf-8-sig"))  # some editors of Windows put a mark
     except OSError as error:
         raise InputError(f"{path}: {error.strerror}") from None
     except UnicodeDecodeError as error:
         raise InputError(f"{path}: not UTF-8 text at byte {error.start}") from None
-    except tomllib.TOMLDecodeError as error:
+    except ValueError as error:  # TOMLDecodeError, or a number with thousands of digits
         raise InputError(f"{path}: not TOML: {error}") from None
     return content, Source(path.stem, path, hashlib.sha256(data).hexdigest())
 
 
-def validated(model: type[Model], content: Any, path: Path) -> Model:
-    """Return ``content`` as ``model``; raise InputError naming each key that does not fit."""
+def validated(model: type[Model], content: Any, path: Path, *, ours: str = "") -> Model:
+    """Return ``content`` as ``model``; raise InputError naming each key that does not fit.
+
+    ``ours`` is a key at the top of ``content`` that the file does not have.
+    """
     try:
         return model.model_validate(content)
     except ValidationError as error:
-        lines = [_explained(model, problem) for problem in error.errors()]
+        lines = [_explained(model, problem, ours) for problem in error.errors()]
         raise InputError("\n".join(f"{path}: {line}" for line in lines)) from None
 
 
-def _explained(model: type[BaseModel], problem: Any) -> str:
+def _explained(model: type[BaseModel], problem: Any, ours: str) -> str:
     keys = [str(key) for key in problem["loc"]]
-    place = ".".join(f'"{k}"' if "." in k else k for k in keys) or "(top level)"
+    shown = keys[1:] if keys[:1] == [ours] else keys
+    place = ".".join(f'"{k}"' if "." in k else k for k in shown) or "(top level)"
     if problem["type"] == "extra_forbidden":
         return f"{place}: {unknown('key', keys[-1], _known_keys(model, keys[:-1]))}"
     if problem["type"] == "missing":

@@ -66,6 +66,14 @@ class _Visit:
     read: Reader
 
 
+@dataclass
+class _Pin:
+    """An overridden output: what its readers get, and what it last was by itself."""
+
+    value: Any
+    own: Any
+
+
 class Master:
     """Runs an assembled system.
 
@@ -81,7 +89,7 @@ class Master:
         self.steps = 0
         self.names: list[Name] = []
         self.signals: list[Any] = []
-        self._pins: dict[int, Any] = {}
+        self._pins: dict[int, _Pin] = {}
         self._nodes: dict[str, _Node] = {}
         self._groups: list[tuple[list[_Visit], bool]] = []
 
@@ -124,8 +132,6 @@ class Master:
         for node in nodes:
             if k % node.part.every == 0:
                 self._read(node)
-        if self._pins:
-            self._apply_pins()
         self._propagate(self._groups)
 
     def set(self, component: str, names: Sequence[str], values: Sequence[Any]) -> None:
@@ -240,7 +246,7 @@ class Master:
         for place, value in zip(visit.places, visit.read(), strict=True):
             signals[place] = value
         if self._pins:
-            self._apply_pins()
+            self._keep_pinned(visit.places)
 
     def _solve(self, visits: list[_Visit]) -> None:
         """Fixed-point iteration over a feed-through loop."""
@@ -272,6 +278,8 @@ class Master:
             if reads.is_real and not math.isfinite(sum(values)):
                 self._refuse_not_finite(reads, values)
             self.signals[reads.start : reads.stop] = values
+            if self._pins:
+                self._keep_pinned(range(reads.start, reads.stop))
 
     def _refuse_not_finite(self, reads: _Reads, values: Sequence[float]) -> None:
         for place, value in zip(range(reads.start, reads.stop), values, strict=True):
@@ -282,12 +290,11 @@ class Master:
     def _pin(self, component: str, name: str, value: Any) -> None:
         if (component, name) in self._places:
             place = self._places[component, name]
-            if value is None:
-                self._pins.pop(place, None)
-                self._read(self._nodes[component])
-            else:
-                self._pins[place] = value
-            self._apply_pins()
+            own = self._pins.pop(place).own if place in self._pins else self.signals[place]
+            self.signals[place] = own
+            if value is not None:
+                self._pins[place] = _Pin(value, own)
+                self.signals[place] = value
             return
         source = next(w.source for w in self.system.wires if w.target == (component, name))
         for writes in self._nodes[component].writes:
@@ -300,9 +307,11 @@ class Master:
                     self.signals.append(value)
                 writes.gather = _gatherer(writes.places)
 
-    def _apply_pins(self) -> None:
-        for place, value in self._pins.items():
-            self.signals[place] = value
+    def _keep_pinned(self, places: Sequence[int]) -> None:
+        for place, pin in self._pins.items():
+            if place in places:
+                pin.own = self.signals[place]
+                self.signals[place] = pin.value
 
 
 def _gatherer(places: Sequence[int]) -> Any:

@@ -75,4 +75,8 @@ def load_vehicle(name: str, relative_to: Path | None = None) -> Vehicle:
     known = {"title", "source", "default", "variants", "presets"}
     components = {key: value for key, value in content.items() if key not in known}
     top: dict[str, Any] = {key: value for key, value in content.items() if key in known}
-    return Vehicle(validated(VehicleFile, {**top, "components": components}, path), read_from)
+    for key, value in components.items():
+        if not isinstance(value, dict):
+            raise InputError(f"{path}: {key}: {unknown('key', key, known)}")
+    content = {**top, "components": components}
+    return Vehicle(validated(VehicleFile, content, path, ours="components"), read_from)
