@@ -38,6 +38,7 @@ NS = 1_000_000_000
 
 _LATEST = 2e6  # s: up to 2**51 ns, a double of seconds gives its nanoseconds back
 
+_INT32 = 2**31
 _INSTANTIATED, _INITIALISING, _RUNNING = range(3)
 
 
@@ -77,6 +78,7 @@ class Component:
     _always_settable: ClassVar[dict[type, frozenset[int]]] = {}
     _of_type: ClassVar[dict[type, frozenset[int]]] = {}
     _real_outputs: ClassVar[tuple[int, ...]] = ()
+    _other_outputs: ClassVar[tuple[int, ...]] = ()
     _inputs: ClassVar[frozenset[int]] = frozenset()
 
     def __init_subclass__(cls, **options: Any) -> None:
@@ -101,6 +103,11 @@ class Component:
         cls._inputs = frozenset(s.reference for s in cls.scalars if s.port.kind == "input")
         cls._real_outputs = tuple(
             s.reference for s in cls.scalars if s.port.kind == "output" and s.port.type is float
+        )
+        cls._other_outputs = tuple(
+            s.reference
+            for s in cls.scalars
+            if s.port.kind == "output" and s.port.type in (int, str)
         )
 
     def __init__(self, name: str = "component") -> None:
@@ -159,7 +166,8 @@ class Component:
             raise InputError(unknown("port", name, [*self.ports, *self.scalar_by_name]))
         self.refresh()
         if name in self.ports:
-            return getattr(self, name)
+            value = getattr(self, name)
+            return list(value) if isinstance(value, tuple) else value
         return self.values[self.scalar_by_name[name].reference]
 
     def write(self, references: Sequence[int], values: Sequence[Scalar], kind: type) -> None:
@@ -186,6 +194,7 @@ class Component:
                 self.start(self.now)
                 self._restart = False
             self.outputs(self.now)
+            self._check_outputs()
             self._stale = False
 
     def setup(self, start_time: float) -> None:
@@ -304,10 +313,19 @@ class Component:
         if not math.isfinite(sum([values[r] for r in self._real_outputs])):
             for reference in self._real_outputs:
                 if not math.isfinite(values[reference]):
-                    raise SimulationError(
-                        f"{self.name}: output {self.scalars[reference].name} is "
-                        f"{values[reference]} at t = {self.now!r} s"
-                    )
+                    self._refuse_output(reference)
+        for reference in self._other_outputs:
+            value = values[reference]
+            if not (_is_c_text(value) if isinstance(value, str) else -_INT32 <= value < _INT32):
+                self._refuse_output(reference)
+
+    def _refuse_output(self, reference: int) -> None:
+        scalar, value = self.scalars[reference], self.values[reference]
+        why = {int: ", which does not fit 32 bits", str: ", which is no C text"}
+        raise SimulationError(
+            f"{self.name}: output {scalar.name} is {value!r}{why.get(scalar.port.type, '')} "
+            f"at t = {self.now!r} s"
+        )
 
 
 class Noise:
@@ -357,6 +375,8 @@ def _declared_ports(cls: type[Component]) -> dict[str, Port]:
 
 def _check_feedthrough(cls: type[Component]) -> None:
     for output, inputs in cls.feedthrough.items():
+        if isinstance(inputs, str):
+            raise TypeError(f"{cls.__name__}.feedthrough[{output!r}]: a list of names is needed")
         for name, kind in [(output, "output"), *((i, "input") for i in inputs)]:
             if name not in cls.ports or cls.ports[name].kind != kind:
                 raise TypeError(f"{cls.__name__}.feedthrough names {name!r}: no such {kind}")
@@ -368,10 +388,17 @@ def _range_text(low: float | None, high: float | None) -> str:
     return f"at least {low!r}" if high is None else f"{low!r} to {high!r}"
 
 
+def _is_c_text(text: str) -> bool:
+    """Say if FMI can carry ``text``: no NUL, no lone surrogate."""
+    return "\0" not in text and not any("\ud800" <= c <= "\udfff" for c in text)
+
+
 def _copied(value: Any, where: str) -> Any:
     """Return a deep copy of plain data; raise TypeError for anything else."""
     if value is None or isinstance(value, (bool, int, float, str)):
         return value
+    if isinstance(value, np.generic) and not value.dtype.hasobject:
+        return value.item()
     if isinstance(value, np.ndarray) and not value.dtype.hasobject:
         return value.copy()
     if type(value) in (list, tuple):

@@ -107,7 +107,8 @@ class Port:
             return self
         if self.axes is None:
             return component.values[self.offset]
-        return component.values[self.offset : self.offset + self.size]
+        # A tuple: assigning to an element of a copy would be lost without a word.
+        return tuple(component.values[self.offset : self.offset + self.size])
 
     def __set__(self, component: Any, value: Any) -> None:
         component.values[self.offset : self.offset + self.size] = self._spread(value)

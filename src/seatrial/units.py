@@ -24,6 +24,12 @@ _BASE = {
     "rad": "radian",
 }
 _NUMBER = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*$", re.DOTALL)
+# What pint would take for a product (a stray sign), for the elementary charge (the e of 1e3) or
+# for a number with more digits than the memory holds (a power of a power).
+_MISTAKEN = re.compile(
+    r"[^\w *./^()+°′″‰⁻-]|(?<!\d)\.|\.(?!\d)|(?<![A-Za-z])[\d.]+[eE]"
+    r"|\d{3}|(\^|\*\*)[-+(]*\d+\)*(\^|\*\*)"
+)
 
 
 @dataclass(frozen=True)
@@ -77,6 +83,8 @@ def unit(text: str) -> Unit:
         parsed = registry.Unit(_to_pint(text))
         # Logarithmic units fail here, for a fraction has no logarithm.
         zero, one = (registry.Quantity(Fraction(k), parsed).to_base_units() for k in (0, 1))
+        if not float(one.magnitude - zero.magnitude) > 0.0:
+            raise ValueError("beyond the range of doubles")
     except Exception:
         raise InputError(f"{text!r} is not a unit (examples: N.m, kg.m2, rad/s, deg, ms)") from None
     names = {long: short for short, long in _BASE.items()}
@@ -142,6 +150,6 @@ def _to_pint(text: str) -> str:
     """Rewrite FMI's ``kg.m2/s`` as pint's ``kg*m**2/s``."""
     text = text.strip().replace("%", "percent").replace("·", "*")
     text = re.sub(r"(?<=[A-Za-z0-9])\.(?=[A-Za-z])", "*", text)
-    if re.search(r"(?<!\d)\.|\.(?!\d)|(?<![A-Za-z])[\d.]+[eE]", text):
-        raise ValueError("a stray point, or a number such as 1e3, which pint takes for units")
+    if _MISTAKEN.search(text):
+        raise ValueError("pint would make something of it")
     return re.sub(r"(?<=[A-Za-z])(-?\d+)", r"**(\1)", text)

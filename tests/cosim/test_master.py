@@ -149,6 +149,56 @@ def test_a_failing_component_ends_the_run_with_its_name(bench: Bench, how: str) 
     assert {"raise": "the boat has sunk", "nan": "output y is nan"}[how] in str(error.value)
 
 
+@pytest.mark.parametrize("as_nan", [0, 1])
+def test_a_failure_while_outputs_are_read_again_is_no_value(bench: Bench, as_nan: int) -> None:
+    master = bench.master(
+        f'ramp = {{ fmu = "users.py:Ramp" }}\ninverse = {{ fmu = "users.py:Inverse", set = {{ as_nan = {as_nan} }} }}',
+        '"ramp.y" = "inverse.u"',
+    )
+    for _ in range(4):
+        master.step()
+    with pytest.raises(SimulationError, match="inverse") as error:
+        master.step()
+    assert ("nan" if as_nan else "ZeroDivisionError") in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("how", "said"),
+    [
+        ("big", "2147483648"),
+        ("nul", "no C text"),
+        ("surrogate", "no C text"),
+        ("exit", "SystemExit"),
+    ],
+)
+def test_what_fmi_cannot_carry_fails_alike(bench: Bench, how: str, said: str) -> None:
+    master = bench.master(f'odd = {{ fmu = "users.py:Odd", set = {{ how = "{how}" }} }}')
+    with pytest.raises(SimulationError, match="odd") as error:
+        master.step()
+    assert said in str(error.value)
+
+
+def test_an_override_is_in_the_unit_of_its_input(bench: Bench) -> None:
+    master = bench.master(
+        'c = { fmu = "users.py:Celsius" }\nk = { fmu = "users.py:Kelvin" }',
+        '"c.y" = "k.k"\n"c.n" = "k.n"',
+    )
+    assert value(master, "k.z") == 293.15
+    assert repr(value(master, "k.r")) == "3.0"
+    master.override("k", "k", 303.15)
+    assert value(master, "k.z") == 303.15
+    master.release("k", "k")
+    assert value(master, "k.z") == 293.15
+
+
+def test_an_input_that_is_set_acts_at_once(bench: Bench) -> None:
+    master = bench.master(
+        'a = { fmu = "users.py:Add" }\nb = { fmu = "users.py:Add" }', '"a.y" = "b.u"'
+    )
+    master.set("a", ["u"], [10.0])
+    assert (value(master, "a.y"), value(master, "b.y")) == (11.0, 12.0)
+
+
 @pytest.mark.parametrize(
     ("components", "connections", "message"),
     [
@@ -174,6 +224,12 @@ def test_a_failing_component_ends_the_run_with_its_name(bench: Bench, how: str) 
             '"r.y" = "a.u"\n"q.y" = "a.u"',
             "already fed by r.y",
         ),
+        (
+            'r = { fmu = "users.py:Ramp" }\na = { fmu = "users.py:Add", set = { u = 3 } }',
+            '"r.y" = "a.u"',
+            "a.u is fed by r.y",
+        ),
+        ('a = { fmu = "users.py:Odd", set = { how = 3 } }', "", "a text is needed"),
         ('a = { fmu = "users.py:Add", step = "150 ms" }', "", "not a multiple"),
         ('a = { fmu = "users.py:Ad" }', "", "cannot import name 'Ad'"),
         ('a = { fmu = "users.py:Add", set = { gain = 1 } }', "", "unknown port 'gain'"),

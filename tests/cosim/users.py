@@ -91,6 +91,65 @@ class Turn(Component):
         self.text = f'at "{t:.2f}", é'
 
 
+class Inverse(Component):
+    """y = 1 / (0.5 - u), at once."""
+
+    u = Input("m", "input")
+    y = Output("1/m", "output")
+    feedthrough = {"y": ("u",)}
+    as_nan = Parameter(0.0, "1", "NaN instead of an exception")
+
+    def outputs(self, t):
+        if self.as_nan and self.u >= 0.5:
+            self.y = float("nan")
+        else:
+            self.y = 1.0 / (0.5 - self.u)
+
+
+class Odd(Component):
+    """Outputs that FMI cannot carry, or an exit."""
+
+    how = Parameter("fine", "1", "how")
+    count = Output("1", "count", type=int)
+    text = Output("1", "text", type=str)
+
+    def step(self, t, h):
+        if self.how == "exit":
+            raise SystemExit(5)
+
+    def outputs(self, t):
+        if self.how == "big" and t > 0.05:
+            self.count = 2**31
+        if self.how == "nul" and t > 0.05:
+            self.text = "a" + chr(0)
+        if self.how == "surrogate" and t > 0.05:
+            self.text = chr(0xD800)
+
+
+class Kelvin(Component):
+    """Shows a temperature and a count as real numbers."""
+
+    k = Input("K", "temperature")
+    n = Input("1", "count")
+    t = Input("m", "pair", axes="ab")
+    z = Output("K", "temperature")
+    r = Output("1", "count")
+    feedthrough = {"z": ("k",), "r": ("n",)}
+
+    def outputs(self, t):
+        self.z, self.r = self.k, self.n
+
+
+class Celsius(Component):
+    """A temperature and a count."""
+
+    y = Output("degC", "temperature")
+    n = Output("1", "count", type=int)
+
+    def outputs(self, t):
+        self.y, self.n = 20.0, 3
+
+
 class Clock(Sampled):
     """Samples its input every period."""
 

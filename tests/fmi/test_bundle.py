@@ -10,8 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.errors import InputError
+from seatrial.errors import InputError, SimulationError
 from seatrial.fmi.export import build_fmu, fmu_bytes
+from seatrial.fmi.load import FmuInstance, load_fmu
 from seatrial.fmi.source import find_source, shipped_sources
 
 from . import boats
@@ -133,17 +134,77 @@ def test_a_missing_package_is_named_with_its_cure(write, tmp_path: Path) -> None
     assert "could not be instantiated" in done.stderr
 
 
+PLAIN = (
+    "from seatrial.component import Component, Output\n\n\n"
+    'class Boat(Component):\n    """Says a number."""\n\n    value = Output("1", "n")\n\n'
+    "    def outputs(self, t):\n        self.value = NUMBER\n"
+)
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        b"\xef\xbb\xbf" + PLAIN.replace("NUMBER", "7.0").encode(),
+        PLAIN.replace("NUMBER", "7.0").replace("\n", "\r\n").encode(),
+        ("\f" + PLAIN.replace("NUMBER", "7.0")).encode(),
+        PLAIN.replace("NUMBER", "7.0").replace("Says", "Says\u2028or\u0085").encode(),
+        ("# -*- coding: latin-1 -*-\n" + PLAIN.replace("NUMBER", "7.0 * len('é')")).encode("latin-1"),
+        ("import constants; " + PLAIN.replace("NUMBER", "constants.NUMBER")).encode(),
+        PLAIN.replace("NUMBER", "__import__('math').floor(7.5)").encode(),
+        PLAIN.replace("        self", "        import constants as c\n        self").replace("NUMBER", "c.NUMBER").encode(),
+        PLAIN.replace("        self", "        from seatrial.units import quantity\n        self").replace("NUMBER", "quantity('7', '1')").encode(),
+        ("try:\n    import nowhere_at_all\nexcept ImportError:\n    nowhere_at_all = None\n" + PLAIN.replace("NUMBER", "7.0")).encode(),
+        ("from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    import nowhere_at_all\nelse:\n    from constants import NUMBER\n" + PLAIN).encode(),
+        ("from typing import TYPE_CHECKING\nif not TYPE_CHECKING:\n    from constants import NUMBER\n" + PLAIN).encode(),
+    ],
+    ids=[
+        "byte-order mark", "CRLF", "form feed", "odd line separators", "coding cookie", "semicolon",
+        "no import", "import in a method", "library import in a method", "optional import",
+        "TYPE_CHECKING else", "not TYPE_CHECKING",
+    ],
+)  # fmt: skip
+def test_python_as_people_write_it(data: bytes, write, tmp_path: Path) -> None:
+    file = write("boat.py", "")
+    file.write_bytes(data)
+    write("constants.py", "NUMBER = 7.0\n")
+    raw = Raw(build_fmu(source(file, "Boat"), tmp_path / "boat.fmu"), tmp_path / "boat")
+    raw.start()
+    assert raw.get("value") == 7.0
+    raw.slave.freeInstance()
+
+
+def test_a_component_needs_no_docstring(write, tmp_path: Path) -> None:
+    for number, doc in enumerate(("", '    """   """\n')):
+        text = f"from seatrial.component import Component\nclass Boat(Component):\n{doc}    pass\n"
+        build_fmu(source(write(f"{number}/boat.py", text), "Boat"), tmp_path / "boat.fmu")
+    assert oct((tmp_path / "boat.fmu").stat().st_mode)[-3:] == "644"
+
+
+def test_the_error_itself_survives_a_long_traceback(write, tmp_path: Path) -> None:
+    deep = PLAIN.replace("NUMBER", "self.dig(900)") + (
+        "\n    def dig(self, n):\n        return 1 / 0 if n == 0 else self.dig_on(n)\n"
+        "\n    def dig_on(self, n):\n        return self.dig(n - 1 if n < 50 else 49)\n"
+    )
+    path = build_fmu(source(write("boat.py", deep), "Boat"), tmp_path / "boat.fmu")
+    instance = FmuInstance(load_fmu(path), "boat")
+    with pytest.raises(SimulationError, match="ZeroDivisionError: division by zero"):
+        instance.initialise(0.0, 1.0)
+    instance.free()
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [
         ("def broken(:\n", r"boat\.py, line 1: not Python"),
         ("import nowhere_at_all\nclass Boat: pass\n", "nowhere_at_all"),
+        ("import plain_folder\nclass Boat: pass\n", "without an __init__.py"),
         ("x = 1\n", "cannot import name 'Boat'"),
         ("class Boat: pass\n", "not a subclass of seatrial's Component"),
         ("raise RuntimeError('on import')\n", "on import"),
     ],
 )
 def test_bad_scripts_are_named(text: str, message: str, write, tmp_path: Path) -> None:
+    write("plain_folder/module.py", "")
     with pytest.raises(InputError, match=message):
         build_fmu(source(write("boat.py", text), "Boat"), tmp_path / "boat.fmu")
     assert not (tmp_path / "boat.fmu").exists()

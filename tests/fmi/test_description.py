@@ -90,7 +90,9 @@ def test_a_shipped_fmu_runs_alone_in_fmpy(name: str, tmp_path: Path) -> None:
     """With its defaults, validated by FMPy first; nothing of ours drives it."""
     path = build_fmu(shipped_sources()[name], tmp_path / f"{name}.fmu")
     result = simulate_fmu(str(path), validate=True, stop_time=0.5, output_interval=0.05)
-    outputs = [v.name for v in read_model_description(str(path)).modelVariables if v.causality == "output"]
+    outputs = [
+        v.name for v in read_model_description(str(path)).modelVariables if v.causality == "output"
+    ]
     assert len(result) == 11
     assert result["time"][-1] == pytest.approx(0.5)
     for output in outputs:

@@ -93,6 +93,15 @@ def test_unsafe_home_falls_back_to_a_temporary_folder(counter_fmu: Path, tmp_pat
     assert not (tmp_path / "cão+1%").exists()
 
 
+def test_an_unpacked_folder_that_lost_a_file_is_unpacked_again(counter_fmu: Path) -> None:
+    folder = load_fmu(counter_fmu).folder
+    (folder / "modelDescription.xml").unlink()
+    os.utime(counter_fmu)  # as another process would find it
+    again = load_fmu(counter_fmu)
+    assert (again.folder / "modelDescription.xml").is_file()
+    FmuInstance(again, "boat").free()
+
+
 def test_broken_files_are_named(write, tmp_path: Path, counter_fmu: Path) -> None:
     with pytest.raises(InputError, match=r"text\.fmu: not an FMU"):
         load_fmu(write("text.fmu", "not a zip"))

@@ -72,7 +72,7 @@ def test_a_component_that_fails_discards_its_step(raw: Raw, say: str, capfd) -> 
         "nan": "output total is nan at t = 0.1 s",
         "exit": "SystemExit: 3",
         "bad output": "RuntimeError: outputs cannot be had",
-        "nul": "not C text",
+        "nul": "no C text",
     }[say]
     assert expected in said
     if say == "raise":

@@ -10,7 +10,8 @@ import pytest
 
 from seatrial.errors import InputError
 from seatrial.trials.campaign import load_campaign, run_campaign
-from seatrial.trials.run import Hooks, run_trial
+from seatrial.trials.run import Hooks, claim_folder, run_trial
+from seatrial.trials.run_folder import load_run
 from seatrial.trials.trial import load_trial
 
 BOAT = '''
@@ -179,7 +180,9 @@ def test_what_is_recorded_can_be_chosen(bench, tmp_path: Path) -> None:
         ('rig = "hydrnoe"\nstop = "1 s"', "did you mean 'hydrone'"),
         ('rig = "rig.toml"', "stop: this key is missing"),
         ('rig = "rig.toml"\nstop = "1.005 s"', "whole number of communication steps"),
-        ('rig = "rig.toml"\nstop = "0 s"', "whole number of communication steps"),
+        ('rig = "rig.toml"\nstop = "0 s"', "not after the start"),
+        (TRIAL + '[record]\nevery = "2 s"', "longer than the trial"),
+        (TRIAL.replace("abs(boat.x) < 2 m", "boat.label < 2"), "boat.label is a text"),
         ('rig = "rig.toml"\nstop = "1 m"', "'m' cannot be converted to 's'"),
         ('rig = "rig.toml"\nstop = "1 s"\nseed = -1', "seed"),
         ('rig = "rig.toml"\nstop = "1 s"\ncritera = []', "did you mean 'criteria'"),
@@ -192,7 +195,6 @@ def test_what_is_recorded_can_be_chosen(bench, tmp_path: Path) -> None:
         (TRIAL + '[set]\n"boat.trim" = "3 kg"', "'kg' cannot be converted to 'rad'"),
         (TRIAL + '[set]\n"boat.mode" = 3', "a text is needed"),
         (TRIAL + '[record]\nsignals = ["boot.*"]', "no signal matches 'boot"),
-        (TRIAL + '[record]\nsignals = ["twin.*"]', "boat.x is not recorded"),
         (TRIAL + '[[events]]\nat = "2 s"\nset = { "boat.push" = "1 N" }', "outside the trial"),
         (TRIAL + '[[events]]\nat = "15 ms"\nset = { "boat.push" = "1 N" }', "whole number"),
         (TRIAL + '[[events]]\nat = "0.5 s"\nset = { "boat.mode" = "storm" }', "is fixed"),
@@ -212,6 +214,66 @@ def test_mistakes_in_a_trial_are_named_and_leave_nothing(
     assert not (tmp_path / "run").exists()
 
 
+def test_criteria_see_every_step_however_seldom_rows_are_recorded(bench, tmp_path: Path) -> None:
+    spike = """
+[record]
+every = "300 ms"
+[[events]]
+at = "400 ms"
+override = { "boat.x" = "100 m" }
+[[events]]
+at = "420 ms"
+release = ["boat.x"]
+"""
+    result = run_trial(load_trial(bench(TRIAL + spike)), tmp_path / "run", engine="direct")
+    assert not result.passed
+    rows = (tmp_path / "run" / "signals.csv").read_text().splitlines()
+    assert [row.split(",")[0] for row in rows[1:]] == ["0.0", "0.3", "0.6", "0.9", "1.0"]
+
+
+def test_a_folder_is_claimed_by_one_run_only(tmp_path: Path) -> None:
+    claimed = claim_folder(tmp_path / "run", "trial", "manifest.json")
+    with pytest.raises(InputError, match="not an empty folder"):
+        claim_folder(claimed, "trial", "manifest.json")
+
+
+def test_default_folders_never_meet(tmp_path: Path, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    folders = [claim_folder(None, "trial", "manifest.json") for _ in range(3)]
+    assert len(set(folders)) == 3
+
+
+def test_a_bad_case_of_a_campaign_is_found_before_the_first_runs(
+    bench, write, tmp_path: Path
+) -> None:
+    bench()
+    path = write(
+        "campaign.toml", 'trials = ["trial.toml"]\n[grid]\n"boat.push" = ["0 N", "5 N", "1 kg"]\n'
+    )
+    with pytest.raises(InputError, match="'kg' cannot be converted"):
+        run_campaign(load_campaign(str(path)), tmp_path / "out", engine="direct")
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_rig_beside_the_trial_wins_over_a_shipped_one(write, tmp_path: Path) -> None:
+    shipped = Path(__file__).parents[2] / "harness"
+    for name, text in {
+        "rigs/hydrone-open-loop.toml": '"20 ms"', "trials/hydrone-open-landing.toml": "",
+    }.items():  # fmt: skip
+        content = (shipped / name).read_text()
+        write(f"harness/{name}", content.replace('"10 ms"', text) if text else content)
+    trial = load_trial(str(tmp_path / "harness" / "trials" / "hydrone-open-landing.toml"))
+    assert trial.rig.step_ns == 20_000_000
+
+
+def test_text_with_a_carriage_return_is_read_back(write, tmp_path: Path) -> None:
+    write("boat.py", BOAT.replace("""f'{self.mode}, "{k}"'""", "'a' + chr(13) + 'b'"))
+    write("rig.toml", RIG)
+    path = write("trial.toml", TRIAL)
+    run_trial(load_trial(str(path)), tmp_path / "run", engine="direct")
+    assert load_run(tmp_path / "run").signals["boat.label"][0] == "a\rb"
+
+
 def test_a_folder_with_something_in_it_is_never_written_to(bench, tmp_path: Path) -> None:
     (tmp_path / "run").mkdir()
     (tmp_path / "run" / "precious").write_text("data")
@@ -227,7 +289,7 @@ def test_a_campaign_runs_every_combination_and_each_scaling(bench, write, tmp_pa
         'trials = ["trial.toml"]\n[grid]\n"boat.mode" = ["calm", "storm"]\n'
         '"boat.push" = ["0 N", "5 N"]\n[scale]\n"boat.trim" = [0.5, 2.0]\n',
     )
-    finished = run_campaign(load_campaign(str(path)), tmp_path / "out", engine="direct")
+    _, finished = run_campaign(load_campaign(str(path)), tmp_path / "out", engine="direct")
     assert len(finished) == 12
     index = json.loads((tmp_path / "out" / "campaign.json").read_text())
     assert [case["passed"] for case in index["cases"]] == [

@@ -12,6 +12,7 @@ from pathlib import Path
 import typer
 from rich.markup import escape
 
+from ..errors import InputError
 from ..fmi.cache import cache_folder, is_safe
 from .show import console
 
@@ -87,7 +88,10 @@ def _packages() -> tuple[bool, str]:
 
 
 def _cache() -> tuple[bool, str]:
-    folder = cache_folder("fmus").parent
+    try:
+        folder = cache_folder("fmus").parent
+    except (InputError, OSError) as error:
+        return False, str(error)
     return is_safe(folder), str(folder)
 
 

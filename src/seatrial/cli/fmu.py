@@ -15,12 +15,13 @@ from ..cosim.parameters import load_vehicle
 from ..cosim.system import settable
 from ..cosim.values import from_entry
 from ..errors import InputError
+from ..fmi.description import summary
 from ..fmi.direct import DirectInstance
 from ..fmi.export import build_fmu
 from ..fmi.instance import Variable
 from ..fmi.load import FmuInstance, LoadedFmu, load_fmu
 from ..fmi.source import ComponentSource, find_source, shipped_sources
-from .show import console, summary
+from .show import console
 
 fmu_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
 

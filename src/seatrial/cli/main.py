@@ -21,7 +21,7 @@ from ..trials.campaign import Campaign, Case, load_campaign, run_campaign
 from ..trials.campaign_report import write_campaign_report
 from ..trials.compare import compare as compare_runs
 from ..trials.report import write_report
-from ..trials.run import Hooks, Result, new_folder, run_trial
+from ..trials.run import Hooks, Result, run_trial
 from ..trials.trial import load_trial
 from .doctor import doctor
 from .fmu import fmu_app
@@ -96,20 +96,19 @@ def run(
         campaign = load_campaign(trial)
         if changes:
             raise InputError("--set works with a trial; a campaign sets its own parameters")
-        _run_campaign(campaign, out or new_folder(campaign.read_from.name), chosen)
+        _run_campaign(campaign, out, chosen)
         return
     loaded = load_trial(trial).changed(changes, "--set")
-    folder = out or new_folder(loaded.name)
     with _stoppable() as stop, Watch(loaded.name) as watch:
         hooks = Hooks(watch.building, watch.progress, stop)
-        result = run_trial(loaded, folder, engine=chosen, hooks=hooks)
+        result = run_trial(loaded, out, engine=chosen, hooks=hooks)
     print_verdicts(result)
     report_page = write_report(result.folder)
     console.print(f"report: {report_page}", soft_wrap=True)
     _exit_with([result])
 
 
-def _run_campaign(campaign: Campaign, folder: Path, engine: Engine) -> None:
+def _run_campaign(campaign: Campaign, out: Path | None, engine: Engine) -> None:
     cases = campaign.cases()
     with _stoppable() as stop, Watch(campaign.read_from.name) as watch:
 
@@ -119,7 +118,7 @@ def _run_campaign(campaign: Campaign, folder: Path, engine: Engine) -> None:
 
         hooks = Hooks(watch.building, watch.progress, stop)
         watch.expect(len(cases))
-        finished = run_campaign(campaign, folder, engine=engine, hooks=hooks, done=done)
+        folder, finished = run_campaign(campaign, out, engine=engine, hooks=hooks, done=done)
     page = write_campaign_report(folder)
     passed = sum(result.passed for _, result in finished)
     console.print(f"{passed} of {len(cases)} cases pass")
@@ -208,12 +207,18 @@ def _exit_with(results: list[Result]) -> None:
 
 @contextmanager
 def _stoppable() -> Iterator[Any]:
-    """Make Ctrl-C and a termination signal end the run after the current step."""
+    """Make Ctrl-C and a termination signal end the run after the current step.
+
+    A second one ends it at once: a component may hang in its step.
+    """
     asked: list[int] = []
-    before = {
-        number: signal.signal(number, lambda number, _frame: asked.append(number))
-        for number in (signal.SIGINT, signal.SIGTERM)
-    }
+
+    def ask(number: int, _frame: object) -> None:
+        asked.append(number)
+        if len(asked) > 1:
+            raise KeyboardInterrupt
+
+    before = {number: signal.signal(number, ask) for number in (signal.SIGINT, signal.SIGTERM)}
     try:
         yield lambda: bool(asked)
     finally:

@@ -12,10 +12,11 @@ from rich.markup import escape
 from rich.progress import BarColumn, Progress, TextColumn
 
 from ..component import Component
+from ..fmi.description import summary
 from ..trials.campaign import Case
 from ..trials.run import Result
 
-console = Console(highlight=False)
+console = Console(highlight=False, emoji=False)
 
 
 class Watch:
@@ -106,11 +107,6 @@ def print_listing(
     console.print("[bold]FMUs[/bold]")
     for name, component in components.items():
         console.print(f"  {name:28} [dim]{escape(summary(component))}[/dim]", soft_wrap=True)
-
-
-def summary(component: type[Component]) -> str:
-    """Return the first line of a component's description."""
-    return (component.__doc__ or "").strip().partition("\n")[0]
 
 
 def _title(path: Path) -> str:

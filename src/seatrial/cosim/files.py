@@ -34,22 +34,33 @@ class Source:
 def find_file(kind: str, name: str, relative_to: Path | None = None) -> Path:
     """Return the TOML file that ``name`` means.
 
-    A path (with ``.toml``) wins, relative to ``relative_to`` or the current folder; a bare name
-    is looked for in ``KIND`` (such as ``harness/rigs``) below the current folder, then among
-    the shipped files. Raises InputError with near misses.
+    A path (with ``.toml``) wins, relative to ``relative_to`` or the current folder. A bare name
+    is looked for in ``KIND`` (such as ``harness/rigs``) beside the user's file that says it,
+    then below the current folder, then among the shipped files. Raises InputError with near
+    misses.
     """
     if name.endswith(".toml"):
         path = ((relative_to or Path.cwd()) / name).resolve()
         if not path.is_file():
             raise InputError(f"there is no file {path}")
         return path
-    folders = searched_folders(kind)
+    folders = [*_beside(kind, relative_to), *searched_folders(kind)]
     for folder in folders:
         path = folder / f"{name}.toml"
         if path.is_file():
             return path
     what = kind.rpartition("/")[2].rstrip("s") if "/" in kind else kind.rstrip("s")
     raise InputError(unknown(what, name, available(kind)) + "; or give a path ending in .toml")
+
+
+def _beside(kind: str, naming: Path | None) -> list[Path]:
+    """Return the folder of ``kind`` in the harness that the naming file stands in, if a user's."""
+    top, _, below = kind.partition("/")
+    for parent in naming.resolve().parents if naming is not None else ():
+        if parent.name == "harness" and parent != shipped_folder("harness").resolve():
+            folder = parent / below if top == "harness" else parent.parent / kind
+            return [folder] if folder.is_dir() else []
+    return []
 
 
 def searched_folders(kind: str) -> list[Path]:

@@ -18,7 +18,7 @@ from ..component import seconds
 from ..errors import SimulationError
 from ..fmi.instance import Reader, Writer
 from .order import loops_on_itself, ordered_groups
-from .system import Part, System
+from .system import Part, System, Wire
 
 Algorithm = Literal["jacobi", "plain-jacobi"]
 Name = tuple[str, str]
@@ -41,11 +41,22 @@ class _Reads:
 class _Writes:
     """Connected inputs of one type of one instance."""
 
-    names: list[str]
+    wires: list[Wire]
     places: list[int]
+    """Where each input's value stands: at its wire's source, or by itself if overridden."""
     write: Writer
-    scales: list[tuple[int, float, float]]
+    scales: list[tuple[int, float, float]] = field(default_factory=list)
     gather: Any = None
+
+    def bind(self, places: Mapping[Name, int]) -> None:
+        """Say how values are gathered and which of them a wire converts."""
+        self.gather = _gatherer(self.places)
+        # An integer becomes a real number on its way, an overridden input has its unit already.
+        self.scales = [
+            (i, wire.factor, wire.offset)
+            for i, wire in enumerate(self.wires)
+            if wire.converts and self.places[i] == places[wire.source]
+        ]
 
 
 @dataclass
@@ -64,6 +75,7 @@ class _Visit:
     names: list[str]
     places: list[int]
     read: Reader
+    is_real: bool
 
 
 @dataclass
@@ -135,9 +147,15 @@ class Master:
         self._propagate(self._groups)
 
     def set(self, component: str, names: Sequence[str], values: Sequence[Any]) -> None:
-        """Set tunable parameters or unconnected inputs now. Raises SimulationError."""
-        self.system.parts[component].instance.writer(names)(values)
-        self._propagate(self._groups)
+        """Set tunable parameters or unconnected inputs now; outputs follow at once.
+
+        With plain Jacobi they follow after the next step. Raises SimulationError.
+        """
+        node = self._nodes[component]
+        node.part.instance.writer(names)(values)
+        if self.algorithm == "jacobi" and self.steps % node.part.every == 0:
+            self._read(node)
+            self._propagate(self._groups)
 
     def override(self, component: str, name: str, value: Any) -> None:
         """Replace an output for all its readers, or one connected input, until `release`."""
@@ -148,10 +166,6 @@ class Master:
         """End an override: the wire carries its own value again."""
         self._pin(component, name, None)
         self._propagate(self._groups)
-
-    def is_connected(self, component: str, name: str) -> bool:
-        """Say if a wire reaches the input ``name``."""
-        return any(wire.target == (component, name) for wire in self.system.wires)
 
     def terminate(self) -> None:
         """Tell every instance that the run has ended. Raises SimulationError."""
@@ -184,15 +198,9 @@ class Master:
         wires = [w for w in self.system.wires if w.target[0] == name]
         for kind in dict.fromkeys(variables[w.target[1]].type for w in wires):
             of_kind = [w for w in wires if variables[w.target[1]].type is kind]
-            names = [w.target[1] for w in of_kind]
-            scales = [
-                (i, w.factor, w.offset)
-                for i, w in enumerate(of_kind)
-                if (w.factor, w.offset) != (1.0, 0.0)
-            ]
-            places = [self._places[w.source] for w in of_kind]
-            writes = _Writes(names, places, node.part.instance.writer(names), scales)
-            writes.gather = _gatherer(places)
+            writer = node.part.instance.writer([w.target[1] for w in of_kind])
+            writes = _Writes(of_kind, [self._places[w.source] for w in of_kind], writer)
+            writes.bind(self._places)
             node.writes.append(writes)
 
     def _feedthrough_groups(self) -> list[tuple[list[_Visit], bool]]:
@@ -217,7 +225,10 @@ class Master:
             names = [output for c, output in outputs if c == component]
             node = self._nodes[component]
             places = [self._places[component, n] for n in names]
-            visits.append(_Visit(node, names, places, node.part.instance.reader(names)))
+            variables = node.part.instance.variables
+            is_real = all(variables[n].type is float for n in names)
+            reader = node.part.instance.reader(names)
+            visits.append(_Visit(node, names, places, reader, is_real))
         return visits
 
     # ------------------------------------------------------------------ running
@@ -242,8 +253,10 @@ class Master:
         if self.steps % visit.node.part.every:
             return
         self._write(visit.node)
-        signals = self.signals
-        for place, value in zip(visit.places, visit.read(), strict=True):
+        signals, values = self.signals, visit.read()
+        if visit.is_real and not math.isfinite(sum(values)):
+            self._refuse_not_finite(visit.places, values)
+        for place, value in zip(visit.places, values, strict=True):
             signals[place] = value
         if self._pins:
             self._keep_pinned(visit.places)
@@ -276,13 +289,13 @@ class Master:
         for reads in node.reads:
             values = reads.read()
             if reads.is_real and not math.isfinite(sum(values)):
-                self._refuse_not_finite(reads, values)
+                self._refuse_not_finite(range(reads.start, reads.stop), values)
             self.signals[reads.start : reads.stop] = values
             if self._pins:
                 self._keep_pinned(range(reads.start, reads.stop))
 
-    def _refuse_not_finite(self, reads: _Reads, values: Sequence[float]) -> None:
-        for place, value in zip(range(reads.start, reads.stop), values, strict=True):
+    def _refuse_not_finite(self, places: Sequence[int], values: Sequence[float]) -> None:
+        for place, value in zip(places, values, strict=True):
             if not math.isfinite(value):
                 name = ".".join(self.names[place])
                 raise SimulationError(f"{name} is {value} at t = {self.time!r} s")
@@ -296,16 +309,15 @@ class Master:
                 self._pins[place] = _Pin(value, own)
                 self.signals[place] = value
             return
-        source = next(w.source for w in self.system.wires if w.target == (component, name))
         for writes in self._nodes[component].writes:
-            if name in writes.names:
-                index = writes.names.index(name)
-                if value is None:
-                    writes.places[index] = self._places[source]
-                else:
-                    writes.places[index] = len(self.signals)
-                    self.signals.append(value)
-                writes.gather = _gatherer(writes.places)
+            for index, wire in enumerate(writes.wires):
+                if wire.target == (component, name):
+                    if value is None:
+                        writes.places[index] = self._places[wire.source]
+                    else:
+                        writes.places[index] = len(self.signals)
+                        self.signals.append(value)
+            writes.bind(self._places)
 
     def _keep_pinned(self, places: Sequence[int]) -> None:
         for place, pin in self._pins.items():

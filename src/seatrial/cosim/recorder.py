@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import csv
 import time
+from array import array
 from collections.abc import Sequence
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from ..errors import InputError
 from .master import Master
@@ -30,19 +34,26 @@ def matching(names: Sequence[str], patterns: Sequence[str]) -> list[str]:
     Raises InputError for a pattern that matches nothing.
     """
     for pattern in patterns:
-        if not any(fnmatchcase(name, pattern) for name in names):
+        if pattern != "*" and not any(fnmatchcase(name, pattern) for name in names):
             raise InputError(f"no signal matches {pattern!r}")
     return [name for name in names if any(fnmatchcase(name, p) for p in patterns)]
 
 
 class Recorder:
-    """Writes the recorded signals of a master to a CSV file.
+    """Writes the recorded signals of a master to a CSV file, and keeps those to ``watch``.
 
     Numbers are written so that they read back exactly; Booleans as 0 and 1; text quoted where
     it must be. The file is whole up to the last flush if the process is killed.
     """
 
-    def __init__(self, path: Path, master: Master, patterns: Sequence[str], every: int) -> None:
+    def __init__(
+        self,
+        path: Path,
+        master: Master,
+        patterns: Sequence[str],
+        every: int,
+        watch: Sequence[str] = (),
+    ) -> None:
         self.every = every
         self._master = master
         self.names = matching(output_names(master.system), patterns)
@@ -52,16 +63,24 @@ class Recorder:
             column for column, i in enumerate(self._places) if isinstance(master.signals[i], bool)
         ]
         self._file = path.open("w", newline="", encoding="utf-8")
-        self._writer = csv.writer(self._file, lineterminator="\n")
-        self._writer.writerow(["time", *self.names])
+        csv.writer(self._file, lineterminator="\n").writerow(["time", *self.names])
+        # Text is always quoted: a lone carriage return in it would end the row otherwise.
+        self._writer = csv.writer(self._file, lineterminator="\n", quoting=csv.QUOTE_NONNUMERIC)
+        self._watched_places = {name: places[name] for name in watch}
+        self._watched: dict[str, array[float]] = {name: array("d") for name in watch}
+        self._times = array("d")
         self._flushed = time.monotonic()
 
-    def record(self) -> None:
-        """Write a row if one is due at the master's time."""
+    def record(self, *, last: bool = False) -> None:
+        """Write a row if one is due at the master's time, or if it is the ``last``."""
         master = self._master
-        if master.steps % self.every:
-            return
         signals = master.signals
+        if self._watched:
+            self._times.append(master.time)
+            for name, place in self._watched_places.items():
+                self._watched[name].append(signals[place])
+        if master.steps % self.every and not last:
+            return
         row: list[Any] = [signals[i] for i in self._places]
         for column in self._booleans:
             row[column] = int(row[column])
@@ -70,6 +89,10 @@ class Recorder:
         if now - self._flushed > 1.0:
             self._file.flush()
             self._flushed = now
+
+    def watched(self) -> tuple[NDArray[np.float64], dict[str, NDArray[np.float64]]]:
+        """Return time and watched signals at every communication step so far."""
+        return np.array(self._times), {n: np.array(column) for n, column in self._watched.items()}
 
     def close(self) -> None:
         """Flush and close the file."""

@@ -8,7 +8,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
 
+from ..component import Noise
 from ..errors import InputError, unknown
+from ..fmi.bundle import bundle
 from ..fmi.direct import DirectInstance
 from ..fmi.export import cached_fmu
 from ..fmi.instance import Instance, Variable
@@ -31,6 +33,9 @@ class Part:
     fmu: str
     instance: Instance
     sha256: str
+    """Of the FMU file; empty in process."""
+    code: str
+    """Name and hash of the code, equal in both carriers; empty for a file of somebody else."""
     every: int
     """It steps once in so many communication steps."""
     given: dict[str, Given] = field(default_factory=dict)
@@ -46,6 +51,13 @@ class Wire:
     target: tuple[str, str]
     factor: float = 1.0
     offset: float = 0.0
+    to_real: bool = False
+    """An Integer output feeds a Real input."""
+
+    @property
+    def converts(self) -> bool:
+        """Say if a value changes on its way."""
+        return self.to_real or (self.factor, self.offset) != (1.0, 0.0)
 
 
 @dataclass
@@ -65,6 +77,8 @@ class System:
         Raises InputError for an unknown component or port, or a value that does not fit.
         """
         part, scalars = self._settable(key, origin)
+        for variable in scalars:
+            self.refuse_wired(part.name, variable.name, origin)
         presets = part.presets.get(key.partition(".")[2], {})
         part.given.update(from_written(written, scalars, presets, f"{origin}: {key}"))
 
@@ -83,6 +97,15 @@ class System:
             part.given[variable.name] = Given(
                 value * factor, f"{origin}: {factor!r} times {before}"
             )
+
+    def refuse_wired(self, component: str, variable: str, origin: str) -> None:
+        """Raise InputError if a wire feeds the input, so that a value set would do nothing."""
+        for wire in self.wires:
+            if wire.target == (component, variable):
+                feeder = ".".join(wire.source)
+                raise InputError(
+                    f"{origin}: {component}.{variable} is fed by {feeder}; override it in an event"
+                )
 
     def _settable(self, key: str, origin: str) -> tuple[Part, list[Variable]]:
         name, _, port = key.partition(".")
@@ -144,6 +167,9 @@ def assemble(
             system.parts[name] = part
             _give_parameters(system, part, entry, profile)
         system.wires = _wires(system)
+        for name, part in system.parts.items():
+            for variable in part.given:
+                system.refuse_wired(name, variable, part.given[variable].origin)
     except BaseException:
         system.free()
         raise
@@ -161,21 +187,25 @@ def _part(rig: Rig, name: str, entry: ComponentEntry, engine: Engine) -> Part:
                 f"{where}.step: {entry.step!r} is not a multiple of the rig's {rig.file.step!r}"
             )
     try:
-        instance, sha256 = _instance(entry.fmu, name, rig.read_from.path.parent, engine)
+        instance, sha256, code = _instance(entry.fmu, name, rig.read_from.path.parent, engine)
     except InputError as error:
         raise InputError(f"{where}.fmu: {error}") from None
-    return Part(name, entry.fmu, instance, sha256, every)
+    return Part(name, entry.fmu, instance, sha256, code, every)
 
 
-def _instance(fmu: str, name: str, folder: Path, engine: Engine) -> tuple[Instance, str]:
-    """Return an instance and the hash of its FMU file (none in process)."""
+def _instance(fmu: str, name: str, folder: Path, engine: Engine) -> tuple[Instance, str, str]:
+    """Return an instance, the hash of its FMU file and the name of its code; see `Part`."""
     source = find_source(fmu, folder)
-    if engine == "direct":
-        if isinstance(source, Path):
+    if isinstance(source, Path):
+        if engine == "direct":
             raise InputError(f"{source.name} can only run with the engine 'fmu'")
-        return DirectInstance(source.component_class()(name)), ""
-    loaded = load_fmu(source if isinstance(source, Path) else cached_fmu(source))
-    return FmuInstance(loaded, name), loaded.sha256
+        loaded, code = load_fmu(source), ""
+    else:
+        code = bundle(source.stem, source.script, source.folder).script
+        if engine == "direct":
+            return DirectInstance(source.component_class()(name)), "", code
+        loaded = load_fmu(cached_fmu(source, code))
+    return FmuInstance(loaded, name), loaded.sha256, code
 
 
 def _give_parameters(
@@ -183,7 +213,8 @@ def _give_parameters(
 ) -> None:
     path, variables = system.rig.read_from.path, part.instance.variables
     where = f"{path}: components.{part.name}"
-    if "seed" in variables:
+    seed_port = variables.get("seed")
+    if seed_port is not None and seed_port.description == Noise.seed.description:
         # Each instance has noise of its own, yet the same in every tool and run.
         seed = zlib.crc32(f"{system.seed}/{part.name}".encode())
         part.given["seed"] = Given(float(seed), f"derived from seed {system.seed}")
@@ -250,7 +281,8 @@ def _wires(system: System) -> list[Wire]:
                 )
             taken[key] = written_source
             origin = (written_source.partition(".")[0], source.name)
-            wires.append(Wire(origin, key, *_converting(source, target, where)))
+            to_real = (source.type, target.type) == (int, float)
+            wires.append(Wire(origin, key, *_converting(source, target, where), to_real))
     return wires
 
 

@@ -93,8 +93,8 @@ def _scalar(variable: Variable, value: Any, origin: str) -> Scalar:
     except InputError as error:
         raise InputError(f"{origin}: {error}") from None
     if variable.type is int:
-        if number != int(number):
-            raise InputError(f"{origin}: a whole number is needed, found {value!r}")
+        if number != int(number) or not -(2**31) <= number < 2**31:
+            raise InputError(f"{origin}: a whole number of 32 bits is needed, found {value!r}")
         return int(number)
     return number
 

@@ -12,8 +12,10 @@ import ast
 import hashlib
 import importlib.metadata
 import importlib.util
+import io
 import re
 import sys
+import tokenize
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
@@ -21,6 +23,7 @@ from pathlib import Path
 
 from ..errors import InputError
 
+_COOKIE = re.compile(r"^[ \t\f]*#.*?coding[:=]")
 _NO_INIT = b'"""Part of pythonfmu (MIT licence, beside this file)."""\n'
 
 
@@ -38,7 +41,8 @@ def bundle(stem: str, source: bytes, folder: Path) -> Bundle:
     """Bundle a slave script with all it imports from seatrial, pythonfmu and ``folder``.
 
     ``source`` is the script's text, ``stem`` its name; modules beside it in ``folder`` count
-    as its own. Imports inside functions are left out: what they bring is for builds and tools.
+    as its own, wherever they are imported. Of seatrial's own modules, imports inside functions
+    are left out: what they bring is for builds and tools.
 
     Raises InputError for a file that is not Python or an import that is found nowhere.
     """
@@ -101,18 +105,14 @@ def _closure(
     """Return the travelling modules by name, and the third-party packages they import."""
     modules: dict[str, tuple[Path, bytes]] = {}
     third_party: set[str] = set()
-    todo = [(name, file) for name in _imports(source, file, "", False)]
+    todo = [(found, file) for found in _imports(source, file, "", False, everywhere=True)]
     while todo:
-        name, importer = todo.pop()
+        (name, optional), importer = todo.pop()
         path = local.find(name)
         if path is None:
             top = name.partition(".")[0]
-            if local.find(top) is None and top not in sys.stdlib_module_names:
-                if importlib.util.find_spec(top) is None or local.is_namespace(top):
-                    raise InputError(
-                        f"{importer}: imports {top!r}, which is neither installed nor a module "
-                        f"beside it in {local.folder}"
-                    )
+            if local.find(top) is None and top not in sys.stdlib_module_names and not optional:
+                _require_installed(top, importer, local)
                 third_party.add(top)
             continue
         if name in modules:
@@ -122,39 +122,93 @@ def _closure(
             text = _NO_INIT  # its __init__ imports the builder, which an FMU does not need
         modules[name] = (path, text)
         package = path.name == "__init__.py"
-        todo += [(n, str(path)) for n in _imports(text, str(path), name, package)]
+        own = name.partition(".")[0] not in local.roots
+        found = _imports(text, str(path), name, package, everywhere=own)
+        todo += [(one, str(path)) for one in found]
         if "." in name:
-            todo.append((name.rpartition(".")[0], str(path)))
+            todo.append(((name.rpartition(".")[0], False), str(path)))
     return modules, third_party
 
 
-def _imports(source: bytes, file: str, module: str, is_package: bool) -> Iterator[str]:
-    """Yield every module that ``source`` imports at module level, and ``from`` names too."""
-    for node in _module_level(_parsed(source, file)):
+def _require_installed(top: str, importer: str, local: _Local) -> None:
+    if local.is_namespace(top):
+        raise InputError(f"{importer}: imports {top!r}, a folder without an __init__.py; add one")
+    if importlib.util.find_spec(top) is None:
+        raise InputError(
+            f"{importer}: imports {top!r}, which is neither installed nor a module beside it in "
+            f"{local.folder}"
+        )
+
+
+def _imports(
+    source: bytes, file: str, module: str, is_package: bool, *, everywhere: bool
+) -> Iterator[tuple[str, bool]]:
+    """Yield (module, may be missing) for every import, and for the names in ``from`` imports.
+
+    At module level only, unless ``everywhere``.
+    """
+    for node, optional in _statements(_parsed(_text(source, file), file), everywhere, False):
         if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
+            yield from ((alias.name, optional) for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
             base = node.module or ""
             if node.level:
                 parts = module.split(".") if is_package else module.split(".")[:-1]
                 parts = parts[: len(parts) - node.level + 1]
                 base = ".".join([*parts, base] if base else parts)
-            yield base
+            yield base, optional
             # A name may be a submodule; the closure drops those that are not.
-            yield from (f"{base}.{alias.name}" for alias in node.names)
+            yield from ((f"{base}.{alias.name}", optional) for alias in node.names)
 
 
-def _module_level(tree: ast.AST) -> Iterator[ast.AST]:
+def _statements(tree: ast.AST, everywhere: bool, optional: bool) -> Iterator[tuple[ast.AST, bool]]:
+    """Yield every node, and if it stands where a missing module is caught."""
     for node in ast.iter_child_nodes(tree):
-        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)):
+        function = isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda))
+        if function and not everywhere:
             continue
-        if isinstance(node, ast.If) and ast.unparse(node.test).endswith("TYPE_CHECKING"):
-            continue
-        yield node
-        yield from _module_level(node)
+        yield node, optional
+        if isinstance(node, ast.If) and _is_type_checking(node.test):
+            for branch in node.orelse:
+                yield branch, optional
+                yield from _statements(branch, everywhere, optional)
+        elif isinstance(node, ast.Try) and any(_catches_import(h) for h in node.handlers):
+            for part in node.body:
+                yield part, True
+                yield from _statements(part, everywhere, True)
+            for other in (*node.handlers, *node.orelse, *node.finalbody):
+                yield from _statements(other, everywhere, optional)
+        else:
+            yield from _statements(node, everywhere, optional)
 
 
-def _parsed(source: bytes, file: str) -> ast.Module:
+def _is_type_checking(test: ast.expr) -> bool:
+    return ast.unparse(test) in ("TYPE_CHECKING", "typing.TYPE_CHECKING")
+
+
+def _catches_import(handler: ast.ExceptHandler) -> bool:
+    caught = ast.unparse(handler.type) if handler.type else "Exception"
+    return any(name in caught for name in ("ImportError", "ModuleNotFoundError", "Exception"))
+
+
+def _text(source: bytes, file: str) -> str:
+    """Return Python source as text with plain line ends, without mark and encoding comment."""
+    try:
+        encoding, _ = tokenize.detect_encoding(io.BytesIO(source).readline)
+        text = source.decode(encoding)
+    except (SyntaxError, UnicodeDecodeError) as error:
+        raise InputError(f"{file}: not Python: {error}") from None
+    text = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")
+    first, newline, rest = text.partition("\n")
+    second, newline2, rest2 = rest.partition("\n")
+    if _COOKIE.match(first):
+        return "#" + newline + rest
+    if _COOKIE.match(second):
+        return first + newline + "#" + newline2 + rest2
+    return text
+
+
+def _parsed(source: str, file: str) -> ast.Module:
     try:
         return ast.parse(source)
     except (SyntaxError, ValueError) as error:
@@ -164,8 +218,9 @@ def _parsed(source: bytes, file: str) -> ast.Module:
 
 def _renamed(source: bytes, file: str, own: set[str], root: str) -> bytes:
     """Return ``source`` with absolute imports of ``own`` packages made imports from ``root``."""
-    tree = _parsed(source, file)
-    lines = source.decode("utf-8").splitlines(keepends=True)
+    text = _text(source, file)
+    tree = _parsed(text, file)
+    lines = [f"{line}\n" for line in text.split("\n")]
     statements = [n for n in ast.walk(tree) if isinstance(n, (ast.Import, ast.ImportFrom))]
     for node in sorted(statements, key=lambda n: (n.lineno, n.col_offset), reverse=True):
         new = _renamed_statement(node, own, root)
@@ -177,7 +232,7 @@ def _renamed(source: bytes, file: str, own: set[str], root: str) -> bytes:
         after = lines[last].encode()[node.end_col_offset :].decode()
         filler = ["\n"] * (last - first)  # keep the line numbers of tracebacks
         lines[first : last + 1] = [before + new + after, *filler]
-    return "".join(lines).encode()
+    return "".join(lines)[:-1].encode()
 
 
 def _renamed_statement(node: ast.Import | ast.ImportFrom, own: set[str], root: str) -> str | None:

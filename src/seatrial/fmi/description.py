@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 from xml.etree.ElementTree import Element, SubElement
@@ -51,10 +52,15 @@ def describe(slave: Slave, base: Callable[[dict[str, str]], Element]) -> Element
     return root
 
 
+def summary(component: type[Component]) -> str:
+    """Return the first line of a component's description, empty if it has none."""
+    return (component.__doc__ or "").strip().partition("\n")[0].strip()
+
+
 def _register(slave: Slave) -> None:
     component = slave.component
     slave.modelName = type(slave).__module__
-    slave.description = (type(component).__doc__ or "").strip().splitlines()[0]
+    slave.description = summary(type(component))
     slave.default_experiment = DefaultExperiment(start_time=0.0, stop_time=10.0, step_size=0.01)
     slave.vars.clear()
     for scalar in component.scalars:
@@ -65,7 +71,7 @@ def _register(slave: Slave) -> None:
             causality=_CAUSALITY[port.kind],
             variability=_variability(scalar),
             initial=Fmi2Initial.calculated if output else None,
-            description=port.description,
+            description=_text(port.description),
             getter=lambda reference=reference: component.values[reference],
         )
         slave.register_variable(variable, nested=False)
@@ -84,16 +90,19 @@ def _complete_variable(component: Component, scalar: ScalarPort, element: Elemen
     if "start" in element.attrib:
         element.set("start", str(value).lower() if port.type is bool else _text(value))
     if port.type is float:
-        element.set("unit", unit(port.unit).text)
+        try:
+            element.set("unit", unit(port.unit).text)
+        except InputError as error:
+            raise InputError(f"{type(component).__name__}.{port.name}: {error}") from None
         for name in ("min", "max", "nominal"):
             limit = port.limit(name, scalar.index)
-            if limit is not None:
+            if limit is not None and math.isfinite(limit):
                 element.set(name, repr(float(limit)))
 
 
 def _text(value: Any) -> str:
     if isinstance(value, str) and any(ord(c) < 32 and c not in "\t\n\r" for c in value):
-        raise InputError(f"start value {value!r} has a character that XML cannot hold")
+        raise InputError(f"the text {value!r} has a character that XML cannot hold")
     return value if isinstance(value, str) else repr(value)
 
 

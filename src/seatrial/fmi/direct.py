@@ -56,7 +56,9 @@ class DirectInstance:
         """Advance from ``t`` to ``t + h``, s."""
         try:
             self.component.advance(t, h)
-        except Exception as error:
+        except KeyboardInterrupt:
+            raise
+        except BaseException as error:  # SystemExit too, as in the FMU
             raise self._error("step", error) from error
 
     def get_state(self) -> Any:
@@ -66,6 +68,9 @@ class DirectInstance:
     def set_state(self, state: Any) -> None:
         """Restore a state."""
         self._call("set_state", lambda: self.component.set_state(state))
+
+    def free_state(self, state: Any) -> None:
+        """Release a state: nothing to do in process."""
 
     def terminate(self) -> None:
         """End the run: nothing to do in process."""
@@ -84,7 +89,9 @@ class DirectInstance:
     def _call(self, what: str, call: Callable[[], Any]) -> Any:
         try:
             return call()
-        except Exception as error:
+        except KeyboardInterrupt:
+            raise
+        except BaseException as error:  # SystemExit too, as in the FMU
             raise self._error(what, error) from error
 
     def _error(self, what: str, error: BaseException) -> SimulationError:

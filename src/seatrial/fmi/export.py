@@ -41,11 +41,13 @@ def build_fmu(
     return destination
 
 
-def cached_fmu(source: ComponentSource) -> Path:
-    """Return the FMU of ``source`` in the user's cache, built if it is not there yet."""
-    tag = bundle(source.stem, source.script, source.folder).script
-    path = cache_folder("fmus") / f"{tag}-{_tool_tag()}.fmu"
-    return path if path.is_file() else build_fmu(source, path)
+def cached_fmu(source: ComponentSource, code: str) -> Path:
+    """Return the FMU of ``source`` in the user's cache, built if it is not there yet.
+
+    ``code`` is the script's name in its bundle, which carries the hash of all its code.
+    """
+    path = cache_folder("fmus") / f"{code}-{_tool_tag()}.fmu"
+    return path if zipfile.is_zipfile(path) else build_fmu(source, path)
 
 
 def fmu_bytes(source: ComponentSource, start_values: Mapping[str, Any] | None = None) -> bytes:
@@ -116,4 +118,7 @@ def _replace(path: Path, content: bytes) -> None:
         raise InputError(f"cannot write {path}: {error.strerror}") from None
     with os.fdopen(handle, "wb") as file:
         file.write(content)
+        file.flush()
+        os.fsync(file.fileno())
+    os.chmod(temporary, 0o644)  # mkstemp's files are private
     os.replace(temporary, path)

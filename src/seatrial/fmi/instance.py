@@ -76,6 +76,9 @@ class Instance(Protocol):
     def set_state(self, state: Any) -> None:
         """Restore a state; the handle stays valid."""
 
+    def free_state(self, state: Any) -> None:
+        """Release a handle."""
+
     def terminate(self) -> None:
         """End the run."""
 

@@ -11,6 +11,7 @@ import re
 import shutil
 import tempfile
 import zipfile
+import zlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -107,13 +108,16 @@ class FmuInstance:
             ) from None
         self._c = self._slave.component
         self._do_step = self._slave._functions["fmi2DoStep"]
-        self._refuse_logged_errors("fmi2Instantiate")
+        try:
+            self._refuse_logged_errors("fmi2Instantiate")
+        except SimulationError:
+            self.free()
+            raise
 
     def set_start(self, values: Mapping[str, Scalar]) -> None:
         """Set parameters and start values by variable name, before `initialise`."""
         if values:
             self.writer(list(values))(list(values.values()))
-            self._refuse_logged_errors("setting start values")
 
     def initialise(self, start_time: float, stop_time: float) -> None:
         """Start at ``start_time``."""
@@ -162,10 +166,15 @@ class FmuInstance:
         """Restore a state; the handle stays valid."""
         self._call("fmi2SetFMUstate", state)
 
+    def free_state(self, state: Any) -> None:
+        """Release a state's memory."""
+        self._call("fmi2FreeFMUstate", ctypes.byref(state))
+
     def terminate(self) -> None:
         """End the run."""
         if not self._fatal:
             self._call("fmi2Terminate")
+            self._refuse_logged_errors("fmi2Terminate")
 
     def free(self) -> None:
         """Release the instance; never after a fatal status, which has released it already.
@@ -224,6 +233,8 @@ class FmuInstance:
             status = get(c, vr, count, values)
             if status > _WARNING:
                 self._refuse(function, status)
+            if self._messages:
+                self._refuse_logged_errors(function)
             if kind is float or kind is int:
                 plain: list[Any] = values[:]
                 return plain
@@ -245,6 +256,8 @@ class FmuInstance:
             status = put(c, vr, count, own)
             if status > _WARNING:
                 self._refuse(function, status)
+            if self._messages:
+                self._refuse_logged_errors(function)
 
         return write
 
@@ -343,7 +356,7 @@ def _feedthrough(description: ModelDescription) -> dict[str, list[str]]:
 def _unpacked(path: Path, sha256: str) -> Path:
     """Return the folder the FMU is unpacked in; unpack it if it is not there yet."""
     folder = cache_folder("unpacked") / sha256[:24]
-    if folder.is_dir():
+    if _is_whole(folder, path):
         return folder
     temporary = Path(tempfile.mkdtemp(dir=folder.parent, prefix="unpacking-"))
     try:
@@ -351,17 +364,30 @@ def _unpacked(path: Path, sha256: str) -> Path:
             for member in archive.namelist():
                 _refuse_outside(path, member)
             archive.extractall(temporary)
-    except zipfile.BadZipFile as error:
+    except (zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError) as error:
         shutil.rmtree(temporary)
         raise InputError(f"{path}: not an FMU: {error}") from None
     except BaseException:
         shutil.rmtree(temporary)
         raise
+    if folder.is_dir() and not _is_whole(folder, path):  # somebody removed a part of it
+        shutil.rmtree(folder, ignore_errors=True)
     try:
         os.replace(temporary, folder)
     except OSError:  # another process was first
         shutil.rmtree(temporary, ignore_errors=True)
     return folder
+
+
+def _is_whole(folder: Path, path: Path) -> bool:
+    """Say if everything in the FMU is still there unpacked."""
+    if not folder.is_dir():
+        return False
+    try:
+        with zipfile.ZipFile(path) as archive:
+            return all((folder / name).exists() for name in archive.namelist())
+    except (OSError, zipfile.BadZipFile):
+        return False
 
 
 def _refuse_outside(path: Path, member: str) -> None:

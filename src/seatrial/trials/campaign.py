@@ -14,7 +14,7 @@ from pydantic import Field
 from ..cosim.files import FileModel, Source, find_file, read_toml, validated
 from ..cosim.system import Engine
 from ..errors import InputError
-from .run import Hooks, Result, make_folder, run_trial, write_json
+from .run import Hooks, Result, check_trial, claim_folder, run_trial, write_json
 from .trial import Trial, load_trial
 
 
@@ -86,20 +86,23 @@ def load_campaign(name: str) -> Campaign:
 
 def run_campaign(
     campaign: Campaign,
-    out: Path,
+    out: Path | None,
     *,
     engine: Engine = "fmu",
     hooks: Hooks | None = None,
     done: Callable[[Case, Result], None] = lambda _case, _result: None,
-) -> list[tuple[Case, Result]]:
+) -> tuple[Path, list[tuple[Case, Result]]]:
     """Run every case into a folder of its own below ``out``, which must not hold anything yet.
 
-    ``done`` is called after each case. Stops after the case that was asked to stop.
-    Raises InputError for bad input; cases before it stay on disk.
+    None makes a new folder ``runs/NAME-DATE-TIME``. ``done`` is called after each case. Stops
+    after the case that was asked to stop. Returns the folder and the cases' results.
+    Raises InputError for bad input, in any case, before the first one runs.
     """
     hooks = hooks or Hooks()
-    make_folder(out)
-    finished = []
+    for case in campaign.cases():
+        check_trial(case.trial, engine, hooks)
+    out = claim_folder(out, campaign.read_from.name, "campaign.json")
+    finished: list[tuple[Case, Result]] = []
     for number, case in enumerate(campaign.cases(), start=1):
         folder = out / f"{number:02d}-{_slug(case.name)}"
         result = run_trial(case.trial, folder, engine=engine, hooks=hooks)
@@ -108,7 +111,7 @@ def run_campaign(
         done(case, result)
         if result.status == "stopped":
             break
-    return finished
+    return out, finished
 
 
 def _write_index(campaign: Campaign, out: Path, finished: list[tuple[Case, Result]]) -> None:
@@ -137,4 +140,4 @@ def _name(trial: Trial, chosen: dict[str, Any]) -> str:
 
 
 def _slug(name: str) -> str:
-    return re.sub(r"[^A-Za-z0-9.]+", "-", name).strip("-")
+    return re.sub(r"[^A-Za-z0-9.]+", "-", name).strip("-")[:80]

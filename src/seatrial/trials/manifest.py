@@ -12,7 +12,7 @@ from ..cosim.files import Source
 from ..cosim.system import Engine, Part, System
 from .trial import Trial
 
-_LIBRARIES = ("casadi", "fmpy", "numpy", "pythonfmu")
+_LIBRARIES = ("casadi", "fmpy", "numpy", "pint", "pythonfmu", "scipy")
 
 
 def manifest(trial: Trial, system: System, engine: Engine) -> dict[str, Any]:
@@ -65,4 +65,10 @@ def _component(part: Part, step: float) -> dict[str, Any]:
             "source": "" if given is None else given.source,
             "mark": "" if given is None else given.mark,
         }
-    return {"fmu": part.fmu, "sha256": part.sha256, "step": step, "parameters": parameters}
+    return {
+        "fmu": part.fmu,
+        "sha256": part.sha256,
+        "code": part.code,
+        "step": step,
+        "parameters": parameters,
+    }

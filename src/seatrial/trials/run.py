@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import datetime
+import itertools
 import json
 import time
 from collections.abc import Callable
@@ -17,7 +19,6 @@ from ..cosim.system import Engine, System, assemble, settable
 from ..cosim.values import from_written, port_scalars
 from ..errors import InputError, SimulationError, unknown
 from .manifest import manifest
-from .run_folder import load_run
 from .trial import Event, Trial
 from .verdict import Verdict
 
@@ -54,9 +55,11 @@ class Result:
 
 
 def run_trial(
-    trial: Trial, out: Path, *, engine: Engine = "fmu", hooks: Hooks | None = None
+    trial: Trial, out: Path | None, *, engine: Engine = "fmu", hooks: Hooks | None = None
 ) -> Result:
     """Run ``trial`` and leave the run folder ``out``, which must not hold anything yet.
+
+    None makes a new folder ``runs/NAME-DATE-TIME``.
 
     Everything written in the trial's files is checked, and the components are started, before
     ``out`` is made. A run that fails or is stopped afterwards leaves the signals recorded so
@@ -66,6 +69,77 @@ def run_trial(
     """
     hooks = hooks or Hooks()
     begun = time.perf_counter()
+    system, units = _prepared(trial, engine, hooks)
+    try:
+        wall = {"assemble": time.perf_counter() - begun}
+        master = _started(trial, system, wall)
+        out = claim_folder(out, trial.name, "manifest.json")
+        recorder = Recorder(
+            out / "signals.csv",
+            master,
+            trial.file.record.signals,
+            trial.record_every,
+            sorted(set().union(*(criterion.signals for _, criterion in trial.criteria))),
+        )
+        status, error = _simulate(trial, master, recorder, out, engine, hooks, wall)
+    finally:
+        system.free()
+    verdicts = [] if status == "failed" else _judge(trial, recorder, out, units)
+    loose = system.unconnected_inputs()
+    notes = (
+        [f"inputs that nothing feeds keep their start values: {', '.join(loose)}"] if loose else []
+    )
+    return Result(out, status, error, verdicts, notes, wall)
+
+
+def claim_folder(out: Path | None, name: str, index: str) -> Path:
+    """Create the folder of a run for this process alone, and return it.
+
+    None makes a new one, ``runs/NAME-DATE-TIME``; else ``out`` must not hold anything yet.
+    ``index`` is the file that claims the folder. Raises InputError.
+    """
+    try:
+        if out is None:
+            return _new_folder(name)
+        out.mkdir(parents=True, exist_ok=True)
+        if any(out.iterdir()):
+            raise FileExistsError
+        (out / index).open("x").close()
+    except (FileExistsError, NotADirectoryError):
+        message = f"{out} exists and is not an empty folder; name another with --out"
+        raise InputError(message) from None
+    except OSError as error:
+        raise InputError(f"cannot create {out or 'runs'}: {error.strerror}") from None
+    return out
+
+
+def _new_folder(name: str) -> Path:
+    stamp = datetime.datetime.now().strftime("%Y%m%d-%H%M%S")
+    for count in itertools.count(1):
+        folder = Path("runs") / (f"{name}-{stamp}" + (f"-{count}" if count > 1 else ""))
+        try:
+            folder.mkdir(parents=True)
+        except FileExistsError:
+            continue
+        return folder
+    raise AssertionError("unreachable")
+
+
+def write_json(path: Path, content: Any) -> None:
+    """Write a JSON file whole or not at all."""
+    temporary = path.with_suffix(".tmp")
+    temporary.write_text(json.dumps(content, indent=1, ensure_ascii=False) + "\n", "utf-8")
+    temporary.replace(path)
+
+
+def check_trial(trial: Trial, engine: Engine = "fmu", hooks: Hooks | None = None) -> None:
+    """Raise InputError for what `run_trial` would refuse before it starts the components."""
+    system, _ = _prepared(trial, engine, hooks or Hooks())
+    system.free()
+
+
+def _prepared(trial: Trial, engine: Engine, hooks: Hooks) -> tuple[System, dict[str, str]]:
+    """Return the assembled system, everything set, and the units of its signals."""
     system = assemble(
         trial.rig,
         engine,
@@ -80,46 +154,10 @@ def run_trial(
             system.scale(key, factor, origin)
         units = _check_criteria(trial, system)
         _check_events(trial, system)
-        wall = {"assemble": time.perf_counter() - begun}
-        master = _started(trial, system, wall)
-        make_folder(out)
-        status, error = _simulate(trial, master, out, engine, hooks, wall)
-    finally:
+    except BaseException:
         system.free()
-    verdicts = [] if status == "failed" else _judge(trial, out, units)
-    loose = system.unconnected_inputs()
-    notes = (
-        [f"inputs that nothing feeds keep their start values: {', '.join(loose)}"] if loose else []
-    )
-    return Result(out, status, error, verdicts, notes, wall)
-
-
-def make_folder(out: Path) -> None:
-    """Create the folder of a run. Raises InputError if it holds something already."""
-    if out.exists() and (not out.is_dir() or any(out.iterdir())):
-        raise InputError(f"{out} exists and is not an empty folder; name another with --out")
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"cannot create {out}: {error.strerror}") from None
-
-
-def new_folder(name: str) -> Path:
-    """Return a folder for a run that does not exist yet: ``runs/NAME-DATE-TIME``."""
-    stamp = datetime.datetime.now().strftime("%Y%m%d-%H%M%S")
-    base = Path("runs") / f"{name}-{stamp}"
-    candidate, count = base, 1
-    while candidate.exists():
-        count += 1
-        candidate = base.with_name(f"{base.name}-{count}")
-    return candidate
-
-
-def write_json(path: Path, content: Any) -> None:
-    """Write a JSON file whole or not at all."""
-    temporary = path.with_suffix(".tmp")
-    temporary.write_text(json.dumps(content, indent=1, ensure_ascii=False) + "\n", "utf-8")
-    temporary.replace(path)
+        raise
+    return system, units
 
 
 def _started(trial: Trial, system: System, wall: dict[str, float]) -> Master:
@@ -134,54 +172,67 @@ def _started(trial: Trial, system: System, wall: dict[str, float]) -> Master:
 
 
 def _simulate(
-    trial: Trial, master: Master, out: Path, engine: Engine, hooks: Hooks, wall: dict[str, float]
+    trial: Trial,
+    master: Master,
+    recorder: Recorder,
+    out: Path,
+    engine: Engine,
+    hooks: Hooks,
+    wall: dict[str, float],
 ) -> tuple[str, str | None]:
     content = manifest(trial, master.system, engine)
     write_json(out / "manifest.json", {**content, "status": "running", "error": None})
     started = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
     begun = time.perf_counter()
-    status, error = "complete", None
+    status = "failed"
+    error: str | None = "ended by an error of seatrial itself"
     try:
-        status = _loop(trial, master, out, hooks)
+        status, error = _loop(trial, master, recorder, hooks), None
     except SimulationError as problem:
-        status, error = "failed", str(problem)
-    wall["run"] = time.perf_counter() - begun
+        error = str(problem)
+    except KeyboardInterrupt:
+        status, error = "stopped", None
+    except OSError as problem:
+        error = f"cannot write {out / 'signals.csv'}: {problem.strerror}"
+    finally:
+        wall["run"] = time.perf_counter() - begun
+        with contextlib.suppress(OSError):  # the disk may be full: what was recorded stays
+            recorder.close()
+            write_json(out / "timing.json", _timing(master, started, wall))
+            write_json(out / "manifest.json", {**content, "status": status, "error": error})
+    return status, error
+
+
+def _timing(master: Master, started: str, wall: dict[str, float]) -> dict[str, Any]:
     simulated = seconds(master.time_ns - master.start_ns)
-    timing = {
+    return {
         "started": started,
         "wall_s": wall,
         "simulated_s": simulated,
         "steps": master.steps,
         "real_time_factor": simulated / wall["run"],
     }
-    write_json(out / "timing.json", timing)
-    write_json(out / "manifest.json", {**content, "status": status, "error": error})
-    return status, error
 
 
-def _loop(trial: Trial, master: Master, out: Path, hooks: Hooks) -> str:
-    record = trial.file.record
-    recorder = Recorder(out / "signals.csv", master, record.signals, trial.record_every)
+def _loop(trial: Trial, master: Master, recorder: Recorder, hooks: Hooks) -> str:
     events = trial.events()
     stop, steps = seconds(trial.stop_ns), trial.steps
     shown = time.perf_counter()
-    try:
-        while True:
-            while events and events[0].at_ns <= master.time_ns:
-                _apply(events.pop(0), master)
-            recorder.record()
-            if master.steps >= steps:
-                break
-            if hooks.stop_requested():
-                return "stopped"
-            master.step()
-            if master.steps % 16 == 0 and time.perf_counter() - shown > 0.1:
-                shown = time.perf_counter()
-                hooks.progress(master.time, stop)
-        hooks.progress(master.time, stop)
-        master.terminate()
-    finally:
-        recorder.close()
+    while True:
+        while events and events[0].at_ns <= master.time_ns:
+            _apply(events.pop(0), master)
+        stopping = hooks.stop_requested()
+        recorder.record(last=stopping or master.steps >= steps)
+        if stopping and master.steps < steps:
+            return "stopped"
+        if master.steps >= steps:
+            break
+        master.step()
+        if master.steps % 16 == 0 and time.perf_counter() - shown > 0.1:
+            shown = time.perf_counter()
+            hooks.progress(master.time, stop)
+    hooks.progress(master.time, stop)
+    master.terminate()
     return "complete"
 
 
@@ -212,29 +263,32 @@ def _check_events(trial: Trial, system: System) -> None:
             raise InputError(f"{where}: {unknown('component', component, system.parts)}")
         part = system.parts[component]
         scalars = port_scalars(part.instance.variables, port)
-        connected = any((component, v.name) in wired for v in scalars)
+        connected = [(component, v.name) in wired for v in scalars]
         if event.action == "set":
             scalars = settable(part.instance.variables, port, f"{where}: {component}")
-            if connected:
+            if any(connected):
                 raise InputError(f"{where}: {event.key} is fed by a wire; use override")
             if scalars[0].causality == "parameter" and scalars[0].variability != "tunable":
                 raise InputError(f"{where}: {event.key} is fixed and cannot change during a run")
-        elif not scalars or not (connected or scalars[0].causality == "output"):
-            raise InputError(f"{where}: {event.key} is neither an output nor a connected input")
+        elif not scalars or not (all(connected) or scalars[0].causality == "output"):
+            raise InputError(
+                f"{where}: {event.key} is neither an output nor an input that is wholly connected"
+            )
         if event.action != "release":
             from_written(event.written, scalars, part.presets.get(port, {}), where)
 
 
 def _check_criteria(trial: Trial, system: System) -> dict[str, str]:
     """Return the signals' units; raise InputError if a criterion does not fit them."""
-    units = {
-        f"{name}.{v.name}": v.unit
+    outputs = {
+        f"{name}.{v.name}": v
         for name, part in system.parts.items()
         for v in part.instance.variables.values()
         if v.causality == "output"
     }
+    units = {name: variable.unit for name, variable in outputs.items()}
     try:
-        recorded = matching(list(units), trial.file.record.signals)
+        matching(list(units), trial.file.record.signals)
     except InputError as error:
         raise InputError(f"{trial.read_from.path}: record.signals: {error}") from None
     for name, criterion in trial.criteria:
@@ -243,19 +297,22 @@ def _check_criteria(trial: Trial, system: System) -> dict[str, str]:
             for signal in criterion.signals:
                 if signal not in units:
                     raise InputError(unknown("signal", signal, units))
-                if signal not in recorded:
-                    raise InputError(f"{signal} is not recorded; see record.signals")
+                if outputs[signal].type is str:
+                    raise InputError(f"{signal} is a text, a number is needed")
             criterion.check_units(units)
         except InputError as error:
             raise InputError(f"{where}: {error}") from None
     return units
 
 
-def _judge(trial: Trial, out: Path, units: dict[str, str]) -> list[tuple[str, str, Verdict]]:
-    run = load_run(out)
+def _judge(
+    trial: Trial, recorder: Recorder, out: Path, units: dict[str, str]
+) -> list[tuple[str, str, Verdict]]:
+    """Judge every communication step, however often rows were recorded."""
+    t, signals = recorder.watched()
     verdicts = []
     for entry, (name, criterion) in zip(trial.file.criteria, trial.criteria, strict=True):
-        verdicts.append((name, entry.check, criterion.evaluate(run.time, run.signals, units)))
+        verdicts.append((name, entry.check, criterion.evaluate(t, signals, units)))
     rows = [{"name": name, "check": check, **asdict(verdict)} for name, check, verdict in verdicts]
     write_json(out / "verdicts.json", rows)
     return verdicts

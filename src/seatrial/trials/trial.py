@@ -170,8 +170,14 @@ def load_trial(name: str, relative_to: Path | None = None) -> Trial:
 
 def _checked(trial: Trial) -> Trial:
     where = f"{trial.read_from.path}: stop"
+    if trial.stop_ns <= trial.start_ns:
+        raise InputError(f"{where}: {trial.file.stop!r} is not after the start")
     _multiple(trial.stop_ns - trial.start_ns, trial.rig.step_ns, where, trial.file.stop)
-    _ = trial.record_every
+    if trial.record_every > trial.steps:
+        raise InputError(
+            f"{trial.read_from.path}: record.every: {trial.file.record.every!r} is longer than "
+            "the trial"
+        )
     trial.events()
     return trial
 

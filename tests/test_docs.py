@@ -1,0 +1,373 @@
+"""The pages below docs/: their examples run, their tables are complete and up to date."""
+
+from __future__ import annotations
+
+import doctest
+import importlib
+import importlib.util
+import json
+import re
+import shlex
+import subprocess
+import sys
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+from pydantic import BaseModel
+from pydantic_core import PydanticUndefined
+
+from seatrial.cosim.files import FileModel
+from seatrial.trials.criteria import parse
+from seatrial.trials.run import run_trial
+from seatrial.trials.run_folder import load_run
+from seatrial.trials.trial import load_trial
+from seatrial.units import quantity
+
+ROOT = Path(__file__).parents[1]
+DOCS = ROOT / "docs"
+FILES, COMPONENTS = DOCS / "files.md", DOCS / "components.md"
+HYDRONE, DESIGN = DOCS / "vehicles" / "hydrone.md", DOCS / "design.md"
+SEATRIAL = str(Path(sys.executable).with_name("seatrial"))
+
+
+def _script(path: Path) -> Any:
+    spec = importlib.util.spec_from_file_location(f"docs_{path.stem}", path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+TABLES = _script(DOCS / "tables.py")
+
+
+# ---------------------------------------------------------------------- a page taken apart
+
+
+class Block(NamedTuple):
+    """A block of code, and the file that the line before it names."""
+
+    language: str
+    file: str
+    text: str
+    line: int
+
+
+def blocks(page: Path) -> list[Block]:
+    text = page.read_text("utf-8")
+    found = re.finditer(r"(?:^`([^`\n]+)`:\n\n)?^```(\w+)\n(.*?)^```$", text, re.DOTALL | re.M)
+    return [Block(m[2], m[1] or "", m[3], text.count("\n", 0, m.start()) + 1) for m in found]
+
+
+def rows_after(page: Path, marker: str) -> Iterator[list[str]]:
+    """Yield the cells of the table that follows ``marker``, without its head."""
+    text = page.read_text("utf-8")
+    lines = text[text.index(marker) :].splitlines()
+    table = [line for line in lines[1:] if line.strip()]
+    for line in table[2:]:
+        if not line.startswith("|"):
+            return
+        yield [cell.strip() for cell in re.split(r"(?<!\\)\|", line)[1:-1]]
+
+
+# ---------------------------------------------------------------------- examples
+
+
+def run_page(page: Path, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Write a page's files and run its commands and Python, in the order of the page."""
+    monkeypatch.chdir(folder)
+    monkeypatch.syspath_prepend(str(folder))
+    found = blocks(page)
+    for block in found:
+        if block.file:
+            path = folder / block.file
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(block.text, "utf-8")
+    names: dict[str, Any] = {}
+    runner = doctest.DocTestRunner(optionflags=doctest.ELLIPSIS, verbose=False)
+    for block in found:
+        if block.language == "console":
+            run_commands(block)
+        elif block.language == "python" and block.text.startswith(">>>"):
+            test = doctest.DocTestParser().get_doctest(
+                block.text, names, page.name, str(page), block.line
+            )
+            said: list[str] = []
+            runner.run(test, out=said.append, clear_globs=False)
+            assert not said, "".join(said)
+            names = test.globs
+        else:
+            assert block.file, f"{page.name}, line {block.line}: a block that nothing runs"
+    for block in found:
+        sys.modules.pop(block.file.removesuffix(".py"), None)
+
+
+def run_commands(block: Block) -> None:
+    commands = re.findall(r"^\$ ([^\n]*)\n((?:(?!\$ )[^\n]*\n)*)", block.text, re.M)
+    assert commands
+    for line, shown in commands:
+        words = shlex.split(line)
+        assert words[0] in ("seatrial", "python")
+        program = [SEATRIAL] if words[0] == "seatrial" else [sys.executable]
+        done = subprocess.run([*program, *words[1:]], capture_output=True, text=True, check=False)
+        got = done.stdout + done.stderr
+        matches = doctest.OutputChecker().check_output(shown, got, doctest.ELLIPSIS)
+        assert matches or (not shown and done.returncode == 0), f"{line}\n{got}"
+
+
+@pytest.mark.parametrize("page", [FILES, COMPONENTS, HYDRONE, DESIGN], ids=lambda page: page.stem)
+def test_examples_run(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    run_page(page, tmp_path, monkeypatch)
+
+
+# ---------------------------------------------------------------------- files.md: keys
+
+
+def file_models() -> set[type[BaseModel]]:
+    """Return every model of a file that a module of seatrial names."""
+    for path in (ROOT / "src/seatrial").rglob("*.py"):
+        if "BaseModel" in (text := path.read_text("utf-8")) or "FileModel" in text:
+            module = path.relative_to(ROOT / "src").with_suffix("")
+            importlib.import_module(".".join(module.parts))
+
+    def below(cls: type[BaseModel]) -> Iterator[type[BaseModel]]:
+        for sub in cls.__subclasses__():
+            yield sub
+            yield from below(sub)
+
+    return {
+        cls
+        for cls in below(FileModel)
+        if getattr(sys.modules.get(cls.__module__), cls.__name__, None) is cls
+    }
+
+
+def key_tables() -> dict[type[BaseModel], dict[str, str]]:
+    """Return, per model that the page names, the default that it says for each key."""
+    tables = {}
+    for name in re.findall(r"<!-- keys of (\S+) -->", FILES.read_text("utf-8")):
+        module, _, model = name.rpartition(".")
+        cls = getattr(importlib.import_module(module), model)
+        rows = rows_after(FILES, f"<!-- keys of {name} -->")
+        tables[cls] = {row[0].strip("`"): row[2] for row in rows}
+    return tables
+
+
+def test_every_kind_of_file_has_a_table_of_its_keys() -> None:
+    assert set(key_tables()) == file_models()
+
+
+@pytest.mark.parametrize("model", key_tables(), ids=lambda model: model.__name__)
+def test_keys_and_defaults_are_those_of_the_model(model: type[BaseModel]) -> None:
+    shown = key_tables()[model]
+    if "COMPONENT" in shown:  # every other table of a vehicle file
+        shown["components"] = shown.pop("COMPONENT")
+    fields = model.model_fields
+    assert list(shown) == list(fields) or sorted(shown) == sorted(fields)
+    for key, field in fields.items():
+        default = field.get_default(call_default_factory=True, validated_data={})
+        if default is PydanticUndefined:
+            expected = "needed"
+        elif isinstance(default, BaseModel):
+            continue
+        elif default is None:
+            expected = "none"
+        elif default in ("", {}, []):
+            expected = "empty"
+        else:
+            expected = f"`{json.dumps(default)}`"
+        assert shown[key] == expected, key
+
+
+def test_every_top_level_key_of_the_shipped_files_is_in_the_page() -> None:
+    text = FILES.read_text("utf-8")
+    for folder in ("harness/rigs", "harness/trials", "harness/campaigns", "hil_profiles"):
+        for path in (ROOT / folder).glob("*.toml"):
+            for key in tomllib.loads(path.read_text("utf-8")):
+                assert f"`{key}`" in text, f"{path}: {key}"
+
+
+# ---------------------------------------------------------------------- files.md: the rest
+
+
+@pytest.fixture(scope="module")
+def dash(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    """Return the record of the page's trial."""
+    folder = tmp_path_factory.mktemp("dash")
+    for block in blocks(FILES):
+        if block.file:
+            path = folder / block.file
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(block.text, "utf-8")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        return load_run(
+            run_trial(load_trial("dinghy-dash"), folder / "out", engine="direct").folder
+        )
+
+
+def criteria_of_the_page() -> list[str]:
+    text = FILES.read_text("utf-8")
+    section = text[text.index("### Criteria") : text.index("## Campaigns")]
+    cells = [row for row in section.splitlines() if row.startswith("| ")]
+    texts = [t for row in cells for t in re.findall(r"`([^`]+)`", row) if re.search(r"\w\.\w", t)]
+    assert len(texts) > 15
+    return texts
+
+
+@pytest.mark.parametrize("text", criteria_of_the_page())
+def test_criteria_of_the_page_can_be_judged_and_hold(text: str, dash: Any) -> None:
+    verdict = parse(text).evaluate(dash.time, dash.signals, dash.units)
+    assert verdict.passed, verdict.detail
+
+
+def test_bands_of_settling(dash: Any) -> None:
+    rows = list(rows_after(FILES, "| example | band |\n"))
+    (section,) = [FILES.read_text("utf-8").partition("| example | band |\n")[2]]
+    bands = re.findall(r"^\| `([^`]+)` \| (\d+) % \|$", section, re.M)
+    assert len(bands) == 3, rows
+    for text, band in bands:
+        criterion = parse(text)
+        assert criterion.band == pytest.approx(float(band) / 100)
+        times, x = dash.time, dash.signals["hull.velocity.u"]
+        outside = np.abs(x - x[-1]) > criterion.band * np.abs(x - x[-1]).max()
+        last = times[np.flatnonzero(outside & (times >= 11.0))[-1]]
+        took = criterion.evaluate(times, dash.signals, dash.units).worst
+        assert last - 11.0 <= took <= last - 11.0 + 0.02
+
+
+@pytest.mark.parametrize(
+    ("text", "unit"),
+    [("24 kg", "kg"), ("10 deg", "rad"), ("1650 us", "s"), ("0.2 kn", "m/s")],
+)
+def test_quantities_of_the_page(text: str, unit: str) -> None:
+    assert f'`"{text}"`' in FILES.read_text("utf-8")
+    quantity(text, unit)
+
+
+def test_units_of_the_page() -> None:
+    section = re.search(r"customary units are known\s+\((.*?)\)", FILES.read_text("utf-8"), re.S)
+    assert section is not None
+    for name in re.findall(r"`([^`]+)`", section[1]):
+        importlib.import_module("seatrial.units").unit(name)
+
+
+def test_values_come_from_where_the_page_says(write: Any, tmp_path: Path) -> None:
+    """Each parameter is set one level higher than the one before; the highest wins."""
+    names = [
+        *("heading_resolution", "seed", "variation", "heading_instability", "heading_noise"),
+        *("heading_bias", "delay", "dropout", "correlation_time"),
+    ]
+    units = dict.fromkeys(names, "rad") | {"delay": "s", "dropout": "1", "correlation_time": "s"}
+
+    def entries(of: list[str], value: float) -> str:
+        return "".join(
+            f'{n} = {{ value = {value}, unit = "{units[n]}", source = "x", mark = "assumed" }}\n'
+            for n in of
+        )
+
+    def written(of: list[str], value: float) -> str:
+        shown = (f'{n} = "{value}{" " + units[n] if units[n] != "1" else ""}"' for n in of)
+        return "\n".join(shown)
+
+    write(
+        "v.toml",
+        'title = "v"\nsource = "x"\ndefault = "a"\n'
+        f"[compass]\n{entries(names[2:], 0.1)}[variants.a.compass]\n{entries(names[3:], 0.2)}",
+    )
+    profile = next(block.text for block in blocks(FILES) if block.file.startswith("hil_profiles"))
+    profile = profile[: profile.index("[sensors")]
+    write(
+        "p.toml",
+        f'{profile}[sensors.c]\nkind = "compass"\nsource = "x"\n{written(names[4:], 0.3)}\n',
+    )
+    rig_set = written(names[5:], 0.4).replace("\n", ", ")
+    write(
+        "r.toml",
+        'step = "10 ms"\nprofile = "p.toml"\n[components]\nc = { fmu = "compass", '
+        f'parameters = "v.toml", profile = "sensors.c", set = {{ {rig_set} }} }}\n',
+    )
+    trial_set = "\n".join(
+        f'"c.{line.replace(" =", chr(34) + " =", 1)}'
+        for line in written(names[6:], 0.5).splitlines()
+    )
+    path = write("t.toml", f'rig = "r.toml"\nstop = "1 s"\n[set]\n{trial_set}\n')
+    trial = load_trial(str(path)).changed(
+        {"c.dropout": 0.6, "c.correlation_time": "0.6 s"}, "--set"
+    )
+    trial = trial.scaled("c.correlation_time", 2.0, "scale")
+    result = run_trial(trial, tmp_path / "out", engine="direct")
+    given = load_run(result.folder).manifest["components"]["c"]["parameters"]
+    assert given["heading_resolution"]["from"] == "start value of the FMU"
+    assert given["seed"]["from"] == "derived from seed 1"
+    values = [given[name]["value"] for name in names[2:]]
+    assert values == [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 1.2]
+    origins = [given[name]["from"] for name in names[2:]]
+    for origin, part in zip(
+        origins,
+        [
+            "[compass]",
+            "variant a",
+            "[sensors.c]",
+            "components.c.set",
+            "t.toml: set",
+            "--set",
+            "scale",
+        ],
+        strict=True,
+    ):
+        assert part in origin
+
+
+def test_exit_statuses_of_the_page(write: Any) -> None:
+    """0 and 1 by the page's own commands; 2 and 3 here."""
+    main = importlib.import_module("seatrial.cli.main")
+    shown = {row[0]: row[1] for row in rows_after(FILES, "## Exit status")}
+    assert list(shown) == ["0", "1", "2", "3"]
+    assert (main._FAILED, main._BAD_INPUT, main._BROKEN) == (1, 2, 3)
+
+
+# ---------------------------------------------------------------------- tables made from code
+
+
+def made_parts() -> list[Any]:
+    return [
+        pytest.param(page, name, id=name)
+        for page, names in TABLES.pages().items()
+        for name in names
+    ]
+
+
+@pytest.mark.parametrize(("page", "name"), made_parts())
+def test_a_table_is_up_to_date(page: Path, name: str) -> None:
+    assert TABLES.written(page, name) == TABLES.made(name), "run: python docs/tables.py"
+
+
+def test_every_table_that_can_be_made_is_in_a_page() -> None:
+    shown = [name for names in TABLES.pages().values() for name in names]
+    assert sorted(shown) == sorted(TABLES._PARTS)
+
+
+# ---------------------------------------------------------------------- all pages
+
+
+@pytest.mark.parametrize("page", sorted(DOCS.rglob("*.md")), ids=lambda page: page.stem)
+def test_images_are_small_and_links_lead_somewhere(page: Path) -> None:
+    text = page.read_text("utf-8")
+    anchors = {
+        re.sub(r"[^\w\- ]", "", heading.lower()).strip().replace(" ", "-")
+        for heading in re.findall(r"^#+ (.*)$", text, re.M)
+    }
+    for target in re.findall(r"\]\(([^)\s]+)\)", text):
+        if target.startswith("#"):
+            assert target[1:] in anchors, target
+        elif "://" not in target:
+            file = page.parent / target.partition("#")[0]
+            assert file.exists(), target
+            assert file.suffix != ".png" or file.stat().st_size < 150_000, target
