@@ -21,6 +21,9 @@ from pydantic import BaseModel
 from pydantic_core import PydanticUndefined
 
 from seatrial.cosim.files import FileModel
+from seatrial.cosim.parameters import load_vehicle
+from seatrial.craft.marine_craft import MarineCraft
+from seatrial.environment.downwash import Downwash
 from seatrial.trials.criteria import parse
 from seatrial.trials.run import run_trial
 from seatrial.trials.run_folder import load_run
@@ -352,6 +355,49 @@ def test_a_table_is_up_to_date(page: Path, name: str) -> None:
 def test_every_table_that_can_be_made_is_in_a_page() -> None:
     shown = [name for names in TABLES.pages().values() for name in names]
     assert sorted(shown) == sorted(TABLES._PARTS)
+
+
+# ---------------------------------------------------------------------- hydrone.md: what its text says
+
+
+def test_figures_in_the_text_of_the_hydrone() -> None:
+    aft, across = (
+        TABLES._open("landing", pad, "source") for pad in ("diagonal-aft", "transversal")
+    )
+    assert aft.at("x", 20) == pytest.approx(-0.04, abs=0.005)
+    speed = np.hypot(*(np.diff(axis)[-1] for axis in (across.x, across.y))) / 0.01
+    assert speed == pytest.approx(1.2e-3, abs=0.05e-3)
+    standing = TABLES._open("landing", "diagonal-aft", "physical").at("roll", 20)
+    peak = TABLES._open("takeoff", "diagonal-aft", "physical").peak("roll", TABLES.SPOOL_UP)
+    assert 0.0 < abs(peak) - abs(standing) < 0.15
+    for phase in TABLES.PHASES:
+        for pad in ("transversal", "diagonal-aft"):
+            held = TABLES._single(f"hydrone-{phase}", (("downwash.pad", pad),))
+            assert held.passed == TABLES._open(phase, pad, "physical").passed
+
+
+@pytest.mark.parametrize("phase", ["landing", "takeoff"])
+def test_solvers_agree_as_the_page_says(phase: str) -> None:
+    vehicle = load_vehicle("hydrone")
+    downwash = Downwash("downwash")
+    craft = MarineCraft("hull")
+    for component, table in ((downwash, "downwash"), (craft, "marine-craft")):
+        for name, entry in vehicle.parameter_set(table, "source").values.items():
+            component.set(name, entry.value)
+    downwash.set("phase", phase)
+    downwash.set("pad", vehicle.file.presets["downwash"]["pad"]["diagonal-aft"].value)
+
+    def load(t: float, x: Any) -> dict[str, Any]:
+        force, moment = downwash.wrench(t, x.attitude.tolist())
+        return {"load_force": force, "load_moment": moment}
+
+    runs = [
+        craft.reference(np.arange(21.0), load, downwash.breaks(), method=m, rtol=1e-6, atol=1e-6).x
+        for m in ("RK23", "RK45", "DOP853")
+    ]
+    apart = np.max([np.abs(a - b).max(axis=0) for a in runs for b in runs], axis=0)
+    assert apart[:6].max() < 1e-6
+    assert 1e-6 < apart[6:].max() < 1e-5
 
 
 # ---------------------------------------------------------------------- all pages

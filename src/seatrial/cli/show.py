@@ -58,13 +58,13 @@ class Watch:
         self._progress.update(self._task, state=escape(f"loading {what}"))
         self._started = time.perf_counter()
 
-    def progress(self, t: float, stop: float) -> None:
-        """Show how far the run is."""
+    def progress(self, passed: float, whole: float) -> None:
+        """Show how far the run is, simulated time in s."""
         elapsed = time.perf_counter() - self._started
-        factor = t / elapsed if elapsed > 0 else 0.0
+        factor = passed / elapsed if elapsed > 0 else 0.0
         case = f" ({self._case + 1} of {self._cases})" if self._cases > 1 else ""
-        share = (self._case + t / stop) / self._cases if stop else 1.0
-        state = f"{t:.1f} of {stop:g} s, {factor:.1f} x real time{case}"
+        share = (self._case + passed / whole) / self._cases
+        state = f"{passed:.1f} of {whole:g} s, {factor:.1f} x real time{case}"
         self._progress.update(self._task, completed=share, state=state)
 
     def log(self, show: Callable[[], None]) -> None:

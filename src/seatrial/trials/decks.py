@@ -24,11 +24,11 @@ class Pad:
 
 
 def pads(manifest: dict[str, Any]) -> list[Pad]:
-    """Return the landing points of a run: of each component with the parameters ``pad.x, .y``."""
+    """Return the landing points of a run: the pads of its ``downwash`` components."""
     found = []
     for name, component in manifest["components"].items():
         parameters = component["parameters"]
-        if "pad.x" in parameters and "pad.y" in parameters:
+        if component["fmu"] == "downwash":
             x, y = (float(parameters[f"pad.{axis}"]["value"]) for axis in "xy")
             phase = parameters.get("phase", {}).get("value", "")
             found.append(Pad(name, x, y, str(phase)))

@@ -23,7 +23,7 @@ from .trial import Event, Trial
 from .verdict import Verdict
 
 Progress = Callable[[float, float], None]
-"""Called now and then with simulated time reached and stop time, s."""
+"""Called now and then with the simulated time that has passed, and that of the whole run, s."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Hooks:
     """What a caller may watch or stop."""
 
     building: Callable[[str], None] = lambda _: None
-    progress: Progress = lambda _t, _stop: None
+    progress: Progress = lambda _passed, _whole: None
     stop_requested: Callable[[], bool] = lambda: False
 
 
@@ -216,7 +216,7 @@ def _timing(master: Master, started: str, wall: dict[str, float]) -> dict[str, A
 
 def _loop(trial: Trial, master: Master, recorder: Recorder, hooks: Hooks) -> str:
     events = trial.events()
-    stop, steps = seconds(trial.stop_ns), trial.steps
+    whole, steps = seconds(trial.stop_ns - trial.start_ns), trial.steps
     shown = time.perf_counter()
     while True:
         while events and events[0].at_ns <= master.time_ns:
@@ -230,8 +230,8 @@ def _loop(trial: Trial, master: Master, recorder: Recorder, hooks: Hooks) -> str
         master.step()
         if master.steps % 16 == 0 and time.perf_counter() - shown > 0.1:
             shown = time.perf_counter()
-            hooks.progress(master.time, stop)
-    hooks.progress(master.time, stop)
+            hooks.progress(seconds(master.time_ns - master.start_ns), whole)
+    hooks.progress(whole, whole)
     master.terminate()
     return "complete"
 
