@@ -7,7 +7,6 @@ import re
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache, lru_cache
-from pathlib import Path
 from typing import Any
 
 from .errors import InputError
@@ -57,14 +56,9 @@ class Unit:
 def _registry() -> Any:
     import pint
 
-    # Loaded without a cache of dimensions, which the change of the radian below would not reach.
-    registry: Any = pint.UnitRegistry(
-        None, system="mks", cache_folder=None, on_redefinition="ignore", non_int_type=Fraction
-    )
-    registry.load_definitions(Path(pint.__file__).with_name("default_en.txt"))
-    # In pint a radian is a pure number; FMI keeps it as a base unit, and so do we: it is what
+    # In pint a radian has no dimension, but it is a base unit, as in FMI: its exponent is what
     # tells an angle from a count on a wire.
-    registry.define("radian = [angle] = rad")
+    registry: Any = pint.UnitRegistry(cache_folder=None, non_int_type=Fraction)
     registry.define("@alias degree = °")
     registry.define("@alias revolution = rev")
     return registry

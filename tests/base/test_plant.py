@@ -155,12 +155,12 @@ class Fade(Plant):
 
 @pytest.mark.parametrize(
     ("h", "max_step", "count"),
-    [(0.1, 0.1, 1), (0.1, 0.05, 2), (0.1, 0.03, 4), (0.1, 0.0999, 2), (0.3, 0.1, 3), (1.0, 0.01, 100), (0.01, 1.0, 1), (0.7, 0.1, 7), (0.1, 0.1001, 1)],
+    [(0.1, 0.1, 1), (0.1, 0.05, 2), (0.1, 0.03, 4), (0.1, 0.0999, 2), (0.3, 0.1, 3), (1.0, 0.01, 100), (0.01, 1.0, 1), (0.7, 0.1, 7), (0.1, 0.1001, 1), (0.07, 0.01, 7)],
 )  # fmt: skip
 def test_sub_steps_are_equal_and_no_longer_than_allowed(h, max_step, count) -> None:
     """With rate = count / h each of count sub-steps multiplies by 1 - 1 + 1/2 - 1/6 + 1/24 = 3/8.
 
-    0.3 / 0.1 and 0.7 / 0.1 are 2.9999999999999996 and 6.999999999999999 in doubles.
+    0.7 / 0.1 and 0.07 / 0.01 are 6.999999999999999 and 7.000000000000001 in doubles.
     """
     plant = running(Fade, max_step=max_step, rate=count / h)
     plant.advance(0.0, h)

@@ -189,3 +189,26 @@ def test_near_misses() -> None:
     assert unknown("port", "atitude", ["attitude", "force"]) == (
         "unknown port 'atitude'; did you mean 'attitude'? (known: attitude, force)"
     )
+
+
+@pytest.mark.parametrize("engine", ["fmu", "direct"])
+def test_a_second_signal_ends_a_component_that_hangs(engine: str, boat: Path, write) -> None:
+    write("bad.py", BAD.replace("time.sleep(0.01)", "time.sleep(0.01 if t < 0.05 else 100)"))
+    command = [SEATRIAL, "run", "trial.toml", "--set", "boat.how=slow", "--engine", engine]
+    process = subprocess.Popen(
+        [*command, "--out", "run"], cwd=boat, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    )
+    manifest = boat / "run" / "manifest.json"
+    for _ in range(600):
+        if manifest.is_file() and manifest.stat().st_size > 100:
+            break
+        time.sleep(0.05)
+    time.sleep(1.0)
+    os.kill(process.pid, signal.SIGINT)
+    time.sleep(0.3)
+    os.kill(process.pid, signal.SIGINT)
+    _, stderr = process.communicate(timeout=30)
+    assert process.returncode == 3
+    assert b"Traceback" not in stderr
+    assert len((boat / "run" / "signals.csv").read_text().splitlines()) >= 5
+    assert '"status": "running"' not in manifest.read_text()

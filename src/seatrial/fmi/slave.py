@@ -202,6 +202,8 @@ def _explained(error: BaseException) -> str:
     """
     if isinstance(error, (InputError, SimulationError)):
         return str(error)
+    if isinstance(error, KeyboardInterrupt):
+        return "interrupted by the user"
     first = "".join(traceback.format_exception_only(error)).strip()
     trace = "".join(traceback.format_exception(error)).strip()
     if len(trace) > _LONGEST_TRACE:
