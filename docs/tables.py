@@ -514,22 +514,20 @@ def hydrone_station() -> str:
     """The autopilot at work beside the same with thrusters off, variant physical."""
     rows = []
     for phase in PHASES:
-        for pad in ("transversal", "diagonal-aft"):
-            held = _single(f"hydrone-{phase}", (("downwash.pad", pad),))
-            for name, m in (("held", held), ("off", _open(phase, pad, "physical"))):
-                since = SPOOL_UP if phase == "takeoff" else 0.0
-                rows.append(
-                    (
-                        PHASE_NAMES[phase],
-                        pad,
-                        name,
-                        *(_fixed(m.peak(angle, since), 2) for angle in ("roll", "pitch")),
-                        _fixed(float(np.hypot(m.x, m.y).max()), 3),
-                        *(_fixed(yaw, 2) for yaw in (m.peak("yaw"), m.at("yaw", 20))),
-                    )
+        held = _single(f"hydrone-{phase}", ())
+        for name, m in (("held", held), ("off", _open(phase, "diagonal-aft", "physical"))):
+            since = SPOOL_UP if phase == "takeoff" else 0.0
+            rows.append(
+                (
+                    PHASE_NAMES[phase],
+                    name,
+                    *(_fixed(m.peak(angle, since), 2) for angle in ("roll", "pitch")),
+                    _fixed(float(np.hypot(m.x, m.y).max()), 3),
+                    *(_fixed(yaw, 2) for yaw in (m.peak("yaw"), m.at("yaw", 20))),
                 )
+            )
     head = (
-        *("phase", "landing point", "thrusters", "largest roll, deg", "largest pitch, deg"),
+        *("phase", "thrusters", "largest roll, deg", "largest pitch, deg"),
         *("greatest distance from the start, m", "largest yaw, deg", "yaw at 20 s, deg"),
     )
     return _table(head, rows)
