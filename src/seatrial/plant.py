@@ -69,7 +69,8 @@ class Plant(Component):
 
     Declare ports with `State`, `Input`, `Output`, `Parameter` and override `equations`.
     Steps use the classical Runge-Kutta method of order 4 with equal sub-steps no longer than
-    ``max_step``, inputs held. Feed-through is found in the expressions. Text parameters choose
+    ``max_step``, inputs held. Feed-through is declared, and checked against
+    the expressions. Text parameters choose
     between equations and reach `equations` as text.
     """
 

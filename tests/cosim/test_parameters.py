@@ -306,11 +306,11 @@ def test_values_of_the_wrong_kind(port: str, written, message: str) -> None:
 # ---------------------------------------------------------------------- from a rig
 
 TABLE = f"""
-["users.py:Scale"]
+[Scale]
 bias = {entry(unit='"ft"')}
 [small]
 bias = {entry(unit='"cm"')}
-[presets."users.py:Scale".bias]
+[presets.Scale.bias]
 big = {entry(value="2", unit='"km"')}
 """
 
@@ -329,6 +329,8 @@ def test_a_rig_names_a_vehicle_file_beside_itself(direct, write, monkeypatch, tm
     assert bias(direct, rig.format("boats/mine.toml", "")) == 0.3048
     preset = rig.format("boats/mine.toml", ', set = { bias = "big" }')
     assert bias(direct, preset) == 2000.0
+    table = rig.format("boats/mine.toml.small", "")
+    assert bias(direct, table) == pytest.approx(0.01, rel=1e-15)
     own = rig.format("boats/mine.toml", ', set = { bias = "3 mm" }')
     assert bias(direct, own) == 0.003
     with pytest.raises(InputError, match="unknown vehicle 'mine'"):

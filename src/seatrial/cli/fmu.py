@@ -11,7 +11,7 @@ from fmpy.validation import validate_fmu
 from rich.markup import escape
 from rich.table import Table
 
-from ..cosim.parameters import load_vehicle
+from ..cosim.parameters import load_vehicle, split_reference
 from ..cosim.system import settable
 from ..cosim.values import from_entry
 from ..errors import InputError
@@ -129,8 +129,8 @@ def _buildable(name: str) -> ComponentSource:
 def _start_values(
     source: ComponentSource, parameters: str, variant: str | None
 ) -> dict[str, float | int | bool | str]:
-    vehicle, _, table = parameters.partition(".")
-    chosen = load_vehicle(vehicle).parameter_set(table or source.name, variant)
+    vehicle, table = split_reference(parameters, source.name)
+    chosen = load_vehicle(vehicle).parameter_set(table, variant)
     variables = DirectInstance(source.component_class()(source.name)).variables
     values = {}
     for port, entry in chosen.values.items():

@@ -68,6 +68,19 @@ class Vehicle:
         return ParameterSet(values, file.presets.get(table, {}), origin)
 
 
+def split_reference(written: str, fmu: str) -> tuple[str, str]:
+    """Return (vehicle, table) of ``hydrone``, ``hydrone.TABLE``, ``x.toml`` or ``x.toml.TABLE``.
+
+    The table is by default the name of the FMU, or the class of ``my_boat.py:Class``.
+    """
+    table = fmu.rpartition(":")[2] if ".py:" in fmu else fmu
+    path, toml, rest = written.partition(".toml")
+    if toml and (not rest or rest.startswith(".")):
+        return path + toml, rest[1:] or table
+    name, _, named = written.partition(".")
+    return name, named or table
+
+
 def load_vehicle(name: str, relative_to: Path | None = None) -> Vehicle:
     """Read the vehicle file ``name`` (shipped, or a path). Raises InputError."""
     path = find_file("vehicles", name, relative_to)

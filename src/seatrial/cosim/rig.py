@@ -71,7 +71,7 @@ def load_rig(name: str, relative_to: Path | None = None) -> Rig:
         if not _IDENTIFIER.fullmatch(component):
             raise InputError(
                 f"{path}: components.{component}: a component's name has letters, digits and '_' "
-                "and starts with a letter"
+                "and starts with a letter or '_'"
             )
     if rig.step_ns <= 0:
         raise InputError(f"{path}: step: must be positive, found {rig.file.step!r}")

@@ -17,7 +17,7 @@ from ..fmi.instance import Instance, Variable
 from ..fmi.load import FmuInstance, load_fmu
 from ..fmi.source import find_source
 from ..units import conversion
-from .parameters import ParameterSet, load_vehicle
+from .parameters import ParameterSet, load_vehicle, split_reference
 from .profile import Profile, load_profile
 from .rig import ComponentEntry, Rig, duration_ns
 from .values import Given, from_entry, from_written, port_names, port_scalars
@@ -166,6 +166,11 @@ def assemble(
             part = _part(rig, name, entry, engine)
             system.parts[name] = part
             _give_parameters(system, part, entry, profile)
+        if system.variant and not any(e.parameters for e in rig.file.components.values()):
+            raise InputError(
+                f"{rig.read_from.path}: variant {system.variant!r}: no component takes parameters "
+                "of a vehicle, so there is nothing to vary"
+            )
         system.wires = _wires(system)
         for name, part in system.parts.items():
             for variable in part.given:
@@ -250,12 +255,10 @@ def _give_profile(system: System, part: Part, section: str, profile: Profile, wh
 
 def _parameter_set(system: System, entry: ComponentEntry, where: str) -> ParameterSet:
     assert entry.parameters is not None
-    name, _, table = entry.parameters.partition(".")
-    if entry.parameters.endswith(".toml"):
-        name, table = entry.parameters, ""
+    name, table = split_reference(entry.parameters, entry.fmu)
     try:
         vehicle = load_vehicle(name, system.rig.read_from.path.parent)
-        return vehicle.parameter_set(table or entry.fmu, system.variant)
+        return vehicle.parameter_set(table, system.variant)
     except InputError as error:
         raise InputError(f"{where}.parameters: {error}") from None
 

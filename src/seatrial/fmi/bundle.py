@@ -18,7 +18,7 @@ import sys
 import tokenize
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 
 from ..errors import InputError
@@ -56,7 +56,7 @@ def bundle(stem: str, source: bytes, folder: Path) -> Bundle:
     digest.update(stem.encode() + b"\0" + source + "\0".join(requirements).encode())
     tag = digest.hexdigest()[:12]
     root = f"bundle_{tag}"
-    own = {name.partition(".")[0] for name in modules}
+    own = frozenset(name.partition(".")[0] for name in modules)
     files = {f"{root}/__init__.py": _preflight(stem, needed)}
     for name, (path, text) in modules.items():
         place = name.replace(".", "/") + ("/__init__.py" if path.name == "__init__.py" else ".py")
@@ -140,13 +140,20 @@ def _require_installed(top: str, importer: str, local: _Local) -> None:
         )
 
 
+@lru_cache(maxsize=1024)
 def _imports(
     source: bytes, file: str, module: str, is_package: bool, *, everywhere: bool
-) -> Iterator[tuple[str, bool]]:
-    """Yield (module, may be missing) for every import, and for the names in ``from`` imports.
+) -> tuple[tuple[str, bool], ...]:
+    """Return (module, may be missing) for every import, and for the names in ``from`` imports.
 
     At module level only, unless ``everywhere``.
     """
+    return tuple(_found_imports(source, file, module, is_package, everywhere))
+
+
+def _found_imports(
+    source: bytes, file: str, module: str, is_package: bool, everywhere: bool
+) -> Iterator[tuple[str, bool]]:
     for node, optional in _statements(_parsed(_text(source, file), file), everywhere, False):
         if isinstance(node, ast.Import):
             yield from ((alias.name, optional) for alias in node.names)
@@ -216,7 +223,8 @@ def _parsed(source: str, file: str) -> ast.Module:
         raise InputError(f"{file}{f', line {line}' if line else ''}: not Python: {error}") from None
 
 
-def _renamed(source: bytes, file: str, own: set[str], root: str) -> bytes:
+@lru_cache(maxsize=1024)
+def _renamed(source: bytes, file: str, own: frozenset[str], root: str) -> bytes:
     """Return ``source`` with absolute imports of ``own`` packages made imports from ``root``."""
     text = _text(source, file)
     tree = _parsed(text, file)
@@ -235,7 +243,9 @@ def _renamed(source: bytes, file: str, own: set[str], root: str) -> bytes:
     return "".join(lines)[:-1].encode()
 
 
-def _renamed_statement(node: ast.Import | ast.ImportFrom, own: set[str], root: str) -> str | None:
+def _renamed_statement(
+    node: ast.Import | ast.ImportFrom, own: frozenset[str], root: str
+) -> str | None:
     if isinstance(node, ast.ImportFrom):
         if node.level or (node.module or "").partition(".")[0] not in own:
             return None

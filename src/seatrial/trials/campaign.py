@@ -135,7 +135,11 @@ def _write_index(campaign: Campaign, out: Path, finished: list[tuple[Case, Resul
 
 
 def _name(trial: Trial, chosen: dict[str, Any]) -> str:
-    parts = [f"{key.rpartition('.')[2]} {value}" for key, value in chosen.items()]
+    short = [key.rpartition(".")[2] for key in chosen]
+    parts = [
+        f"{name if short.count(name) == 1 else key} {value}"
+        for name, (key, value) in zip(short, chosen.items(), strict=True)
+    ]
     return ", ".join([trial.name, *parts])
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.metadata
 import platform
+from pathlib import Path
 from typing import Any
 
 from .. import __version__
@@ -52,6 +53,12 @@ def _file(source: Source) -> dict[str, str]:
     return {"name": source.name, "file": source.path.name, "sha256": source.sha256}
 
 
+def _without_folder(origin: str) -> str:
+    """Return ``/folder/x.toml: set: ...`` as ``x.toml: set: ...``: manifests name no folder."""
+    file, colon, rest = origin.partition(": ")
+    return f"{Path(file).name}{colon}{rest}" if colon and Path(file).is_absolute() else origin
+
+
 def _component(part: Part, step: float) -> dict[str, Any]:
     parameters = {}
     for variable in part.instance.variables.values():
@@ -61,7 +68,7 @@ def _component(part: Part, step: float) -> dict[str, Any]:
         parameters[variable.name] = {
             "value": variable.start if given is None else given.value,
             "unit": variable.unit,
-            "from": "start value of the FMU" if given is None else given.origin,
+            "from": "start value of the FMU" if given is None else _without_folder(given.origin),
             "source": "" if given is None else given.source,
             "mark": "" if given is None else given.mark,
         }

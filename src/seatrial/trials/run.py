@@ -85,7 +85,8 @@ def run_trial(
     finally:
         system.free()
     verdicts = [] if status == "failed" else _judge(trial, recorder, out, units)
-    loose = system.unconnected_inputs()
+    moved = {event.key for event in trial.events()}
+    loose = [name for name in system.unconnected_inputs() if name not in moved]
     notes = (
         [f"inputs that nothing feeds keep their start values: {', '.join(loose)}"] if loose else []
     )
