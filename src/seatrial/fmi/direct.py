@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import traceback
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
 from ..component import Component
 from ..errors import InputError, SimulationError
 from ..ports import Parameter, Scalar, ScalarPort
-from .instance import Reader, Variable, Writer, by_type, combined_reader, combined_writer
+from .instance import ByType, Reader, Variable, Writer
 
 
-class DirectInstance:
+class DirectInstance(ByType):
     """A component as the master sees it; the same calls in the same order as for its FMU."""
 
     def __init__(self, component: Component) -> None:
@@ -35,22 +35,6 @@ class DirectInstance:
     def begin(self) -> None:
         """End the initialisation."""
         self._call("begin", self.component.begin)
-
-    def reader(self, names: Sequence[str]) -> Reader:
-        """Return a callable that returns the values of ``names``, in that order."""
-        parts = [
-            (places, self._reader(references, kind))
-            for kind, places, references in by_type(self.variables, names)
-        ]
-        return combined_reader(parts, len(names))
-
-    def writer(self, names: Sequence[str]) -> Writer:
-        """Return a callable that sets ``names`` to a sequence of values."""
-        parts = [
-            (places, self._writer(references, kind))
-            for kind, places, references in by_type(self.variables, names)
-        ]
-        return combined_writer(parts)
 
     def step(self, t: float, h: float) -> None:
         """Advance from ``t`` to ``t + h``, s."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
@@ -86,41 +87,54 @@ class Instance(Protocol):
         """Release everything; the instance cannot be used afterwards."""
 
 
-def by_type(
-    variables: Mapping[str, Variable], names: Sequence[str]
-) -> list[tuple[type, list[int], list[int]]]:
-    """Group ``names`` by type: (type, places in ``names``, value references)."""
-    groups: dict[type, tuple[list[int], list[int]]] = {}
-    for place, name in enumerate(names):
-        variable = variables[name]
-        places, references = groups.setdefault(variable.type, ([], []))
-        places.append(place)
-        references.append(variable.reference)
-    return [(kind, *both) for kind, both in groups.items()]
+class ByType(ABC):
+    """Reads and writes variables of any types with calls that take one type each, as in FMI."""
 
+    variables: Mapping[str, Variable]
 
-def combined_reader(parts: Sequence[tuple[list[int], Reader]], size: int) -> Reader:
-    """Return one reader of readers of single types, each with its places in the result."""
-    if len(parts) == 1:
-        return parts[0][1]
+    @abstractmethod
+    def _reader(self, references: list[int], kind: type) -> Reader:
+        """Return a reader of variables of one type, by value reference."""
 
-    def read() -> list[Any]:
-        values: list[Any] = [None] * size
-        for places, part in parts:
-            for place, value in zip(places, part(), strict=True):
-                values[place] = value
-        return values
+    @abstractmethod
+    def _writer(self, references: list[int], kind: type) -> Writer:
+        """Return a writer of variables of one type, by value reference."""
 
-    return read
+    def reader(self, names: Sequence[str]) -> Reader:
+        """Return a callable that returns the values of ``names``, in that order."""
+        groups = self._groups(names)
+        parts = [(places, self._reader(refs, kind)) for kind, (places, refs) in groups.items()]
+        if len(parts) == 1:
+            return parts[0][1]
 
+        def read() -> list[Any]:
+            values: list[Any] = [None] * len(names)
+            for places, part in parts:
+                for place, value in zip(places, part(), strict=True):
+                    values[place] = value
+            return values
 
-def combined_writer(parts: Sequence[tuple[list[int], Writer]]) -> Writer:
-    """Return one writer of writers of single types, each with its places in the sequence."""
-    if len(parts) == 1:
-        return parts[0][1]
+        return read
 
-    def write(values: Sequence[Any]) -> None:
-        for places, part in parts:
-            part([values[p] for p in places])
+    def writer(self, names: Sequence[str]) -> Writer:
+        """Return a callable that sets ``names`` to a sequence of values."""
+        groups = self._groups(names)
+        parts = [(places, self._writer(refs, kind)) for kind, (places, refs) in groups.items()]
+        if len(parts) == 1:
+            return parts[0][1]
 
-    return write
+        def write(values: Sequence[Any]) -> None:
+            for places, part in parts:
+                part([values[p] for p in places])
+
+        return write
+
+    def _groups(self, names: Sequence[str]) -> dict[type, tuple[list[int], list[int]]]:
+        """Return, per type, the places in ``names`` and the value references."""
+        groups: dict[type, tuple[list[int], list[int]]] = {}
+        for place, name in enumerate(names):
+            variable = self.variables[name]
+            places, references = groups.setdefault(variable.type, ([], []))
+            places.append(place)
+            references.append(variable.reference)
+        return groups

@@ -26,7 +26,7 @@ from fmpy.model_description import ModelDescription, read_model_description
 from ..errors import InputError, SimulationError
 from ..ports import Scalar
 from .cache import cache_folder
-from .instance import Reader, Variable, Writer, by_type, combined_reader, combined_writer
+from .instance import ByType, Reader, Variable, Writer
 
 _TYPES = {"Real": float, "Integer": int, "Enumeration": int, "Boolean": bool, "String": str}
 _CTYPES: dict[type, Any] = {
@@ -82,7 +82,7 @@ def load_fmu(path: Path) -> LoadedFmu:
     return _load(path.resolve(), (status.st_mtime_ns, status.st_size))
 
 
-class FmuInstance:
+class FmuInstance(ByType):
     """An instance of a loaded FMU, as the master sees it."""
 
     def __init__(self, fmu: LoadedFmu, name: str) -> None:
@@ -130,22 +130,6 @@ class FmuInstance:
         """End the initialisation."""
         self._call("fmi2ExitInitializationMode")
         self._refuse_logged_errors("fmi2ExitInitializationMode")
-
-    def reader(self, names: Sequence[str]) -> Reader:
-        """Return a callable that returns the values of ``names``, in that order."""
-        parts = [
-            (places, self._reader(references, kind))
-            for kind, places, references in by_type(self.variables, names)
-        ]
-        return combined_reader(parts, len(names))
-
-    def writer(self, names: Sequence[str]) -> Writer:
-        """Return a callable that sets ``names`` to a sequence of values."""
-        parts = [
-            (places, self._writer(references, kind))
-            for kind, places, references in by_type(self.variables, names)
-        ]
-        return combined_writer(parts)
 
     def step(self, t: float, h: float) -> None:
         """Advance from ``t`` to ``t + h``, s."""
