@@ -28,6 +28,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from .errors import InputError, SimulationError, unknown
+from .plain import copied, is_c_text
 from .ports import Input, Output, Parameter, Port, Scalar, ScalarPort, lay_out
 
 __all__ = ["NS", "Component", "Input", "Noise", "Output", "Parameter", "seconds"]
@@ -249,7 +250,7 @@ class Component:
         Raises TypeError naming an attribute that is not plain data.
         """
         return {
-            name: _copied(value, f"{self.name}.{name}")
+            name: copied(value, f"{self.name}.{name}")
             for name, value in vars(self).items()
             if name not in self.transient
         }
@@ -259,7 +260,7 @@ class Component:
         for name in [n for n in vars(self) if n not in self.transient and n not in state]:
             delattr(self, name)
         for name, value in state.items():
-            setattr(self, name, _copied(value, name))
+            setattr(self, name, copied(value, name))
 
     # ------------------------------------------------------------------ inside
 
@@ -316,7 +317,7 @@ class Component:
                     self._refuse_output(reference)
         for reference in self._other_outputs:
             value = values[reference]
-            if not (_is_c_text(value) if isinstance(value, str) else -_INT32 <= value < _INT32):
+            if not (is_c_text(value) if isinstance(value, str) else -_INT32 <= value < _INT32):
                 self._refuse_output(reference)
 
     def _refuse_output(self, reference: int) -> None:
@@ -386,23 +387,3 @@ def _range_text(low: float | None, high: float | None) -> str:
     if low is None:
         return f"at most {high!r}"
     return f"at least {low!r}" if high is None else f"{low!r} to {high!r}"
-
-
-def _is_c_text(text: str) -> bool:
-    """Say if FMI can carry ``text``: no NUL, no lone surrogate."""
-    return "\0" not in text and not any("\ud800" <= c <= "\udfff" for c in text)
-
-
-def _copied(value: Any, where: str) -> Any:
-    """Return a deep copy of plain data; raise TypeError for anything else."""
-    if value is None or isinstance(value, (bool, int, float, str)):
-        return value
-    if isinstance(value, np.generic) and not value.dtype.hasobject:
-        return value.item()
-    if isinstance(value, np.ndarray) and not value.dtype.hasobject:
-        return value.copy()
-    if type(value) in (list, tuple):
-        return type(value)(_copied(v, where) for v in value)
-    if isinstance(value, dict):
-        return {k: _copied(v, where) for k, v in value.items()}
-    raise TypeError(f"state attribute {where} is not plain data: {type(value).__name__}")
