@@ -61,16 +61,18 @@ def job(system: System, steps: int) -> dict[str, Any]:
 def ours(system: System, steps: int) -> tuple[list[str], list[list[float]]]:
     master = Master(system)
     master.initialise()
-    real = [
-        i
-        for i, (part, name) in enumerate(master.names)
-        if system.parts[part].instance.variables[name].type is float
+    watched = [  # in the order of the job's "watch"
+        (part.name, variable.name)
+        for part in system.parts.values()
+        for variable in part.instance.variables.values()
+        if variable.causality == "output" and variable.type is float
     ]
+    places = [master.names.index(name) for name in watched]
     rows = []
     for _ in range(steps):
         master.step()
-        rows.append([master.signals[i] for i in real])
-    return [".".join(master.names[i]) for i in real], rows
+        rows.append([master.signals[i] for i in places])
+    return [".".join(name) for name in watched], rows
 
 
 @pytest.mark.parametrize(

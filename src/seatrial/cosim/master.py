@@ -28,7 +28,7 @@ _LOOP_ITERATIONS = 200
 
 
 @dataclass
-class _Reads:
+class _Chunk:
     """Outputs of one type of one instance, side by side in the master's signals."""
 
     start: int
@@ -63,19 +63,30 @@ class _Writes:
 class _Node:
     part: Part
     h: float
-    reads: list[_Reads] = field(default_factory=list)
+    chunks: list[_Chunk] = field(default_factory=list)
+    """All outputs."""
+    reads: list[_Chunk] = field(default_factory=list)
+    """Outputs to read after a step: those that no visit reads anyway."""
     writes: list[_Writes] = field(default_factory=list)
+    written_by_visit: bool = False
+    """Its last visit leaves every input as the step needs it."""
 
 
 @dataclass
 class _Visit:
-    """Feed-through outputs to read again after the inputs they depend on were moved."""
+    """Feed-through outputs to read once the inputs they depend on were moved."""
 
     node: _Node
-    names: list[str]
-    places: list[int]
-    read: Reader
-    is_real: bool
+    chunks: list[_Chunk]
+
+
+@dataclass
+class _Group:
+    """Visits that belong together: of one instance, or of all instances of a loop."""
+
+    outputs: list[Name]
+    is_loop: bool
+    visits: list[_Visit] = field(default_factory=list)
 
 
 @dataclass
@@ -103,7 +114,8 @@ class Master:
         self.signals: list[Any] = []
         self._pins: dict[int, _Pin] = {}
         self._nodes: dict[str, _Node] = {}
-        self._groups: list[tuple[list[_Visit], bool]] = []
+        self._places: dict[Name, int] = {}
+        self._groups: list[_Group] = []
 
     @property
     def time_ns(self) -> int:
@@ -125,26 +137,30 @@ class Master:
             part.instance.set_start({name: given.value for name, given in part.given.items()})
         for part in parts:
             part.instance.initialise(seconds(self.start_ns), seconds(self.stop_ns))
+        self._groups = self._feedthrough_groups()
         self._prepare()
-        groups = self._feedthrough_groups()
-        self._settle(groups)
+        self._settle()
         for part in parts:
             part.instance.begin()
-        self._settle(groups)
-        self._groups = groups if self.algorithm == "jacobi" else []
+        self._settle()
+        if self.algorithm == "plain-jacobi":
+            self._groups = []
+            for node in self._nodes.values():
+                node.reads, node.written_by_visit = node.chunks, False
 
     def step(self) -> None:
         """Advance everything by one communication step. Raises SimulationError."""
         nodes, t, k = self._nodes.values(), self.time, self.steps
         for node in nodes:
             if k % node.part.every == 0:
-                self._write(node)
+                if not node.written_by_visit:
+                    self._write(node)
                 node.part.instance.step(t, node.h)
         self.steps = k = k + 1
         for node in nodes:
             if k % node.part.every == 0:
-                self._read(node)
-        self._propagate(self._groups)
+                self._read(node.reads)
+        self._propagate()
 
     def set(self, component: str, names: Sequence[str], values: Sequence[Any]) -> None:
         """Set tunable parameters or unconnected inputs now; outputs follow at once.
@@ -154,18 +170,18 @@ class Master:
         node = self._nodes[component]
         node.part.instance.writer(names)(values)
         if self.algorithm == "jacobi" and self.steps % node.part.every == 0:
-            self._read(node)
-            self._propagate(self._groups)
+            self._read(node.chunks)
+            self._propagate()
 
     def override(self, component: str, name: str, value: Any) -> None:
         """Replace an output for all its readers, or one connected input, until `release`."""
         self._pin(component, name, value)
-        self._propagate(self._groups)
+        self._propagate()
 
     def release(self, component: str, name: str) -> None:
         """End an override: the wire carries its own value again."""
         self._pin(component, name, None)
-        self._propagate(self._groups)
+        self._propagate()
 
     def terminate(self) -> None:
         """Tell every instance that the run has ended. Raises SimulationError."""
@@ -175,23 +191,44 @@ class Master:
     # ------------------------------------------------------------------ preparation
 
     def _prepare(self) -> None:
-        places: dict[Name, int] = {}
+        """Lay out the signals, and bind what reads and writes them."""
+        visited = {name for group in self._groups for name in group.outputs}
         for name, part in self.system.parts.items():
-            node = _Node(part, seconds(part.every * self.step_ns))
-            self._nodes[name] = node
-            outputs = [v for v in part.instance.variables.values() if v.causality == "output"]
-            for kind in dict.fromkeys(v.type for v in outputs):
-                of_kind = [v.name for v in outputs if v.type is kind]
-                start = len(self.signals)
-                for output in of_kind:
-                    places[name, output] = len(self.names)
-                    self.names.append((name, output))
-                    self.signals.append(None)
-                reader = part.instance.reader(of_kind)
-                node.reads.append(_Reads(start, len(self.signals), reader, kind is float))
-        self._places = places
+            node = self._nodes[name] = _Node(part, seconds(part.every * self.step_ns))
+            outputs = [v.name for v in part.instance.variables.values() if v.causality == "output"]
+            node.reads = self._chunks(node, [n for n in outputs if (name, n) not in visited])
+        for group in self._groups:
+            for component in dict.fromkeys(component for component, _ in group.outputs):
+                node = self._nodes[component]
+                chunks = self._chunks(node, [n for c, n in group.outputs if c == component])
+                group.visits.append(_Visit(node, chunks))
         for name, node in self._nodes.items():
             self._prepare_writes(name, node)
+            node.written_by_visit = self._visit_writes_all(node)
+
+    def _chunks(self, node: _Node, outputs: Sequence[str]) -> list[_Chunk]:
+        """Give outputs of a node their places, those of one type side by side."""
+        variables, chunks = node.part.instance.variables, []
+        for kind in dict.fromkeys(variables[name].type for name in outputs):
+            of_kind = [name for name in outputs if variables[name].type is kind]
+            start = len(self.signals)
+            for name in of_kind:
+                self._places[node.part.name, name] = len(self.signals)
+                self.names.append((node.part.name, name))
+                self.signals.append(None)
+            reader = node.part.instance.reader(of_kind)
+            chunks.append(_Chunk(start, len(self.signals), reader, kind is float))
+        node.chunks += chunks
+        return chunks
+
+    def _visit_writes_all(self, node: _Node) -> bool:
+        """Say if everything that feeds a node is final when its last visit writes its inputs."""
+        turns = [i for i, g in enumerate(self._groups) if any(v.node is node for v in g.visits)]
+        if not turns or self._groups[turns[-1]].is_loop:
+            return False
+        read_in = {name: i for i, group in enumerate(self._groups) for name in group.outputs}
+        sources = [wire.source for writes in node.writes for wire in writes.wires]
+        return all(read_in.get(source, -1) < turns[-1] for source in sources)
 
     def _prepare_writes(self, name: str, node: _Node) -> None:
         variables = node.part.instance.variables
@@ -203,70 +240,50 @@ class Master:
             writes.bind(self._places)
             node.writes.append(writes)
 
-    def _feedthrough_groups(self) -> list[tuple[list[_Visit], bool]]:
-        """Return visits in dependency order; True marks a group that is a loop."""
+    def _feedthrough_groups(self) -> list[_Group]:
+        """Return the outputs to visit, in dependency order."""
         source_of = {wire.target: wire.source for wire in self.system.wires}
         depends: dict[Name, list[Name]] = {}
-        for name, node in self._nodes.items():
-            through = node.part.instance.feedthrough
-            for output, inputs in through.items():
+        for name, part in self.system.parts.items():
+            for output, inputs in part.instance.feedthrough.items():
                 sources = [source_of[name, i] for i in inputs if (name, i) in source_of]
                 if sources:
                     depends[name, output] = sources
         groups = [g for g in ordered_groups(depends) if any(n in depends for n in g)]
         return [
-            (self._visits([n for n in group if n in depends]), is_loop)
+            _Group([name for name in group if name in depends], is_loop)
             for group, is_loop in _scheduled(groups, depends)
         ]
 
-    def _visits(self, outputs: Sequence[Name]) -> list[_Visit]:
-        visits = []
-        for component in dict.fromkeys(component for component, _ in outputs):
-            names = [output for c, output in outputs if c == component]
-            node = self._nodes[component]
-            places = [self._places[component, n] for n in names]
-            variables = node.part.instance.variables
-            is_real = all(variables[n].type is float for n in names)
-            reader = node.part.instance.reader(names)
-            visits.append(_Visit(node, names, places, reader, is_real))
-        return visits
-
     # ------------------------------------------------------------------ running
 
-    def _settle(self, groups: list[tuple[list[_Visit], bool]]) -> None:
+    def _settle(self) -> None:
         for node in self._nodes.values():
-            self._read(node)
-        self._propagate(groups)
+            self._read(node.chunks)
+        self._propagate()
         for node in self._nodes.values():
             self._write(node)
-            self._read(node)
+            self._read(node.chunks)
 
-    def _propagate(self, groups: list[tuple[list[_Visit], bool]]) -> None:
-        for visits, is_loop in groups:
-            if is_loop:
-                self._solve(visits)
+    def _propagate(self) -> None:
+        for group in self._groups:
+            if group.is_loop:
+                self._solve(group)
             else:
-                for visit in visits:
+                for visit in group.visits:
                     self._visit(visit)
 
     def _visit(self, visit: _Visit) -> None:
-        if self.steps % visit.node.part.every:
-            return
-        self._write(visit.node)
-        signals, values = self.signals, visit.read()
-        if visit.is_real and not math.isfinite(sum(values)):
-            self._refuse_not_finite(visit.places, values)
-        for place, value in zip(visit.places, values, strict=True):
-            signals[place] = value
-        if self._pins:
-            self._keep_pinned(visit.places)
+        if self.steps % visit.node.part.every == 0:
+            self._write(visit.node)
+            self._read(visit.chunks)
 
-    def _solve(self, visits: list[_Visit]) -> None:
+    def _solve(self, group: _Group) -> None:
         """Fixed-point iteration over a feed-through loop."""
-        places = [p for visit in visits for p in visit.places]
+        places = [self._places[name] for name in group.outputs]
         for _ in range(_LOOP_ITERATIONS):
             before = [self.signals[p] for p in places]
-            for visit in visits:
+            for visit in group.visits:
                 self._visit(visit)
             if all(_close(a, self.signals[p]) for a, p in zip(before, places, strict=True)):
                 return
@@ -285,14 +302,14 @@ class Master:
                     values[i] = values[i] * factor + offset
             writes.write(values)
 
-    def _read(self, node: _Node) -> None:
-        for reads in node.reads:
-            values = reads.read()
-            if reads.is_real and not math.isfinite(sum(values)):
-                self._refuse_not_finite(range(reads.start, reads.stop), values)
-            self.signals[reads.start : reads.stop] = values
+    def _read(self, chunks: Sequence[_Chunk]) -> None:
+        for chunk in chunks:
+            values = chunk.read()
+            if chunk.is_real and not math.isfinite(sum(values)):
+                self._refuse_not_finite(range(chunk.start, chunk.stop), values)
+            self.signals[chunk.start : chunk.stop] = values
             if self._pins:
-                self._keep_pinned(range(reads.start, reads.stop))
+                self._keep_pinned(range(chunk.start, chunk.stop))
 
     def _refuse_not_finite(self, places: Sequence[int], values: Sequence[float]) -> None:
         for place, value in zip(places, values, strict=True):
