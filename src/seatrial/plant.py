@@ -76,7 +76,7 @@ class Plant(Component):
 
     max_step = Parameter(0.01, "s", "longest integration sub-step", min=1e-6)
 
-    transient = Component.transient | {"_model", "_buffers", "_u", "_p", "_h", "_x1", "_y"}
+    transient = Component.transient | {"_buffers", "_u", "_p", "_h", "_x1", "_y"}
 
     state_ports: ClassVar[tuple[Port, ...]] = ()
     input_ports: ClassVar[tuple[Port, ...]] = ()
@@ -287,7 +287,7 @@ class Plant(Component):
 
     def _build_buffers(self) -> None:
         # A buffer does not keep its arrays alive: they stay attributes of the instance.
-        model = self._model = self._compiled()
+        model = self._compiled()
         self._u, self._p = self._stacked_u(None), self._stacked_p()
         self._h, self._x1 = np.zeros(1), np.zeros(len(model.x_names))
         self._y = np.zeros(len(model.y_names))

@@ -60,12 +60,3 @@ def test_skew_and_cross_are_the_vector_product():
     np.testing.assert_array_equal(
         np.array(symbolic.skew(ca.DM(a)) @ ca.DM(b)).ravel(), np.cross(a, b)
     )
-
-
-def test_wrapped_angles_lie_within_half_a_turn():
-    for angle in (-40.0, -math.pi, -0.1, 0.0, 3.0, 3.5, 1e6):
-        wrapped = kinematics.wrap_angle(angle)
-        assert -math.pi <= wrapped <= math.pi
-        assert math.cos(wrapped) == pytest.approx(math.cos(angle), abs=1e-9)
-        assert math.sin(wrapped) == pytest.approx(math.sin(angle), abs=1e-9)
-        assert kinematics.wrap_angle(-angle) == -wrapped

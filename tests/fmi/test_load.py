@@ -40,6 +40,7 @@ def test_both_carriers_give_the_same_values(counter: ComponentSource, counter_fm
                 instance.set_state(state)
                 instance.step(21 * 0.02, 0.02)
                 rows.append(read())
+                instance.free_state(state)
                 break
         records.append(rows)
         instance.terminate()

@@ -49,9 +49,13 @@ def test_serialised_state_restores_another_instance(raw: Raw, tmp_path: Path) ->
     other.freeFMUstate(restored)
 
 
-def test_damaged_serialised_state_is_refused_by_the_next_step(raw: Raw) -> None:
+@pytest.mark.parametrize(
+    "data",
+    [b"{ not json", b"[1]", b'{"dict": [["component", {"dict": []}]]}', b"\xff", b'{"array": [1]}'],
+)
+def test_damaged_serialised_state_is_refused_by_the_next_step(raw: Raw, data: bytes) -> None:
     slave = raw.start()
-    state = slave.deSerializeFMUstate(b"{ not json")
+    state = slave.deSerializeFMUstate(data)
     slave.setFMUstate(state)
     with pytest.raises(FMICallException, match="discard"):
         slave.doStep(0.0, 0.1)

@@ -51,11 +51,6 @@ def cross(a: Sequence[float], b: Sequence[float]) -> Vector3:
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
-def wrap_angle(angle: float) -> float:
-    """Return the angle (rad) less whole turns, in [-pi, pi]; exact, odd in its argument."""
-    return math.remainder(angle, math.tau)
-
-
 def rotation_rows(sines: Sequence[Any], cosines: Sequence[Any]) -> tuple[tuple[Any, Any, Any], ...]:
     """Return R by rows from the sines and cosines of (phi, theta, psi), numbers or symbols."""
     sphi, sth, spsi = sines

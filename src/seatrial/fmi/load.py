@@ -91,7 +91,6 @@ class FmuInstance(ByType):
         self.variables, self.feedthrough = fmu.variables, fmu.feedthrough
         simulation = fmu.description.coSimulation
         self._ours = (fmu.description.generationTool or "").startswith("seatrial")
-        self._time = 0.0
         self._fatal = False
         self._messages: list[tuple[int, str]] = []
         self._number = next(_numbers)
@@ -121,7 +120,6 @@ class FmuInstance(ByType):
 
     def initialise(self, start_time: float, stop_time: float) -> None:
         """Start at ``start_time``."""
-        self._time = start_time
         self._call("fmi2SetupExperiment", 0, 0.0, start_time, 1, stop_time)
         self._call("fmi2EnterInitializationMode")
         self._refuse_logged_errors("fmi2EnterInitializationMode")
@@ -133,7 +131,6 @@ class FmuInstance(ByType):
 
     def step(self, t: float, h: float) -> None:
         """Advance from ``t`` to ``t + h``, s."""
-        self._time = t
         status = self._do_step(self._c, t, h, 1)
         if status > _WARNING:
             self._refuse(f"fmi2DoStep(t = {t!r} s, h = {h!r} s)", status)

@@ -131,7 +131,7 @@ class Slave(Fmi2Slave):  # type: ignore[misc]
         return state
 
     def _set_fmu_state(self, state: dict[str, Any]) -> None:
-        if "component" not in state:
+        if not {"component", "failed", "last_error"} <= set(state):
             self._fail(f"{self.instance_name}: this state cannot be restored")
             return
         self._failed, self.last_error = state["failed"], state["last_error"]
