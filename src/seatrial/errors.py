@@ -5,6 +5,9 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 
+INTERRUPTED = "interrupted by the user"
+"""What a component says that a signal interrupted; a message crosses the FMI, an exception not."""
+
 
 class SeatrialError(Exception):
     """Base of every error that carries a message meant for the user."""
@@ -16,6 +19,10 @@ class InputError(SeatrialError):
 
 class SimulationError(SeatrialError):
     """A simulation could not go on: a component raised, refused a step or produced no number."""
+
+
+class DiscardError(SimulationError):
+    """A component could not take a step; it may take a smaller one from a restored state."""
 
 
 def unknown(what: str, found: object, allowed: Iterable[str]) -> str:

@@ -239,7 +239,7 @@ def test_mistakes_in_a_rig_name_its_file(write) -> None:
     assert str(error.value).splitlines() == [
         f"{path}: components.a.fmu: this key is missing",
         f"{path}: components.a.fmuu: unknown key 'fmuu'; did you mean 'fmu'? "
-        "(known: fmu, parameters, profile, set, step)",
+        "(known: fmu, isolated, parameters, profile, set, step, timeout)",
     ]
 
 

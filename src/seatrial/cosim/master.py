@@ -12,7 +12,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from operator import itemgetter
-from typing import Any, Literal
+from typing import Any
 
 from ..component import seconds
 from ..errors import SimulationError
@@ -20,7 +20,6 @@ from ..fmi.instance import Reader, Writer
 from .order import loops_on_itself, ordered_groups
 from .system import Part, System, Wire
 
-Algorithm = Literal["jacobi", "plain-jacobi"]
 Name = tuple[str, str]
 
 _LOOP_TOLERANCE = 1e-12
@@ -106,7 +105,7 @@ class Master:
 
     def __init__(self, system: System, start_ns: int = 0, stop_ns: int = 0) -> None:
         self.system = system
-        self.algorithm: Algorithm = system.rig.file.algorithm
+        self.algorithm = system.rig.file.algorithm
         self.step_ns = system.rig.step_ns
         self.start_ns, self.stop_ns = start_ns, stop_ns
         self.steps = 0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -17,6 +18,28 @@ from .files import FileModel, Source, find_file, read_toml, validated
 _IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 
 
+AlgorithmName = Literal["jacobi", "plain-jacobi", "gauss-seidel", "extrapolated", "iterated"]
+
+
+class IterationEntry(FileModel):
+    """How the iterated algorithm repeats a step."""
+
+    tolerance: float = Field(default=1e-6, gt=0.0)
+    """Of every wire's value, relative to the nominal value of its output."""
+    count: int = Field(default=10, ge=1, le=1000)
+    """At most so many repetitions."""
+    relaxation: float = Field(default=1.0, gt=0.0, le=1.0)
+    """Share of each repetition's change that is applied."""
+
+
+class WireEntry(FileModel):
+    """One end of a connection with a linear transformation, after conversion of units."""
+
+    to: str
+    factor: float = 1.0
+    offset: float = 0.0
+
+
 class ComponentEntry(FileModel):
     """One component of a rig."""
 
@@ -27,6 +50,10 @@ class ComponentEntry(FileModel):
     """A section of the rig's profile: ``sensors.gnss``, ``actuators.port``."""
     set: dict[str, Any] = Field(default_factory=dict)
     step: str | None = None
+    isolated: bool = False
+    """It runs in a process of its own."""
+    timeout: str | None = None
+    """Longest wall time of one call of an isolated component."""
 
 
 class RigFile(FileModel):
@@ -34,11 +61,12 @@ class RigFile(FileModel):
 
     title: str = ""
     step: str
-    algorithm: Literal["jacobi", "plain-jacobi"] = "jacobi"
+    algorithm: AlgorithmName = "jacobi"
+    iteration: IterationEntry | None = None
     variant: str | None = None
     profile: str | None = None
     components: dict[str, ComponentEntry]
-    connections: dict[str, str | list[str]] = Field(default_factory=dict)
+    connections: dict[str, str | WireEntry | list[str | WireEntry]] = Field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -53,12 +81,18 @@ class Rig:
         """Communication step, ns."""
         return duration_ns(self.file.step, f"{self.read_from.path}: step")
 
-    def connections(self) -> list[tuple[str, str]]:
-        """Return (from, to) pairs as written, ports or scalars."""
+    def changed(self, changes: Mapping[str, Any]) -> Rig:
+        """Return the rig with keys of its file replaced. Raises InputError."""
+        content = {**self.file.model_dump(exclude_unset=True), **changes}
+        return _checked(Rig(validated(RigFile, content, self.read_from.path), self.read_from))
+
+    def connections(self) -> list[tuple[str, WireEntry]]:
+        """Return (from, where to) pairs as written, ports or scalars."""
         pairs = []
         for source, targets in self.file.connections.items():
-            for target in [targets] if isinstance(targets, str) else targets:
-                pairs.append((source, target))
+            for target in targets if isinstance(targets, list) else [targets]:
+                entry = WireEntry(to=target) if isinstance(target, str) else target
+                pairs.append((source, entry))
         return pairs
 
 
@@ -66,15 +100,26 @@ def load_rig(name: str, relative_to: Path | None = None) -> Rig:
     """Read the rig ``name`` (shipped, in ``harness/rigs``, or a path). Raises InputError."""
     path = find_file("harness/rigs", name, relative_to)
     content, read_from = read_toml(path)
-    rig = Rig(validated(RigFile, content, path), read_from)
-    for component in rig.file.components:
-        if not _IDENTIFIER.fullmatch(component):
+    return _checked(Rig(validated(RigFile, content, path), read_from))
+
+
+def _checked(rig: Rig) -> Rig:
+    path, file = rig.read_from.path, rig.file
+    for name, component in file.components.items():
+        if not _IDENTIFIER.fullmatch(name):
             raise InputError(
-                f"{path}: components.{component}: a component's name has letters, digits and '_' "
+                f"{path}: components.{name}: a component's name has letters, digits and '_' "
                 "and starts with a letter or '_'"
             )
+        if component.timeout is not None and not component.isolated:
+            raise InputError(f"{path}: components.{name}.timeout: needs isolated = true")
     if rig.step_ns <= 0:
-        raise InputError(f"{path}: step: must be positive, found {rig.file.step!r}")
+        raise InputError(f"{path}: step: must be positive, found {file.step!r}")
+    if file.iteration is not None and file.algorithm != "iterated":
+        raise InputError(
+            f"{path}: iteration: has no effect with the algorithm {file.algorithm!r}; "
+            'it belongs to algorithm = "iterated"'
+        )
     return rig
 
 

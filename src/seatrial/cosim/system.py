@@ -19,7 +19,7 @@ from ..fmi.source import find_source
 from ..units import conversion
 from .parameters import ParameterSet, load_vehicle, split_reference
 from .profile import Profile, load_profile
-from .rig import ComponentEntry, Rig, duration_ns
+from .rig import ComponentEntry, Rig, WireEntry, duration_ns
 from .values import Given, from_entry, from_written, port_names, port_scalars
 
 Engine = Literal["fmu", "direct"]
@@ -266,7 +266,8 @@ def _parameter_set(system: System, entry: ComponentEntry, where: str) -> Paramet
 def _wires(system: System) -> list[Wire]:
     wires: list[Wire] = []
     taken: dict[tuple[str, str], str] = {}
-    for written_source, written_target in system.rig.connections():
+    for written_source, wire in system.rig.connections():
+        written_target = wire.to
         where = f'{system.rig.read_from.path}: connections."{written_source}"'
         sources = _end(system, written_source, "output", where)
         targets = _end(system, written_target, "input", where)
@@ -285,7 +286,10 @@ def _wires(system: System) -> list[Wire]:
             taken[key] = written_source
             origin = (written_source.partition(".")[0], source.name)
             to_real = (source.type, target.type) == (int, float)
-            wires.append(Wire(origin, key, *_converting(source, target, where), to_real))
+            factor, offset = _transformed(*_converting(source, target, where), wire)
+            if (factor, offset) != (1.0, 0.0) and target.type is not float:
+                raise InputError(f"{where}: {written_target} is no real number to transform")
+            wires.append(Wire(origin, key, factor, offset, to_real))
     return wires
 
 
@@ -304,6 +308,13 @@ def _end(system: System, written: str, causality: str, where: str) -> list[Varia
                 f"{where}: causality of {written} is {variable.causality}, {causality} is needed"
             )
     return scalars
+
+
+def _transformed(factor: float, offset: float, wire: WireEntry) -> tuple[float, float]:
+    """Return a conversion of units followed by a wire's own linear transformation."""
+    if (wire.factor, wire.offset) == (1.0, 0.0):
+        return factor, offset
+    return wire.factor * factor, wire.factor * offset + wire.offset
 
 
 def _converting(source: Variable, target: Variable, where: str) -> tuple[float, float]:

@@ -8,7 +8,7 @@ from functools import partial
 from typing import Any
 
 from ..component import Component
-from ..errors import InputError, SimulationError
+from ..errors import DiscardError, InputError, SimulationError
 from ..ports import Parameter, Scalar, ScalarPort
 from .instance import ByType, Reader, Variable, Writer
 
@@ -21,6 +21,7 @@ class DirectInstance(ByType):
         self.name = component.name
         self.variables = {s.name: _variable(component, s) for s in component.scalars}
         self.feedthrough = scalar_feedthrough(component)
+        self.rolls_back, self.any_step = component.rolls_back, True
 
     def set_start(self, values: Mapping[str, Scalar]) -> None:
         """Set parameters and start values by variable name, before `initialise`."""
@@ -37,13 +38,13 @@ class DirectInstance(ByType):
         self._call("begin", self.component.begin)
 
     def step(self, t: float, h: float) -> None:
-        """Advance from ``t`` to ``t + h``, s."""
+        """Advance from ``t`` to ``t + h``, s."""  # an error is a discarded step, as in the FMU
         try:
             self.component.advance(t, h)
         except KeyboardInterrupt:
             raise
         except BaseException as error:  # SystemExit too, as in the FMU
-            raise self._error("step", error) from error
+            raise DiscardError(str(self._error("step", error))) from error
 
     def get_state(self) -> Any:
         """Return a copy of the whole state."""

@@ -50,6 +50,14 @@ class Instance(Protocol):
         """Variables by name."""
 
     @property
+    def rolls_back(self) -> bool:
+        """Whether its whole state can be saved and restored."""
+
+    @property
+    def any_step(self) -> bool:
+        """Whether it takes steps of different lengths."""
+
+    @property
     def feedthrough(self) -> Mapping[str, Sequence[str]]:
         """Per output, the inputs that act on it at the same instant."""
 
@@ -69,7 +77,7 @@ class Instance(Protocol):
         """Return a fast callable that sets ``names`` to a sequence of values."""
 
     def step(self, t: float, h: float) -> None:
-        """Advance from ``t`` to ``t + h``, s."""
+        """Advance from ``t`` to ``t + h``, s. Raises DiscardError if a smaller step may do."""
 
     def get_state(self) -> Any:
         """Return a handle of the whole state."""

@@ -23,7 +23,7 @@ from fmpy import fmi2
 from fmpy.logging import addLoggerProxy
 from fmpy.model_description import ModelDescription, read_model_description
 
-from ..errors import InputError, SimulationError
+from ..errors import INTERRUPTED, DiscardError, InputError, SimulationError
 from ..ports import Scalar
 from .cache import cache_folder
 from .instance import ByType, Reader, Variable, Writer
@@ -37,7 +37,7 @@ _CTYPES: dict[type, Any] = {
 }
 _FMI_NAMES = {float: "Real", int: "Integer", bool: "Boolean", str: "String"}
 _STATUS = ("ok", "warning", "discard", "error", "fatal", "pending")
-_WARNING, _ERROR, _FATAL = 1, 3, 4
+_WARNING, _DISCARD, _ERROR, _FATAL = 1, 2, 3, 4
 _KEPT_MESSAGES = 50
 
 
@@ -90,6 +90,8 @@ class FmuInstance(ByType):
         self.fmu = fmu
         self.variables, self.feedthrough = fmu.variables, fmu.feedthrough
         simulation = fmu.description.coSimulation
+        self.rolls_back = bool(simulation.canGetAndSetFMUstate)
+        self.any_step = bool(simulation.canHandleVariableCommunicationStepSize)
         self._ours = (fmu.description.generationTool or "").startswith("seatrial")
         self._fatal = False
         self._messages: list[tuple[int, str]] = []
@@ -245,7 +247,11 @@ class FmuInstance(ByType):
     def _refuse(self, what: str, status: int) -> None:
         self._fatal = status == _FATAL
         word = _STATUS[status] if status < len(_STATUS) else str(status)
-        raise SimulationError(f"{self.name}: {what} returned {word}{self._said()}")
+        said = self._said()
+        if self._ours and said.endswith(INTERRUPTED):
+            raise KeyboardInterrupt
+        kind = DiscardError if status == _DISCARD else SimulationError
+        raise kind(f"{self.name}: {what} returned {word}{said}")
 
     def _refuse_logged_errors(self, what: str) -> None:
         """Raise for an error that our own FMUs log instead of returning it (see `Slave`)."""

@@ -24,7 +24,7 @@ from pythonfmu.enums import Fmi2Status
 from pythonfmu.fmi2slave import Fmi2Slave
 
 from ..component import Component
-from ..errors import InputError, SimulationError
+from ..errors import INTERRUPTED, InputError, SimulationError
 
 START_VALUES = "start_values.json"
 """File in an FMU's resources: start values by port name, baked in when it was built."""
@@ -203,7 +203,7 @@ def _explained(error: BaseException) -> str:
     if isinstance(error, (InputError, SimulationError)):
         return str(error)
     if isinstance(error, KeyboardInterrupt):
-        return "interrupted by the user"
+        return INTERRUPTED
     first = "".join(traceback.format_exception_only(error)).strip()
     trace = "".join(traceback.format_exception(error)).strip()
     if len(trace) > _LONGEST_TRACE:

@@ -37,7 +37,7 @@ def manifest(trial: Trial, system: System, engine: Engine) -> dict[str, Any]:
             name: _component(part, seconds(part.every * trial.rig.step_ns))
             for name, part in system.parts.items()
         },
-        "connections": [list(pair) for pair in trial.rig.connections()],
+        "connections": _connections(trial),
         "signals": {
             f"{name}.{v.name}": {"unit": v.unit, "description": v.description}
             for name, part in system.parts.items()
@@ -47,6 +47,15 @@ def manifest(trial: Trial, system: System, engine: Engine) -> dict[str, Any]:
         "criteria": [entry.model_dump() for entry in trial.file.criteria],
         "events": [entry.model_dump() for entry in trial.file.events],
     }
+
+
+def _connections(trial: Trial) -> list[list[Any]]:
+    """Return [from, to], and [factor, offset] behind where a wire has them."""
+    rows: list[list[Any]] = []
+    for source, wire in trial.rig.connections():
+        transformed = (wire.factor, wire.offset) != (1.0, 0.0)
+        rows.append([source, wire.to, *([wire.factor, wire.offset] if transformed else [])])
+    return rows
 
 
 def _file(source: Source) -> dict[str, str]:

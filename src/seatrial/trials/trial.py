@@ -131,20 +131,25 @@ class Trial:
     def changed(self, changes: Mapping[str, Any], origin: str) -> Trial:
         """Return the trial with settings changed: ``component.port``, or a key of the trial.
 
-        Keys of the trial are variant, seed, start and stop. Raises InputError.
+        Keys of the trial are variant, seed, start and stop; of its rig, step and algorithm.
+        Raises InputError.
         """
-        keys = ("variant", "seed", "start", "stop")
-        own, overrides = {}, list(self.overrides)
+        keys, rig_keys = ("variant", "seed", "start", "stop"), ("step", "algorithm")
+        own, of_rig, overrides = {}, {}, list(self.overrides)
         for key, value in changes.items():
             if "." in key:
                 overrides.append((key, value, origin))
             elif key in keys:
                 own[key] = value
+            elif key in rig_keys:
+                of_rig[key] = value
             else:
-                raise InputError(f"{origin}: {unknown('key', key, keys)}, or component.port")
+                known = (*keys, *rig_keys)
+                raise InputError(f"{origin}: {unknown('key', key, known)}, or component.port")
         content = {**self.file.model_dump(), **own}
         file = validated(TrialFile, content, self.read_from.path)
-        return _checked(replace(self, file=file, overrides=tuple(overrides)))
+        rig = self.rig.changed(of_rig) if of_rig else self.rig
+        return _checked(replace(self, file=file, rig=rig, overrides=tuple(overrides)))
 
 
 def load_trial(name: str, relative_to: Path | None = None) -> Trial:
