@@ -61,7 +61,8 @@ class Component:
     All state lives in attributes that are plain data (numbers, strings, lists, dicts, arrays,
     None), so that it can be copied, restored and serialised. ``transient`` names attributes
     that are not state. A component with an outside world (a socket, firmware) sets
-    ``rolls_back = False``. ``feedthrough`` declares, per output port, the input ports that act
+    ``rolls_back = False``; one whose numbers jump at instants and are constant between them,
+    ``discrete = True``. ``feedthrough`` declares, per output port, the input ports that act
     on it at the same instant.
 
     Times are seconds, already snapped to the grid of the communication step.
@@ -69,6 +70,7 @@ class Component:
 
     feedthrough: ClassVar[Mapping[str, Sequence[str]]] = {}
     rolls_back: ClassVar[bool] = True
+    discrete: ClassVar[bool] = False
     transient: ClassVar[frozenset[str]] = frozenset({"name"})
 
     ports: ClassVar[dict[str, Port]] = {}

@@ -18,6 +18,8 @@ class Sampled(Component):
     change the memory; `update` runs once per instant, with the inputs and outputs as of it.
     """
 
+    discrete = True
+
     period = Parameter(0.01, "s", "sample period", min=1e-6)
 
     def reset(self, t: float) -> None:

@@ -11,7 +11,7 @@ from seatrial.cosim.master import Master
 from seatrial.cosim.rig import load_rig
 from seatrial.cosim.system import System, assemble
 
-from . import users
+from . import bodies, users
 
 
 class Bench:
@@ -20,6 +20,7 @@ class Bench:
     def __init__(self, folder: Path, engine: str) -> None:
         self.folder, self.engine = folder, engine
         (folder / "users.py").write_text(users.CHAIN, "utf-8")
+        (folder / "bodies.py").write_text(bodies.TEXT, "utf-8")
         self.systems: list[System] = []
 
     def system(

@@ -69,7 +69,7 @@ def _register(slave: Slave) -> None:
         variable = _VARIABLES[port.type](
             scalar.name,
             causality=_CAUSALITY[port.kind],
-            variability=_variability(scalar),
+            variability=_variability(component, scalar),
             initial=Fmi2Initial.calculated if output else None,
             description=_text(port.description),
             getter=lambda reference=reference: component.values[reference],
@@ -77,11 +77,12 @@ def _register(slave: Slave) -> None:
         slave.register_variable(variable, nested=False)
 
 
-def _variability(scalar: ScalarPort) -> Fmi2Variability:
+def _variability(component: Component, scalar: ScalarPort) -> Fmi2Variability:
     port = scalar.port
     if isinstance(port, Parameter):
         return Fmi2Variability.tunable if port.tunable else Fmi2Variability.fixed
-    return Fmi2Variability.continuous if port.type is float else Fmi2Variability.discrete
+    continuous = port.type is float and not component.discrete
+    return Fmi2Variability.continuous if continuous else Fmi2Variability.discrete
 
 
 def _complete_variable(component: Component, scalar: ScalarPort, element: Element) -> None:

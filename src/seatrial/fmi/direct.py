@@ -101,7 +101,8 @@ def scalar_feedthrough(component: Component) -> dict[str, list[str]]:
 def _variable(component: Component, scalar: ScalarPort) -> Variable:
     port = scalar.port
     tunable = isinstance(port, Parameter) and port.tunable
-    varying = "continuous" if port.type is float else "discrete"
+    continuous = port.type is float and not component.discrete
+    varying = "continuous" if continuous else "discrete"
     return Variable(
         name=scalar.name,
         causality=port.kind,

@@ -1,0 +1,202 @@
+"""Feed-through: outputs that depend on inputs at the same instant, read again in order.
+
+Whoever moved values along wires alone would add a delay of one step per hop. Here the outputs
+that were declared to depend on inputs are visited in the order of their dependencies at every
+communication point. Outputs that depend on each other in a loop are found by fixed-point
+iteration with relaxation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from ..component import NS
+from ..errors import SimulationError
+from .network import Chunk, Name, Network, Node, sources_by_target
+from .order import loops_on_itself, ordered_groups
+
+_TOLERANCE = 1e-12
+_ITERATIONS = 200
+_LEAST_RELAXATION = 1 / 16
+
+
+@dataclass
+class _Visit:
+    """Outputs of one node to read once the inputs they depend on were moved."""
+
+    node: Node
+    chunks: list[Chunk]
+
+
+@dataclass
+class _Group:
+    """Visits that belong together: of one component, or of all components of a loop."""
+
+    outputs: list[Name]
+    is_loop: bool
+    visits: list[_Visit] = field(default_factory=list)
+    relaxation: float = 1.0
+    """What the loop last settled with."""
+
+
+class Feedthrough:
+    """Visits feed-through outputs of a network. Making one gives all outputs their places."""
+
+    def __init__(self, network: Network) -> None:
+        self._network = network
+        self._groups = _groups(network)
+        visited = {name for group in self._groups for name in group.outputs}
+        for name, node in network.nodes.items():
+            outputs = [
+                v.name for v in node.part.instance.variables.values() if v.causality == "output"
+            ]
+            node.reads = network.add_chunks(node, [n for n in outputs if (name, n) not in visited])
+        for group in self._groups:
+            for component in dict.fromkeys(component for component, _ in group.outputs):
+                node = network.nodes[component]
+                of_node = [n for c, n in group.outputs if c == component]
+                group.visits.append(_Visit(node, network.add_chunks(node, of_node)))
+        network.bind_inputs()
+        for node in network.nodes.values():
+            node.written_by_visit = self._writes_all(node)
+
+    def propagate(self, steps: int) -> None:
+        """Visit everything that has a value at this communication point.
+
+        ``steps`` counts communication steps: a component with a longer step of its own has
+        values at whole multiples only. Raises SimulationError for a loop that does not settle.
+        """
+        for group in self._groups:
+            if group.is_loop:
+                self._solve(group, steps)
+            else:
+                for visit in group.visits:
+                    if steps % visit.node.every == 0:
+                        self._network.write(visit.node)
+                        self._network.read(visit.chunks)
+
+    def forget(self) -> None:
+        """Visit nothing any more: values move by steps alone."""
+        self._groups = []
+        for node in self._network.nodes.values():
+            node.reads, node.written_by_visit = node.chunks, False
+
+    def memory(self) -> list[float]:
+        """Return what the loops have learned, for a rollback."""
+        return [group.relaxation for group in self._groups]
+
+    def restore(self, memory: list[float]) -> None:
+        """Restore what `memory` returned."""
+        for group, relaxation in zip(self._groups, memory, strict=True):
+            group.relaxation = relaxation
+
+    def _writes_all(self, node: Node) -> bool:
+        """Say if everything that feeds a node is final when its last visit writes its inputs."""
+        turns = [i for i, g in enumerate(self._groups) if any(v.node is node for v in g.visits)]
+        if not turns or self._groups[turns[-1]].is_loop:
+            return False
+        read_in = {name: i for i, group in enumerate(self._groups) for name in group.outputs}
+        sources = [wire.source for writes in node.writes for wire in writes.wires]
+        return all(read_in.get(source, -1) < turns[-1] for source in sources)
+
+    # ------------------------------------------------------------------ loops
+
+    def _solve(self, group: _Group, steps: int) -> None:
+        """Find a fixed point of a loop; halve the relaxation as long as the iteration grows."""
+        places = [self._network.places[name] for name in group.outputs]
+        begun = [self._network.signals[p] for p in places]
+        factor = 0.0
+        while group.relaxation >= _LEAST_RELAXATION:
+            settled, factor = self._iterate(group, places, steps)
+            if settled:
+                return
+            group.relaxation /= 2
+            for place, value in zip(places, begun, strict=True):
+                self._network.signals[place] = value
+        group.relaxation = 1.0
+        names = ", ".join(".".join(name) for name in group.outputs)
+        raise SimulationError(
+            f"at t = {self._network.time_ns / NS!r} s the loop through {names} does not settle: "
+            f"each repetition changes it {factor:.3g} times as much as the one before, even with "
+            f"a relaxation of {_LEAST_RELAXATION:g}; break it with a component that has a state"
+        )
+
+    def _iterate(self, group: _Group, places: list[int], steps: int) -> tuple[bool, float]:
+        """Return whether the loop settles, and the factor between the last two changes."""
+        signals, relaxation = self._network.signals, group.relaxation
+        change, factor, growing = 0.0, 0.0, 0
+        for _ in range(_ITERATIONS):
+            before = [signals[p] for p in places]
+            for visit in group.visits:
+                if steps % visit.node.every == 0:
+                    self._network.write(visit.node)
+                    self._network.read(visit.chunks)
+            after = [signals[p] for p in places]
+            if all(_close(a, b) for a, b in zip(before, after, strict=True)):
+                return True, 0.0
+            last, change = change, max(_distance(a, b) for a, b in zip(before, after, strict=True))
+            factor = change / last if last else 0.0
+            growing = growing + 1 if factor > 1.0 else 0
+            if growing == 5:
+                break
+            if relaxation != 1.0:
+                for place, a, b in zip(places, before, after, strict=True):
+                    if isinstance(b, float) and isinstance(a, float):
+                        signals[place] = a + relaxation * (b - a)
+        return False, factor
+
+
+def _groups(network: Network) -> list[_Group]:
+    """Return the outputs to visit, in dependency order."""
+    source_of = sources_by_target(network.system)
+    depends: dict[Name, list[Name]] = {}
+    for name, part in network.system.parts.items():
+        for output, inputs in part.instance.feedthrough.items():
+            sources = [source_of[name, i] for i in inputs if (name, i) in source_of]
+            if sources:
+                depends[name, output] = sources
+    groups = [g for g in ordered_groups(depends) if any(n in depends for n in g)]
+    return [
+        _Group([name for name in group if name in depends], is_loop)
+        for group, is_loop in _scheduled(groups, depends)
+    ]
+
+
+def _scheduled(
+    groups: list[list[Name]], depends: Mapping[Name, Sequence[Name]]
+) -> list[tuple[list[Name], bool]]:
+    """Join groups of one component that can be read together, keeping the dependency order.
+
+    True marks a group that is a loop.
+    """
+    index = {name: i for i, group in enumerate(groups) for name in group}
+    needs = [
+        {index[d] for name in group for d in depends.get(name, ()) if d in index} - {i}
+        for i, group in enumerate(groups)
+    ]
+    waiting = dict(enumerate(groups))
+    scheduled: list[tuple[list[Name], bool]] = []
+    while waiting:
+        ready = [i for i in waiting if needs[i].isdisjoint(waiting)]
+        first = waiting[ready[0]]
+        is_loop = loops_on_itself(first, depends)
+        taken = [ready[0]]
+        if not is_loop:
+            of_node = [i for i in ready if waiting[i][0][0] == first[0][0]]
+            taken = [i for i in of_node if not loops_on_itself(waiting[i], depends)]
+        scheduled.append(([name for i in taken for name in waiting.pop(i)], is_loop))
+    return scheduled
+
+
+def _close(a: Any, b: Any) -> bool:
+    if not isinstance(b, float) or not isinstance(a, float):
+        return bool(a == b)
+    return abs(a - b) <= _TOLERANCE * max(1.0, abs(a), abs(b))
+
+
+def _distance(a: Any, b: Any) -> float:
+    if not isinstance(b, float) or not isinstance(a, float):
+        return float(a != b)
+    return abs(b - a)

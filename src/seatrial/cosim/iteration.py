@@ -1,0 +1,147 @@
+"""Iteration with rollback: each step is repeated until the wires' values agree at its end."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from ..component import NS
+from ..errors import InputError, SimulationError
+from .algorithms import arrive
+from .feedthrough import Feedthrough
+from .network import Network, Writes
+from .rig import IterationEntry
+
+_ROUND_OFF = 1e-14
+_BEYOND_RETURN = 1e6
+_OVER = 4
+
+
+@dataclass
+class _Inputs:
+    """Connected inputs of one type of one component, during a step."""
+
+    writes: Writes
+    begin: Sequence[Any]
+    """Values at the beginning of the step."""
+    end: list[Any]
+    """Values at its end, as far as they are known."""
+    nominals: Sequence[float]
+
+    def middle(self) -> Sequence[Any]:
+        """Return what is held: continuous inputs as at the middle, others as at the beginning."""
+        values = list(self.begin)
+        for i in self.writes.continuous:
+            values[i] = 0.5 * (self.begin[i] + self.end[i])
+        return values
+
+
+class Iterated:
+    """Repeats each step with inputs interpolated linearly between its ends; second order.
+
+    The first pass extrapolates, each further one rolls all components back and steps them with
+    the mean of the inputs at the beginning and, from the pass before, at the end. It ends when
+    no wire's value at the end changes by more than ``tolerance`` times its nominal value, or
+    after ``count`` repetitions. Sampled signals are held.
+
+    A change that grows from one repetition to the next (contraction factor above 1) is an error
+    that names the wire.
+    """
+
+    def __init__(
+        self, network: Network, feedthrough: Feedthrough, settings: IterationEntry
+    ) -> None:
+        self._network, self._feedthrough, self._settings = network, feedthrough, settings
+        self._parts = [node.part for node in network.nodes.values()]
+        self.unsettled = 0
+        """Steps that ended after ``count`` repetitions above the tolerance."""
+        where = f'{network.system.rig.read_from.path}: algorithm = "iterated"'
+        for part in self._parts:
+            if not part.instance.rolls_back:
+                raise InputError(f"{where}: {part.name} cannot save and restore its state")
+            if part.every != 1:
+                raise InputError(
+                    f"{where}: {part.name} has a step of its own; all must step together"
+                )
+        self._nominals = {
+            wire.target: network.nominal(wire.source) for wire in network.system.wires
+        }
+
+    def advance(self, steps: int, t_ns: int, h_ns: int) -> None:
+        """Step and repeat. Raises DiscardError, SimulationError for a divergence."""
+        states = [part.instance.get_state() for part in self._parts]
+        try:
+            self._repeat(steps, t_ns, h_ns, states)
+        finally:
+            for part, state in zip(self._parts, states, strict=True):
+                part.instance.free_state(state)
+
+    def _repeat(self, steps: int, t_ns: int, h_ns: int, states: Sequence[Any]) -> None:
+        inputs = self._inputs()
+        changes: list[float] = []
+        for repetition in range(self._settings.count + 1):
+            if repetition:
+                for part, state in zip(self._parts, states, strict=True):
+                    part.instance.set_state(state)
+            self._pass(inputs, steps, t_ns, h_ns)
+            change, worst = self._update(inputs)
+            if change <= self._settings.tolerance:
+                return
+            changes.append(change)
+            if change > _BEYOND_RETURN * changes[0] and change > _ROUND_OFF:
+                break
+        factor = _contraction(changes)
+        if factor > 1.0 and changes[-1] > _ROUND_OFF:
+            self._refuse(worst, factor, t_ns + h_ns)
+        self.unsettled += 1
+
+    def _inputs(self) -> list[_Inputs]:
+        """Return all inputs at the beginning of a step, extrapolated to its end."""
+        inputs = []
+        for node in self._network.nodes.values():
+            for writes in node.writes:
+                begin = writes.values(self._network.signals)
+                end = list(begin)
+                if writes.previous is not None:
+                    for i in writes.continuous:
+                        end[i] = 2.0 * begin[i] - writes.previous[i]
+                nominals = [self._nominals[wire.target] for wire in writes.wires]
+                inputs.append(_Inputs(writes, begin, end, nominals))
+                writes.previous = begin
+        return inputs
+
+    def _pass(self, inputs: Sequence[_Inputs], steps: int, t_ns: int, h_ns: int) -> None:
+        for one in inputs:
+            one.writes.write(one.middle())
+        for node in self._network.nodes.values():
+            self._network.step(node, t_ns, h_ns)
+        arrive(self._network, self._feedthrough, steps + 1, t_ns + h_ns)
+
+    def _update(self, inputs: Sequence[_Inputs]) -> tuple[float, tuple[str, str] | None]:
+        """Take the new values at the end; return the largest relative change and its wire."""
+        largest, worst = 0.0, None
+        for one in inputs:
+            values = one.writes.values(self._network.signals)
+            for i in one.writes.continuous:
+                difference = values[i] - one.end[i]
+                change = abs(difference) / one.nominals[i]
+                if change > largest:
+                    largest, worst = change, one.writes.wires[i].source
+                one.end[i] += self._settings.relaxation * difference
+        return largest, worst
+
+    def _refuse(self, worst: tuple[str, str] | None, factor: float, t_ns: int) -> None:
+        assert worst is not None
+        raise SimulationError(
+            f"the iteration diverges at t = {t_ns / NS!r} s on {self._network.targets(worst)}: "
+            f"its contraction factor is {factor:.3g}, above 1, so each repetition changes it more "
+            "than the one before; a smaller relaxation or step may do, or another cut of the "
+            "system (added mass belongs with its rigid body)"
+        )
+
+
+def _contraction(changes: Sequence[float]) -> float:
+    """Return the mean factor from one change to the next, over the last four."""
+    over = min(_OVER, len(changes) - 1)
+    return float((changes[-1] / changes[-1 - over]) ** (1.0 / over)) if over else 0.0

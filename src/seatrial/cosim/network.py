@@ -1,0 +1,279 @@
+"""The network: signals of all components, and what reads, writes and steps them.
+
+Every output of every component has a place in one flat list, ``signals``. Values move by one
+get and one set per type and component, through arrays that are allocated once.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from operator import itemgetter
+from time import perf_counter_ns
+from typing import Any
+
+from ..component import NS
+from ..errors import SimulationError
+from ..fmi.instance import Reader, Writer
+from .system import Part, System, Wire
+from .timing import StepTimes
+
+Name = tuple[str, str]
+
+_TIMES_NOMINAL = 1e3
+_ANY_QUANTITY = 1e20
+"""Larger than any quantity in SI units: the limit of a signal that declares no nominal value."""
+
+
+@dataclass
+class Chunk:
+    """Outputs of one type of one component, side by side in the network's signals."""
+
+    start: int
+    stop: int
+    read: Reader
+    is_real: bool
+    limits: list[tuple[int, float]] = field(default_factory=list)
+    """Wired outputs with a nominal value: place within the chunk, largest magnitude."""
+
+
+@dataclass
+class Writes:
+    """Connected inputs of one type of one component."""
+
+    wires: list[Wire]
+    places: list[int]
+    """Where each input's value stands: at its wire's source, or by itself if overridden."""
+    write: Writer
+    continuous: list[int]
+    """Inputs that change continuously between two communication points."""
+    gather: Callable[[list[Any]], Sequence[Any]]
+    scales: list[tuple[int, float, float]]
+    previous: Sequence[Any] | None = None
+    """What an algorithm remembers of an earlier communication point."""
+
+    def values(self, signals: list[Any]) -> Sequence[Any]:
+        """Return the inputs' values, converted."""
+        values = self.gather(signals)
+        if self.scales:
+            values = list(values)
+            for i, factor, offset in self.scales:
+                values[i] = values[i] * factor + offset
+        return values
+
+
+@dataclass
+class Node:
+    """One component in the network."""
+
+    part: Part
+    chunks: list[Chunk] = field(default_factory=list)
+    """All outputs."""
+    reads: list[Chunk] = field(default_factory=list)
+    """Outputs to read after a step: those that no feed-through visit reads anyway."""
+    writes: list[Writes] = field(default_factory=list)
+    written_by_visit: bool = False
+    """Its last feed-through visit leaves every input as a step with held inputs needs it."""
+    times: StepTimes = field(default_factory=StepTimes)
+    every: int = 1
+    """It steps once in so many communication steps."""
+
+
+@dataclass
+class _Pin:
+    """An overridden output: what its readers get, and what it last was by itself."""
+
+    value: Any
+    own: Any
+
+
+class Network:
+    """Signals and nodes of a system. ``names[i]`` says what ``signals[i]`` is."""
+
+    def __init__(self, system: System) -> None:
+        self.system = system
+        self.names: list[Name] = []
+        self.signals: list[Any] = []
+        self.places: dict[Name, int] = {}
+        self.nodes = {n: Node(part, every=part.every) for n, part in system.parts.items()}
+        self.time_ns = 0
+        self._pins: dict[int, _Pin] = {}
+        self._sources = {wire.source for wire in system.wires}
+
+    # ------------------------------------------------------------------ preparation
+
+    def add_chunks(self, node: Node, outputs: Sequence[str]) -> list[Chunk]:
+        """Give outputs of a node their places, those of one type side by side."""
+        variables, chunks = node.part.instance.variables, []
+        for kind in dict.fromkeys(variables[name].type for name in outputs):
+            of_kind = [name for name in outputs if variables[name].type is kind]
+            start = len(self.signals)
+            for name in of_kind:
+                self.places[node.part.name, name] = len(self.signals)
+                self.names.append((node.part.name, name))
+                self.signals.append(None)
+            reader = node.part.instance.reader(of_kind)
+            chunk = Chunk(start, len(self.signals), reader, kind is float)
+            for place, name in enumerate(of_kind):
+                nominal = variables[name].nominal
+                if chunk.is_real and nominal and (node.part.name, name) in self._sources:
+                    chunk.limits.append((place, _TIMES_NOMINAL * abs(nominal)))
+            chunks.append(chunk)
+        node.chunks += chunks
+        return chunks
+
+    def bind_inputs(self) -> None:
+        """Bind the wires of every node, once all outputs have their places."""
+        of_target: dict[str, list[Wire]] = {name: [] for name in self.nodes}
+        for wire in self.system.wires:
+            of_target[wire.target[0]].append(wire)
+        for name, wires in of_target.items():
+            node, variables = self.nodes[name], self.system.parts[name].instance.variables
+            for kind in dict.fromkeys(variables[w.target[1]].type for w in wires):
+                of_kind = [w for w in wires if variables[w.target[1]].type is kind]
+                writer = node.part.instance.writer([w.target[1] for w in of_kind])
+                writes = Writes(
+                    of_kind, [self.places[w.source] for w in of_kind], writer, [], tuple, []
+                )
+                self._bind(writes)
+                node.writes.append(writes)
+
+    def _bind(self, writes: Writes) -> None:
+        """Say how values are gathered, which a wire converts and which are continuous."""
+        writes.gather = _gatherer(writes.places)
+        writes.previous = None
+        wired = [
+            (i, wire)
+            for i, wire in enumerate(writes.wires)
+            if writes.places[i] == self.places[wire.source]
+        ]
+        # An integer becomes a real number on its way, an overridden input has its unit already.
+        writes.scales = [(i, wire.factor, wire.offset) for i, wire in wired if wire.converts]
+        writes.continuous = [i for i, wire in wired if self._is_continuous(wire)]
+
+    def _is_continuous(self, wire: Wire) -> bool:
+        ends = [
+            self.system.parts[part].instance.variables[n] for part, n in (wire.source, wire.target)
+        ]
+        return all(end.type is float and end.variability == "continuous" for end in ends)
+
+    # ------------------------------------------------------------------ running
+
+    def read(self, chunks: Sequence[Chunk]) -> None:
+        """Read outputs. Raises SimulationError for one that is not finite or out of bounds."""
+        for chunk in chunks:
+            values = chunk.read()
+            if chunk.is_real:
+                if not -_ANY_QUANTITY < sum(values) < _ANY_QUANTITY:
+                    self._refuse_excess(chunk, values)
+                for i, limit in chunk.limits:
+                    if not -limit <= values[i] <= limit:
+                        self._refuse_excess(chunk, values)
+            self.signals[chunk.start : chunk.stop] = values
+            if self._pins:
+                self._keep_pinned(chunk.start, chunk.stop)
+
+    def write(self, node: Node) -> None:
+        """Move the current signals to a node's inputs."""
+        for writes in node.writes:
+            writes.write(writes.values(self.signals))
+
+    def step(self, node: Node, t_ns: int, h_ns: int) -> None:
+        """Step a node. Raises SimulationError."""
+        begun = perf_counter_ns()
+        node.part.instance.step(t_ns / NS, h_ns / NS)
+        node.times.add(perf_counter_ns() - begun, t_ns)
+
+    def nominal(self, name: Name) -> float:
+        """Return an output's nominal value, 1 where none is declared."""
+        return abs(self.system.parts[name[0]].instance.variables[name[1]].nominal or 1.0)
+
+    def targets(self, source: Name) -> str:
+        """Return which inputs an output feeds, for messages."""
+        ends = [".".join(wire.target) for wire in self.system.wires if wire.source == source]
+        return f"the wire {'.'.join(source)} -> {', '.join(ends)}"
+
+    def _refuse_excess(self, chunk: Chunk, values: Sequence[float]) -> None:
+        limits = dict(chunk.limits)
+        for i, value in enumerate(values):
+            name = self.names[chunk.start + i]
+            when = f"at t = {self.time_ns / NS!r} s"
+            if not math.isfinite(value):
+                raise SimulationError(f"{'.'.join(name)} is {value} {when}")
+            if abs(value) > limits.get(i, _ANY_QUANTITY) and name in self._sources:
+                nominal = limits[i] / _TIMES_NOMINAL if i in limits else None
+                excess = (
+                    f"more than 1000 times its nominal value {nominal!r}"
+                    if nominal is not None
+                    else "beyond any quantity"
+                )
+                raise SimulationError(
+                    f"the coupling diverges {when}: {self.targets(name)} carries {value:.6g}, "
+                    f"{excess}; a smaller step, another algorithm or another cut of the system "
+                    "is needed"
+                )
+
+    # ------------------------------------------------------------------ overrides
+
+    def pin(self, component: str, name: str, value: Any) -> None:
+        """Replace an output for all its readers, or one connected input; None ends that."""
+        if (component, name) in self.places:
+            place = self.places[component, name]
+            own = self._pins.pop(place).own if place in self._pins else self.signals[place]
+            self.signals[place] = own
+            if value is not None:
+                self._pins[place] = _Pin(value, own)
+                self.signals[place] = value
+            return
+        for writes in self.nodes[component].writes:
+            for index, wire in enumerate(writes.wires):
+                if wire.target == (component, name):
+                    if value is None:
+                        writes.places[index] = self.places[wire.source]
+                    else:
+                        writes.places[index] = len(self.signals)
+                        self.signals.append(value)
+            self._bind(writes)
+
+    def _keep_pinned(self, start: int, stop: int) -> None:
+        for place, pin in self._pins.items():
+            if start <= place < stop:
+                pin.own = self.signals[place]
+                self.signals[place] = pin.value
+
+    def forget_previous(self) -> None:
+        """Forget what algorithms remember of earlier points: a value jumps, or a step differs."""
+        for node in self.nodes.values():
+            for writes in node.writes:
+                writes.previous = None
+
+    # ------------------------------------------------------------------ rollback
+
+    def memory(self) -> Any:
+        """Return a copy of everything here that a step changes."""
+        previous = [w.previous for node in self.nodes.values() for w in node.writes]
+        pins = {place: pin.own for place, pin in self._pins.items()}
+        return self.time_ns, list(self.signals), pins, previous
+
+    def restore(self, memory: Any) -> None:
+        """Restore what `memory` returned; no pin may have come or gone since."""
+        self.time_ns, signals, pins, previous = memory
+        self.signals[:] = signals
+        for place, own in pins.items():
+            self._pins[place].own = own
+        writes = [w for node in self.nodes.values() for w in node.writes]
+        for one, before in zip(writes, previous, strict=True):
+            one.previous = before
+
+
+def _gatherer(places: Sequence[int]) -> Callable[[list[Any]], Sequence[Any]]:
+    if len(places) == 1:
+        place = places[0]
+        return lambda signals: (signals[place],)
+    return itemgetter(*places)
+
+
+def sources_by_target(system: System) -> Mapping[Name, Name]:
+    """Return which output feeds each connected input."""
+    return {wire.target: wire.source for wire in system.wires}

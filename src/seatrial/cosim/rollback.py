@@ -1,0 +1,141 @@
+"""Rollback: a discarded step is repeated in smaller ones from a restored state.
+
+FMI components may refuse a step and take a smaller one, but those that stepped already must go
+back first. Saving all states before every step would cost more than the steps, so they are
+saved now and then; after a discard the steps since are run again, which gives the same values
+because nothing here depends on the wall clock.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from ..component import NS
+from ..errors import DiscardError, SimulationError
+from .algorithms import Algorithm
+from .feedthrough import Feedthrough
+from .network import Network
+
+_STEPS_BETWEEN = 250
+_HALVINGS = 6
+
+
+@dataclass
+class _Checkpoint:
+    steps: int
+    states: list[Any]
+    network: Any
+    feedthrough: Any
+
+
+class Rollback:
+    """Advances an algorithm; splits a step that a component discards, if all can roll back."""
+
+    def __init__(self, network: Network, feedthrough: Feedthrough, algorithm: Algorithm) -> None:
+        self._network, self._feedthrough = network, feedthrough
+        self.algorithm = algorithm
+        self._instances = [node.part.instance for node in network.nodes.values()]
+        self._checkpoint: _Checkpoint | None = None
+        self._obstacle = _obstacle(network)
+        self.splits = 0
+        """Steps that were split."""
+
+    def advance(self, steps: int, t_ns: int, h_ns: int) -> None:
+        """Advance by one communication step. Raises SimulationError."""
+        if not self._obstacle and (
+            self._checkpoint is None or steps - self._checkpoint.steps >= _STEPS_BETWEEN
+        ):
+            self._save(steps)
+        try:
+            self.algorithm.advance(steps, t_ns, h_ns)
+            return
+        except DiscardError as refused:
+            error = refused  # left here: what follows must not be reported as caused by it
+        if self._checkpoint is None:
+            raise SimulationError(f"{error}\n(not tried in smaller steps: {self._obstacle})")
+        self._repeat(steps, t_ns, h_ns, error)
+
+    def forget(self) -> None:
+        """Say that something was changed from outside: the steps before cannot be run again."""
+        if self._checkpoint is not None:
+            self._release(self._checkpoint)
+            self._checkpoint = None
+
+    # ------------------------------------------------------------------ inside
+
+    def _repeat(self, steps: int, t_ns: int, h_ns: int, error: DiscardError) -> None:
+        """Return to the beginning of a discarded step, and take it in parts."""
+        checkpoint = self._checkpoint
+        assert checkpoint is not None
+        self._restore(checkpoint)
+        for k in range(checkpoint.steps, steps):
+            self.algorithm.advance(k, t_ns - (steps - k) * h_ns, h_ns)
+        self._split(steps, t_ns, h_ns, 1, error)
+        self._network.forget_previous()
+        self.forget()
+        self.splits += 1
+
+    def _split(self, steps: int, t_ns: int, h_ns: int, depth: int, error: DiscardError) -> None:
+        """Take a step in two halves; either is split again if it is discarded."""
+        if depth > _HALVINGS or h_ns < 2:
+            raise SimulationError(
+                f"{error}\n(also in steps of {h_ns / NS!r} s, from a restored state)"
+            )
+        half = h_ns // 2
+        for begin_ns, length_ns in ((t_ns, half), (t_ns + half, h_ns - half)):
+            self._save(steps)
+            self._network.forget_previous()  # the parts are not as long as what came before
+            again = self._attempt(steps, begin_ns, length_ns)
+            if again is not None:
+                self._split(steps, begin_ns, length_ns, depth + 1, again)
+
+    def _attempt(self, steps: int, t_ns: int, h_ns: int) -> DiscardError | None:
+        """Take a step; if it is discarded, return to its beginning and return the error."""
+        try:
+            self.algorithm.advance(steps, t_ns, h_ns)
+        except DiscardError as error:
+            refused = error
+        else:
+            return None
+        if self._checkpoint is None:
+            raise SimulationError(f"{refused}\n({self._obstacle})")
+        self._restore(self._checkpoint)
+        return refused
+
+    def _save(self, steps: int) -> None:
+        self.forget()
+        states: list[Any] = []
+        try:
+            for instance in self._instances:
+                states.append(instance.get_state())
+        except SimulationError as error:  # it says it can, but it cannot: the run may go on
+            self._obstacle = str(error)
+            for instance, state in zip(self._instances, states, strict=False):
+                instance.free_state(state)
+            return
+        self._checkpoint = _Checkpoint(
+            steps, states, self._network.memory(), self._feedthrough.memory()
+        )
+
+    def _restore(self, checkpoint: _Checkpoint) -> None:
+        for instance, state in zip(self._instances, checkpoint.states, strict=True):
+            instance.set_state(state)
+        self._network.restore(checkpoint.network)
+        self._feedthrough.restore(checkpoint.feedthrough)
+
+    def _release(self, checkpoint: _Checkpoint) -> None:
+        for instance, state in zip(self._instances, checkpoint.states, strict=True):
+            instance.free_state(state)
+
+
+def _obstacle(network: Network) -> str:
+    """Return why a discarded step cannot be repeated, empty if it can."""
+    for name, node in network.nodes.items():
+        if not node.part.instance.rolls_back:
+            return f"{name} cannot save and restore its state"
+        if not node.part.instance.any_step:
+            return f"{name} takes steps of one length only"
+        if node.every != 1:
+            return f"{name} has a step of its own"
+    return ""
