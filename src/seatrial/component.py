@@ -249,8 +249,13 @@ class Component:
     def get_state(self) -> dict[str, Any]:
         """Return a copy of the whole state, hidden variables included, as plain data.
 
-        Raises TypeError naming an attribute that is not plain data.
+        Raises TypeError naming an attribute that is not plain data, and SimulationError for a
+        component that does not roll back.
         """
+        if not self.rolls_back:
+            raise SimulationError(
+                f"{self.name} reaches outside the simulation: it has no state to save"
+            )
         return {
             name: copied(value, f"{self.name}.{name}")
             for name, value in vars(self).items()
