@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 
 import pytest
+
+from tests.fmi.native import build_native_fmu
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -28,3 +32,10 @@ def write(tmp_path: Path):
         return path
 
     return write
+
+
+@pytest.fixture(scope="session")
+def native_fmu(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
+    """Return a function that compiles ``tests/fmi/slaves/NAME.c`` into an FMU, once a session."""
+    folder = tmp_path_factory.mktemp("native")
+    return cache(lambda name: build_native_fmu(name, folder))

@@ -42,7 +42,7 @@ def test_the_component_of_twenty_lines(tmp_path: Path) -> None:
     assert (tmp_path / "Boat.fmu").is_file()
 
 
-@pytest.mark.parametrize("line", block("## Run trials", "console").splitlines()[1:5])
+@pytest.mark.parametrize("line", block("## Run trials", "console").splitlines()[1:7])
 def test_commands_that_run_trials(line: str, tmp_path: Path) -> None:
     done = run(line, tmp_path)
     assert done.returncode in (0, 1), done.stderr

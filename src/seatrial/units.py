@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache, lru_cache
@@ -40,6 +41,8 @@ class Unit:
     exact_offset: Fraction
     exponents: dict[str, int]
     """Exponent of each base unit that occurs; radian counts as one."""
+    by_name: bool = True
+    """False for a unit that an FMU defines; it may have left the radian out."""
 
     @property
     def factor(self) -> float:
@@ -90,30 +93,70 @@ def unit(text: str) -> Unit:
     return Unit(text, one.magnitude - zero.magnitude, zero.magnitude, exponents)
 
 
-def conversion(source: str, target: str) -> tuple[float, float]:
+def defined_unit(text: str, exponents: Mapping[str, int], factor: float, offset: float) -> Unit:
+    """Return the unit that an FMU calls ``text`` and defines: SI = factor * value + offset.
+
+    Where the name says the same it is `unit` of that name, with exact factors; the definition
+    may have left the radian out. Raises InputError for a factor that converts nothing.
+    """
+    if not (math.isfinite(factor) and math.isfinite(offset) and factor > 0.0):
+        raise InputError(f"unit {text!r} has factor {factor!r} and offset {offset!r}")
+    powers = {name: power for name, power in exponents.items() if power}
+    try:
+        named = unit(text)
+    except InputError:
+        named = None
+    if named is not None and (named.factor, named.offset) == (factor, offset):
+        without = {name: power for name, power in named.exponents.items() if name != "rad"}
+        if powers in (named.exponents, without):
+            return named
+    return Unit(text, Fraction(factor), Fraction(offset), powers, by_name=False)
+
+
+def conversion(source: str | Unit, target: str | Unit) -> tuple[float, float]:
     """Return (factor, offset) with target value = factor * source value + offset.
 
-    Raises InputError if the two do not measure the same thing.
+    A unit is a name, or what an FMU defines. Equal names need not be known. Raises InputError
+    if the two do not measure the same thing, or one of two different names is not known.
     """
     factor, offset = _exact_conversion(source, target)
     return float(factor), float(offset)
 
 
-def _exact_conversion(source: str, target: str) -> tuple[Fraction, Fraction]:
-    a, b = unit(source), unit(target)
-    if a.exponents != b.exponents:
-        raise InputError(f"unit {source!r} cannot be converted to {target!r}")
+def _exact_conversion(source: str | Unit, target: str | Unit) -> tuple[Fraction, Fraction]:
+    defined = isinstance(source, Unit) and isinstance(target, Unit)
+    if _name(source) == _name(target) and not defined:
+        return Fraction(1), Fraction(0)
+    refusal = f"unit {_name(source)!r} cannot be converted to {_name(target)!r}"
+    try:
+        a, b = (end if isinstance(end, Unit) else unit(end) for end in (source, target))
+    except InputError as error:
+        raise InputError(f"{error}; {refusal}") from None
+    if not _alike(a, b):
+        raise InputError(refusal)
     return a.exact_factor / b.exact_factor, (a.exact_offset - b.exact_offset) / b.exact_factor
 
 
-def quantity(text: str | float | int, target: str) -> float:
+def _alike(a: Unit, b: Unit) -> bool:
+    """Say if two units measure the same; radians count only where names alone decide."""
+    if a.by_name and b.by_name:
+        return a.exponents == b.exponents
+    names = (a.exponents.keys() | b.exponents.keys()) - {"rad"}
+    return all(a.exponents.get(name, 0) == b.exponents.get(name, 0) for name in names)
+
+
+def _name(measure: str | Unit) -> str:
+    return measure.text if isinstance(measure, Unit) else measure
+
+
+def quantity(text: str | float | int, target: str | Unit) -> float:
     """Return what ``text`` says (``"10 deg"``, or a bare number already in ``target``).
 
     The result is the double nearest to what is written. Raises InputError if it is not a
     finite number with a unit that converts to ``target``.
     """
     if isinstance(text, bool) or not isinstance(text, (str, int, float)):
-        raise InputError(f"{text!r} is not a quantity such as '10 {target}'")
+        raise InputError(f"{text!r} is not a quantity such as '10 {_name(target)}'")
     try:
         value = _written(text, target) if isinstance(text, str) else float(text)
     except OverflowError:
@@ -123,21 +166,31 @@ def quantity(text: str | float | int, target: str) -> float:
     return value
 
 
-def _written(text: str, target: str) -> float:
+def _written(text: str, target: str | Unit) -> float:
     match = _NUMBER.match(text)
     if match is None:
-        raise InputError(f"{text!r} is not a quantity such as '10 {target}'")
+        raise InputError(f"{text!r} is not a quantity such as '10 {_name(target)}'")
     digits, written = match.groups()
     number = float(digits)
     if not written:
-        if unit(target).exponents:
-            raise InputError(f"{text!r} has no unit; write for example '{number:g} {target}'")
+        if _has_dimension(target):
+            raise InputError(
+                f"{text!r} has no unit; write for example '{number:g} {_name(target)}'"
+            )
         return number
     factor, offset = _exact_conversion(written, target)
     if number == 0.0 or math.isinf(number):  # never a fraction of 1e-999999999
         return number + float(offset)
     # 1100 us is 1100 / 1000000 s to the last digit; 1100 * 1e-6 is not.
     return float(factor * Fraction(digits) + offset)
+
+
+def _has_dimension(measure: str | Unit) -> bool:
+    """Say if a number needs this unit written; one that is not known is no pure number."""
+    try:
+        return bool((measure if isinstance(measure, Unit) else unit(measure)).exponents)
+    except InputError:
+        return True
 
 
 def _to_pint(text: str) -> str:

@@ -12,7 +12,7 @@ import pytest
 
 from seatrial.errors import InputError, SimulationError
 from seatrial.fmi.export import build_fmu, fmu_bytes
-from seatrial.fmi.load import FmuInstance, load_fmu
+from seatrial.fmi.load import load_fmu, open_instance
 from seatrial.fmi.source import find_source, shipped_sources
 
 from . import boats
@@ -124,7 +124,7 @@ def test_a_missing_package_is_named_with_its_cure(write, tmp_path: Path) -> None
     )
     load = (
         "import sys; from pathlib import Path; from seatrial.fmi.load import *; "
-        "FmuInstance(load_fmu(Path(sys.argv[1])), 'b')"
+        "open_instance(load_fmu(Path(sys.argv[1])), 'b')"
     )
     done = subprocess.run(
         [sys.executable, "-c", load, str(fmu)], capture_output=True, text=True, check=False
@@ -186,7 +186,7 @@ def test_the_error_itself_survives_a_long_traceback(write, tmp_path: Path) -> No
         "\n    def dig_on(self, n):\n        return self.dig(n - 1 if n < 50 else 49)\n"
     )
     path = build_fmu(source(write("boat.py", deep), "Boat"), tmp_path / "boat.fmu")
-    instance = FmuInstance(load_fmu(path), "boat")
+    instance = open_instance(load_fmu(path), "boat")
     with pytest.raises(SimulationError, match="ZeroDivisionError: division by zero"):
         instance.initialise(0.0, 1.0)
     instance.free()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import html
 import json
 from pathlib import Path
 
@@ -10,7 +11,8 @@ import pytest
 
 from seatrial.errors import InputError
 from seatrial.trials.campaign import load_campaign, run_campaign
-from seatrial.trials.run import Hooks, claim_folder, run_trial
+from seatrial.trials.report import write_report
+from seatrial.trials.run import Hooks, StoppedError, claim_folder, run_trial
 from seatrial.trials.run_folder import load_run
 from seatrial.trials.trial import load_trial
 
@@ -24,7 +26,7 @@ class Boat(Noise, Sampled):
     """Drifts with noise, and may fail."""
 
     fail_at = Parameter(1e9, "s", "time of a failure")
-    how = Parameter("raise", "1", "how", choices=("raise", "nan"))
+    how = Parameter("raise", "1", "how", choices=("raise", "nan", "exit"))
     push = Input("N", "force")
     trim = Parameter(1.0, "rad", "trim", tunable=True)
     mode = Parameter("calm", "1", "mode", choices=("calm", "storm"))
@@ -46,6 +48,8 @@ class Boat(Noise, Sampled):
         if t >= self.fail_at:
             if self.how == "raise":
                 raise OSError("the radio is on fire")
+            if self.how == "exit":
+                raise SystemExit(5)
             self.place = float("nan")
         self.place += 0.01 * (1.0 + self.push)
 '''
@@ -110,7 +114,8 @@ def test_seeds_give_each_instance_its_own_noise(bench, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("engine", ["fmu", "direct"])
 @pytest.mark.parametrize(
-    ("how", "said"), [("raise", "the radio is on fire"), ("nan", "output x is nan")]
+    ("how", "said"),
+    [("raise", "the radio is on fire"), ("nan", "output x is nan"), ("exit", "SystemExit")],
 )
 def test_a_failure_keeps_what_was_recorded(engine, how, said, bench, tmp_path: Path) -> None:
     settings = {"boat.fail_at": 0.5, "boat.how": how}
@@ -125,11 +130,24 @@ def test_a_failure_keeps_what_was_recorded(engine, how, said, bench, tmp_path: P
     assert len(rows) - 1 == 51  # times 0 to 0.5 s
     manifest = json.loads((tmp_path / "run" / "manifest.json").read_text())
     assert (manifest["status"], manifest["error"]) == ("failed", result.error)
+    timing = json.loads((tmp_path / "run" / "timing.json").read_text())
+    assert timing["steps"] == 50
+    assert result.error in html.unescape(write_report(tmp_path / "run").read_text("utf-8"))
+
+
+@pytest.mark.parametrize("before", ["building", "starting"])
+def test_a_run_stopped_before_it_begins_leaves_nothing(before, bench, tmp_path: Path) -> None:
+    polls = iter(range(1000))
+    allowed = {"building": 1, "starting": 2}[before]  # one poll for each component
+    hooks = Hooks(stop_requested=lambda: next(polls) >= allowed)
+    with pytest.raises(StoppedError, match="before the run began"):
+        run_trial(load_trial(bench()), tmp_path / "run", engine="direct", hooks=hooks)
+    assert not (tmp_path / "run").exists()
 
 
 def test_a_stopped_run_is_whole(bench, tmp_path: Path) -> None:
     polls = iter(range(1000))
-    hooks = Hooks(stop_requested=lambda: next(polls) >= 30)
+    hooks = Hooks(stop_requested=lambda: next(polls) >= 33)  # 3 of them before the run begins
     result = run_trial(load_trial(bench()), tmp_path / "run", engine="direct", hooks=hooks)
     assert (result.status, result.passed) == ("stopped", False)
     assert len((tmp_path / "run" / "signals.csv").read_text().splitlines()) == 32

@@ -18,8 +18,8 @@ from ..errors import InputError
 from ..fmi.description import summary
 from ..fmi.direct import DirectInstance
 from ..fmi.export import build_fmu
-from ..fmi.instance import Variable
-from ..fmi.load import FmuInstance, LoadedFmu, load_fmu
+from ..fmi.instance import Value, Variable
+from ..fmi.load import LoadedFmu, load_fmu, open_instance
 from ..fmi.source import ComponentSource, find_source, shipped_sources
 from .show import console
 
@@ -128,7 +128,7 @@ def _buildable(name: str) -> ComponentSource:
 
 def _start_values(
     source: ComponentSource, parameters: str, variant: str | None
-) -> dict[str, float | int | bool | str]:
+) -> dict[str, Value]:
     vehicle, table = split_reference(parameters, source.name)
     chosen = load_vehicle(vehicle).parameter_set(table, variant)
     variables = DirectInstance(source.component_class()(source.name)).variables
@@ -154,7 +154,7 @@ def _run_once(fmu: LoadedFmu) -> list[str]:
 
     instance = None
     try:
-        instance = FmuInstance(fmu, "check")
+        instance = open_instance(fmu, "check")
         instance.initialise(0.0, 1.0)
         instance.begin()
         instance.step(0.0, 0.01)

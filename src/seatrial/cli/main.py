@@ -20,12 +20,15 @@ from ..fmi.source import shipped_sources
 from ..trials.campaign import Campaign, Case, load_campaign, run_campaign
 from ..trials.campaign_report import write_campaign_report
 from ..trials.compare import compare as compare_runs
+from ..trials.convergence import run_convergence
 from ..trials.report import write_report
 from ..trials.run import Hooks, Result, run_trial
-from ..trials.trial import load_trial
+from ..trials.trial import Trial, load_trial
+from .convergence import print_convergence
 from .doctor import doctor
 from .fmu import fmu_app
-from .show import Watch, console, print_case, print_listing, print_verdicts
+from .show import Watch, console, print_case, print_listing, print_notes, print_verdicts
+from .ssp import ssp_app
 
 _FAILED, _BAD_INPUT, _BROKEN = 1, 2, 3
 
@@ -36,6 +39,7 @@ app = typer.Typer(
     help="Sea trials before the water: co-simulated trials of marine vehicles.",
 )
 app.add_typer(fmu_app, name="fmu", help="List, build, check and describe FMUs.")
+app.add_typer(ssp_app, name="ssp", help="Export and check SSP packages.")
 
 
 def main() -> None:
@@ -73,57 +77,113 @@ def _options(
     """Options before the command."""
 
 
+_Settings = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Set component.port, or a trial's key."),
+]
+_EngineName = Annotated[
+    str, typer.Option("--engine", help="'fmu': every component is an FMU; 'direct': in process.")
+]
+_Out = Annotated[
+    Path | None, typer.Option("--out", help="Folder of the run (default: runs/NAME-DATE-TIME).")
+]
+
+
 @app.command()
 def run(
-    trial: Annotated[str, typer.Argument(help="A trial or campaign: a name or a .toml file.")],
-    settings: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Set component.port, or a trial's key."),
+    trial: Annotated[
+        str, typer.Argument(help="A trial or campaign: a name, a .toml or an .ssp file.")
+    ],
+    settings: _Settings = None,
+    engine: _EngineName = "fmu",
+    out: _Out = None,
+    real_time: Annotated[
+        float | None,
+        typer.Option(metavar="FACTOR", help="Simulated seconds per second of wall time."),
     ] = None,
-    engine: Annotated[
-        str, typer.Option(help="'fmu': every component is an FMU; 'direct': in process.")
-    ] = "fmu",
-    out: Annotated[
-        Path | None, typer.Option(help="Folder of the run (default: runs/NAME-DATE-TIME).")
+    overrun: Annotated[
+        str | None,
+        typer.Option(metavar="POLICY", help="In real time: 'catch-up', 'slip' or 'abort'."),
     ] = None,
 ) -> None:
     """Run a trial, or a campaign of trials, and say what holds."""
-    if engine not in ("fmu", "direct"):
-        raise InputError(f"--engine: 'fmu' or 'direct' is needed, found {engine!r}")
-    chosen: Engine = "direct" if engine == "direct" else "fmu"
+    chosen = _engine(engine)
     changes = dict(_setting(text) for text in settings or [])
+    pace = {"factor": real_time, "overrun": overrun}
+    pace = {key: value for key, value in pace.items() if value is not None}
     if _is_campaign(trial):
         campaign = load_campaign(trial)
         if changes:
             raise InputError("--set works with a trial; a campaign sets its own parameters")
+        if pace:
+            raise InputError("--real-time and --overrun work with a trial, not with a campaign")
         _run_campaign(campaign, out, chosen)
         return
-    loaded = load_trial(trial).changed(changes, "--set")
-    with _stoppable() as stop, Watch(loaded.name) as watch:
-        hooks = Hooks(watch.building, watch.progress, stop)
-        result = run_trial(loaded, out, engine=chosen, hooks=hooks)
-    print_verdicts(result)
-    report_page = write_report(result.folder)
+    loaded = _paced(load_trial(trial, changes=changes, origin="--set"), pace)
+    print_notes(loaded.notes)
+    with _stoppable() as stop:
+        with Watch(loaded.name) as watch:
+            hooks = Hooks(watch.building, watch.progress, stop)
+            result = run_trial(loaded, out, engine=chosen, hooks=hooks)
+        print_verdicts(result)
+        report_page = write_report(result.folder)
     console.print(f"report: {report_page}", soft_wrap=True)
     _exit_with([result])
 
 
 def _run_campaign(campaign: Campaign, out: Path | None, engine: Engine) -> None:
     cases = campaign.cases()
-    with _stoppable() as stop, Watch(campaign.read_from.name) as watch:
+    with _stoppable() as stop:
+        with Watch(campaign.read_from.name) as watch:
 
-        def done(case: Case, result: Result) -> None:
-            watch.log(lambda: print_case(case, result))
-            write_report(result.folder)
+            def done(case: Case, result: Result) -> None:
+                watch.log(lambda: print_case(case, result))
+                write_report(result.folder)
 
-        hooks = Hooks(watch.building, watch.progress, stop)
-        watch.expect(len(cases))
-        folder, finished = run_campaign(campaign, out, engine=engine, hooks=hooks, done=done)
-    page = write_campaign_report(folder)
+            hooks = Hooks(watch.building, watch.progress, stop)
+            watch.expect(len(cases))
+            folder, finished = run_campaign(campaign, out, engine=engine, hooks=hooks, done=done)
+        page = write_campaign_report(folder)
     passed = sum(result.passed for _, result in finished)
     console.print(f"{passed} of {len(cases)} cases pass")
     console.print(f"report: {page}", soft_wrap=True)
+    if len(finished) < len(cases):
+        raise SimulationError(f"stopped; {len(finished)} of {len(cases)} cases are on disk")
     _exit_with([result for _, result in finished])
+
+
+@app.command()
+def convergence(
+    trial: Annotated[str, typer.Argument(help="A trial: a name, a .toml or an .ssp file.")],
+    halvings: Annotated[int, typer.Option(help="How often the step is halved, at least 2.")] = 2,
+    settings: _Settings = None,
+    engine: _EngineName = "fmu",
+    out: _Out = None,
+) -> None:
+    """Halve a trial's communication step: order and error of each output; status 1 if erratic."""
+    chosen = _engine(engine)
+    changes = dict(_setting(text) for text in settings or [])
+    if _is_campaign(trial):
+        raise InputError(f"convergence works with a trial; {trial} is a campaign")
+    loaded = load_trial(trial, changes=changes, origin="--set")
+    print_notes(loaded.notes)
+    with _stoppable() as stop:
+        with Watch(loaded.name) as watch:
+
+            def done(result: Result) -> None:
+                watch.log(lambda: None)
+                write_report(result.folder)
+
+            hooks = Hooks(watch.building, watch.progress, stop)
+            watch.expect(halvings + 1)
+            folder, found = run_convergence(
+                loaded, out, halvings=halvings, engine=chosen, hooks=hooks, done=done
+            )
+        page = write_report(folder)
+    print_convergence(found)
+    console.print(f"report: {page}", soft_wrap=True)
+    if not found.converges:
+        raise typer.Exit(_FAILED)
 
 
 @app.command("list")
@@ -165,6 +225,21 @@ def compare(
 
 
 app.command("doctor")(doctor)
+
+
+def _engine(name: str) -> Engine:
+    if name not in ("fmu", "direct"):
+        raise InputError(f"--engine: 'fmu' or 'direct' is needed, found {name!r}")
+    return "direct" if name == "direct" else "fmu"
+
+
+def _paced(trial: Trial, pace: dict[str, Any]) -> Trial:
+    """Return the trial with what the command line says of real time."""
+    if not pace:
+        return trial
+    if "factor" not in pace and trial.file.real_time is None:
+        raise InputError("--overrun needs --real-time, or real_time in the trial")
+    return trial.in_real_time(pace, "command line: real_time")
 
 
 def _is_campaign(name: str) -> bool:

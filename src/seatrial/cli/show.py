@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from types import TracebackType
 
@@ -73,10 +73,15 @@ class Watch:
         show()
 
 
+def print_notes(notes: Iterable[str]) -> None:
+    """Print what a user should know and what is no error."""
+    for note in notes:
+        console.print(f"[dim]note: {escape(note)}[/dim]", soft_wrap=True)
+
+
 def print_verdicts(result: Result) -> None:
     """Print the verdict of each criterion and how the run went."""
-    for note in result.notes:
-        console.print(f"[dim]note: {escape(note)}[/dim]", soft_wrap=True)
+    print_notes(result.notes)
     for name, _, verdict in result.verdicts:
         mark = "[green]PASS[/green]" if verdict.passed else "[red]FAIL[/red]"
         console.print(f"{mark}  {escape(name)}: {escape(verdict.detail)}", soft_wrap=True)

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from ..errors import InputError
 from .master import Master
 from .system import System
+from .values import storable
 
 
 def output_names(system: System) -> list[str]:
@@ -43,7 +44,8 @@ class Recorder:
     """Writes the recorded signals of a master to a CSV file, and keeps those to ``watch``.
 
     Numbers are written so that they read back exactly; Booleans as 0 and 1; text quoted where
-    it must be. The file is whole up to the last flush if the process is killed.
+    it must be; bytes as base64 text. The file is whole up to the last flush if the process is
+    killed.
     """
 
     def __init__(
@@ -61,6 +63,9 @@ class Recorder:
         self._places = [places[name] for name in self.names]
         self._booleans = [
             column for column, i in enumerate(self._places) if isinstance(master.signals[i], bool)
+        ]
+        self._binaries = [
+            column for column, i in enumerate(self._places) if isinstance(master.signals[i], bytes)
         ]
         self._file = path.open("w", newline="", encoding="utf-8")
         csv.writer(self._file, lineterminator="\n").writerow(["time", *self.names])
@@ -84,7 +89,13 @@ class Recorder:
         row: list[Any] = [signals[i] for i in self._places]
         for column in self._booleans:
             row[column] = int(row[column])
+        for column in self._binaries:
+            row[column] = storable(row[column])
         self._writer.writerow([master.time, *row])
+        self.flush_if_due()
+
+    def flush_if_due(self) -> None:
+        """Flush the file if that was last done more than a second ago."""
         now = time.monotonic()
         if now - self._flushed > 1.0:
             self._file.flush()

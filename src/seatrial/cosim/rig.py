@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -38,6 +38,8 @@ class WireEntry(FileModel):
     to: str
     factor: float = 1.0
     offset: float = 0.0
+    convert: bool = True
+    """Units are converted, and must measure the same."""
 
 
 class ComponentEntry(FileModel):
@@ -75,6 +77,13 @@ class Rig:
 
     file: RigFile
     read_from: Source
+    unpacked: Path | None = None
+    """The folder of its FMUs, if it was read from a package."""
+
+    @property
+    def folder(self) -> Path:
+        """Folder that relative paths of FMUs start from."""
+        return self.unpacked or self.read_from.path.parent
 
     @property
     def step_ns(self) -> int:
@@ -84,7 +93,8 @@ class Rig:
     def changed(self, changes: Mapping[str, Any]) -> Rig:
         """Return the rig with keys of its file replaced. Raises InputError."""
         content = {**self.file.model_dump(exclude_unset=True), **changes}
-        return _checked(Rig(validated(RigFile, content, self.read_from.path), self.read_from))
+        file = validated(RigFile, content, self.read_from.path)
+        return _checked(replace(self, file=file))
 
     def connections(self) -> list[tuple[str, WireEntry]]:
         """Return (from, where to) pairs as written, ports or scalars."""

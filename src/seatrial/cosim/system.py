@@ -8,13 +8,14 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
 
-from ..component import Noise
+from ..component import Noise, seconds
 from ..errors import InputError, unknown
 from ..fmi.bundle import bundle
 from ..fmi.direct import DirectInstance
 from ..fmi.export import cached_fmu
-from ..fmi.instance import Instance, Variable
-from ..fmi.load import FmuInstance, load_fmu
+from ..fmi.instance import Instance, Variable, Variables
+from ..fmi.isolated import IsolatedInstance
+from ..fmi.load import load_fmu, open_instance
 from ..fmi.source import find_source
 from ..units import conversion
 from .parameters import ParameterSet, load_vehicle, split_reference
@@ -23,6 +24,9 @@ from .rig import ComponentEntry, Rig, WireEntry, duration_ns
 from .values import Given, from_entry, from_written, port_names, port_scalars
 
 Engine = Literal["fmu", "direct"]
+
+_TIMEOUT_S = 60.0
+"""Longest wall time of a call of an isolated component, where the rig says nothing else."""
 
 
 @dataclass
@@ -117,16 +121,19 @@ class System:
     def unconnected_inputs(self) -> list[str]:
         """Return the inputs that no wire reaches and nobody set; whole ports by their name."""
         wired = {wire.target for wire in self.wires}
-        found = []
+        found: dict[str, None] = {}
         for name, part in self.parts.items():
-            inputs = [n for n, v in part.instance.variables.items() if v.causality == "input"]
-            loose = [n for n in inputs if (name, n) not in wired and n not in part.given]
-            for variable in loose:
-                port = variable.rpartition(".")[0]
-                siblings = [n for n in inputs if port and n.startswith(f"{port}.")]
-                whole = siblings and all(n in loose for n in siblings)
-                found.append(f"{name}.{port if whole else variable}")
-        return list(dict.fromkeys(found))
+            variables = part.instance.variables
+            inputs = {n for n, v in variables.items() if v.causality == "input"}
+            loose = {n for n in inputs if (name, n) not in wired and n not in part.given}
+            whole = {}
+            for variable in (n for n in variables if n in loose):
+                port = variables.port_of(variable)
+                if port not in whole:
+                    siblings = inputs.intersection(v.name for v in variables.ports.get(port, ()))
+                    whole[port] = bool(siblings) and siblings <= loose
+                found[f"{name}.{port if whole[port] else variable}"] = None
+        return list(found)
 
     def free(self) -> None:
         """Release all instances."""
@@ -134,7 +141,7 @@ class System:
             part.instance.free()
 
 
-def settable(variables: Mapping[str, Variable], port: str, where: str) -> list[Variable]:
+def settable(variables: Variables, port: str, where: str) -> list[Variable]:
     """Return the scalars of a parameter or input port. Raises InputError."""
     scalars = port_scalars(variables, port)
     if not scalars:
@@ -191,26 +198,47 @@ def _part(rig: Rig, name: str, entry: ComponentEntry, engine: Engine) -> Part:
             raise InputError(
                 f"{where}.step: {entry.step!r} is not a multiple of the rig's {rig.file.step!r}"
             )
+    timeout_s = _timeout_s(entry, f"{where}.timeout")
     try:
-        instance, sha256, code = _instance(entry.fmu, name, rig.read_from.path.parent, engine)
+        instance, sha256, code = _instance(entry, name, rig.folder, engine, timeout_s)
     except InputError as error:
         raise InputError(f"{where}.fmu: {error}") from None
     return Part(name, entry.fmu, instance, sha256, code, every)
 
 
-def _instance(fmu: str, name: str, folder: Path, engine: Engine) -> tuple[Instance, str, str]:
-    """Return an instance, the hash of its FMU file and the name of its code; see `Part`."""
-    source = find_source(fmu, folder)
+def _timeout_s(entry: ComponentEntry, where: str) -> float:
+    """Return the longest wall time of one call of a component, if it is isolated."""
+    if entry.timeout is None:
+        return _TIMEOUT_S
+    timeout_ns = duration_ns(entry.timeout, where)
+    if timeout_ns <= 0:
+        raise InputError(f"{where}: must be positive, found {entry.timeout!r}")
+    return seconds(timeout_ns)
+
+
+def _instance(
+    entry: ComponentEntry, name: str, folder: Path, engine: Engine, timeout_s: float
+) -> tuple[Instance, str, str]:
+    """Return an instance, the hash of its FMU file and the name of its code; see `Part`.
+
+    An isolated component is an FMU with either engine.
+    """
+    source = find_source(entry.fmu, folder)
+    in_process = engine == "direct" and not entry.isolated
     if isinstance(source, Path):
-        if engine == "direct":
-            raise InputError(f"{source.name} can only run with the engine 'fmu'")
+        if in_process:
+            raise InputError(
+                f"{source.name} can only run with the engine 'fmu', or with isolated = true"
+            )
         loaded, code = load_fmu(source), ""
     else:
         code = bundle(source.stem, source.script, source.folder).script
-        if engine == "direct":
+        if in_process:
             return DirectInstance(source.component_class()(name)), "", code
         loaded = load_fmu(cached_fmu(source, code))
-    return FmuInstance(loaded, name), loaded.sha256, code
+    if entry.isolated:
+        return IsolatedInstance(loaded, name, timeout_s), loaded.sha256, code
+    return open_instance(loaded, name), loaded.sha256, code
 
 
 def _give_parameters(
@@ -286,7 +314,7 @@ def _wires(system: System) -> list[Wire]:
             taken[key] = written_source
             origin = (written_source.partition(".")[0], source.name)
             to_real = (source.type, target.type) == (int, float)
-            factor, offset = _transformed(*_converting(source, target, where), wire)
+            factor, offset = _transformed(*_converting(source, target, wire, where), wire)
             if (factor, offset) != (1.0, 0.0) and target.type is not float:
                 raise InputError(f"{where}: {written_target} is no real number to transform")
             wires.append(Wire(origin, key, factor, offset, to_real))
@@ -300,7 +328,7 @@ def _end(system: System, written: str, causality: str, where: str) -> list[Varia
     variables = system.parts[name].instance.variables
     scalars = port_scalars(variables, port)
     if not scalars:
-        wanted = {n: v for n, v in variables.items() if v.causality == causality}
+        wanted = Variables({n: v for n, v in variables.items() if v.causality == causality})
         raise InputError(f"{where}: {name}: {unknown(causality, port, port_names(wanted))}")
     for variable in scalars:
         if variable.causality != causality:
@@ -317,16 +345,18 @@ def _transformed(factor: float, offset: float, wire: WireEntry) -> tuple[float, 
     return wire.factor * factor, wire.factor * offset + wire.offset
 
 
-def _converting(source: Variable, target: Variable, where: str) -> tuple[float, float]:
+def _converting(
+    source: Variable, target: Variable, wire: WireEntry, where: str
+) -> tuple[float, float]:
     """Return the factor and offset between two ends; raise InputError if they do not fit."""
     if source.type is not target.type and (source.type, target.type) != (int, float):
         raise InputError(
             f"{where}: {source.name} is {source.type.__name__}, "
             f"{target.name} is {target.type.__name__}"
         )
-    if not source.unit or not target.unit or target.type is not float:
+    if not (wire.convert and source.unit and target.unit and target.type is float):
         return 1.0, 0.0
     try:
-        return conversion(source.unit, target.unit)
+        return conversion(source.measure, target.measure)
     except InputError as error:
         raise InputError(f"{where}: {source.name} to {target.name}: {error}") from None

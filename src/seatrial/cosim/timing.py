@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from ..component import NS
+
 BINS = 64
 
 
 class StepTimes:
-    """Wall times of the steps of one component.
+    """Durations, such as the wall times of the steps of one component.
 
     ``bins[b]`` counts the durations whose number of nanoseconds has bit length b: bin b covers
     2^(b-1) ns up to 2^b ns, bin 0 is 0 ns. Adding one costs the same however long a run is.
@@ -22,7 +24,7 @@ class StepTimes:
         self.total_ns = 0
         self.longest_ns = 0
         self.longest_at_ns: int | None = None
-        """Simulated time at the start of the longest step, None before the first one."""
+        """Simulated time of the longest one, None before the first."""
         self.bins = [0] * BINS
 
     def add(self, elapsed_ns: int, at_ns: int) -> None:
@@ -41,12 +43,12 @@ class StepTimes:
         """
         return {
             "steps": self.count,
-            "total_s": self.total_ns * 1e-9,
-            "mean_s": self.total_ns * 1e-9 / max(1, self.count),
-            "p50_at_most_s": self.at_most(0.5) * 1e-9,
-            "p99_at_most_s": self.at_most(0.99) * 1e-9,
-            "longest_s": self.longest_ns * 1e-9,
-            "longest_at_s": None if self.longest_at_ns is None else self.longest_at_ns * 1e-9,
+            "total_s": self.total_ns / NS,
+            "mean_s": self.total_ns / NS / max(1, self.count),
+            "p50_at_most_s": self.at_most(0.5) / NS,
+            "p99_at_most_s": self.at_most(0.99) / NS,
+            "longest_s": self.longest_ns / NS,
+            "longest_at_s": None if self.longest_at_ns is None else self.longest_at_ns / NS,
             "bins": trimmed(self.bins),
         }
 

@@ -9,8 +9,8 @@ from typing import Any
 
 from ..component import Component
 from ..errors import DiscardError, InputError, SimulationError
-from ..ports import Parameter, Scalar, ScalarPort
-from .instance import ByType, Reader, Variable, Writer
+from ..ports import Parameter, ScalarPort
+from .instance import ByType, Reader, Value, Variable, Variables, Writer
 
 
 class DirectInstance(ByType):
@@ -19,11 +19,11 @@ class DirectInstance(ByType):
     def __init__(self, component: Component) -> None:
         self.component = component
         self.name = component.name
-        self.variables = {s.name: _variable(component, s) for s in component.scalars}
+        self.variables = Variables({s.name: _variable(component, s) for s in component.scalars})
         self.feedthrough = scalar_feedthrough(component)
         self.rolls_back, self.any_step = component.rolls_back, True
 
-    def set_start(self, values: Mapping[str, Scalar]) -> None:
+    def set_start(self, values: Mapping[str, Value]) -> None:
         """Set parameters and start values by variable name, before `initialise`."""
         for name, value in values.items():
             self._call("set", partial(self.component.set, name, value))
@@ -63,12 +63,12 @@ class DirectInstance(ByType):
     def free(self) -> None:
         """Release everything: nothing to do in process."""
 
-    def _reader(self, references: list[int], kind: type) -> Reader:
-        component = self.component
+    def _reader(self, variables: list[Variable], kind: Any) -> Reader:
+        component, references = self.component, [v.reference for v in variables]
         return lambda: self._call("read", lambda: component.read(references, kind))
 
-    def _writer(self, references: list[int], kind: type) -> Writer:
-        component = self.component
+    def _writer(self, variables: list[Variable], kind: Any) -> Writer:
+        component, references = self.component, [v.reference for v in variables]
         return lambda values: self._call("write", lambda: component.write(references, values, kind))
 
     def _call(self, what: str, call: Callable[[], Any]) -> Any:

@@ -37,7 +37,7 @@ def build_fmu(
     """
     content = fmu_bytes(source, start_values)
     destination.parent.mkdir(parents=True, exist_ok=True)
-    _replace(destination, content)
+    write_whole(destination, content)
     return destination
 
 
@@ -62,7 +62,7 @@ def fmu_bytes(source: ComponentSource, start_values: Mapping[str, Any] | None = 
         folder = binary.parent.name
         files[f"binaries/{folder}/{identifier}{binary.suffix}"] = binary.read_bytes()
     description = _model_description(source, carried, files, start_values or {})
-    return _zipped({"modelDescription.xml": description, **files})
+    return zipped({"modelDescription.xml": description, **files})
 
 
 def _model_description(
@@ -92,9 +92,10 @@ def _model_description(
     return text
 
 
-def _zipped(files: Mapping[str, bytes]) -> bytes:
+def zipped(files: Mapping[str, bytes]) -> bytes:
+    """Return a ZIP archive of ``files`` by name: same content, same bytes; never ZIP64."""
     buffer = io.BytesIO()
-    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED, compresslevel=6) as archive:
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED, False, 6) as archive:
         for name, data in sorted(files.items()):
             info = zipfile.ZipInfo(name, _TIMESTAMP)
             info.compress_type = zipfile.ZIP_DEFLATED
@@ -110,7 +111,7 @@ def _tool_tag() -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:8]
 
 
-def _replace(path: Path, content: bytes) -> None:
+def write_whole(path: Path, content: bytes) -> None:
     """Write a file whole or not at all."""
     try:
         handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=".building-")

@@ -2,35 +2,88 @@
 
 from __future__ import annotations
 
+import re
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, Protocol
 
 from ..ports import Scalar
+from ..units import Unit
 
+Value = Scalar | bytes
+"""Of a signal: a component has numbers and text, other people's FMUs bytes too."""
 Reader = Callable[[], list[Any]]
 Writer = Callable[[Sequence[Any]], None]
 
 
 @dataclass(frozen=True)
 class Variable:
-    """One scalar variable of an FMU, as its model description has it."""
+    """One scalar variable of an FMU, or one element of an array, as its description has it."""
 
     name: str
+    """An element's name has its indices, from one: ``x[1]``, ``m[2,3]``."""
     causality: str
-    """parameter, calculatedParameter, input, output, local or independent."""
+    """parameter, calculatedParameter, structuralParameter, input, output, local, independent."""
     variability: str
     type: type
-    """float, int, bool or str."""
+    """float, int, bool, str or bytes."""
     reference: int
     unit: str
     """Empty if the FMU says none."""
-    start: Scalar | None
+    start: Value | None
     minimum: float | None
     maximum: float | None
     nominal: float | None
     description: str
+    definition: Unit | None = None
+    """The unit as the FMU defines it, where its name alone does not say that."""
+    integers: tuple[int, int] = (-(2**31), 2**31 - 1)
+    """Least and greatest value that an integer of its FMI type holds."""
+    items: Mapping[str, int] = field(default_factory=dict)
+    """Names and values of an enumeration."""
+    element: int = 0
+    """Place in its array, row by row."""
+
+    @property
+    def measure(self) -> Unit | str:
+        """The unit to convert from and to."""
+        return self.definition or self.unit or "1"
+
+
+class Variables(dict[str, Variable]):
+    """Variables by name, and by port: what their structured names have in common."""
+
+    @cached_property
+    def ports(self) -> dict[str, list[Variable]]:
+        """Variables by port: ``force`` has ``force.x`` and so on, ``x`` has ``x[1]`` and so on.
+
+        In the order of declaration, but elements of an array by their indices.
+        """
+        ports: dict[str, list[Variable]] = {}
+        for name, variable in self.items():
+            for mark in _SEPARATOR.finditer(name):
+                ports.setdefault(name[: mark.start()], []).append(variable)
+        for port, variables in ports.items():
+            indices = [_INDICES.fullmatch(v.name, len(port)) for v in variables]
+            if all(indices):
+                order = {v.name: _numbers(i) for v, i in zip(variables, indices, strict=True)}
+                variables.sort(key=lambda v: order[v.name])
+        return ports
+
+    @staticmethod
+    def port_of(name: str) -> str:
+        """Return the port that a variable belongs to directly, empty for a port of its own."""
+        return name[: max((mark.start() for mark in _SEPARATOR.finditer(name)), default=0)]
+
+
+_SEPARATOR = re.compile(r"(?<=.)[.\[]")
+_INDICES = re.compile(r"\[(\d+(?:,\d+)*)\]")
+
+
+def _numbers(indices: re.Match[str] | None) -> tuple[int, ...]:
+    return tuple(int(i) for i in indices[1].split(",")) if indices else ()
 
 
 class Instance(Protocol):
@@ -46,7 +99,7 @@ class Instance(Protocol):
         """Name in the rig."""
 
     @property
-    def variables(self) -> Mapping[str, Variable]:
+    def variables(self) -> Variables:
         """Variables by name."""
 
     @property
@@ -61,7 +114,7 @@ class Instance(Protocol):
     def feedthrough(self) -> Mapping[str, Sequence[str]]:
         """Per output, the inputs that act on it at the same instant."""
 
-    def set_start(self, values: Mapping[str, Scalar]) -> None:
+    def set_start(self, values: Mapping[str, Value]) -> None:
         """Set parameters and start values by variable name, before `initialise`."""
 
     def initialise(self, start_time: float, stop_time: float) -> None:
@@ -98,20 +151,24 @@ class Instance(Protocol):
 class ByType(ABC):
     """Reads and writes variables of any types with calls that take one type each, as in FMI."""
 
-    variables: Mapping[str, Variable]
+    variables: Variables
 
     @abstractmethod
-    def _reader(self, references: list[int], kind: type) -> Reader:
-        """Return a reader of variables of one type, by value reference."""
+    def _reader(self, variables: list[Variable], kind: Any) -> Reader:
+        """Return a reader of variables of one type."""
 
     @abstractmethod
-    def _writer(self, references: list[int], kind: type) -> Writer:
-        """Return a writer of variables of one type, by value reference."""
+    def _writer(self, variables: list[Variable], kind: Any) -> Writer:
+        """Return a writer of variables of one type."""
+
+    def _kind(self, variable: Variable) -> Any:
+        """Return what variables have in common that one call reads or writes."""
+        return variable.type
 
     def reader(self, names: Sequence[str]) -> Reader:
         """Return a callable that returns the values of ``names``, in that order."""
         groups = self._groups(names)
-        parts = [(places, self._reader(refs, kind)) for kind, (places, refs) in groups.items()]
+        parts = [(places, self._reader(group, kind)) for kind, (places, group) in groups.items()]
         if len(parts) == 1:
             return parts[0][1]
 
@@ -127,7 +184,7 @@ class ByType(ABC):
     def writer(self, names: Sequence[str]) -> Writer:
         """Return a callable that sets ``names`` to a sequence of values."""
         groups = self._groups(names)
-        parts = [(places, self._writer(refs, kind)) for kind, (places, refs) in groups.items()]
+        parts = [(places, self._writer(group, kind)) for kind, (places, group) in groups.items()]
         if len(parts) == 1:
             return parts[0][1]
 
@@ -137,12 +194,12 @@ class ByType(ABC):
 
         return write
 
-    def _groups(self, names: Sequence[str]) -> dict[type, tuple[list[int], list[int]]]:
-        """Return, per type, the places in ``names`` and the value references."""
-        groups: dict[type, tuple[list[int], list[int]]] = {}
+    def _groups(self, names: Sequence[str]) -> dict[Any, tuple[list[int], list[Variable]]]:
+        """Return, per kind, the places in ``names`` and the variables."""
+        groups: dict[Any, tuple[list[int], list[Variable]]] = {}
         for place, name in enumerate(names):
             variable = self.variables[name]
-            places, references = groups.setdefault(variable.type, ([], []))
+            places, variables = groups.setdefault(self._kind(variable), ([], []))
             places.append(place)
-            references.append(variable.reference)
+            variables.append(variable)
         return groups

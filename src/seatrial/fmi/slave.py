@@ -121,13 +121,15 @@ class Slave(Fmi2Slave):  # type: ignore[misc]
     # ------------------------------------------------------------------ state
 
     def _get_fmu_state(self) -> dict[str, Any]:
+        """Return the whole state; without the component's, after an error, which is logged.
+
+        An instance that cannot save its state goes on: only restoring such a state fails.
+        """
         state: dict[str, Any] = {"failed": self._failed, "last_error": self.last_error}
-        if not self.component.rolls_back:
-            self._fail(
-                f"{self.instance_name} reaches outside the simulation: it has no state to save"
-            )
-        else:
-            self._guarded(lambda: state.update(component=self.component.get_state()))
+        try:
+            state["component"] = self.component.get_state()
+        except BaseException as error:
+            self._log(_explained(error))
         return state
 
     def _set_fmu_state(self, state: dict[str, Any]) -> None:

@@ -11,9 +11,11 @@ from .. import __version__
 from ..component import seconds
 from ..cosim.files import Source
 from ..cosim.system import Engine, Part, System
+from ..cosim.values import storable
 from .trial import Trial
 
 _LIBRARIES = ("casadi", "fmpy", "numpy", "pint", "pythonfmu", "scipy")
+_TYPES = {float: "Real", int: "Integer", bool: "Boolean", str: "String", bytes: "Binary"}
 
 
 def manifest(trial: Trial, system: System, engine: Engine) -> dict[str, Any]:
@@ -39,7 +41,11 @@ def manifest(trial: Trial, system: System, engine: Engine) -> dict[str, Any]:
         },
         "connections": _connections(trial),
         "signals": {
-            f"{name}.{v.name}": {"unit": v.unit, "description": v.description}
+            f"{name}.{v.name}": {
+                "type": _TYPES[v.type],
+                "unit": v.unit,
+                "description": v.description,
+            }
             for name, part in system.parts.items()
             for v in part.instance.variables.values()
             if v.causality == "output"
@@ -74,8 +80,9 @@ def _component(part: Part, step: float) -> dict[str, Any]:
         given = part.given.get(variable.name)
         if variable.causality != "parameter" and given is None:
             continue
+        value = variable.start if given is None else given.value
         parameters[variable.name] = {
-            "value": variable.start if given is None else given.value,
+            "value": None if value is None else storable(value),
             "unit": variable.unit,
             "from": "start value of the FMU" if given is None else _without_folder(given.origin),
             "source": "" if given is None else given.source,

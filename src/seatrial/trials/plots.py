@@ -108,7 +108,7 @@ def time_figure(
         figure.update_xaxes(title_text="time, s", showticklabels=True, row=len(column), col=c)
     for at in events:
         figure.add_vline(x=at, line={"color": "#9aa5af", "width": 1, "dash": "dot"})
-    figure.update_layout(height=height, showlegend=False, **_layout())
+    figure.update_layout(height=height, showlegend=False, **layout())
     return figure
 
 
@@ -192,7 +192,7 @@ def track_figure(tracks: Sequence[tuple[str, FloatArray, FloatArray]]) -> go.Fig
                 marker={"size": 9, "color": colour, "symbol": symbol},
                 hovertemplate="north %{y:.4g} m, east %{x:.4g} m",
             )
-    figure.update_layout(height=460, showlegend=False, **_layout(hovermode="closest"))
+    figure.update_layout(height=460, showlegend=False, **layout(hovermode="closest"))
     figure.update_xaxes(title_text="east, m")
     figure.update_yaxes(title_text="north, m", scaleanchor="x", scaleratio=1)
     return figure
@@ -256,7 +256,7 @@ def deck_figure(decks: Sequence[Deck]) -> go.Figure:
             row=1,
             col=col,
         )
-    figure.update_layout(height=560, showlegend=False, **_layout(hovermode="closest"))
+    figure.update_layout(height=560, showlegend=False, **layout(hovermode="closest"))
     return figure
 
 
@@ -299,7 +299,8 @@ def figure_json(figure: go.Figure) -> str:
     return text.replace("<", "\\u003c")
 
 
-def _layout(hovermode: str = "x") -> dict[str, Any]:
+def layout(hovermode: str = "x") -> dict[str, Any]:
+    """Return what all figures share, for ``update_layout``."""
     axis = {
         "gridcolor": _GRID,
         "zerolinecolor": "#c9d1d8",

@@ -15,10 +15,13 @@ from plotly.offline import get_plotlyjs
 
 from ..errors import InputError
 from ..units import quantity
+from .accuracy_section import accuracy_section
+from .convergence import load_convergence
 from .decks import deck, pads
 from .plots import Line, Mark, Panel, deck_figure, figure_json, time_figure, track_figure
 from .readable import from_si, number, person_scale
 from .run_folder import Run, load_run
+from .timing_section import pacing, step_times
 
 REPORT = "report.html"
 _MOTION = ("position", "attitude")
@@ -63,6 +66,7 @@ class Port:
 def write_report(folder: Path | str) -> Path:
     """Write ``report.html`` into a run folder and return its path. Raises InputError."""
     run = load_run(folder)
+    convergence = load_convergence(run.folder)
     page = render(
         "report.html.j2",
         run=run,
@@ -71,7 +75,10 @@ def write_report(folder: Path | str) -> Path:
         verdicts=run.verdicts,
         sections=list(_sections(run)),
         parameters=_parameter_tables(run),
-        timing=list(_flat(run.timing)),
+        timing=list(_flat({k: v for k, v in run.timing.items() if k != "step_times"})),
+        step_times=step_times(run.timing),
+        pacing=pacing(run.timing),
+        accuracy=None if convergence is None else accuracy_section(convergence),
         events=[_event_text(event) for event in run.manifest.get("events", [])],
     )
     path = run.folder / REPORT
@@ -286,7 +293,9 @@ def _event_text(event: Any) -> tuple[str, str]:
 
 
 def _flat(content: Any, prefix: str = "") -> Iterator[tuple[str, str]]:
-    """Yield the leaves of nested tables as (path, text)."""
+    """Yield the leaves of nested tables as (path, text); figures show the histograms."""
+    if isinstance(content, dict) and "bins" in content:
+        return
     if isinstance(content, dict):
         for key, value in content.items():
             yield from _flat(value, f"{prefix}.{key}" if prefix else str(key))

@@ -13,11 +13,13 @@ from pathlib import Path
 from typing import Any
 
 from ..component import seconds
+from ..cosim.clock import Pacer
 from ..cosim.master import Master
-from ..cosim.recorder import Recorder, matching
-from ..cosim.system import Engine, System, assemble, settable
+from ..cosim.recorder import Recorder
+from ..cosim.system import Engine, System, assemble
 from ..cosim.values import from_written, port_scalars
-from ..errors import InputError, SimulationError, unknown
+from ..errors import InputError, SimulationError
+from .checks import check_criteria, check_events
 from .manifest import manifest
 from .trial import Event, Trial
 from .verdict import Verdict
@@ -35,6 +37,10 @@ class Hooks:
     stop_requested: Callable[[], bool] = lambda: False
 
 
+class StoppedError(SimulationError):
+    """A run was stopped before it began: it left nothing."""
+
+
 @dataclass
 class Result:
     """A finished run."""
@@ -46,6 +52,7 @@ class Result:
     verdicts: list[tuple[str, str, Verdict]]
     """(name, check, verdict) of each criterion; empty if the run failed."""
     notes: list[str]
+    """What the user should know: of the rig, of the steps, of the pace."""
     wall: dict[str, float] = field(default_factory=dict)
 
     @property
@@ -65,7 +72,7 @@ def run_trial(
     ``out`` is made. A run that fails or is stopped afterwards leaves the signals recorded so
     far, and says so in its manifest.
 
-    Raises InputError for bad input, or a rig that cannot start with it.
+    Raises InputError for bad input, or a rig that cannot start with it; StoppedError.
     """
     hooks = hooks or Hooks()
     begun = time.perf_counter()
@@ -73,6 +80,7 @@ def run_trial(
     try:
         wall = {"assemble": time.perf_counter() - begun}
         master = _started(trial, system, wall)
+        _refuse_if_stopped(hooks)
         out = claim_folder(out, trial.name, "manifest.json")
         recorder = Recorder(
             out / "signals.csv",
@@ -81,16 +89,33 @@ def run_trial(
             trial.record_every,
             sorted(set().union(*(criterion.signals for _, criterion in trial.criteria))),
         )
-        status, error = _simulate(trial, master, recorder, out, engine, hooks, wall)
+        pacer = _pacer(trial)
+        status, error = _simulate(trial, master, recorder, pacer, out, engine, hooks, wall)
     finally:
         system.free()
     verdicts = [] if status == "failed" else _judge(trial, recorder, out, units)
+    notes = [*_loose_inputs(trial, system), *master.notes()]
+    if pacer is not None:
+        notes.append(pacer.note())
+    return Result(out, status, error, verdicts, notes, wall)
+
+
+def _loose_inputs(trial: Trial, system: System) -> list[str]:
+    """Return a note on the inputs that neither a wire nor an event reaches, if there are any."""
     moved = {event.key for event in trial.events()}
     loose = [name for name in system.unconnected_inputs() if name not in moved]
-    notes = (
-        [f"inputs that nothing feeds keep their start values: {', '.join(loose)}"] if loose else []
-    )
-    return Result(out, status, error, verdicts, notes, wall)
+    said = f"inputs that nothing feeds keep their start values: {', '.join(loose)}"
+    return [said] if loose else []
+
+
+def _pacer(trial: Trial) -> Pacer | None:
+    entry = trial.file.real_time
+    return None if entry is None else Pacer(entry.factor, entry.overrun)
+
+
+def _refuse_if_stopped(hooks: Hooks) -> None:
+    if hooks.stop_requested():
+        raise StoppedError("stopped before the run began; nothing was written")
 
 
 def claim_folder(out: Path | None, name: str, index: str) -> Path:
@@ -141,20 +166,25 @@ def check_trial(trial: Trial, engine: Engine = "fmu", hooks: Hooks | None = None
 
 def _prepared(trial: Trial, engine: Engine, hooks: Hooks) -> tuple[System, dict[str, str]]:
     """Return the assembled system, everything set, and the units of its signals."""
+
+    def building(what: str) -> None:
+        _refuse_if_stopped(hooks)
+        hooks.building(what)
+
     system = assemble(
         trial.rig,
         engine,
         variant=trial.file.variant,
         seed=trial.file.seed,
-        progress=hooks.building,
+        progress=building,
     )
     try:
         for key, written, origin in trial.settings():
             system.set(key, written, origin)
         for key, factor, origin in trial.scales:
             system.scale(key, factor, origin)
-        units = _check_criteria(trial, system)
-        _check_events(trial, system)
+        units = check_criteria(trial, system)
+        check_events(trial, system)
     except BaseException:
         system.free()
         raise
@@ -176,6 +206,7 @@ def _simulate(
     trial: Trial,
     master: Master,
     recorder: Recorder,
+    pacer: Pacer | None,
     out: Path,
     engine: Engine,
     hooks: Hooks,
@@ -188,7 +219,7 @@ def _simulate(
     status = "failed"
     error: str | None = "ended by an error of seatrial itself"
     try:
-        status, error = _loop(trial, master, recorder, hooks), None
+        status, error = _loop(trial, master, recorder, pacer, hooks), None
     except SimulationError as problem:
         error = str(problem)
     except KeyboardInterrupt:
@@ -199,26 +230,34 @@ def _simulate(
         wall["run"] = time.perf_counter() - begun
         with contextlib.suppress(OSError):  # the disk may be full: what was recorded stays
             recorder.close()
-            write_json(out / "timing.json", _timing(master, started, wall))
+            write_json(out / "timing.json", _timing(master, pacer, started, wall))
             write_json(out / "manifest.json", {**content, "status": status, "error": error})
     return status, error
 
 
-def _timing(master: Master, started: str, wall: dict[str, float]) -> dict[str, Any]:
+def _timing(
+    master: Master, pacer: Pacer | None, started: str, wall: dict[str, float]
+) -> dict[str, Any]:
     simulated = seconds(master.time_ns - master.start_ns)
-    return {
+    content = {
         "started": started,
         "wall_s": wall,
         "simulated_s": simulated,
         "steps": master.steps,
         "real_time_factor": simulated / wall["run"],
+        "step_times": {name: times.as_json() for name, times in master.step_times.items()},
     }
+    return content if pacer is None else {**content, "pacing": pacer.as_json()}
 
 
-def _loop(trial: Trial, master: Master, recorder: Recorder, hooks: Hooks) -> str:
+def _loop(
+    trial: Trial, master: Master, recorder: Recorder, pacer: Pacer | None, hooks: Hooks
+) -> str:
     events = trial.events()
     whole, steps = seconds(trial.stop_ns - trial.start_ns), trial.steps
     shown = time.perf_counter()
+    if pacer is not None:
+        pacer.start(master.time_ns)
     while True:
         while events and events[0].at_ns <= master.time_ns:
             _apply(events.pop(0), master)
@@ -228,13 +267,36 @@ def _loop(trial: Trial, master: Master, recorder: Recorder, hooks: Hooks) -> str
             return "stopped"
         if master.steps >= steps:
             break
-        master.step()
-        if master.steps % 16 == 0 and time.perf_counter() - shown > 0.1:
+        if pacer is None:
+            master.step()
+        else:
+            _paced_step(master, pacer, recorder, hooks)
+        if (pacer or master.steps % 16 == 0) and time.perf_counter() - shown > 0.1:
             shown = time.perf_counter()
             hooks.progress(seconds(master.time_ns - master.start_ns), whole)
     hooks.progress(whole, whole)
     master.terminate()
     return "complete"
+
+
+def _paced_step(master: Master, pacer: Pacer, recorder: Recorder, hooks: Hooks) -> None:
+    """Take a step and wait until its end is due; SimulationError if it is late and must not be."""
+
+    def interrupted() -> bool:
+        recorder.flush_if_due()  # a wait may be long
+        return hooks.stop_requested()
+
+    before = {name: times.total_ns for name, times in master.step_times.items()}
+    master.step()
+    lateness = pacer.keep(master.time_ns, interrupted)
+    if lateness and pacer.policy == "abort":
+        spent = {name: t.total_ns - before[name] for name, t in master.step_times.items()}
+        slowest = max(spent, key=spent.__getitem__)
+        raise SimulationError(
+            f"at t = {master.time!r} s the step ended {lateness / 1e6:.3g} ms after its deadline "
+            f"in real time (factor {pacer.factor:g}, overrun = 'abort'); {slowest} took longest, "
+            f"{spent[slowest] / 1e6:.3g} ms"
+        )
 
 
 def _apply(event: Event, master: Master) -> None:
@@ -252,58 +314,6 @@ def _apply(event: Event, master: Master) -> None:
     else:
         for name, value in given.items():
             master.override(component, name, value.value)
-
-
-def _check_events(trial: Trial, system: System) -> None:
-    """Raise InputError for an event that could not be applied when its time comes."""
-    wired = {wire.target for wire in system.wires}
-    for event in trial.events():
-        where = f"{trial.read_from.path}: event at {seconds(event.at_ns):g} s: {event.action}"
-        component, _, port = event.key.partition(".")
-        if component not in system.parts:
-            raise InputError(f"{where}: {unknown('component', component, system.parts)}")
-        part = system.parts[component]
-        scalars = port_scalars(part.instance.variables, port)
-        connected = [(component, v.name) in wired for v in scalars]
-        if event.action == "set":
-            scalars = settable(part.instance.variables, port, f"{where}: {component}")
-            if any(connected):
-                raise InputError(f"{where}: {event.key} is fed by a wire; use override")
-            if scalars[0].causality == "parameter" and scalars[0].variability != "tunable":
-                raise InputError(f"{where}: {event.key} is fixed and cannot change during a run")
-        elif not scalars or not (all(connected) or scalars[0].causality == "output"):
-            raise InputError(
-                f"{where}: {event.key} is neither an output nor an input that is wholly connected"
-            )
-        if event.action != "release":
-            from_written(event.written, scalars, part.presets.get(port, {}), where)
-
-
-def _check_criteria(trial: Trial, system: System) -> dict[str, str]:
-    """Return the signals' units; raise InputError if a criterion does not fit them."""
-    outputs = {
-        f"{name}.{v.name}": v
-        for name, part in system.parts.items()
-        for v in part.instance.variables.values()
-        if v.causality == "output"
-    }
-    units = {name: variable.unit for name, variable in outputs.items()}
-    try:
-        matching(list(units), trial.file.record.signals)
-    except InputError as error:
-        raise InputError(f"{trial.read_from.path}: record.signals: {error}") from None
-    for name, criterion in trial.criteria:
-        where = f"{trial.read_from.path}: criterion {name!r}"
-        try:
-            for signal in criterion.signals:
-                if signal not in units:
-                    raise InputError(unknown("signal", signal, units))
-                if outputs[signal].type is str:
-                    raise InputError(f"{signal} is a text, a number is needed")
-            criterion.check_units(units)
-        except InputError as error:
-            raise InputError(f"{where}: {error}") from None
-    return units
 
 
 def _judge(

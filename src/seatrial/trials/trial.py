@@ -9,8 +9,10 @@ from typing import Any, Literal
 
 from pydantic import Field
 
+from ..cosim.clock import OverrunPolicy
 from ..cosim.files import FileModel, Source, find_file, read_toml, validated
 from ..cosim.rig import Rig, duration_ns, load_rig
+from ..cosim.ssp.reading import read_ssp
 from ..errors import InputError, unknown
 from .criteria import Criterion, parse
 
@@ -38,6 +40,14 @@ class EventEntry(FileModel):
     release: list[str] = Field(default_factory=list)
 
 
+class RealTimeEntry(FileModel):
+    """How a run keeps to wall time."""
+
+    factor: float = Field(default=1.0, gt=0.0, allow_inf_nan=False)
+    """Simulated seconds per second of wall time."""
+    overrun: OverrunPolicy = "catch-up"
+
+
 class TrialFile(FileModel):
     """The content of a trial file."""
 
@@ -49,6 +59,7 @@ class TrialFile(FileModel):
     seed: int = Field(default=1, ge=0)
     set: dict[str, Any] = Field(default_factory=dict)
     record: RecordEntry = Field(default_factory=RecordEntry)
+    real_time: RealTimeEntry | None = None
     criteria: list[CriterionEntry] = Field(default_factory=list)
     events: list[EventEntry] = Field(default_factory=list)
 
@@ -75,6 +86,8 @@ class Trial:
     """Settings from outside the file: (component.port, what was written, who says so)."""
     scales: tuple[tuple[str, float, str], ...] = ()
     """Parameters to multiply after all settings: (component.port, factor, who says so)."""
+    notes: tuple[str, ...] = ()
+    """What was met in an SSP package and is not used."""
 
     @property
     def name(self) -> str:
@@ -128,6 +141,13 @@ class Trial:
         """Return the trial with the number ``component.port`` multiplied by ``factor``."""
         return replace(self, scales=(*self.scales, (key, factor, origin)))
 
+    def in_real_time(self, given: Mapping[str, Any], origin: str) -> Trial:
+        """Return the trial with keys of ``real_time`` replaced. Raises InputError."""
+        before = self.file.real_time
+        content = {**(before.model_dump() if before else {}), **given}
+        entry = validated(RealTimeEntry, content, Path(origin))
+        return replace(self, file=self.file.model_copy(update={"real_time": entry}))
+
     def changed(self, changes: Mapping[str, Any], origin: str) -> Trial:
         """Return the trial with settings changed: ``component.port``, or a key of the trial.
 
@@ -152,11 +172,36 @@ class Trial:
         return _checked(replace(self, file=file, rig=rig, overrides=tuple(overrides)))
 
 
-def load_trial(name: str, relative_to: Path | None = None) -> Trial:
+def load_trial(
+    name: str,
+    relative_to: Path | None = None,
+    changes: Mapping[str, Any] | None = None,
+    origin: str = "",
+) -> Trial:
     """Read the trial ``name`` (shipped, in ``harness/trials``, or a path) and its rig.
 
-    Raises InputError for anything wrong in either file, or in a criterion.
+    ``x.ssp`` is an SSP package: its default experiment, without criteria. ``changes`` are as
+    for `Trial.changed`. Raises InputError for anything wrong in a file, or in a criterion.
     """
+    changes = changes or {}
+    read = _package if name.endswith(".ssp") else _trial
+    return read(name, relative_to, changes).changed(changes, origin)
+
+
+def _package(name: str, relative_to: Path | None, changes: Mapping[str, Any]) -> Trial:
+    path = ((relative_to or Path.cwd()) / name).resolve()
+    package = read_ssp(path, changes.get("step"))
+    stop = package.stop or changes.get("stop")
+    if stop is None:
+        raise InputError(f'{path}: the package names no stop time; give one: --set stop="20 s"')
+    content = {"title": package.title, "rig": name, "stop": stop}
+    if package.start is not None:
+        content["start"] = package.start
+    file = validated(TrialFile, content, path)
+    return Trial(file, package.rig.read_from, package.rig, (), notes=package.notes)
+
+
+def _trial(name: str, relative_to: Path | None, _changes: Mapping[str, Any]) -> Trial:
     path = find_file("harness/trials", name, relative_to)
     content, read_from = read_toml(path)
     file = validated(TrialFile, content, path)
@@ -170,7 +215,7 @@ def load_trial(name: str, relative_to: Path | None = None) -> Trial:
             criteria.append((entry.name, parse(entry.check)))
         except InputError as error:
             raise InputError(f"{path}: criteria.{index} ({entry.name}): {error}") from None
-    return _checked(Trial(file, read_from, rig, tuple(criteria)))
+    return Trial(file, read_from, rig, tuple(criteria))
 
 
 def _checked(trial: Trial) -> Trial:

@@ -1,0 +1,73 @@
+"""``seatrial ssp``: write SSP packages, and check them for other tools."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.markup import escape
+
+from ..cosim.ssp.reading import read_ssp
+from ..cosim.ssp.tools import TOOLS, findings
+from ..errors import InputError, unknown
+from ..trials.export import export_ssp
+from .show import console, print_notes
+
+ssp_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
+
+
+@ssp_app.command()
+def export(
+    name: Annotated[
+        str, typer.Argument(metavar="NAME", help="A trial or rig: a name or a .toml file.")
+    ],
+    out: Annotated[
+        Path | None, typer.Option(help="The package (default: NAME.ssp in this folder).")
+    ] = None,
+    variant: Annotated[
+        str | None, typer.Option(help="Variant of the vehicle's parameters.")
+    ] = None,
+) -> None:
+    """Write a rig, or a trial with its settings, as an SSP 1.0 package."""
+    path, notes = export_ssp(name, out, variant)
+    print_notes(notes)
+    console.print(f"{path}  ({path.stat().st_size / 1000:.0f} kB)", soft_wrap=True)
+
+
+@ssp_app.command()
+def check(
+    package: Annotated[Path, typer.Argument(metavar="FILE", help="An SSP package.")],
+    tool: Annotated[
+        str | None, typer.Option("--for", help=f"One tool: {', '.join(TOOLS)}; default: all.")
+    ] = None,
+) -> None:
+    """Say what seatrial and other tools reject or ignore in a package; status 1 if any rejects."""
+    if tool is not None and tool not in TOOLS:
+        raise InputError(f"--for: {unknown('tool', tool, TOOLS)}")
+    found = [one for one in findings(package) if tool in (None, one.tool)]
+    rejected = _own_view(package) if tool is None else False
+    for one in TOOLS if tool is None else (tool,):
+        mine = [finding for finding in found if finding.tool == one]
+        console.print(f"[bold]{one}[/bold]: {'' if mine else 'nothing found'}", soft_wrap=True)
+        for finding in mine:
+            mark = "[red]rejects[/red]" if finding.rejects else "[yellow]differs[/yellow]"
+            console.print(
+                f"  {mark}  {escape(finding.where)}: {escape(finding.text)}", soft_wrap=True
+            )
+    if rejected or any(one.rejects for one in found):
+        raise typer.Exit(1)
+
+
+def _own_view(package: Path) -> bool:
+    """Show what seatrial says of a package; return whether it rejects it."""
+    try:
+        notes = read_ssp(package.resolve()).notes
+    except InputError as error:
+        console.print("[bold]seatrial[/bold]:", soft_wrap=True)
+        for line in str(error).splitlines():
+            console.print(f"  [red]rejects[/red]  {escape(line)}", soft_wrap=True)
+        return True
+    console.print(f"[bold]seatrial[/bold]: {'' if notes else 'nothing found'}", soft_wrap=True)
+    print_notes(notes)
+    return False

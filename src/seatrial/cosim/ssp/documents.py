@@ -1,0 +1,163 @@
+"""The XML files of SSP: read with care, by the standard's schema, every error with its line."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from functools import cache
+from pathlib import Path
+from typing import Any, overload
+
+import fmpy
+from lxml import etree
+
+from ...errors import InputError, unknown
+from ...fmi.xmlfile import read_xml
+
+_STANDARD = "http://ssp-standard.org/SSP1/SystemStructure"
+NAMESPACES = {
+    "ssd": f"{_STANDARD}Description",
+    "ssc": f"{_STANDARD}Common",
+    "ssv": f"{_STANDARD}ParameterValues",
+    "ssm": f"{_STANDARD}ParameterMapping",
+    "ssb": f"{_STANDARD}SignalDictionary",
+    "osp": "http://opensimulationplatform.com/SSP/OSPAnnotations",
+    "oms": "https://raw.githubusercontent.com/OpenModelica/OMSimulator/master/schema/oms.xsd",
+}
+"""Prefixes as other tools expect them literally; SSP 2.0 has the namespaces of 1.0."""
+
+SCHEMAS = {
+    "ssd:SystemStructureDescription": "SystemStructureDescription.xsd",
+    "ssv:ParameterSet": "SystemStructureParameterValues.xsd",
+}
+"""Root elements that are read, and the schemas of version 1.0."""
+
+_SCHEMA_FOLDER = Path(fmpy.__file__).parent / "ssp" / "schema"
+_PREFIXES = {uri: prefix for prefix, uri in NAMESPACES.items()}
+_META = {
+    "id", "description", "author", "fileversion", "copyright", "license", "generationTool",
+    "generationDateAndTime",
+}  # fmt: skip
+
+
+def read_document(path: Path, label: str, root: str) -> Any:
+    """Return the root element of the XML file at ``path``, which must be a ``root``.
+
+    ``label`` names the file in messages. Raises InputError for what is no XML, has a document
+    type (and so could have entities), is of another kind or version, or breaks the schema.
+    """
+    element = read_xml(path, label)
+    element.getroottree().docinfo.URL = label
+    if tag(element) != root:
+        raise InputError(f"{where(element)}: {root} is needed, found {tag(element)}")
+    check_version(element, root)
+    return element
+
+
+def check_version(element: Any, root: str) -> None:
+    """Raise InputError unless ``element`` is version 2 of ``root``, or 1 and fits its schema."""
+    version = needed(element, "version")
+    if version.startswith("2."):
+        return  # there is no schema of 2.0 here: the readers refuse what they do not know
+    if not version.startswith("1."):
+        raise InputError(f"{where(element)}: SSP version {version!r}; 1.0 and 2.0 are read")
+    schema = _schema(SCHEMAS[root])
+    if not schema.validate(element):
+        problems = [
+            f"{base(element)}: line {p.line}: {_with_prefixes(p.message)}" for p in schema.error_log
+        ]
+        more = [f"and {len(problems) - 10} more"] if len(problems) > 10 else []
+        raise InputError("\n".join(problems[:10] + more))
+
+
+def _with_prefixes(message: str) -> str:
+    for uri, prefix in _PREFIXES.items():
+        message = message.replace(f"{{{uri}}}", f"{prefix}:")
+    return message
+
+
+def tag(element: Any) -> str:
+    """Return ``ssd:Component`` for an element of a known namespace, else its full name."""
+    name = etree.QName(element)
+    prefix = _PREFIXES.get(name.namespace)
+    return f"{prefix}:{name.localname}" if prefix else str(element.tag)
+
+
+def base(element: Any) -> str:
+    """Return the name of the file that ``element`` is in."""
+    return str(element.getroottree().docinfo.URL)
+
+
+def where(element: Any) -> str:
+    """Return the file and line of ``element``, for messages."""
+    return f"{base(element)}: line {element.sourceline}"
+
+
+def children(element: Any) -> Iterator[Any]:
+    """Return the child elements, without comments and processing instructions."""
+    yield from element.iterchildren(tag=etree.Element)
+
+
+def child(element: Any, name: str) -> Any | None:
+    """Return the first child element called ``name`` (``ssd:Elements``), if there is one."""
+    return next((c for c in children(element) if tag(c) == name), None)
+
+
+def known(element: Any, attributes: Collection[str], elements: Collection[str]) -> None:
+    """Raise InputError if ``element`` has anything else: what is not read could matter."""
+    for name in element.attrib:
+        if not name.startswith("{") and name not in _META and name not in attributes:
+            message = unknown("attribute", name, [*attributes, *_META])
+            raise InputError(f"{where(element)}: {tag(element)}: {message}")
+    for one in children(element):
+        if tag(one) not in elements:
+            raise InputError(
+                f"{where(one)}: {tag(one)} in {tag(element)} is not supported "
+                f"(read are: {', '.join(sorted(elements)) or 'none'})"
+            )
+
+
+def needed(element: Any, name: str) -> str:
+    """Return an attribute; raise InputError if it is missing."""
+    value = element.get(name)
+    if value is None:
+        raise InputError(f"{where(element)}: {tag(element)}: attribute {name!r} is missing")
+    return str(value)
+
+
+@overload
+def number(element: Any, name: str) -> float | None: ...
+@overload
+def number(element: Any, name: str, default: float) -> float: ...
+def number(element: Any, name: str, default: float | None = None) -> float | None:
+    """Return an attribute as a finite number, if it is there. Raises InputError."""
+    text = element.get(name)
+    if text is None:
+        return default
+    try:
+        value = float(text)
+        if value - value != 0.0 or "_" in text:
+            raise ValueError
+    except ValueError:
+        raise InputError(
+            f"{where(element)}: {tag(element)}: {name}: a finite number is needed, found {text!r}"
+        ) from None
+    return value
+
+
+def flag(element: Any, name: str) -> bool:
+    """Return an attribute as XML Schema's boolean, false by default. Raises InputError."""
+    return boolean(element.get(name, "false"), f"{where(element)}: {tag(element)}: {name}")
+
+
+def boolean(text: str, place: str) -> bool:
+    """Return XML Schema's boolean. Raises InputError naming ``place``."""
+    if text.strip() in ("true", "1"):
+        return True
+    if text.strip() in ("false", "0"):
+        return False
+    raise InputError(f"{place}: true or false is needed, found {text!r}")
+
+
+@cache
+def _schema(name: str) -> Any:
+    return etree.XMLSchema(file=str(_SCHEMA_FOLDER / name))

@@ -1,0 +1,139 @@
+"""SSP packages as rigs."""
+
+from __future__ import annotations
+
+import math
+import os
+import re
+from base64 import b64encode
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ...component import NS, seconds
+from ...errors import InputError
+from ...fmi.archive import content_hash
+from ..files import Source, validated
+from ..rig import Rig, RigFile
+from .flat import Flat, FlatWire, Leaf, Path_
+from .package import DEFAULT, open_package
+from .parameters import Value
+from .structure import Notes, Structure, read_structure
+
+_USUAL_STEP = "10 ms"
+
+
+@dataclass(frozen=True)
+class SspSystem:
+    """A package read: its rig, the times it names, and what was met and not used."""
+
+    title: str
+    rig: Rig
+    start: str | None
+    stop: str | None
+    notes: tuple[str, ...]
+
+
+def read_ssp(path: Path, step: Any = None) -> SspSystem:
+    """Read the SSP package at ``path``, version 1.0 or 2.0.
+
+    ``step`` is a communication step that replaces the package's. Raises InputError naming file
+    and line for what is wrong, and for what could change the result and is not supported.
+    """
+    notes = Notes()
+    folder = open_package(path, path.name, notes)
+    structure = read_structure(folder / DEFAULT, folder, path.name, notes)
+    flat = Flat(structure, folder, path.name, notes)
+    if not flat.leaves:
+        raise InputError(f"{path}: {DEFAULT} has no component")
+    names = _names(list(flat.leaves), notes)
+    wires = flat.wires()
+    content = {
+        "title": structure.name,
+        "step": step or _step(structure, list(flat.leaves.values()), notes),
+        "components": _components(flat, folder, names, wires, notes),
+        "connections": _connections(wires, names),
+    }
+    file = validated(RigFile, content, path)
+    rig = Rig(file, Source(path.stem, path, content_hash(path)), folder).changed(
+        {}
+    )  # checked like a file
+    start = None if structure.start is None else f"{structure.start!r} s"
+    stop = None if structure.stop is None else f"{structure.stop!r} s"
+    return SspSystem(structure.name, rig, start, stop, tuple(notes.texts))
+
+
+def _names(paths: list[Path_], notes: Notes) -> dict[Path_, str]:
+    """Return the components' names in the rig: identifiers, each once."""
+    names: dict[Path_, str] = {}
+    taken: set[str] = set()
+    for path in paths:
+        plain = re.sub(r"[^A-Za-z0-9_]", "_", "_".join(path))
+        first = name = plain if not plain[:1].isdigit() else f"_{plain}"
+        for count in range(2, len(paths) + 2):
+            if name not in taken:
+                break
+            name = f"{first}_{count}"
+        taken.add(name)
+        names[path] = name
+        if path != (name,):
+            notes.add(f"{'.'.join(path)} is called {name} here")
+    return names
+
+
+def _components(
+    flat: Flat, folder: Path, names: dict[Path_, str], wires: list[FlatWire], notes: Notes
+) -> dict[str, Any]:
+    """Return the rig's components, as its file would have them."""
+    fed = {wire.target for wire in wires}
+    components = {}
+    for path, leaf in flat.leaves.items():
+        values: dict[str, Value] = {}
+        for variable, value in leaf.values().items():
+            if (path, variable) in fed:
+                notes.add(
+                    f"{leaf.parameters[variable].where}: {variable!r} is fed by a connection; "
+                    "its start value is not used"
+                )
+            else:
+                # A rig's file has bytes as base64 text.
+                values[variable] = b64encode(value).decode() if type(value) is bytes else value
+        entry: dict[str, Any] = {"fmu": os.path.relpath(leaf.fmu.path, folder), "set": values}
+        if leaf.step is not None:
+            entry["step"] = f"{leaf.step!r} s"
+        components[names[path]] = entry
+    return components
+
+
+def _connections(wires: list[FlatWire], names: dict[Path_, str]) -> dict[str, Any]:
+    connections: dict[str, Any] = {}
+    for wire in wires:
+        (source, output), (target, variable) = wire.source, wire.target
+        entry = {
+            "to": f"{names[target]}.{variable}",
+            "factor": wire.factor,
+            "offset": wire.offset,
+            "convert": False,  # what units need is in factor and offset already
+        }
+        connections.setdefault(f"{names[source]}.{output}", []).append(entry)
+    return connections
+
+
+def _step(structure: Structure, leaves: list[Leaf], notes: Notes) -> str:
+    """Return the communication step: OSP's, OMSimulator's, the components', or a usual one."""
+    steps = structure.steps
+    hints = [round(leaf.step * NS) for leaf in leaves if leaf.step is not None]
+    if steps.osp is not None:
+        if steps.oms not in (None, steps.osp):
+            notes.add(
+                f"OMSimulator's step of {steps.oms!r} s is not used: OSP's is {steps.osp!r} s"
+            )
+        return f"{steps.osp!r} s"
+    if steps.oms is not None:
+        return f"{steps.oms!r} s"
+    if hints and all(hints):
+        step = seconds(math.gcd(*hints))
+        notes.add(f"the components' step size hints give a communication step of {step!r} s")
+        return f"{step!r} s"
+    notes.add(f"the package names no step size: {_USUAL_STEP} is taken; change it with --set step")
+    return _USUAL_STEP

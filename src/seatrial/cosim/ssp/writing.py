@@ -1,0 +1,196 @@
+"""Assembled rigs as SSP 1.0 packages, in the subset that other tools read."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from lxml import etree
+
+from ... import __version__
+from ...component import seconds
+from ...errors import InputError
+from ...fmi.export import fmu_bytes, write_whole, zipped
+from ...fmi.instance import Variable
+from ...fmi.source import find_source
+from ...units import unit
+from ..system import Part, System, Wire
+from .annotations import write_oms, write_osp
+from .definitions import write_units
+from .documents import NAMESPACES
+from .package import DEFAULT
+from .parameters import Value, parameter_set, type_name
+from .structure import FMU
+
+_PREFIXES = ("ssd", "ssc", "ssv", "osp", "oms")
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """What a package says besides its system: a name and the times of a run, s."""
+
+    name: str
+    start: float
+    stop: float
+
+
+def write_ssp(system: System, experiment: Experiment, path: Path) -> list[str]:
+    """Write ``system`` as an SSP package and return what other tools must know of it.
+
+    Every value set is in a parameter set of its component and, where the FMU is built here,
+    its start value too. The same input gives the same bytes. Raises InputError for what SSP
+    cannot hold; nothing is written then.
+    """
+    notes: list[str] = []
+    files: dict[str, bytes] = {}
+    for part in system.parts.values():
+        values = {name: given.value for name, given in part.given.items()}
+        files[f"resources/{part.name}.fmu"] = _fmu(system, part, values, notes)
+        if values:
+            files[f"resources/{part.name}.ssv"] = _xml(parameter_set(part.name, values))
+    files[DEFAULT] = _xml(_description(system, experiment, notes))
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_whole(path, zipped(files))
+    return [*notes, *_unsaid(system)]
+
+
+def _fmu(system: System, part: Part, values: Mapping[str, Value], notes: list[str]) -> bytes:
+    source = find_source(part.fmu, system.rig.folder)
+    if not isinstance(source, Path):
+        return fmu_bytes(source, values)
+    if values:
+        notes.append(
+            f"{part.name}: {source.name} is copied as it is: its values are in its parameter "
+            "set only, for tools that read it"
+        )
+    return source.read_bytes()
+
+
+def _unsaid(system: System) -> list[str]:
+    """Return what SSP cannot say of a rig."""
+    notes = []
+    file = system.rig.file
+    if file.algorithm != "plain-jacobi":
+        notes.append(
+            f"the algorithm {file.algorithm!r} cannot be said: other tools couple by plain Jacobi, "
+            "one step of delay per connection"
+        )
+    if any(entry.isolated for entry in file.components.values()):
+        notes.append("isolated = true cannot be said: other tools choose their processes")
+    return notes
+
+
+def _description(system: System, experiment: Experiment, notes: list[str]) -> Any:
+    prefixes: Any = {prefix: NAMESPACES[prefix] for prefix in _PREFIXES}
+    document = etree.Element(
+        _name("ssd", "SystemStructureDescription"),
+        {
+            "name": re.sub(r"[^A-Za-z0-9_]", "_", re.sub(r"^(?=\d)", "_", experiment.name)),
+            "version": "1.0",
+            "generationTool": f"seatrial {__version__}",
+        },
+        nsmap=prefixes,
+    )
+    top = _add(document, "ssd", "System", name="root")
+    elements = _add(top, "ssd", "Elements")
+    used: set[str] = set()
+    for part in system.parts.values():
+        _add_component(elements, system, part, used, notes)
+    if system.wires:
+        connections = _add(top, "ssd", "Connections")
+        for wire in system.wires:
+            _add_connection(connections, wire)
+    step = seconds(system.rig.step_ns)
+    write_oms(top, step)
+    write_units(document, used)
+    times = {"startTime": repr(experiment.start), "stopTime": repr(experiment.stop)}
+    default = _add(document, "ssd", "DefaultExperiment", **times)
+    write_osp(default, "FixedStepAlgorithm", {"baseStepSize": repr(step)}, around="Algorithm")
+    return document
+
+
+def _add_component(
+    elements: Any, system: System, part: Part, used: set[str], notes: list[str]
+) -> None:
+    source = f"resources/{part.name}.fmu"
+    component = _add(elements, "ssd", "Component", name=part.name, type=FMU, source=source)
+    variables = _declared(system, part)
+    if variables:
+        connectors = _add(component, "ssd", "Connectors")
+        for variable in variables:
+            connector = _add(
+                connectors, "ssd", "Connector", name=variable.name, kind=variable.causality
+            )
+            _add(connector, "ssc", type_name(variable.type), **_unit(part, variable, used, notes))
+    if part.given:
+        _add(
+            _add(component, "ssd", "ParameterBindings"),
+            "ssd",
+            "ParameterBinding",
+            type="application/x-ssp-parameter-set",
+            source=f"resources/{part.name}.ssv",
+        )
+    if part.every > 1:
+        own = seconds(part.every * system.rig.step_ns)
+        write_osp(component, "StepSizeHint", {"value": repr(own)})
+
+
+def _declared(system: System, part: Part) -> list[Variable]:
+    """Return the connectors: connected inputs, and outputs.
+
+    FMPy feeds 0 to inputs that nothing feeds, and cannot record texts.
+    """
+    ends = {end for wire in system.wires for end in (wire.source, wire.target)}
+    return [
+        variable
+        for variable in part.instance.variables.values()
+        if (part.name, variable.name) in ends
+        or (variable.causality == "output" and variable.type in (float, int, bool))
+    ]
+
+
+def _unit(part: Part, variable: Variable, used: set[str], notes: list[str]) -> dict[str, str]:
+    if variable.type is not float or not variable.unit:
+        return {}
+    try:
+        unit(variable.unit)
+    except InputError:
+        notes.append(f"{part.name}.{variable.name}: unit {variable.unit!r} is not written")
+        return {}
+    used.add(variable.unit)
+    return {"unit": variable.unit}
+
+
+def _add_connection(connections: Any, wire: Wire) -> None:
+    attributes = {
+        "startElement": wire.source[0],
+        "startConnector": wire.source[1],
+        "endElement": wire.target[0],
+        "endConnector": wire.target[1],
+    }
+    if (wire.factor, wire.offset) == (1.0, 0.0):
+        _add(connections, "ssd", "Connection", **attributes)
+        return
+    # Not every tool converts units: the transformation says all, for all of them.
+    connection = _add(connections, "ssd", "Connection", **attributes, suppressUnitConversion="true")
+    numbers = {"factor": repr(wire.factor), "offset": repr(wire.offset)}
+    _add(connection, "ssc", "LinearTransformation", **numbers)
+
+
+def _add(parent: Any, prefix: str, element: str, /, **attributes: str) -> Any:
+    try:
+        return etree.SubElement(parent, _name(prefix, element), attributes)
+    except ValueError:
+        raise InputError(f"XML cannot hold one of the texts {list(attributes.values())}") from None
+
+
+def _name(prefix: str, name: str) -> str:
+    return f"{{{NAMESPACES[prefix]}}}{name}"
+
+
+def _xml(root: Any) -> bytes:
+    text: bytes = etree.tostring(root, encoding="UTF-8", xml_declaration=True, pretty_print=True)
+    return text

@@ -1,0 +1,168 @@
+"""What instances of FMI 2.0 and FMI 3.0 have in common: library, statuses, messages, life."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from abc import abstractmethod
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from ..errors import INTERRUPTED, DiscardError, InputError, SimulationError
+from ..plain import is_c_text
+from .instance import ByType, Value, Variable
+from .messages import DISCARD, FATAL, WARNING, Messages, word
+
+if TYPE_CHECKING:
+    from .load import LoadedFmu
+
+
+class FmuInstance(ByType):
+    """An instance of a loaded FMU, as the master sees it.
+
+    FMI's functions are called as FMPy loaded them, not through its wrappers, which cost more
+    than many an FMU. Every call that fails raises SimulationError with what the FMU said.
+    """
+
+    _prefix: ClassVar[str]
+    """Of the names of FMI's functions."""
+    _state_word: ClassVar[str]
+    """How this version of FMI writes the state in names of functions."""
+    _platform: ClassVar[str]
+    """Folder of an FMU with the binaries for this machine."""
+    _library: ClassVar[type[Any]]
+    """FMPy's class for such an FMU."""
+
+    def __init__(self, fmu: LoadedFmu, name: str) -> None:
+        self.name = name
+        self.fmu = fmu
+        self.variables, self.feedthrough = fmu.variables, fmu.feedthrough
+        simulation = fmu.description.coSimulation
+        self.rolls_back = bool(simulation.canGetAndSetFMUstate)
+        self.any_step = bool(simulation.canHandleVariableCommunicationStepSize)
+        self._ours = (fmu.description.generationTool or "").startswith("seatrial")
+        self._fatal = False
+        self._messages = Messages(name)
+        self._slave = self._opened(simulation.modelIdentifier)
+        self._functions: dict[str, Any] = {
+            function.removeprefix(self._prefix): call
+            for function, call in self._slave._functions.items()
+        }
+        self._c: Any = None
+        try:
+            self._instantiate()
+        except Exception:
+            said = self._messages.said()
+            self.free()
+            raise SimulationError(
+                f"{name}: {fmu.path.name} could not be instantiated{said}"
+            ) from None
+        self._c = self._slave.component
+        try:
+            self._refuse_logged_errors("Instantiate")
+        except SimulationError:
+            self.free()
+            raise
+
+    @abstractmethod
+    def _instantiate(self) -> None:
+        """Instantiate the slave, with its messages going to ours."""
+
+    def set_start(self, values: Mapping[str, Value]) -> None:
+        """Set parameters and start values by variable name, before `initialise`."""
+        if values:
+            self.writer(list(values))(list(values.values()))
+
+    def get_state(self) -> Any:
+        """Return a handle of the whole state."""
+        state, function = ctypes.c_void_p(), f"Get{self._state_word}"
+        self._call(function, ctypes.byref(state))
+        try:
+            self._refuse_logged_errors(function)
+        except SimulationError:
+            self._call(f"Free{self._state_word}", ctypes.byref(state))
+            raise
+        return state
+
+    def set_state(self, state: Any) -> None:
+        """Restore a state; the handle stays valid."""
+        self._call(f"Set{self._state_word}", state)
+        self._refuse_logged_errors(f"Set{self._state_word}")
+
+    def free_state(self, state: Any) -> None:
+        """Release a state's memory."""
+        self._call(f"Free{self._state_word}", ctypes.byref(state))
+
+    def terminate(self) -> None:
+        """End the run."""
+        if not self._fatal:
+            self._call("Terminate")
+            self._refuse_logged_errors("Terminate")
+
+    def free(self) -> None:
+        """Release the instance; never after a fatal status, which has released it already.
+
+        The library stays loaded: unloading pythonfmu's is not safe in every process.
+        """
+        if self._c is not None and not self._fatal:
+            self._functions["FreeInstance"](self._c)
+        self._c = None
+
+    # ------------------------------------------------------------------ inside
+
+    def _opened(self, identifier: str) -> Any:
+        """Return FMPy's slave with the library loaded."""
+        description, folder = self.fmu.description, self.fmu.folder
+        before = os.getcwd()
+        try:
+            return self._library(
+                guid=description.guid or "",
+                modelIdentifier=identifier,
+                unzipDirectory=str(folder),
+                instanceName=self.name,
+            )
+        except Exception as error:
+            os.chdir(before)  # FMPy stays in the library's folder when it cannot be loaded
+            binaries = sorted(p.name for p in (folder / "binaries").glob("*"))
+            raise InputError(
+                f"{self.fmu.path}: cannot be loaded on this machine ({self._platform}; the FMU "
+                f"has binaries for {', '.join(binaries) or 'none'}): {error}"
+            ) from None
+
+    def _call(self, function: str, *arguments: Any) -> None:
+        status = self._functions[function](self._c, *arguments)
+        if status > WARNING:
+            self._refuse(function, status)
+
+    def _refuse(self, what: str, status: int) -> None:
+        """Raise for a status that is neither ok nor a warning."""
+        self._fatal = status == FATAL
+        said = self._messages.said()
+        if self._ours and said.endswith(INTERRUPTED):
+            raise KeyboardInterrupt
+        kind = DiscardError if status == DISCARD else SimulationError
+        raise kind(f"{self.name}: {self._prefix}{what} returned {word(status)}{said}")
+
+    def _refuse_logged_errors(self, what: str) -> None:
+        """Raise for an error that our own FMUs log instead of returning it (see `Slave`)."""
+        if self._ours and self._messages.has_error():
+            raise SimulationError(
+                f"{self.name}: {self._prefix}{what} failed{self._messages.said()}"
+            )
+        self._messages.forward()
+
+    def _refuse_excess(self, variables: Sequence[Variable], values: Sequence[int]) -> None:
+        """Raise SimulationError for an integer that C would cut to fit its type."""
+        for variable, value in zip(variables, values, strict=True):
+            low, high = variable.integers
+            if not low <= value <= high:
+                raise SimulationError(
+                    f"{self.name}.{variable.name}: {value} does not fit its type, {low} to {high}"
+                )
+
+    def _encoded(self, variables: Sequence[Variable], texts: Sequence[str]) -> list[bytes]:
+        """Return texts for C. Raises SimulationError for one that C would cut."""
+        for variable, text in zip(variables, texts, strict=True):
+            if not is_c_text(text):
+                raise SimulationError(f"{self.name}.{variable.name}: {text!r} is no C text")
+        return [text.encode() for text in texts]

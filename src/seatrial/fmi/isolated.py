@@ -1,0 +1,226 @@
+"""An FMU in a process of its own, as the master sees it: a crash or a hang ends that process only.
+
+Inputs written are sent along with the next step or read, which also raises their errors. With
+the answer of a step come the outputs that were read after earlier ones: one round trip then
+does for everything.
+"""
+
+from __future__ import annotations
+
+import json
+import logging
+import os
+import struct
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from ..errors import DiscardError, InputError, SimulationError
+from .instance import Reader, Value, Writer
+from .load import LoadedFmu
+from .pipe import CALL, INTERVAL, READ, RESULT, STEP, WRITE, Codec, Frames, frame
+from .process import EndedError, WorkerProcess
+from .worker import shortened
+
+_BOOT_S = 60.0
+"""For Python to start and import: no call of the FMU has a part in it."""
+_ERRORS = {kind.__name__: kind for kind in (DiscardError, InputError, SimulationError)}
+
+
+class IsolatedInstance:
+    """An instance of a loaded FMU in a process of its own; fulfils `Instance`.
+
+    A call that takes longer than ``timeout_s`` ends the process. Once it has ended, every call
+    but `terminate` and `free` raises the same SimulationError. Make and use it in one thread.
+
+    Raises InputError where there are no POSIX pipes, and what `open_instance` raises.
+    """
+
+    def __init__(self, fmu: LoadedFmu, name: str, timeout_s: float) -> None:
+        if os.name != "posix":
+            raise InputError("isolated components need Linux or another POSIX system")
+        self.name, self.fmu = name, fmu
+        self.variables, self.feedthrough = fmu.variables, fmu.feedthrough
+        self._timeout_s, self._limit = _BOOT_S, ""
+        self._time: float | None = None
+        self._ended = ""
+        self._writes: list[bytes] = []
+        self._written: list[str] = []
+        """Frames of writes that are not sent yet, and the inputs in them."""
+        self._read_after_steps: list[int] = []
+        self._ahead: dict[int, bytes] = {}
+        """Answers that came with that of the last step, by reader."""
+        self._just_stepped = False
+        # The worker finds the FMU unpacked where it is now.
+        environment = {**os.environ, "SEATRIAL_CACHE": str(fmu.folder.parent.parent)}
+        self._logger = logging.getLogger(f"seatrial.fmu.{name}")
+        self._process = WorkerProcess("seatrial.fmi.worker", name, environment, self._log)
+        try:
+            self._call("wait", "its start")
+            self._timeout_s, self._limit = timeout_s, " (the component's key 'timeout')"
+            self.rolls_back, self.any_step = self._call(
+                "open", "its instantiation", str(fmu.path), fmu.sha256, name, sys.path
+            )
+        except BaseException:
+            self._process.end()
+            raise
+
+    @property
+    def pid(self) -> int:
+        """Of its process."""
+        return self._process.pid
+
+    def set_start(self, values: Mapping[str, Value]) -> None:
+        """Set parameters and start values by variable name, before `initialise`."""
+        if values:
+            names = list(values)
+            self._writer("starter", names)(list(values.values()))
+            self._call("wait", f"the setting of {shortened(names)}")
+
+    def initialise(self, start_time: float, stop_time: float) -> None:
+        """Start at ``start_time``."""
+        self._time = start_time
+        self._call("initialise", "its initialisation", start_time, stop_time)
+
+    def begin(self) -> None:
+        """End the initialisation."""
+        self._call("begin", "the end of its initialisation")
+
+    def reader(self, names: Sequence[str]) -> Reader:
+        """Return a callable that returns the values of ``names``, in that order."""
+        number, codec = self._bound("reader", names)
+        request = frame(READ, number)
+        what = f"the reading of {shortened(list(names))}"
+
+        def read() -> list[Any]:
+            answer = self._ahead.pop(number, None)
+            if answer is None:
+                if self._just_stepped:
+                    self._read_after_steps.append(number)
+                answer = self._ask(request, lambda: what + self._when())
+            return codec.unpack(answer)
+
+        return read
+
+    def writer(self, names: Sequence[str]) -> Writer:
+        """Return a callable that sets ``names`` to a sequence of values.
+
+        An error is raised by the next step, reading or other call.
+        """
+        return self._writer("writer", list(names))
+
+    def step(self, t: float, h: float) -> None:
+        """Advance from ``t`` to ``t + h``, s."""
+        wanted = self._read_after_steps
+        payload = INTERVAL.pack(t, h) + struct.pack(f"<{len(wanted)}I", *wanted)
+        self._touched()
+        answer = self._ask(frame(STEP, 0, payload), lambda: f"step(t = {t!r} s, h = {h!r} s)")
+        self._ahead = _by_number(answer)
+        self._time, self._just_stepped = t + h, True
+
+    def get_state(self) -> Any:
+        """Return the number of the whole state, which is kept in the process."""
+        return self._call("get_state", "the saving of its state")
+
+    def set_state(self, state: Any) -> None:
+        """Restore a state; the handle stays valid."""
+        self._touched()
+        self._call("set_state", "the restoring of a state", state)
+
+    def free_state(self, state: Any) -> None:
+        """Release a state."""
+        self._call("free_state", "the release of a state", state)
+
+    def terminate(self) -> None:
+        """End the run."""
+        if not self._ended:
+            self._call("terminate", "its termination")
+
+    def free(self) -> None:
+        """Release the instance and end its process."""
+        if not self._ended:
+            try:
+                self._call("free", "its release")
+            except SimulationError as error:  # nothing of the run depends on it any more
+                self._log(logging.WARNING, str(error))
+            self._process.wait()
+            self._ended = f"{self.name} has been released"
+
+    # ------------------------------------------------------------------ inside
+
+    def _writer(self, kind: str, names: list[str]) -> Writer:
+        number, codec = self._bound(kind, names)
+        said = shortened(names)
+
+        def write(values: Sequence[Any]) -> None:
+            self._refuse_ended()
+            self._touched()
+            self._writes.append(frame(WRITE, number, codec.pack(values)))
+            self._written.append(said)
+
+        return write
+
+    def _bound(self, kind: str, names: Sequence[str]) -> tuple[int, Codec]:
+        number = self._call(kind, "the binding of its variables", list(names))
+        return number, Codec([self.variables[name].type for name in names])
+
+    def _touched(self) -> None:
+        """Forget what was read ahead: it is no longer what a reader would read."""
+        self._ahead = {}
+        self._just_stepped = False
+
+    def _when(self) -> str:
+        return "" if self._time is None else f" at t = {self._time!r} s"
+
+    def _call(self, method: str, what: str, *arguments: Any) -> Any:
+        request = frame(CALL, 0, json.dumps([method, *arguments]).encode())
+        return json.loads(self._ask(request, lambda: what + self._when()))
+
+    def _ask(self, request: bytes, what: Callable[[], str]) -> bytes:
+        """Return the answer to a request, with the writes before it."""
+        self._refuse_ended()
+        writes, written = self._writes, self._written
+        if writes:
+            self._writes, self._written = [], []
+            request = b"".join((*writes, request))
+        try:
+            code, _, answer = self._process.exchange(request, self._timeout_s)
+        except EndedError as end:
+            before = f" or the write of {'; '.join(written)} before it" if written else ""
+            how = end.how + (self._limit if end.timed_out else "")
+            raise self._end(how, what() + before, end.printed) from None
+        except ValueError:  # something wrote into the pipe that does not belong there
+            raise self._end("was ended for an answer that is none", what()) from None
+        except BaseException:
+            self._end("was ended by an interruption", what())
+            raise
+        if code == RESULT:
+            return answer
+        kind, text = json.loads(answer)
+        if kind == KeyboardInterrupt.__name__:
+            raise KeyboardInterrupt
+        if kind not in _ERRORS:
+            raise SimulationError(f"{self.name}: {what()} raised\n{text}")
+        raise _ERRORS[kind](text)
+
+    def _end(self, how: str, what: str, printed: str = "") -> SimulationError:
+        """Keep what every further call will raise, and return it."""
+        last = f"; the last it wrote:\n{printed}" if printed else ""
+        self._ended = f"{self.name}: its process {how} in {what}{last}"
+        return SimulationError(self._ended)
+
+    def _refuse_ended(self) -> None:
+        if self._ended:
+            raise SimulationError(self._ended)
+
+    def _log(self, level: int, text: str) -> None:
+        self._logger.log(level, "%s", text)
+
+
+def _by_number(answer: bytes) -> dict[int, bytes]:
+    """Return the payloads of frames, by their numbers."""
+    frames, found = Frames(), {}
+    frames.feed(answer)
+    while (part := frames.take()) is not None:
+        found[part[1]] = part[2]
+    return found

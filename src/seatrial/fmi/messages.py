@@ -1,0 +1,111 @@
+"""What FMU instances say: a status, and messages that explain an error or go to the log."""
+
+from __future__ import annotations
+
+import ctypes
+import itertools
+import logging
+from collections.abc import Callable
+from typing import Any
+
+from fmpy import fmi2
+from fmpy.logging import addLoggerProxy
+
+# Equal in FMI 2.0 and 3.0.
+OK, WARNING, DISCARD, ERROR, FATAL, PENDING = range(6)
+
+_WORDS = ("ok", "warning", "discard", "error", "fatal", "pending")
+_MOST_KEPT = 50
+
+
+def word(status: int) -> str:
+    """Return FMI's name of a status, or the number of one that FMI does not have."""
+    return _WORDS[status] if 0 <= status < len(_WORDS) else f"status {status}"
+
+
+class Messages:
+    """The messages of one instance since somebody last asked."""
+
+    def __init__(self, name: str) -> None:
+        self._logger = logging.getLogger(f"seatrial.fmu.{name}")
+        self._kept: list[tuple[int, str]] = []
+        self._lost = 0
+
+    def __bool__(self) -> bool:
+        return bool(self._kept)
+
+    def keep(self, status: int, message: bytes | None) -> None:
+        """Keep a message with its fmi2Status or fmi3Status; only count them after many."""
+        if len(self._kept) < _MOST_KEPT:
+            self._kept.append((status, (message or b"").decode("utf-8", "replace")))
+        else:
+            self._lost += 1
+
+    def has_error(self) -> bool:
+        """Say if one of them has the status of an error."""
+        return any(status >= ERROR for status, _ in self._kept)
+
+    def said(self) -> str:
+        """Return all of them as the end of an error message, and forget them."""
+        texts = [text.strip() for _, text in self._kept]
+        if self._lost:
+            texts.append(f"({self._lost} more messages)")
+        self._kept, self._lost = [], 0
+        return ": " + "\n".join(texts) if texts else ", without a message"
+
+    def forward(self) -> None:
+        """Pass all of them to the logger ``seatrial.fmu.NAME``, and forget them."""
+        for status, text in self._kept:
+            level = (
+                logging.ERROR if status >= ERROR else logging.WARNING if status else logging.INFO
+            )
+            self._logger.log(level, "%s", text)
+        if self._lost:
+            self._logger.warning("%d more messages", self._lost)
+        self._kept, self._lost = [], 0
+
+
+_numbers = itertools.count(1)
+_listening: dict[int, Callable[[int, bytes | None], None]] = {}
+"""Who takes the messages of which FMI 2 instance, by its component environment."""
+
+
+def listening_callbacks(messages: Messages) -> fmi2.fmi2CallbackFunctions:
+    """Return FMI 2 callbacks that keep in ``messages`` what the instance says."""
+    callbacks = fmi2.fmi2CallbackFunctions()
+    callbacks.logger = _logger_proxy()
+    callbacks.allocateMemory = fmi2.defaultCallbacks.allocateMemory
+    callbacks.freeMemory = fmi2.defaultCallbacks.freeMemory
+    callbacks.componentEnvironment = next(_numbers)
+    _listening[callbacks.componentEnvironment] = messages.keep
+    return callbacks
+
+
+def stop_listening(callbacks: fmi2.fmi2CallbackFunctions) -> None:
+    """Forget an instance that is gone."""
+    _listening.pop(callbacks.componentEnvironment, None)
+
+
+def _dispatch(
+    environment: int | None, instance: bytes, status: int, category: bytes, message: bytes
+) -> None:
+    listener = _listening.get(environment or 0)
+    if listener is None:  # an instance of somebody else in this process
+        fmi2.printLogMessage(environment, instance, status, category, message)
+    else:
+        listener(status, message)
+
+
+_template = fmi2.fmi2CallbackFunctions()
+_dispatcher = fmi2.fmi2CallbackLoggerTYPE(_dispatch)
+
+
+def _logger_proxy() -> Any:
+    """Return FMPy's native logger, which formats printf arguments and calls `_dispatch`.
+
+    The proxy knows one Python function for the whole process: so it must be one that lives
+    for ever, and is registered again in case somebody else did meanwhile.
+    """
+    _template.logger = _dispatcher
+    addLoggerProxy(ctypes.byref(_template))
+    return _template.logger

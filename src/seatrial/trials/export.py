@@ -1,0 +1,75 @@
+"""Rigs and trials as SSP packages."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ..component import seconds
+from ..cosim.files import available, find_file, read_toml
+from ..cosim.rig import load_rig
+from ..cosim.ssp.writing import Experiment, write_ssp
+from ..cosim.system import System, assemble
+from ..errors import InputError, unknown
+from .trial import Trial, load_trial
+
+_USUAL_STOP = 10.0
+"""Stop time in the package of a rig, which has none itself, s."""
+
+
+def export_ssp(
+    name: str, out: Path | None = None, variant: str | None = None
+) -> tuple[Path, list[str]]:
+    """Write the trial or rig ``name`` as an SSP 1.0 package; return its path and notes.
+
+    ``name`` is a shipped name or a path; where a trial and a rig share it, the trial is meant.
+    The package is ``out``, or ``NAME.ssp`` in the current folder. The notes say what SSP
+    cannot. Raises InputError.
+    """
+    if _is_trial(name):
+        changes = {} if variant is None else {"variant": variant}
+        trial = load_trial(name, changes=changes, origin="--variant")
+        system, notes = _set_up(trial), [*trial.notes, *_unsaid(trial)]
+        start, stop = seconds(trial.start_ns), seconds(trial.stop_ns)
+        title = trial.name
+    else:
+        rig = load_rig(name)
+        system = assemble(rig, "fmu", variant=variant)
+        notes = [f"a rig has no stop time: the package says {_USUAL_STOP:g} s"]
+        start, stop, title = 0.0, _USUAL_STOP, rig.read_from.name
+    path = out or Path(f"{title}.ssp")
+    try:
+        notes += write_ssp(system, Experiment(title, start, stop), path)
+    finally:
+        system.free()
+    return path, notes
+
+
+def _is_trial(name: str) -> bool:
+    if name.endswith(".toml"):
+        return "rig" in read_toml(find_file("harness/trials", name))[0]
+    trials, rigs = available("harness/trials"), available("harness/rigs")
+    if not name.endswith(".ssp") and name not in {**trials, **rigs}:
+        raise InputError(unknown("trial or rig", name, {**trials, **rigs}))
+    return name not in rigs or name in trials
+
+
+def _set_up(trial: Trial) -> System:
+    """Return the assembled rig of ``trial`` with everything that the trial sets."""
+    file = trial.file
+    system = assemble(trial.rig, "fmu", variant=file.variant, seed=file.seed)
+    try:
+        for key, written, origin in trial.settings():
+            system.set(key, written, origin)
+    except BaseException:
+        system.free()
+        raise
+    return system
+
+
+def _unsaid(trial: Trial) -> list[str]:
+    """Return what SSP cannot say of a trial."""
+    return [
+        f"{kind} are not in the package: SSP has none"
+        for kind, entries in (("events", trial.file.events), ("criteria", trial.file.criteria))
+        if entries
+    ]

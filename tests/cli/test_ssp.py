@@ -1,0 +1,75 @@
+"""``seatrial ssp`` and ``seatrial run x.ssp`` from the command line."""
+
+from __future__ import annotations
+
+import csv
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.cosim.ssp_files import BOATS, MINIMAL, Yard, speed
+
+RIG = """step = "10 ms"
+[components]
+hull = { fmu = "boats.py:Hull", set = { mass = 8.0 } }
+damper = { fmu = "boats.py:Damper" }
+[connections]
+"hull.v" = "damper.v"
+"damper.force" = { to = "hull.force", factor = 2.0 }
+"""
+
+
+def seatrial(*arguments: str, folder: Path) -> subprocess.CompletedProcess[str]:
+    code = "from seatrial.cli import main; main()"
+    return subprocess.run(
+        [sys.executable, "-c", code, *arguments], cwd=folder, capture_output=True, text=True,
+        check=False,
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def yard(tmp_path_factory: pytest.TempPathFactory) -> Yard:
+    return Yard(tmp_path_factory.mktemp("yard"))
+
+
+def test_export_check_and_run_go_together(write, tmp_path: Path) -> None:
+    write("boats.py", BOATS)
+    write("quay.toml", RIG)
+    done = seatrial("ssp", "export", "quay.toml", folder=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "a rig has no stop time" in done.stdout
+    done = seatrial("ssp", "check", "quay.ssp", folder=tmp_path)
+    assert done.returncode == 0, done.stdout
+    assert "rejects" not in done.stdout
+    done = seatrial(
+        "run", "quay.ssp", "--set", "stop=1 s", "--set", "hull.mass=4", "--out", "run",
+        folder=tmp_path,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "run" / "report.html").is_file()
+    with (tmp_path / "run" / "signals.csv").open(encoding="utf-8") as file:
+        last = list(csv.DictReader(file))[-1]
+    assert float(last["hull.v"]) == pytest.approx(speed(4.0, 1.0, seconds=1.0), rel=1e-12)
+
+
+def test_the_status_says_what_is_rejected(yard: Yard, tmp_path: Path) -> None:
+    yard.package(tmp_path / "x.ssp", MINIMAL.replace('"Minimal" version="1.0"', '"Minimal" version="1.1"'))  # fmt: skip
+    for tool, status in (("libcosim", 0), ("ecos", 1), ("fmpy", 0), ("omsimulator", 0)):
+        done = seatrial("ssp", "check", "x.ssp", "--for", tool, folder=tmp_path)
+        assert done.returncode == status, done.stdout
+    assert "reads version 1.0 only" in seatrial("ssp", "check", "x.ssp", folder=tmp_path).stdout
+
+
+def test_a_wrong_package_or_tool_is_one_message(yard: Yard, tmp_path: Path) -> None:
+    yard.package(tmp_path / "x.ssp", MINIMAL.replace("resources/Hull.fmu", "../Hull.fmu"))
+    done = seatrial("run", "x.ssp", folder=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.startswith("seatrial: x.ssp: SystemStructure.ssd: line 7: source")
+    assert not (tmp_path / "runs").exists()
+    assert seatrial("ssp", "check", "x.ssp", folder=tmp_path).returncode == 1
+    done = seatrial("ssp", "check", "x.ssp", "--for", "ecosim", folder=tmp_path)
+    assert done.returncode == 2
+    assert "did you mean 'ecos'" in done.stderr
+    assert seatrial("run", "none.ssp", folder=tmp_path).returncode == 2

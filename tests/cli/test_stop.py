@@ -1,0 +1,190 @@
+"""Signals, sent to real processes: every run leaves a whole record, or nothing."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from .test_cli import SEATRIAL, seatrial
+
+COMPONENT = '''
+"""Takes its time."""
+import time
+from pathlib import Path
+
+from seatrial.component import Component, Output, Parameter
+
+
+class Slow(Component):
+    """Sleeps in every step, or hangs in one; may be slow to start."""
+
+    step_takes = Parameter(0.01, "s", "wall time of a step")
+    start_takes = Parameter(0.0, "s", "wall time of the start")
+    hangs_at = Parameter(1e9, "s", "a step that never ends")
+    y = Output("m", "time")
+
+    def start(self, t):
+        if self.start_takes:
+            Path("starting").touch()
+            time.sleep(self.start_takes)
+
+    def step(self, t, h):
+        if t >= self.hangs_at:
+            Path("hanging").touch()
+            time.sleep(1000.0)
+        time.sleep(self.step_takes)
+
+    def outputs(self, t):
+        self.y = t
+'''
+Start = Callable[..., subprocess.Popen[str]]
+
+
+@pytest.fixture
+def start(write, tmp_path: Path) -> Iterator[Start]:
+    """Return a function that starts ``seatrial`` on files of a slow boat, in their folder."""
+    write("slow.py", COMPONENT)
+    write("rig.toml", 'step = "10 ms"\n[components]\nboat = { fmu = "slow.py:Slow" }\n')
+    write("trial.toml", 'rig = "rig.toml"\nstop = "1000 s"\n')
+    write("campaign.toml", 'trials = ["trial.toml"]\n[grid]\nseed = [1, 2, 3]\n')
+    processes = []
+
+    def start(*arguments: str) -> subprocess.Popen[str]:
+        pipe = subprocess.PIPE
+        command = [SEATRIAL, *arguments]
+        processes.append(
+            subprocess.Popen(command, cwd=tmp_path, stdout=pipe, stderr=pipe, text=True)
+        )
+        return processes[-1]
+
+    yield start
+    for process in processes:
+        process.kill()
+        process.communicate()
+
+
+def wait_for(condition: Callable[[], bool]) -> None:
+    for _ in range(1200):
+        if condition():
+            return
+        time.sleep(0.05)
+    pytest.fail("waited for a minute")
+
+
+def has_status(folder: Path, status: str = "running") -> bool:
+    """Say whether the run has written its manifest, with that status."""
+    manifest = folder / "manifest.json"
+    return manifest.is_file() and f'"status": "{status}"' in manifest.read_text("utf-8")
+
+
+def stopped(process: subprocess.Popen[str]) -> str:
+    """Return what was said by a process that must end stopped."""
+    _, said = process.communicate(timeout=60)
+    assert process.returncode == 3, said
+    assert "stopped" in said
+    assert "Traceback" not in said
+    return said
+
+
+def assert_whole(folder: Path, rows: int) -> None:
+    """Check that a stopped run left everything that a run leaves, with whole lines."""
+    assert {p.name for p in folder.iterdir()} == {
+        "signals.csv", "manifest.json", "timing.json", "verdicts.json", "report.html"
+    }  # fmt: skip
+    text = (folder / "signals.csv").read_text("utf-8")
+    lines = text.splitlines()
+    assert text.endswith("\n")
+    assert len(lines) > rows
+    assert all(line.count(",") == 1 for line in lines)
+    assert has_status(folder, "stopped")
+    timing = json.loads((folder / "timing.json").read_text("utf-8"))
+    assert timing["step_times"]["boat"]["steps"] == timing["steps"]
+    assert "run stopped" in (folder / "report.html").read_text("utf-8")
+
+
+@pytest.mark.parametrize("engine", ["fmu", "direct"])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_leaves_a_whole_record(number: int, engine: str, start, tmp_path: Path) -> None:
+    process = start("run", "trial.toml", "--out", "run", "--engine", engine)
+    wait_for(lambda: has_status(tmp_path / "run"))
+    time.sleep(0.5)
+    process.send_signal(number)
+    stopped(process)
+    assert_whole(tmp_path / "run", 10)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_a_wait(number: int, start, tmp_path: Path) -> None:
+    pace = ("--real-time", "0.0001")  # 100 s of waiting for each step
+    process = start("run", "trial.toml", "--out", "run", "--engine", "direct", *pace)
+    wait_for(lambda: has_status(tmp_path / "run"))
+    time.sleep(0.3)
+    sent = time.monotonic()
+    process.send_signal(number)
+    stopped(process)
+    assert time.monotonic() - sent < 30
+    assert_whole(tmp_path / "run", 1)
+
+
+def test_a_signal_ends_a_campaign_in_its_case(start, tmp_path: Path) -> None:
+    process = start("run", "campaign.toml", "--out", "all", "--engine", "direct")
+    wait_for(lambda: any(has_status(folder) for folder in (tmp_path / "all").glob("01-*")))
+    process.send_signal(signal.SIGTERM)
+    assert "1 of 3 cases" in stopped(process)
+    (case,) = (tmp_path / "all").glob("0*")
+    assert_whole(case, 1)
+    assert (tmp_path / "all" / "report.html").is_file()
+
+
+@pytest.mark.parametrize("name", ["trial.toml", "campaign.toml"])
+def test_a_signal_during_initialisation_leaves_no_run(name: str, start, tmp_path: Path) -> None:
+    rig = tmp_path / "rig.toml"
+    rig.write_text(rig.read_text().replace('Slow"', 'Slow", set = { start_takes = 1.0 }'))
+    process = start("run", name, "--out", "run", "--engine", "direct")
+    wait_for((tmp_path / "starting").is_file)
+    process.send_signal(signal.SIGINT)
+    stopped(process)
+    left = {p.name for p in (tmp_path / "run").glob("*")}
+    assert left == ({"campaign.json", "report.html"} if name == "campaign.toml" else set())
+    assert (tmp_path / "run").exists() == (name == "campaign.toml")
+
+
+@pytest.mark.parametrize("engine", ["fmu", "direct"])
+def test_a_second_signal_ends_a_component_that_hangs(engine, start, tmp_path: Path) -> None:
+    hang = ("--set", "boat.hangs_at=0.045")
+    process = start("run", "trial.toml", "--out", "run", "--engine", engine, *hang)
+    wait_for((tmp_path / "hanging").is_file)
+    process.send_signal(signal.SIGINT)
+    time.sleep(0.3)
+    assert process.poll() is None
+    process.send_signal(signal.SIGINT)
+    stopped(process)
+    assert has_status(tmp_path / "run", "stopped")
+    assert len((tmp_path / "run" / "signals.csv").read_text().splitlines()) == 7
+    assert (tmp_path / "run" / "timing.json").is_file()
+    assert "run stopped" in (tmp_path / "run" / "report.html").read_text("utf-8")
+
+
+@pytest.mark.parametrize("pace", [[], ["--real-time", "0.0001"]], ids=["free", "waiting"])
+def test_a_killed_run_is_whole_up_to_its_last_flush(pace, start, tmp_path: Path) -> None:
+    process = start("run", "trial.toml", "--out", "run", "--engine", "direct", *pace)
+    signals = tmp_path / "run" / "signals.csv"
+    wait_for(lambda: signals.is_file() and signals.stat().st_size > 0)  # it was flushed
+    os.kill(process.pid, signal.SIGKILL)
+    process.communicate()
+    assert has_status(tmp_path / "run", "running")
+    lines = signals.read_text("utf-8").splitlines()
+    assert lines[:2] == ["time,boat.y", "0.0,0.0"]
+    assert all(line.count(",") == 1 for line in lines[:-1])
+    done = seatrial("report", "run", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    page = (tmp_path / "run" / "report.html").read_text("utf-8")
+    assert "The run has not ended, or was killed." in page
+    assert "timing.json is missing" in page

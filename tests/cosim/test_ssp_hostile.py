@@ -1,0 +1,296 @@
+"""SSP packages that are wrong, odd or hostile: an InputError that says where, never more."""
+
+from __future__ import annotations
+
+import time
+import zipfile
+from pathlib import Path
+from xml.sax.saxutils import quoteattr
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from seatrial.cosim.ssp.reading import read_ssp
+from seatrial.errors import InputError
+
+from .ssp_files import (
+    BINDING,
+    DAMPER,
+    EIGHT,
+    HULL,
+    MINIMAL,
+    SUB,
+    THERE,
+    TO_SUB,
+    Yard,
+    bound,
+    description,
+    linear,
+    nested,
+    parameter_set,
+    real,
+    run,
+    speed,
+    system,
+)
+
+
+@pytest.fixture(scope="module")
+def yard(tmp_path_factory: pytest.TempPathFactory) -> Yard:
+    return Yard(tmp_path_factory.mktemp("yard"))
+
+
+def refused(path: Path) -> str:
+    with pytest.raises(InputError) as caught:
+        read_ssp(path)
+    return str(caught.value)
+
+
+MAPPING = """<ssd:ParameterMapping><ssm:ParameterMapping
+xmlns:ssm="http://ssp-standard.org/SSP1/SystemStructureParameterMapping" version="1.0"/>
+</ssd:ParameterMapping>"""
+DICTIONARY = """<ssd:SignalDictionaryReference name="d" dictionary="x"/>"""
+TABLE = '<ssc:{}MappingTransformation><ssc:MapEntry source="{}" target="{}"/></ssc:{}MappingTransformation>'
+TUNED = """<ssd:Connector name="damping" kind="parameter"><ssc:Real/></ssd:Connector></ssd:Connectors>"""
+FORWARD = '<ssd:Connection startElement="damper" startConnector="damping" endElement="hull" endConnector="force"/>'
+
+WRONG = [
+    # (replaced, by, what the message says)
+    (THERE, THERE.replace('"hull"', '"hul"'), "line 18: unknown element 'hul'; did you mean 'hull'"),
+    (THERE, THERE.replace('endConnector="v"', 'endConnector="w"'), "unknown connector 'w'"),
+    (THERE, THERE + THERE, "v is fed twice"),
+    (THERE, THERE[:-2] + ">" + TABLE.format("Boolean", "true", "false", "Boolean") + "</ssd:Connection>", "BooleanMappingTransformation in ssd:Connection is not supported"),
+    (THERE, THERE[:-2] + ">" + TABLE.format("Integer", "1", "2", "Integer") + "</ssd:Connection>", "IntegerMappingTransformation"),
+    (THERE, THERE[:-2] + ">" + TABLE.format("Enumeration", "a", "b", "Enumeration") + "</ssd:Connection>", "EnumerationMappingTransformation"),
+    ('"resources/Damper.fmu"', '"../Damper.fmu"', "'../Damper.fmu' is outside the package"),
+    ('"resources/Damper.fmu"', '"resources/%2e%2e/../../x.fmu"', "is outside the package"),
+    ('"resources/Damper.fmu"', '"file:///etc/passwd"', "only files in the package"),
+    ('"resources/Damper.fmu"', '"http://localhost/x.fmu"', "only files in the package"),
+    ('"resources/Damper.fmu"', '"/etc/passwd"', "only files in the package"),
+    ('"resources/Damper.fmu"', '"resources/Dumper.fmu"', "there is no such file"),
+    ('"resources/Damper.fmu"', '"#root"', "a plain path is needed"),
+    ('"resources/Damper.fmu"', '"resources/hull.ssv"', "the name of an FMU must end in .fmu"),
+    ('name="damper" source', 'name="hull" source', "a second element is called 'hull'"),
+    ('name="damper" source', 'name="damper" type="x/y" source', "of type 'x/y' are not supported"),
+    ('name="damper" source', 'name="damper" implementation="ModelExchange" source', "ModelExchange is not supported"),
+    ('source="resources/hull.ssv"/>', f'source="resources/hull.ssv">{MAPPING}</ssd:ParameterBinding>', "ssd:ParameterMapping in ssd:ParameterBinding is not supported"),
+    ('source="resources/hull.ssv"', 'source="resources/hull.ssv" sourceBase="component"', "sourceBase='component' is not supported"),
+    ("</ssd:Elements>", DICTIONARY + "</ssd:Elements>", "SignalDictionaryReference in ssd:Elements is not supported"),
+    ('stopTime="2.0"', 'stopTime="soon"', "line 19"),
+    ('stopTime="2.0"', 'stopTime="INF"', "a finite number is needed, found 'INF'"),
+    ('baseStepSize="0.01"', 'baseStepSize="-1"', "must be above 0"),
+    ('kind="output"><ssc:Real/>', 'kind="output"><ssc:Integer/>', "is not of the type of the FMU's variable, float"),
+    ('kind="output"><ssc:Real/>', 'kind="output"><ssc:Real unit="kn"/>', "in another unit than the FMU's variable, which is in"),
+    ('kind="output"><ssc:Real/>', 'kind="output"><ssc:Real unit="kg"/>', "cannot be converted"),
+    ('<ssd:Connector name="v" kind="input">', '<ssd:Connector name="w" kind="input">', "unknown variable 'w'"),
+    ('"Minimal" version="1.0"', '"Minimal" version="3.0"', "SSP version '3.0'; 1.0 and 2.0 are read"),
+    ('"Minimal" version="1.0"', '"Minimal"', "version"),
+    ("ssd:SystemStructureDescription", "ssd:System", "ssd:SystemStructureDescription is needed"),
+    ("<ssd:Connections>", "<ssd:Nonsense/><ssd:Connections>", "line 18: Element 'ssd:Nonsense': This element is not expected"),
+    ("</ssd:System>", "", "not XML"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("old", "new", "said"), WRONG)
+def test_what_is_wrong_is_named(old: str, new: str, said: str, yard: Yard, tmp_path: Path) -> None:
+    assert old in MINIMAL
+    message = refused(yard.package(tmp_path / "x.ssp", MINIMAL.replace(old, new)))
+    assert message.startswith("x.ssp: SystemStructure.ssd: ")
+    assert "line " in message
+    assert said in message
+
+
+@pytest.mark.parametrize(
+    ("values", "said"),
+    [
+        (real("mass", "heavy"), "line 5: Element 'ssv:Real', attribute 'value': 'heavy'"),
+        (real("mass", "NaN"), "a finite number is needed, found 'NaN'"),
+        (real("mass", 8, "m"), "unit 'm' cannot be converted to 'kg'"),
+        (real("mass", 8, "stone of old"), "cannot be converted"),
+        (real("label", 8), "is of type float, its variable is of type str"),
+        ('<ssv:Parameter name="mass"/>', "line 5: Element 'ssv:Parameter'"),
+        ('<ssv:Parameter name="count"><ssv:Enumeration value="x"/></ssv:Parameter>', "item 'x'"),
+        ('<ssv:Parameter name="on"><ssv:Boolean value="yes"/></ssv:Parameter>', "yes"),
+    ],
+)
+def test_wrong_values_are_named(values: str, said: str, yard: Yard, tmp_path: Path) -> None:
+    members = {"resources/hull.ssv": parameter_set(values)}
+    message = refused(yard.package(tmp_path / "x.ssp", members=members))
+    assert message.startswith("x.ssp: resources/hull.ssv: line ")
+    assert said in message
+
+
+def test_version_2_has_no_schema_here_but_nothing_unknown_passes(
+    yard: Yard, tmp_path: Path
+) -> None:
+    second = MINIMAL.replace('"Minimal" version="1.0"', '"Minimal" version="2.0"')
+    array = second.replace("<ssc:Real/>", '<ssc:Float64/><ssc:Dimension size="3"/>', 1)
+    strange = second.replace('name="damper"', 'name="damper" speed="9"')
+    nameless = second.replace('name="damper" ', "")
+    for index, (ssd, said) in enumerate(
+        [
+            (array, "Dimension"),
+            (strange, "unknown attribute 'speed'"),
+            (nameless, "attribute 'name' is missing"),
+        ]
+    ):
+        assert said in refused(yard.package(tmp_path / f"{index}.ssp", ssd))
+
+
+def test_connections_of_parameters_are_not_supported(yard: Yard, tmp_path: Path) -> None:
+    ssd = MINIMAL.replace("</ssd:Connectors></ssd:Component>", TUNED + "</ssd:Component>")
+    ssd = ssd.replace(THERE, THERE + FORWARD)
+    message = refused(yard.package(tmp_path / "x.ssp", ssd))
+    assert "connections of kind 'parameter' are not supported" in message
+
+
+def test_a_value_for_a_connector_of_a_system_is_not_supported(yard: Yard, tmp_path: Path) -> None:
+    ssd = nested(before=bound(real("sub.in", 1.0)))
+    assert "'sub.in' is a connector of a system" in refused(yard.package(tmp_path / "x.ssp", ssd))
+
+
+def test_a_connection_that_leads_back_to_itself_is_refused(yard: Yard, tmp_path: Path) -> None:
+    ring = """<ssd:System name="{}"><ssd:Connectors>
+    <ssd:Connector name="in" kind="input"><ssc:Real/></ssd:Connector>
+    <ssd:Connector name="out" kind="output"><ssc:Real/></ssd:Connector></ssd:Connectors>
+    <ssd:Connections><ssd:Connection startConnector="in" endConnector="out"/></ssd:Connections></ssd:System>"""
+    wires = """<ssd:Connection startElement="a" startConnector="out" endElement="b" endConnector="in"/>
+    <ssd:Connection startElement="b" startConnector="out" endElement="a" endConnector="in"/>
+    <ssd:Connection startElement="b" startConnector="out" endElement="damper" endConnector="v"/>"""
+    ssd = description(system(ring.format("a") + ring.format("b") + DAMPER, wires))
+    assert "leads back to itself" in refused(yard.package(tmp_path / "x.ssp", ssd))
+
+
+def test_cyclic_and_deep_references_are_refused(yard: Yard, tmp_path: Path) -> None:
+    itself = '<ssd:Component name="sub" type="application/x-ssp-definition" source="{}"/>'
+    ssd = description(system(HULL + itself.format("resources/a.ssd")))
+    members = {
+        "resources/a.ssd": description(system(itself.format("b.ssd"))),
+        "resources/b.ssd": description(system(itself.format("a.ssd"))),
+    }
+    message = refused(yard.package(tmp_path / "x.ssp", ssd, members))
+    assert "resources/a.ssd refers to itself" in message
+    deep = DAMPER
+    for index in range(40):
+        deep = f'<ssd:System name="s{index}"><ssd:Elements>{deep}</ssd:Elements></ssd:System>'
+    message = refused(yard.package(tmp_path / "y.ssp", description(system(deep))))
+    assert "systems nest deeper than" in message
+
+
+def test_references_that_double_at_each_level_end(yard: Yard, tmp_path: Path) -> None:
+    two = "".join(
+        f'<ssd:Component name="{n}" type="application/x-ssp-definition" source="{{0}}.ssd"/>'
+        for n in "ab"
+    )
+    members: dict[str, str | bytes] = {
+        f"{level}.ssd": description(system(two.format(level + 1))) for level in range(1, 20)
+    }
+    members["20.ssd"] = description(system(DAMPER))
+    path = yard.package(tmp_path / "x.ssp", description(system(two.format(1))), members)
+    begun = time.perf_counter()
+    assert "more than 1000 FMUs" in refused(path)
+    assert time.perf_counter() - begun < 60.0
+
+
+BOMB = """<?xml version="1.0"?><!DOCTYPE x [<!ENTITY a "aaaaaaaaaa">
+<!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;&a;&a;"><!ENTITY c "&b;&b;&b;&b;&b;&b;&b;&b;&b;&b;">
+<!ENTITY d "&c;&c;&c;&c;&c;&c;&c;&c;&c;&c;"><!ENTITY e "&d;&d;&d;&d;&d;&d;&d;&d;&d;&d;">]>"""
+OUTSIDE = """<?xml version="1.0"?><!DOCTYPE x [<!ENTITY e SYSTEM "{}">]>"""
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])
+@pytest.mark.parametrize("kind", ["bomb", "file"])
+@pytest.mark.parametrize("place", ["SystemStructure.ssd", "resources/hull.ssv"])
+def test_entities_are_refused(
+    encoding: str, kind: str, place: str, yard: Yard, tmp_path: Path
+) -> None:
+    secret = tmp_path / "secret.txt"
+    secret.write_text("do not read", "utf-8")
+    head = BOMB if kind == "bomb" else OUTSIDE.format(secret.as_uri())
+    text = {"SystemStructure.ssd": MINIMAL, "resources/hull.ssv": EIGHT}[place]
+    text = text.replace('<?xml version="1.0" encoding="UTF-8"?>', "").replace(
+        'name="', 'description="&e;" name="', 1
+    )
+    members = {place: (head + text).encode(encoding)}
+    message = refused(yard.package(tmp_path / "x.ssp", members=members))
+    assert "DOCTYPE" in message or "not XML" in message
+    assert "do not read" not in message
+
+
+def test_a_package_cut_off_anywhere_is_refused(yard: Yard, tmp_path: Path) -> None:
+    whole = yard.package(tmp_path / "x.ssp").read_bytes()
+    cut = tmp_path / "cut.ssp"
+    for length in [*range(64), *range(64, len(whole) - 1, 997), len(whole) - 1]:
+        cut.write_bytes(whole[:length])
+        refused(cut)
+
+
+@pytest.mark.parametrize("name", ["../evil.ssv", "/tmp/evil.ssv", "a/../../evil.ssv"])
+def test_members_outside_the_folder_are_refused(name: str, yard: Yard, tmp_path: Path) -> None:
+    path = yard.package(tmp_path / "x.ssp", members={name: "evil"})
+    assert "would be unpacked outside" in refused(path)
+    assert not list(tmp_path.rglob("evil*"))
+
+
+def test_a_zip_without_description_and_a_text_are_no_packages(tmp_path: Path) -> None:
+    with zipfile.ZipFile(tmp_path / "a.ssp", "w") as archive:
+        archive.writestr("readme.txt", "hello")
+    (tmp_path / "b.ssp").write_text("hello", "utf-8")
+    assert "there is no SystemStructure.ssd in it" in refused(tmp_path / "a.ssp")
+    for name in ("b.ssp", "none.ssp", "."):
+        refused(tmp_path / name)
+
+
+@settings(
+    max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
+@given(
+    names=st.lists(
+        st.text(st.characters(exclude_categories=("Cs", "Cc"), exclude_characters="\ufffe\uffff"), min_size=1, max_size=8),
+        min_size=2, max_size=2, unique=True,
+    )
+)  # fmt: skip
+def test_components_of_any_name_run(names: list[str], yard: Yard, tmp_path: Path) -> None:
+    ssd = MINIMAL
+    for old, new in zip(("hull", "damper"), names, strict=True):
+        for word in ("name", "startElement", "endElement"):
+            ssd = ssd.replace(f'{word}="{old}"', f"{word}={quoteattr(new)}")
+    path = yard.package(tmp_path / "x.ssp", ssd)
+    components = read_ssp(path).rig.file.components
+    assert len(components) == 2
+    assert all(name.isascii() and name.isidentifier() for name in components)
+
+
+def test_names_that_become_equal_are_kept_apart(yard: Yard, tmp_path: Path) -> None:
+    ssd = MINIMAL.replace('"hull"', '"a-b"').replace('"damper"', '"a b"')
+    path = yard.package(tmp_path / "x.ssp", ssd)
+    assert list(read_ssp(path).rig.file.components) == ["a_b", "a_b_2"]
+    assert run(path)["a_b.v"] == pytest.approx(speed(8.0), rel=1e-13)
+
+
+def test_ten_thousand_connectors_are_read_in_bounded_time(yard: Yard, tmp_path: Path) -> None:
+    many = "".join(
+        f'<ssd:Connector name="c{i}" kind="output"><ssc:Real/>'
+        '<ssd:ConnectorGeometry x="0" y="0"/></ssd:Connector>'
+        for i in range(10_000)
+    )
+    inner = f'<ssd:System name="many"><ssd:Connectors>{many}</ssd:Connectors></ssd:System>'
+    values = "".join(real(f"many.x{i}", i) for i in range(2_000))
+    ssd = description(system(HULL + DAMPER + inner, THERE, before=bound(values)))
+    path = yard.package(tmp_path / "x.ssp", ssd)
+    begun = time.perf_counter()
+    read = read_ssp(path)
+    assert time.perf_counter() - begun < 20.0
+    assert list(read.rig.file.components) == ["hull", "damper"]
+
+
+def test_nested_systems_may_have_the_same_names(yard: Yard, tmp_path: Path) -> None:
+    sub = SUB.format(elements=DAMPER, inner=linear(2.0), bindings="")
+    wires = TO_SUB.format(outer="")
+    twice = (sub + sub.replace('name="sub"', 'name="sub_damper"')).replace(BINDING, "")
+    ssd = description(
+        system(twice + DAMPER.replace('"damper"', '"sub_damper_damper"') + HULL, wires)
+    )
+    names = list(read_ssp(yard.package(tmp_path / "x.ssp", ssd)).rig.file.components)
+    assert names == ["sub_damper", "sub_damper_damper", "sub_damper_damper_2", "hull"]

@@ -1,0 +1,138 @@
+"""SSP packages written: valid, the same bytes each time, and read back as the same rig."""
+
+from __future__ import annotations
+
+import zipfile
+from pathlib import Path
+
+import pytest
+from fmpy.ssp.ssd import read_ssd, validate_tree
+from lxml import etree
+
+from seatrial.cosim.master import Master
+from seatrial.cosim.rig import load_rig
+from seatrial.cosim.ssp.reading import read_ssp
+from seatrial.cosim.ssp.tools import findings
+from seatrial.cosim.system import System, assemble
+from seatrial.errors import InputError
+from seatrial.trials.export import export_ssp
+from seatrial.trials.trial import load_trial
+
+from .ssp_files import BOATS
+
+RIG = """
+step = "10 ms"
+[components]
+compass = {{ fmu = "boats.py:Compass" }}
+hull = {{ fmu = "{hull}", set = {{ mass = "4000 g", label = "a & <b>" }}, step = "20 ms" }}
+damper = {{ fmu = "boats.py:Damper" }}
+[connections]
+"hull.v" = {{ to = "damper.v", factor = 3.0, offset = 0.1 }}
+"damper.force" = "hull.force"
+"compass.angle" = "hull.angle"
+"""
+
+
+@pytest.fixture
+def rig(write) -> Path:
+    write("boats.py", BOATS)
+    return write("quay.toml", RIG.format(hull="boats.py:Hull"))
+
+
+def rows(system: System, steps: int) -> list[dict[str, object]]:
+    """Return every output after each step."""
+    try:
+        master = Master(system)
+        master.initialise()
+        found = []
+        for _ in range(steps):
+            master.step()
+            names = [".".join(name) for name in master.names]
+            found.append(dict(zip(names, master.signals, strict=True)))
+        return found
+    finally:
+        system.free()
+
+
+def test_a_package_reads_back_as_the_rig_it_was(rig: Path, tmp_path: Path) -> None:
+    path, notes = export_ssp(str(rig), tmp_path / "x.ssp")
+    read = read_ssp(path)
+    assert (read.start, read.stop, read.notes) == ("0.0 s", "10.0 s", ())
+    assert rows(assemble(read.rig), 40) == rows(assemble(load_rig(str(rig))), 40)
+    assert any("'jacobi' cannot be said" in note for note in notes)
+    assert any("no stop time: the package says 10 s" in note for note in notes)
+
+
+def test_the_same_rig_gives_the_same_bytes(rig: Path, tmp_path: Path) -> None:
+    first, _ = export_ssp(str(rig), tmp_path / "a.ssp")
+    second, _ = export_ssp(str(rig), tmp_path / "b.ssp")
+    assert first.read_bytes() == second.read_bytes()
+
+
+def test_a_package_fits_the_schemas_and_says_what_the_rig_says(rig: Path, tmp_path: Path) -> None:
+    path, _ = export_ssp(str(rig), tmp_path / "x.ssp")
+    with zipfile.ZipFile(path) as archive:
+        assert {info.date_time for info in archive.infolist()} == {(1980, 1, 1, 0, 0, 0)}
+        assert max(info.extract_version for info in archive.infolist()) <= 20  # no ZIP64
+        validate_tree(
+            etree.fromstring(archive.read("resources/hull.ssv")),
+            "SystemStructureParameterValues.xsd",
+        )
+        text = archive.read("SystemStructure.ssd").decode()
+    described = read_ssd(str(path))  # FMPy validates what it reads
+    components = {c.name: c for c in described.system.elements}
+    inputs = [c.name for c in components["hull"].connectors if c.kind == "input"]
+    assert inputs == ["force", "angle"]  # the connected ones
+    assert '<ssc:LinearTransformation factor="3.0" offset="0.1"/>' in text
+    assert '<ssc:LinearTransformation factor="0.017453292519943295" offset="0.0"/>' in text
+    assert text.count('suppressUnitConversion="true"') == 2
+    assert '<osp:StepSizeHint value="0.02"/>' in text
+    assert '<ssc:BaseUnit rad="1" factor="0.017453292519943295"/>' in text
+
+
+def test_nothing_is_found_against_a_package_of_ours_but_what_tools_leave_out(
+    rig: Path, tmp_path: Path
+) -> None:
+    path, _ = export_ssp(str(rig), tmp_path / "x.ssp")
+    assert [one for one in findings(path) if one.rejects] == []
+
+
+def test_an_fmu_of_somebody_else_is_copied_as_it_is(write, tmp_path: Path) -> None:
+    write("boats.py", BOATS)
+    plain = write("plain.toml", RIG.format(hull="boats.py:Hull"))
+    with zipfile.ZipFile(export_ssp(str(plain), tmp_path / "a.ssp")[0]) as archive:
+        data = archive.read("resources/hull.fmu")
+    (tmp_path / "other.fmu").write_bytes(data)
+    other = write("other.toml", RIG.format(hull="other.fmu"))
+    path, notes = export_ssp(str(other), tmp_path / "b.ssp")
+    with zipfile.ZipFile(path) as archive:
+        assert archive.read("resources/hull.fmu") == data
+    assert any("other.fmu is copied as it is" in note for note in notes)
+
+
+def test_a_trial_carries_its_settings_and_names_what_is_left_out(rig: Path, write) -> None:
+    trial = write(
+        "dash.toml",
+        'rig = "quay.toml"\nstart = "1 s"\nstop = "3 s"\nset = { "hull.mass" = "5 kg" }\n'
+        '[[events]]\nat = "2 s"\nset = { "hull.on" = true }\n'
+        '[[criteria]]\nname = "slow"\ncheck = "hull.v < 2 m/s"\n',
+    )
+    path, notes = export_ssp(str(trial), trial.with_name("x.ssp"))
+    again = load_trial(str(path))
+    assert (again.start_ns, again.stop_ns) == (10**9, 3 * 10**9)
+    assert again.rig.file.components["hull"].set["mass"] == 5.0
+    assert sum("SSP has none" in note for note in notes) == 2
+
+
+def test_seeds_travel_as_parameters(tmp_path: Path) -> None:
+    path, _ = export_ssp("hydrone", tmp_path / "x.ssp")
+    read = read_ssp(path).rig.file.components
+    seeds = {name: read[name].set["seed"] for name in ("gnss", "compass", "imu")}
+    assert len(set(seeds.values())) == 3
+    assert all(isinstance(seed, float) and seed > 0.0 for seed in seeds.values())
+
+
+def test_a_name_that_is_neither_trial_nor_rig_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="did you mean 'hydrone'"):
+        export_ssp("hydron", tmp_path / "x.ssp")
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,192 @@
+"""Archives that want to do harm, or are damaged: refused, and nothing is left behind."""
+
+from __future__ import annotations
+
+import stat
+import struct
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from seatrial.errors import InputError
+from seatrial.fmi import archive
+from seatrial.fmi.archive import content_hash, unpacked
+
+
+@pytest.fixture
+def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """A cache of its own; afterwards nothing but whole folders may be in it."""
+    folder = tmp_path / "cache"
+    monkeypatch.setenv("SEATRIAL_CACHE", str(folder))
+    yield folder
+    assert not list(folder.rglob("unpacking-*"))
+    assert {p.name for p in tmp_path.iterdir()} <= {"cache", "x.fmu"}
+
+
+def zipped(path: Path, *members: tuple[str | zipfile.ZipInfo, bytes]) -> Path:
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as file:
+        for name, data in members:
+            file.writestr(name, data)
+    return path
+
+
+def refused(path: Path, message: str) -> None:
+    with pytest.raises(InputError, match=message) as caught:
+        unpacked(path, "FMU")
+    assert str(path) in str(caught.value)
+    assert not list((path.parent / "cache" / "unpacked").iterdir())
+
+
+def test_what_is_in_it_is_unpacked_once(cache: Path, tmp_path: Path) -> None:
+    members = {"a.txt": b"text", "é/ü": b"\0\xff", "folder/": b"", "folder/deep/er": b""}
+    path = zipped(tmp_path / "x.fmu", *members.items())
+    folder = unpacked(path, "FMU")
+    found = {p.relative_to(folder).as_posix(): p for p in folder.rglob("*")}
+    assert found.keys() == {"a.txt", "é", "é/ü", "folder", "folder/deep", "folder/deep/er"}
+    assert all(found[name].read_bytes() == data for name, data in members.items() if name[-1] != "/")
+    (folder / "a.txt").touch()
+    before = (folder / "a.txt").stat().st_mtime_ns
+    assert unpacked(path, "FMU") == folder
+    assert (folder / "a.txt").stat().st_mtime_ns == before
+
+
+OUTSIDE = ("../evil", "a/../../evil", "/etc/evil", "//host/evil", "C:evil", "c:/evil", "..\\evil", "a\\b", "..")
+
+
+@pytest.mark.parametrize("name", OUTSIDE)
+def test_members_that_lead_outside(name: str, cache: Path, tmp_path: Path) -> None:
+    refused(zipped(tmp_path / "x.fmu", ("fine", b""), (name, b"x")), "outside its folder")
+
+
+def test_members_that_are_no_plain_files(cache: Path, tmp_path: Path) -> None:
+    link = zipfile.ZipInfo("link")
+    link.external_attr = (stat.S_IFLNK | 0o777) << 16
+    refused(zipped(tmp_path / "x.fmu", (link, b"/etc/passwd")), "'link' is a symbolic link")
+    link.external_attr = (stat.S_IFIFO | 0o600) << 16
+    refused(zipped(tmp_path / "x.fmu", (link, b"")), "'link' is no plain file")
+
+
+@pytest.mark.filterwarnings("ignore:Duplicate name")
+@pytest.mark.parametrize(
+    ("names", "message"),
+    [
+        (("a", "a"), "two members are called 'a'"),
+        (("a/b", "a/./b"), "two members are called"),
+        (("a", "a/b"), "'a' is a file and a folder"),
+        (("n" * 256,), "is no name of a file"),
+        (("é" * 128,), "is no name of a file"),
+        (("a/" * 600 + "a",), "is no name of a file"),
+        ((".",), "is no name of a file"),
+    ],
+)
+def test_names_that_no_folder_can_hold(
+    names: tuple[str, ...], message: str, cache: Path, tmp_path: Path
+) -> None:
+    refused(zipped(tmp_path / "x.fmu", *((name, b"") for name in names)), message)
+
+
+def test_a_name_with_a_nul_is_refused(cache: Path, tmp_path: Path) -> None:
+    path = zipped(tmp_path / "x.fmu", ("good_name", b""))
+    path.write_bytes(path.read_bytes().replace(b"good_name", b"good\0name"))
+    refused(path, "is no name of a file")
+
+
+def patched(path: Path, signature: bytes, offset: int, layout: str, value: int) -> Path:
+    """Change a number in every zip record of a kind."""
+    data = bytearray(path.read_bytes())
+    place = data.find(signature)
+    while place >= 0:
+        struct.pack_into(layout, data, place + offset, value)
+        place = data.find(signature, place + 4)
+    path.write_bytes(bytes(data))
+    return path
+
+
+LOCAL, CENTRAL = b"PK\3\4", b"PK\1\2"
+
+
+def test_encrypted_members(cache: Path, tmp_path: Path) -> None:
+    path = patched(zipped(tmp_path / "x.fmu", ("secret", b"x")), CENTRAL, 8, "<H", 1)
+    refused(path, "'secret' is encrypted")
+
+
+def test_other_compressions(cache: Path, tmp_path: Path) -> None:
+    info = zipfile.ZipInfo("a")
+    info.compress_type = zipfile.ZIP_BZIP2
+    refused(zipped(tmp_path / "x.fmu", (info, b"x")), "compressed by method 12")
+
+
+def test_a_bomb_that_says_so(cache: Path, tmp_path: Path, monkeypatch) -> None:
+    path = zipped(tmp_path / "x.fmu", *((f"{i}", bytes(2**20)) for i in range(8)))
+    assert path.stat().st_size < 10_000
+    monkeypatch.setattr(archive, "LARGEST_MEMBER", 2**20 - 1)
+    refused(path, f"'0' has {2**20} bytes unpacked, more than {2**20 - 1}")
+    monkeypatch.setattr(archive, "LARGEST_MEMBER", 2**20)
+    monkeypatch.setattr(archive, "LARGEST_ARCHIVE", 8 * 2**20 - 1)
+    refused(path, "its members have more than")
+    monkeypatch.setattr(archive, "LARGEST_ARCHIVE", 8 * 2**20)
+    assert len(list(unpacked(path, "FMU").iterdir())) == 8
+    monkeypatch.setattr(archive, "MOST_MEMBERS", 7)
+    with pytest.raises(InputError, match="8 members, more than 7"):
+        unpacked(path, "FMU")
+
+
+def test_a_bomb_that_lies_writes_no_more_than_it_says(cache: Path, tmp_path: Path, monkeypatch) -> None:
+    """64 MB that declare 1000 bytes: the checksum of what was said is wrong."""
+    path = zipped(tmp_path / "x.fmu", ("bomb", bytes(64 * 2**20)))
+    patched(patched(path, CENTRAL, 24, "<I", 1000), LOCAL, 22, "<I", 1000)
+    written: list[int] = []
+    copy = archive.shutil.copyfileobj
+
+    def counted(source, target, length: int) -> None:
+        try:
+            copy(source, target, length)
+        finally:
+            written.append(target.tell())
+
+    monkeypatch.setattr(archive.shutil, "copyfileobj", counted)
+    refused(path, "not an FMU: Bad CRC-32")
+    assert written
+    assert max(written) <= 1000
+
+
+WHOLE = [("modelDescription.xml", b"<a/>" * 50), ("binaries/linux64/x.so", bytes(range(256)))]
+
+
+def test_truncated_at_any_byte(cache: Path, tmp_path: Path) -> None:
+    path = zipped(tmp_path / "x.fmu", *WHOLE)
+    whole = path.read_bytes()
+    for length in range(len(whole)):
+        path.write_bytes(whole[:length])
+        refused(path, "not an FMU")
+
+
+@settings(max_examples=300, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(place=st.integers(0, 499), value=st.integers(0, 255))
+def test_a_damaged_byte_is_refused_or_harmless(
+    place: int, value: int, cache: Path, tmp_path: Path
+) -> None:
+    path = zipped(tmp_path / "x.fmu", *WHOLE)
+    whole = bytearray(path.read_bytes())
+    assert len(whole) >= 500
+    whole[place] = value
+    path.write_bytes(bytes(whole))
+    try:
+        folder = unpacked(path, "FMU")
+    except InputError as error:
+        assert str(path) in str(error)
+    else:
+        assert folder == cache / "unpacked" / content_hash(path)[:24]
+    assert {p.name for p in tmp_path.iterdir()} <= {"cache", "x.fmu"}
+
+
+def test_files_that_are_not_there(cache: Path, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"gone\.fmu: No such file"):
+        unpacked(tmp_path / "gone.fmu", "FMU")
+    (tmp_path / "x.fmu").mkdir()
+    with pytest.raises(InputError, match=r"x\.fmu: Is a directory"):
+        unpacked(tmp_path / "x.fmu", "FMU")
