@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from seatrial.errors import InputError
-from seatrial.units import conversion, quantity, unit
+from seatrial.units import Unit, conversion, defined_unit, quantity, unit
 
 BASE = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 FORCE, ENERGY = {"kg": 1, "m": 1, "s": -2}, {"kg": 1, "m": 2, "s": -2}
@@ -379,3 +379,70 @@ def test_anything_like_a_unit_is_one_or_refused(text: str) -> None:
     assert 0.0 <= measure.factor < math.inf
     assert measure.exact_factor > 0
     assert set(measure.exponents) <= set(BASE)
+
+
+# ---------------------------------------------------------------------- units that FMUs define
+
+
+def test_a_definition_that_says_what_the_name_says_is_exact() -> None:
+    for text in ("deg", "rpm", "rev/min", "1/min", "m/s2", "K.s", "degC", "kn", "degF"):
+        named = unit(text)
+        for powers in (named.exponents, {n: p for n, p in named.exponents.items() if n != "rad"}):
+            assert defined_unit(text, {**powers, "mol": 0}, named.factor, named.offset) is named
+    assert conversion(defined_unit("deg", {}, math.pi / 180, 0.0), "rad") == conversion(
+        "deg", "rad"
+    )
+
+
+def test_a_definition_is_the_truth_for_its_name() -> None:
+    strange = defined_unit("kn", {"m": 1, "s": -1}, 2.0, 0.0)
+    assert conversion(strange, "m/s") == (2.0, 0.0)
+    assert conversion(strange, defined_unit("kn", {"m": 1, "s": -1}, 4.0, 0.0)) == (0.5, 0.0)
+    assert quantity("10 m/s", strange) == 5.0
+    assert quantity("10 kn", strange) == 10.0  # whoever writes for this port means its unit
+    assert quantity(3, strange) == 3.0
+
+
+def test_definitions_with_an_offset() -> None:
+    reaumur = defined_unit("degRe", {"K": 1}, 1.25, 273.15)
+    assert quantity("80 degRe", reaumur) == 80.0
+    assert conversion(reaumur, "degC") == (1.25, 0.0)
+    assert quantity("100 degC", reaumur) == 80.0
+    assert conversion("K", reaumur) == (0.8, -218.52)
+
+
+def test_radians_may_be_left_out_of_definitions_only() -> None:
+    turn = defined_unit("lap", {}, 6.25, 0.0)
+    assert conversion(turn, "rad") == (6.25, 0.0)
+    assert conversion(defined_unit("lap", {"rad": 1}, 6.25, 0.0), turn) == (1.0, 0.0)
+    # Hz is no angle per time by its name, whoever defines it.
+    hertz = defined_unit("Hz", {"s": -1}, 1.0, 0.0)
+    with pytest.raises(InputError, match="unit 'Hz' cannot be converted to 'rad/s'"):
+        conversion(hertz, defined_unit("rad/s", {"s": -1}, 1.0, 0.0))
+    with pytest.raises(InputError, match="unit 'lap' cannot be converted to 'm'"):
+        conversion(turn, "m")
+
+
+def test_names_need_to_be_known_only_if_they_differ() -> None:
+    assert conversion("smoot", "smoot") == (1.0, 0.0)
+    assert quantity("5 smoot", "smoot") == 5.0
+    assert quantity(5, "smoot") == 5.0
+    with pytest.raises(
+        InputError, match=r"'smoot' is not a unit .*; unit 'm' cannot be converted to 'smoot'"
+    ):
+        conversion("m", "smoot")
+    with pytest.raises(InputError, match="'5' has no unit; write for example '5 smoot'"):
+        quantity("5", "smoot")
+
+
+@pytest.mark.parametrize(("factor", "offset"), [(0.0, 0.0), (-1.0, 0.0), (math.nan, 0.0), (math.inf, 0.0), (1.0, math.inf)])  # fmt: skip
+def test_definitions_that_convert_nothing(factor: float, offset: float) -> None:
+    with pytest.raises(InputError, match="unit 'm' has factor"):
+        defined_unit("m", {"m": 1}, factor, offset)
+
+
+@given(st.floats(1e-30, 1e30), st.floats(1e-30, 1e30), FACTORS)
+def test_definitions_convert_by_the_ratio_of_their_factors(a: float, b: float, powers) -> None:
+    one, two = (defined_unit(f"own {f!r}", powers, f, 0.0) for f in (a, b))
+    assert isinstance(one, Unit)
+    assert conversion(one, two) == (pytest.approx(a / b, rel=1e-15), 0.0)

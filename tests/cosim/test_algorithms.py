@@ -292,7 +292,7 @@ def test_a_step_that_no_size_helps_ends_the_run(bench: Bench) -> None:
     for _ in range(4):
         master.step()
     with pytest.raises(
-        SimulationError, match=r"(?s)coarse: .*is too long.*also in steps of 0\.0015625 s"
+        SimulationError, match=r"(?s)coarse: .*is too long.*in steps down to 0\.0015625 s"
     ):
         master.step()
 

@@ -136,3 +136,11 @@ def test_a_name_that_is_neither_trial_nor_rig_is_refused(tmp_path: Path) -> None
     with pytest.raises(InputError, match="did you mean 'hydrone'"):
         export_ssp("hydron", tmp_path / "x.ssp")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_package_written_again_is_the_same_system(rig: Path, tmp_path: Path) -> None:
+    first, _ = export_ssp(str(rig), tmp_path / "a.ssp")
+    with pytest.raises(InputError, match="would replace what it is made from"):
+        export_ssp(str(first), first)
+    second, _ = export_ssp(str(first), tmp_path / "b.ssp")
+    assert rows(assemble(read_ssp(second).rig), 10) == rows(assemble(read_ssp(first).rig), 10)

@@ -43,7 +43,11 @@ def test_decay_is_exact(fmi2) -> None:
 def test_equal_to_fmpys_own_simulation(fmi2, native_fmu) -> None:
     values = {"k": 1.3, "internal_step": 0.025}
     result = fmpy.simulate_fmu(
-        str(native_fmu("fmi2")), stop_time=2.0, output_interval=0.1, start_values=values, output=["x"]
+        str(native_fmu("fmi2")),
+        stop_time=2.0,
+        output_interval=0.1,
+        start_values=values,
+        output=["x"],
     )
     instance = fmi2(**values)
     own = read(instance, "x")
@@ -103,7 +107,9 @@ def test_what_a_refused_step_says(fmi2, trouble: int, message: str, kind: type) 
 
 
 def test_a_bad_start_and_a_warning(fmi2, caplog) -> None:
-    with pytest.raises(SimulationError, match="fmi2EnterInitializationMode returned error: there is no start"):
+    with pytest.raises(
+        SimulationError, match="fmi2EnterInitializationMode returned error: there is no start"
+    ):
         fmi2(trouble=BAD_START)
     with caplog.at_level(logging.INFO, "seatrial.fmu.boat"):
         fmi2(trouble=WARN).step(0.0, 0.1)
@@ -155,6 +161,11 @@ def test_what_c_would_cut_is_refused(fmi2, name: str, value, message: str) -> No
 
 
 def test_a_missing_binary_is_named_with_those_there(native_fmu, tmp_path: Path) -> None:
-    other_machine = changed(native_fmu("fmi2"), tmp_path / "x.fmu", ('Identifier="fmi2"', 'Identifier="y"'))
-    with pytest.raises(InputError, match=rf"x\.fmu: cannot be loaded .*{fmpy.platform}; the FMU has binaries for {fmpy.platform}"):
+    other_machine = changed(
+        native_fmu("fmi2"), tmp_path / "x.fmu", ('Identifier="fmi2"', 'Identifier="y"')
+    )
+    with pytest.raises(
+        InputError,
+        match=rf"x\.fmu: cannot be loaded .*{fmpy.platform}; the FMU has binaries for {fmpy.platform}",
+    ):
         open_instance(load_fmu(other_machine), "x")

@@ -135,7 +135,9 @@ def test_what_the_description_says(native_fmu) -> None:
     assert "matrix[4,1]" not in fmu.variables
     assert "tick" not in fmu.variables
     assert fmu.notes == ("clocks, and variables that belong to one, are no signals here: tick",)
-    assert fmu.feedthrough["transpose[2,3]"] == [f"matrix[{r},{c}]" for r in (1, 2, 3) for c in (1, 2)]
+    assert fmu.feedthrough["transpose[2,3]"] == [
+        f"matrix[{r},{c}]" for r in (1, 2, 3) for c in (1, 2)
+    ]
     assert "x" not in fmu.feedthrough
 
 
@@ -187,7 +189,9 @@ def test_early_returns_are_gone_on_from(fmi3) -> None:
 
 def test_a_step_that_gets_no_further_ends(fmi3) -> None:
     instance = fmi3(longest_step=-1.0)
-    with pytest.raises(SimulationError, match=r"returned early 10000 times and got no further than 0\.0 s"):
+    with pytest.raises(
+        SimulationError, match=r"returned early 10000 times and got no further than 0\.0 s"
+    ):
         instance.step(0.0, 0.1)
 
 
@@ -218,7 +222,9 @@ def test_inputs_that_change_together_are_one_event(native_fmu) -> None:
 def test_an_fmu_that_wants_to_end(fmi3) -> None:
     instance = fmi3(end_time=0.15)
     instance.step(0.0, 0.1)
-    with pytest.raises(SimulationError, match=r"boat: the FMU asks to end the simulation at t = 0\.2 s"):
+    with pytest.raises(
+        SimulationError, match=r"boat: the FMU asks to end the simulation at t = 0\.2 s"
+    ):
         instance.step(0.1, 0.1)
 
 
@@ -234,5 +240,7 @@ def test_a_discarded_step(fmi3) -> None:
 
 def test_an_instance_that_cannot_be_made(native_fmu, tmp_path: Path) -> None:
     path = changed(native_fmu("fmi3"), tmp_path / "x.fmu", ("{fmi3}", "{other}"))
-    with pytest.raises(SimulationError, match=r"x\.fmu could not be instantiated: early return and"):
+    with pytest.raises(
+        SimulationError, match=r"x\.fmu could not be instantiated: early return and"
+    ):
         open_instance(load_fmu(path), "boat")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
 import zipfile
 from pathlib import Path
@@ -45,7 +46,9 @@ def refused(path: Path, message: str) -> None:
 )  # fmt: skip
 def test_document_types_are_refused_before_they_act(text: str | bytes, tmp_path: Path) -> None:
     begun = time.perf_counter()
-    refused(described_fmu(tmp_path / "x.fmu", text), r"modelDescription\.xml: (has a document|not XML)")
+    refused(
+        described_fmu(tmp_path / "x.fmu", text), r"modelDescription\.xml: (has a document|not XML)"
+    )
     assert time.perf_counter() - begun < 2.0
 
 
@@ -123,7 +126,10 @@ def test_wrong_attributes(before: str, after: str, message: str, tmp_path: Path)
 def test_wrong_arrays(before: str, after: str, message: str | None, tmp_path: Path) -> None:
     text = FMI3.replace(before, after, 1)
     if "0g" in after:
-        text = FMI3.replace('causality="input"><Dimension start="3"/><Start value=""/>' , f'causality="input"><Dimension start="3"/>{after}')
+        text = FMI3.replace(
+            'causality="input"><Dimension start="3"/><Start value=""/>',
+            f'causality="input"><Dimension start="3"/>{after}',
+        )
     assert text != FMI3
     path = described_fmu(tmp_path / "x.fmu", text)
     if message is None:
@@ -135,28 +141,47 @@ def test_wrong_arrays(before: str, after: str, message: str | None, tmp_path: Pa
 ELEMENTS = [e for e in etree.fromstring(FMI2.encode()).iter() if e.attrib]
 
 
-@settings(max_examples=200, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(
+    max_examples=200, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
 @given(which=st.integers(0, len(ELEMENTS) - 1), data=st.data())
 def test_any_attribute_may_be_missing_or_nonsense(which: int, data, tmp_path: Path) -> None:
     root = etree.fromstring(FMI2.encode())
     element = [e for e in root.iter() if e.attrib][which]
     name = data.draw(st.sampled_from(sorted(element.attrib)))
-    value = data.draw(st.sampled_from([None, "", "-1", "1e999", "true", "x/y", "99999999999999999999"]))
+    value = data.draw(
+        st.sampled_from([None, "", "-1", "1e999", "true", "x/y", "99999999999999999999"])
+    )
     if value is None:
         del element.attrib[name]
     else:
         element.set(name, value)
     path = described_fmu(tmp_path / "x.fmu", etree.tostring(root))
-    try:
-        load_fmu(path)
-    except InputError as error:
-        assert str(path) in str(error)
+    with contextlib.suppress(InputError):  # no other exception
+        assert load_fmu(path).variables
 
 
-ODD = ["a.b.c", "'a b'.c", 'say "x"', "der(x)", "x[1].y[2,3]", "été", "水", "a\tb", "a\nb", "100%s", "..", "[", " ", "a" * 5000]
+ODD = [
+    "a.b.c",
+    "'a b'.c",
+    'say "x"',
+    "der(x)",
+    "x[1].y[2,3]",
+    "été",
+    "水",
+    "a\tb",
+    "a\nb",
+    "100%s",
+    "..",
+    "[",
+    " ",
+    "a" * 5000,
+]
 
 
-@settings(max_examples=50, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(
+    max_examples=50, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
 @given(name=st.text(st.characters(exclude_categories=("Cs", "Cc")), min_size=1, max_size=20))
 def test_odd_names_are_names(name: str, native_fmu, tmp_path: Path) -> None:
     check_name(name, native_fmu, tmp_path)
@@ -188,14 +213,18 @@ def test_ten_thousand_variables(native_fmu, tmp_path: Path) -> None:
         f'<ScalarVariable name="out.a{i}.y[{k}]" valueReference="8" causality="output"><Real/></ScalarVariable>'
         for i in range(1000) for k in range(1, 6)
     )  # fmt: skip
-    path = changed(native_fmu("fmi2"), tmp_path / "many.fmu", ("</ModelVariables>", many + "</ModelVariables>"))
+    path = changed(
+        native_fmu("fmi2"), tmp_path / "many.fmu", ("</ModelVariables>", many + "</ModelVariables>")
+    )
     begun = time.perf_counter()
     fmu = load_fmu(path)
     instance = started(open_instance(fmu, "many"))
     names = [n for n, v in fmu.variables.items() if v.causality == "output" and n.startswith("out")]
     assert len(names) == 5000
     assert len(fmu.variables.ports["in"]) == 5000
-    assert [v.name for v in fmu.variables.ports["out.a7.y"]] == [f"out.a7.y[{k}]" for k in range(1, 6)]
+    assert [v.name for v in fmu.variables.ports["out.a7.y"]] == [
+        f"out.a7.y[{k}]" for k in range(1, 6)
+    ]
     instance.writer(["in.a999.u[5]"])([3.0])
     assert set(instance.reader(names)()) == {6.0}
     instance.free()

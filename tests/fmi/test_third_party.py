@@ -39,9 +39,10 @@ def values(master: Master, *names: str) -> list[object]:
     return [signals[name] for name in names]
 
 
+@pytest.mark.parametrize("isolated", ["true", "false"])
 @pytest.mark.parametrize("kind", ["fmi2", "fmi3"])
-def test_a_decay_in_a_rig(kind: str, rig) -> None:
-    master = rig(f'a = {{ fmu = "{kind}", set = {{ k = 0.5 }} }}')
+def test_a_decay_in_a_rig(kind: str, isolated: str, rig) -> None:
+    master = rig(f'a = {{ fmu = "{kind}", isolated = {isolated}, set = {{ k = 0.5 }} }}')
     for _ in range(40):
         master.step()
     assert values(master, "a.x") == [pytest.approx(math.exp(-2.0), rel=1e-13)]
@@ -64,9 +65,23 @@ def test_whole_arrays_and_every_type_cross_a_wire(rig) -> None:
         "\n".join(f'"a.out_{t}" = "b.in_{t}"' for t in ("Float64", "String", "Binary", "UInt8", "Boolean", "Int64", "Mode"))
         + '\n"a.out_Float64[3]" = "c.u"\n"a.out_Boolean[1]" = "c.b"\n"a.out_UInt8[2]" = "c.i"',
     )  # fmt: skip
-    assert values(master, "b.out_Float64[1]", "b.out_Float64[3]", "c.y", "c.c", "c.j") == [4.0, 12.0, 12.0, True, 28]
-    assert values(master, "b.out_String[2]", "b.out_Binary[1]", "b.out_Binary[3]") == ["é", b"\x00\xff", b"abc"]
-    assert values(master, "b.out_UInt8[2]", "b.out_Boolean[2]", "b.out_Mode") == [28, True, 5_000_000_000]
+    assert values(master, "b.out_Float64[1]", "b.out_Float64[3]", "c.y", "c.c", "c.j") == [
+        4.0,
+        12.0,
+        12.0,
+        True,
+        28,
+    ]
+    assert values(master, "b.out_String[2]", "b.out_Binary[1]", "b.out_Binary[3]") == [
+        "é",
+        b"\x00\xff",
+        b"abc",
+    ]
+    assert values(master, "b.out_UInt8[2]", "b.out_Boolean[2]", "b.out_Mode") == [
+        28,
+        True,
+        5_000_000_000,
+    ]
     assert values(master, "b.out_Int64[1]") == [4 * 9007199254740993]
     master.step()
     assert values(master, "b.out_Float64[1]") == [4.0]
@@ -80,7 +95,9 @@ def test_arrays_are_wired_by_index_whatever_the_order_of_declaration(rig) -> Non
 
 
 def test_a_value_that_does_not_fit_its_type_on_the_way(rig) -> None:
-    with pytest.raises(SimulationError, match=r"b\.in_UInt8\[1\]: 400 does not fit its type, 0 to 255"):
+    with pytest.raises(
+        SimulationError, match=r"b\.in_UInt8\[1\]: 400 does not fit its type, 0 to 255"
+    ):
         rig(
             'a = { fmu = "fmi3", set = { in_Int16 = 200 } }\nb = { fmu = "fmi3" }',
             '"a.out_Int16" = "b.in_UInt8"',
@@ -130,10 +147,15 @@ def test_units_that_nobody_defines(rig, native_fmu, tmp_path: Path) -> None:
         '"a.echo" = "b.speed"',
     )
     assert values(master, "b.echo") == [3.0]
-    with pytest.raises(InputError, match="echo to speed: 'smoot' is not a unit .* cannot be converted to 'smoots per blink'"):
+    with pytest.raises(
+        InputError,
+        match=r"echo to speed: 'smoot' is not a unit .* cannot be converted to 'smoots per blink'",
+    ):
         rig(f'a = {{ fmu = "{first}" }}\nb = {{ fmu = "{second}" }}', '"a.echo" = "b.speed"')
     with pytest.raises(InputError, match="unit 'knot_x' cannot be converted to 'kg'"):
-        kilo = changed(native_fmu("fmi2"), tmp_path / "kg.fmu", ('Real unit="knot_x"', 'Real unit="kg"'))
+        kilo = changed(
+            native_fmu("fmi2"), tmp_path / "kg.fmu", ('Real unit="knot_x"', 'Real unit="kg"')
+        )
         rig(f'a = {{ fmu = "fmi2" }}\nb = {{ fmu = "{kilo}" }}', '"a.echo" = "b.speed"')
 
 

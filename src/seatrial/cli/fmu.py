@@ -84,11 +84,11 @@ def describe(name: Named) -> None:
     if isinstance(found, Path):
         fmu = load_fmu(found)
         title, variables = fmu.description.description or found.name, fmu.variables
-        through = fmu.feedthrough
+        through, notes = fmu.feedthrough, fmu.notes
     else:
         instance = DirectInstance(found.component_class()(found.name))
         title, variables = summary(type(instance.component)), instance.variables
-        through = instance.feedthrough
+        through, notes = instance.feedthrough, ()
     console.print(f"[bold]{escape(name)}[/bold]: {escape(title)}", soft_wrap=True)
     table = Table(box=None, padding=(0, 2, 0, 0))
     for heading in ("variable", "causality", "type", "unit", "start", "min", "max", "description"):
@@ -98,6 +98,8 @@ def describe(name: Named) -> None:
     console.print(table)
     for output, inputs in through.items():
         console.print(f"{output} depends at once on {', '.join(inputs)}", soft_wrap=True)
+    for note in notes:
+        console.print(f"note: {escape(note)}", soft_wrap=True)
 
 
 def _cells(variable: Variable) -> list[str]:
@@ -144,8 +146,8 @@ def _problems(name: str) -> list[str]:
     with tempfile.TemporaryDirectory() as folder:
         source = find_source(name, Path.cwd())
         path = source if isinstance(source, Path) else build_fmu(source, Path(folder) / "x.fmu")
-        problems = list(validate_fmu(str(path)))
-        return problems or _run_once(load_fmu(path))
+        fmu = load_fmu(path)  # first: FMPy's checker trusts the file
+        return list(validate_fmu(str(path))) or _run_once(fmu)
 
 
 def _run_once(fmu: LoadedFmu) -> list[str]:

@@ -80,28 +80,27 @@ class Rollback:
         """Take a step in two halves; either is split again if it is discarded."""
         if depth > _HALVINGS or h_ns < 2:
             raise SimulationError(
-                f"{error}\n(also in steps of {h_ns / NS!r} s, from a restored state)"
+                f"{error}\n(tried again from a restored state, in steps down to {h_ns / NS!r} s)"
             )
         half = h_ns // 2
         for begin_ns, length_ns in ((t_ns, half), (t_ns + half, h_ns - half)):
             self._save(steps)
             self._network.forget_previous()  # the parts are not as long as what came before
-            again = self._attempt(steps, begin_ns, length_ns)
-            if again is not None:
-                self._split(steps, begin_ns, length_ns, depth + 1, again)
+            if not self._taken(steps, begin_ns, length_ns):
+                self._split(steps, begin_ns, length_ns, depth + 1, error)
 
-    def _attempt(self, steps: int, t_ns: int, h_ns: int) -> DiscardError | None:
-        """Take a step; if it is discarded, return to its beginning and return the error."""
+    def _taken(self, steps: int, t_ns: int, h_ns: int) -> bool:
+        """Take a step; if it is discarded, return to its beginning and say so."""
         try:
             self.algorithm.advance(steps, t_ns, h_ns)
         except DiscardError as error:
             refused = error
         else:
-            return None
+            return True
         if self._checkpoint is None:
             raise SimulationError(f"{refused}\n({self._obstacle})")
         self._restore(self._checkpoint)
-        return refused
+        return False
 
     def _save(self, steps: int) -> None:
         self.forget()

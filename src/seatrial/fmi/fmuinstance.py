@@ -90,8 +90,9 @@ class FmuInstance(ByType):
         self._refuse_logged_errors(f"Set{self._state_word}")
 
     def free_state(self, state: Any) -> None:
-        """Release a state's memory."""
-        self._call(f"Free{self._state_word}", ctypes.byref(state))
+        """Release a state's memory; with the instance, it has gone already."""
+        if self._c is not None and not self._fatal:
+            self._call(f"Free{self._state_word}", ctypes.byref(state))
 
     def terminate(self) -> None:
         """End the run."""

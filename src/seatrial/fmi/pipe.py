@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Sequence
+from operator import index
 from typing import Any
 
 CALL, WRITE, READ, STEP = 1, 2, 3, 4
@@ -73,7 +74,7 @@ class Codec:
         if not self._loose:
             return self._fixed.pack(*values)
         fixed = list(values)
-        texts = [_packed(values[i]) for i in self._loose]
+        texts = [_packed(values[i], self._kinds[i]) for i in self._loose]
         for i, text in zip(self._loose, texts, strict=True):
             fixed[i] = len(text)
         return self._fixed.pack(*fixed) + b"".join(texts)
@@ -91,11 +92,13 @@ class Codec:
         return values
 
 
-def _packed(value: Any) -> bytes:
-    if isinstance(value, bytes):
-        return value
+def _packed(value: Any, kind: type) -> bytes:
+    if kind is bytes:
+        data: bytes = value
+        return data
     # Integers are text too: FMI has them up to 2^64 - 1 and down to -2^63.
-    return str(value).encode("utf-8", "surrogatepass")
+    text: str = str(index(value)) if kind is int else value
+    return text.encode("utf-8", "surrogatepass")
 
 
 def _unpacked(data: bytes, kind: type) -> Any:

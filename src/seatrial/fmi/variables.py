@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
@@ -64,6 +65,9 @@ def described(description: ModelDescription, root: Any) -> Described:
 
     Raises InputError, without the file's name, for a variable that cannot be used.
     """
+    for name, count in Counter(v.name for v in description.modelVariables).items():
+        if count > 1:
+            raise InputError(f"two variables are called {name!r}")
     reading = _Reading(description, root)
     variables, clocked = Variables(), []
     arrays: dict[int, Array] = {}

@@ -70,6 +70,7 @@ class Worker:
     def _serve(self, code: int, number: int, payload: bytes) -> None:
         try:
             if code == WRITE:
+                self._failed_reads.clear()
                 if self._failed_write is None:
                     self._writers[number](payload)
                 return
@@ -137,14 +138,21 @@ class Worker:
 
     def call_writer(self, names: list[str]) -> int:
         """Bind a writer; return its number."""
-        write, codec = self._instance.writer(names), self._codec(names)
-        return self._bind(names, lambda payload: write(codec.unpack(payload)))
+        put, codec = self._instance.writer(names), self._codec(names)
+
+        def write(payload: bytes) -> None:
+            try:
+                put(codec.unpack(payload))
+            except SimulationError as error:
+                raise type(error)(f"{error}\n(in the write of {shortened(names)})") from None
+
+        return self._bind(write)
 
     def call_starter(self, names: list[str]) -> int:
         """Bind what sets start values; return its number."""
         set_start, codec = self._instance.set_start, self._codec(names)
         return self._bind(
-            names, lambda payload: set_start(dict(zip(names, codec.unpack(payload), strict=True)))
+            lambda payload: set_start(dict(zip(names, codec.unpack(payload), strict=True)))
         )
 
     def call_wait(self) -> None:
@@ -189,13 +197,7 @@ class Worker:
     def _codec(self, names: list[str]) -> Codec:
         return Codec([self._instance.variables[name].type for name in names])
 
-    def _bind(self, names: list[str], put: Callable[[bytes], None]) -> int:
-        def write(payload: bytes) -> None:
-            try:
-                put(payload)
-            except SimulationError as error:
-                raise type(error)(f"{error}\n(in the write of {shortened(names)})") from None
-
+    def _bind(self, write: Callable[[bytes], None]) -> int:
         number = self._next_number()
         self._writers[number] = write
         return number
@@ -229,8 +231,10 @@ def _explained(error: BaseException) -> bytes:
 
 def _live_as_long_as(parent: int) -> None:
     """End with the parent, even in a call that never returns; not with its terminal."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    for number in (signal.SIGINT, signal.SIGTERM):
+        # Not SIG_IGN: a program that a component starts would ignore them too.
+        signal.signal(number, lambda *_: None)
+        signal.siginterrupt(number, False)
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
     if os.getppid() != parent:  # it ended before the line above

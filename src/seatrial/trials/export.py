@@ -38,6 +38,8 @@ def export_ssp(
         start, stop, title = 0.0, _USUAL_STOP, rig.read_from.name
     path = out or Path(f"{title}.ssp")
     try:
+        if path.resolve() == Path(name).resolve():
+            raise InputError(f"{path} would replace what it is made from; name another with --out")
         notes += write_ssp(system, Experiment(title, start, stop), path)
     finally:
         system.free()

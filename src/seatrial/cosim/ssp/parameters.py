@@ -105,17 +105,12 @@ def _binary(element: Any, text: str) -> bytes:
         raise InputError(f"{where(element)}: hexadecimal digits are needed") from None
 
 
-def _item(element: Any, text: str, enumerations: Enumerations) -> int:
+def _item(element: Any, text: str, enumerations: Enumerations) -> Value:
+    """Return an item's number, or its name where only the FMU can know the number."""
     name = element.get("name")
     if name is None and len(enumerations) == 1:
         name = next(iter(enumerations))
-    try:
-        return enumerations[name or ""][text]
-    except KeyError:
-        raise InputError(
-            f"{where(element)}: item {text!r} of the enumeration {name!r} is not defined in the "
-            "file"
-        ) from None
+    return enumerations.get(name or "", {}).get(text, text)
 
 
 def value_for(parameter: Parameter, variable: Variable) -> Value:
@@ -123,6 +118,13 @@ def value_for(parameter: Parameter, variable: Variable) -> Value:
     value, kind = parameter.value, variable.type
     if type(value) is int and kind is float:
         value = float(value)
+    if isinstance(value, str) and kind is int:
+        if value not in variable.items:
+            raise InputError(
+                f"{parameter.where}: {parameter.name}: item {value!r} is of no enumeration that "
+                "the file or the FMU defines"
+            )
+        return variable.items[value]
     if type(value) is not kind:
         raise InputError(
             f"{parameter.where}: {parameter.name} is of type {type(value).__name__}, "
