@@ -150,18 +150,36 @@ class Feedthrough:
 
 def _groups(network: Network) -> list[_Group]:
     """Return the outputs to visit, in dependency order."""
+    depends = _dependencies(network)
+    outputs = {
+        name for name in depends if name[1] in network.nodes[name[0]].part.instance.variables
+    }
+    groups = [g for g in ordered_groups(depends) if any(n in depends for n in g)]
+    scheduled = _scheduled(groups, depends)
+    named = [([n for n in group if n in outputs], is_loop) for group, is_loop in scheduled]
+    return [_Group(names, is_loop) for names, is_loop in named if names]
+
+
+def _dependencies(network: Network) -> dict[Name, list[Name]]:
+    """Return what feed-through outputs depend on, through hubs.
+
+    Outputs of an FMU that says nothing depend on all its inputs: they share one hub, which
+    depends on the sources of these inputs, or a large FMU would have millions of pairs.
+    """
     source_of = sources_by_target(network.system)
     depends: dict[Name, list[Name]] = {}
     for name, part in network.system.parts.items():
+        hubs: dict[tuple[str, ...], Name] = {}
         for output, inputs in part.instance.feedthrough.items():
-            sources = [source_of[name, i] for i in inputs if (name, i) in source_of]
-            if sources:
-                depends[name, output] = sources
-    groups = [g for g in ordered_groups(depends) if any(n in depends for n in g)]
-    return [
-        _Group([name for name in group if name in depends], is_loop)
-        for group, is_loop in _scheduled(groups, depends)
-    ]
+            key = tuple(inputs)
+            if key not in hubs:
+                hubs[key] = (name, f"\0{len(hubs)}")  # no variable's name: XML cannot hold it
+                sources = [source_of[name, i] for i in key if (name, i) in source_of]
+                if sources:
+                    depends[hubs[key]] = sources
+            if hubs[key] in depends:
+                depends[name, output] = [hubs[key]]
+    return depends
 
 
 def _scheduled(
