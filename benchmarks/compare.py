@@ -155,7 +155,8 @@ def table(case: Case, found: dict[str, Measured]) -> str:
     rows = [
         f"### {case.title}",
         "",
-        "| engine | µs per FMU and step | ratio to seatrial | of it outside the FMUs' steps | final values |",
+        "| engine | µs per FMU and step | ratio to seatrial | outside the FMUs' steps, µs "
+        "| final values |",
         "| --- | --- | --- | --- | --- |",
     ]
     base = found[US]
