@@ -33,7 +33,7 @@ from seatrial.units import quantity
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
 FILES, COMPONENTS = DOCS / "files.md", DOCS / "components.md"
-HYDRONE, DESIGN = DOCS / "vehicles" / "hydrone.md", DOCS / "design.md"
+HYDRONE, DESIGN, SSP = DOCS / "vehicles" / "hydrone.md", DOCS / "design.md", DOCS / "ssp.md"
 SEATRIAL = str(Path(sys.executable).with_name("seatrial"))
 
 
@@ -124,7 +124,9 @@ def run_commands(block: Block) -> None:
         assert matches or (not shown and done.returncode == 0), f"{line}\n{got}"
 
 
-@pytest.mark.parametrize("page", [FILES, COMPONENTS, HYDRONE, DESIGN], ids=lambda page: page.stem)
+@pytest.mark.parametrize(
+    "page", [FILES, COMPONENTS, HYDRONE, DESIGN, SSP], ids=lambda page: page.stem
+)
 def test_examples_run(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     run_page(page, tmp_path, monkeypatch)
 
