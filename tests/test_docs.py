@@ -115,7 +115,7 @@ def run_commands(block: Block) -> None:
     commands = re.findall(r"^\$ ([^\n]*)\n((?:(?!\$ )[^\n]*\n)*)", block.text, re.M)
     assert commands
     for line, shown in commands:
-        words = shlex.split(line)
+        words = shlex.split(line, comments=True)
         assert words[0] in ("seatrial", "python")
         program = [SEATRIAL] if words[0] == "seatrial" else [sys.executable]
         done = subprocess.run([*program, *words[1:]], capture_output=True, text=True, check=False)
