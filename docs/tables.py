@@ -14,7 +14,7 @@ import sys
 import tempfile
 import tomllib
 from collections.abc import Callable, Iterable, Sequence
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -146,13 +146,12 @@ def sensor_keys() -> str:
     )
 
 
-# ---------------------------------------------------------------------- hydrone.md: parameters
+# ---------------------------------------------------------------------- vehicles: parameters
 
 
-@part("hydrone-parameters")
-def hydrone_parameters() -> str:
+def parameters(vehicle: str) -> str:
     """Parameters that all variants share."""
-    file = load_vehicle("hydrone").file
+    file = load_vehicle(vehicle).file
     varied = {(t, n) for c in file.variants.values() for t, entries in c.items() for n in entries}
     return _table(
         ("component", "parameter", "value", "unit", "mark", "source"),
@@ -165,10 +164,9 @@ def hydrone_parameters() -> str:
     )
 
 
-@part("hydrone-variants")
-def hydrone_variants() -> str:
+def variants(vehicle: str) -> str:
     """Parameters in which the variants differ."""
-    file = load_vehicle("hydrone").file
+    file = load_vehicle(vehicle).file
     places = dict.fromkeys(
         (table, name)
         for changes in file.variants.values()
@@ -177,13 +175,22 @@ def hydrone_variants() -> str:
     )
     rows = []
     for table, name in places:
-        for variant in VARIANTS:
+        for variant, changes in file.variants.items():
             shared: dict[str, Entry] = file.components[table]
-            e = file.variants[variant][table].get(name, shared.get(name))
+            e = changes.get(table, {}).get(name, shared.get(name))
             assert e is not None
             value = _value(e.value)
-            rows.append((f"`{name}`", variant, value, _unit(e.unit), e.mark, e.source))
-    return _table(("parameter", "variant", "value", "unit", "mark", "source"), rows)
+            rows.append((table, f"`{name}`", variant, value, _unit(e.unit), e.mark, e.source))
+    head = ("component", "parameter", "variant", "value", "unit", "mark", "source")
+    return _table(head, rows)
+
+
+for _vehicle in ("hydrone", "gloria"):
+    part(f"{_vehicle}-parameters")(partial(parameters, _vehicle))
+    part(f"{_vehicle}-variants")(partial(variants, _vehicle))
+
+
+# ---------------------------------------------------------------------- hydrone.md: the rest
 
 
 @part("hydrone-pads")

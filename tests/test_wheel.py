@@ -23,7 +23,8 @@ def test_the_wheel_alone_runs_a_trial(tmp_path: Path) -> None:
         "hil_profiles/hydrone.toml",
     ):
         assert f"seatrial/_shipped/{shipped}" in names
-    assert "seatrial/vehicles/hydrone.toml" in names
+    for name in ("vehicles/hydrone.toml", "vehicles/gloria.toml", "sail_naca0015.csv"):
+        assert f"seatrial/{name}" in names
     environment = tmp_path / "environment"
     subprocess.run([sys.executable, "-m", "venv", str(environment)], check=True)
     pip = [str(environment / "bin" / "python"), "-m", "pip", "install", "--quiet"]

@@ -293,7 +293,7 @@ class Component:
         self._stale = True
 
     def _check_parameter(self, scalar: ScalarPort, value: Any) -> None:
-        name, port = scalar.name, scalar.port
+        name, port, unit = scalar.name, scalar.port, scalar.unit
         if not isinstance(port, Parameter):
             return
         if port.choices is not None and value not in port.choices:
@@ -301,8 +301,7 @@ class Component:
         low, high = port.limit("min", scalar.index), port.limit("max", scalar.index)
         if (low is not None and value < low) or (high is not None and value > high):
             raise InputError(
-                f"{self.name}.{name} is {value!r} {port.unit}, "
-                f"allowed {_range_text(low, high)} {port.unit}"
+                f"{self.name}.{name} is {value!r} {unit}, allowed {_range_text(low, high)} {unit}"
             )
 
     def _misfit(self, references: Iterable[int], allowed: frozenset[int], kind: type) -> str:

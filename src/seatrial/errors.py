@@ -21,6 +21,14 @@ class SimulationError(SeatrialError):
     """A simulation could not go on: a component raised, refused a step or produced no number."""
 
 
+class FatalError(SimulationError):
+    """A component is broken: nothing more may be asked of it."""
+
+
+class ExcessError(SimulationError):
+    """An output is not finite, or beyond what its wire may carry."""
+
+
 class DiscardError(SimulationError):
     """A component could not take a step; it may take a smaller one from a restored state."""
 

@@ -10,6 +10,8 @@ from typing import Any, Literal
 Kind = Literal["parameter", "input", "output"]
 Scalar = float | int | bool | str
 Limit = float | tuple[float, ...] | None
+Units = str | tuple[str, ...]
+"""One unit for all elements of a port, or one per axis."""
 
 _TYPES: tuple[type, ...] = (float, int, bool, str)
 
@@ -21,14 +23,14 @@ class Port:
     of them if the port has axes; assigning converts to the port's type and checks the length.
 
     Values are SI with angles in radians; ``unit`` is written as in FMI (``N.m``, ``kg.m2``,
-    ``rad/s``, ``1`` for none).
+    ``rad/s``, ``1`` for none), one for all elements or a tuple with one per axis.
     """
 
     kind: Kind
 
     def __init__(
         self,
-        unit: str,
+        unit: Units,
         description: str,
         *,
         start: Any,
@@ -53,9 +55,9 @@ class Port:
         self.size = 1 if self.axes is None else len(self.axes)
         self.start = self._spread(start)
         self.min, self.max, self.nominal = min, max, nominal
-        for limit in (min, max, nominal):
-            if isinstance(limit, tuple) and len(limit) != self.size:
-                raise ValueError(f"{limit} needs one element for each of {self.size} values")
+        for each in (unit, min, max, nominal):
+            if isinstance(each, tuple) and len(each) != self.size:
+                raise ValueError(f"{each} needs one element for each of {self.size} values")
         self.offset = -1
 
     def _spread(self, value: Any) -> list[Any]:
@@ -87,6 +89,10 @@ class Port:
         if self.axes is None:
             return [self.name]
         return [f"{self.name}.{axis}" for axis in self.axes]
+
+    def unit_of(self, index: int) -> str:
+        """Return the unit of one scalar."""
+        return self.unit[index] if isinstance(self.unit, tuple) else self.unit
 
     def limit(self, which: Literal["min", "max", "nominal"], index: int) -> float | None:
         """Return one scalar's min, max or nominal, None where the port declares none."""
@@ -126,7 +132,7 @@ class Parameter(Port):
     def __init__(
         self,
         start: Any,
-        unit: str,
+        unit: Units,
         description: str,
         *,
         axes: Sequence[str] | None = None,
@@ -151,7 +157,7 @@ class Input(Port):
 
     kind: Kind = "input"
 
-    def __init__(self, unit: str, description: str, **options: Any) -> None:
+    def __init__(self, unit: Units, description: str, **options: Any) -> None:
         options.setdefault("start", "" if options.get("type") is str else 0)
         super().__init__(unit, description, **options)
 
@@ -161,7 +167,7 @@ class Output(Port):
 
     kind: Kind = "output"
 
-    def __init__(self, unit: str, description: str, **options: Any) -> None:
+    def __init__(self, unit: Units, description: str, **options: Any) -> None:
         options.setdefault("start", "" if options.get("type") is str else 0)
         super().__init__(unit, description, **options)
 
@@ -174,6 +180,11 @@ class ScalarPort:
     reference: int
     port: Port
     index: int
+
+    @property
+    def unit(self) -> str:
+        """Unit of this scalar."""
+        return self.port.unit_of(self.index)
 
 
 def lay_out(ports: dict[str, Port]) -> tuple[dict[str, Port], tuple[ScalarPort, ...]]:

@@ -47,6 +47,19 @@ def test_parameters_then_inputs_then_outputs_each_as_declared() -> None:
     assert Hull("it").values == [10.0, "calm", 1.0, 2.0, 1.5, 1.0, 2.0, 0.0, 0.0, 0.0, 0]
 
 
+def test_a_unit_for_all_axes_or_one_for_each() -> None:
+    class Pose(Component):
+        place = Output("m", "place", axes="xy")
+        pose = Output(("m", "m", "rad"), "pose", axes=("x", "y", "psi"))
+        heel = Parameter((0.1, 0.2), ("rad", "rad/s"), "heel", axes="ab", max=(1.0, 2.0))
+
+    assert [s.unit for s in Pose.scalars] == ["rad", "rad/s", "m", "m", "m", "m", "rad"]
+    pose = Pose("it")
+    pose.set("heel.b", 3.0)
+    with pytest.raises(InputError, match=r"it\.heel\.b is 3\.0 rad/s, allowed at most 2\.0 rad/s"):
+        pose.initialise()
+
+
 PORTS = st.lists(
     st.tuples(st.sampled_from((Parameter, Input, Output)), st.integers(0, 4)), max_size=12
 )
@@ -184,6 +197,7 @@ def test_a_mixin_brings_its_ports() -> None:
             "one element for each of 2",
         ),
         (lambda: Input("m", "u", axes="xy", nominal=(1.0, 2.0, 3.0)), "one element for each of 2"),
+        (lambda: Output(("m", "rad"), "y", axes="xyz"), "one element for each of 3"),
     ],
 )
 def test_declarations_that_cannot_be(declare, message: str) -> None:

@@ -2,6 +2,9 @@
 
 TEXT = '''
 """Systems that have closed forms."""
+import math
+import random
+
 from seatrial.component import Component, Input, Output, Parameter
 from seatrial.plant import Plant, State
 
@@ -197,4 +200,56 @@ class Nominal(Component):
 
     def outputs(self, t):
         self.y = self.value
+
+
+class Wave(Component):
+    """y = exp(growth k) sin(2 pi k / period + phase), k steps of 0.1 s from the start."""
+
+    period = Parameter(10.0, "1", "steps per period")
+    phase = Parameter(0.0, "1", "phase")
+    growth = Parameter(0.0, "1", "growth per step")
+    y = Output("m", "oscillation")
+
+    def outputs(self, t):
+        k = t / 0.1
+        self.y = math.exp(self.growth * k) * math.sin(math.tau * k / self.period + self.phase)
+
+
+class Switched(Component):
+    """White noise of 1 mm, from 4 s on of 10 m."""
+
+    seed = Parameter(0.0, "1", "seed")
+    y = Output("m", "noise")
+
+    def outputs(self, t):
+        draw = random.Random(round(1000 * self.seed + t / 0.1)).gauss(0.0, 1.0)
+        self.y = draw * (10.0 if t >= 4.0 else 1e-3)
+
+
+class Usual(Component):
+    """y = gain u + bias, at once, and says what is usual."""
+
+    gain = Parameter(0.5, "1", "gain")
+    bias = Parameter(1.0, "m", "bias")
+    u = Input("m", "input")
+    y = Output("m", "output", nominal=1.0)
+    feedthrough = {"y": ("u",)}
+
+    def outputs(self, t):
+        self.y = self.gain * self.u + self.bias
+
+
+class Blend(Component):
+    """y = first u + second w + bias, at once."""
+
+    first = Parameter(1.0, "1", "gain of u")
+    second = Parameter(0.0, "1", "gain of w")
+    bias = Parameter(0.0, "m", "bias")
+    u = Input("m", "input")
+    w = Input("m", "input")
+    y = Output("m", "output")
+    feedthrough = {"y": ("u", "w")}
+
+    def outputs(self, t):
+        self.y = self.first * self.u + self.second * self.w + self.bias
 '''

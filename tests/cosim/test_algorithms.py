@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
+from seatrial.cosim.master import Master
 from seatrial.errors import InputError, SimulationError
 
 from .conftest import Bench, value
@@ -205,6 +206,50 @@ def test_added_mass_beyond_the_mass_diverges_with_a_name(bench: Bench, algorithm
     assert value(calm, "body.a") == pytest.approx(1 / 1.5, rel=1e-9)
 
 
+@pytest.mark.parametrize("slow", ["body", "water"])
+@pytest.mark.parametrize("algorithm", ["jacobi", "plain-jacobi", "gauss-seidel", "extrapolated"])
+def test_a_slow_component_diverges_with_a_name_too(
+    direct: Bench, algorithm: str, slow: str
+) -> None:
+    """Its values change every five steps only; 1.2^200 is no quantity, but not beyond 1e20 either."""
+    step = {name: ', step = "500 ms"' if name == slow else "" for name in ("body", "water")}
+    master = direct.master(
+        f'body = {{ fmu = "bodies.py:Rigid"{step["body"]} }}\n'
+        f'water = {{ fmu = "bodies.py:AddedMass", set = {{ mass = 1.2 }}{step["water"]} }}',
+        '"body.a" = "water.a"\n"water.force" = "body.force"',
+        top=top(algorithm),
+    )
+    with pytest.raises(SimulationError, match=r"diverges at t = .* the wire .* swings from step"):
+        for _ in range(1000):
+            master.step()
+
+
+@pytest.mark.parametrize("period", [8.0, 16.0, 20.0, 32.0])
+def test_growing_oscillations_that_a_step_resolves_are_no_divergence(
+    direct: Bench, period: float
+) -> None:
+    """Also if each block of steps begins at the same phase, whichever it is."""
+    for phase in range(40):
+        master = direct.master(
+            f'wave = {{ fmu = "bodies.py:Wave", set = {{ period = {period}, '
+            f'phase = {phase * math.tau / 40}, growth = 0.1 }} }}\nsum = {{ fmu = "users.py:Sum" }}',
+            '"wave.y" = "sum.u"',
+        )
+        for _ in range(150):
+            master.step()
+
+
+def test_noise_that_is_switched_on_is_no_divergence(direct: Bench) -> None:
+    for seed in range(60):
+        master = direct.master(
+            f'noise = {{ fmu = "bodies.py:Switched", set = {{ seed = {float(seed)} }} }}\n'
+            'sum = { fmu = "users.py:Sum" }',
+            '"noise.y" = "sum.u"',
+        )
+        for _ in range(100):
+            master.step()
+
+
 def test_iteration_sees_its_contraction_factor(bench: Bench) -> None:
     # Each pass multiplies the change by sqrt(m_a / M) / 2: inputs held are means of both ends.
     settings = "iteration = { count = 100, tolerance = 1e-10 }"
@@ -337,3 +382,55 @@ def test_steps_that_do_not_settle_are_noted(bench: Bench) -> None:
     assert master.notes() == [
         "10 of 10 steps ended after the last repetition with changes above the tolerance of the iteration"
     ]
+
+
+# ---------------------------------------------------------------------- loops of feed-through
+
+
+def ring(gain: float, count: int, turn: int, kind: str = "users.py:Scale") -> tuple[str, str]:
+    """A loop of equal gains around which a signal is multiplied by ``gain``; bias 1 in the first."""
+    each = abs(gain) ** (1 / count)
+    lines = [
+        f'c{i} = {{ fmu = "{kind}", set = {{ gain = {math.copysign(each, gain) if i == 0 else each!r}, '
+        f"bias = {float(i == 0)} }} }}"
+        for i in range(count)
+    ]
+    wires = "\n".join(f'"c{i}.y" = "c{(i + 1) % count}.u"' for i in range(count))
+    return "\n".join(lines[::turn]), wires
+
+
+@pytest.mark.parametrize("turn", [1, -1])
+@pytest.mark.parametrize("count", [1, 2, 6, 20])
+@pytest.mark.parametrize("gain", [0.5, 0.9, 0.99, -0.5, -0.95, -1.05, -5.0, -25.0])
+def test_a_loop_settles_whatever_its_gain_and_order_of_declaration(
+    direct: Bench, gain: float, count: int, turn: int
+) -> None:
+    """y = gain y + 1 around the loop."""
+    master = Master(direct.system(*ring(gain, count, turn)))
+    master.initialise()
+    assert value(master, "c0.y") == pytest.approx(1 / (1 - gain), rel=1e-9)
+    master.step()
+    assert value(master, "c0.y") == pytest.approx(1 / (1 - gain), rel=1e-9)
+
+
+def test_a_loop_of_vectors_settles(direct: Bench) -> None:
+    """Two loops that share components, strongly coupled: a = 0.9 b + 1, b = 0.9 c, c = a - 3 b / 10."""
+    master = Master(
+        direct.system(
+            'a = { fmu = "bodies.py:Blend", set = { bias = 1.0, first = 0.9, second = 0.0 } }\n'
+            'b = { fmu = "bodies.py:Blend", set = { bias = 0.0, first = 0.9, second = 0.0 } }\n'
+            'c = { fmu = "bodies.py:Blend", set = { bias = 0.0, first = 1.2, second = -0.3 } }',
+            '"b.y" = ["a.u", "c.w"]\n"c.y" = "b.u"\n"a.y" = "c.u"',
+        )
+    )
+    master.initialise()
+    matrix = np.array([[1, -0.9, 0], [0, 1, -0.9], [-1.2, 0.3, 1]])
+    exact = np.linalg.solve(matrix, [1.0, 0.0, 0.0])
+    assert [value(master, f"{n}.y") for n in "abc"] == pytest.approx(list(exact), rel=1e-9)
+
+
+def test_nominal_values_do_not_stop_an_iteration_that_relaxation_saves(direct: Bench) -> None:
+    """On its way without relaxation a = 1 - 25 a goes beyond 1000 times the nominal value 1."""
+    master = Master(direct.system(*ring(-25.0, 2, 1, "bodies.py:Usual")))
+    master.initialise()
+    assert value(master, "c0.y") == pytest.approx(1 / 26, rel=1e-9)

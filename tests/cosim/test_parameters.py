@@ -145,7 +145,7 @@ def entry(**changes: str) -> str:
         ({"value": "true"}, "value"),
         ({"value": '[1, "a"]'}, "value"),
         ({"value": "{ x = 1 }"}, "value"),
-        ({"unit": "1"}, "unit: Input should be a valid string, found 1"),
+        ({"unit": "1"}, "unit: Input should be a valid string; or: Input should be a valid list, found 1"),
         ({"sorce": '"s"', "source": ""}, "sorce: unknown key 'sorce'; did you mean 'source'? (known: mark, source, unit, value)"),
     ],
 )  # fmt: skip

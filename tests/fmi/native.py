@@ -15,20 +15,40 @@ SLAVES = Path(__file__).parent / "slaves"
 
 def build_native_fmu(name: str, folder: Path) -> Path:
     """Compile ``slaves/NAME.c`` into ``folder/NAME.fmu``, described by ``slaves/NAME.xml``."""
-    headers = Path(fmpy.__file__).parent / "c-code"
     folder.mkdir(parents=True, exist_ok=True)
     library, path = folder / f"{name}.so", folder / f"{name}.fmu"
-    source = SLAVES / f"{name}.c"
-    subprocess.run(
-        ["cc", "-shared", "-fPIC", "-O1", "-w", f"-I{headers}", source, "-o", library, "-lm"],
-        check=True,
-    )
+    _compile(SLAVES / f"{name}.c", library)
     description = (SLAVES / f"{name}.xml").read_bytes()
     platform = fmpy.platform_tuple if b'fmiVersion="3.0"' in description else fmpy.platform
     with zipfile.ZipFile(path, "w") as archive:
         archive.writestr("modelDescription.xml", description)
         archive.write(library, f"binaries/{platform}/{name}.so")
     return path
+
+
+def forgetful(path: Path, to: Path) -> Path:
+    """Copy the FMI 2.0 slave to ``to``, with a library that says it saves its state but does not."""
+    source = (SLAVES / "fmi2.c").read_text("utf-8")
+    for lost in ("    memcpy(*s, c, sizeof(Slave));\n", "    memcpy(c, s, sizeof(Slave));\n",
+                 '    if (fabs(t - s->time) > 1e-9) return say(s, fmi2Error, "steps do not follow each other");\n'):  # fmt: skip
+        assert lost in source, lost
+        source = source.replace(lost, "")
+    changed_source, library = to.with_suffix(".c"), to.with_suffix(".so")
+    changed_source.write_text(source, "utf-8")
+    _compile(changed_source, library)
+    with zipfile.ZipFile(path) as old, zipfile.ZipFile(to, "w") as new:
+        for member in old.infolist():
+            is_library = member.filename.endswith(".so")
+            new.writestr(member, library.read_bytes() if is_library else old.read(member))
+    return to
+
+
+def _compile(source: Path, library: Path) -> None:
+    headers = Path(fmpy.__file__).parent / "c-code"
+    subprocess.run(
+        ["cc", "-shared", "-fPIC", "-O1", "-w", f"-I{headers}", source, "-o", library, "-lm"],
+        check=True,
+    )
 
 
 def changed(path: Path, to: Path, *changes: tuple[str, str]) -> Path:

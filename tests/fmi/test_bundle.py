@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import subprocess
 import sys
@@ -11,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from seatrial.errors import InputError, SimulationError
+from seatrial.fmi.bundle import bundle
 from seatrial.fmi.export import build_fmu, fmu_bytes
 from seatrial.fmi.load import load_fmu, open_instance
 from seatrial.fmi.source import find_source, shipped_sources
@@ -223,3 +225,76 @@ def test_sources_that_do_not_exist(named: str, message: str, write, tmp_path: Pa
     write("json.py", "")
     with pytest.raises(InputError, match=message):
         find_source(named, tmp_path)
+
+
+# ---------------------------------------------------------------------- data files
+
+READS = (
+    "from pathlib import Path\n\n"
+    "from seatrial.component import Component, Output\n"
+    'DATA_FILES = ("polar.csv",)\n\n\n'
+    'class Boat(Component):\n    """Says a number from a file."""\n\n'
+    '    value = Output("1", "n")\n\n'
+    "    def start(self, t):\n"
+    '        self._value = float(Path(__file__).with_name("polar.csv").read_text())\n\n'
+    "    def outputs(self, t):\n        self.value = self._value\n"
+)
+
+
+def test_data_files_travel_and_versions_keep_their_own(write, tmp_path: Path) -> None:
+    raws = []
+    for owner, number in (("ana", 111.0), ("bia", 222.0)):
+        file = write(f"{owner}/boat.py", READS)
+        data = write(f"{owner}/polar.csv", f"{number}\n")
+        path = build_fmu(source(file, "Boat"), tmp_path / f"{owner}.fmu")
+        data.unlink()
+        raws.append(Raw(path, tmp_path / f"{owner}-unpacked"))
+    slaves = [raw.start() for raw in raws]
+    assert [raw.get("value") for raw in raws] == [111.0, 222.0]
+    for slave in slaves:
+        slave.freeInstance()
+
+
+def test_data_files_lie_beside_their_module_and_count_in_the_hash(write) -> None:
+    write("shapes/__init__.py", 'DATA_FILES = ["whole.bin"]\n')
+    write("shapes/sail.py", 'DATA_FILES: tuple[str, ...] = ("cloth.txt",)\n')
+    write("shapes/whole.bin", "\0 any bytes \r\n")
+    cloth = write("shapes/cloth.txt", "red\n")
+    file = write("boat.py", "import shapes.sail\n" + PLAIN.replace("NUMBER", "1.0"))
+    boat = source(file, "Boat")
+    first = bundle(boat.stem, boat.script, boat.folder)
+    root = first.script.replace("boat_Boat", "bundle")
+    assert first.files[f"{root}/shapes/cloth.txt"] == b"red\n"
+    assert (
+        first.files[f"{root}/shapes/whole.bin"] == (file.parent / "shapes/whole.bin").read_bytes()
+    )
+    cloth.write_text("tan\n")
+    assert bundle(boat.stem, boat.script, boat.folder).script != first.script
+
+
+def test_tables_of_a_shipped_component_travel_as_printed() -> None:
+    sailboat = shipped_sources()["sailboat"]
+    files = bundle(sailboat.stem, sailboat.script, sailboat.folder).files
+    (table,) = [data for name, data in files.items() if name.endswith("/sail_naca0015.csv")]
+    digest = "1345bbe865c0676a579f4967380f97794a2bc44990622f547fcccc35d6286993"
+    assert hashlib.sha256(table).hexdigest() == digest
+    servo = shipped_sources()["servo"]
+    assert not any(n.endswith(".csv") for n in bundle(servo.stem, servo.script, servo.folder).files)
+
+
+@pytest.mark.parametrize(
+    ("value", "message"),
+    [
+        ('("polar.csv",)', r"boat\.py: DATA_FILES names 'polar\.csv', and there is no such file"),
+        ('("../polar.csv",)', r"boat\.py, line 1: DATA_FILES must be a tuple of names"),
+        ('("boat.py",)', "must be a tuple of names"),
+        ('("",)', "must be a tuple of names"),
+        ('"polar.csv"', "must be a tuple of names"),
+        ("(1, 2)", "must be a tuple of names"),
+        ("tuple(glob('*.csv'))", "must be a tuple of names"),
+    ],
+)
+def test_bad_data_files_are_named(value: str, message: str, write, tmp_path: Path) -> None:
+    file = write("boat.py", f"DATA_FILES = {value}\n" + PLAIN.replace("NUMBER", "1.0"))
+    with pytest.raises(InputError, match=message):
+        bundle("boat_Boat", b"import boat\n", file.parent)

@@ -43,6 +43,14 @@ def test_declarations_arrive_exactly(counter_fmu: Path) -> None:
     assert simulation.canSerializeFMUstate
 
 
+def test_each_axis_has_its_unit(tmp_path: Path) -> None:
+    path = build_fmu(shipped_sources()["sailboat"], tmp_path / "sailboat.fmu")
+    units = {v.name: v.unit for v in read_model_description(str(path)).modelVariables}
+    assert [units[f"eta.{axis}"] for axis in ("x", "y", "phi", "psi")] == ["m", "m", "rad", "rad"]
+    assert [units[f"sail_load.{axis}"] for axis in "XYKN"] == ["N", "N", "N.m", "N.m"]
+    assert units["nu_start.r"] == "rad/s"
+
+
 def test_dependencies_say_direct_feedthrough_only(counter_fmu: Path) -> None:
     description = read_model_description(str(counter_fmu))
     depends = {u.variable.name: [d.name for d in u.dependencies] for u in description.outputs}

@@ -10,7 +10,7 @@ import fmpy
 import numpy as np
 import pytest
 
-from seatrial.errors import DiscardError, InputError, SimulationError
+from seatrial.errors import DiscardError, FatalError, InputError, SimulationError
 from seatrial.fmi.load import load_fmu, open_instance
 
 from .native import changed, read, started
@@ -95,7 +95,7 @@ def test_outputs_without_dependencies_depend_on_all_inputs(native_fmu, tmp_path:
     [
         (DISCARD, r"boat: fmi2DoStep\(t = 0\.25 s, h = 0\.25 s\) returned discard: not such a step", DiscardError),
         (ERROR, "returned error: 100% wrong", SimulationError),
-        (FATAL, "returned fatal, without a message", SimulationError),
+        (FATAL, "returned fatal, without a message", FatalError),
     ],
 )  # fmt: skip
 def test_what_a_refused_step_says(fmi2, trouble: int, message: str, kind: type) -> None:

@@ -12,7 +12,7 @@ from seatrial.cosim.rig import load_rig
 from seatrial.cosim.system import assemble
 from seatrial.errors import InputError, SimulationError
 
-from .native import changed
+from .native import changed, forgetful
 
 
 @pytest.fixture
@@ -173,9 +173,9 @@ def test_units_that_nobody_defines(rig, native_fmu, tmp_path: Path) -> None:
         ('in_Binary = "not base64!"', "bytes as base64 text are needed"),
         ("in_Binary = 5", "bytes as base64 text are needed"),
         ("in_Float64 = [1, 2]", r"3 values are needed \(in_Float64\[1\], .*found 2"),
-        ("rows = 2", "rows is a structuralParameter and cannot be set"),
+        ("rows = 2", "rows has the causality structuralParameter and cannot be set"),
         ("tick = true", "unknown port 'tick'"),
-        ("x = 1", "x is a output and cannot be set"),
+        ("x = 1", "x has the causality output and cannot be set"),
     ],
 )
 def test_values_that_do_not_fit(setting: str, message: str, rig) -> None:
@@ -213,4 +213,41 @@ def test_a_value_that_is_not_finite_is_named(rig) -> None:
 def test_a_failing_fmu_ends_the_run_with_what_it_said(trouble: str, message: str, rig) -> None:
     master = rig(f'a = {{ fmu = "fmi2", set = {{ trouble = "{trouble}" }} }}')
     with pytest.raises(SimulationError, match=message):
+        master.step()
+
+
+@pytest.mark.parametrize("kind", ["fmi2", "fmi3"])
+def test_an_fmu_for_one_instance_per_process(kind: str, rig, native_fmu, tmp_path: Path) -> None:
+    """A second instance would share the state of the first; in a process of its own it has one."""
+    flag = 'canGetAndSetFMUstate="true"' if kind == "fmi2" else 'canGetAndSetFMUState="true"'
+    only = 'canBeInstantiatedOnlyOncePerProcess="true"'
+    path = changed(native_fmu(kind), tmp_path / "only.fmu", (flag, f"{flag} {only}"))
+    components = f'a = {{ fmu = "{path}" }}\nb = {{ fmu = "{path}"'
+    with pytest.raises(
+        InputError, match=r"components\.b\.fmu: only\.fmu .* one instance .* a is that; isolated"
+    ):
+        rig(components + " }")
+    master = rig(components + ", isolated = true, set = { k = 2.0 } }")
+    for _ in range(10):
+        master.step()
+    assert values(master, "a.x", "b.x") == pytest.approx([math.exp(-1), math.exp(-2)], rel=1e-12)
+
+
+@pytest.mark.parametrize("isolated", ["true", "false"])
+@pytest.mark.parametrize("algorithm", ["jacobi", "iterated"])
+def test_an_fmu_that_cannot_restore_its_state_although_it_says_so(
+    algorithm: str, isolated: str, rig, native_fmu, tmp_path: Path
+) -> None:
+    """It answers ok; what it gives after a step was repeated would be wrong, and look right."""
+    path = forgetful(native_fmu("fmi2"), tmp_path / "forgetful.fmu")
+    master = rig(
+        f'a = {{ fmu = "{path}", isolated = {isolated} }}\n'
+        'b = { fmu = "fmi2", set = { largest_step = 0.03 } }',
+        '"a.x" = "b.u"',
+        algorithm,
+    )
+    with pytest.raises(
+        SimulationError,
+        match=r"a says that it can save .* but it cannot: x was 1\.0 when .* t = 0\.0 s, and is 0\.9",
+    ):
         master.step()

@@ -17,33 +17,56 @@ from ..component import NS
 from ..errors import SimulationError
 from .network import Network
 
-_BLOCK = 16
-_LOOKED_AT = 4
+_BLOCK = 17  # no multiple of the half periods that people choose
+_LOOKED_AT = 8
 _GROWTH = 100.0
 _BLOCKS = 3
 _NOISE = 1e-6
 
 
 class DivergenceWatch:
-    """Looks at four consecutive values of every continuous wire in each block of sixteen steps."""
+    """Looks at eight consecutive values of every continuous wire in each block of seventeen steps.
+
+    Eight, because near its peak even a smooth oscillation looks rough for four. The values of a
+    component with a step of its own come at that step: blocks of its wires are counted in it.
+    What grows in one block alone, as noise that is switched on does, has not grown geometrically.
+    """
 
     def __init__(self, network: Network) -> None:
-        self._network = network
         writes = [writes for node in network.nodes.values() for writes in node.writes]
         sources = {one.wires[i].source for one in writes for i in one.continuous}
-        self._places = sorted(network.places[source] for source in sources)
-        self._rows: list[list[Any]] = []
-        self._last: NDArray[np.float64] = np.zeros(len(self._places))
-        """Swing of each wire in the block before."""
-        self._first = np.zeros(len(self._places))
-        """Swing of each wire when it began to grow."""
-        self._growing = np.zeros(len(self._places), int)
-        """Blocks in a row in which it grew."""
+        places: dict[int, list[int]] = {}
+        for source in sources:
+            places.setdefault(network.nodes[source[0]].every, []).append(network.places[source])
+        self._paces = [_Pace(network, every, sorted(of)) for every, of in sorted(places.items())]
 
     def look(self, steps: int) -> None:
         """Look at the signals after a communication step. Raises SimulationError."""
+        for pace in self._paces:
+            if steps % pace.every == 0:
+                pace.look(steps // pace.every)
+
+
+class _Pace:
+    """The wires whose values come every so many communication steps."""
+
+    def __init__(self, network: Network, every: int, places: list[int]) -> None:
+        self.every = every
+        self._network, self._places = network, places
+        self._rows: list[list[Any]] = []
+        self._last: NDArray[np.float64] = np.zeros(len(places))
+        """Swing of each wire in the block before."""
+        self._first = np.zeros(len(places))
+        """Swing of each wire when it began to grow."""
+        self._jump = np.ones(len(places))
+        """Largest factor by which it grew from one block to the next since then."""
+        self._growing = np.zeros(len(places), int)
+        """Blocks in a row in which it grew."""
+
+    def look(self, steps: int) -> None:
+        """Look at the signals after a step of these wires. Raises SimulationError."""
         turn = steps % _BLOCK
-        if turn >= _LOOKED_AT or not self._places:
+        if turn >= _LOOKED_AT:
             return
         if turn == 0:
             self._rows = []
@@ -59,20 +82,26 @@ class DivergenceWatch:
             size = np.abs(rows).max(axis=0)
             rough = (swing >= change) & (swing > _NOISE * np.maximum(1.0, size))
             grows = rough & (swing > self._last) & (self._last > 0.0)
-        self._first = np.where(grows & (self._growing > 0), self._first, self._last)
+            factor = np.where(grows, swing / self._last, 1.0)
+        going_on = grows & (self._growing > 0)
+        self._first = np.where(going_on, self._first, self._last)
+        self._jump = np.where(going_on, np.maximum(self._jump, factor), factor)
         self._growing = np.where(grows, self._growing + 1, 0)
         self._last = np.where(rough, swing, 0.0)
-        bad = (self._growing >= _BLOCKS) & (swing > _GROWTH * self._first)
+        with np.errstate(all="ignore"):
+            growth = swing / self._first / self._jump
+        bad = (self._growing >= _BLOCKS) & (growth > _GROWTH)
         if bad.any():
-            worst = int(np.argmax(np.where(bad, swing / np.maximum(self._first, 1e-300), 0.0)))
+            worst = int(np.argmax(np.where(bad, growth, 0.0)))
             self._refuse(worst, rows[-1, worst])
 
     def _refuse(self, index: int, value: float) -> None:
         source = self._network.names[self._places[index]]
+        before = _BLOCK * self.every * int(self._growing[index])
         raise SimulationError(
             f"the coupling diverges at t = {self._network.time_ns / NS!r} s: "
             f"{self._network.targets(source)} swings from step to step, more than "
-            f"{_GROWTH:g} times as much as {_BLOCK * int(self._growing[index])} steps before, "
+            f"{_GROWTH:g} times as much as {before} steps before, "
             f"and carries {value:.6g} now; a smaller step, another algorithm or another cut of "
             "the system is needed (added mass belongs with its rigid body)"
         )

@@ -3,7 +3,7 @@
 Whoever moved values along wires alone would add a delay of one step per hop. Here the outputs
 that were declared to depend on inputs are visited in the order of their dependencies at every
 communication point. Outputs that depend on each other in a loop are found by fixed-point
-iteration with relaxation.
+iteration: with relaxation where it grows, with Anderson's acceleration where it is slow.
 """
 
 from __future__ import annotations
@@ -13,13 +13,18 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ..component import NS
-from ..errors import SimulationError
+from ..errors import ExcessError, SimulationError
 from .network import Chunk, Name, Network, Node, sources_by_target
-from .order import loops_on_itself, ordered_groups
+from .order import loops_on_itself, ordered_groups, unrolled
 
 _TOLERANCE = 1e-12
 _ITERATIONS = 200
 _LEAST_RELAXATION = 1 / 16
+_ACCELERATED = 0.0
+"""Stands for Anderson's acceleration in place of a relaxation."""
+_TRIED = (1.0, 1 / 2, 1 / 4, 1 / 8, _LEAST_RELAXATION, _ACCELERATED)
+_MEMORY = 8
+"""Repetitions that the acceleration looks back on."""
 
 
 @dataclass
@@ -104,18 +109,32 @@ class Feedthrough:
     # ------------------------------------------------------------------ loops
 
     def _solve(self, group: _Group, steps: int) -> None:
-        """Find a fixed point of a loop; halve the relaxation as long as the iteration grows."""
+        """Find a fixed point of a loop: as it was last found, else in every other way.
+
+        Relaxation is for iterations that grow, acceleration for those that shrink too slowly.
+        """
         places = [self._network.places[name] for name in group.outputs]
         begun = [self._network.signals[p] for p in places]
-        factor = 0.0
-        while group.relaxation >= _LEAST_RELAXATION:
-            settled, factor = self._iterate(group, places, steps)
+        factor, shrinks = 0.0, group.relaxation == _ACCELERATED
+        excess: ExcessError | None = None
+        for relaxation in dict.fromkeys((group.relaxation, *_TRIED)):
+            if relaxation == _ACCELERATED and not shrinks:
+                continue
+            group.relaxation = relaxation
+            iterate = self._accelerate if relaxation == _ACCELERATED else self._iterate
+            try:
+                settled, factor = iterate(group, places, steps)
+                excess = None
+            except ExcessError as error:  # on its way: another relaxation may not go there
+                settled, factor, excess = False, float("inf"), error
             if settled:
                 return
-            group.relaxation /= 2
+            shrinks = shrinks or factor < 1.0
             for place, value in zip(places, begun, strict=True):
                 self._network.signals[place] = value
         group.relaxation = 1.0
+        if excess is not None:
+            raise excess
         names = ", ".join(".".join(name) for name in group.outputs)
         raise SimulationError(
             f"at t = {self._network.time_ns / NS!r} s the loop through {names} does not settle: "
@@ -128,13 +147,8 @@ class Feedthrough:
         signals, relaxation = self._network.signals, group.relaxation
         change, factor, growing = 0.0, 0.0, 0
         for _ in range(_ITERATIONS):
-            before = [signals[p] for p in places]
-            for visit in group.visits:
-                if steps % visit.node.every == 0:
-                    self._network.write(visit.node)
-                    self._network.read(visit.chunks)
-            after = [signals[p] for p in places]
-            if all(_close(a, b) for a, b in zip(before, after, strict=True)):
+            before, after = self._sweep(group, places, steps)
+            if _all_close(before, after):
                 return True, 0.0
             last, change = change, max(_distance(a, b) for a, b in zip(before, after, strict=True))
             factor = change / last if last else 0.0
@@ -146,6 +160,43 @@ class Feedthrough:
                     if isinstance(b, float) and isinstance(a, float):
                         signals[place] = a + relaxation * (b - a)
         return False, factor
+
+    def _accelerate(self, group: _Group, places: list[int], steps: int) -> tuple[bool, float]:
+        """Return the same as `_iterate`, with Anderson's acceleration of the real outputs.
+
+        Each new point is the combination of the last ones whose changes cancel best.
+        """
+        import numpy as np
+
+        signals, change, factor = self._network.signals, 0.0, 0.0
+        real = [i for i, place in enumerate(places) if isinstance(signals[place], float)]
+        points: list[Any] = []
+        changes: list[Any] = []
+        for _ in range(_ITERATIONS):
+            before, after = self._sweep(group, places, steps)
+            if _all_close(before, after):
+                return True, 0.0
+            last, change = change, max(_distance(a, b) for a, b in zip(before, after, strict=True))
+            factor = change / last if last else 0.0
+            points = [*points[-_MEMORY:], np.array([before[i] for i in real])]
+            changes = [*changes[-_MEMORY:], np.array([after[i] for i in real]) - points[-1]]
+            if len(points) > 1:
+                moved, changed = np.diff(points, axis=0).T, np.diff(changes, axis=0).T
+                share = np.linalg.lstsq(changed, changes[-1], rcond=None)[0]
+                found = points[-1] + changes[-1] - (moved + changed) @ share
+                for i, value in zip(real, found.tolist(), strict=True):
+                    signals[places[i]] = value
+        return False, factor
+
+    def _sweep(self, group: _Group, places: list[int], steps: int) -> tuple[list[Any], list[Any]]:
+        """Visit a loop once; return its values before and after."""
+        signals = self._network.signals
+        before = [signals[p] for p in places]
+        for visit in group.visits:
+            if steps % visit.node.every == 0:
+                self._network.write(visit.node)
+                self._network.read(visit.chunks)
+        return before, [signals[p] for p in places]
 
 
 def _groups(network: Network) -> list[_Group]:
@@ -194,7 +245,9 @@ def _scheduled(
         {index[d] for name in group for d in depends.get(name, ()) if d in index} - {i}
         for i, group in enumerate(groups)
     ]
-    waiting = dict(enumerate(groups))
+    waiting = {
+        i: unrolled(g, depends) if loops_on_itself(g, depends) else g for i, g in enumerate(groups)
+    }
     scheduled: list[tuple[list[Name], bool]] = []
     while waiting:
         ready = [i for i in waiting if needs[i].isdisjoint(waiting)]
@@ -206,6 +259,10 @@ def _scheduled(
             taken = [i for i in of_node if not loops_on_itself(waiting[i], depends)]
         scheduled.append(([name for i in taken for name in waiting.pop(i)], is_loop))
     return scheduled
+
+
+def _all_close(before: Sequence[Any], after: Sequence[Any]) -> bool:
+    return all(_close(a, b) for a, b in zip(before, after, strict=True))
 
 
 def _close(a: Any, b: Any) -> bool:

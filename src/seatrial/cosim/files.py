@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import tomllib
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
@@ -104,19 +105,47 @@ def validated(model: type[Model], content: Any, path: Path, *, ours: str = "") -
     try:
         return model.model_validate(content)
     except ValidationError as error:
-        lines = [_explained(model, problem, ours) for problem in error.errors()]
+        lines = _explained(model, error.errors(), content, ours)
         raise InputError("\n".join(f"{path}: {line}" for line in lines)) from None
 
 
-def _explained(model: type[BaseModel], problem: Any, ours: str) -> str:
-    keys = [str(key) for key in problem["loc"]]
-    shown = keys[1:] if keys[:1] == [ours] else keys
-    place = ".".join(f'"{k}"' if "." in k else k for k in shown) or "(top level)"
-    if problem["type"] == "extra_forbidden":
-        return f"{place}: {unknown('key', keys[-1], _known_keys(model, keys[:-1]))}"
-    if problem["type"] == "missing":
-        return f"{place}: this key is missing"
-    return f"{place}: {problem['msg']}, found {problem['input']!r}"
+def _explained(
+    model: type[BaseModel], problems: Sequence[Any], content: Any, ours: str
+) -> list[str]:
+    """Return a line for each place; what several forms of a value would need is joined there."""
+    said: dict[str, list[str]] = {}
+    found: dict[str, Any] = {}
+    for problem in problems:
+        keys = _keys(problem, content)
+        shown = keys[1:] if keys[:1] == [ours] else keys
+        place = ".".join(f'"{k}"' if "." in k else k for k in shown) or "(top level)"
+        if problem["type"] == "extra_forbidden":
+            message = unknown("key", keys[-1], _known_keys(model, keys[:-1]))
+        elif problem["type"] == "missing":
+            message = "this key is missing"
+        else:
+            message, found[place] = problem["msg"], problem["input"]
+        messages = said.setdefault(place, [])
+        if message not in messages:
+            messages.append(message)
+    return [
+        f"{place}: {'; or: '.join(messages)}"
+        + (f", found {found[place]!r}" if place in found else "")
+        for place, messages in said.items()
+    ]
+
+
+def _keys(problem: Any, content: Any) -> list[str]:
+    """Return where a problem is in the file: pydantic names the forms of a value on the way."""
+    keys, current, last = [], content, len(problem["loc"]) - 1
+    for i, key in enumerate(problem["loc"]):
+        inside = isinstance(current, dict) and key in current
+        if inside or (isinstance(current, list) and isinstance(key, int)):
+            current = current[key]
+            keys.append(str(key))
+        elif i == last and problem["type"] == "missing":
+            keys.append(str(key))
+    return keys
 
 
 def _known_keys(model: type[BaseModel], keys: list[str]) -> list[str]:

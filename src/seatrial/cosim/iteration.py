@@ -54,6 +54,8 @@ class Iterated:
     ) -> None:
         self._network, self._feedthrough, self._settings = network, feedthrough, settings
         self._parts = [node.part for node in network.nodes.values()]
+        self._proven = False
+        """Whether the components have shown that they can restore their states."""
         self.unsettled = 0
         """Steps that ended after ``count`` repetitions above the tolerance."""
         where = f'{network.system.rig.read_from.path}: algorithm = "iterated"'
@@ -78,12 +80,17 @@ class Iterated:
                 part.instance.free_state(state)
 
     def _repeat(self, steps: int, t_ns: int, h_ns: int, states: Sequence[Any]) -> None:
+        independent = [] if self._proven else self._network.independent()
         inputs = self._inputs()
         changes: list[float] = []
         for repetition in range(self._settings.count + 1):
             if repetition:
                 for part, state in zip(self._parts, states, strict=True):
                     part.instance.set_state(state)
+                if not self._proven:
+                    self._network.time_ns = t_ns
+                    self._network.refuse_unrestored(independent)
+                    self._proven = True
             self._pass(inputs, steps, t_ns, h_ns)
             change, worst = self._update(inputs)
             if change <= self._settings.tolerance:

@@ -14,7 +14,7 @@ from time import perf_counter_ns
 from typing import Any
 
 from ..component import NS
-from ..errors import SimulationError
+from ..errors import ExcessError, SimulationError
 from ..fmi.instance import Reader, Writer
 from .system import Part, System, Wire
 from .timing import StepTimes
@@ -161,7 +161,7 @@ class Network:
     # ------------------------------------------------------------------ running
 
     def read(self, chunks: Sequence[Chunk]) -> None:
-        """Read outputs. Raises SimulationError for one that is not finite or out of bounds."""
+        """Read outputs. Raises ExcessError for one that is not finite or out of bounds."""
         for chunk in chunks:
             values = chunk.read()
             if chunk.is_real:
@@ -200,7 +200,7 @@ class Network:
             name = self.names[chunk.start + i]
             when = f"at t = {self.time_ns / NS!r} s"
             if not math.isfinite(value):
-                raise SimulationError(f"{'.'.join(name)} is {value} {when}")
+                raise ExcessError(f"{'.'.join(name)} is {value} {when}")
             if abs(value) > limits.get(i, _ANY_QUANTITY) and name in self._sources:
                 nominal = limits[i] / _TIMES_NOMINAL if i in limits else None
                 excess = (
@@ -208,7 +208,7 @@ class Network:
                     if nominal is not None
                     else "beyond any quantity"
                 )
-                raise SimulationError(
+                raise ExcessError(
                     f"the coupling diverges {when}: {self.targets(name)} carries {value:.6g}, "
                     f"{excess}; a smaller step, another algorithm or another cut of the system "
                     "is needed"
@@ -265,6 +265,23 @@ class Network:
         writes = [w for node in self.nodes.values() for w in node.writes]
         for one, before in zip(writes, previous, strict=True):
             one.previous = before
+
+    def independent(self) -> list[list[Any]]:
+        """Return, freshly read, the outputs that follow from states alone."""
+        return [chunk.read() for node in self.nodes.values() for chunk in node.reads]
+
+    def refuse_unrestored(self, before: list[list[Any]]) -> None:
+        """Raise SimulationError if restored states do not give what `independent` returned."""
+        chunks = [chunk for node in self.nodes.values() for chunk in node.reads]
+        for chunk, values, now in zip(chunks, before, self.independent(), strict=True):
+            for place, (was, value) in enumerate(zip(values, now, strict=True), chunk.start):
+                if value != was:
+                    component, output = self.names[place]
+                    raise SimulationError(
+                        f"{component} says that it can save and restore its state, but it cannot: "
+                        f"{output} was {was!r} when it was saved at t = {self.time_ns / NS!r} s, "
+                        f"and is {value!r} now that it has been restored"
+                    )
 
 
 def _gatherer(places: Sequence[int]) -> Callable[[list[Any]], Sequence[Any]]:

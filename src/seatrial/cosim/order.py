@@ -38,6 +38,30 @@ def loops_on_itself(group: list[Node], depends_on: Mapping[Node, Iterable[Node]]
     return len(group) > 1 or group[0] in depends_on.get(group[0], ())
 
 
+def unrolled(loop: Sequence[Node], depends_on: Mapping[Node, Sequence[Node]]) -> list[Node]:
+    """Return the nodes of a loop, each after those it depends on as far as that can be.
+
+    >>> unrolled(["c", "b", "a"], {"a": ["c"], "b": ["a"], "c": ["b"]})
+    ['a', 'b', 'c']
+    """
+    waiting, order = set(loop), []
+    for root in loop:
+        path = []
+        if root in waiting:
+            waiting.remove(root)
+            path.append((root, iter(depends_on.get(root, ()))))
+        while path:
+            node, dependencies = path[-1]
+            following = next((d for d in dependencies if d in waiting), None)
+            if following is None:
+                order.append(node)
+                path.pop()
+            else:
+                waiting.remove(following)
+                path.append((following, iter(depends_on.get(following, ()))))
+    return order
+
+
 def _strongly_connected(
     nodes: Sequence[Node], depends_on: Mapping[Node, Iterable[Node]]
 ) -> dict[Node, int]:

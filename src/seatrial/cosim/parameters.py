@@ -15,10 +15,13 @@ Mark = Literal["stated", "corrected", "assumed"]
 
 
 class Entry(FileModel):
-    """One value: a number, a list of numbers for a port with axes, or a text."""
+    """One value: a number, a list of numbers for a port with axes, or a text.
+
+    ``unit`` is that of all numbers, or a list with one for each.
+    """
 
     value: float | int | str | list[float | int]
-    unit: str = "1"
+    unit: str | list[str] = "1"
     source: str
     mark: Mark
 

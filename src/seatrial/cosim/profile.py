@@ -20,6 +20,7 @@ from pydantic import BeforeValidator, Field, create_model
 from pydantic_core import PydanticCustomError
 
 from ..component import Component
+from ..devices.anemometer import Anemometer
 from ..devices.compass import Compass
 from ..devices.depth import Depth
 from ..devices.gnss import Gnss
@@ -29,7 +30,13 @@ from ..ports import Parameter
 from ..units import quantity, unit
 from .files import FileModel, Source, find_file, read_toml, validated
 
-SENSORS: dict[str, type[Component]] = {"compass": Compass, "depth": Depth, "gnss": Gnss, "imu": Imu}
+SENSORS: dict[str, type[Component]] = {
+    "anemometer": Anemometer,
+    "compass": Compass,
+    "depth": Depth,
+    "gnss": Gnss,
+    "imu": Imu,
+}
 """Kinds of sensors, and the component whose parameters a sensor of that kind gives."""
 
 VEHICLE_TYPES = ("generic", "ground_rover", "submarine", "surface_boat")
@@ -237,14 +244,14 @@ def _reader(port: Parameter) -> Callable[[Any], float | list[float]]:
 
     def read(written: Any) -> float | list[float]:
         if not isinstance(written, list):
-            return _in_si(written, port.unit, port.limit("min", 0), port.limit("max", 0))
+            return _in_si(written, port.unit_of(0), port.limit("min", 0), port.limit("max", 0))
         if port.axes is None or len(written) != port.size:
             axes = (
                 f"one value, or {port.size} ({', '.join(port.axes)})" if port.axes else "one value"
             )
             raise _refused(f"{axes} needed")
         return [
-            _in_si(value, port.unit, port.limit("min", i), port.limit("max", i))
+            _in_si(value, port.unit_of(i), port.limit("min", i), port.limit("max", i))
             for i, value in enumerate(written)
         ]
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..component import NS
-from ..errors import DiscardError, SimulationError
+from ..errors import DiscardError, FatalError, SimulationError
 from .algorithms import Algorithm
 from .feedthrough import Feedthrough
 from .network import Network
@@ -27,6 +27,8 @@ class _Checkpoint:
     states: list[Any]
     network: Any
     feedthrough: Any
+    independent: list[list[Any]]
+    """Outputs that tell if the states have been restored."""
 
 
 class Rollback:
@@ -108,13 +110,19 @@ class Rollback:
         try:
             for instance in self._instances:
                 states.append(instance.get_state())
+        except FatalError:
+            raise
         except SimulationError as error:  # it says it can, but it cannot: the run may go on
             self._obstacle = str(error)
             for instance, state in zip(self._instances, states, strict=False):
                 instance.free_state(state)
             return
         self._checkpoint = _Checkpoint(
-            steps, states, self._network.memory(), self._feedthrough.memory()
+            steps,
+            states,
+            self._network.memory(),
+            self._feedthrough.memory(),
+            self._network.independent(),
         )
 
     def _restore(self, checkpoint: _Checkpoint) -> None:
@@ -122,6 +130,7 @@ class Rollback:
             instance.set_state(state)
         self._network.restore(checkpoint.network)
         self._feedthrough.restore(checkpoint.feedthrough)
+        self._network.refuse_unrestored(checkpoint.independent)
 
     def _release(self, checkpoint: _Checkpoint) -> None:
         for instance, state in zip(self._instances, checkpoint.states, strict=True):

@@ -147,7 +147,8 @@ def settable(variables: Variables, port: str, where: str) -> list[Variable]:
     if not scalars:
         raise InputError(f"{where}: {unknown('port', port, port_names(variables))}")
     if scalars[0].causality not in ("parameter", "input"):
-        raise InputError(f"{where}.{port} is a {scalars[0].causality} and cannot be set")
+        kind = scalars[0].causality
+        raise InputError(f"{where}.{port} has the causality {kind} and cannot be set")
     return scalars
 
 
@@ -167,10 +168,11 @@ def assemble(
     system = System(rig, engine, seed, variant or rig.file.variant, {}, [])
     folder = rig.read_from.path.parent
     profile = load_profile(rig.file.profile, folder) if rig.file.profile else None
+    once: dict[str, str] = {}
     try:
         for name, entry in rig.file.components.items():
             progress(f"{name} ({entry.fmu})")
-            part = _part(rig, name, entry, engine)
+            part = _part(rig, name, entry, engine, once)
             system.parts[name] = part
             _give_parameters(system, part, entry, profile)
         if system.variant and not any(e.parameters for e in rig.file.components.values()):
@@ -188,7 +190,7 @@ def assemble(
     return system
 
 
-def _part(rig: Rig, name: str, entry: ComponentEntry, engine: Engine) -> Part:
+def _part(rig: Rig, name: str, entry: ComponentEntry, engine: Engine, once: dict[str, str]) -> Part:
     where = f"{rig.read_from.path}: components.{name}"
     every = 1
     if entry.step is not None:
@@ -200,7 +202,7 @@ def _part(rig: Rig, name: str, entry: ComponentEntry, engine: Engine) -> Part:
             )
     timeout_s = _timeout_s(entry, f"{where}.timeout")
     try:
-        instance, sha256, code = _instance(entry, name, rig.folder, engine, timeout_s)
+        instance, sha256, code = _instance(entry, name, rig.folder, engine, timeout_s, once)
     except InputError as error:
         raise InputError(f"{where}.fmu: {error}") from None
     return Part(name, entry.fmu, instance, sha256, code, every)
@@ -217,11 +219,17 @@ def _timeout_s(entry: ComponentEntry, where: str) -> float:
 
 
 def _instance(
-    entry: ComponentEntry, name: str, folder: Path, engine: Engine, timeout_s: float
+    entry: ComponentEntry,
+    name: str,
+    folder: Path,
+    engine: Engine,
+    timeout_s: float,
+    once: dict[str, str],
 ) -> tuple[Instance, str, str]:
     """Return an instance, the hash of its FMU file and the name of its code; see `Part`.
 
-    An isolated component is an FMU with either engine.
+    An isolated component is an FMU with either engine. ``once`` has, by their hashes, the names
+    of the components in this process whose FMU allows one instance only.
     """
     source = find_source(entry.fmu, folder)
     in_process = engine == "direct" and not entry.isolated
@@ -238,6 +246,13 @@ def _instance(
         loaded = load_fmu(cached_fmu(source, code))
     if entry.isolated:
         return IsolatedInstance(loaded, name, timeout_s), loaded.sha256, code
+    if loaded.description.coSimulation.canBeInstantiatedOnlyOncePerProcess:
+        if loaded.sha256 in once:
+            raise InputError(
+                f"{loaded.path.name} says that a process can have one instance of it only, and "
+                f"{once[loaded.sha256]} is that; isolated = true gives {name} a process of its own"
+            )
+        once[loaded.sha256] = name
     return open_instance(loaded, name), loaded.sha256, code
 
 

@@ -49,12 +49,14 @@ def from_entry(entry: Entry, scalars: Sequence[Variable], origin: str) -> dict[s
     """Return a parameter file's entry as scalars. Raises InputError naming ``origin``."""
     values = entry.value if isinstance(entry.value, list) else [entry.value] * len(scalars)
     _check_count(len(values), scalars, origin)
+    units = entry.unit if isinstance(entry.unit, list) else [entry.unit] * len(scalars)
+    _check_count(len(units), scalars, f"{origin}: units")
     given = {}
-    for variable, value in zip(scalars, values, strict=True):
-        if variable.type is not float and entry.unit != "1":
-            raise InputError(f"{origin}: {variable.name} has no unit, found {entry.unit!r}")
+    for variable, value, unit in zip(scalars, values, units, strict=True):
+        if variable.type is not float and unit != "1":
+            raise InputError(f"{origin}: {variable.name} has no unit, found {unit!r}")
         if variable.type is float and not isinstance(value, str):
-            resolved: Value = _converted(float(value), entry.unit, variable, origin)
+            resolved: Value = _converted(float(value), unit, variable, origin)
         elif variable.type is float:
             resolved = _text(variable, value, origin)
         else:

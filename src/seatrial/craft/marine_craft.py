@@ -10,10 +10,10 @@ import casadi as ca
 import numpy as np
 
 from ..component import Input, Parameter
-from ..errors import InputError
 from ..model import Vector
 from ..plant import Plant, State
 from ..ports import Output
+from .inertia import require_positive_definite
 from .symbolic import euler_rate_matrix, rotation_matrix, skew
 
 _TENSOR = ("xx", "yy", "zz", "xy", "xz", "yz")
@@ -143,12 +143,11 @@ class MarineCraft(Plant):
 
     def start(self, t: float) -> None:
         """Start from the start values; raises InputError if M is not positive definite."""
-        smallest = np.linalg.eigvalsh(self.mass_matrix()).min()
-        if smallest <= 0.0:
-            raise InputError(
-                f"{self.name}: the mass matrix is not positive definite (smallest eigenvalue "
-                f"{smallest:.4g}); check mass, inertia, added_mass, added_inertia, added_coupling"
-            )
+        require_positive_definite(
+            self.name,
+            self.mass_matrix(),
+            "mass, inertia, added_mass, added_inertia, added_coupling",
+        )
         super().start(t)
 
     def mass_matrix(self) -> Vector:

@@ -4,6 +4,9 @@ All FMUs of a process share one interpreter and one ``sys.modules``. So everythi
 in one package whose name carries the hash of its content, and the script's name carries it
 too: FMUs of different versions, or of different users with files of the same name, never run
 each other's code.
+
+A module that reads data files names them in a constant, ``DATA_FILES = ("polar.csv",)``; they
+lie beside it, it reads them from ``Path(__file__).with_name("polar.csv")``, and they travel.
 """
 
 from __future__ import annotations
@@ -44,13 +47,19 @@ def bundle(stem: str, source: bytes, folder: Path) -> Bundle:
     as its own, wherever they are imported. Of seatrial's own modules, imports inside functions
     are left out: what they bring is for builds and tools.
 
-    Raises InputError for a file that is not Python or an import that is found nowhere.
+    Raises InputError for a file that is not Python, an import that is found nowhere or a data
+    file that is not there.
     """
     local = _Local(folder)
     modules, third_party = _closure(source, f"{stem}.py", local)
     digest = hashlib.sha256()
+    data: dict[str, bytes] = {}
     for name, (path, text) in sorted(modules.items()):
         digest.update(f"{name}\0{path.name}\0".encode() + text + b"\0")
+        package = name if path.name == "__init__.py" else name.rpartition(".")[0]
+        for file, content in _data_files(path, text):
+            digest.update(f"{file}\0{len(content)}\0".encode() + content)
+            data["/".join([*package.split("."), file] if package else [file])] = content
     needed = {name: _requirement(name) for name in sorted(third_party)}
     requirements = tuple(needed.values())
     digest.update(stem.encode() + b"\0" + source + "\0".join(requirements).encode())
@@ -58,6 +67,7 @@ def bundle(stem: str, source: bytes, folder: Path) -> Bundle:
     root = f"bundle_{tag}"
     own = frozenset(name.partition(".")[0] for name in modules)
     files = {f"{root}/__init__.py": _preflight(stem, needed)}
+    files |= {f"{root}/{place}": content for place, content in data.items()}
     for name, (path, text) in modules.items():
         place = name.replace(".", "/") + ("/__init__.py" if path.name == "__init__.py" else ".py")
         files[f"{root}/{place}"] = _renamed(text, str(path), own, root)
@@ -128,6 +138,43 @@ def _closure(
         if "." in name:
             todo.append(((name.rpartition(".")[0], False), str(path)))
     return modules, third_party
+
+
+def _data_files(path: Path, source: bytes) -> list[tuple[str, bytes]]:
+    """Return name and content of the files that the module at ``path`` says it reads."""
+    found = []
+    for name in _data_names(source, str(path)):
+        file = path.with_name(name)
+        if not file.is_file():
+            raise InputError(f"{path}: DATA_FILES names {name!r}, and there is no such file there")
+        found.append((name, file.read_bytes()))
+    return found
+
+
+@lru_cache(maxsize=1024)
+def _data_names(source: bytes, file: str) -> tuple[str, ...]:
+    """Return what a module assigns to ``DATA_FILES`` at its top level."""
+    for node in _parsed(_text(source, file), file).body:
+        if not isinstance(node, (ast.Assign, ast.AnnAssign)):
+            continue
+        targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+        if not any(isinstance(t, ast.Name) and t.id == "DATA_FILES" for t in targets):
+            continue
+        try:
+            names = ast.literal_eval(node.value or "")
+        except (ValueError, TypeError, SyntaxError):
+            names = None
+        if not isinstance(names, (tuple, list)) or not all(map(_is_plain_name, names)):
+            raise InputError(
+                f"{file}, line {node.lineno}: DATA_FILES must be a tuple of names of files beside "
+                'the module, written out: ("polar.csv",)'
+            )
+        return tuple(names)
+    return ()
+
+
+def _is_plain_name(name: object) -> bool:
+    return isinstance(name, str) and Path(name).name == name != "" and not name.endswith(".py")
 
 
 def _require_installed(top: str, importer: str, local: _Local) -> None:

@@ -92,7 +92,7 @@ def _complete_variable(component: Component, scalar: ScalarPort, element: Elemen
         element.set("start", str(value).lower() if port.type is bool else _text(value))
     if port.type is float:
         try:
-            element.set("unit", unit(port.unit).text)
+            element.set("unit", unit(scalar.unit).text)
         except InputError as error:
             raise InputError(f"{type(component).__name__}.{port.name}: {error}") from None
         for name in ("min", "max", "nominal"):
@@ -108,9 +108,7 @@ def _text(value: Any) -> str:
 
 
 def _insert_units(root: Element, component: Component) -> None:
-    used = {
-        unit(s.port.unit).text: unit(s.port.unit) for s in component.scalars if s.port.type is float
-    }
+    used = {unit(s.unit).text: unit(s.unit) for s in component.scalars if s.port.type is float}
     if not used:
         return
     definitions = Element("UnitDefinitions")

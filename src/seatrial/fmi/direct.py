@@ -109,7 +109,7 @@ def _variable(component: Component, scalar: ScalarPort) -> Variable:
         variability=("tunable" if tunable else "fixed") if port.kind == "parameter" else varying,
         type=port.type,
         reference=scalar.reference,
-        unit=port.unit if port.type is float else "",
+        unit=scalar.unit if port.type is float else "",
         start=None if port.kind == "output" else component.values[scalar.reference],
         minimum=port.limit("min", scalar.index),
         maximum=port.limit("max", scalar.index),

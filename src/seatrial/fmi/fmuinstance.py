@@ -8,7 +8,7 @@ from abc import abstractmethod
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from ..errors import INTERRUPTED, DiscardError, InputError, SimulationError
+from ..errors import INTERRUPTED, DiscardError, FatalError, InputError, SimulationError
 from ..plain import is_c_text
 from .instance import ByType, Value, Variable
 from .messages import DISCARD, FATAL, WARNING, Messages, word
@@ -141,8 +141,10 @@ class FmuInstance(ByType):
         said = self._messages.said()
         if self._ours and said.endswith(INTERRUPTED):
             raise KeyboardInterrupt
-        kind = DiscardError if status == DISCARD else SimulationError
-        raise kind(f"{self.name}: {self._prefix}{what} returned {word(status)}{said}")
+        kinds = {DISCARD: DiscardError, FATAL: FatalError}
+        raise kinds.get(status, SimulationError)(
+            f"{self.name}: {self._prefix}{what} returned {word(status)}{said}"
+        )
 
     def _refuse_logged_errors(self, what: str) -> None:
         """Raise for an error that our own FMUs log instead of returning it (see `Slave`)."""

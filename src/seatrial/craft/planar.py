@@ -1,0 +1,94 @@
+"""What craft that move in the horizontal plane have in common: kinematics, motion outputs.
+
+Frames: {n} x north, y east, z down; {b} x bow, y starboard, z down. eta = (x, y, psi) and
+nu = (u, v, r), or eta = (x, y, phi, psi) and nu = (u, v, p, r) for craft that heel too:
+position of the body origin in {n}, m; heel, starboard down, and heading, clockwise from
+north, rad; velocity of the body origin over ground, m/s, and angular rates, rad/s, in {b}.
+Heave and pitch are left out: z = theta = 0, w = q = 0.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import casadi as ca
+
+from ..plant import Plant
+from ..ports import Output
+
+
+class PlanarCraft(Plant):
+    """Base of craft in the horizontal plane: publishes their motion as sensors expect it.
+
+    The subclass declares its states eta and nu, returns `motion_outputs` among its outputs and
+    names in ``feedthrough`` the inputs that act on ``acceleration``.
+    """
+
+    position = Output("m", "body origin in north-east-down; z = 0", axes="xyz")
+    attitude = Output("rad", "Euler angles, ZYX; theta = 0", axes=("phi", "theta", "psi"))
+    velocity = Output(
+        "m/s",
+        "velocity of the body origin over ground, body axes; w = 0",
+        axes=("u", "v", "w"),
+    )
+    rates = Output("rad/s", "angular velocity, body axes; q = 0", axes=("p", "q", "r"))
+    acceleration = Output(
+        "m/s2",
+        "inertial acceleration of the body origin, dv/dt + omega x v, body axes",
+        axes="xyz",
+    )
+
+
+def motion_outputs(eta: Any, nu: Any, nu_dot: Any) -> dict[str, Any]:
+    """Return the outputs of `PlanarCraft` from CasADi columns eta, nu and d(nu)/dt.
+
+    With heel, R (u, v, 0) has a vertical part v sin(phi): that is what leaving out heave costs.
+    """
+    x, y, phi, psi = _four(eta)
+    u, v, p, r = _four(nu)
+    u_dot, v_dot, _p_dot, _r_dot = _four(nu_dot)
+    velocity, rates = ca.vertcat(u, v, 0), ca.vertcat(p, 0, r)
+    return {
+        "position": ca.vertcat(x, y, 0),
+        "attitude": ca.vertcat(phi, 0, psi),
+        "velocity": velocity,
+        "rates": rates,
+        "acceleration": ca.vertcat(u_dot, v_dot, 0) + ca.cross(rates, velocity),
+    }
+
+
+def kinematics(eta: Any, nu: Any) -> Any:
+    """Return d(eta)/dt, in the order of eta: (x', y') = J (u, v), phi' = p, psi' = r cos(phi).
+
+    Source 001, eq. 2.3; with phi = 0 Fossen's three degrees of freedom.
+    """
+    _x, _y, phi, psi = _four(eta)
+    u, v, p, r = _four(nu)
+    place = horizontal_rotation(phi, psi) @ ca.vertcat(u, v)
+    heel = [p] if eta.numel() == 4 else []
+    return ca.vertcat(place, *heel, r * ca.cos(phi))
+
+
+def horizontal_rotation(phi: Any, psi: Any) -> Any:
+    """Return J (2, 2), with (north, east) = J (u, v): source 001, eq. 2.5.
+
+    J^T takes a horizontal velocity into body axes.
+    """
+    c, s = ca.cos(psi), ca.sin(psi)
+    return ca.vertcat(ca.horzcat(c, -s * ca.cos(phi)), ca.horzcat(s, c * ca.cos(phi)))
+
+
+def planar_coriolis(h: Any, nu: Any) -> Any:
+    """Return C(nu) nu = (-r h_v, r h_u, u h_v - v h_u) of a momentum h and nu = (u, v, r).
+
+    ``h`` is (h_u, h_v), N.s, in body axes; the result force X, Y, N, and moment N, N.m: what
+    Kirchhoff's equations have on the left-hand side.
+    """
+    (h_u, h_v), (u, v, r) = ca.vertsplit(h), ca.vertsplit(nu)
+    return ca.vertcat(-r * h_v, r * h_u, u * h_v - v * h_u)
+
+
+def _four(column: Any) -> list[Any]:
+    """Return the elements of eta or nu, with 0 for a heel that is not there."""
+    first, second, *heel, last = ca.vertsplit(column)
+    return [first, second, heel[0] if heel else 0.0, last]
