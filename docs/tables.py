@@ -26,6 +26,10 @@ from seatrial.craft.marine_craft import MarineCraft
 from seatrial.ports import Parameter
 from seatrial.shipped import shipped_folder
 from seatrial.trials.campaign import load_campaign, run_campaign
+from seatrial.trials.heading_design import design_heading
+from seatrial.trials.heading_design_page import rows as design_rows
+from seatrial.trials.heading_design_page import stability
+from seatrial.trials.readable import number
 from seatrial.trials.run import run_trial
 from seatrial.trials.run_folder import Run, load_run
 from seatrial.trials.trial import load_trial
@@ -117,7 +121,9 @@ def _fixed(value: float, decimals: int) -> str:
     return text.replace("-", "−") if float(text) else text.lstrip("-")
 
 
-def _unit(text: str) -> str:
+def _unit(text: str | Sequence[str]) -> str:
+    if not isinstance(text, str):
+        return f"({', '.join(text)})"
     return "" if text == "1" else text
 
 
@@ -185,9 +191,10 @@ def variants(vehicle: str) -> str:
     return _table(head, rows)
 
 
-for _vehicle in ("hydrone", "gloria"):
+for _vehicle in ("hydrone", "gloria", "mariner"):
     part(f"{_vehicle}-parameters")(partial(parameters, _vehicle))
     part(f"{_vehicle}-variants")(partial(variants, _vehicle))
+part("thruster-ship-parameters")(partial(parameters, "thruster-ship"))
 
 
 # ---------------------------------------------------------------------- hydrone.md: the rest
@@ -549,6 +556,65 @@ def hydrone_static() -> str:
         z, roll, pitch = _static(*entry.value[:2])
         rows.append((pad, _fixed(z, 5), _fixed(roll, 3), _fixed(pitch, 3)))
     return _table(("landing point", "sinkage, m", "roll, deg", "pitch, deg"), rows)
+
+
+# ---------------------------------------------------------------------- the two ships
+
+
+def verdicts(rig: str) -> str:
+    """Every criterion of the trials whose names begin so, and what was found."""
+    rows = []
+    for path in sorted((shipped_folder("harness") / "trials").glob(f"{rig}-*.toml")):
+        with _elsewhere() as folder:
+            run = load_run(run_trial(load_trial(path.stem), folder / "out", engine="direct").folder)
+        for verdict in run.verdicts:
+            found = verdict["detail"].partition("; ")[0].replace("-", "−")
+            holds = "yes" if verdict["passed"] else "**no**"
+            rows.append((f"`{path.stem}`", verdict["name"], holds, found))
+    return _table(("trial", "criterion", "holds", "found"), rows)
+
+
+part("mariner-trials")(partial(verdicts, "mariner"))
+part("thruster-ship-trials")(partial(verdicts, "thruster-ship"))
+
+
+@part("mariner-gains")
+def mariner_gains() -> str:
+    """Gains of the source's ship for a damping ratio of 0.7071, and limits of stability."""
+    design = design_heading("mariner", "source", (0.0, -1.3427, 1.25379))
+    stable = {number(one.derivative_time, 6): stability(one) for one in design.loci}
+    return _table(
+        ("T_d, L/U", "K", "poles, U/L", "least damping ratio", "stable for"),
+        [
+            (
+                row.derivative_time.replace("-", "−"),
+                row.K,
+                row.poles.replace("-", "−"),
+                row.damping,
+                stable[row.derivative_time],
+            )
+            for row in design_rows(design)
+        ],
+    )
+
+
+@part("thruster-ship-cases")
+def thruster_ship_cases() -> str:
+    """The six published cases after 10 s, nonlinear and linear."""
+    lines = []
+    with _elsewhere() as folder:
+        run_campaign(load_campaign("thruster-ship-cases"), folder / "out", engine="direct")
+        for case in json.loads((folder / "out/campaign.json").read_text())["cases"]:
+            end = {k: v[-1] for k, v in load_run(folder / "out" / case["folder"]).signals.items()}
+            ends = [
+                [end[f"{model}.{s}"] for s in ("position.x", "position.y", "attitude.psi")]
+                for model in ("nonlinear", "linear")
+            ]
+            shown = [number(value, 6).replace("-", "−") for value in (*ends[0], *ends[1])]
+            lines.append((next(iter(case["set"].values())), *shown))
+    axes = ("x, m", "y, m", "psi, rad")
+    head = [f"{model} {axis}" for model in ("nonlinear", "linear") for axis in axes]
+    return _table(("case", *head), lines)
 
 
 if __name__ == "__main__":

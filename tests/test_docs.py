@@ -33,7 +33,8 @@ from seatrial.units import quantity
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
 FILES, COMPONENTS = DOCS / "files.md", DOCS / "components.md"
-HYDRONE, DESIGN, SSP = DOCS / "vehicles" / "hydrone.md", DOCS / "design.md", DOCS / "ssp.md"
+DESIGN, SSP = DOCS / "design.md", DOCS / "ssp.md"
+VEHICLES = sorted((DOCS / "vehicles").glob("*.md"))
 SEATRIAL = str(Path(sys.executable).with_name("seatrial"))
 
 
@@ -125,7 +126,7 @@ def run_commands(block: Block) -> None:
 
 
 @pytest.mark.parametrize(
-    "page", [FILES, COMPONENTS, HYDRONE, DESIGN, SSP], ids=lambda page: page.stem
+    "page", [FILES, COMPONENTS, *VEHICLES, DESIGN, SSP], ids=lambda page: page.stem
 )
 def test_examples_run(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     run_page(page, tmp_path, monkeypatch)

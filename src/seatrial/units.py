@@ -119,8 +119,15 @@ def conversion(source: str | Unit, target: str | Unit) -> tuple[float, float]:
     A unit is a name, or what an FMU defines. Equal names need not be known. Raises InputError
     if the two do not measure the same thing, or one of two different names is not known.
     """
-    factor, offset = _exact_conversion(source, target)
-    return float(factor), float(offset)
+    exact = _exact_conversion(source, target)
+    try:
+        factor, offset = float(exact[0]), float(exact[1])
+    except OverflowError:
+        factor = offset = 0.0
+    if factor == 0.0:
+        ends = f"unit {_name(source)!r} cannot be converted to {_name(target)!r}"
+        raise InputError(f"{ends}: the factor is beyond the range of doubles")
+    return factor, offset
 
 
 def _exact_conversion(source: str | Unit, target: str | Unit) -> tuple[Fraction, Fraction]:

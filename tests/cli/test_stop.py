@@ -172,6 +172,24 @@ def test_a_second_signal_ends_a_component_that_hangs(engine, start, tmp_path: Pa
     assert "run stopped" in (tmp_path / "run" / "report.html").read_text("utf-8")
 
 
+@pytest.mark.parametrize("isolated", ["false", "true"])
+@pytest.mark.parametrize("gap_s", [0.0, 0.003, 0.03])
+def test_two_signals_leave_a_whole_record_too(
+    gap_s: float, isolated: str, start, tmp_path: Path
+) -> None:
+    # As `timeout` sends them, and people who press twice.
+    rig = tmp_path / "rig.toml"
+    rig.write_text(rig.read_text().replace('Slow"', f'Slow", isolated = {isolated}'))
+    process = start("run", "trial.toml", "--out", "run")
+    signals = tmp_path / "run" / "signals.csv"
+    wait_for(lambda: signals.is_file() and signals.stat().st_size > 0)
+    for _ in range(2):
+        process.send_signal(signal.SIGTERM)
+        time.sleep(gap_s)
+    stopped(process)
+    assert_whole(tmp_path / "run", 10)
+
+
 @pytest.mark.parametrize("pace", [[], ["--real-time", "0.0001"]], ids=["free", "waiting"])
 def test_a_killed_run_is_whole_up_to_its_last_flush(pace, start, tmp_path: Path) -> None:
     process = start("run", "trial.toml", "--out", "run", "--engine", "direct", *pace)

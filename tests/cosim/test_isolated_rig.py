@@ -162,6 +162,29 @@ def test_a_limit_that_is_no_positive_time_is_refused(timeout: str, trial) -> Non
         assemble(rig)
 
 
+@pytest.mark.parametrize("closed", ["<&-", "<&- >&-", "<&- 2>&-", "<&- >&- 2>&-"])
+def test_a_command_without_standard_streams_runs_as_any(closed: str, trial, tmp_path: Path) -> None:
+    trial('set = { how = "print" }')
+    done = subprocess.run(
+        f"exec '{SEATRIAL}' run trial.toml --out run {closed}",
+        shell=True, cwd=tmp_path, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert manifest(tmp_path / "run")["status"] == "complete"
+
+
+def test_what_a_component_prints_need_not_be_read(trial, tmp_path: Path) -> None:
+    trial('set = { how = "print" }')
+    process = subprocess.Popen(
+        [SEATRIAL, "run", "trial.toml", "--out", "run"],
+        cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+    )  # fmt: skip
+    assert process.stderr is not None
+    process.stderr.close()
+    assert process.wait(60) == 0
+    assert manifest(tmp_path / "run")["status"] == "complete"
+
+
 def interrupted(folder: Path, how: str, times: int) -> tuple[str, list[list[str]]]:
     """Run a trial of the command line as a terminal would, send Ctrl-C; return what is left."""
     process = subprocess.Popen(

@@ -221,6 +221,8 @@ def test_a_value_in_the_ports_own_unit_is_not_touched(load) -> None:
         ("mass", {"value": [1, 2]}, r"here: 1 values are needed \(mass\), found 2"),
         ("pad", {"value": [1, 2], "unit": "m"}, r"3 values are needed \(pad\.x, pad\.y, pad\.z\), found 2"),
         ("pad", {"value": [], "unit": "m"}, "3 values are needed .*, found 0"),
+        ("pad", {"value": [1, 2, 3], "unit": ["m", "m"]}, "here: units: 3 values are needed .*, found 2"),
+        ("pad", {"value": [1, 2, 3], "unit": ["m", "m", "s"]}, "unit 's' cannot be converted to 'm'"),
         ("mode", {"value": 3, "unit": "1"}, "here: a text is needed, found 3"),
         ("ratio", {"value": 1, "unit": "rad"}, "unit 'rad' cannot be converted to '1'"),
     ],
@@ -229,6 +231,12 @@ def test_entries_that_do_not_fit_their_port(port: str, values, message: str) -> 
     entry = Entry(**{"value": 1, "unit": "kg", "source": "s", "mark": "stated", **values})
     with pytest.raises(InputError, match=message):
         from_entry(entry, port_scalars(VARIABLES, port), "here")
+
+
+def test_each_value_may_have_a_unit_of_its_own() -> None:
+    entry = Entry(value=[1, 20, 300], unit=["m", "cm", "mm"], source="s", mark="stated")
+    given = from_entry(entry, port_scalars(VARIABLES, "pad"), "here")
+    assert [g.value for g in given.values()] == pytest.approx([1.0, 0.2, 0.3])
 
 
 def test_a_preset_stands_for_a_whole_port(load) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import time
 import zipfile
 from pathlib import Path
@@ -12,6 +13,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from seatrial.cosim.ssp.reading import read_ssp
+from seatrial.cosim.ssp.tools import findings
 from seatrial.errors import InputError
 
 from .ssp_files import (
@@ -80,6 +82,8 @@ WRONG = [
     ('stopTime="2.0"', 'stopTime="soon"', "line 19"),
     ('stopTime="2.0"', 'stopTime="INF"', "a finite number is needed, found 'INF'"),
     ('baseStepSize="0.01"', 'baseStepSize="-1"', "must be above 0"),
+    ('baseStepSize="0.01"', 'baseStepSize="1e300"', "must be above 0, at most 9e+09"),
+    ('"resources/Damper.fmu"', f'"resources/{"a" * 300}.fmu"', "File name too long"),
     ('kind="output"><ssc:Real/>', 'kind="output"><ssc:Integer/>', "is not of the type of the FMU's variable, float"),
     ('kind="output"><ssc:Real/>', 'kind="output"><ssc:Real unit="kn"/>', "in another unit than the FMU's variable, which is in"),
     ('kind="output"><ssc:Real/>', 'kind="output"><ssc:Real unit="kg"/>', "cannot be converted"),
@@ -121,6 +125,48 @@ def test_wrong_values_are_named(values: str, said: str, yard: Yard, tmp_path: Pa
     assert said in message
 
 
+@pytest.mark.parametrize("value", ["1_0", "9" * 400])
+def test_integers_of_version_2_are_numbers_that_fit(value: str, yard: Yard, tmp_path: Path) -> None:
+    values = f'<ssv:Parameter name="mass"><ssv:Int64 value="{value}"/></ssv:Parameter>'
+    members = {"resources/hull.ssv": parameter_set(values, version="2.0")}
+    message = refused(yard.package(tmp_path / "x.ssp", members=members))
+    assert message.startswith("x.ssp: resources/hull.ssv: line ")
+
+
+def test_units_whose_ratio_no_double_holds_are_refused(yard: Yard, tmp_path: Path) -> None:
+    def sub(name: str, unit: str, elements: str, to: str) -> str:
+        return f"""<ssd:System name="{name}"><ssd:Connectors>
+        <ssd:Connector name="in" kind="input"><ssc:Real unit="{unit}"/></ssd:Connector>
+        </ssd:Connectors><ssd:Elements>{elements}</ssd:Elements><ssd:Connections>
+        <ssd:Connection startConnector="in" {to}/></ssd:Connections></ssd:System>"""
+
+    units = "".join(
+        f'<ssc:Unit name="{n}"><ssc:BaseUnit m="1" s="-1" factor="{f}"/></ssc:Unit>'
+        for n, f in (("huge", "1e308"), ("tiny", "1e-308"))
+    )
+    for units_in in (("huge", "tiny"), ("tiny", "huge")):
+        inner = sub("b", units_in[1], DAMPER, 'endElement="damper" endConnector="v"')
+        outer = sub("a", units_in[0], inner, 'endElement="b" endConnector="in"')
+        wire = THERE.replace('"damper" endConnector="v"', '"a" endConnector="in"')
+        ssd = description(system(HULL + outer, wire), after=f"<ssd:Units>{units}</ssd:Units>")
+        assert "the factor is beyond" in refused(yard.package(tmp_path / "x.ssp", ssd))
+
+
+@pytest.mark.parametrize("key", ["startTime", "stopTime"])
+def test_times_beyond_what_is_counted_are_refused(key: str, yard: Yard, tmp_path: Path) -> None:
+    ssd = re.sub(f'{key}="[^"]*"', f'{key}="1e300"', MINIMAL)
+    with pytest.raises(InputError, match=r"'1e\+300 s' is beyond 9e\+09 s"):
+        run(yard.package(tmp_path / "x.ssp", ssd))
+
+
+@pytest.mark.parametrize("name", ["%00", "a" * 300])
+def test_a_check_passes_over_parameter_sets_that_no_file_can_be(
+    name: str, yard: Yard, tmp_path: Path
+) -> None:
+    ssd = MINIMAL.replace("resources/hull.ssv", f"resources/{name}.ssv")
+    findings(yard.package(tmp_path / "x.ssp", ssd))
+
+
 def test_version_2_has_no_schema_here_but_nothing_unknown_passes(
     yard: Yard, tmp_path: Path
 ) -> None:
@@ -128,8 +174,15 @@ def test_version_2_has_no_schema_here_but_nothing_unknown_passes(
     array = second.replace("<ssc:Real/>", '<ssc:Float64/><ssc:Dimension size="3"/>', 1)
     strange = second.replace('name="damper"', 'name="damper" speed="9"')
     nameless = second.replace('name="damper" ', "")
+    elements = f"<ssd:Elements>{DAMPER.replace('damper', 'second')}</ssd:Elements>"
+    connections = f"<ssd:Connections>{THERE}</ssd:Connections>"
+    doubled = THERE[:-2] + f">{linear(2.0)}{linear(3.0)}</ssd:Connection>"
     for index, (ssd, said) in enumerate(
         [
+            (second.replace("</ssd:System>", f"{elements}</ssd:System>"), "a second ssd:Elements"),
+            (second.replace("</ssd:System>", f"{connections}</ssd:System>"), "a second ssd:Conn"),
+            (second.replace("</ssd:System>", '</ssd:System><ssd:System name="b"/>'), "a second"),
+            (second.replace(THERE, doubled), "a second ssc:LinearTransformation"),
             (array, "Dimension"),
             (strange, "unknown attribute 'speed'"),
             (nameless, "attribute 'name' is missing"),
@@ -186,11 +239,18 @@ def test_references_that_double_at_each_level_end(yard: Yard, tmp_path: Path) ->
     members: dict[str, str | bytes] = {
         f"{level}.ssd": description(system(two.format(level + 1))) for level in range(1, 20)
     }
-    members["20.ssd"] = description(system(DAMPER))
-    path = yard.package(tmp_path / "x.ssp", description(system(two.format(1))), members)
     begun = time.perf_counter()
-    assert "more than 1000 FMUs" in refused(path)
+    for last in (DAMPER, '<ssd:System name="empty"/>'):
+        members["20.ssd"] = description(system(last))
+        path = yard.package(tmp_path / "x.ssp", description(system(two.format(1))), members)
+        assert "more than 1000 " in refused(path)
     assert time.perf_counter() - begun < 60.0
+
+
+def test_an_fmu_that_cannot_be_loaded_is_named_with_its_line(yard: Yard, tmp_path: Path) -> None:
+    members = {"resources/Damper.fmu": "no archive"}
+    message = refused(yard.package(tmp_path / "x.ssp", members=members))
+    assert message.startswith("x.ssp: SystemStructure.ssd: line 14: ")
 
 
 BOMB = """<?xml version="1.0"?><!DOCTYPE x [<!ENTITY a "aaaaaaaaaa">

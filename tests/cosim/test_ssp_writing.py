@@ -15,9 +15,12 @@ from seatrial.cosim.ssp.reading import read_ssp
 from seatrial.cosim.ssp.tools import findings
 from seatrial.cosim.system import System, assemble
 from seatrial.errors import InputError
+from seatrial.fmi.export import build_fmu
+from seatrial.fmi.source import ComponentSource, find_source
 from seatrial.trials.export import export_ssp
 from seatrial.trials.trial import load_trial
 
+from ..fmi.native import changed
 from .ssp_files import BOATS
 
 RIG = """
@@ -144,3 +147,78 @@ def test_a_package_written_again_is_the_same_system(rig: Path, tmp_path: Path) -
         export_ssp(str(first), first)
     second, _ = export_ssp(str(first), tmp_path / "b.ssp")
     assert rows(assemble(read_ssp(second).rig), 10) == rows(assemble(read_ssp(first).rig), 10)
+
+
+SPEEDS = '''
+"""A log and a display."""
+from seatrial.component import Component, Input, Output
+
+
+class Log(Component):
+    """36 km/h."""
+
+    speed = Output("km/h", "speed")
+
+    def outputs(self, t):
+        self.speed = 36.0
+
+
+class Display(Component):
+    """Shows what it gets."""
+
+    speed = Input("m/s", "speed")
+    force = Input("N", "force")
+    shown = Output("m/s", "speed")
+    shown_force = Output("N", "force")
+    feedthrough = {"shown": ("speed",), "shown_force": ("force",)}
+
+    def outputs(self, t):
+        self.shown, self.shown_force = self.speed, self.force
+'''
+SHOWN = """
+step = "10 ms"
+[components]
+log = { fmu = "LOG" }
+raw = { fmu = "DISPLAY" }
+twice = { fmu = "DISPLAY" }
+[connections]
+"log.speed" = [
+    { to = "raw.speed", convert = false },
+    { to = "raw.force", convert = false },
+    { to = "twice.speed", factor = 3.6 },
+]
+"""
+
+
+def test_wires_that_do_not_convert_units_do_not_when_read_back(write, tmp_path: Path) -> None:
+    write("speeds.py", SPEEDS)
+    text = SHOWN.replace("LOG", "speeds.py:Log").replace("DISPLAY", "speeds.py:Display")
+    rig = write("shown.toml", text)
+    path, _ = export_ssp(str(rig), tmp_path / "x.ssp")
+    (row,) = rows(assemble(read_ssp(path).rig), 1)
+    assert [row["raw.shown"], row["raw.shown_force"], row["twice.shown"]] == [36.0, 36.0, 36.0]
+    with zipfile.ZipFile(path) as archive:
+        text = archive.read("SystemStructure.ssd").decode()
+    assert text.count('suppressUnitConversion="true"') == 3
+
+
+@pytest.mark.parametrize("name", ["kn", "t", "T", "wombat"])
+def test_units_that_an_fmu_defines_otherwise_are_written_as_it_means_them(
+    name: str, write, tmp_path: Path
+) -> None:
+    # A kilonewton that is called a knot, a tonne or a tesla.
+    folder = write("speeds.py", SPEEDS.replace("km/h", "kN").replace('"m/s"', '"N"')).parent
+    for source in ("Log", "Display"):
+        found = find_source(f"speeds.py:{source}", folder)
+        assert isinstance(found, ComponentSource)
+        built = build_fmu(found, tmp_path / "built.fmu")
+        if source == "Log":
+            changed(built, tmp_path / f"{source}.fmu", ('"kN"', f'"{name}"'))
+        else:
+            built.rename(tmp_path / f"{source}.fmu")
+    text = SHOWN.replace("LOG", "Log.fmu").replace("DISPLAY", "Display.fmu")
+    rig = write("shown.toml", text.replace("factor = 3.6", "factor = 2.0"))
+    path, notes = export_ssp(str(rig), tmp_path / "x.ssp")
+    (row,) = rows(assemble(read_ssp(path).rig), 1)
+    assert [row["raw.shown"], row["twice.shown"]] == [36.0, 72_000.0]
+    assert not any("is not written" in note for note in notes)

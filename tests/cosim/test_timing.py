@@ -37,3 +37,9 @@ def test_nothing_counted_and_a_single_one() -> None:
     times.add(0, 7)
     assert times.as_json()["bins"] == [1]
     assert times.as_json()["longest_at_s"] == 7e-9
+
+
+def test_what_is_longer_than_every_bin_is_in_the_last() -> None:
+    times = StepTimes()
+    times.add(10**30, 0)
+    assert times.bins[-1] == times.count == 1

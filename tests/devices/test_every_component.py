@@ -5,12 +5,17 @@ import random
 import pytest
 
 from seatrial.component import Component
+from seatrial.control.dynamic_positioning import DynamicPositioning
+from seatrial.control.heading_autopilot import HeadingAutopilot
+from seatrial.control.reference_filter import HeadingReference
 from seatrial.control.station_keeping import StationKeeping
 from seatrial.devices.compass import Compass
 from seatrial.devices.depth import Depth
+from seatrial.devices.force_actuator import ForceActuator
 from seatrial.devices.gnss import Gnss
 from seatrial.devices.imu import Imu
 from seatrial.devices.propulsion import Propulsion
+from seatrial.devices.rudder_machine import RudderMachine
 from seatrial.devices.servo import Servo
 from seatrial.devices.thruster import Thruster
 from seatrial.units import unit
@@ -26,6 +31,11 @@ CLASSES = {
     Compass: {"delay": 0.03, "dropout": 0.2},
     Gnss: {"dropout": 0.2, "antenna": [0.2, 0.1, -0.3]},
     Depth: {"dropout": 0.2, "place": [0.2, 0.1, 0.3]},
+    RudderMachine: {},
+    ForceActuator: {"capacity": [2.0, 2.0, 2.0]},
+    HeadingAutopilot: {"rudder_limit": 100.0, "integral_gain": 0.1},
+    HeadingReference: {},
+    DynamicPositioning: {"capacity": [1e12, 1e12, 1e12], "thruster_time_constant": 5.0},
     StationKeeping: {
         "enabled": True,
         "hold_radius": 2.0,
@@ -60,8 +70,8 @@ def names(cls, kind):
 
 @every
 def test_every_unit_is_a_unit(cls):
-    for port in cls.ports.values():
-        unit(port.unit)
+    for scalar in cls.scalars:
+        unit(scalar.unit)
 
 
 @every

@@ -25,6 +25,7 @@ from ..trials.report import write_report
 from ..trials.run import Hooks, Result, run_trial
 from ..trials.trial import Trial, load_trial
 from .convergence import print_convergence
+from .design import design
 from .doctor import doctor
 from .fmu import fmu_app
 from .show import Watch, console, print_case, print_listing, print_notes, print_verdicts
@@ -123,7 +124,7 @@ def run(
     print_notes(loaded.notes)
     with _stoppable() as stop:
         with Watch(loaded.name) as watch:
-            hooks = Hooks(watch.building, watch.progress, stop)
+            hooks = Hooks(watch.building, watch.progress, stop.requested, stop.interruptible)
             result = run_trial(loaded, out, engine=chosen, hooks=hooks)
         print_verdicts(result)
         report_page = write_report(result.folder)
@@ -140,7 +141,7 @@ def _run_campaign(campaign: Campaign, out: Path | None, engine: Engine) -> None:
                 watch.log(lambda: print_case(case, result))
                 write_report(result.folder)
 
-            hooks = Hooks(watch.building, watch.progress, stop)
+            hooks = Hooks(watch.building, watch.progress, stop.requested, stop.interruptible)
             watch.expect(len(cases))
             folder, finished = run_campaign(campaign, out, engine=engine, hooks=hooks, done=done)
         page = write_campaign_report(folder)
@@ -174,7 +175,7 @@ def convergence(
                 watch.log(lambda: None)
                 write_report(result.folder)
 
-            hooks = Hooks(watch.building, watch.progress, stop)
+            hooks = Hooks(watch.building, watch.progress, stop.requested, stop.interruptible)
             watch.expect(halvings + 1)
             folder, found = run_convergence(
                 loaded, out, halvings=halvings, engine=chosen, hooks=hooks, done=done
@@ -224,6 +225,7 @@ def compare(
         raise typer.Exit(_FAILED)
 
 
+app.command("design")(design)
 app.command("doctor")(doctor)
 
 
@@ -280,22 +282,50 @@ def _exit_with(results: list[Result]) -> None:
         raise typer.Exit(_FAILED)
 
 
-@contextmanager
-def _stoppable() -> Iterator[Any]:
-    """Make Ctrl-C and a termination signal end the run after the current step.
+class _Stop:
+    """Counts the signals that ask a run to stop.
 
-    A second one ends it at once: a component may hang in its step.
+    The second one and later ones raise KeyboardInterrupt, but only where a component may hang:
+    what is being written then, or made of what was written, gets finished. They often come
+    twice: ``timeout`` and service managers signal a process and its group, people press twice.
     """
-    asked: list[int] = []
 
-    def ask(number: int, _frame: object) -> None:
-        asked.append(number)
-        if len(asked) > 1:
+    def __init__(self) -> None:
+        self._asked = 0
+        self._may_hang = False
+
+    def ask(self, _number: int, _frame: object) -> None:
+        """Handle a signal."""
+        self._asked += 1
+        if self._asked > 1 and self._may_hang:
             raise KeyboardInterrupt
 
-    before = {number: signal.signal(number, ask) for number in (signal.SIGINT, signal.SIGTERM)}
+    def requested(self) -> bool:
+        """Say if there was one."""
+        return self._asked > 0
+
+    @contextmanager
+    def interruptible(self) -> Iterator[None]:
+        """Let a second signal end what is done inside."""
+        self._may_hang = True
+        try:
+            yield
+        finally:
+            self._may_hang = False
+
+
+@contextmanager
+def _stoppable() -> Iterator[_Stop]:
+    """Make Ctrl-C and a termination signal end the run after the current step.
+
+    A second one ends it at once, if a component hangs.
+    """
+    stop, numbers = _Stop(), (signal.SIGINT, signal.SIGTERM)
+    before = {number: signal.signal(number, stop.ask) for number in numbers}
     try:
-        yield lambda: bool(asked)
+        yield stop
+    except KeyboardInterrupt:
+        raise SimulationError("stopped") from None
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)

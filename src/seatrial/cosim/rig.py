@@ -15,6 +15,8 @@ from ..errors import InputError
 from ..units import quantity
 from .files import FileModel, Source, find_file, read_toml, validated
 
+LONGEST_S = 9.0e9
+"""Times are counted in ns in 64 bits: 285 years."""
 _IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 
 
@@ -24,7 +26,7 @@ AlgorithmName = Literal["jacobi", "plain-jacobi", "gauss-seidel", "extrapolated"
 class IterationEntry(FileModel):
     """How the iterated algorithm repeats a step."""
 
-    tolerance: float = Field(default=1e-6, gt=0.0)
+    tolerance: float = Field(default=1e-6, gt=0.0, allow_inf_nan=False)
     """Of every wire's value, relative to the nominal value of its output."""
     count: int = Field(default=10, ge=1, le=1000)
     """At most so many repetitions."""
@@ -36,8 +38,8 @@ class WireEntry(FileModel):
     """One end of a connection with a linear transformation, after conversion of units."""
 
     to: str
-    factor: float = 1.0
-    offset: float = 0.0
+    factor: float = Field(default=1.0, allow_inf_nan=False)
+    offset: float = Field(default=0.0, allow_inf_nan=False)
     convert: bool = True
     """Units are converted, and must measure the same."""
 
@@ -139,4 +141,6 @@ def duration_ns(text: str, where: str) -> int:
         value = quantity(text, "s")
     except InputError as error:
         raise InputError(f"{where}: {error}") from None
+    if abs(value) > LONGEST_S:
+        raise InputError(f"{where}: {text!r} is beyond {LONGEST_S:g} s")
     return round(value * NS)

@@ -14,7 +14,8 @@ class StepTimes:
     """Durations, such as the wall times of the steps of one component.
 
     ``bins[b]`` counts the durations whose number of nanoseconds has bit length b: bin b covers
-    2^(b-1) ns up to 2^b ns, bin 0 is 0 ns. Adding one costs the same however long a run is.
+    2^(b-1) ns up to 2^b ns, bin 0 is 0 ns, the last one all that is longer.
+    Adding one costs the same however long a run is.
     """
 
     __slots__ = ("bins", "count", "longest_at_ns", "longest_ns", "total_ns")
@@ -31,7 +32,7 @@ class StepTimes:
         """Count a duration in ns of what began at the simulated time ``at_ns``."""
         self.count += 1
         self.total_ns += elapsed_ns
-        self.bins[elapsed_ns.bit_length()] += 1
+        self.bins[min(elapsed_ns.bit_length(), BINS - 1)] += 1
         if elapsed_ns > self.longest_ns or self.longest_at_ns is None:
             self.longest_ns = elapsed_ns
             self.longest_at_ns = at_ns

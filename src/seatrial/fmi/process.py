@@ -16,6 +16,7 @@ from .pipe import MESSAGE, MOST_BYTES, Frame, Frames
 _SLICE_S = 0.2
 """A wait looks up so often: a signal that comes just before it begins must not be missed."""
 _EXIT_S = 5.0
+_LAST_STREAM = 2
 _STACK_S = 0.5
 _KEPT_BYTES = 8192
 _KEPT_LINES = 50
@@ -45,9 +46,9 @@ class WorkerProcess:
     ) -> None:
         self._message = message
         self._frames, self._output = Frames(), _Output()
-        theirs_in, self._requests = os.pipe()
-        self._answers, theirs_out = os.pipe()
-        self._printed, theirs_printed = os.pipe()
+        theirs_in, self._requests = _pipe()
+        self._answers, theirs_out = _pipe()
+        self._printed, theirs_printed = _pipe()
         fds = (theirs_in, theirs_out)
         command = [sys.executable, "-P", "-m", module, *map(str, fds), str(os.getpid()), name]
         try:
@@ -230,7 +231,8 @@ class _Output:
         """Pass on what is held."""
         if self._held:
             if sys.stderr is not None:
-                sys.stderr.write(self._held.decode("utf-8", "replace"))
+                with contextlib.suppress(OSError, ValueError):  # nobody reads it, or it is closed
+                    sys.stderr.write(self._held.decode("utf-8", "replace"))
             self._passed_on = (self._passed_on + self._held)[-_KEPT_BYTES:]
             self._held = b""
 
@@ -238,6 +240,27 @@ class _Output:
         """Return the last lines."""
         kept = (self._passed_on + self._held)[-_KEPT_BYTES:]
         return "\n".join(kept.decode("utf-8", "replace").splitlines()[-_KEPT_LINES:]).strip()
+
+
+def _pipe() -> tuple[int, int]:
+    """Return a pipe whose ends are none of the descriptors 0 to 2.
+
+    Those are free in a process that was started with a closed stdin, stdout or stderr; in the
+    worker they become its own standard streams.
+    """
+    import fcntl  # not on Windows, where there are no isolated components
+
+    low: list[int] = []
+    try:
+        ends = list(os.pipe())
+        for index, fd in enumerate(ends):
+            if fd <= _LAST_STREAM:
+                low.append(fd)
+                ends[index] = fcntl.fcntl(fd, fcntl.F_DUPFD_CLOEXEC, _LAST_STREAM + 1)
+    finally:
+        for fd in low:
+            os.close(fd)
+    return ends[0], ends[1]
 
 
 def _signal_name(number: int) -> str:

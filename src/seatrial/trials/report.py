@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -120,10 +120,10 @@ def _sections(run: Run) -> Iterator[Section]:
         figure = deck_figure([deck("", points)])
         yield Section("The deck from above", figure_json(figure))
     for title, chosen in (("Motion", motion), ("Velocities", speeds)):
-        for component in dict.fromkeys(p.component for p in chosen):
-            own = [p for p in chosen if p.component == component]
-            panels = [[_panel(run, p, (s,)) for s in p.signals] for p in own]
-            yield Section(f"{title} of {component}", _over_time(run, panels))
+        for components in _alike_craft(run, chosen):
+            own = [p for p in chosen if p.component == components[0]]
+            panels = [[_panel_of_all(run, p, s, components) for s in p.signals] for p in own]
+            yield Section(f"{title} of {' and '.join(components)}", _over_time(run, panels))
     tracks = list(_tracks(run, motion))
     if tracks:
         yield Section("Track from above", figure_json(track_figure(tracks)))
@@ -174,8 +174,22 @@ def _panels_by_unit(run: Run, port: Port) -> Iterator[Panel]:
 
 def _panel(run: Run, port: Port, signals: Sequence[str]) -> Panel:
     """Return the signals, all of one unit, in one panel with the limits set on them."""
-    factor, unit = person_scale(run.units[signals[0]])
-    lines = [Line(port.axis(s), run.signals[s] * factor) for s in signals]
+    title = signals[0] if len(signals) == 1 else f"{port.component}.{port.name}"
+    return _labelled_panel(run, title, {s: port.axis(s) for s in signals})
+
+
+def _panel_of_all(run: Run, port: Port, signal: str, components: Sequence[str]) -> Panel:
+    """Return a signal of a port together with that of alike components, if there are others."""
+    if len(components) == 1:
+        return _panel(run, port, (signal,))
+    rest = signal.removeprefix(f"{port.component}.")
+    return _labelled_panel(run, rest, {f"{name}.{rest}": name for name in components})
+
+
+def _labelled_panel(run: Run, title: str, signals: Mapping[str, str]) -> Panel:
+    """Return a panel of signals, all of one unit, by the label of each, with their limits."""
+    factor, unit = person_scale(run.units[next(iter(signals))])
+    lines = [Line(label, run.signals[s] * factor) for s, label in signals.items()]
     marks = [
         Mark(
             f"{'limit' if kind != 'band' else kind} of {verdict['name']}",
@@ -186,8 +200,20 @@ def _panel(run: Run, port: Port, signals: Sequence[str]) -> Panel:
         for signal, value, kind in verdict["limits"]
         if signal in signals
     ]
-    title = signals[0] if len(signals) == 1 else f"{port.component}.{port.name}"
     return Panel(title, unit, lines, marks)
+
+
+def _alike_craft(run: Run, ports: Iterable[Port]) -> list[list[str]]:
+    """Return the components of some ports; those of one FMU with the same signals go together."""
+    signals: dict[str, list[str]] = {}
+    for port in ports:
+        own = signals.setdefault(port.component, [])
+        own += [signal.removeprefix(port.component) for signal in port.signals]
+    groups: dict[tuple[str, ...], list[str]] = {}
+    for component, own in signals.items():
+        fmu = run.manifest["components"].get(component, {}).get("fmu", component)
+        groups.setdefault((fmu, *own), []).append(component)
+    return list(groups.values())
 
 
 def _over_time(run: Run, columns: Sequence[Sequence[Panel]]) -> str:

@@ -8,6 +8,7 @@ import itertools
 import json
 import time
 from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
@@ -35,6 +36,8 @@ class Hooks:
     building: Callable[[str], None] = lambda _: None
     progress: Progress = lambda _passed, _whole: None
     stop_requested: Callable[[], bool] = lambda: False
+    interruptible: Callable[[], AbstractContextManager[object]] = nullcontext
+    """Around what a component may never return from: elsewhere no signal raises anything."""
 
 
 class StoppedError(SimulationError):
@@ -76,10 +79,12 @@ def run_trial(
     """
     hooks = hooks or Hooks()
     begun = time.perf_counter()
-    system, units = _prepared(trial, engine, hooks)
+    with hooks.interruptible():
+        system, units = _prepared(trial, engine, hooks)
     try:
         wall = {"assemble": time.perf_counter() - begun}
-        master = _started(trial, system, wall)
+        with hooks.interruptible():
+            master = _started(trial, system, wall)
         _refuse_if_stopped(hooks)
         out = claim_folder(out, trial.name, "manifest.json")
         recorder = Recorder(
@@ -92,7 +97,8 @@ def run_trial(
         pacer = _pacer(trial)
         status, error = _simulate(trial, master, recorder, pacer, out, engine, hooks, wall)
     finally:
-        system.free()
+        with contextlib.suppress(KeyboardInterrupt), hooks.interruptible():
+            system.free()  # nothing of the run depends on it any more
     verdicts = [] if status == "failed" else _judge(trial, recorder, out, units)
     notes = [*_loose_inputs(trial, system), *master.notes()]
     if pacer is not None:
@@ -219,7 +225,8 @@ def _simulate(
     status = "failed"
     error: str | None = "ended by an error of seatrial itself"
     try:
-        status, error = _loop(trial, master, recorder, pacer, hooks), None
+        with hooks.interruptible():
+            status, error = _loop(trial, master, recorder, pacer, hooks), None
     except SimulationError as problem:
         error = str(problem)
     except KeyboardInterrupt:

@@ -43,7 +43,7 @@ class EventEntry(FileModel):
 class RealTimeEntry(FileModel):
     """How a run keeps to wall time."""
 
-    factor: float = Field(default=1.0, gt=0.0, allow_inf_nan=False)
+    factor: float = Field(default=1.0, ge=1e-9, allow_inf_nan=False)
     """Simulated seconds per second of wall time."""
     overrun: OverrunPolicy = "catch-up"
 

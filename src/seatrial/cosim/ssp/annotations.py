@@ -9,6 +9,7 @@ from typing import Any
 from lxml import etree
 
 from ...errors import InputError
+from ..rig import LONGEST_S
 from .documents import NAMESPACES, child, children, needed, number, tag, where
 
 OSP = "com.opensimulationplatform"
@@ -71,8 +72,10 @@ def _annotations(holder: Any | None, note: Callable[[str], None]) -> list[tuple[
 def _positive(element: Any, name: str) -> float:
     needed(element, name)
     value = number(element, name)
-    if value is None or value <= 0.0:
-        raise InputError(f"{where(element)}: {name}: must be above 0, found {value!r}")
+    if value is None or not 0.0 < value <= LONGEST_S:
+        raise InputError(
+            f"{where(element)}: {name}: must be above 0, at most {LONGEST_S:g}, found {value!r}"
+        )
     return value
 
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 from lxml import etree
 
 from ...errors import InputError
-from ...units import Unit, conversion, defined_unit, unit
+from ...units import Unit, conversion, defined_unit
 from .documents import NAMESPACES, child, children, known, needed, number, where
 
 _EXPONENTS = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
@@ -53,14 +53,12 @@ def converted(source: Measure, target: Measure, place: str) -> tuple[float, floa
         raise InputError(f"{place}: {error}") from None
 
 
-def write_units(parent: Any, texts: Iterable[str]) -> None:
-    """Append ``ssd:Units`` with the definitions of ``texts``, if there are any."""
-    names = sorted(set(texts))
-    if not names:
+def write_units(parent: Any, used: Mapping[str, Unit]) -> None:
+    """Append ``ssd:Units`` with the definitions of units by name, if there are any."""
+    if not used:
         return
     listed = etree.SubElement(parent, f"{{{NAMESPACES['ssd']}}}Units")
-    for text in names:
-        one = unit(text)
+    for text, one in sorted(used.items()):
         element = etree.SubElement(listed, f"{{{NAMESPACES['ssc']}}}Unit", name=text)
         attributes = {base: str(power) for base, power in one.exponents.items()}
         if one.factor != 1.0:

@@ -98,8 +98,14 @@ def children(element: Any) -> Iterator[Any]:
 
 
 def child(element: Any, name: str) -> Any | None:
-    """Return the first child element called ``name`` (``ssd:Elements``), if there is one."""
-    return next((c for c in children(element) if tag(c) == name), None)
+    """Return the child element called ``name`` (``ssd:Elements``), if there is one.
+
+    Raises InputError if there are several: one of them would be left out.
+    """
+    found = [c for c in children(element) if tag(c) == name]
+    if len(found) > 1:
+        raise InputError(f"{where(found[1])}: a second {name} in {tag(element)}")
+    return found[0] if found else None
 
 
 def known(element: Any, attributes: Collection[str], elements: Collection[str]) -> None:

@@ -30,6 +30,7 @@ Node = tuple[Path_, str]
 
 _DEEPEST = 32
 _MOST_COMPONENTS = 1000
+_MOST_SYSTEMS = 1000
 
 
 @dataclass
@@ -82,6 +83,8 @@ class Flat:
     def _add_system(self, system: System, path: Path_, place: _Place) -> None:
         if len(path) > _DEEPEST:
             raise InputError(f"{system.where}: systems nest deeper than {_DEEPEST} levels")
+        if len(self._elements) >= _MOST_SYSTEMS:  # references can double at each level
+            raise InputError(f"{system.where}: more than {_MOST_SYSTEMS} systems")
         self._elements[path] = list(system.elements)
         self._connectors.update({(path, name): c for name, c in system.connectors.items()})
         for name, element in system.elements.items():
@@ -116,7 +119,10 @@ class Flat:
             raise InputError(f"{component.where}: more than {_MOST_COMPONENTS} FMUs")
         if component.source.suffix != ".fmu":
             raise InputError(f"{component.where}: the name of an FMU must end in .fmu")
-        leaf = Leaf(path, load_fmu(component.source), component.step)
+        try:
+            leaf = Leaf(path, load_fmu(component.source), component.step)
+        except InputError as error:
+            raise InputError(f"{component.where}: {error}") from None
         self.leaves[path], variables = leaf, leaf.fmu.variables
         for name, connector in component.connectors.items():
             if name not in variables:

@@ -92,6 +92,8 @@ def _value(element: Any, enumerations: Enumerations) -> Value:
         assert value is not None
         return value
     try:
+        if "_" in text:
+            raise ValueError
         return int(text)
     except ValueError:
         message = f"{where(element)}: a whole number is needed, found {text!r}"
@@ -117,7 +119,11 @@ def value_for(parameter: Parameter, variable: Variable) -> Value:
     """Return the value in the unit of ``variable``; InputError if type or unit do not fit."""
     value, kind = parameter.value, variable.type
     if type(value) is int and kind is float:
-        value = float(value)
+        try:
+            value = float(value)
+        except OverflowError:
+            message = f"{parameter.where}: {parameter.name}: beyond the range of doubles"
+            raise InputError(message) from None
     if isinstance(value, str) and kind is int:
         if value not in variable.items:
             raise InputError(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -52,12 +53,11 @@ class View:
             if source is None:
                 yield from ((binding, one) for one in binding.iter(_full("ssv:ParameterSet")))
                 continue
-            path = (self._folder / unquote(source)).resolve()
-            if path.is_relative_to(self._folder) and path.is_file():
-                try:
+            # What is wrong, the reader of packages says.
+            with contextlib.suppress(InputError, OSError, ValueError):
+                path = (self._folder / unquote(source)).resolve()
+                if path.is_relative_to(self._folder) and path.is_file():
                     yield binding, read_xml(path, source)
-                except InputError:
-                    continue  # the reader of packages says what is wrong
 
 
 def other_version(view: View) -> Iterator[Any]:

@@ -293,7 +293,12 @@ class _Reader:
         path = (self._folder / unquote(uri.path)).resolve()
         if not path.is_relative_to(self._root.resolve()):
             raise InputError(f"{where(element)}: source {written!r} is outside the package")
-        if not path.is_file():
+        try:
+            found = path.is_file()
+        except OSError as error:
+            message = f"{where(element)}: source {written!r}: {error.strerror}"
+            raise InputError(message) from None
+        if not found:
             raise InputError(f"{where(element)}: source {written!r}: there is no such file")
         return path
 

@@ -152,7 +152,7 @@ FACTS = (
 def findings(path: Path) -> list[Finding]:
     """Return what the tools do with the package at ``path``, in the order of `TOOLS`.
 
-    Raises InputError for what is no package, or no XML.
+    Raises InputError for what is no package, no XML, or has lists twice.
     """
     folder = open_package(path, path.name, Notes())
     label = f"{path.name}: {DEFAULT}"

@@ -16,7 +16,7 @@ from ...errors import InputError
 from ...fmi.export import fmu_bytes, write_whole, zipped
 from ...fmi.instance import Variable
 from ...fmi.source import find_source
-from ...units import unit
+from ...units import Unit, conversion, unit
 from ..system import Part, System, Wire
 from .annotations import write_oms, write_osp
 from .definitions import write_units
@@ -96,13 +96,13 @@ def _description(system: System, experiment: Experiment, notes: list[str]) -> An
     )
     top = _add(document, "ssd", "System", name="root")
     elements = _add(top, "ssd", "Elements")
-    used: set[str] = set()
+    used: dict[str, Unit] = {}
     for part in system.parts.values():
         _add_component(elements, system, part, used, notes)
     if system.wires:
         connections = _add(top, "ssd", "Connections")
         for wire in system.wires:
-            _add_connection(connections, wire)
+            _add_connection(connections, system, wire)
     step = seconds(system.rig.step_ns)
     write_oms(top, step)
     write_units(document, used)
@@ -113,7 +113,7 @@ def _description(system: System, experiment: Experiment, notes: list[str]) -> An
 
 
 def _add_component(
-    elements: Any, system: System, part: Part, used: set[str], notes: list[str]
+    elements: Any, system: System, part: Part, used: dict[str, Unit], notes: list[str]
 ) -> None:
     source = f"resources/{part.name}.fmu"
     component = _add(elements, "ssd", "Component", name=part.name, type=FMU, source=source)
@@ -152,30 +152,51 @@ def _declared(system: System, part: Part) -> list[Variable]:
     ]
 
 
-def _unit(part: Part, variable: Variable, used: set[str], notes: list[str]) -> dict[str, str]:
+def _unit(
+    part: Part, variable: Variable, used: dict[str, Unit], notes: list[str]
+) -> dict[str, str]:
+    """Return the attribute that names a unit; ``used`` gets what the FMU means by it."""
     if variable.type is not float or not variable.unit:
         return {}
+    where = f"{part.name}.{variable.name}: unit {variable.unit!r} is not written"
     try:
-        unit(variable.unit)
+        meant = variable.definition or unit(variable.unit)
     except InputError:
-        notes.append(f"{part.name}.{variable.name}: unit {variable.unit!r} is not written")
+        notes.append(where)
         return {}
-    used.add(variable.unit)
+    if used.setdefault(variable.unit, meant) != meant:
+        notes.append(f"{where}: another FMU defines it otherwise")
+        return {}
     return {"unit": variable.unit}
 
 
-def _add_connection(connections: Any, wire: Wire) -> None:
+def _unlike(system: System, wire: Wire) -> bool:
+    """Say if a tool that converts units would change what goes through the wire, or refuse."""
+    source, target = (
+        system.parts[name].instance.variables[port] for name, port in (wire.source, wire.target)
+    )
+    if not (source.type is target.type is float and source.unit and target.unit):
+        return False
+    try:
+        return conversion(source.measure, target.measure) != (1.0, 0.0)
+    except InputError:
+        return True
+
+
+def _add_connection(connections: Any, system: System, wire: Wire) -> None:
     attributes = {
         "startElement": wire.source[0],
         "startConnector": wire.source[1],
         "endElement": wire.target[0],
         "endConnector": wire.target[1],
     }
-    if (wire.factor, wire.offset) == (1.0, 0.0):
-        _add(connections, "ssd", "Connection", **attributes)
-        return
+    plain = (wire.factor, wire.offset) == (1.0, 0.0)
     # Not every tool converts units: the transformation says all, for all of them.
-    connection = _add(connections, "ssd", "Connection", **attributes, suppressUnitConversion="true")
+    if not plain or _unlike(system, wire):
+        attributes["suppressUnitConversion"] = "true"
+    connection = _add(connections, "ssd", "Connection", **attributes)
+    if plain:
+        return
     numbers = {"factor": repr(wire.factor), "offset": repr(wire.offset)}
     _add(connection, "ssc", "LinearTransformation", **numbers)
 

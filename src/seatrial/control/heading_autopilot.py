@@ -1,0 +1,80 @@
+"""Heading control of a ship by its rudder."""
+
+from __future__ import annotations
+
+import math
+from typing import ClassVar
+
+from ..component import Input, Output, Parameter
+from ..sampled import Sampled
+
+
+class HeadingAutopilot(Sampled):
+    """PID control of the heading: delta = Kp e + Kd e' + delta_I (source 002, eqs 8 and 9).
+
+    e = heading - reference, wrapped to +-pi; e' = yaw_rate - reference_rate. With the source's
+    K and T_d (dimensionless) Kp = K and Kd = K T_d L / U. The source has no integral action;
+    here delta_I grows at Ki e, so that no steady disturbance leaves an offset. The command is
+    held to ``rudder_limit``, and back-calculation at the rate Ki / Kp removes from delta_I what
+    was cut off. ``integral_gain`` = 0 is the PD law of the source.
+
+    Sign: a positive rudder turns to port, and a positive e is a ship too far to starboard, so
+    that positive gains are negative feedback.
+
+    Angles rad, clockwise from north, any number of turns; rates rad/s, to starboard positive.
+    ``reference_rate`` is 0 unless a reference model is connected (see `HeadingReference`).
+
+    Defaults are the gains of source 002 for the Mariner at 15 knots: K = 0.034 and
+    T_d = 1.25379 with the rudder's effect in B as it must be (docs/vehicles/mariner.md).
+    """
+
+    period = Parameter(0.1, "s", "sample period", min=1e-6)
+    proportional_gain = Parameter(0.860783, "1", "Kp", min=1e-9, tunable=True)
+    derivative_gain = Parameter(22.504992, "s", "Kd", tunable=True)
+    integral_gain = Parameter(0.0, "1/s", "Ki, 0 for none", min=0.0, tunable=True)
+    rudder_limit = Parameter(
+        0.6108652381980153, "rad", "largest command, to either side", min=1e-9, tunable=True
+    )
+
+    reference = Input("rad", "heading to hold, clockwise from north")
+    reference_rate = Input("rad/s", "its derivative, to starboard positive")
+    heading = Input("rad", "heading, clockwise from north")
+    yaw_rate = Input("rad/s", "rate of yaw, to starboard positive")
+
+    rudder = Output("rad", "angle asked of the rudder, positive to turn to port")
+    error = Output("rad", "heading - reference, wrapped to +-pi")
+
+    feedthrough: ClassVar = {
+        "rudder": ("reference", "reference_rate", "heading", "yaw_rate"),
+        "error": ("reference", "heading"),
+    }
+
+    def reset(self, t: float) -> None:
+        """Start with no integral."""
+        self._integral = 0.0
+
+    def sample(self, t: float, k: int) -> None:
+        """Command the rudder."""
+        self.error = self._error()
+        self.rudder = self._limited(self._wanted())
+
+    def update(self, t: float, k: int) -> None:
+        """Advance the integral."""
+        wanted = self._wanted()
+        cut_off = (self._limited(wanted) - wanted) / self.proportional_gain
+        self._integral += self.period * self.integral_gain * (self._error() + cut_off)
+
+    def _error(self) -> float:
+        return math.remainder(self.heading - self.reference, math.tau)
+
+    def _wanted(self) -> float:
+        wanted: float = (
+            self.proportional_gain * self._error()
+            + self.derivative_gain * (self.yaw_rate - self.reference_rate)
+            + self._integral
+        )
+        return wanted
+
+    def _limited(self, angle: float) -> float:
+        limit: float = self.rudder_limit
+        return min(max(angle, -limit), limit)

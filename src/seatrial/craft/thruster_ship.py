@@ -1,0 +1,120 @@
+"""A ship that thrusters move in the horizontal plane, without damping."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import SimpleNamespace
+from typing import Any, ClassVar
+
+import casadi as ca
+import numpy as np
+
+from ..component import Input, Parameter
+from ..model import Vector
+from ..plant import State
+from .inertia import require_positive_definite
+from .planar import PlanarCraft, kinematics, motion_outputs, planar_coriolis
+
+_INERTIAS = ("mass", "inertia", "center_of_gravity", "X_udot", "Y_vdot", "Y_rdot", "N_rdot")
+
+
+class ThrusterShip(PlanarCraft):
+    """Ship in surge, sway and yaw under thrusters: M nu' + C(nu) nu = tau, eta' = R(psi) nu.
+
+    Source 003. eta = (x, y, psi): body origin in {n} (x north, y east), m, and heading,
+    clockwise from north, rad; nu = (u, v, r): velocity of the origin over ground, m/s, and rate
+    of yaw, rad/s, in {b} (x bow, y starboard, z down). With A1 = m - X_udot, A2 = m - Y_vdot,
+    A6 = I_zz - N_rdot and c = m x_G - Y_rdot:
+
+        A1 u' - A2 v r - c r^2                        = X
+        A2 v' + c r' + A1 u r                         = Y
+        A6 r' + c (v' + u r) + (A2 - A1) u v          = N
+
+    M is symmetric and C comes from the momentum (A1 u, A2 v + c r), so that the work of tau is
+    the kinetic energy. ``center_of_gravity`` is a constant of the ship; the source writes it
+    with the letter of the position, which would make the inertia depend on where the ship is.
+
+    ``model`` = "linear" is the exact linearisation of all this about rest at the origin with
+    psi = 0, from the same expressions: eta' = nu, M nu' = tau.
+
+    tau = (X, Y, N): ``force`` and ``moment`` of the thrusters plus those of an environmental
+    load, N and N.m about the body origin, in body axes.
+
+    Not modelled: damping of any kind (nothing ever comes to rest by itself), wind, waves,
+    current, thrusters that interact.
+    """
+
+    max_step = Parameter(0.1, "s", "longest integration sub-step", min=1e-6)
+    model = Parameter("nonlinear", "1", "equations of motion", choices=("nonlinear", "linear"))
+    mass = Parameter(1.0, "kg", "mass without added mass", min=0.0)
+    inertia = Parameter(1.0, "kg.m2", "inertia in yaw about the body origin", min=0.0)
+    center_of_gravity = Parameter(0.0, "m", "CG ahead of the body origin")
+    X_udot = Parameter(0.0, "kg", "added mass in surge, negative")
+    Y_vdot = Parameter(0.0, "kg", "added mass in sway, negative")
+    Y_rdot = Parameter(0.0, "kg.m", "added mass, sway from yaw and yaw from sway")
+    N_rdot = Parameter(0.0, "kg.m2", "added inertia in yaw, negative")
+
+    force = Input("N", "force of the thrusters, body axes", axes="xy")
+    moment = Input("N.m", "yaw moment of the thrusters, positive to starboard")
+    load_force = Input("N", "force of an environmental load, body axes", axes="xy")
+    load_moment = Input("N.m", "yaw moment of an environmental load, positive to starboard")
+
+    eta = State(
+        ("m", "m", "rad"),
+        "body origin in {n}; heading, clockwise from north",
+        axes=("x", "y", "psi"),
+    )
+    nu = State(
+        ("m/s", "m/s", "rad/s"),
+        "velocity of the body origin over ground and rate of yaw, body axes",
+        axes=("u", "v", "r"),
+    )
+
+    feedthrough: ClassVar = {
+        "acceleration": ("force", "moment", "load_force", "load_moment"),
+    }
+
+    def start(self, t: float) -> None:
+        """Start from the start values; raises InputError if M is not positive definite."""
+        require_positive_definite(self.name, self.mass_matrix(), ", ".join(_INERTIAS))
+        super().start(t)
+
+    def mass_matrix(self) -> Vector:
+        """Return M (3, 3) about the body origin, from the parameters as they are now.
+
+        Rows and columns u, v, r; kg, kg.m and kg.m2.
+        """
+        numbers = SimpleNamespace(**{name: ca.DM(getattr(self, name)) for name in _INERTIAS})
+        return np.array(ca.DM(_mass_matrix(numbers)))
+
+    def equations(
+        self, x: SimpleNamespace, u: SimpleNamespace, p: SimpleNamespace
+    ) -> tuple[Mapping[str, Any], Mapping[str, Any]]:
+        """Return the derivatives of eta and nu, and the motion (see the class)."""
+        M = _mass_matrix(p)
+        tau = ca.vertcat(u.force + u.load_force, u.moment + u.load_moment)
+        nu_dot = ca.ldl_solve(tau - planar_coriolis((M @ x.nu)[:2], x.nu), *ca.ldl(M))
+        derivatives = {"eta": kinematics(x.eta, x.nu), "nu": nu_dot}
+        motion = motion_outputs(x.eta, x.nu, nu_dot)
+        if p.model == "nonlinear":
+            return derivatives, motion
+        point = ca.vertcat(x.eta, x.nu, u.force, u.moment, u.load_force, u.load_moment)
+        return _about_rest(derivatives, point), _about_rest(motion, point)
+
+
+def _mass_matrix(p: SimpleNamespace) -> Any:
+    """Return M from CasADi numbers or symbols: source 003, left-hand sides."""
+    c = p.mass * p.center_of_gravity - p.Y_rdot
+    return ca.vertcat(
+        ca.horzcat(p.mass - p.X_udot, 0, 0),
+        ca.horzcat(0, p.mass - p.Y_vdot, c),
+        ca.horzcat(0, c, p.inertia - p.N_rdot),
+    )
+
+
+def _about_rest(expressions: Mapping[str, Any], point: Any) -> dict[str, Any]:
+    """Return the expressions to first order about ``point`` = 0."""
+    return {
+        name: ca.linearize(expression, point, ca.DM.zeros(point.shape))
+        for name, expression in expressions.items()
+    }

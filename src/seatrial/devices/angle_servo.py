@@ -1,0 +1,62 @@
+"""A servo that is commanded by an angle."""
+
+from __future__ import annotations
+
+import math
+from typing import ClassVar
+
+from ..component import Input, Output, Parameter
+from ..errors import InputError
+from ..sampled import Sampled
+
+
+class AngleServo(Sampled):
+    """Position servo with range and rate, moved every ``period`` by a command in radians.
+
+        angle_k = angle_(k-1) + e limited to +-(rate period),
+        e = command limited to angle_min ... angle_max, less angle_(k-1)
+
+    The move belongs to the instant: it is on the output at once and stays until the next
+    instant. A servo that turns evenly through the period is on average half a period later.
+    ``angle_(-1)`` is ``angle_start``. Angles rad, rate rad/s.
+
+    Not modelled: acceleration, load torque, backlash, resolution.
+
+    Raises InputError at the start if the angles do not rise, or ``angle_start`` lies outside
+    the range.
+    """
+
+    period = Parameter(0.02, "s", "time between two moves", min=1e-6)
+    angle_min = Parameter(-math.pi / 2, "rad", "least angle")
+    angle_max = Parameter(math.pi / 2, "rad", "greatest angle")
+    angle_start = Parameter(0.0, "rad", "angle before the first move")
+    rate = Parameter(math.radians(120.0), "rad/s", "speed of the shaft", min=1e-9)
+
+    command = Input("rad", "angle wanted")
+    angle = Output("rad", "angle of the shaft")
+
+    feedthrough: ClassVar = {"angle": ("command",)}
+
+    def reset(self, t: float) -> None:
+        """Start at rest; raises InputError for angles out of order."""
+        if not self.angle_min < self.angle_max:
+            raise InputError(
+                f"{self.name}: angle_min must be less than angle_max, got {self.angle_min!r} and "
+                f"{self.angle_max!r} rad"
+            )
+        if not self.angle_min <= self.angle_start <= self.angle_max:
+            raise InputError(
+                f"{self.name}.angle_start is {self.angle_start!r} rad, allowed "
+                f"{self.angle_min!r} to {self.angle_max!r} rad"
+            )
+        self._angle: float = self.angle_start
+
+    def sample(self, t: float, k: int) -> None:
+        """Move towards the command."""
+        wanted = min(max(self.command, self.angle_min), self.angle_max)
+        most = self.rate * self.period
+        self.angle = self._angle + min(max(wanted - self._angle, -most), most)
+
+    def update(self, t: float, k: int) -> None:
+        """Remember where the shaft is."""
+        self._angle = self.angle
