@@ -16,11 +16,13 @@ from . import crashing
 from .native import build_native_fmu
 
 PARENT = """
-import os, sys, threading
+import os, signal, sys, threading
 from pathlib import Path
 from seatrial.fmi.isolated import IsolatedInstance
 from seatrial.fmi.load import load_fmu
 
+# A shell that runs the tests in the background has interrupts ignored.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 instance = IsolatedInstance(load_fmu(Path(sys.argv[1])), "boat", 60.0)
 instance.initialise(0.0, 1.0)
 instance.begin()
