@@ -82,7 +82,10 @@ def test_a_criterion_that_fails_is_status_one(tmp_path: Path) -> None:
         (["run", "hydrone-landing", "--set", "hull.velocity=3"], "output and cannot be set"),
         (["run", "hydrone-landing", "--engine", "warp"], "'fmu' or 'direct'"),
         (["run", "hydrone-pads", "--set", "seed=3"], "--set works with a trial"),
-        (["run", "hydrone-landing", "--real-time", "0"], "factor: Input should be greater than or equal to"),
+        (
+            ["run", "hydrone-landing", "--real-time", "0"],
+            "factor: Input should be greater than or equal to",
+        ),
         (["run", "hydrone-landing", "--real-time", "nan"], "factor: Input should be"),
         (["run", "hydrone-landing", "--real-time", "1", "--overrun", "wait"], "'catch-up', 'slip'"),
         (["run", "hydrone-landing", "--overrun", "slip"], "--overrun needs --real-time"),
