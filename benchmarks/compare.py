@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import platform
 import statistics
 import subprocess
@@ -123,6 +124,7 @@ def run(engine: str, case: Case, steps: int) -> dict[str, Any]:
     done = subprocess.run(
         [sys.executable, "-m", "benchmarks.engines", job],
         capture_output=True, text=True, check=False, cwd=HERE.parent,
+        env={**os.environ, "TMPDIR": str(case.ssp.parent)},  # the tools leave what they unpack
     )  # fmt: skip
     if done.returncode != 0:
         raise RuntimeError(done.stderr.strip().splitlines()[-1] if done.stderr.strip() else "died")

@@ -17,7 +17,11 @@ def started(tool: str, package: Path, **job: Any) -> subprocess.CompletedProcess
     runner = Path(__file__).with_name(f"ssp_{tool}_run.py")
     work = {"package": str(package), "step": 0.01, "parameters": None, **job}
     # ecos needs the library of the package tbb, which lies in the environment's lib.
-    environment = {**os.environ, "LD_LIBRARY_PATH": str(Path(sys.prefix) / "lib")}
+    libraries = str(Path(sys.prefix) / "lib")
+    # The tools leave what they unpack; the runner's exit is none that would let them clean up.
+    environment = {
+        **os.environ, "LD_LIBRARY_PATH": libraries, "TMPDIR": str(package.parent)
+    }  # fmt: skip
     return subprocess.run(
         [sys.executable, str(runner)], input=json.dumps(work), capture_output=True, text=True,
         check=False, env=environment, cwd=package.parent, timeout=300,
