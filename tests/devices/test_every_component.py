@@ -8,7 +8,14 @@ from seatrial.component import Component
 from seatrial.control.dynamic_positioning import DynamicPositioning
 from seatrial.control.heading_autopilot import HeadingAutopilot
 from seatrial.control.reference_filter import HeadingReference
+from seatrial.control.sail_control import SailControl
+from seatrial.control.sailing_guidance import SailingGuidance
+from seatrial.control.sailing_heading_backstepping import SailingHeadingBackstepping
+from seatrial.control.sailing_heading_pid import SailingHeadingPid
+from seatrial.control.sailing_navigation import SailingNavigation
 from seatrial.control.station_keeping import StationKeeping
+from seatrial.devices.anemometer import Anemometer
+from seatrial.devices.angle_servo import AngleServo
 from seatrial.devices.compass import Compass
 from seatrial.devices.depth import Depth
 from seatrial.devices.force_actuator import ForceActuator
@@ -32,6 +39,21 @@ CLASSES = {
     Gnss: {"dropout": 0.2, "antenna": [0.2, 0.1, -0.3]},
     Depth: {"dropout": 0.2, "place": [0.2, 0.1, 0.3]},
     RudderMachine: {},
+    AngleServo: {},
+    Anemometer: {"dropout": 0.2, "place": [0.2, 0.1, -0.9]},
+    SailControl: {"roll_limit": "on"},
+    SailingHeadingPid: {"rudder_limit": 100.0},
+    SailingHeadingBackstepping: {
+        "rudder_limit": 100.0,
+        "sail_area": 0.9,
+        "sail_arm": 0.2,
+        "keel_area": 0.07,
+        "sail_start": 0.7,
+        "Y_vdot": -20.0,
+        "N_r": -48.0,
+    },
+    SailingNavigation: {},
+    SailingGuidance: {"count": 2.0, "mark_1": [1.0, 1.0], "mark_2": [20.0, 0.0], "radius": 2.0},
     ForceActuator: {"capacity": [2.0, 2.0, 2.0]},
     HeadingAutopilot: {"rudder_limit": 100.0, "integral_gain": 0.1},
     HeadingReference: {},

@@ -70,7 +70,7 @@ class SailControl(Sampled):
     roll_limit = Parameter("off", "1", "whether heel is limited", choices=("off", "on"))
     design_heel = Parameter(15.0 * _DEG, "rad", "steady heel allowed", min=0.0, max=45.0 * _DEG)
     spill_heel = Parameter(35.0 * _DEG, "rad", "heel at which no moment is allowed", min=0.0)
-    lead = Parameter(0.5, "s", "time by which the heel is foreseen", min=0.0)
+    lead = Parameter(1.0, "s", "time by which the heel is foreseen", min=0.0)
     heeling_arm = Parameter(1.0, "m", "sail's centre of effort over the keel's", min=0.0)
     righting_moment = Parameter(1.0, "N.m", "weight times GM_T", min=0.0)
     sail_area = Parameter(1.0, "m2", "area of the sail", min=0.0)

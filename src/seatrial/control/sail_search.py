@@ -65,13 +65,15 @@ def best_setting(
     s, c = math.sin(beta), math.cos(beta)
     count = len(table.lift[0]) if most_side is None else _BROADSIDE + 1
     columns = _columns(count, beta, least, most)
+    ends_between_rows = math.remainder(beta - most + math.pi, math.tau) >= 0.0
     highest, chosen = -math.inf, (0, 0.0, 0.0, 0.0)
     for row, (lift, drag) in enumerate(zip(table.lift, table.drag, strict=True)):
         offered = [(angle, lift[column], drag[column]) for column, angle in columns]
         offered.append((most, *table.coefficients(beta - most + math.pi, row * STEP)))
         forces = [(angle, d * c - lft * s, lft * c + d * s) for angle, lft, d in offered]
         if most_side is not None:
-            forces += _just_reached(forces[:-1], most_side)
+            neighbours = forces[-1:] + forces[:-1] if ends_between_rows else forces[:-1]
+            forces += _just_reached(neighbours, most_side)
         for angle, drive, side in forces:
             keeps = most_side is None or abs(side) <= most_side
             rank = drive if keeps else -_BEYOND - abs(side)
@@ -82,7 +84,7 @@ def best_setting(
 
 
 def _just_reached(forces: list[_Forces], side: float) -> list[_Forces]:
-    """Return what lies between neighbours where the side force is ``side`` to either side.
+    """Return where the side force is ``side``, to port or starboard, between neighbours.
 
     Coefficients are linear in alpha between the table's rows, so forces are too.
     """

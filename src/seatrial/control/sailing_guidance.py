@@ -35,6 +35,10 @@ class SailingGuidance(Sampled):
     was last laid, until the mark bears ``closest`` + ``margin`` on the other one. So the boat
     beats in long boards.
 
+    **Bearing away.** A keel needs speed: below ``steerage`` ahead the boat makes leeway, loses
+    more speed and ends in irons. Then ``closest`` is ``away`` instead, until it makes
+    ``steerage`` times ``recovered``.
+
     **Turns.** The heading wanted goes to the course at ``turn_rate``, the shorter way, unless
     that leads through the eye of the wind: then the longer way, through dead downwind, which is
     wearing round. It waits while it is more than ``lead`` away from the heading. It starts at
@@ -62,6 +66,11 @@ class SailingGuidance(Sampled):
         math.radians(60.0), "rad", "least angle off the wind", min=0.0, max=math.pi / 2
     )
     margin = Parameter(math.radians(5.0), "rad", "more than that before the other tack", min=0.0)
+    away = Parameter(
+        math.radians(110.0), "rad", "least angle off the wind without way", min=0.0, max=math.pi
+    )
+    steerage = Parameter(0.5, "m/s", "speed ahead below which it bears away", min=0.0)
+    recovered = Parameter(2.0, "1", "times steerage at which it luffs up again", min=1.0)
     turn_rate = Parameter(math.radians(6.0), "rad/s", "rate of the heading wanted", min=1e-9)
     lead = Parameter(
         math.radians(45.0), "rad", "lead at which the heading wanted waits", min=1e-9, max=math.pi
@@ -70,6 +79,7 @@ class SailingGuidance(Sampled):
     position_n = Input("m", "position, north-east-down", axes=(*_NE, "down"))
     position_valid = Input("1", "whether the position is valid", type=bool, start=True)
     heading = Input("rad", "heading, clockwise from north")
+    speed = Input("m/s", "velocity ahead")
     wind = Input("m/s", "true wind over ground: where it blows to, {n}", axes=_NE)
 
     heading_wanted = Output("rad", "heading wanted, clockwise from north")
@@ -78,11 +88,11 @@ class SailingGuidance(Sampled):
     passed = Output("1", "number of marks passed", type=int)
     wearing = Output("1", "whether it turns the long way, away from the wind", type=bool)
 
-    _ACTING = ("position_n", "position_valid", "heading", "wind")
+    _ACTING = ("position_n", "position_valid", "heading", "speed", "wind")
     feedthrough: ClassVar = {
         "heading_wanted": _ACTING,
         "course": _ACTING,
-        "distance": ("position_n",),
+        "distance": ("position_n", "position_valid"),
         "passed": ("position_n", "position_valid"),
         "wearing": _ACTING,
     }
@@ -92,7 +102,7 @@ class SailingGuidance(Sampled):
         if self.count % 1.0:
             raise InputError(f"{self.name}.count is {self.count!r}, a whole number is needed")
         self._marks = [getattr(self, f"mark_{n + 1}") for n in range(int(self.count))]
-        self._passed, self._tack = 0, 0
+        self._passed, self._tack, self._slow = 0, 0, False
         self._kept: list[float] = []
 
     def sample(self, t: float, k: int) -> None:
@@ -105,7 +115,7 @@ class SailingGuidance(Sampled):
     def update(self, t: float, k: int) -> None:
         """Remember marks passed, tack and heading wanted."""
         decision = self._decide()
-        self._passed, self._tack = decision.passed, decision.tack
+        self._passed, self._tack, self._slow = decision.passed, decision.tack, self._is_slow()
         self._kept = [decision.command, decision.course]
 
     def _decide(self) -> _Decision:
@@ -138,9 +148,14 @@ class SailingGuidance(Sampled):
         off = math.remainder(bearing - eye, math.tau)
         own = self._tack or (1 if math.remainder(self.heading - eye, math.tau) >= 0.0 else -1)
         other_side = off * own < 0.0
-        if abs(off) >= self.closest + (self.margin if other_side else 0.0):
+        closest = self.away if self._is_slow() else self.closest
+        if abs(off) >= closest + (self.margin if other_side else 0.0):
             return bearing, 1 if off >= 0.0 else -1
-        return eye + own * self.closest, own
+        return eye + own * closest, own
+
+    def _is_slow(self) -> bool:
+        enough = self.steerage * (self.recovered if self._slow else 1.0)
+        return bool(self.speed < enough)
 
     def _turn(self, before: float, course: float) -> float:
         """Return the turn from ``before`` to ``course`` that keeps out of the wind's eye, rad."""

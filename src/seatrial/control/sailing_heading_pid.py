@@ -19,11 +19,15 @@ class SailingHeadingPid(SailingHeading):
     used, and not at an instant after one at which the rudder was at its limit. The gains are the
     source's: poles at 0.76 rad/s with damping 0.6, for an inertia of 28.54 kg m2 and no
     damping of yaw by the hull.
+
+    K_i I is limited to +-``integral_limit``. A long turn fills the integral, and where the
+    rudder is at its limit afterwards the freeze keeps it so: the boat turns on.
     """
 
     K_p = Parameter(20.2, "N.m/rad", "moment per heading error", tunable=True)
     K_i = Parameter(2.3, "N.m/(rad.s)", "rate of the integral term", tunable=True)
     K_d = Parameter(30.0, "N.m.s/rad", "moment against the rate of the heading", tunable=True)
+    integral_limit = Parameter(1e6, "N.m", "greatest moment of the integral term", min=0.0)
 
     heel = Input("rad", "heel, starboard down")
 
@@ -53,4 +57,6 @@ class SailingHeadingPid(SailingHeading):
 
     def _grown(self) -> float:
         """Return the integral at this instant."""
-        return self._integral + (0.0 if self.saturated else self._error() * self.period)
+        grown: float = self._integral + (0.0 if self.saturated else self._error() * self.period)
+        most = self.integral_limit / self.K_i if self.K_i else math.inf
+        return min(max(grown, -most), most)

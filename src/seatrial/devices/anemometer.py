@@ -24,8 +24,8 @@ class Anemometer(Sensor):
     with the boat: they see the flow in the plane across the mast. An angle of 180 deg is wind
     from ahead.
 
-    Defaults, all assumed: a small cup and vane unit, its vane accurate to 3 degrees (here 1 of
-    noise and 2 of slow error) with a resolution of 1 degree, its cups to 0.1 m/s; 10 Hz.
+    Defaults, all assumed: a small cup and vane unit, its vane accurate to 2 degrees (here 1 of
+    noise and 1 of slow error) with a resolution of 1 degree, its cups to 0.1 m/s; 10 Hz.
 
     Not modelled: inertia of cups and vane, least speed at which they turn, upwash of the sail.
     """
@@ -45,7 +45,7 @@ class Anemometer(Sensor):
         "rad",
         "direction that the apparent wind blows to from the bow, to starboard positive",
         noise=_DEG,
-        instability=2.0 * _DEG,
+        instability=_DEG,
         resolution=_DEG,
     )
 

@@ -13,7 +13,8 @@ from .decks import Pad, deck, pads
 from .plots import deck_figure, figure_json
 from .readable import quantity_text
 from .report import REPORT, render
-from .run_folder import read_json, read_manifest
+from .run_folder import load_run, read_json, read_manifest
+from .sailing import PolarPoint, polar_figure, polar_point
 
 CAMPAIGN = "campaign.json"
 
@@ -31,6 +32,7 @@ class Case:
     verdicts: dict[str, dict[str, Any]]
     """By name of the criterion."""
     pads: list[Pad]
+    polar: PolarPoint | None
     phase: str
     note: str
 
@@ -56,6 +58,7 @@ def write_campaign_report(folder: Path | str) -> Path:
         settings=list(dict.fromkeys(key for case in cases for key in case.settings)),
         criteria=_criteria(cases),
         deck=_deck(cases),
+        polar=_polar(cases),
         worst_text=_worst_text,
     )
     path = folder / REPORT
@@ -81,6 +84,7 @@ def _case(folder: Path, entry: dict[str, Any]) -> Case:
         settings=entry["set"],
         verdicts=verdicts,
         pads=found,
+        polar=_polar_point(run, entry),
         phase=next((pad.phase for pad in found if pad.phase), trial),
         note=note,
     )
@@ -110,6 +114,24 @@ def _landings(cases: list[Case], phase: str) -> Iterator[tuple[str, Pad, bool | 
         for pad in case.pads:
             if case.phase == phase:
                 yield case.name, pad, case.passed
+
+
+def _polar(cases: list[Case]) -> str | None:
+    """Return a polar diagram of the runs, or None if they say too little of one."""
+    figure = polar_figure([case.polar for case in cases if case.polar])
+    return None if figure is None else figure_json(figure)
+
+
+def _polar_point(run: Path, entry: dict[str, Any]) -> PolarPoint | None:
+    """Return a case's point of the polar diagram; cases alike but for the wind are a series."""
+    others = {k: v for k, v in entry["set"].items() if not k.endswith(".mean_direction")}
+    series = ", ".join(
+        [entry.get("trial", ""), *(f"{key} {value}" for key, value in others.items())]
+    )
+    try:
+        return polar_point(load_run(run), entry["name"], series)
+    except InputError:
+        return None
 
 
 def _worst_text(verdict: dict[str, Any]) -> str:

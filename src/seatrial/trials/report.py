@@ -21,6 +21,7 @@ from .decks import deck, pads
 from .plots import Line, Mark, Panel, deck_figure, figure_json, time_figure, track_figure
 from .readable import from_si, number, person_scale
 from .run_folder import Run, load_run
+from .sailing import add_wind_and_marks
 from .timing_section import pacing, step_times
 
 REPORT = "report.html"
@@ -126,7 +127,9 @@ def _sections(run: Run) -> Iterator[Section]:
             yield Section(f"{title} of {' and '.join(components)}", _over_time(run, panels))
     tracks = list(_tracks(run, motion))
     if tracks:
-        yield Section("Track from above", figure_json(track_figure(tracks)))
+        figure = track_figure(tracks)
+        add_wind_and_marks(figure, run)
+        yield Section("Track from above", figure_json(figure))
     if forces:
         columns = [
             [_panel(run, p, p.signals) for p in forces if units[p] == u] for u in _FORCE_UNITS

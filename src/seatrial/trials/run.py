@@ -21,6 +21,7 @@ from ..cosim.system import Engine, System, assemble
 from ..cosim.values import from_written, port_scalars
 from ..errors import InputError, SimulationError
 from .checks import check_criteria, check_events
+from .endings import Endings
 from .manifest import manifest
 from .trial import Event, Trial
 from .verdict import Verdict
@@ -50,7 +51,7 @@ class Result:
 
     folder: Path
     status: str
-    """complete, stopped or failed."""
+    """complete, ended (by a criterion), stopped or failed."""
     error: str | None
     verdicts: list[tuple[str, str, Verdict]]
     """(name, check, verdict) of each criterion; empty if the run failed."""
@@ -94,8 +95,8 @@ def run_trial(
             trial.record_every,
             sorted(set().union(*(criterion.signals for _, criterion in trial.criteria))),
         )
-        pacer = _pacer(trial)
-        status, error = _simulate(trial, master, recorder, pacer, out, engine, hooks, wall)
+        pacer, endings = _pacer(trial), Endings(trial, master, units)
+        status, error = _simulate(trial, master, recorder, endings, pacer, out, engine, hooks, wall)
     finally:
         with contextlib.suppress(KeyboardInterrupt), hooks.interruptible():
             system.free()  # nothing of the run depends on it any more
@@ -212,6 +213,7 @@ def _simulate(
     trial: Trial,
     master: Master,
     recorder: Recorder,
+    endings: Endings,
     pacer: Pacer | None,
     out: Path,
     engine: Engine,
@@ -226,7 +228,7 @@ def _simulate(
     error: str | None = "ended by an error of seatrial itself"
     try:
         with hooks.interruptible():
-            status, error = _loop(trial, master, recorder, pacer, hooks), None
+            status, error = _loop(trial, master, recorder, endings, pacer, hooks), None
     except SimulationError as problem:
         error = str(problem)
     except KeyboardInterrupt:
@@ -258,9 +260,14 @@ def _timing(
 
 
 def _loop(
-    trial: Trial, master: Master, recorder: Recorder, pacer: Pacer | None, hooks: Hooks
+    trial: Trial,
+    master: Master,
+    recorder: Recorder,
+    endings: Endings,
+    pacer: Pacer | None,
+    hooks: Hooks,
 ) -> str:
-    events = trial.events()
+    events, status = trial.events(), "complete"
     whole, steps = seconds(trial.stop_ns - trial.start_ns), trial.steps
     shown = time.perf_counter()
     if pacer is not None:
@@ -268,8 +275,11 @@ def _loop(
     while True:
         while events and events[0].at_ns <= master.time_ns:
             _apply(events.pop(0), master)
-        stopping = hooks.stop_requested()
-        recorder.record(last=stopping or master.steps >= steps)
+        stopping, broken = hooks.stop_requested(), endings.broken()
+        recorder.record(last=stopping or broken or master.steps >= steps)
+        if broken:
+            status = "ended"
+            break
         if stopping and master.steps < steps:
             return "stopped"
         if master.steps >= steps:
@@ -283,7 +293,7 @@ def _loop(
             hooks.progress(seconds(master.time_ns - master.start_ns), whole)
     hooks.progress(whole, whole)
     master.terminate()
-    return "complete"
+    return status
 
 
 def _paced_step(master: Master, pacer: Pacer, recorder: Recorder, hooks: Hooks) -> None:

@@ -78,7 +78,7 @@ def load_run(folder: Path | str) -> Run:
     truncated = False
     if (folder / SIGNALS).is_file():
         time, signals, truncated = _read_signals(folder / SIGNALS)
-    elif manifest["status"] in ("complete", "stopped"):
+    elif manifest["status"] in ("complete", "ended", "stopped"):
         raise InputError(f"{folder} has no {SIGNALS}")
     if truncated:
         notes.append(f"the last line of {SIGNALS} is cut and was dropped")

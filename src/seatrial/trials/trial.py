@@ -15,6 +15,7 @@ from ..cosim.rig import Rig, duration_ns, load_rig
 from ..cosim.ssp.reading import read_ssp
 from ..errors import InputError, unknown
 from .criteria import Criterion, parse
+from .verdict import WHOLE
 
 
 class RecordEntry(FileModel):
@@ -25,10 +26,11 @@ class RecordEntry(FileModel):
 
 
 class CriterionEntry(FileModel):
-    """A named condition that must hold."""
+    """A named condition that must hold; with ``ends`` the run ends where it does not."""
 
     name: str
     check: str
+    ends: bool = False
 
 
 class EventEntry(FileModel):
@@ -212,7 +214,13 @@ def _trial(name: str, relative_to: Path | None, _changes: Mapping[str, Any]) -> 
     criteria = []
     for index, entry in enumerate(file.criteria):
         try:
-            criteria.append((entry.name, parse(entry.check)))
+            criterion = parse(entry.check)
+            if entry.ends and (criterion.form != "always" or criterion.span != WHOLE):
+                raise InputError(
+                    f"{entry.check!r} cannot end a run: with ends = true a condition that holds "
+                    "at every point is needed, without a window"
+                )
+            criteria.append((entry.name, criterion))
         except InputError as error:
             raise InputError(f"{path}: criteria.{index} ({entry.name}): {error}") from None
     return Trial(file, read_from, rig, tuple(criteria))

@@ -1,0 +1,148 @@
+"""What reports show of sailing: wind and marks on the track, and a polar diagram of a campaign."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from html import escape
+
+import numpy as np
+import plotly.graph_objects as go
+
+from .plots import COLOURS, layout
+from .run_folder import Run
+
+_STEADY = 0.25  # share of a run, at its end, that a point of the polar diagram is the mean of
+_DIRECTIONS = 5  # a polar diagram needs at least so many different angles off the wind
+_WIND = "#5b6770"
+
+
+@dataclass(frozen=True)
+class PolarPoint:
+    """Mean speed over ground (m/s) at a mean angle off the wind (rad, 0 to pi)."""
+
+    label: str
+    series: str
+    angle: float
+    speed: float
+
+
+def add_wind_and_marks(figure: go.Figure, run: Run) -> None:
+    """Draw the run's mean wind as an arrow, and the marks of its course, into a track."""
+    for name in _of_kind(run, "sailing-guidance"):
+        parameters = run.manifest["components"][name]["parameters"]
+        for number in range(1, int(parameters["count"]["value"]) + 1):
+            north, east = (parameters[f"mark_{number}.{a}"]["value"] for a in ("north", "east"))
+            figure.add_scatter(
+                x=[east],
+                y=[north],
+                mode="markers+text",
+                text=[str(number)],
+                textposition="middle right",
+                name=f"mark {number}",
+                marker={"size": 12, "symbol": "triangle-up-open", "color": "#d1690e"},
+                hovertemplate=f"mark {number}: north %{{y:.4g}} m, east %{{x:.4g}} m",
+            )
+    wind = _mean_wind(run)
+    if wind is not None:
+        _draw_wind(figure, wind)
+
+
+def polar_point(run: Run, label: str, series: str) -> PolarPoint | None:
+    """Return where a run lies in a polar diagram: the mean of its last quarter.
+
+    None without a recorded wind and one craft with velocity and heading, or if the run is not
+    complete.
+    """
+    wind, psi = _wind_name(run), ".attitude.psi"
+    craft = [name.removesuffix(psi) for name in run.signals if name.endswith(psi)]
+    needed = [f"{name}.velocity.{axis}" for name in craft for axis in ("u", "v")]
+    complete = run.manifest["status"] == "complete" and set(needed) <= set(run.signals)
+    if wind is None or len(craft) != 1 or not complete:
+        return None
+    last = run.time >= run.time[-1] - _STEADY * (run.time[-1] - run.time[0])
+    north, east = (run.signals[f"{wind}.velocity.{axis}"][last] for axis in ("north", "east"))
+    off = run.signals[craft[0] + psi][last] - np.arctan2(-east, -north)
+    speed = np.hypot(*(run.signals[name][last] for name in needed))
+    angle = abs(float(np.angle(np.exp(1j * off).mean())))
+    return PolarPoint(label, series, angle, float(speed.mean()))
+
+
+def polar_figure(points: Sequence[PolarPoint]) -> go.Figure | None:
+    """Return speed over the angle off the wind, or None if the points lie in few directions."""
+    if len({round(np.degrees(p.angle) / 5.0) for p in points}) < _DIRECTIONS:
+        return None
+    figure = go.Figure()
+    for index, series in enumerate(dict.fromkeys(p.series for p in points)):
+        own = sorted((p for p in points if p.series == series), key=lambda p: p.angle)
+        figure.add_scatterpolar(
+            theta=[float(np.degrees(p.angle)) for p in own],
+            r=[p.speed for p in own],
+            mode="lines+markers",
+            name=escape(series),
+            line={"width": 1.8, "color": COLOURS[index % len(COLOURS)]},
+            text=[escape(p.label) for p in own],
+            hovertemplate="%{text}<br>%{theta:.1f}° off the wind, %{r:.3g} m/s",
+        )
+    figure.update_layout(height=560, **layout(hovermode="closest"))
+    figure.update_layout(
+        polar={
+            "sector": [-90, 90],
+            "bgcolor": "#ffffff",
+            "angularaxis": {"rotation": 90, "direction": "clockwise", "dtick": 15},
+            "radialaxis": {"rangemode": "tozero", "angle": 90, "tickangle": 90},
+        }
+    )
+    return figure
+
+
+def _of_kind(run: Run, fmu: str) -> Iterable[str]:
+    return (n for n, component in run.manifest["components"].items() if component["fmu"] == fmu)
+
+
+def _wind_name(run: Run) -> str | None:
+    """Return the component that makes the wind, if its velocity was recorded."""
+    for name in _of_kind(run, "wind"):
+        if {f"{name}.velocity.{axis}" for axis in ("north", "east")} <= set(run.signals):
+            return name
+    return None
+
+
+def _mean_wind(run: Run) -> tuple[float, float] | None:
+    """Return the mean velocity of the air, north and east, m/s."""
+    name = _wind_name(run)
+    if name is None or not len(run.time):
+        return None
+    north, east = (run.signals[f"{name}.velocity.{axis}"].mean() for axis in ("north", "east"))
+    return float(north), float(east)
+
+
+def _draw_wind(figure: go.Figure, wind: tuple[float, float]) -> None:
+    """Draw an arrow of fixed length in the upper left corner, where the wind blows to."""
+    north, east = wind
+    speed = float(np.hypot(north, east))
+    if speed == 0.0:
+        return
+    figure.add_annotation(
+        x=0.07,
+        y=0.86,
+        xref="paper",
+        yref="paper",
+        ax=-44.0 * east / speed,
+        ay=44.0 * north / speed,
+        arrowhead=2,
+        arrowwidth=2,
+        arrowcolor=_WIND,
+        text="",
+    )
+    figure.add_annotation(
+        x=0.07,
+        y=0.86,
+        xref="paper",
+        yref="paper",
+        xshift=34,
+        text=f"wind {speed:.2g} m/s",
+        showarrow=False,
+        xanchor="left",
+        font={"color": _WIND},
+    )
