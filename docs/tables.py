@@ -213,10 +213,9 @@ def hydrone_pads() -> str:
     )
 
 
-@part("hydrone-sensors")
-def hydrone_sensors() -> str:
-    """Sensors of the profile, as its file has them."""
-    path = shipped_folder("hil_profiles") / "hydrone.toml"
+def sensors_of(profile: str) -> str:
+    """Sensors of a profile, as its file has them."""
+    path = shipped_folder("hil_profiles") / f"{profile}.toml"
     sensors = tomllib.loads(path.read_text("utf-8"))["sensors"]
     rows = []
     for name, entries in sensors.items():
@@ -225,6 +224,10 @@ def hydrone_sensors() -> str:
                 rows.append((name, f"`{key}`", ", ".join(value) if type(value) is list else value))
     listed = "".join(f"- **{name}**: {entries['source']}\n" for name, entries in sensors.items())
     return listed + "\n" + _table(("sensor", "key", "value"), rows)
+
+
+for _profile in ("hydrone", "gloria"):
+    part(f"{_profile}-sensors")(partial(sensors_of, _profile))
 
 
 # ---------------------------------------------------------------------- hydrone.md: runs
@@ -558,7 +561,7 @@ def hydrone_static() -> str:
     return _table(("landing point", "sinkage, m", "roll, deg", "pitch, deg"), rows)
 
 
-# ---------------------------------------------------------------------- the two ships
+# ---------------------------------------------------------------------- trials and their criteria
 
 
 def verdicts(rig: str) -> str:
@@ -574,8 +577,11 @@ def verdicts(rig: str) -> str:
     return _table(("trial", "criterion", "holds", "found"), rows)
 
 
-part("mariner-trials")(partial(verdicts, "mariner"))
-part("thruster-ship-trials")(partial(verdicts, "thruster-ship"))
+for _rig in ("gloria-fixed", "gloria-pid", "gloria-backstepping", "mariner", "thruster-ship"):
+    part(f"{_rig}-trials")(partial(verdicts, _rig))
+
+
+# ---------------------------------------------------------------------- the two ships
 
 
 @part("mariner-gains")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import shutil
 import subprocess
 import sys
 import zipfile
@@ -253,6 +254,30 @@ def test_data_files_travel_and_versions_keep_their_own(write, tmp_path: Path) ->
     assert [raw.get("value") for raw in raws] == [111.0, 222.0]
     for slave in slaves:
         slave.freeInstance()
+
+
+def test_data_files_and_late_imports_are_found_when_the_first_copy_is_gone(
+    write, tmp_path: Path
+) -> None:
+    late = READS.replace("        self._value = ", "        import late\n\n        self._value = ")
+    file = write("boat.py", late.replace('.read_text())', '.read_text()) + late.MORE'))
+    write("polar.csv", "111.0\n")
+    write("late.py", "MORE = 0.5\n")
+    path = build_fmu(source(file, "Boat"), tmp_path / "boat.fmu")
+    unpacked = [tmp_path / name for name in ("first", "second", "third")]
+    first, second = Raw(path, unpacked[0]), Raw(path, unpacked[1])
+    first.instantiate("first").freeInstance()
+    slave = second.instantiate("second")
+    shutil.rmtree(unpacked[0])
+    slave.setupExperiment(startTime=0.0)
+    slave.enterInitializationMode()
+    assert second.get("value") == 111.5
+    slave.freeInstance()
+    shutil.rmtree(unpacked[1])
+    third = Raw(path, unpacked[2])
+    slave = third.start()
+    assert third.get("value") == 111.5
+    slave.freeInstance()
 
 
 def test_data_files_lie_beside_their_module_and_count_in_the_hash(write) -> None:

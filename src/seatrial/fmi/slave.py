@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import _ctypes
 import ctypes
+import importlib
 import json
 import math
 import os
@@ -48,6 +49,7 @@ class Slave(Fmi2Slave):  # type: ignore[misc]
         while self.resources in sys.path:
             sys.path.remove(self.resources)
         _drop_interpreter_handle(self.resources)
+        _follow_to(self.resources)
         self.last_error: str | None = None
         self._failed = False
         self.component = self.component_class(self.instance_name)
@@ -63,6 +65,7 @@ class Slave(Fmi2Slave):  # type: ignore[misc]
 
     def enter_initialization_mode(self) -> None:
         """Start the component."""
+        _follow_to(self.resources)  # the folder of before may be gone since this one was made
         self._guarded(self.component.initialise)
 
     def exit_initialization_mode(self) -> None:
@@ -195,6 +198,27 @@ def _drop_interpreter_handle(resources: str | None) -> None:
         library = ctypes.CDLL(str(path), mode=os.RTLD_NOLOAD | os.RTLD_LAZY)
         library.finalizePythonInterpreter()
         _ctypes.dlclose(library._handle)
+
+
+def _follow_to(resources: str) -> None:
+    """Let the bundle's modules look for files and submodules in ``resources``.
+
+    They were imported once for the process, from the folder of the first instance, which is
+    gone when that instance is: the next one finds its data files and late imports in its own.
+    """
+    root = __name__.partition(".")[0]
+    old = Path(getattr(sys.modules[root], "__file__", None) or __file__).parent
+    new = Path(resources, root)
+    if old.is_dir() or not new.is_dir():
+        return
+    for name, module in list(sys.modules.items()):
+        if name.partition(".")[0] != root or not getattr(module, "__file__", None):
+            continue
+        file = new / Path(str(module.__file__)).relative_to(old)
+        module.__file__ = str(file)
+        if hasattr(module, "__path__"):
+            module.__path__ = [str(file.parent)]
+    importlib.invalidate_caches()
 
 
 def _explained(error: BaseException) -> str:
