@@ -357,7 +357,7 @@ def test_a_table_is_up_to_date(page: Path, name: str) -> None:
 
 def test_every_table_that_can_be_made_is_in_a_page() -> None:
     shown = [name for names in TABLES.pages().values() for name in names]
-    assert sorted(shown) == sorted(TABLES._PARTS)
+    assert sorted(shown) == sorted(TABLES.PARTS)
 
 
 # ---------------------------------------------------------------------- hydrone.md: what its text says
@@ -365,18 +365,20 @@ def test_every_table_that_can_be_made_is_in_a_page() -> None:
 
 def test_figures_in_the_text_of_the_hydrone() -> None:
     aft, across = (
-        TABLES._open("landing", pad, "source") for pad in ("diagonal-aft", "transversal")
+        TABLES.hydrone._open("landing", pad, "source") for pad in ("diagonal-aft", "transversal")
     )
     assert aft.at("x", 20) == pytest.approx(-0.04, abs=0.005)
     speed = np.hypot(*(np.diff(axis)[-1] for axis in (across.x, across.y))) / 0.01
     assert speed == pytest.approx(1.2e-3, abs=0.05e-3)
-    standing = TABLES._open("landing", "diagonal-aft", "physical").at("roll", 20)
-    peak = TABLES._open("takeoff", "diagonal-aft", "physical").peak("roll", TABLES.SPOOL_UP)
+    standing = TABLES.hydrone._open("landing", "diagonal-aft", "physical").at("roll", 20)
+    peak = TABLES.hydrone._open("takeoff", "diagonal-aft", "physical").peak(
+        "roll", TABLES.hydrone.SPOOL_UP
+    )
     assert 0.0 < abs(peak) - abs(standing) < 0.15
-    for phase in TABLES.PHASES:
+    for phase in TABLES.hydrone.PHASES:
         for run in (
-            TABLES._single(f"hydrone-{phase}", ()),
-            TABLES._open(phase, "diagonal-aft", "physical"),
+            TABLES.hydrone._single(f"hydrone-{phase}", ()),
+            TABLES.hydrone._open(phase, "diagonal-aft", "physical"),
         ):
             assert abs(run.peak("roll")) > 10.0
 

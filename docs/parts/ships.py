@@ -1,0 +1,74 @@
+"""Criteria of trials and what was found; the two ships' own tables."""
+
+from __future__ import annotations
+
+import json
+from functools import partial
+
+from parts import elsewhere, part
+from parts.markdown import table
+from seatrial.shipped import shipped_folder
+from seatrial.trials.campaign import load_campaign, run_campaign
+from seatrial.trials.heading_design import design_heading
+from seatrial.trials.heading_design_page import rows as design_rows
+from seatrial.trials.heading_design_page import stability
+from seatrial.trials.readable import number
+from seatrial.trials.run import run_trial
+from seatrial.trials.run_folder import load_run
+from seatrial.trials.trial import load_trial
+
+
+def verdicts(rig: str) -> str:
+    """Every criterion of the trials whose names begin so, and what was found."""
+    rows = []
+    for path in sorted((shipped_folder("harness") / "trials").glob(f"{rig}-*.toml")):
+        with elsewhere() as folder:
+            run = load_run(run_trial(load_trial(path.stem), folder / "out", engine="direct").folder)
+        for verdict in run.verdicts:
+            found = verdict["detail"].partition("; ")[0].replace("-", "−")
+            holds = "yes" if verdict["passed"] else "**no**"
+            rows.append((f"`{path.stem}`", verdict["name"], holds, found))
+    return table(("trial", "criterion", "holds", "found"), rows)
+
+
+for _rig in ("gloria-fixed", "gloria-pid", "gloria-backstepping", "mariner", "thruster-ship"):
+    part(f"{_rig}-trials")(partial(verdicts, _rig))
+
+
+@part("mariner-gains")
+def mariner_gains() -> str:
+    """Gains of the source's ship for a damping ratio of 0.7071, and limits of stability."""
+    design = design_heading("mariner", "source", (0.0, -1.3427, 1.25379))
+    stable = {number(one.derivative_time, 6): stability(one) for one in design.loci}
+    return table(
+        ("T_d, L/U", "K", "poles, U/L", "least damping ratio", "stable for"),
+        [
+            (
+                row.derivative_time.replace("-", "−"),
+                row.K,
+                row.poles.replace("-", "−"),
+                row.damping,
+                stable[row.derivative_time],
+            )
+            for row in design_rows(design)
+        ],
+    )
+
+
+@part("thruster-ship-cases")
+def thruster_ship_cases() -> str:
+    """The six published cases after 10 s, nonlinear and linear."""
+    lines = []
+    with elsewhere() as folder:
+        run_campaign(load_campaign("thruster-ship-cases"), folder / "out", engine="direct")
+        for case in json.loads((folder / "out/campaign.json").read_text())["cases"]:
+            end = {k: v[-1] for k, v in load_run(folder / "out" / case["folder"]).signals.items()}
+            ends = [
+                [end[f"{model}.{s}"] for s in ("position.x", "position.y", "attitude.psi")]
+                for model in ("nonlinear", "linear")
+            ]
+            shown = [number(value, 6).replace("-", "−") for value in (*ends[0], *ends[1])]
+            lines.append((next(iter(case["set"].values())), *shown))
+    axes = ("x, m", "y, m", "psi, rad")
+    head = [f"{model} {axis}" for model in ("nonlinear", "linear") for axis in axes]
+    return table(("case", *head), lines)
