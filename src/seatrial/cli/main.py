@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
 import tomllib
@@ -56,6 +57,20 @@ def main() -> None:
         _complain(SimulationError(f"cannot read or write{where}: {error.strerror}"), _BROKEN)
     except KeyboardInterrupt:
         _complain(SimulationError("stopped"), _BROKEN)
+    finally:
+        _forget_closed_streams()
+
+
+def _forget_closed_streams() -> None:
+    """Drop what was printed to readers that are gone: Python would end with status 120."""
+    for stream in (sys.stdout, sys.stderr):
+        try:
+            if stream is not None:
+                stream.flush()
+        except OSError:
+            nowhere = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(nowhere, stream.fileno())
+            os.close(nowhere)
 
 
 def _complain(error: SeatrialError, status: int) -> None:

@@ -134,14 +134,18 @@ def _user_source(path: Path, class_name: str, written: str) -> ComponentSource:
 def _importable(folder: Path) -> Iterator[None]:
     """Make modules in ``folder`` importable, and forget them again afterwards.
 
-    Another user's folder may hold files of the same names.
+    Another user's folder may hold files of the same names. No bytecode is left there: Python
+    takes it for current when a file is edited twice within a second.
     """
     before = set(sys.modules)
+    wrote = sys.dont_write_bytecode
+    sys.dont_write_bytecode = True
     sys.path.insert(0, str(folder))
     importlib.invalidate_caches()
     try:
         yield
     finally:
+        sys.dont_write_bytecode = wrote
         sys.path.remove(str(folder))
         for name in set(sys.modules) - before:
             file = getattr(sys.modules[name], "__file__", None)
