@@ -160,6 +160,31 @@ def test_a_rig_without_a_craft(write_run):
     assert "deck" not in page.text
 
 
+def test_ships_in_the_plane_show_no_heave(write_run):
+    ship = {"fmu": "ship", "sha256": "4" * 64, "step": 0.01, "parameters": {}}
+    names = [f"{one}.position.{axis}" for one in ("port", "twin") for axis in "xyz"]
+    signals = {name: {"unit": "m", "description": ""} for name in names}
+    folder = write_run(
+        changes={
+            "components": {"port": ship, "twin": ship},
+            "connections": [],
+            "signals": signals,
+            "criteria": [],
+        }
+    )
+    rows = ["time," + ",".join(names), "0,0,0,0,0,0,0", "0.1,1,0,0,1,2,0"]
+    (folder / "signals.csv").write_text("\n".join(rows) + "\n")
+    (folder / "verdicts.json").write_text("[]")
+    titles = Page(write_report(folder)).titles()
+    assert [t.partition(",")[0] for t in titles if t.startswith("position.")] == [
+        "position.x",
+        "position.y",
+    ]
+    (folder / "signals.csv").write_text(f"{rows[0]}\n{rows[1]}\n")
+    titles = Page(write_report(folder)).titles()
+    assert sum(t.startswith("position.") for t in titles) == 3
+
+
 def test_nothing_written_by_others_becomes_markup(write_run):
     name = f"box{EVIL}"
     folder = write_run(

@@ -123,7 +123,10 @@ def _sections(run: Run) -> Iterator[Section]:
     for title, chosen in (("Motion", motion), ("Velocities", speeds)):
         for components in _alike_craft(run, chosen):
             own = [p for p in chosen if p.component == components[0]]
-            panels = [[_panel_of_all(run, p, s, components) for s in p.signals] for p in own]
+            panels = [
+                [_panel_of_all(run, p, s, components) for s in _moving(run, p, components)]
+                for p in own
+            ]
             yield Section(f"{title} of {' and '.join(components)}", _over_time(run, panels))
     tracks = list(_tracks(run, motion))
     if tracks:
@@ -204,6 +207,16 @@ def _labelled_panel(run: Run, title: str, signals: Mapping[str, str]) -> Panel:
         if signal in signals
     ]
     return Panel(title, unit, lines, marks)
+
+
+def _moving(run: Run, port: Port, components: Sequence[str]) -> list[str]:
+    """Return a port's signals without those that stay at 0 in all components: ships have no heave.
+
+    All of them if all are.
+    """
+    rests = {signal: signal.removeprefix(port.component) for signal in port.signals}
+    moving = [s for s in rests if any(np.any(run.signals[c + rests[s]]) for c in components)]
+    return moving or list(port.signals)
 
 
 def _alike_craft(run: Run, ports: Iterable[Port]) -> list[list[str]]:
