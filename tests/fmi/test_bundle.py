@@ -260,7 +260,7 @@ def test_data_files_and_late_imports_are_found_when_the_first_copy_is_gone(
     write, tmp_path: Path
 ) -> None:
     late = READS.replace("        self._value = ", "        import late\n\n        self._value = ")
-    file = write("boat.py", late.replace('.read_text())', '.read_text()) + late.MORE'))
+    file = write("boat.py", late.replace(".read_text())", ".read_text()) + late.MORE"))
     write("polar.csv", "111.0\n")
     write("late.py", "MORE = 0.5\n")
     path = build_fmu(source(file, "Boat"), tmp_path / "boat.fmu")
