@@ -76,7 +76,8 @@ def variants(vehicle: str) -> str:
 for _vehicle in ("hydrone", "gloria", "mariner"):
     part(f"{_vehicle}-parameters")(partial(parameters, _vehicle))
     part(f"{_vehicle}-variants")(partial(variants, _vehicle))
-part("thruster-ship-parameters")(partial(parameters, "thruster-ship"))
+for _vehicle in ("thruster-ship", "videoray"):
+    part(f"{_vehicle}-parameters")(partial(parameters, _vehicle))
 
 
 def sensors_of(profile: str) -> str:
@@ -87,10 +88,12 @@ def sensors_of(profile: str) -> str:
     for name, entries in sensors.items():
         for key, value in entries.items():
             if key not in ("kind", "source"):
-                rows.append((name, f"`{key}`", ", ".join(value) if type(value) is list else value))
+                rows.append(
+                    (name, f"`{key}`", ", ".join(value) if type(value) is list else f"{value}")
+                )
     listed = "".join(f"- **{name}**: {entries['source']}\n" for name, entries in sensors.items())
     return listed + "\n" + table(("sensor", "key", "value"), rows)
 
 
-for _profile in ("hydrone", "gloria"):
+for _profile in ("hydrone", "gloria", "videoray"):
     part(f"{_profile}-sensors")(partial(sensors_of, _profile))

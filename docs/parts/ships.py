@@ -31,7 +31,10 @@ def verdicts(rig: str) -> str:
     return table(("trial", "criterion", "holds", "found"), rows)
 
 
-for _rig in ("gloria-fixed", "gloria-pid", "gloria-backstepping", "mariner", "thruster-ship"):
+for _rig in (
+    *("gloria-fixed", "gloria-pid", "gloria-backstepping"),
+    *("mariner", "thruster-ship", "videoray-open"),
+):
     part(f"{_rig}-trials")(partial(verdicts, _rig))
 
 

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from seatrial.craft.kinematics import rotation
-from seatrial.craft.marine_craft import MarineCraft, coriolis
+from seatrial.craft.marine_craft import MarineCraft
+from seatrial.craft.six_dof import coriolis
 from seatrial.errors import InputError
 
 INERTIAL = {

@@ -14,6 +14,7 @@ from seatrial.control.sailing_heading_backstepping import SailingHeadingBackstep
 from seatrial.control.sailing_heading_pid import SailingHeadingPid
 from seatrial.control.sailing_navigation import SailingNavigation
 from seatrial.control.station_keeping import StationKeeping
+from seatrial.devices.ahrs import Ahrs
 from seatrial.devices.anemometer import Anemometer
 from seatrial.devices.angle_servo import AngleServo
 from seatrial.devices.compass import Compass
@@ -21,6 +22,7 @@ from seatrial.devices.depth import Depth
 from seatrial.devices.force_actuator import ForceActuator
 from seatrial.devices.gnss import Gnss
 from seatrial.devices.imu import Imu
+from seatrial.devices.linear_thruster import LinearThruster
 from seatrial.devices.propulsion import Propulsion
 from seatrial.devices.rudder_machine import RudderMachine
 from seatrial.devices.servo import Servo
@@ -33,8 +35,10 @@ from .running import run, started
 CLASSES = {
     Thruster: {},
     Propulsion: {"direction_1": [1, 0, 0], "position_1": [-0.45, -0.4, 0.15]},
+    LinearThruster: {"delay": 0.013, "dead_band": 0.1},
     Servo: {},
     Imu: {"delay": 0.013, "dropout": 0.2},
+    Ahrs: {"delay": 0.13, "dropout": 0.2},
     Compass: {"delay": 0.03, "dropout": 0.2},
     Gnss: {"dropout": 0.2, "antenna": [0.2, 0.1, -0.3]},
     Depth: {"dropout": 0.2, "place": [0.2, 0.1, 0.3]},
@@ -148,10 +152,8 @@ def test_reading_twice_changes_nothing(cls):
 
 def ideal(cls):
     """Return settings without delay and dropout: feed-through is as direct as it can be."""
-    settings = dict(CLASSES[cls])
-    if "delay" in cls.ports:
-        settings |= {"delay": 0.0, "dropout": 0.0}
-    return settings
+    none = {name: 0.0 for name in ("delay", "dropout") if name in cls.ports}
+    return {**CLASSES[cls], **none}
 
 
 @every

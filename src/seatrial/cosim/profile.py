@@ -20,6 +20,7 @@ from pydantic import BeforeValidator, Field, create_model
 from pydantic_core import PydanticCustomError
 
 from ..component import Component
+from ..devices.ahrs import Ahrs
 from ..devices.anemometer import Anemometer
 from ..devices.compass import Compass
 from ..devices.depth import Depth
@@ -31,6 +32,7 @@ from ..units import quantity, unit
 from .files import FileModel, Source, find_file, read_toml, validated
 
 SENSORS: dict[str, type[Component]] = {
+    "ahrs": Ahrs,
     "anemometer": Anemometer,
     "compass": Compass,
     "depth": Depth,

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 from ..component import Input, Parameter
 from ..craft.kinematics import cross, to_body
-from .sensor import Measured, Sensor
+from .sensor import Measured, Sensor, half_circle
 
 _DEG = math.radians(1.0)
 
@@ -62,4 +62,4 @@ class Anemometer(Sensor):
     def finish(self, values: list[float]) -> list[float]:
         """Return a speed that is not negative and an angle in (-pi, pi]."""
         speed, angle = values
-        return [max(0.0, speed), math.pi - (math.pi - angle) % math.tau]
+        return [max(0.0, speed), half_circle(angle)]

@@ -6,7 +6,7 @@ import math
 from typing import ClassVar
 
 from ..component import Input, Parameter
-from .sensor import Measured, Sensor
+from .sensor import Measured, Sensor, full_circle
 
 _DEG = math.radians(1.0)
 
@@ -54,6 +54,4 @@ class Compass(Sensor):
 
     def finish(self, values: list[float]) -> list[float]:
         """Return the heading in [0, 2 pi)."""
-        wrapped = values[0] % math.tau
-        # Python's % gives tau itself for a tiny negative angle.
-        return [wrapped if wrapped < math.tau else 0.0]
+        return [full_circle(values[0])]

@@ -180,3 +180,15 @@ class Sensor(Noise, Sampled):
 
 def _quantised(value: float, step: float) -> float:
     return step * round(value / step) if step else value
+
+
+def full_circle(angle: float) -> float:
+    """Return ``angle``, rad, in [0, 2 pi), as a compass card counts."""
+    wrapped = angle % math.tau
+    # Python's % gives tau itself for a tiny negative angle.
+    return wrapped if wrapped < math.tau else 0.0
+
+
+def half_circle(angle: float) -> float:
+    """Return ``angle``, rad, in (-pi, pi]."""
+    return math.pi - (math.pi - angle) % math.tau

@@ -1,0 +1,53 @@
+"""The shipped trials of the VideoRay Pro 4: verdicts, and what its page says of them."""
+
+import math
+
+import numpy as np
+import pytest
+
+from seatrial.trials.run import run_trial
+from seatrial.trials.run_folder import load_run
+from seatrial.trials.trial import load_trial
+
+OPEN = [f"videoray-open-{name}" for name in ("surge", "heave", "yaw", "ascent")]
+
+
+def run(name, folder, **settings):
+    trial = load_trial(name).changed(settings, "test")
+    return load_run(run_trial(trial, folder, engine="direct").folder)
+
+
+@pytest.mark.parametrize("name", OPEN)
+def test_every_criterion_holds(name, tmp_path):
+    found = run(name, tmp_path / "run")
+    assert found.verdicts
+    assert [v["name"] for v in found.verdicts if not v["passed"]] == []
+
+
+def test_heading_of_the_compass_follows_that_of_the_vehicle(tmp_path):
+    found = run("videoray-open-yaw", tmp_path / "run")
+    psi, read = found.signals["vehicle.attitude.psi"], found.signals["ahrs.euler.psi"]
+    assert np.unwrap(psi)[-1] > 5 * math.tau
+    samples = slice(0, None, 10)
+    error = np.degrees((read - psi + math.pi)[samples] % math.tau - math.pi)
+    # Noise of 0.195 and a quantum of 0.1 degrees.
+    assert error.std() == pytest.approx(math.hypot(0.195, 0.1 / math.sqrt(12)), rel=0.15)
+    assert np.abs(error).max() < 1.0
+    tenths = np.degrees(read[samples]) * 10
+    np.testing.assert_allclose(tenths, np.round(tenths), rtol=0, atol=1e-6)
+
+
+@pytest.mark.parametrize(("share", "least", "most"), [(0.03, 0, 1), (0.05, 14, 20), (0.1, 45, 55)])
+def test_faster_than_the_limit_it_porpoises(share, least, most, tmp_path):
+    """Started 1 degree bow up: at 0.61 m/s that dies out, above it grows to a limit cycle."""
+    settings = {
+        "vehicle.eta_start": ["0 m", "0 m", "50 m", "0 deg", "1 deg", "0 deg"],
+        "vehicle.volume": "6.5 l",
+        "port.full_thrust": f"{46.7 * share / 0.02} N",
+        "starboard.full_thrust": f"{46.7 * share / 0.02} N",
+        "vertical.full_thrust": "0 N",
+        "stop": "120 s",
+    }
+    found = run("videoray-open-surge", tmp_path / "run", **settings)
+    pitch = np.degrees(np.abs(found.signals["vehicle.attitude.theta"][found.time > 90]))
+    assert least <= pitch.max() <= most
