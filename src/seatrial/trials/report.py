@@ -22,6 +22,7 @@ from .plots import Line, Mark, Panel, deck_figure, figure_json, time_figure, tra
 from .readable import from_si, number, person_scale
 from .run_folder import Run, load_run
 from .sailing import add_wind_and_marks
+from .tethers import tether_figures
 from .timing_section import pacing, step_times
 
 REPORT = "report.html"
@@ -133,6 +134,8 @@ def _sections(run: Run) -> Iterator[Section]:
         figure = track_figure(tracks)
         add_wind_and_marks(figure, run)
         yield Section("Track from above", figure_json(figure))
+    for name, shape in tether_figures(run):
+        yield Section(f"Shape of {name}", figure_json(shape))
     if forces:
         columns = [
             [_panel(run, p, p.signals) for p in forces if units[p] == u] for u in _FORCE_UNITS
