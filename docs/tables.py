@@ -20,6 +20,8 @@ from parts import (  # noqa: E402, F401  each registers its parts
     hydrone,
     settings,
     ships,
+    tether,
+    videoray_control,
 )
 
 PART = re.compile(

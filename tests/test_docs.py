@@ -34,6 +34,7 @@ ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
 FILES, COMPONENTS = DOCS / "files.md", DOCS / "components.md"
 DESIGN, SSP = DOCS / "design.md", DOCS / "ssp.md"
+IDENTIFICATION, TETHER = DOCS / "identification.md", DOCS / "tether.md"
 VEHICLES = sorted((DOCS / "vehicles").glob("*.md"))
 SEATRIAL = str(Path(sys.executable).with_name("seatrial"))
 
@@ -126,7 +127,9 @@ def run_commands(block: Block) -> None:
 
 
 @pytest.mark.parametrize(
-    "page", [FILES, COMPONENTS, *VEHICLES, DESIGN, SSP], ids=lambda page: page.stem
+    "page",
+    [FILES, COMPONENTS, *VEHICLES, DESIGN, SSP, IDENTIFICATION, TETHER],
+    ids=lambda page: page.stem,
 )
 def test_examples_run(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     run_page(page, tmp_path, monkeypatch)

@@ -5,8 +5,13 @@ import random
 import pytest
 
 from seatrial.component import Component
+from seatrial.control.computed_torque import ComputedTorque
+from seatrial.control.depth_hold import DepthHold
 from seatrial.control.dynamic_positioning import DynamicPositioning
+from seatrial.control.flat_tracking import FlatTracking
 from seatrial.control.heading_autopilot import HeadingAutopilot
+from seatrial.control.heading_hold import HeadingHold
+from seatrial.control.nominal_trajectory import NominalTrajectory
 from seatrial.control.reference_filter import HeadingReference
 from seatrial.control.sail_control import SailControl
 from seatrial.control.sailing_guidance import SailingGuidance
@@ -14,6 +19,7 @@ from seatrial.control.sailing_heading_backstepping import SailingHeadingBackstep
 from seatrial.control.sailing_heading_pid import SailingHeadingPid
 from seatrial.control.sailing_navigation import SailingNavigation
 from seatrial.control.station_keeping import StationKeeping
+from seatrial.control.thruster_allocation import ThrusterAllocation
 from seatrial.devices.ahrs import Ahrs
 from seatrial.devices.anemometer import Anemometer
 from seatrial.devices.angle_servo import AngleServo
@@ -27,12 +33,15 @@ from seatrial.devices.propulsion import Propulsion
 from seatrial.devices.rudder_machine import RudderMachine
 from seatrial.devices.servo import Servo
 from seatrial.devices.thruster import Thruster
+from seatrial.environment.step_disturbance import StepDisturbance
+from seatrial.identification.excitation import Excitation
 from seatrial.units import unit
 
 from .running import run, started
 
 # With settings that bring everything to life.
 CLASSES = {
+    Excitation: {"rest": 0.1},
     Thruster: {},
     Propulsion: {"direction_1": [1, 0, 0], "position_1": [-0.45, -0.4, 0.15]},
     LinearThruster: {"delay": 0.013, "dead_band": 0.1},
@@ -62,6 +71,13 @@ CLASSES = {
     HeadingAutopilot: {"rudder_limit": 100.0, "integral_gain": 0.1},
     HeadingReference: {},
     DynamicPositioning: {"capacity": [1e12, 1e12, 1e12], "thruster_time_constant": 5.0},
+    NominalTrajectory: {"surge_profile": "polynomial", "duration": 1.0},
+    FlatTracking: {"surge_profile": "polynomial", "duration": 1.0, "command_limit": 1e9},
+    ComputedTorque: {"mass": [8.44, 12.55, 0.133], "command_limit": 1e9},
+    DepthHold: {"capacity": 1e12, "rate_limit": 1e9},
+    HeadingHold: {"capacity": 1e12, "rate_limit": 1e9},
+    ThrusterAllocation: {},
+    StepDisturbance: {"step_size": 1.0, "begin_time": 0.2, "end_time": 0.7},
     StationKeeping: {
         "enabled": True,
         "hold_radius": 2.0,

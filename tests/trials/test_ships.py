@@ -92,7 +92,8 @@ def test_both_models_share_the_panels_of_the_report(tmp_path):
     assert "<h2>Velocities of nonlinear and linear</h2>" in page
     motion = page[page.index("Motion of nonlinear and linear") : page.index("Velocities of nonl")]
     figure = json.loads(re.search(r"application/json\">(.*?)</script>", motion, re.DOTALL)[1])
-    assert [trace["name"] for trace in figure["data"]] == ["nonlinear", "linear"] * 6
+    # x, y and psi: in the plane there is nothing else.
+    assert [trace["name"] for trace in figure["data"]] == ["nonlinear", "linear"] * 3
 
 
 def test_figures_of_positioning(tmp_path):

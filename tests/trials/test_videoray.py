@@ -12,9 +12,9 @@ from seatrial.trials.trial import load_trial
 OPEN = [f"videoray-open-{name}" for name in ("surge", "heave", "yaw", "ascent")]
 
 
-def run(name, folder, **settings):
+def run(name, folder, engine="direct", **settings):
     trial = load_trial(name).changed(settings, "test")
-    return load_run(run_trial(trial, folder, engine="direct").folder)
+    return load_run(run_trial(trial, folder, engine=engine).folder)
 
 
 @pytest.mark.parametrize("name", OPEN)
@@ -51,3 +51,15 @@ def test_faster_than_the_limit_it_porpoises(share, least, most, tmp_path):
     found = run("videoray-open-surge", tmp_path / "run", **settings)
     pitch = np.degrees(np.abs(found.signals["vehicle.attitude.theta"][found.time > 90]))
     assert least <= pitch.max() <= most
+
+
+@pytest.mark.parametrize(
+    "seed", [1, *(pytest.param(seed, marks=pytest.mark.long) for seed in range(2, 21))]
+)
+def test_on_its_tether_it_holds_depth_and_heading(seed, tmp_path):
+    found = run("videoray-tethered", tmp_path / "run", engine="fmu", seed=seed)
+    assert [v["passed"] for v in found.verdicts] == [True, True]
+    # It was at work: through 20 m of tether, taut at the end, against a current.
+    assert found.signals["tether.greatest_tension"][-1] > 1.5
+    place = [found.signals[f"vehicle.position.{axis}"][-1] for axis in "xyz"]
+    assert math.dist(place, (0.0, 0.0, 0.0)) == pytest.approx(20.0, abs=0.6)

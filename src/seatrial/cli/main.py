@@ -29,6 +29,7 @@ from .convergence import print_convergence
 from .design import design
 from .doctor import doctor
 from .fmu import fmu_app
+from .identify import identify
 from .show import Watch, console, print_case, print_listing, print_notes, print_verdicts
 from .ssp import ssp_app
 
@@ -204,7 +205,7 @@ def convergence(
 
 @app.command("list")
 def list_all() -> None:
-    """List the trials, campaigns, rigs, vehicles, profiles and FMUs that can be named."""
+    """List trials, campaigns, rigs, vehicles, profiles, experiments and FMUs by name."""
     print_listing(
         {
             "trials": available("harness/trials"),
@@ -212,6 +213,7 @@ def list_all() -> None:
             "rigs": available("harness/rigs"),
             "vehicles": available("vehicles"),
             "profiles": available("hil_profiles"),
+            "experiments": available("harness/identification"),
         },
         {name: source.component_class() for name, source in shipped_sources().items()},
     )
@@ -242,6 +244,7 @@ def compare(
 
 app.command("design")(design)
 app.command("doctor")(doctor)
+app.command("identify")(identify)
 
 
 def _engine(name: str) -> Engine:

@@ -11,7 +11,7 @@ from pydantic import Field
 from ..errors import InputError, unknown
 from .files import FileModel, Source, find_file, read_toml, validated
 
-Mark = Literal["stated", "corrected", "assumed"]
+Mark = Literal["stated", "corrected", "assumed", "identified"]
 
 
 class Entry(FileModel):

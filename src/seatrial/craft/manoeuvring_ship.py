@@ -11,7 +11,7 @@ import casadi as ca
 from ..component import Input, Parameter
 from ..errors import InputError
 from ..plant import State
-from .planar import PlanarCraft, kinematics, motion_outputs
+from .planar import ThreeDofCraft, kinematics, motion_outputs
 
 _SURGE_TERMS = ("u", "uu", "uuu", "vv", "rr", "rv", "dd", "udd", "vd", "uvd")
 _SWAY_TERMS = (
@@ -24,7 +24,7 @@ _INERTIAS = (
 )
 
 
-class ManoeuvringShip(PlanarCraft):
+class ManoeuvringShip(ThreeDofCraft):
     """Ship under way that its rudder steers; all coefficients without dimension.
 
     eta = (x, y, psi): body origin (midships) in {n} (x north, y east), m, and heading, clockwise
@@ -87,11 +87,6 @@ class ManoeuvringShip(PlanarCraft):
         ("m/s2", "rad/s2"), "what a disturbance adds to dv/dt and dr/dt, body axes", axes="vr"
     )
 
-    eta = State(
-        ("m", "m", "rad"),
-        "body origin in {n}; heading, clockwise from north",
-        axes=("x", "y", "psi"),
-    )
     nu = State(
         ("m/s", "m/s", "rad/s"),
         "velocity of the body origin over ground and rate of yaw, body axes",

@@ -13,7 +13,7 @@ from typing import Any
 
 import casadi as ca
 
-from ..plant import Plant
+from ..plant import Plant, State
 from ..ports import Output
 
 
@@ -36,6 +36,21 @@ class PlanarCraft(Plant):
         "m/s2",
         "inertial acceleration of the body origin, dv/dt + omega x v, body axes",
         axes="xyz",
+    )
+
+
+class ThreeDofCraft(PlanarCraft):
+    """Base of craft that stay upright: the states eta = (x, y, psi) and nu = (u, v, r)."""
+
+    eta = State(
+        ("m", "m", "rad"),
+        "body origin in {n}; heading, clockwise from north",
+        axes=("x", "y", "psi"),
+    )
+    nu = State(
+        ("m/s", "m/s", "rad/s"),
+        "velocity of the body origin over ground and rate of yaw, body axes",
+        axes=("u", "v", "r"),
     )
 
 

@@ -11,14 +11,13 @@ import numpy as np
 
 from ..component import Input, Parameter
 from ..model import Vector
-from ..plant import State
 from .inertia import require_positive_definite
-from .planar import PlanarCraft, kinematics, motion_outputs, planar_coriolis
+from .planar import ThreeDofCraft, kinematics, motion_outputs, planar_coriolis
 
 _INERTIAS = ("mass", "inertia", "center_of_gravity", "X_udot", "Y_vdot", "Y_rdot", "N_rdot")
 
 
-class ThrusterShip(PlanarCraft):
+class ThrusterShip(ThreeDofCraft):
     """Ship in surge, sway and yaw under thrusters: M nu' + C(nu) nu = tau, eta' = R(psi) nu.
 
     Source 003. eta = (x, y, psi): body origin in {n} (x north, y east), m, and heading,
@@ -58,17 +57,6 @@ class ThrusterShip(PlanarCraft):
     moment = Input("N.m", "yaw moment of the thrusters, positive to starboard")
     load_force = Input("N", "force of an environmental load, body axes", axes="xy")
     load_moment = Input("N.m", "yaw moment of an environmental load, positive to starboard")
-
-    eta = State(
-        ("m", "m", "rad"),
-        "body origin in {n}; heading, clockwise from north",
-        axes=("x", "y", "psi"),
-    )
-    nu = State(
-        ("m/s", "m/s", "rad/s"),
-        "velocity of the body origin over ground and rate of yaw, body axes",
-        axes=("u", "v", "r"),
-    )
 
     feedthrough: ClassVar = {
         "acceleration": ("force", "moment", "load_force", "load_moment"),

@@ -1,0 +1,75 @@
+"""The identify command: parameters of a vehicle's axis from a log."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.box import SIMPLE
+from rich.markup import escape
+from rich.table import Table
+
+from ..trials.identify.experiment import load_experiment
+from ..trials.identify.page import physical_rows, ratio_rows, write_page
+from ..trials.identify.study import Study, study
+from ..trials.identify.vehicle_file import base_vehicle, write_vehicle
+from ..trials.report import REPORT
+from ..trials.run import claim_folder
+from .show import console
+
+VEHICLE = "vehicle.toml"
+_REJECTED = 1
+
+
+def identify(
+    experiment: Annotated[str, typer.Argument(help="What the log holds: a name or a .toml file.")],
+    log: Annotated[
+        Path | None,
+        typer.Option("--log", help="CSV file or run folder, instead of the file's."),
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", help="Folder of the result (default: runs/...).")
+    ] = None,
+) -> None:
+    """Identify an axis of a vehicle from a log; status 1 if the model is to be rejected."""
+    loaded = load_experiment(experiment)
+    found = study(loaded, log)
+    base = base_vehicle(found)
+    folder = claim_folder(out, f"{loaded.name}-identified", REPORT)
+    parameters = folder / VEHICLE if found.accepted else None
+    if parameters is not None:
+        write_vehicle(found, base, parameters)
+    page = write_page(found, folder, None if parameters is None else VEHICLE)
+    _print(found)
+    if parameters is not None:
+        console.print(f"parameters: {parameters}", soft_wrap=True)
+    console.print(f"report: {page}", soft_wrap=True)
+    if parameters is None:
+        raise typer.Exit(_REJECTED)
+
+
+def _print(found: Study) -> None:
+    ratios = Table(box=SIMPLE, padding=(0, 1, 0, 0))
+    ratios.add_column("")
+    for heading in ("output error", "deviation", "method of source 000"):
+        ratios.add_column(heading, justify="right")
+    ratios.add_column("unit")
+    for row in ratio_rows(found):
+        ratios.add_row(row.symbol, row.ours, row.deviation, row.source, row.unit)
+    period = found.fitted.period
+    delays = (f"{found.delay:g}", "", f"{found.source.delay * period:g}")
+    ratios.add_row("delay", *delays, "s")
+    console.print(ratios)
+    for physical in physical_rows(found):
+        console.print(
+            f"{physical.name}: {physical.value} {physical.unit}, "
+            f"standard deviation {physical.deviation}"
+        )
+    if not found.whiteness.white:
+        console.print("note: the residual is not white: something acts that the model lacks")
+    for verdict in found.verdicts:
+        style, word = ("green", "PASS") if verdict.passed else ("red", "FAIL")
+        console.print(
+            f"[{style}]{word}[/]  {escape(verdict.name)}: {escape(verdict.detail)}", soft_wrap=True
+        )

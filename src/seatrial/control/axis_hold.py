@@ -1,0 +1,103 @@
+"""What controllers share that hold one axis of a vehicle: PID with limits."""
+
+from __future__ import annotations
+
+import math
+
+from ..component import Parameter
+from ..sampled import Sampled
+
+
+class AxisHold(Sampled):
+    """Base of PID control of one axis of mass m, from a measured position y alone.
+
+    A target goes from y at the start to the position wanted, at no more than ``rate_limit``, so
+    that a long way fills no integral. With g its rate and f that of y, by differences and
+    low-passed:
+
+        demand = clip(Kp (target - y) + Kd (g - f) + I),   I' = Ki (target - y)
+        f_k = a f_(k-1) + (1 - a) (y_k - y_(k-1)) / period,   a = exp(-period / rate_filter)
+
+    clip(x) = x held within +-capacity; back-calculation at the rate Ki / Kp removes from I what
+    that cuts off. Without lags the loop has the poles of (s + sigma) (s^2 + 2 zeta w s + w^2),
+    w = ``natural_frequency``, zeta = ``damping_ratio``, sigma = ``integral_pole`` (0 for no
+    integral action):
+
+        Kd = m (2 zeta w + sigma),   Kp = m (w^2 + 2 zeta w sigma),   Ki = m w^2 sigma
+
+    What is steady (weight that buoyancy does not balance, a tether's pull, a current) ends up in
+    I. Not modelled: drag, lags of thrusters and sensors; keep w well below their inverse.
+
+    A subclass declares mass, capacity, inputs and the demand, and says in `_axis` and `_places`
+    what they are.
+    """
+
+    period = Parameter(0.1, "s", "sample period", min=1e-6)
+    natural_frequency = Parameter(1.0, "rad/s", "w", min=1e-9)
+    damping_ratio = Parameter(1.0, "1", "zeta", min=0.0)
+    integral_pole = Parameter(0.1, "rad/s", "sigma", min=0.0)
+    rate_filter = Parameter(0.2, "s", "time constant of the filtered rate", min=0.0)
+
+    def _axis(self) -> tuple[float, float, float]:
+        """Return mass, capacity and the limit of the target's rate."""
+        raise TypeError(f"{type(self).__name__} does not say which axis it holds")
+
+    def _places(self) -> tuple[float, float]:
+        """Return the position wanted and the one measured."""
+        raise TypeError(f"{type(self).__name__} does not say what it holds")
+
+    def _apart(self, a: float, b: float) -> float:
+        """Return position a less position b."""
+        return a - b
+
+    def reset(self, t: float) -> None:
+        """Start with no integral, at rest."""
+        w, zeta, sigma = self.natural_frequency, self.damping_ratio, self.integral_pole
+        m, self._capacity, self._fastest = self._axis()
+        self._kp = m * (w * w + 2.0 * zeta * w * sigma)
+        self._kd = m * (2.0 * zeta * w + sigma)
+        self._ki = m * w * w * sigma
+        self._kept = math.exp(-self.period / self.rate_filter) if self.rate_filter else 0.0
+        self._integral = self._rate = 0.0
+        # Nothing has been measured yet.
+        self._before: float | None = None
+        self._target: float | None = None
+
+    def update(self, t: float, k: int) -> None:
+        """Advance integral, filtered rate and target."""
+        wanted, rate, error = self._demanded(), self._filtered_rate(), self._error()
+        cut_off = (self._limited(wanted) - wanted) / self._kp
+        self._integral += self.period * self._ki * (error + cut_off)
+        target = self._at() + self.period * self._target_rate()
+        self._rate, self._before, self._target = rate, self._places()[1], target
+
+    def _demanded(self) -> float:
+        """Return the demand before it is limited."""
+        damping = self._kd * (self._target_rate() - self._filtered_rate())
+        demanded: float = self._kp * self._error() + damping + self._integral
+        return demanded
+
+    def _limited(self, demand: float) -> float:
+        most: float = self._capacity
+        return min(max(demand, -most), most)
+
+    def _at(self) -> float:
+        """Return the target as it is now."""
+        target: float = self._places()[1] if self._target is None else self._target
+        return target
+
+    def _error(self) -> float:
+        return self._apart(self._at(), self._places()[1])
+
+    def _target_rate(self) -> float:
+        """Return the rate of the target until the next instant."""
+        fastest: float = self._fastest
+        needed: float = self._apart(self._places()[0], self._at()) / self.period
+        return min(max(needed, -fastest), fastest)
+
+    def _filtered_rate(self) -> float:
+        if self._before is None:
+            return 0.0
+        rate = self._apart(self._places()[1], self._before) / self.period
+        filtered: float = rate + (self._rate - rate) * self._kept
+        return filtered

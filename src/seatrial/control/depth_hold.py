@@ -1,0 +1,40 @@
+"""Depth of an underwater vehicle held by its vertical thruster."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from ..component import Input, Output, Parameter
+from .axis_hold import AxisHold
+
+
+class DepthHold(AxisHold):
+    """PID control of the depth, from a depth sensor: heave force, with the law of `AxisHold`.
+
+    Depths m, positive down; ``heave`` N, positive down, along the vehicle's z axis: roll and
+    pitch are taken to be small. The weight that buoyancy does not balance is found by the
+    integral. Source 000 has no control of depth; all of this is ours.
+
+    Defaults: mass with added mass of the VideoRay Pro 4, and four fifths of its vertical thrust.
+    """
+
+    mass = Parameter(10.45, "kg", "mass with added mass in heave", min=1e-9)
+    capacity = Parameter(20.0, "N", "largest force", min=0.0)
+    rate_limit = Parameter(0.3, "m/s", "largest rate of the target", min=1e-9)
+
+    depth_wanted = Input("m", "depth to hold, positive down")
+    depth = Input("m", "measured depth, positive down")
+
+    heave = Output("N", "heave force asked of the thrusters, positive down")
+
+    feedthrough: ClassVar = {"heave": ("depth_wanted", "depth")}
+
+    def sample(self, t: float, k: int) -> None:
+        """Command the heave force."""
+        self.heave = self._limited(self._demanded())
+
+    def _axis(self) -> tuple[float, float, float]:
+        return self.mass, self.capacity, self.rate_limit
+
+    def _places(self) -> tuple[float, float]:
+        return self.depth_wanted, self.depth

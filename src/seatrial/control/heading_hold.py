@@ -1,0 +1,48 @@
+"""Heading of an underwater vehicle held by its horizontal thrusters."""
+
+from __future__ import annotations
+
+import math
+from typing import ClassVar
+
+from ..component import Input, Output, Parameter
+from .axis_hold import AxisHold
+
+
+class HeadingHold(AxisHold):
+    """PID control of the heading, from a compass: yaw moment, with the law of `AxisHold`.
+
+    Headings rad, clockwise from north, any number of turns: error and rate go the shorter way.
+    ``yaw_moment`` N.m, positive to starboard. Source 000 controls the yaw rate only; this is ours.
+
+    Defaults: inertia with added inertia of the VideoRay Pro 4, and half of the moment that its
+    thrusters have.
+    """
+
+    natural_frequency = Parameter(1.6, "rad/s", "w", min=1e-9)
+    damping_ratio = Parameter(0.8, "1", "zeta", min=0.0)
+    integral_pole = Parameter(0.2, "rad/s", "sigma", min=0.0)
+    rate_filter = Parameter(0.05, "s", "time constant of the filtered rate", min=0.0)
+    inertia = Parameter(0.1338, "kg.m2", "inertia in yaw with added inertia", min=1e-9)
+    capacity = Parameter(4.7, "N.m", "largest moment", min=0.0)
+    rate_limit = Parameter(0.4, "rad/s", "largest rate of the target", min=1e-9)
+
+    heading_wanted = Input("rad", "heading to hold, clockwise from north")
+    heading = Input("rad", "measured heading, clockwise from north")
+
+    yaw_moment = Output("N.m", "yaw moment asked of the thrusters, positive to starboard")
+
+    feedthrough: ClassVar = {"yaw_moment": ("heading_wanted", "heading")}
+
+    def sample(self, t: float, k: int) -> None:
+        """Command the yaw moment."""
+        self.yaw_moment = self._limited(self._demanded())
+
+    def _axis(self) -> tuple[float, float, float]:
+        return self.inertia, self.capacity, self.rate_limit
+
+    def _places(self) -> tuple[float, float]:
+        return self.heading_wanted, self.heading
+
+    def _apart(self, a: float, b: float) -> float:
+        return math.remainder(a - b, math.tau)

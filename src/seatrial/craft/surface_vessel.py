@@ -1,0 +1,79 @@
+"""An underwater vehicle at constant depth, reduced to a vessel in the horizontal plane."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import SimpleNamespace
+from typing import Any, ClassVar
+
+import casadi as ca
+
+from ..component import Input, Parameter
+from ..errors import InputError
+from .planar import ThreeDofCraft, kinematics, motion_outputs, planar_coriolis
+
+_MASSES = ("kg", "kg", "kg.m2")
+_DAMPINGS = ("N.s/m", "N.s/m", "N.m.s/rad")
+
+
+class SurfaceVessel(ThreeDofCraft):
+    """Vessel in surge, sway and yaw that two thrusters ahead move: no force in sway.
+
+    Source 000, eqs 5.17 to 5.19 and 6.5. eta = (x, y, psi): body origin in {n} (x north,
+    y east), m, and heading, clockwise from north, rad; nu = (u, v, r): velocity of the origin
+    over ground, m/s, and rate of yaw, rad/s, in {b} (x bow, y starboard, z down). With
+    ``mass`` (m11, m22, m33), added mass included, and ``damping`` (d11, d22, d33):
+
+        m11 u' = X - d11 u + m22 v r                     X = E1 t1 + E2 t2
+        m22 v' = Y - d22 v - m11 u r
+        m33 r' = N - d33 r + s (m11 - m22) u v           N = l (E1 t1 - E2 t2)
+
+    ``command`` (t1, t2) is each thruster's share of its full thrust E1, E2 (``thrust``), -1 to
+    1; thruster 1 ahead turns to starboard. ``load_force`` and ``load_moment``, body axes, add to
+    X, Y and N. ``lever_arm`` l is the thrusters' distance from the centre line; the source has
+    none (l = 1 m).
+
+    s is ``yaw_coupling_sign``, 1: the yaw moment of the added masses as momentum demands it
+    (5.18). The source's control law has s = -1 (6.2, 6.3, 8.1), and its table 8.1 comes from a
+    model that has it too; -1 is for that reproduction alone.
+
+    Not modelled: quadratic damping, coupling of sway and yaw by a centre of gravity off the
+    origin, current, lag and limits of the thrusters: a command beyond 1 gives more than E.
+
+    Raises InputError at the start if ``yaw_coupling_sign`` is neither -1 nor 1.
+    """
+
+    mass = Parameter(1.0, _MASSES, "mass and inertia with added mass", axes="uvr", min=1e-9)
+    damping = Parameter(0.0, _DAMPINGS, "linear damping", axes="uvr", min=0.0)
+    thrust = Parameter(1.0, "N", "thrust of each thruster at command 1", axes=("t1", "t2"))
+    lever_arm = Parameter(1.0, "m", "thrusters from the centre line", min=1e-9)
+    yaw_coupling_sign = Parameter(
+        1.0, "1", "s: 1, or -1 to reproduce table 8.1 of the source", min=-1.0, max=1.0
+    )
+
+    command = Input("1", "share of each thruster's full thrust, -1 to 1", axes=("t1", "t2"))
+    load_force = Input("N", "force of an environmental load, body axes", axes="xy")
+    load_moment = Input("N.m", "yaw moment of an environmental load, positive to starboard")
+
+    feedthrough: ClassVar = {"acceleration": ("command", "load_force")}
+
+    def start(self, t: float) -> None:
+        """Start from the start values; raises InputError for a sign between -1 and 1."""
+        if abs(self.yaw_coupling_sign) != 1.0:
+            raise InputError(
+                f"{self.name}.yaw_coupling_sign is {self.yaw_coupling_sign!r}, allowed -1.0 or 1.0"
+            )
+        super().start(t)
+
+    def equations(
+        self, x: SimpleNamespace, u: SimpleNamespace, p: SimpleNamespace
+    ) -> tuple[Mapping[str, Any], Mapping[str, Any]]:
+        """Return the derivatives of eta and nu, and the motion (see the class)."""
+        first, second = ca.vertsplit(p.thrust * u.command)
+        tau = ca.vertcat(first + second, 0, p.lever_arm * (first - second))
+        load = ca.vertcat(u.load_force, u.load_moment)
+        signs = ca.vertcat(1, 1, p.yaw_coupling_sign)
+        coriolis = signs * planar_coriolis((p.mass * x.nu)[:2], x.nu)
+        nu_dot = (tau + load - p.damping * x.nu - coriolis) / p.mass
+        motion = motion_outputs(x.eta, x.nu, nu_dot)
+        return {"eta": kinematics(x.eta, x.nu), "nu": nu_dot}, motion

@@ -1,0 +1,1 @@
+"""Parameters of a vehicle's axes from logs of commands and sensors."""

@@ -1,0 +1,48 @@
+"""Commands that excite one axis of a vehicle, to identify it."""
+
+from __future__ import annotations
+
+from ..component import Noise, Output, Parameter
+from ..sampled import Sampled
+
+_LEVELS = 100
+_MOTORS = {"surge": (1.0, 1.0, 0.0), "yaw": (1.0, -1.0, 0.0), "heave": (0.0, 0.0, 1.0)}
+"""Port, starboard and vertical motor for a positive command along the axis."""
+
+
+class Excitation(Noise, Sampled):
+    """Random amplitudes, each held for a ``period``: source 000, section 5.2.
+
+    At instant k a whole number from -100 to 100, all equally likely, divided by 100 and
+    multiplied by ``amplitude``: the autocorrelation over instants is that of white noise. Source
+    000 holds for 1 s, 0.2 s where surge and yaw are excited together, with amplitudes of 0.2 to 1.
+
+    ``command`` is positive ahead, to starboard about z, and down. The motors get it with the
+    same sign (``axis`` = "surge": both horizontal ones), with opposite signs ("yaw": port ahead),
+    or the vertical one alone ("heave").
+
+    Until ``rest`` has passed all commands are 0.
+    """
+
+    period = Parameter(1.0, "s", "how long each amplitude is held", min=1e-6)
+    amplitude = Parameter(0.3, "1", "largest command", min=0.0, max=1.0)
+    rest = Parameter(0.0, "s", "time before the first command", min=0.0)
+    axis = Parameter("surge", "1", "which motors get it", choices=tuple(_MOTORS))
+
+    command = Output("1", "command along the axis, -1 to 1")
+    port = Output("1", "command of the port motor, -1 to 1, positive ahead")
+    starboard = Output("1", "command of the starboard motor, -1 to 1, positive ahead")
+    vertical = Output("1", "command of the vertical motor, -1 to 1, positive down")
+
+    def reset(self, t: float) -> None:
+        """Be at rest."""
+        self._first = t + self.rest
+
+    def sample(self, t: float, k: int) -> None:
+        """Draw an amplitude."""
+        level = int(self.generator(k).integers(-_LEVELS, _LEVELS + 1)) if t >= self._first else 0
+        command: float = self.amplitude * level / _LEVELS
+        self.command = command
+        self.port, self.starboard, self.vertical = (
+            sign * command + 0.0 for sign in _MOTORS[self.axis]
+        )

@@ -1,0 +1,1 @@
+"""From a log to parameters: the files, what is done with them, and the page that shows it."""

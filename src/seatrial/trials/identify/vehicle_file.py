@@ -1,0 +1,151 @@
+"""Writing what was identified as a vehicle file: what a rig's ``parameters`` names."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+from ...cosim.parameters import Entry, Vehicle, VehicleFile, load_vehicle
+from ...errors import InputError, unknown
+from ..readable import number
+from .study import Physical, Study
+
+VARIANT = "identified"
+
+_FORCE = ("kg", "N.s/m", "N.s2/m2")
+_PORTS = {
+    axis: (f"added_mass.{x + x}", f"linear_damping_force.{u}", f"quadratic_damping_force.{u}")
+    for axis, x, u in (("surge", "x", "u"), ("sway", "y", "v"), ("heave", "z", "w"))
+} | {"yaw": ("added_inertia.zz", "linear_damping_moment.r", "quadratic_damping_moment.r")}
+"""Scalars of a craft in six degrees of freedom that an axis decides: added mass and drags."""
+_UNITS = {True: ("kg.m2", "N.m.s/rad", "N.m.s2/rad2"), False: _FORCE}
+
+
+_NO_LAG = 1e-3
+"""Time constant that is written where none was found, s."""
+
+
+def identified_entries(study: Study) -> dict[str, dict[str, Entry]]:
+    """Return the parameters by component table and scalar name, deviations in ``source``.
+
+    Added mass and drag of the axis; with ``result.thruster``, that table's delay and time
+    constant.
+    """
+    result = study.experiment.file.result
+    tables = {result.component: _of_the_craft(study)}
+    if result.thruster is not None:
+        tables[result.thruster] = _of_the_thruster(study)
+    return tables
+
+
+def _of_the_craft(study: Study) -> dict[str, Entry]:
+    found = study.physical()
+    names = _PORTS[study.experiment.file.axis]
+    units = _UNITS[study.experiment.rotation]
+    values = (found["added mass"], found["linear"], found["quadratic"])
+    return {
+        name: _entry(study, value, unit)
+        for name, value, unit in zip(names, values, units, strict=True)
+    }
+
+
+def _of_the_thruster(study: Study) -> dict[str, Entry]:
+    period, estimate = study.fitted.period, study.estimate
+    if estimate.structure.lag == "thruster":
+        lag = estimate.values["time_constant"]
+        said = f"standard deviation {number(estimate.deviation('time_constant'), 3)}"
+    else:
+        lag, said = _NO_LAG, "no lag was found"
+    return {
+        "delay": _said(study, study.delay, "s", f"in whole samples of {number(period, 6)} s"),
+        "time_constant": _said(study, lag, "s", said),
+    }
+
+
+def _entry(study: Study, value: Physical, unit: str) -> Entry:
+    known = study.experiment.file.known.source
+    said = f"standard deviation {number(value.deviation, 3)}; thrust and mass: {known}"
+    return _said(study, value.value, unit, said)
+
+
+def _said(study: Study, value: float, unit: str, said: str) -> Entry:
+    source = f"identified from {study.log_path.name}, {study.experiment.file.axis}: {said}"
+    return Entry(value=value, unit=unit, source=source, mark="identified")
+
+
+def base_vehicle(study: Study) -> Vehicle | None:
+    """Return the vehicle that the result is added to, if one is named. Raises InputError."""
+    result, path = study.experiment.file.result, study.experiment.read_from.path
+    if result.vehicle is None:
+        return None
+    vehicle = load_vehicle(result.vehicle, path.parent)
+    for key, table in (("component", result.component), ("thruster", result.thruster)):
+        if table is not None and table not in vehicle.file.components:
+            what = unknown("component table", table, vehicle.file.components)
+            raise InputError(f"{path}: result.{key}: {what} in {vehicle.read_from.path}")
+    if result.variant is not None and result.variant not in vehicle.file.variants:
+        what = unknown("variant", result.variant, vehicle.file.variants)
+        raise InputError(f"{path}: result.variant: {what} in {vehicle.read_from.path}")
+    return vehicle
+
+
+def write_vehicle(study: Study, vehicle: Vehicle | None, path: Path) -> None:
+    """Write a vehicle file: ``vehicle`` with the variant `VARIANT`, which is the default.
+
+    The variant is that of the experiment's ``result.variant``, or the vehicle's default, with
+    what was identified in the place of its own values; so one axis can be added to another's
+    file. Without a vehicle the file has the identified parameters alone.
+    """
+    tables = identified_entries(study)
+    if vehicle is None:
+        title = f"Identified from {study.log_path.name}"
+        file = VehicleFile(title=title, source=title, components=tables)
+    else:
+        chosen = study.experiment.file.result.variant or vehicle.file.default
+        changes = dict(vehicle.file.variants.get(chosen, {})) if chosen else {}
+        for table, entries in tables.items():
+            changes[table] = {**changes.get(table, {}), **entries}
+        variants = {**vehicle.file.variants, VARIANT: changes}
+        file = vehicle.file.model_copy(update={"variants": variants, "default": VARIANT})
+    path.write_text("\n".join(_lines(file)) + "\n", "utf-8")
+
+
+def _lines(file: VehicleFile) -> Iterator[str]:
+    yield f"title = {_text(file.title)}"
+    yield f"source = {_text(file.source)}"
+    if file.default is not None:
+        yield f"default = {_text(file.default)}"
+    for table, entries in file.components.items():
+        yield from _table(_key(table), entries)
+    for variant, tables in file.variants.items():
+        yield from ("", f"[variants.{_key(variant)}]")
+        for table, entries in tables.items():
+            yield from _table(f"variants.{_key(variant)}.{_key(table)}", entries)
+    for table, ports in file.presets.items():
+        for port, presets in ports.items():
+            yield from _table(f"presets.{_key(table)}.{_key(port)}", presets)
+
+
+def _table(head: str, entries: Mapping[str, Entry]) -> Iterator[str]:
+    yield from ("", f"[{head}]")
+    for name, entry in entries.items():
+        value, unit = (
+            f"[{', '.join(map(_scalar, v))}]" if isinstance(v, list) else _scalar(v)
+            for v in (entry.value, entry.unit)
+        )
+        said = f"source = {_text(entry.source)}, mark = {_text(entry.mark)}"
+        yield f"{_key(name)} = {{ value = {value}, unit = {unit}, {said} }}"
+
+
+def _scalar(value: str | float | int) -> str:
+    return _text(value) if isinstance(value, str) else repr(value)
+
+
+def _key(name: str) -> str:
+    return name if name.replace("-", "").replace("_", "").isalnum() else _text(name)
+
+
+def _text(text: str) -> str:
+    # JSON's text is TOML's: the same escapes, but for DEL, which TOML wants escaped too.
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")

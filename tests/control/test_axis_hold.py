@@ -1,0 +1,121 @@
+"""Depth and heading hold: gains against pole placement, limits, and loops in closed form."""
+
+import math
+
+import numpy as np
+import pytest
+
+from seatrial.control.depth_hold import DepthHold
+from seatrial.control.heading_hold import HeadingHold
+from tests.devices.running import started
+
+FAST = {"rate_limit": 1e9, "rate_filter": 0.0, "capacity": 1e12}
+w, zeta, sigma, m = 0.7, 0.9, 0.1, 10.45
+GAINS = {"natural_frequency": w, "damping_ratio": zeta, "integral_pole": sigma, "mass": m}
+_ONE, KD, KP, KI = m * np.polymul([1, sigma], [1, 2 * zeta * w, w**2])
+
+
+def depth(**values):
+    return started(DepthHold, **{**FAST, **GAINS, **values})
+
+
+def test_gains_place_the_poles():
+    hold = depth(depth_wanted=2.0, depth=2.0)
+    assert hold.get("heave") == 0.0
+    hold.advance(0.0, 0.1)
+    hold.set("depth", 1.9)  # moved by -1 m/s for one period
+    assert hold.get("heave") == pytest.approx(KP * 0.1 + KD * 1.0)
+    hold.advance(0.1, 0.1)
+    # Now at rest: what is left is Kp e and what the integral learnt in one period.
+    assert hold.get("heave") == pytest.approx(KP * 0.1 + KI * 0.1 * 0.1)
+
+
+def test_rate_is_low_passed():
+    hold = depth(depth_wanted=2.0, depth=2.0, rate_filter=0.3, integral_pole=0.0)
+    hold.advance(0.0, 0.1)
+    for k in range(1, 30):  # 1 m/s for long, the target with it
+        hold.set("depth", 2.0 + 0.1 * k)
+        hold.set("depth_wanted", 2.0 + 0.1 * k)
+        found = hold.get("heave")
+        hold.advance(0.1 * k, 0.1)
+        f = 1.0 - math.exp(-0.1 * k / 0.3)
+        # The target goes where it is wanted one period later: it is 0.1 m behind.
+        kp, kd = m * w**2, m * 2 * zeta * w
+        assert found == pytest.approx(kp * -0.1 + kd * (1.0 - f)), k
+
+
+def test_target_goes_at_its_rate_limit():
+    hold = depth(rate_limit=0.25, integral_pole=0.0, depth_wanted=0.0)
+    hold.advance(0.0, 1.0)
+    hold.set("depth_wanted", 10.0)
+    hold.advance(1.0, 4.0)
+    assert hold.get("heave") == pytest.approx(m * w**2 * 1.0 + m * 2 * zeta * w * 0.25)
+
+
+def test_capacity_holds_and_the_integral_does_not_wind_up():
+    # So slow a filter takes no notice of the jumps below.
+    hold = started(DepthHold, depth_wanted=0.0, rate_filter=1e9)
+    hold.advance(0.0, 1.0)
+    hold.set("depth", 50.0)
+    hold.advance(1.0, 600.0)
+    assert hold.get("heave") == -20.0
+    # An integral that had wound up would ask for -20 N for minutes.
+    hold.set("depth", -3.0)
+    hold.advance(601.0, 2.0)
+    assert hold.get("heave") > 5.0
+
+
+@pytest.mark.parametrize(("heading", "wanted", "error"), [(179, -179, 2), (-179, 179, -2)])
+def test_heading_goes_the_shorter_way(heading, wanted, error):
+    start = math.radians(heading)
+    hold = started(
+        HeadingHold,
+        heading=start,
+        heading_wanted=start,
+        **FAST,
+        integral_pole=0.0,
+        natural_frequency=1.0,
+        inertia=2.0,
+    )
+    hold.advance(0.0, 0.1)
+    hold.set("heading_wanted", math.radians(wanted) + math.tau)
+    hold.advance(0.1, 0.2)
+    assert hold.get("yaw_moment") == pytest.approx(2.0 * math.radians(error))
+
+
+def test_a_turn_past_south_is_no_jump_of_the_rate():
+    # A turn through +-180 degrees and one through 0, in the same steps, ask for the same.
+    moments = []
+    for middle in (math.pi, 0.0):
+        start = math.remainder(middle - 0.1, math.tau)
+        hold = started(HeadingHold, heading=start, heading_wanted=start, **FAST)
+        hold.advance(0.0, 0.1)
+        seen = []
+        for k in range(1, 5):
+            hold.set("heading", math.remainder(middle - 0.1 + 0.05 * k, math.tau))
+            seen.append(hold.get("yaw_moment"))
+            hold.advance(0.1 * k, 0.1)
+        moments.append(seen)
+    np.testing.assert_allclose(moments[0], moments[1], rtol=1e-9)
+
+
+def test_ideal_loop_is_that_of_its_poles():
+    """A mass and a sudden force: m z'' = F - Kd z' - Kp z - Ki int z, in closed form."""
+    T, F = 0.001, 5.0
+    hold = depth(period=T, depth_wanted=0.0, depth=0.0)
+    z = v = 0.0
+    found = []
+    for k in range(20000):
+        hold.set("depth", z)
+        found.append(z)
+        a = (F + hold.get("heave")) / m
+        z, v = z + T * v + 0.5 * T * T * a, v + T * a
+        hold.advance(k * T, T)
+    t = T * np.arange(20000)
+    poles = np.roots([1, 2 * zeta * w + sigma, w**2 + 2 * zeta * w * sigma, w**2 * sigma])
+    # z = F / m over the cubic: residues at its poles.
+    exact = sum(
+        F / m * np.exp(p * t) / np.prod([p - q for q in poles if q != p]) for p in poles
+    ).real
+    # Held for 1 ms, and the rate by differences half of that late again.
+    assert np.abs(found - exact).max() < 3e-3 * exact.max()
