@@ -16,6 +16,8 @@ from seatrial.trials.run import Hooks, StoppedError, claim_folder, run_trial
 from seatrial.trials.run_folder import load_run
 from seatrial.trials.trial import load_trial
 
+from .test_sailing import figure_below
+
 BOAT = '''
 """A boat for trials."""
 from seatrial.component import Component, Input, Noise, Output, Parameter
@@ -66,6 +68,7 @@ stop = "1 s"
 name = "stays near"
 check = "abs(boat.x) < 2 m"
 """
+PLOT = TRIAL + '[[plots]]\ntitle = "both"\nsignals = [{}]\n'
 
 
 @pytest.fixture
@@ -191,6 +194,15 @@ def test_what_is_recorded_can_be_chosen(bench, tmp_path: Path) -> None:
     assert lines[2].endswith(',"calm, ""5""",0,"calm, ""5"""')
 
 
+def test_plots_of_a_trial_come_first_in_its_report(bench, tmp_path: Path) -> None:
+    text = PLOT.format('"boat.x", "twin.x"')
+    folder = run_trial(load_trial(bench(text)), tmp_path / "run", engine="direct").folder
+    page = write_report(folder).read_text("utf-8")
+    assert page.index("What the trial shows") < page.index("Other signals of boat")
+    figure = figure_below(page, "What the trial shows")
+    assert [trace["name"] for trace in figure["data"]][:2] == ["boat.x", "twin.x"]
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [
@@ -218,6 +230,14 @@ def test_what_is_recorded_can_be_chosen(bench, tmp_path: Path) -> None:
         (TRIAL + '[[events]]\nat = "0.5 s"\nset = { "boat.mode" = "storm" }', "is fixed"),
         (TRIAL + '[[events]]\nat = "0.5 s"\noverride = { "boat.push" = "1 N" }', "neither"),
         (TRIAL + '[[events]]\nat = "0.5 s"\nset = { "boat.push" = "1 rad" }', "'rad' cannot"),
+        (PLOT.format('"boat.y"'), "plot 'both': unknown signal 'boat.y'"),
+        (PLOT.format('"boat.label"'), "plot 'both': boat.label is a text"),
+        (PLOT.format('"boat.x", "boat.angle"'), "of one unit .* boat.x in m, boat.angle in rad"),
+        (PLOT.format(""), r"plots\.0\.signals"),
+        (
+            PLOT.format('"boat.x"') + '[record]\nsignals = ["boat.angle"]',
+            "boat.x is not recorded, see record.signals",
+        ),
         ("rig = 3", "rig: .*found 3"),
         ("rig = ", "not TOML: .*end of document"),
     ],

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from ..component import seconds
 from ..cosim.recorder import matching
 from ..cosim.system import System, settable
 from ..cosim.values import from_written, port_scalars
 from ..errors import InputError, unknown
+from ..fmi.instance import Variable
 from .trial import Trial
 
 
@@ -35,14 +38,18 @@ def check_events(trial: Trial, system: System) -> None:
             from_written(event.written, scalars, part.presets.get(port, {}), where)
 
 
-def check_criteria(trial: Trial, system: System) -> dict[str, str]:
-    """Return the signals' units; raise InputError if a criterion does not fit them."""
-    outputs = {
+def _outputs(system: System) -> dict[str, Variable]:
+    return {
         f"{name}.{v.name}": v
         for name, part in system.parts.items()
         for v in part.instance.variables.values()
         if v.causality == "output"
     }
+
+
+def check_criteria(trial: Trial, system: System) -> dict[str, str]:
+    """Return the signals' units; raise InputError if a criterion does not fit them."""
+    outputs = _outputs(system)
     units = {name: variable.unit for name, variable in outputs.items()}
     try:
         matching(list(units), trial.file.record.signals)
@@ -52,11 +59,33 @@ def check_criteria(trial: Trial, system: System) -> dict[str, str]:
         where = f"{trial.read_from.path}: criterion {name!r}"
         try:
             for signal in criterion.signals:
-                if signal not in units:
-                    raise InputError(unknown("signal", signal, units))
-                if outputs[signal].type is str:
-                    raise InputError(f"{signal} is a text, a number is needed")
+                _require_number(signal, outputs)
             criterion.check_units(units)
         except InputError as error:
             raise InputError(f"{where}: {error}") from None
     return units
+
+
+def check_plots(trial: Trial, system: System) -> None:
+    """Raise InputError for a plot of signals that are not recorded or of unlike units."""
+    outputs = _outputs(system)
+    recorded = matching(list(outputs), trial.file.record.signals)
+    for entry in trial.file.plots:
+        where = f"{trial.read_from.path}: plot {entry.title!r}"
+        try:
+            for signal in entry.signals:
+                _require_number(signal, outputs)
+                if signal not in recorded:
+                    raise InputError(f"{signal} is not recorded, see record.signals")
+        except InputError as error:
+            raise InputError(f"{where}: {error}") from None
+        if len({outputs[signal].unit for signal in entry.signals}) > 1:
+            listed = ", ".join(f"{signal} in {outputs[signal].unit}" for signal in entry.signals)
+            raise InputError(f"{where}: signals of one unit are needed, not {listed}")
+
+
+def _require_number(signal: str, outputs: Mapping[str, Variable]) -> None:
+    if signal not in outputs:
+        raise InputError(unknown("signal", signal, outputs))
+    if outputs[signal].type is str:
+        raise InputError(f"{signal} is a text, a number is needed")

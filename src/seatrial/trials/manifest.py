@@ -51,6 +51,7 @@ def manifest(trial: Trial, system: System, engine: Engine) -> dict[str, Any]:
             if v.causality == "output"
         },
         "criteria": [entry.model_dump() for entry in trial.file.criteria],
+        "plots": [entry.model_dump() for entry in trial.file.plots],
         "events": [entry.model_dump() for entry in trial.file.events],
     }
 

@@ -121,6 +121,12 @@ def _sections(run: Run) -> Iterator[Section]:
         points = [(pad.component, pad, run.passed) for pad in pads_found]
         figure = deck_figure([deck("", points)])
         yield Section("The deck from above", figure_json(figure))
+    plots = run.manifest.get("plots", [])  # manifests of before have none
+    if plots:
+        shown_first = [
+            _labelled_panel(run, p["title"], {s: s for s in p["signals"]}) for p in plots
+        ]
+        yield Section("What the trial shows", _over_time(run, [shown_first]))
     for title, chosen in (("Motion", motion), ("Velocities", speeds)):
         for components in _alike_craft(run, chosen):
             own = [p for p in chosen if p.component == components[0]]

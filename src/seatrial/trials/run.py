@@ -20,7 +20,7 @@ from ..cosim.recorder import Recorder
 from ..cosim.system import Engine, System, assemble
 from ..cosim.values import from_written, port_scalars
 from ..errors import InputError, SimulationError
-from .checks import check_criteria, check_events
+from .checks import check_criteria, check_events, check_plots
 from .endings import Endings
 from .manifest import manifest
 from .trial import Event, Trial
@@ -191,6 +191,7 @@ def _prepared(trial: Trial, engine: Engine, hooks: Hooks) -> tuple[System, dict[
         for key, factor, origin in trial.scales:
             system.scale(key, factor, origin)
         units = check_criteria(trial, system)
+        check_plots(trial, system)
         check_events(trial, system)
     except BaseException:
         system.free()

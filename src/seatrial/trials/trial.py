@@ -42,6 +42,13 @@ class EventEntry(FileModel):
     release: list[str] = Field(default_factory=list)
 
 
+class PlotEntry(FileModel):
+    """Signals of one unit that a report draws together, over time."""
+
+    title: str
+    signals: list[str] = Field(min_length=1)
+
+
 class RealTimeEntry(FileModel):
     """How a run keeps to wall time."""
 
@@ -63,6 +70,7 @@ class TrialFile(FileModel):
     record: RecordEntry = Field(default_factory=RecordEntry)
     real_time: RealTimeEntry | None = None
     criteria: list[CriterionEntry] = Field(default_factory=list)
+    plots: list[PlotEntry] = Field(default_factory=list)
     events: list[EventEntry] = Field(default_factory=list)
 
 
