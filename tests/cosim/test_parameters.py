@@ -136,7 +136,7 @@ def entry(**changes: str) -> str:
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"mark": '"guessed"'}, "mark: Input should be 'stated', 'corrected' or 'assumed', found 'guessed'"),
+        ({"mark": '"guessed"'}, "mark: Input should be 'stated', 'corrected', 'assumed' or 'identified', found 'guessed'"),
         ({"mark": '"Stated"'}, "mark: Input should be 'stated'"),
         ({"mark": ""}, "mark: this key is missing"),
         ({"source": ""}, "source: this key is missing"),
