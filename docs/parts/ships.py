@@ -33,7 +33,7 @@ def verdicts(rig: str) -> str:
 
 for _rig in (
     *("gloria-fixed", "gloria-pid", "gloria-backstepping"),
-    *("mariner", "thruster-ship", "videoray-open"),
+    *("mariner", "thruster-ship", "videoray-open", "videoray-tethered"),
 ):
     part(f"{_rig}-trials")(partial(verdicts, _rig))
 

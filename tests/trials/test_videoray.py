@@ -57,7 +57,7 @@ def test_faster_than_the_limit_it_porpoises(share, least, most, tmp_path):
     "seed", [1, *(pytest.param(seed, marks=pytest.mark.long) for seed in range(2, 21))]
 )
 def test_on_its_tether_it_holds_depth_and_heading(seed, tmp_path):
-    found = run("videoray-tethered", tmp_path / "run", engine="fmu", seed=seed)
+    found = run("videoray-tethered-taut", tmp_path / "run", engine="fmu", seed=seed)
     assert [v["passed"] for v in found.verdicts] == [True, True]
     # It was at work: through 20 m of tether, taut at the end, against a current.
     assert found.signals["tether.greatest_tension"][-1] > 1.5
