@@ -185,6 +185,29 @@ def test_ships_in_the_plane_show_no_heave(write_run):
     assert sum(t.startswith("position.") for t in titles) == 3
 
 
+def test_headings_that_go_round_are_drawn_in_one_piece(write_run):
+    ship = {"fmu": "ship", "sha256": "4" * 64, "step": 0.01, "parameters": {}}
+    names = ["ship.attitude.phi", "ship.attitude.psi", "ship.other"]
+    signals = {name: {"unit": "rad", "description": ""} for name in names}
+    folder = write_run(
+        changes={
+            "components": {"ship": ship},
+            "connections": [],
+            "signals": signals,
+            "criteria": [],
+        }
+    )
+    rows = ["time," + ",".join(names), "0,0.1,3.1,3.1", "0.1,-0.1,-3.1,nan", "0.2,0,3.0,-3.1"]
+    (folder / "signals.csv").write_text("\n".join(rows) + "\n")
+    (folder / "verdicts.json").write_text("[]")
+    page = Page(write_report(folder))
+    assert "ship.attitude.psi (turns counted), deg" in page.titles()
+    assert "ship.attitude.phi, deg" in page.titles()
+    assert "ship.other, deg" in page.titles()
+    psi = np.radians(numbers(trace(page, "psi")["y"]))
+    assert psi == pytest.approx([3.1, 2 * np.pi - 3.1, 3.0])
+
+
 def test_nothing_written_by_others_becomes_markup(write_run):
     name = f"box{EVIL}"
     folder = write_run(

@@ -18,6 +18,7 @@ from ..units import quantity
 from .accuracy_section import accuracy_section
 from .convergence import load_convergence
 from .decks import deck, pads
+from .expressions import FloatArray
 from .plots import Line, Mark, Panel, deck_figure, figure_json, time_figure, track_figure
 from .readable import from_si, number, person_scale
 from .run_folder import Run, load_run
@@ -204,7 +205,11 @@ def _panel_of_all(run: Run, port: Port, signal: str, components: Sequence[str]) 
 def _labelled_panel(run: Run, title: str, signals: Mapping[str, str]) -> Panel:
     """Return a panel of signals, all of one unit, by the label of each, with their limits."""
     factor, unit = person_scale(run.units[next(iter(signals))])
-    lines = [Line(label, run.signals[s] * factor) for s, label in signals.items()]
+    values = {label: run.signals[s] for s, label in signals.items()}
+    if run.units[next(iter(signals))] == "rad" and any(map(_goes_round, values.values())):
+        title += " (turns counted)"
+        values = {label: np.unwrap(v) for label, v in values.items()}
+    lines = [Line(label, v * factor) for label, v in values.items()]
     marks = [
         Mark(
             f"{'limit' if kind != 'band' else kind} of {verdict['name']}",
@@ -216,6 +221,11 @@ def _labelled_panel(run: Run, title: str, signals: Mapping[str, str]) -> Panel:
         if signal in signals
     ]
     return Panel(title, unit, lines, marks)
+
+
+def _goes_round(angle: FloatArray) -> bool:
+    """Return whether an angle, rad, jumps from one end of its circle to the other."""
+    return bool(np.isfinite(angle).all() and np.any(np.abs(np.diff(angle)) > np.pi))
 
 
 def _moving(run: Run, port: Port, components: Sequence[str]) -> list[str]:
