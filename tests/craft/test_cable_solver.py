@@ -1,5 +1,9 @@
 """The linear system of a chain, and the step in time."""
 
+import os
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -155,3 +159,27 @@ def test_any_stiffness_is_stable_at_10_ms(stiffness):
         x, v, _ = implicit_step(one, chain, x, v, STREAM, 0.01)
     assert np.abs(x - rest).max() < 1e-3
     assert np.abs(v).max() < 1e-4
+
+
+RUN = """
+import hashlib, sys
+from pathlib import Path
+from seatrial.trials.run import run_trial
+from seatrial.trials.trial import load_trial
+trial = load_trial("videoray-tethered-taut").changed({"stop": "40 s"}, "test")
+folder = run_trial(trial, Path(sys.argv[1]), engine="direct").folder
+print(hashlib.sha256((folder / "signals.csv").read_bytes()).hexdigest())
+"""
+
+
+def test_a_run_is_the_same_on_another_processor(tmp_path):
+    """The processor decides which kernels OpenBLAS takes; those of AVX-512 round differently."""
+    own = {name: value for name, value in os.environ.items() if name != "OPENBLAS_CORETYPE"}
+    found = [
+        subprocess.run(
+            [sys.executable, "-c", RUN, str(tmp_path / f"run{len(kernels)}")],
+            env={**own, **kernels}, check=True, capture_output=True,
+        ).stdout
+        for kernels in ({}, {"OPENBLAS_CORETYPE": "Prescott"})
+    ]  # fmt: skip
+    assert found[0] == found[1] != b""

@@ -5,44 +5,17 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.lib.stride_tricks import as_strided
-from scipy.linalg.lapack import dgbsv
 
 from ..model import Vector
 from .cable import Cable, Segments, Slopes
-
-_BAND = 5
-"""Sub- and superdiagonals of a block-tridiagonal matrix with blocks of 3 x 3."""
-_ROWS = 3 * _BAND + 1
-"""LAPACK's band storage: the matrix, with room for what pivoting fills in."""
+from .elimination import Elimination
 
 _SWITCHES = 8
 """Repetitions of a step at most, until the segments that it takes for slack are."""
 
 
-class Chain:
-    """A block-tridiagonal matrix for n nodes and three directions, in LAPACK's band storage.
-
-    ``diagonal`` (3, 3, n), ``upper`` and ``lower`` (3, 3, n - 1) are views of it: row, column,
-    node; upper[..., i] couples node i to i + 1, lower[..., i] node i + 1 to i. Solving destroys
-    the matrix: `load` it anew.
-    """
-
-    def __init__(self, nodes: int) -> None:
-        self._band = np.zeros((_ROWS, 3 * nodes), order="F")
-        self._solution = np.zeros((3 * nodes, 1), order="F")
-        self._vector = self._solution.reshape(nodes, 3).T
-
-        def blocks(first: int, count: int) -> Vector:
-            # Entry (row, column) of block i is at first + row + (_ROWS - 1) column + 3 _ROWS i.
-            flat = self._band.reshape(-1, order="F")[first:]
-            strides = tuple(8 * step for step in (1, _ROWS - 1, 3 * _ROWS))
-            return as_strided(flat, (3, 3, count), strides)
-
-        centre = 2 * _BAND
-        self.diagonal = blocks(centre, nodes)
-        self.lower = blocks(centre + 3, nodes - 1)
-        self.upper = blocks(centre - 3 + 3 * _ROWS, nodes - 1)
+class Chain(Elimination):
+    """The block-tridiagonal matrix of N segments between nodes; see `Elimination`."""
 
     def load(self, apart: Vector, drag: Vector, common: Vector) -> None:
         """Write the matrix that gives minus the forces of N segments on the nodes 1 to n.
@@ -51,7 +24,6 @@ class Chain:
         it with, per motion of its far node less its near one; ``common`` what the water resists
         with, per mean motion of the two. n is N - 1, or N with the end at the vehicle free.
         """
-        self._band.fill(0.0)
         count = self.diagonal.shape[2]
         half, quarter = 0.5 * drag, 0.25 * common
         even, odd = apart + quarter, quarter - apart
@@ -70,17 +42,6 @@ class Chain:
         matrix[here[:-1], :, here[1:], :] = self.upper.transpose(2, 0, 1)
         matrix[here[1:], :, here[:-1], :] = self.lower.transpose(2, 0, 1)
         return matrix.reshape(3 * nodes, 3 * nodes)
-
-    def solve(self, right: Vector) -> Vector:
-        """Return the solution (3, n) for the right-hand side (3, n); a view, valid until the next.
-
-        Raises ArithmeticError if the matrix is singular.
-        """
-        self._vector[:] = right
-        *_, info = dgbsv(_BAND, _BAND, self._band, self._solution, overwrite_ab=1, overwrite_b=1)
-        if info:
-            raise ArithmeticError(f"singular: pivot {info} of {self._solution.size} is zero")
-        return self._vector
 
 
 class Moved(NamedTuple):
