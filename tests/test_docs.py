@@ -35,6 +35,7 @@ DOCS = ROOT / "docs"
 FILES, COMPONENTS = DOCS / "files.md", DOCS / "components.md"
 DESIGN, SSP = DOCS / "design.md", DOCS / "ssp.md"
 IDENTIFICATION, TETHER = DOCS / "identification.md", DOCS / "tether.md"
+GUIDANCE = DOCS / "guidance.md"
 VEHICLES = sorted((DOCS / "vehicles").glob("*.md"))
 SEATRIAL = str(Path(sys.executable).with_name("seatrial"))
 
@@ -128,7 +129,7 @@ def run_commands(block: Block) -> None:
 
 @pytest.mark.parametrize(
     "page",
-    [FILES, COMPONENTS, *VEHICLES, DESIGN, SSP, IDENTIFICATION, TETHER],
+    [FILES, COMPONENTS, *VEHICLES, DESIGN, SSP, IDENTIFICATION, TETHER, GUIDANCE],
     ids=lambda page: page.stem,
 )
 def test_examples_run(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -31,7 +31,7 @@ from .errors import InputError, SimulationError, unknown
 from .plain import copied, is_c_text
 from .ports import Input, Output, Parameter, Port, Scalar, ScalarPort, lay_out
 
-__all__ = ["NS", "Component", "Input", "Noise", "Output", "Parameter", "seconds"]
+__all__ = ["NS", "Component", "Input", "Logging", "Noise", "Output", "Parameter", "seconds"]
 
 NS = 1_000_000_000
 """Nanoseconds in a second: time is counted in whole nanoseconds everywhere."""
@@ -131,6 +131,9 @@ class Component:
 
     def outputs(self, t: float) -> None:
         """Set the outputs from inputs and state at ``t``; must not change the state."""
+
+    def close(self) -> None:
+        """Let go of what is outside (sockets, ports); called at the end, maybe more than once."""
 
     # ------------------------------------------------------------------ called by whoever runs it
 
@@ -354,6 +357,17 @@ class Noise:
         kind = zlib.crc32(type(self).__name__.encode())
         bits = np.random.Philox(key=[int(self.seed), kind], counter=[0, 0, 0, index])
         return np.random.Generator(bits)
+
+
+class Logging:
+    """Mix-in for a component that keeps a log of its own, in a format of its own.
+
+    Whoever runs it says where, once there is a folder: that is after the start.
+    """
+
+    run_folder = Parameter(
+        "", "1", "folder of the run, for logs of its own; empty: it keeps none", tunable=True
+    )
 
 
 def _is_fixed(port: Port) -> bool:

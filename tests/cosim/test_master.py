@@ -199,6 +199,28 @@ def test_an_input_that_is_set_acts_at_once(bench: Bench) -> None:
     assert (value(master, "a.y"), value(master, "b.y")) == (11.0, 12.0)
 
 
+def test_a_tunable_parameter_takes_what_a_wire_brings(bench: Bench) -> None:
+    """x' = rate u with rate = 2 t, u = t, by explicit Euler: x_n = 2 h^3 times the sum of k^2."""
+    master = bench.master(
+        'ramp = { fmu = "users.py:Ramp" }\nsum = { fmu = "users.py:Sum" }',
+        '"ramp.y" = ["sum.u", { to = "sum.rate", factor = 2, convert = false }]',
+    )
+    for n in range(20):
+        squares = (n - 1) * n * (2 * n - 1) / 6
+        assert value(master, "sum.x") == pytest.approx(2e-3 * squares, abs=1e-12)
+        master.step()
+
+
+def test_a_tunable_parameter_on_a_wire_keeps_to_its_limits(bench: Bench) -> None:
+    master = bench.master(
+        'ramp = { fmu = "users.py:Ramp" }\nlimited = { fmu = "users.py:Limited" }',
+        '"ramp.y" = "limited.width"',
+    )
+    with pytest.raises(SimulationError, match=r"limited\.width is 0\.6.*at most 0\.55"):
+        for _ in range(10):
+            master.step()
+
+
 @pytest.mark.parametrize(
     ("components", "connections", "message"),
     [
@@ -207,7 +229,22 @@ def test_an_input_that_is_set_acts_at_once(bench: Bench) -> None:
         (
             'a = { fmu = "users.py:Add" }',
             '"a.u" = "a.y"',
-            "causality of a.u is input, output is needed",
+            "a.u is input, output is needed",
+        ),
+        (
+            'r = { fmu = "users.py:Ramp" }\ns = { fmu = "users.py:Scale" }',
+            '"r.y" = { to = "s.gain", convert = false }',
+            "s.gain is fixed parameter, input or tunable parameter is needed",
+        ),
+        (
+            'r = { fmu = "users.py:Ramp" }\ns = { fmu = "users.py:Sum" }',
+            '"r.y" = "s.rat"',
+            "unknown input or tunable parameter 'rat'; did you mean 'rate'",
+        ),
+        (
+            'r = { fmu = "users.py:Ramp" }\ns = { fmu = "users.py:Sum", set = { rate = 2 } }',
+            '"r.y" = { to = "s.rate", convert = false }',
+            "s.rate is fed by r.y",
         ),
         (
             'r = { fmu = "users.py:Ramp" }\ns = { fmu = "users.py:Sum" }',

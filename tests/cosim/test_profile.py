@@ -7,6 +7,7 @@ from seatrial.cosim.profile import SENSORS, load_profile
 from seatrial.devices.servo import Servo
 from seatrial.devices.thruster import Thruster
 from seatrial.errors import InputError
+from seatrial.links.mavlink.component import Mavlink
 
 GOOD = """\
 title = "A boat"
@@ -93,7 +94,7 @@ def test_values_are_si(load):
 
 def test_sections(load):
     sections = ["actuators.port", "actuators.rudder", "sensors.gnss", "sensors.heading"]
-    assert load().sections() == sections
+    assert load().sections() == [*sections, "identity"]
 
 
 def test_unknown_section_has_near_misses(load):
@@ -105,7 +106,7 @@ def test_unknown_section_has_near_misses(load):
 
 def test_a_sensorless_profile_is_fine(write):
     text = GOOD[: GOOD.index("[actuators.port]")]
-    assert load_profile("bare.toml", write("bare.toml", text).parent).sections() == []
+    assert load_profile("bare.toml", write("bare.toml", text).parent).sections() == ["identity"]
 
 
 # Each mistake, and what the message must say of it.
@@ -173,6 +174,18 @@ MISTAKES = {
     "list for a scalar": (('"200 ms"', '["200 ms"]'), ["sensors.gnss.period", "one value needed"]),
     "unit in a list": (('"-300 mm"', '"-300 ms"'), ["sensors.gnss.antenna", "'ms'"]),
     "sensor no table": (("[sensors.heading]", "[sensors]\nx = 3\n[sensors.y]"), ["sensors.x.kind"]),
+    "sensor name": (("[sensors.gnss]", '[sensors."a b"]'), ["sensors: 'a b' cannot be"]),
+    "sensor name that is taken": (("[sensors.gnss]", "[sensors.copy]"), ["'copy' cannot be"]),
+    "actuator name": (("[actuators.port]", '[actuators."a.b"]'), ["actuators", "'a.b'"]),
+    "kind no text": (('kind = "gnss"', 'kind = ["gnss"]'), ["sensors.gnss.kind", "did you mean"]),
+    "day and time": (("2026-02-05", "2026-02-05T10:00:00"), ["home.date", "2026"]),
+    "no such day": (("2026-02-05", "2026-02-30"), ["not TOML", "line 15"]),
+    "longitude": (('"-0.5 rad"', '"181 deg"'), ["home.longitude", "at most 3.14159 rad"]),
+    "not a number": (("dropout = 0.01", "dropout = nan"), ["sensors.gnss.dropout", "nan"]),
+    "zero period": (('"200 ms"', '"0 s"'), ["sensors.gnss.period", "at least 1e-06 s"]),
+    "true for a number": (("channel = 2", "channel = true"), ["actuators.rudder.channel", "True"]),
+    "title no text": (('title = "A boat"', "title = 3"), ["title", "string", "found 3"]),
+    "table twice": (("[home]", "[[home]]"), ["home", "dictionary"]),
     "not TOML": (('title = "A boat"', "title = A boat"), ["not TOML", "line 1"]),
 }
 
@@ -191,6 +204,40 @@ def test_every_mistake_is_reported(load):
     with pytest.raises(InputError) as caught:
         load('altitude = "120 cm"\ndate = 2026-02-05', 'altitude = "120 kg"\ndate = 3')
     assert len(str(caught.value).splitlines()) == 2
+
+
+def test_mistakes_of_all_kinds_are_reported_together(write):
+    text = GOOD
+    for old, new in [
+        ('kind = "compass"', 'kind = "compas"'),
+        ("[sensors.gnss]", '[sensors.other]\nkind = "gps"\n[sensors.gnss]'),
+        ("dropout = 0.01", "dropout = 2"),
+        ("system_id = 7", "system_id = 0"),
+    ]:
+        text = text.replace(old, new)
+    path = write("boat.toml", text)
+    with pytest.raises(InputError) as caught:
+        load_profile(str(path))
+    keys = [line.removeprefix(f"{path}: ") for line in str(caught.value).splitlines()]
+    assert sorted(key.partition(": ")[0] for key in keys) == [
+        "identity.system_id",
+        "sensors.gnss.dropout",
+        "sensors.heading.kind",
+        "sensors.other.kind",
+    ]
+
+
+def test_every_clash_of_channels_is_reported(load):
+    with pytest.raises(InputError) as caught:
+        load(
+            'channel = 2\nport = "rudder.pulse"\npulse_min = "1000 us"',
+            'channel = 1\nport = "port_thruster.pulse"\npulse_min = "1600 us"',
+        )
+    assert [line.split(": ")[1] for line in str(caught.value).splitlines()] == [
+        "actuators.rudder",
+        "actuators.rudder.channel",
+        "actuators.rudder.port",
+    ]
 
 
 def test_file_that_is_not_there():
@@ -214,7 +261,7 @@ def test_shipped_profile_fits_its_components(path):
         if kind == "sensors":
             classes = [SENSORS[getattr(profile.file.sensors, name).kind]]
         else:
-            classes = [Thruster, Servo]
+            classes = [Thruster, Servo] if kind == "actuators" else [Mavlink]
         for cls in classes:
             component = cls(name)
             for parameter, value in profile.parameters(section).items():

@@ -21,6 +21,7 @@ from seatrial.trials.export import export_ssp
 from seatrial.trials.trial import load_trial
 
 from ..fmi.native import changed
+from . import users
 from .ssp_files import BOATS
 
 RIG = """
@@ -133,6 +134,23 @@ def test_seeds_travel_as_parameters(tmp_path: Path) -> None:
     seeds = {name: read[name].set["seed"] for name in ("gnss", "compass", "imu")}
     assert len(set(seeds.values())) == 3
     assert all(isinstance(seed, float) and seed > 0.0 for seed in seeds.values())
+
+
+def test_a_wire_to_a_parameter_is_refused(write, tmp_path: Path) -> None:
+    write("users.py", users.CHAIN)
+    rig = write(
+        "knob.toml",
+        """step = "10 ms"
+[components]
+ramp = { fmu = "users.py:Ramp" }
+sum = { fmu = "users.py:Sum" }
+[connections]
+"ramp.y" = { to = "sum.rate", convert = false }
+""",
+    )
+    with pytest.raises(InputError, match=r"ramp\.y feeds the parameter sum\.rate, for which SSP"):
+        export_ssp(str(rig), tmp_path / "knob.ssp")
+    assert not (tmp_path / "knob.ssp").exists()
 
 
 def test_a_name_that_is_neither_trial_nor_rig_is_refused(tmp_path: Path) -> None:

@@ -60,6 +60,13 @@ class Sum(Component):
     feedthrough = {"seen": ("angle",)}
 
 
+class Limited(Component):
+    """A parameter with a limit."""
+
+    width = Parameter(0.5, "m", "width", max=0.55, tunable=True)
+    y = Output("m", "nothing")
+
+
 class Bad(Component):
     """Fails at a time, in a way."""
 

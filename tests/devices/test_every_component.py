@@ -6,18 +6,23 @@ import pytest
 
 from seatrial.component import Component
 from seatrial.control.computed_torque import ComputedTorque
+from seatrial.control.course import Course
 from seatrial.control.depth_hold import DepthHold
 from seatrial.control.dynamic_positioning import DynamicPositioning
 from seatrial.control.flat_tracking import FlatTracking
+from seatrial.control.guidance import MODES, TARGETS, Guidance
 from seatrial.control.heading_autopilot import HeadingAutopilot
 from seatrial.control.heading_hold import HeadingHold
+from seatrial.control.helm import Helm
 from seatrial.control.nominal_trajectory import NominalTrajectory
+from seatrial.control.pulse_allocation import PulseAllocation
 from seatrial.control.reference_filter import HeadingReference
 from seatrial.control.sail_control import SailControl
 from seatrial.control.sailing_guidance import SailingGuidance
 from seatrial.control.sailing_heading_backstepping import SailingHeadingBackstepping
 from seatrial.control.sailing_heading_pid import SailingHeadingPid
 from seatrial.control.sailing_navigation import SailingNavigation
+from seatrial.control.speed_hold import SpeedHold
 from seatrial.control.station_keeping import StationKeeping
 from seatrial.control.thruster_allocation import ThrusterAllocation
 from seatrial.devices.ahrs import Ahrs
@@ -77,6 +82,23 @@ CLASSES = {
     DepthHold: {"capacity": 1e12, "rate_limit": 1e9},
     HeadingHold: {"capacity": 1e12, "rate_limit": 1e9},
     ThrusterAllocation: {},
+    Guidance: {
+        "armed": True,
+        "position_valid": True,
+        "heading_valid": True,
+        "depth_valid": True,
+        "depth_control": "on",
+        "depth_tolerance": 1.5,
+        "staying": "circle",
+        "leg_wait": 0.0,
+        "acceleration": 1e9,
+        "turning_speed": 0.1,
+        "leg_radius": 4.0,
+    },
+    Course: {"count": 3.0, "waypoint_1": [1.0, 2.0, 3.0]},
+    SpeedHold: {"capacity": 1e12},
+    Helm: {"sway_limit": 3.0, "heave_limit": 4.0},
+    PulseAllocation: {},
     StepDisturbance: {"step_size": 1.0, "begin_time": 0.2, "end_time": 0.7},
     StationKeeping: {
         "enabled": True,
@@ -86,14 +108,19 @@ CLASSES = {
         "moment_limit": 100.0,
     },
 }
+TEXTS = {"mode": MODES, "target_kind": TARGETS}
 every = pytest.mark.parametrize("cls", CLASSES, ids=lambda cls: cls.__name__)
 
 
 def some_value(port, random):
     """Return a value that a port could have."""
+    if port.type is str:
+        return random.choice(TEXTS[port.name])
     if port.type is bool:
-        return random.random() < 0.7
-    if port.unit == "s":
+        values = [random.random() < 0.7 for _ in range(port.size)]
+    elif port.type is int:
+        values = [random.randint(0, 3) for _ in range(port.size)]
+    elif port.unit == "s":
         values = [random.uniform(1.1e-3, 1.9e-3) for _ in range(port.size)]
     else:
         values = [random.uniform(-3, 3) for _ in range(port.size)]
@@ -175,7 +202,7 @@ def ideal(cls):
 @every
 def test_only_declared_inputs_act_at_once(cls):
     found: dict[str, set[str]] = {}
-    for seed in range(100):
+    for seed in range(400):
         component: Component = started(cls, **ideal(cls), **some_inputs_but(cls, seed))
         generator = random.Random(1000 + seed)
         before = {name: component.get(name) for name in names(cls, "output")}

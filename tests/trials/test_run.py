@@ -184,6 +184,18 @@ release = ["twin.angle"]
     assert at(1.0, "boat.x") == pytest.approx(0.01 * (20 + 80 * 3), abs=0.06)
 
 
+def test_the_manifest_says_which_wire_feeds_a_parameter(bench, write, tmp_path: Path) -> None:
+    text = bench()
+    write("rig.toml", RIG + '[connections]\n"boat.angle" = "twin.trim"\n')
+    folder = run_trial(load_trial(text), tmp_path / "run", engine="direct").folder
+    manifest = json.loads((folder / "manifest.json").read_text())
+    trim = {name: manifest["components"][name]["parameters"]["trim"] for name in ("boat", "twin")}
+    assert (trim["boat"]["value"], trim["boat"]["from"]) == (1.0, "start value of the FMU")
+    assert (trim["twin"]["value"], trim["twin"]["from"]) == (None, "fed by boat.angle")
+    assert manifest["connections"] == [["boat.angle", "twin.trim"]]
+    assert "fed by boat.angle" in write_report(folder).read_text("utf-8")
+
+
 def test_what_is_recorded_can_be_chosen(bench, tmp_path: Path) -> None:
     record = '[record]\nsignals = ["boat.*", "twin.label"]\nevery = "50 ms"\n'
     run_trial(load_trial(bench(TRIAL + record)), tmp_path / "run", engine="direct")

@@ -18,6 +18,7 @@ from ..cosim.files import available
 from ..cosim.system import Engine
 from ..errors import InputError, SeatrialError, SimulationError
 from ..fmi.source import shipped_sources
+from ..links.hardware import allow as allow_hardware
 from ..trials.campaign import Campaign, Case, load_campaign, run_campaign
 from ..trials.campaign_report import write_campaign_report
 from ..trials.compare import compare as compare_runs
@@ -28,8 +29,10 @@ from ..trials.trial import Trial, load_trial
 from .convergence import print_convergence
 from .design import design
 from .doctor import doctor
+from .export import export
 from .fmu import fmu_app
 from .identify import identify
+from .profile import profile_app
 from .show import Watch, console, print_case, print_listing, print_notes, print_verdicts
 from .ssp import ssp_app
 
@@ -42,6 +45,7 @@ app = typer.Typer(
     help="Sea trials before the water: co-simulated trials of marine vehicles.",
 )
 app.add_typer(fmu_app, name="fmu", help="List, build, check and describe FMUs.")
+app.add_typer(profile_app, name="profile", help="Check and describe profiles of electronics.")
 app.add_typer(ssp_app, name="ssp", help="Export and check SSP packages.")
 
 
@@ -122,9 +126,14 @@ def run(
         str | None,
         typer.Option(metavar="POLICY", help="In real time: 'catch-up', 'slip' or 'abort'."),
     ] = None,
+    hardware: Annotated[
+        bool, typer.Option("--hardware", help="Allow real ports; what is behind them may move.")
+    ] = False,
 ) -> None:
     """Run a trial, or a campaign of trials, and say what holds."""
     chosen = _engine(engine)
+    if hardware:
+        allow_hardware()
     changes = dict(_setting(text) for text in settings or [])
     pace = {"factor": real_time, "overrun": overrun}
     pace = {key: value for key, value in pace.items() if value is not None}
@@ -244,6 +253,7 @@ def compare(
 
 app.command("design")(design)
 app.command("doctor")(doctor)
+app.command("export")(export)
 app.command("identify")(identify)
 
 

@@ -9,6 +9,8 @@ from typing import ClassVar
 from ..component import Input, Output, Parameter
 from ..errors import InputError
 from ..sampled import Sampled
+from .estimates import is_lost
+from .twin_thrusters import TwinThrusters
 
 IDLE, HOLD, RETURN, HEADING_ONLY = range(4)
 """Values of the output ``mode``."""
@@ -30,7 +32,7 @@ class _Decision:
     moment: float
 
 
-class StationKeeping(Sampled):
+class StationKeeping(Sampled, TwinThrusters):
     """Autopilot holding position and heading with two fixed thrusters, port and starboard.
 
     The pair makes a surge force X and a yaw moment N; no sway force. Hence two modes:
@@ -56,13 +58,7 @@ class StationKeeping(Sampled):
     off. X_I is kept in north and east, so that what was learnt of wind and current stays true
     when the craft turns.
 
-    **Allocation**: T_port = X / 2 + N / (2 d), T_starboard = X / 2 - N / (2 d), d =
-    ``half_beam``; port ahead turns to starboard (N > 0). Thrust to pulse by
-
-        |pulse - pulse_neutral| = dead_band + (span - dead_band) (|T| / T_max)^0.75
-
-    span and T_max being those of the side (ahead: pulse_max, ``thrust_ahead``). With the
-    defaults this inverts the T200's 16 V table within 3 % of full thrust (largest error 1.52 N).
+    Allocation and thrust to pulse as in `TwinThrusters`.
 
     **Safety**: starts idle; ``enabled`` false gives neutral pulses and clears the integrals, as
     does a heading not valid for longer than ``timeout``. A position not valid for that long
@@ -89,13 +85,6 @@ class StationKeeping(Sampled):
     yaw_damping = Parameter(12.0, "N.m.s/rad", "N against yaw rate", tunable=True)
     surge_limit = Parameter(30.0, "N", "largest surge force", min=0.0, tunable=True)
     moment_limit = Parameter(12.0, "N.m", "largest yaw moment", min=0.0, tunable=True)
-    half_beam = Parameter(0.4, "m", "thrusters from the centre line", min=1e-3)
-    thrust_ahead = Parameter(51.4, "N", "thrust of one thruster at pulse_max", min=1e-3)
-    thrust_astern = Parameter(39.9, "N", "thrust astern of one thruster at pulse_min", min=1e-3)
-    pulse_min = Parameter(1.1e-3, "s", "pulse of full thrust astern", min=0.0)
-    pulse_neutral = Parameter(1.5e-3, "s", "pulse of no thrust", min=0.0)
-    pulse_max = Parameter(1.9e-3, "s", "pulse of full thrust ahead", min=0.0)
-    dead_band = Parameter(26e-6, "s", "distance from neutral at which thrust begins", min=0.0)
     timeout = Parameter(1.0, "s", "longest time without valid heading or position", min=0.0)
 
     enabled = Input("1", "whether to act (armed)", type=bool)
@@ -108,8 +97,6 @@ class StationKeeping(Sampled):
     heading_valid = Input("1", "whether the heading is valid", type=bool, start=True)
     yaw_rate = Input("rad/s", "yaw rate, positive to starboard")
 
-    pulse_port = Output("s", "pulse to the port thruster", start=1.5e-3)
-    pulse_starboard = Output("s", "pulse to the starboard thruster", start=1.5e-3)
     surge_force = Output("N", "surge force asked of the thrusters, positive ahead")
     yaw_moment = Output("N.m", "yaw moment asked of the thrusters, positive to starboard")
     distance = Output("m", "horizontal distance from the station")
@@ -144,11 +131,7 @@ class StationKeeping(Sampled):
                 f"{self.name}: capture_radius ({self.capture_radius!r} m) must be less than "
                 f"hold_radius ({self.hold_radius!r} m)"
             )
-        if not self.pulse_min < self.pulse_neutral < self.pulse_max:
-            raise InputError(
-                f"{self.name}: pulse_min, pulse_neutral and pulse_max must rise, got "
-                f"{self.pulse_min!r}, {self.pulse_neutral!r}, {self.pulse_max!r} s"
-            )
+        self._check_pulses()
         self._mode, self._backwards = IDLE, False
         self._integral_ne, self._integral_yaw = [0.0, 0.0], 0.0
         # Nothing has been heard yet: lost until first valid.
@@ -192,7 +175,7 @@ class StationKeeping(Sampled):
             ahead = _along(heading, error_ne)
             surge_error = alignment * min(max(ahead, -self.reach), self.reach)
             surge = self._wanted_surge(surge_error)
-        given = self._limited(surge, moment)
+        given = self._possible(surge, moment, self.surge_limit, self.moment_limit)
         return _Decision(mode, backwards, surge_error, heading_error, surge, moment, *given)
 
     def _next_mode(self) -> int:
@@ -204,9 +187,7 @@ class StationKeeping(Sampled):
         return RETURN if self._distance() > radius else HOLD
 
     def _lost(self, valid: bool, missed: float) -> bool:
-        """Say if a signal, not valid at so many instants before this one, counts as lost."""
-        since = (missed + 1.0) * self.period
-        return not valid and since > self.timeout * (1.0 + 1e-9)
+        return is_lost(valid, missed, self.period, self.timeout)
 
     def _error_ne(self) -> list[float]:
         return [s - p for s, p in zip(self.station, self.position_n[:2], strict=True)]
@@ -229,16 +210,6 @@ class StationKeeping(Sampled):
         )
         return wanted
 
-    def _limited(self, surge: float, moment: float) -> tuple[float, float]:
-        """Return what the limits and the thrusters leave of a demand, moment first."""
-        ahead, astern = self.thrust_ahead, self.thrust_astern
-        largest = min(self.moment_limit, 2.0 * self.half_beam * min(ahead, astern))
-        moment = min(max(moment, -largest), largest)
-        used = abs(moment) / (2.0 * self.half_beam)
-        most = min(self.surge_limit, 2.0 * (ahead - used))
-        least = -min(self.surge_limit, 2.0 * (astern - used))
-        return min(max(surge, least), most), moment
-
     def _integrate(self, decision: _Decision) -> None:
         if decision.mode == IDLE:
             self._integral_ne, self._integral_yaw = [0.0, 0.0], 0.0
@@ -255,25 +226,9 @@ class StationKeeping(Sampled):
             self._integral_ne[0] += self.period * rate * north
             self._integral_ne[1] += self.period * rate * east
 
-    # ------------------------------------------------------------------ allocation
-
     def _command(self, surge: float, moment: float) -> None:
-        turning = moment / (2.0 * self.half_beam)
         self.surge_force, self.yaw_moment = surge, moment
-        self.pulse_port = self._pulse(0.5 * surge + turning)
-        self.pulse_starboard = self._pulse(0.5 * surge - turning)
-
-    def _pulse(self, thrust: float) -> float:
-        """Return the pulse (s) that gives a thrust (N, positive ahead)."""
-        neutral: float = self.pulse_neutral
-        if thrust == 0.0:
-            return neutral
-        end = self.pulse_max if thrust > 0.0 else self.pulse_min
-        full = self.thrust_ahead if thrust > 0.0 else self.thrust_astern
-        share = min(abs(thrust) / full, 1.0) ** 0.75
-        span = abs(end - neutral)
-        away = self.dead_band + (span - self.dead_band) * share
-        return neutral + math.copysign(away, thrust)
+        self._drive(surge, moment)
 
 
 def _along(heading: float, ne: list[float]) -> float:

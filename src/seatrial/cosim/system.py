@@ -118,6 +118,10 @@ class System:
         part = self.parts[name]
         return part, settable(part.instance.variables, port, f"{origin}: {name}")
 
+    def feeders(self, component: str) -> dict[str, str]:
+        """Return which outputs feed the inputs and parameters of a component, by their names."""
+        return {w.target[1]: ".".join(w.source) for w in self.wires if w.target[0] == component}
+
     def unconnected_inputs(self) -> list[str]:
         """Return the inputs that no wire reaches and nobody set; whole ports by their name."""
         wired = {wire.target for wire in self.wires}
@@ -283,8 +287,9 @@ def _give_parameters(
 def _give_profile(system: System, part: Part, section: str, profile: Profile, where: str) -> None:
     variables = part.instance.variables
     values = profile.parameters(section)
-    if section.startswith("actuators."):
-        # A channel says what its driver and what its actuator need: each takes its share.
+    if not section.startswith("sensors."):
+        # A channel says what its driver and what its actuator need, the identity what several
+        # links need: each takes its share.
         values = {port: value for port, value in values.items() if port in variables}
         if not values:
             raise InputError(f"{where}: nothing in {section} is a parameter of {part.fmu}")
@@ -312,8 +317,8 @@ def _wires(system: System) -> list[Wire]:
     for written_source, wire in system.rig.connections():
         written_target = wire.to
         where = f'{system.rig.read_from.path}: connections."{written_source}"'
-        sources = _end(system, written_source, "output", where)
-        targets = _end(system, written_target, "input", where)
+        sources = _end(system, written_source, ("output",), where)
+        targets = _end(system, written_target, ("input", "tunable parameter"), where)
         if len(sources) != len(targets):
             raise InputError(
                 f"{where}: {written_source} has {len(sources)} scalars, "
@@ -336,21 +341,27 @@ def _wires(system: System) -> list[Wire]:
     return wires
 
 
-def _end(system: System, written: str, causality: str, where: str) -> list[Variable]:
+def _end(system: System, written: str, wanted: tuple[str, ...], where: str) -> list[Variable]:
+    """Return the scalars at one end of a wire, which must be of a wanted kind."""
     name, _, port = written.partition(".")
     if name not in system.parts:
         raise InputError(f"{where}: {unknown('component', name, system.parts)}")
     variables = system.parts[name].instance.variables
-    scalars = port_scalars(variables, port)
+    scalars, needed = port_scalars(variables, port), " or ".join(wanted)
     if not scalars:
-        wanted = Variables({n: v for n, v in variables.items() if v.causality == causality})
-        raise InputError(f"{where}: {name}: {unknown(causality, port, port_names(wanted))}")
+        fitting = Variables({n: v for n, v in variables.items() if _kind(v) in wanted})
+        raise InputError(f"{where}: {name}: {unknown(needed, port, port_names(fitting))}")
     for variable in scalars:
-        if variable.causality != causality:
-            raise InputError(
-                f"{where}: causality of {written} is {variable.causality}, {causality} is needed"
-            )
+        if _kind(variable) not in wanted:
+            raise InputError(f"{where}: {written} is {_kind(variable)}, {needed} is needed")
     return scalars
+
+
+def _kind(variable: Variable) -> str:
+    """Return a variable's causality; of a parameter, its variability too."""
+    if variable.causality != "parameter":
+        return variable.causality
+    return f"{variable.variability} parameter"
 
 
 def _transformed(factor: float, offset: float, wire: WireEntry) -> tuple[float, float]:

@@ -58,10 +58,12 @@ class DirectInstance(ByType):
         """Release a state: nothing to do in process."""
 
     def terminate(self) -> None:
-        """End the run: nothing to do in process."""
+        """End the run."""
+        self._call("close", self.component.close)
 
     def free(self) -> None:
-        """Release everything: nothing to do in process."""
+        """Release everything."""
+        self._call("close", self.component.close)
 
     def _reader(self, variables: list[Variable], kind: Any) -> Reader:
         component, references = self.component, [v.reference for v in variables]

@@ -8,6 +8,7 @@ host still holds it. So nothing raises here: errors are logged with their traceb
 from __future__ import annotations
 
 import _ctypes
+import contextlib
 import ctypes
 import importlib
 import json
@@ -82,6 +83,12 @@ class Slave(Fmi2Slave):  # type: ignore[misc]
 
     def terminate(self) -> None:
         """End the run."""
+        self._guarded(self.component.close)
+
+    def __del__(self) -> None:
+        """Let go of what is outside; a run that failed is freed without being terminated."""
+        with contextlib.suppress(BaseException):
+            self.component.close()
 
     def get_real(self, vrs: list[int]) -> list[float]:
         """Return Real variables; NaN after an error, which the next step reports."""

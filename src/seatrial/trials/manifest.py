@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.metadata
 import platform
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -36,7 +37,7 @@ def manifest(trial: Trial, system: System, engine: Engine) -> dict[str, Any]:
         "step": seconds(trial.rig.step_ns),
         "record": trial.file.record.model_dump(),
         "components": {
-            name: _component(part, seconds(part.every * trial.rig.step_ns))
+            name: _component(part, system.feeders(name), seconds(part.every * trial.rig.step_ns))
             for name, part in system.parts.items()
         },
         "connections": _connections(trial),
@@ -75,17 +76,20 @@ def _without_folder(origin: str) -> str:
     return f"{Path(file).name}{colon}{rest}" if colon and Path(file).is_absolute() else origin
 
 
-def _component(part: Part, step: float) -> dict[str, Any]:
+def _component(part: Part, feeders: Mapping[str, str], step: float) -> dict[str, Any]:
     parameters = {}
     for variable in part.instance.variables.values():
         given = part.given.get(variable.name)
         if variable.causality != "parameter" and given is None:
             continue
         value = variable.start if given is None else given.value
+        origin = "start value of the FMU" if given is None else _without_folder(given.origin)
+        if variable.name in feeders:
+            value, origin = None, f"fed by {feeders[variable.name]}"
         parameters[variable.name] = {
             "value": None if value is None else storable(value),
             "unit": variable.unit,
-            "from": "start value of the FMU" if given is None else _without_folder(given.origin),
+            "from": origin,
             "source": "" if given is None else given.source,
             "mark": "" if given is None else given.mark,
         }

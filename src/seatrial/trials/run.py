@@ -13,7 +13,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from ..component import seconds
+from ..component import Logging, seconds
 from ..cosim.clock import Pacer
 from ..cosim.master import Master
 from ..cosim.recorder import Recorder
@@ -88,6 +88,7 @@ def run_trial(
             master = _started(trial, system, wall)
         _refuse_if_stopped(hooks)
         out = claim_folder(out, trial.name, "manifest.json")
+        _tell_folder(master, out)
         recorder = Recorder(
             out / "signals.csv",
             master,
@@ -105,6 +106,15 @@ def run_trial(
     if pacer is not None:
         notes.append(pacer.note())
     return Result(out, status, error, verdicts, notes, wall)
+
+
+def _tell_folder(master: Master, out: Path) -> None:
+    """Say where the run's folder is to the components that keep logs and were told nothing."""
+    for name, part in master.system.parts.items():
+        port = part.instance.variables.get("run_folder")
+        keeps_logs = port is not None and port.description == Logging.run_folder.description
+        if keeps_logs and "run_folder" not in part.given:
+            master.set(name, ["run_folder"], [str(out.resolve())])
 
 
 def _loose_inputs(trial: Trial, system: System) -> list[str]:

@@ -77,7 +77,7 @@ def load_run(folder: Path | str) -> Run:
     signals: dict[str, Any] = {}
     truncated = False
     if (folder / SIGNALS).is_file():
-        time, signals, truncated = _read_signals(folder / SIGNALS)
+        time, signals, truncated = _read_signals(folder / SIGNALS, _texts(manifest))
     elif manifest["status"] in ("complete", "ended", "stopped"):
         raise InputError(f"{folder} has no {SIGNALS}")
     if truncated:
@@ -97,6 +97,12 @@ def load_run(folder: Path | str) -> Run:
 
 def _optional(path: Path, kind: type) -> Any:
     return read_json(path, kind) if path.is_file() else kind()
+
+
+def _texts(manifest: dict[str, Any]) -> set[str]:
+    """Return the signals that hold text, even if each of them looks like a number."""
+    signals = manifest["signals"].items()
+    return {name for name, signal in signals if signal.get("type") in ("String", "Binary")}
 
 
 def _units(folder: Path, signals: Iterable[str], manifest: dict[str, Any]) -> dict[str, str]:
@@ -135,10 +141,10 @@ def read_json(path: Path, kind: type) -> Any:
     return content
 
 
-def _read_signals(path: Path) -> tuple[FloatArray, dict[str, Any], bool]:
+def _read_signals(path: Path, texts: set[str]) -> tuple[FloatArray, dict[str, Any], bool]:
     """Return times, columns by name, and whether the last line was cut.
 
-    A column is numbers if every cell is one; otherwise it is text.
+    A column is numbers if every cell is one, unless it is one of ``texts``.
     """
     with path.open(encoding="utf-8", errors="replace", newline="") as file:
         header = next(csv.reader(file), [])
@@ -149,7 +155,7 @@ def _read_signals(path: Path) -> tuple[FloatArray, dict[str, Any], bool]:
 
     rows = _Rows(path, len(header))
     chunks: list[list[FloatArray]] = [[np.empty(0)] for _ in header]
-    text: dict[int, list[str]] = {}
+    text: dict[int, list[str]] = {i: [] for i, name in enumerate(header) if name in texts}
     iterator = iter(rows)
     while chunk := list(islice(iterator, _CHUNK_ROWS)):
         for index, cells in enumerate(zip(*chunk, strict=True)):

@@ -44,6 +44,7 @@ def write_ssp(system: System, experiment: Experiment, path: Path) -> list[str]:
     its start value too. The same input gives the same bytes. Raises InputError for what SSP
     cannot hold; nothing is written then.
     """
+    _refuse_fed_parameters(system)
     notes: list[str] = []
     files: dict[str, bytes] = {}
     for part in system.parts.values():
@@ -55,6 +56,16 @@ def write_ssp(system: System, experiment: Experiment, path: Path) -> list[str]:
     path.parent.mkdir(parents=True, exist_ok=True)
     write_whole(path, zipped(files))
     return [*notes, *_unsaid(system)]
+
+
+def _refuse_fed_parameters(system: System) -> None:
+    for wire in system.wires:
+        target = system.parts[wire.target[0]].instance.variables[wire.target[1]]
+        if target.causality == "parameter":
+            raise InputError(
+                f"{'.'.join(wire.source)} feeds the parameter {'.'.join(wire.target)}, for which "
+                "SSP has no connection"
+            )
 
 
 def _fmu(system: System, part: Part, values: Mapping[str, Value], notes: list[str]) -> bytes:

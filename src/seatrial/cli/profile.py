@@ -1,0 +1,105 @@
+"""``seatrial profile``: check and describe profiles of a vehicle's electronics."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Annotated, Any
+
+import typer
+from rich.markup import escape
+
+from ..component import Component
+from ..cosim.profile import SENSORS, Actuator, Home, Identity, Profile, load_profile
+from ..ports import Parameter
+from ..trials.readable import from_si, number, person_unit
+from .show import console
+
+profile_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
+
+Rows = Sequence[tuple[str, ...]]
+Named = Annotated[str, typer.Argument(metavar="PROFILE", help="A profile: a name or a .toml file.")]
+
+
+@profile_app.command()
+def check(name: Named) -> None:
+    """Check a profile; every mistake is told with file and key (status 2)."""
+    profile = load_profile(name)
+    console.print(f"{escape(str(profile.read_from.path))}: no problem found", soft_wrap=True)
+
+
+@profile_app.command()
+def describe(name: Named) -> None:
+    """Show a profile: identity, home, actuators, sensors with all their values."""
+    profile = load_profile(name)
+    console.print(f"[bold]{escape(profile.file.title)}[/bold]", soft_wrap=True)
+    console.print(escape(str(profile.read_from.path)), soft_wrap=True)
+    _print("identity", _identity(profile.file.identity))
+    _print("home", _home(profile.file.home), profile.file.home.source)
+    if profile.file.actuators:
+        _print("actuators", _actuators(profile.file.actuators))
+    for section in profile.sections():
+        kind, _, sensor = section.partition(".")
+        if kind == "sensors":
+            entry = getattr(profile.file.sensors, sensor)
+            rows = _sensor(SENSORS[entry.kind], profile, section)
+            _print(f"{section}: {entry.kind}", rows, entry.source)
+
+
+def _print(title: str, rows: Rows, source: str = "") -> None:
+    """Print columns that are never cut off: a key could not be copied then."""
+    console.print(f"\n[bold]{escape(title)}[/bold]")
+    if source:
+        console.print(f"  source: {escape(source)}", soft_wrap=True)
+    widths = [max(len(cell) for cell in column) for column in zip(*rows, strict=True)]
+    for row in rows:
+        line = "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True))
+        console.print(f"  {escape(line.rstrip())}", soft_wrap=True)
+
+
+def _identity(identity: Identity) -> Rows:
+    rows = []
+    for key, field in Identity.model_fields.items():
+        value = getattr(identity, key)
+        shown = f"0x{value:X}" if key == "uid" else str(value)
+        rows.append((key, shown, field.description or ""))
+    return rows
+
+
+def _home(home: Home) -> Rows:
+    return [
+        ("latitude", f"{math.degrees(home.latitude):.7f} deg"),
+        ("longitude", f"{math.degrees(home.longitude):.7f} deg"),
+        ("altitude", f"{number(home.altitude)} m"),
+        ("date", home.date.isoformat()),
+    ]
+
+
+def _actuators(actuators: dict[str, Actuator]) -> Rows:
+    rows = [("channel", "name", "port", "pulses, us", "reversed", "source")]
+    for name, entry in sorted(actuators.items(), key=lambda item: item[1].channel):
+        pulses = (entry.pulse_min, entry.pulse_neutral, entry.pulse_max)
+        shown = " ".join(number(from_si(pulse, "us")) for pulse in pulses)
+        turned = "yes" if entry.reversed else "no"
+        rows.append((str(entry.channel), name, entry.port, shown, turned, entry.source))
+    return rows
+
+
+def _sensor(component: type[Component], profile: Profile, section: str) -> Rows:
+    """Return a sensor's parameters: those of the file, and its component's where it has none."""
+    given = profile.parameters(section)
+    rows = [("key", "value", "unit", "from", "meaning")]
+    for key, port in component.ports.items():
+        if isinstance(port, Parameter) and key != "seed":
+            unit = person_unit(port.unit_of(0))
+            value = _shown(given.get(key, port.start), unit)
+            origin = "profile" if key in given else "default"
+            rows.append((key, value, "" if unit == "1" else unit, origin, port.description))
+    return rows
+
+
+def _shown(value: Any, unit: str) -> str:
+    """Return one value, or those of the axes if they differ, in ``unit``."""
+    values = value if isinstance(value, list) else [value]
+    texts = [number(from_si(v, unit)) for v in values]
+    return texts[0] if len(set(texts)) == 1 else f"({', '.join(texts)})"

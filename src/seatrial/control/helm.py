@@ -1,0 +1,59 @@
+"""Who has the helm: the autopilots, a person, or nobody."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from ..component import Component, Input, Output, Parameter
+
+
+class Helm(Component):
+    """Passes on the forces of the autopilots that are engaged, and of the sticks elsewhere.
+
+        X = surge_held        engaged.speed      else direct.surge surge_limit
+        N = yaw_moment_held   engaged.heading    else direct.yaw moment_limit
+        Z = heave_held        engaged.depth      else direct.heave heave_limit
+        Y = direct.sway sway_limit
+
+    ``engaged`` and ``direct`` are those of `Guidance`: of a craft that is not armed nothing is
+    engaged and ``direct`` is 0, so that nothing is asked of the thrusters. Sticks beyond +-1
+    count as +-1. Body axes; X ahead, Y to starboard, Z down, N; N to starboard positive, N.m.
+    Static.
+
+    Defaults: the Hydrone catamaran, which has no sway and no heave.
+    """
+
+    surge_limit = Parameter(30.0, "N", "surge force of a full stick", min=0.0)
+    sway_limit = Parameter(0.0, "N", "sway force of a full stick", min=0.0)
+    moment_limit = Parameter(12.0, "N.m", "yaw moment of a full stick", min=0.0)
+    heave_limit = Parameter(0.0, "N", "heave force of a full stick", min=0.0)
+
+    engaged = Input("1", "which autopilots act", type=bool, axes=("speed", "heading", "depth"))
+    direct = Input("1", "sticks, -1 to 1", axes=("surge", "sway", "yaw", "heave"))
+    surge_held = Input("N", "surge force of the autopilot, positive ahead")
+    yaw_moment_held = Input("N.m", "yaw moment of the autopilot, positive to starboard")
+    heave_held = Input("N", "heave force of the autopilot, positive down")
+
+    surge = Output("N", "surge force wanted, positive ahead")
+    sway = Output("N", "sway force wanted, positive to starboard")
+    yaw_moment = Output("N.m", "yaw moment wanted, positive to starboard")
+    heave = Output("N", "heave force wanted, positive down")
+
+    feedthrough: ClassVar = {
+        "surge": ("engaged", "direct", "surge_held"),
+        "sway": ("direct",),
+        "yaw_moment": ("engaged", "direct", "yaw_moment_held"),
+        "heave": ("engaged", "direct", "heave_held"),
+    }
+
+    def outputs(self, t: float) -> None:
+        """Choose."""
+        limits = self.surge_limit, self.sway_limit, self.moment_limit, self.heave_limit
+        surge, self.sway, moment, heave = (
+            min(max(stick, -1.0), 1.0) * most
+            for stick, most in zip(self.direct, limits, strict=True)
+        )
+        speed, heading, depth = self.engaged
+        self.surge = self.surge_held if speed else surge
+        self.yaw_moment = self.yaw_moment_held if heading else moment
+        self.heave = self.heave_held if depth else heave

@@ -1,0 +1,390 @@
+"""The MAVLink link as a component: estimates in, what ground stations want out."""
+
+from __future__ import annotations
+
+import datetime
+import re
+from pathlib import Path
+
+from pymavlink.dialects.v20 import all as mavlink
+
+from ...component import Input, Logging, Output, Parameter
+from ...craft.kinematics import to_body, to_ned
+from ...errors import InputError
+from ...sampled import Sampled
+from .endpoint import Endpoint
+from .endpoint_url import open_endpoint
+from .failsafe import ACTIONS
+from .geodesy import Origin
+from .modes import MANUAL_MODES, flavour
+from .node import Node
+from .parameter_file import ParameterFile
+from .parameter_table import ParameterTable
+from .parameters import vehicle_parameters
+from .parameters_tunable import MOST_TUNABLES, tunable_parameters
+from .radio import Radio
+from .scaling import STANDARD_GRAVITY
+from .settings import Settings
+from .signing import Signing, read_key
+from .state_file import StateFile
+from .tlog import TelemetryLog
+from .vehicle import CHANNELS, STICKS_RELEASED, Estimates, Identity, Target, Truth, Vehicle
+
+VEHICLE_TYPES = {
+    "ground_rover": mavlink.MAV_TYPE_GROUND_ROVER,
+    "surface_boat": mavlink.MAV_TYPE_SURFACE_BOAT,
+    "submarine": mavlink.MAV_TYPE_SUBMARINE,
+}
+
+_NED = ("north", "east", "down")
+_EULER = ("phi", "theta", "psi")
+_NAMED = tuple(f"n{number}" for number in range(1, 9))
+_VERSION = re.compile(r"\d{1,3}\.\d{1,3}\.\d{1,3}(-(dev|alpha|beta|rc))?")
+_NAME = re.compile(r"[!-~]{1,10}")
+
+
+class Mavlink(Logging, Sampled):
+    """A vehicle that ground stations see, command and guide over MAVLink 2.
+
+    Every ``period`` it takes in what has arrived, and sends what is due; what it was told is on
+    the outputs from the instant after. Times and rates are simulated; the wall clock serves
+    sockets and signatures alone. So a run that nobody listens to is the same each time.
+
+    **Links**: URLs separated by spaces, as `endpoint_url` has them. Peers that are not there are
+    no error; a malformed URL, or a port that cannot be had, is. Streams and their rates are
+    those of `service_streams` and of each link.
+
+    **Kinds of vehicle**: ``ardupilotmega`` has the modes of ArduPilot's Rover (boats) and Sub
+    (submarines), ``px4`` those of PX4. It starts disarmed, in the mode hold.
+
+    **Outputs** are named after the inputs of `Guidance`. ``manual`` is 0 unless the vehicle is
+    armed in a manual mode. ``target_valid`` is false without a set-point: it then stays.
+
+    **Missions** are uploaded, or read from ``plan_folder`` (`Plans`), and carried out leg by leg
+    in the mode auto: see `MissionRunner`. The vehicle must be inside its fence (`FenceService`),
+    and returns to the nearest of home and the rally points.
+
+    **Parameters** are those that stations look for in vehicles of this kind, and the rig's
+    ``tunables``, which are on the output ``tunable`` in their order, for wires to other
+    components' tunable parameters. What is set is kept in ``parameter_file``.
+
+    **Left alone** it carries out ``failsafe`` if it is armed: when all ground stations were
+    silent for ``station_timeout``, and in a manual mode when the sticks were for
+    ``stick_timeout``. Set-points count for ``target_timeout``. See `Failsafe`.
+
+    **Signatures**: with ``signing_key_file``, whose first line is the pass phrase, unsigned and
+    repeated frames are refused, but for presence; ``state_file`` keeps the newest timestamp.
+    Both are relative to the current folder. A key never comes over a link.
+
+    Positions in {n} from the origin (``latitude``, ``longitude``, ``altitude``), depth being
+    negative altitude (`Origin`); attitude ZYX; angles rad. Truth goes out as SIM_STATE if
+    ``truth`` is on.
+
+    Not here: radio channels with losses and delays, MAVLink FTP, cameras, logs on
+    board. It cannot be rolled back: what was said has been said.
+
+    It keeps a log of all frames, ``NAME.tlog``, in ``run_folder`` (`TelemetryLog`).
+
+    Raises InputError at the start for a link, file, date, version, name or failsafe that cannot
+    be.
+    """
+
+    rolls_back = False
+    transient = Sampled.transient | {"_node", "_radio", "_log", "_parameters"}
+
+    period = Parameter(0.01, "s", "sample period", min=1e-6)
+    links = Parameter("udpout:127.0.0.1:14550", "1", "URLs of the links, separated by spaces")
+    system_id = Parameter(1.0, "1", "MAVLink system", min=1.0, max=255.0)
+    component_id = Parameter(1.0, "1", "MAVLink component", min=1.0, max=255.0)
+    vehicle_type = Parameter(
+        "surface_boat", "1", "MAV_TYPE, in lower case", choices=tuple(VEHICLE_TYPES)
+    )
+    autopilot_type = Parameter(
+        "ardupilotmega", "1", "MAV_AUTOPILOT, in lower case", choices=("ardupilotmega", "px4")
+    )
+    firmware_version = Parameter("0.1.0-dev", "1", "version that it reports")
+    uid = Parameter("1", "1", "serial number that it reports, a whole number up to 2^64 - 1")
+    latitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-1.5707964, max=1.5707964)
+    longitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-3.1415927, max=3.1415927)
+    altitude = Parameter(0.0, "m", "of the origin")
+    date = Parameter("2026-01-01", "1", "day on which the run starts, at midnight UTC")
+    failsafe = Parameter("hold", "1", "what it does when left alone", choices=ACTIONS)
+    station_timeout = Parameter(5.0, "s", "silence after which a ground station is lost", min=0.0)
+    stick_timeout = Parameter(3.0, "s", "time for which sticks count", min=0.0)
+    target_timeout = Parameter(3.0, "s", "time for which a set-point counts", min=0.0)
+    full_speed = Parameter(1.0, "m/s", "speed of full thrust in an attitude set-point", min=0.0)
+    truth = Parameter("off", "1", "whether the truth is sent", choices=("off", "on"))
+    waypoint_radius = Parameter(3.0, "m", "distance at which a waypoint is reached", min=0.0)
+    cruise_speed = Parameter(1.0, "m/s", "speed of legs that name none", min=0.0)
+    loiter_radius = Parameter(10.0, "m", "radius of turns that name none", min=0.1)
+    fence_action = Parameter("hold", "1", "what it does outside its fence", choices=ACTIONS)
+    fence_depth = Parameter(0.0, "m", "depth of the fence's floor, 0 for none", min=0.0)
+    plan_folder = Parameter(
+        "", "1", "folder of mission, fence and rally points; empty: they end with the run"
+    )
+    actuators = Parameter(
+        "", "1", "CHANNEL NAME MIN NEUTRAL MAX of each output channel, pulses in us; with ;"
+    )
+    tunables = Parameter("", "1", "NAME START LOW HIGH of each tunable parameter; with ;")
+    parameter_file = Parameter("", "1", "file of the parameters that were set; empty: none")
+    names = Parameter("", "1", "names of the first values of `named`, separated by spaces")
+    signing_key_file = Parameter("", "1", "file with the pass phrase; empty: no signatures")
+    state_file = Parameter("", "1", "file for what outlives the run; empty: none")
+
+    position_n = Input("m", "position, north-east-down", axes=_NED)
+    velocity_n = Input("m/s", "velocity over ground, north-east-down", axes=_NED)
+    position_valid = Input("1", "whether position and velocity are valid", type=bool)
+    attitude = Input("rad", "Euler angles, ZYX", axes=_EULER)
+    heading_valid = Input("1", "whether the heading is valid", type=bool, start=True)
+    rates = Input("rad/s", "angular velocity, body axes", axes=("p", "q", "r"))
+    accelerometer = Input(
+        "m/s2", "specific force, body axes", axes="xyz", start=(0.0, 0.0, -9.80665)
+    )
+    pressure = Input("Pa", "absolute pressure of the air, or the water", start=101325.0)
+    wind_speed = Input("m/s", "speed of the apparent wind")
+    wind_angle = Input("rad", "where the apparent wind blows to from the bow, to starboard")
+    wind_valid = Input("1", "whether the wind is measured", type=bool)
+    voltage = Input("V", "voltage of the battery, 0 if it is not measured")
+    current = Input("A", "current out of the battery")
+    charge = Input("1", "share of the battery's charge that is left", start=1.0)
+    pulse = Input(
+        "s", "servo pulses, 0 for none", axes=tuple(f"ch{n}" for n in range(1, CHANNELS + 1))
+    )
+    named = Input("1", "values that `names` names, in any unit", axes=_NAMED)
+    true_position = Input("m", "true position, north-east-down", axes="xyz")
+    true_velocity = Input("m/s", "true velocity, body axes", axes=("u", "v", "w"))
+    true_attitude = Input("rad", "true Euler angles, ZYX", axes=_EULER)
+    true_rates = Input("rad/s", "true angular velocity, body axes", axes=("p", "q", "r"))
+    true_acceleration = Input("m/s2", "true inertial acceleration, body axes", axes="xyz")
+    leg_reached = Input("1", "number of the leg that is done, 0 while none is", type=int)
+
+    mode = Output("1", "manual, hold, loiter, guided, auto, return, ...", type=str, start="hold")
+    armed = Output("1", "whether to act", type=bool)
+    manual = Output(
+        "1",
+        "sticks, -1 to 1: ahead, to starboard, turn to starboard, down",
+        axes=("surge", "sway", "yaw", "heave"),
+    )
+    target_kind = Output("1", "position, velocity or heading", type=str, start="position")
+    target_valid = Output("1", "whether there is a set-point", type=bool)
+    target_position = Output("m", "position to go to; its down with a heading", axes=_NED)
+    target_velocity = Output("m/s", "velocity over ground", axes=_NED)
+    target_heading = Output("rad", "heading, clockwise from north")
+    target_speed = Output("m/s", "speed along the bow with a heading; to a position, 0 if not said")
+    home = Output("m", "position to return to: home, or a rally point", axes=_NED)
+    leg = Output("1", "number of the mission's leg, another for each; 0 for none", type=int)
+    leg_from = Output("m", "where the leg begins", axes=_NED)
+    leg_to = Output("m", "where the leg ends", axes=_NED)
+    leg_speed = Output("m/s", "speed on the leg")
+    leg_radius = Output("m", "distance at which its end is reached")
+    leg_wait = Output("s", "time to stay at its end")
+    leg_circle = Output("m", "radius of the circle to stay on at its end, 0 for none")
+    failsafe_active = Output("1", "whether a failsafe acted and still lasts", type=bool)
+    tunable = Output(
+        "1",
+        "the tunable parameters, in any unit",
+        axes=tuple(f"t{n}" for n in range(1, MOST_TUNABLES + 1)),
+    )
+    ground_stations = Output("1", "number of ground stations that are there", type=int)
+
+    def __init__(self, name: str = "component") -> None:
+        super().__init__(name)
+        self._node: Node | None = None
+        self._radio: Radio | None = None
+        self._log = TelemetryLog(0)
+
+    # ------------------------------------------------------------------ running
+
+    def reset(self, t: float) -> None:
+        """Make the vehicle and open the links."""
+        self.close()
+        try:
+            identity = self._identity()
+            kind = flavour(self.autopilot_type, submerged=identity.submerged)
+            mode = kind.mode("hold")
+            assert mode is not None
+            origin = Origin(self.latitude, self.longitude, self.altitude)
+            vehicle = Vehicle(identity, kind, origin, mode)
+            self._value_names = self._checked_names()
+            self._begun = t
+            self._log = TelemetryLog(identity.boot_unix_us)
+            self._radio = self._opened(identity)
+            plans = Path(self.plan_folder) if self.plan_folder else None
+            settings = self._settings()
+            self._parameters = self._table(vehicle, settings)
+            self._node = Node(vehicle, self._radio, settings, self._parameters, plans)
+        except InputError as error:
+            self.close()
+            raise InputError(f"{self.name}: {error}") from None
+
+    def sample(self, t: float, k: int) -> None:
+        """Publish what the vehicle was told until now."""
+        vehicle = self._vehicle
+        self.mode, self.armed = vehicle.mode.name, vehicle.armed
+        driven = vehicle.armed and vehicle.mode.name in MANUAL_MODES
+        self.manual = vehicle.sticks if driven else STICKS_RELEASED
+        target = vehicle.target
+        self.target_valid = target is not None
+        shown = target or Target("position")
+        self.target_kind, self.target_position = shown.kind, shown.position
+        self.target_velocity, self.target_heading = shown.velocity, shown.heading
+        self.target_speed = shown.speed
+        assert self._node is not None
+        self.home = self._node.rally.refuge
+        leg = self._node.missions.leg
+        self.leg, self.leg_from, self.leg_to = leg.number, leg.start, leg.end
+        self.leg_speed, self.leg_radius = leg.speed, leg.radius
+        self.leg_wait, self.leg_circle = leg.wait, leg.circle
+        tuned = [self._parameters[name] for name in self._tunable_names]
+        self.tunable = (*tuned, *(0.0,) * (MOST_TUNABLES - len(tuned)))
+        self.failsafe_active, self.ground_stations = vehicle.failsafe, vehicle.stations
+
+    def update(self, t: float, k: int) -> None:
+        """Take in what has arrived, and send what is due."""
+        assert self._radio is not None
+        assert self._node is not None
+        now = self._log.now = t - self._begun
+        if self.run_folder and not self._log.is_open:
+            self._log.open(Path(self.run_folder, f"{self.name}.tlog"))
+        self._node.missions.reached = self.leg_reached
+        self._vehicle.estimates = self._estimates()
+        self._vehicle.truth = self._truth() if self.truth == "on" else None
+        for message, sender in self._radio.poll():
+            self._node.receive(message, sender, now)
+        self._node.tick(now)
+
+    def close(self) -> None:
+        """Close the links."""
+        if self._radio is not None:
+            self._radio.close()
+        self._radio = self._node = None
+        self._log.close()
+
+    @property
+    def urls(self) -> list[str]:
+        """URLs of the links as they are bound: with a port's number where 0 was asked for."""
+        return [] if self._radio is None else [link.url for link in self._radio.endpoints]
+
+    # ------------------------------------------------------------------ inside
+
+    @property
+    def _vehicle(self) -> Vehicle:
+        assert self._node is not None
+        return self._node.vehicle
+
+    def _identity(self) -> Identity:
+        if not _VERSION.fullmatch(self.firmware_version):
+            raise InputError(
+                f"firmware_version is {self.firmware_version!r}, something like '4.5.0' or "
+                "'4.5.0-dev' is needed"
+            )
+        return Identity(
+            _whole("system_id", self.system_id),
+            _whole("component_id", self.component_id),
+            VEHICLE_TYPES[self.vehicle_type],
+            self.vehicle_type == "submarine",
+            self.firmware_version,
+            _serial_number(self.uid),
+            _midnight_us(self.date),
+        )
+
+    def _settings(self) -> Settings:
+        return Settings(
+            self.failsafe,
+            self.station_timeout,
+            self.stick_timeout,
+            self.target_timeout,
+            self.full_speed,
+            cruise_speed=self.cruise_speed,
+            waypoint_radius=self.waypoint_radius,
+            loiter_radius=self.loiter_radius,
+            fence_action=self.fence_action,
+            fence_depth=self.fence_depth,
+        )
+
+    def _table(self, vehicle: Vehicle, settings: Settings) -> ParameterTable:
+        file = ParameterFile(Path(self.parameter_file)) if self.parameter_file else None
+        table = vehicle_parameters(vehicle, settings, self.actuators, self.tunables, file)
+        self._tunable_names = [one.name for one in tunable_parameters(self.tunables)]
+        return table
+
+    def _opened(self, identity: Identity) -> Radio:
+        state = StateFile(Path(self.state_file) if self.state_file else None)
+        signing = None
+        if self.signing_key_file:
+            if not self.state_file:
+                raise InputError(
+                    "signing_key_file needs state_file: without it frames of an earlier run "
+                    "could be repeated"
+                )
+            signing = Signing(read_key(Path(self.signing_key_file)), state)
+        endpoints: list[Endpoint] = []
+        try:
+            for url in self.links.split():
+                endpoints.append(open_endpoint(url))
+        except InputError:
+            for endpoint in endpoints:
+                endpoint.close()
+            raise
+        return Radio(endpoints, identity.system, identity.component, signing, self._log)
+
+    def _checked_names(self) -> list[str]:
+        names: list[str] = self.names.split()
+        if len(names) > len(_NAMED):
+            raise InputError(f"names has {len(names)} names, at most {len(_NAMED)} are allowed")
+        for name in names:
+            if not _NAME.fullmatch(name):
+                raise InputError(f"names: {name!r} is not a name of 1 to 10 ASCII characters")
+        return names
+
+    def _estimates(self) -> Estimates:
+        measured = self.voltage > 0.0
+        return Estimates(
+            position_n=self.position_n,
+            velocity_n=self.velocity_n,
+            position_valid=self.position_valid,
+            attitude=self.attitude,
+            heading_valid=self.heading_valid,
+            rates=self.rates,
+            specific_force=self.accelerometer,
+            pressure=self.pressure,
+            apparent_wind=(self.wind_speed, self.wind_angle) if self.wind_valid else None,
+            voltage=self.voltage if measured else None,
+            current=self.current if measured else None,
+            charge=self.charge if measured else None,
+            pulses=self.pulse,
+            named=tuple(zip(self._value_names, self.named, strict=False)),
+        )
+
+    def _truth(self) -> Truth:
+        attitude = self.true_attitude
+        weight = to_body(attitude, (0.0, 0.0, STANDARD_GRAVITY))
+        felt = [a - g for a, g in zip(self.true_acceleration, weight, strict=True)]
+        return Truth(
+            self.true_position,
+            to_ned(attitude, self.true_velocity),
+            attitude,
+            self.true_rates,
+            (felt[0], felt[1], felt[2]),
+        )
+
+
+def _whole(name: str, value: float) -> int:
+    if value != round(value):
+        raise InputError(f"{name} is {value!r}, a whole number is needed")
+    return round(value)
+
+
+def _serial_number(text: str) -> int:
+    if not text.isdecimal() or not 0 <= int(text) < 1 << 64:
+        raise InputError(f"uid is {text!r}, a whole number from 0 to 2^64 - 1 is needed")
+    return int(text)
+
+
+def _midnight_us(date: str) -> int:
+    try:
+        day = datetime.date.fromisoformat(date)
+    except ValueError:
+        raise InputError(f"date is {date!r}, a day like '2026-02-05' is needed") from None
+    midnight = datetime.datetime.combine(day, datetime.time(), datetime.UTC)
+    return round(midnight.timestamp() * 1e6)

@@ -1,0 +1,75 @@
+"""Serial ports."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+
+import serial
+
+from ...errors import InputError
+from ..hardware import ALLOWED, is_allowed, is_simulated_port
+from .endpoint import LARGEST_DATAGRAM, Channel, Endpoint
+
+LONGEST_QUEUE = 1 << 14
+"""Bytes kept for a line that is too slow; frames beyond are lost."""
+
+
+class _Port(Channel):
+    def __init__(self, opened: serial.Serial) -> None:
+        self._serial = opened
+        self._queue = bytearray()
+
+    def send(self, data: bytes) -> None:
+        if len(self._queue) + len(data) <= LONGEST_QUEUE:
+            self._queue += data
+            self.flush()
+
+    def flush(self) -> None:
+        """Write what the line takes now."""
+        try:
+            while self._queue:
+                # Serial.write repeats itself for ever on a line that takes nothing.
+                del self._queue[: os.write(self._serial.fileno(), self._queue)]
+        except BlockingIOError:
+            pass
+        except OSError:
+            self._queue.clear()  # unplugged
+
+
+class SerialEndpoint(Endpoint):
+    """A serial port with one peer, 8 bits, no parity, one stop bit. POSIX only.
+
+    Raises InputError for a device that cannot be opened, and for a real one if hardware was not
+    allowed: whoever answers there may drive thrusters.
+    """
+
+    def __init__(self, url: str, device: str, baud: int) -> None:
+        if not (is_simulated_port(device) or is_allowed()):
+            raise InputError(
+                f"link {url!r} is a real port; allow it with --hardware (or {ALLOWED}=1 in the "
+                "environment) if nothing behind it can do harm"
+            )
+        try:
+            self._serial = serial.Serial(device, baud, timeout=0, write_timeout=0, exclusive=True)
+        except (OSError, ValueError) as error:
+            raise InputError(f"cannot open the link {url!r}: {error}") from None
+        self.url = url
+        self._peers = [_Port(self._serial)]
+
+    def channels(self) -> Sequence[Channel]:
+        """Return the one peer."""
+        return self._peers
+
+    def poll(self) -> list[tuple[Channel, bytes]]:
+        """Return what has arrived."""
+        self._peers[0].flush()
+        try:
+            data = self._serial.read(LARGEST_DATAGRAM)
+        except (OSError, serial.SerialException):
+            return []
+        return [(self._peers[0], data)] if data else []
+
+    def close(self) -> None:
+        """Close the port."""
+        self._serial.close()

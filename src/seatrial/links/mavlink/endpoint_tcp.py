@@ -1,0 +1,157 @@
+"""TCP: a server with any number of clients, and a client that connects again."""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import socket
+import time
+from collections.abc import Sequence
+
+from .endpoint import LARGEST_DATAGRAM, MOST_READS, Channel, Endpoint
+
+MOST_CLIENTS = 16
+LONGEST_QUEUE = 1 << 18
+"""Bytes kept for a peer that does not read; frames beyond are lost."""
+RETRY_S = 1.0
+"""Wall time between two attempts to connect."""
+
+_Address = tuple[str, int]
+
+
+class _Stream(Channel):
+    """One connection: whole frames are queued, or none of it."""
+
+    def __init__(self, connected: socket.socket) -> None:
+        connected.setblocking(False)
+        connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self._socket = connected
+        self._queue = bytearray()
+        self.is_open = True
+
+    def send(self, data: bytes) -> None:
+        if len(self._queue) + len(data) <= LONGEST_QUEUE:
+            self._queue += data
+            self._flush()
+
+    def receive(self) -> bytes:
+        """Return what has arrived; the stream is closed if its other end is."""
+        self._flush()
+        try:
+            data = self._socket.recv(LARGEST_DATAGRAM)
+        except BlockingIOError:
+            return b""
+        except OSError:
+            self.close()
+            return b""
+        if not data:
+            self.close()
+        return data
+
+    def close(self) -> None:
+        self.is_open = False
+        self._socket.close()
+
+    def _flush(self) -> None:
+        if not self.is_open:
+            return
+        try:
+            while self._queue:
+                del self._queue[: self._socket.send(self._queue)]
+        except BlockingIOError:
+            pass
+        except OSError:
+            self.close()
+
+
+def _read(streams: Sequence[_Stream]) -> list[tuple[Channel, bytes]]:
+    arrived: list[tuple[Channel, bytes]] = []
+    for stream in streams:
+        for _ in range(MOST_READS):
+            data = stream.receive() if stream.is_open else b""
+            if not data:
+                break
+            arrived.append((stream, data))
+    return arrived
+
+
+class TcpServer(Endpoint):
+    """Accepts clients, up to `MOST_CLIENTS` at once."""
+
+    def __init__(self, address: _Address) -> None:
+        self._socket = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+        self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        self._socket.setblocking(False)
+        try:
+            self._socket.bind(address)
+            self._socket.listen()
+        except OSError:
+            self._socket.close()
+            raise
+        host, port = self._socket.getsockname()
+        self.url = f"tcpin:{host}:{port}"
+        self._streams: list[_Stream] = []
+
+    def channels(self) -> Sequence[Channel]:
+        """Return the clients that are connected."""
+        return [stream for stream in self._streams if stream.is_open]
+
+    def poll(self) -> list[tuple[Channel, bytes]]:
+        """Accept who has come, and return what has arrived."""
+        self._streams = [stream for stream in self._streams if stream.is_open]
+        with contextlib.suppress(OSError):  # nobody, or somebody who has gone again
+            while len(self._streams) < MOST_CLIENTS:
+                self._streams.append(_Stream(self._socket.accept()[0]))
+        return _read(self._streams)
+
+    def close(self) -> None:
+        """Close the server and all connections."""
+        for stream in self._streams:
+            stream.close()
+        self._socket.close()
+
+
+class TcpClient(Endpoint):
+    """Connects, and again every `RETRY_S` of wall time while there is nobody."""
+
+    def __init__(self, address: _Address) -> None:
+        self.url = f"tcpout:{address[0]}:{address[1]}"
+        self._address = address
+        self._connecting: socket.socket | None = None
+        self._stream: _Stream | None = None
+        self._tried = -RETRY_S
+
+    def channels(self) -> Sequence[Channel]:
+        """Return the server, if it is connected."""
+        return [self._stream] if self._stream is not None and self._stream.is_open else []
+
+    def poll(self) -> list[tuple[Channel, bytes]]:
+        """Connect if there is no connection, and return what has arrived."""
+        if self._stream is None or not self._stream.is_open:
+            self._connect()
+        return _read([self._stream]) if self._stream is not None else []
+
+    def close(self) -> None:
+        """Close the connection."""
+        self._give_up()
+        if self._stream is not None:
+            self._stream.close()
+
+    def _connect(self) -> None:
+        now = time.monotonic()
+        if self._connecting is None:
+            if now - self._tried < RETRY_S:
+                return
+            self._tried = now
+            self._connecting = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+            self._connecting.setblocking(False)
+        result = self._connecting.connect_ex(self._address)
+        if result in (0, errno.EISCONN):
+            self._stream, self._connecting = _Stream(self._connecting), None
+        elif result not in (errno.EINPROGRESS, errno.EALREADY, errno.EWOULDBLOCK):
+            self._give_up()
+
+    def _give_up(self) -> None:
+        if self._connecting is not None:
+            self._connecting.close()
+            self._connecting = None

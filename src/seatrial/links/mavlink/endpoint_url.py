@@ -1,0 +1,81 @@
+"""Endpoints by URL.
+
+=========================== =================================================================
+``udpout:HOST:PORT``        sends to one address, and hears it alone
+``udpin:HOST:PORT``         bound there; sends to whoever has sent something
+``tcpin:HOST:PORT``         a server with any number of clients
+``tcpout:HOST:PORT``        a client, which connects again when the connection is lost
+``serial:DEVICE:BAUD``      a serial port; a real one only if hardware is allowed
+=========================== =================================================================
+
+HOST is a name or an IPv4 address, PORT 0 at ``udpin`` and ``tcpin`` any free one.
+"""
+
+from __future__ import annotations
+
+import re
+import socket
+from collections.abc import Callable
+
+from ...errors import InputError, unknown
+from .endpoint import Endpoint
+from .endpoint_serial import SerialEndpoint
+from .endpoint_tcp import TcpClient, TcpServer
+from .endpoint_udp import UdpListener, UdpSender
+
+_FORMS = {
+    "udpout": "udpout:127.0.0.1:14550",
+    "udpin": "udpin:127.0.0.1:14551",
+    "tcpin": "tcpin:127.0.0.1:5760",
+    "tcpout": "tcpout:127.0.0.1:5762",
+    "serial": "serial:/dev/ttyUSB0:57600",
+}
+_URL = re.compile(r"(?P<kind>[a-z]+):(?P<place>.+):(?P<number>\d{1,9})")
+
+
+def open_endpoint(url: str) -> Endpoint:
+    """Open the endpoint ``url``.
+
+    Raises InputError, with the URL, for one that is malformed or cannot be opened (a port in
+    use, an unknown host, no such device, hardware that nobody allowed).
+    """
+    kind, place, number = _parts(url)
+    if kind == "serial":
+        return SerialEndpoint(url, place, number)
+    address = _resolved(url, place, number)
+    opened: dict[str, Callable[[tuple[str, int]], Endpoint]] = {
+        "udpout": UdpSender,
+        "udpin": UdpListener,
+        "tcpin": TcpServer,
+        "tcpout": TcpClient,
+    }
+    try:
+        return opened[kind](address)
+    except OSError as error:
+        raise InputError(f"cannot open the link {url!r}: {error.strerror or error}") from None
+
+
+def _parts(url: str) -> tuple[str, str, int]:
+    kind = url.partition(":")[0]
+    if kind not in _FORMS:
+        raise InputError(f"link {url!r}: {unknown('kind of link', kind, _FORMS)}")
+    match = _URL.fullmatch(url)
+    plain = match is not None and (kind == "serial" or not set(match["place"]) & set(":/"))
+    if match is None or not plain:
+        raise InputError(f"link {url!r} is not of the form {_FORMS[kind]!r}")
+    place, number = match["place"], int(match["number"])
+    lowest = 0 if kind in ("udpin", "tcpin") else 1
+    highest = 65535 if kind != "serial" else 100_000_000
+    if not lowest <= number <= highest:
+        what = "baud rate" if kind == "serial" else "port"
+        raise InputError(f"link {url!r}: the {what} is {number}, allowed {lowest} to {highest}")
+    return kind, place, number
+
+
+def _resolved(url: str, host: str, port: int) -> tuple[str, int]:
+    try:
+        found = socket.getaddrinfo(host, port, socket.AF_INET, socket.SOCK_DGRAM)
+    except (OSError, UnicodeError) as error:
+        cause = getattr(error, "strerror", None) or error
+        raise InputError(f"link {url!r}: host {host!r}: {cause}") from None
+    return str(found[0][4][0]), port

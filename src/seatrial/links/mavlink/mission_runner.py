@@ -1,0 +1,282 @@
+"""Carrying out a mission: item by item, as legs that guidance follows."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from pymavlink.dialects.v20 import all as mavlink
+
+from .geodesy import Ned
+from .plan import Plan
+from .plan_checks import first_item
+from .plan_items import Item
+from .service import INFO, WARNING
+from .settings import Settings
+from .vehicle import Vehicle
+
+FASTEST = 100.0
+"""Speeds beyond, m/s, are not obeyed."""
+
+_MOST_AT_ONCE = 2000
+"""Items that take no time, one after the other: more are jumps without an end."""
+_OWN_SPEED = -2.0
+
+_NOT_STARTED: int = mavlink.MISSION_STATE_NOT_STARTED
+_ACTIVE: int = mavlink.MISSION_STATE_ACTIVE
+_PAUSED: int = mavlink.MISSION_STATE_PAUSED
+_COMPLETE: int = mavlink.MISSION_STATE_COMPLETE
+
+
+@dataclass(frozen=True)
+class Leg:
+    """What guidance is to follow. SI, positions in {n}."""
+
+    number: int = 0
+    """Another one for each leg; 0 for none: the vehicle stays where it is."""
+    start: Ned = (0.0, 0.0, 0.0)
+    end: Ned = (0.0, 0.0, 0.0)
+    speed: float = 0.0
+    radius: float = 0.0
+    """Distance at which its end is reached."""
+    wait: float = 0.0
+    """Time to stay at its end."""
+    circle: float = 0.0
+    """Radius of the circle to stay on at its end, negative for anticlockwise, 0 for none."""
+
+
+class MissionRunner:
+    """Carries out the items of ``plan`` while the vehicle is armed and in the mode auto.
+
+    ======================= =============================================================
+    NAV_WAYPOINT            a leg; parameter 1 is the time to stay, 2 the radius of
+                            acceptance, 0 for the vehicle's own
+    NAV_LOITER_UNLIM        a leg, and to stay there for good, on a circle whose radius is
+                            parameter 3 unless that is 0; negative is anticlockwise
+    NAV_LOITER_TURNS        the same for the turns about the place in parameter 1, on a
+                            circle in any case
+    NAV_LOITER_TIME         the same for the time in parameter 1
+    NAV_RETURN_TO_LAUNCH    a leg to where the vehicle returns to
+    NAV_DELAY               stays for the time in parameter 1
+    DO_JUMP                 goes on at the item in parameter 1, as often as parameter 2 says
+                            since the mission began; always if that is negative
+    DO_CHANGE_SPEED         parameter 2 is the speed of the legs from here on; -2 is the
+                            vehicle's own, others below 0 change nothing
+    DO_SET_HOME             moves home
+    ======================= =============================================================
+
+    Other commands are skipped, which is said. A leg begins where the last one ended, or where
+    the vehicle is if there was none, or it was interrupted: by another mode, by disarming or by
+    ``paused``. The current item then begins anew. After the last item the vehicle stays; when it
+    is free to act again after an interruption, it begins from the first.
+
+    Not obeyed: headings, radii to pass by, kinds of speed, throttles, and autocontinue.
+
+    ``set_home`` carries DO_SET_HOME out at a time, s; ``refuge`` is where the vehicle returns to.
+    """
+
+    def __init__(
+        self,
+        vehicle: Vehicle,
+        plan: Plan,
+        settings: Settings,
+        set_home: Callable[[Item, float], None],
+        refuge: Callable[[], Ned],
+    ) -> None:
+        self._vehicle, self._plan, self._settings = vehicle, plan, settings
+        self._set_home, self._refuge = set_home, refuge
+        self.paused = False
+        """Whether somebody asked for a pause; other modes end it."""
+        self.passed: list[int] = []
+        """Items that are done; whoever tells of them empties it."""
+        self._legs = 0
+        self._acted = False
+        self._until, self._turned = 0.0, 0.0
+        self._bearing: float | None = None
+        self.restart()
+
+    # ------------------------------------------------------------------ control
+
+    @property
+    def first(self) -> int:
+        """Number of the first item."""
+        return first_item(self._vehicle)
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether there is nothing to do."""
+        return len(self._plan.items) <= self.first
+
+    def restart(self) -> None:
+        """Go back to the first item, as if nothing had been done."""
+        self._items = self._plan.items
+        self.current, self.state = self.first, _NOT_STARTED
+        """Number of the item that is carried out, and MISSION_STATE."""
+        self.leg = Leg()
+        self._speed: float | None = None
+        self._jumps: Counter[int] = Counter()
+        self._skipped: set[int] = set()
+
+    def set_current(self, sequence: int) -> bool:
+        """Go on at an item, 0 for the first one; say if there is one of that number."""
+        sequence = sequence or self.first
+        if not self.first <= sequence < len(self._plan.items):
+            return False
+        self.current, self.leg = sequence, Leg()
+        self.state = _NOT_STARTED if self.state == _NOT_STARTED else _PAUSED
+        return True
+
+    def forget_jumps(self) -> None:
+        """Count jumps anew, and go on after the end if the vehicle is in auto."""
+        self._jumps.clear()
+        if self.state == _COMPLETE:
+            self.state = _PAUSED
+
+    def change_speed(self, speed: float) -> None:
+        """Change the speed of this leg and of those to come, m/s; -2 is the vehicle's own."""
+        if speed == _OWN_SPEED:
+            self._speed = None
+        elif 0.0 < speed <= FASTEST:
+            self._speed = speed
+        self.leg = replace(self.leg, speed=self._leg_speed())
+
+    # ------------------------------------------------------------------ running
+
+    def tick(self, now: float, reached: int) -> None:
+        """Go on at simulated time ``now``, s; ``reached`` is the number of the leg that is done."""
+        if self._plan.items is not self._items:
+            self.restart()
+        in_auto = self._vehicle.mode.name == "auto"
+        self.paused = self.paused and in_auto
+        acts = in_auto and self._vehicle.armed and not self.paused and not self.is_empty
+        if not acts:
+            self.leg = Leg()
+            self.state = _PAUSED if self.state == _ACTIVE else self.state
+        elif self.state == _ACTIVE:
+            if self._is_over(now, reached):
+                self.passed.append(self.current)
+                self._begin(self.current + 1, now)
+        elif self.state != _COMPLETE or not self._acted:
+            if self.state == _COMPLETE:
+                self.restart()
+            self.state = _ACTIVE
+            self._begin(self.current, now)
+        self._acted = acts
+
+    def _begin(self, sequence: int, now: float) -> None:
+        """Carry items out from ``sequence`` on, up to one that takes time, or the end."""
+        for _ in range(_MOST_AT_ONCE):
+            if sequence >= len(self._items):
+                self._finish("Mission complete")
+                return
+            self.current = sequence
+            item = self._items[sequence]
+            if item.command == mavlink.MAV_CMD_DO_JUMP:
+                sequence = self._after_jump(item)
+                continue
+            if self._starts(item, now):
+                self._vehicle.say(INFO, f"Mission: item {sequence}, {item.name}")
+                return
+            self.passed.append(sequence)
+            sequence += 1
+        self._finish("Mission ended: its jumps have no end")
+
+    def _finish(self, news: str) -> None:
+        self.state = _COMPLETE
+        self._rest()
+        self._vehicle.say(INFO, news)
+
+    def _rest(self) -> None:
+        """Stay at the end of the leg; on a circle, where the vehicle is."""
+        if self.leg.circle:
+            self.leg = Leg()
+
+    def _after_jump(self, item: Item) -> int:
+        """Return the number of the item after a jump, which is the current one."""
+        times = item.number(2)
+        if 0.0 <= times <= self._jumps[self.current]:
+            return self.current + 1
+        self._jumps[self.current] += 1
+        return round(item.number(1))
+
+    def _starts(self, item: Item, now: float) -> bool:
+        """Start an item; say if it takes time."""
+        match item.command:
+            case mavlink.MAV_CMD_NAV_WAYPOINT:
+                return self._leads(item, radius=item.number(2), wait=item.number(1))
+            case mavlink.MAV_CMD_NAV_LOITER_UNLIM:
+                return self._leads(item, circle=item.number(3))
+            case mavlink.MAV_CMD_NAV_LOITER_TURNS:
+                self._turned, self._bearing = 0.0, None
+                return self._leads(item, circle=item.number(3) or self._settings.loiter_radius)
+            case mavlink.MAV_CMD_NAV_LOITER_TIME:
+                return self._leads(item, wait=item.number(1), circle=item.number(3))
+            case mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH:
+                self._follow(self._refuge())
+                return True
+            case mavlink.MAV_CMD_NAV_DELAY:
+                self._rest()
+                self._until = now + item.number(1)
+                return True
+            case mavlink.MAV_CMD_DO_CHANGE_SPEED:
+                self.change_speed(item.number(2))
+            case mavlink.MAV_CMD_DO_SET_HOME:
+                self._set_home(item, now)
+            case _:
+                self._skip(item, "is not obeyed")
+        return False
+
+    def _leads(
+        self, item: Item, radius: float = 0.0, wait: float = 0.0, circle: float = 0.0
+    ) -> bool:
+        """Begin the leg to an item's place, if it still is one."""
+        end = item.destination(self._vehicle)
+        if end is None:
+            self._skip(item, "is no place now, or too far away")
+            return False
+        self._follow(end, radius, wait, circle)
+        return True
+
+    def _follow(
+        self, end: Ned, radius: float = 0.0, wait: float = 0.0, circle: float = 0.0
+    ) -> None:
+        straight = self.leg.number and not self.leg.circle
+        start = self.leg.end if straight else self._vehicle.estimates.position_n
+        radius = radius if radius > 0.0 else self._settings.waypoint_radius
+        self._legs += 1
+        self.leg = Leg(
+            self._legs,
+            *(start, end, self._leg_speed()),
+            radius + abs(circle),  # who is on the circle has come to its centre
+            *(max(wait, 0.0), circle),
+        )
+
+    def _skip(self, item: Item, why: str) -> None:
+        if self.current not in self._skipped:
+            self._skipped.add(self.current)
+            text = f"Mission: item {self.current}, {item.name}, {why}: skipped"
+            self._vehicle.say(WARNING, text)
+
+    def _is_over(self, now: float, reached: int) -> bool:
+        item = self._items[self.current]
+        if item.command == mavlink.MAV_CMD_NAV_DELAY:
+            return now >= self._until
+        if reached != self.leg.number or item.command == mavlink.MAV_CMD_NAV_LOITER_UNLIM:
+            return False
+        if item.command == mavlink.MAV_CMD_NAV_LOITER_TURNS:
+            return self._has_turned(item.number(1))
+        return True
+
+    def _has_turned(self, turns: float) -> bool:
+        """Say if the vehicle has been round its circle often enough since it came to it."""
+        (north, east, _), (to_north, to_east, _) = self._vehicle.estimates.position_n, self.leg.end
+        bearing = math.atan2(east - to_east, north - to_north)
+        if self._bearing is not None:
+            self._turned += math.remainder(bearing - self._bearing, math.tau)
+        self._bearing = bearing
+        return math.copysign(1.0, self.leg.circle) * self._turned >= math.tau * turns
+
+    def _leg_speed(self) -> float:
+        return self._settings.leg_speed if self._speed is None else self._speed

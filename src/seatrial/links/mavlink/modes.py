@@ -1,0 +1,116 @@
+"""Modes by the numbers of two autopilots: ArduPilot's Rover and Sub, and PX4."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from pymavlink.dialects.v20 import all as mavlink
+
+MANUAL_MODES = ("manual", "stabilize", "depth-hold")
+"""Modes in which a person's sticks act."""
+
+POSITION_MODES = ("guided", "auto", "return", "loiter")
+"""Modes that cannot be entered without a position."""
+
+
+@dataclass(frozen=True)
+class Mode:
+    """One mode: our name, the number in HEARTBEAT's custom_mode, the name a person sees."""
+
+    name: str
+    custom_mode: int
+    shown: str
+    standard: int = 0
+    """MAV_STANDARD_MODE."""
+
+
+def _px4(main: int, sub: int = 0) -> int:
+    return main << 16 | sub << 24
+
+
+_HOLDS = mavlink.MAV_STANDARD_MODE_POSITION_HOLD
+_ORBITS = mavlink.MAV_STANDARD_MODE_ORBIT
+_MISSION = mavlink.MAV_STANDARD_MODE_MISSION
+_RETURNS = mavlink.MAV_STANDARD_MODE_SAFE_RECOVERY
+_DEPTH = mavlink.MAV_STANDARD_MODE_ALTITUDE_HOLD
+
+_ROVER = (
+    Mode("manual", 0, "MANUAL"),
+    Mode("hold", 4, "HOLD"),
+    Mode("loiter", 5, "LOITER", _HOLDS),
+    Mode("auto", 10, "AUTO", _MISSION),
+    Mode("return", 11, "RTL", _RETURNS),
+    Mode("guided", 15, "GUIDED"),
+)
+_SUB = (
+    Mode("stabilize", 0, "STABILIZE"),
+    Mode("depth-hold", 2, "ALT_HOLD", _DEPTH),
+    Mode("auto", 3, "AUTO", _MISSION),
+    Mode("guided", 4, "GUIDED"),
+    Mode("loiter", 7, "CIRCLE", _ORBITS),
+    Mode("surface", 9, "SURFACE"),
+    Mode("hold", 16, "POSHOLD", _HOLDS),
+    Mode("manual", 19, "MANUAL"),
+)
+_PX4_SURFACE = (
+    Mode("manual", _px4(1), "Manual"),
+    Mode("hold", _px4(4, 3), "Hold", _HOLDS),
+    Mode("auto", _px4(4, 4), "Mission", _MISSION),
+    Mode("return", _px4(4, 5), "Return", _RETURNS),
+    Mode("guided", _px4(6), "Offboard"),
+)
+_PX4_SUBMERGED = (
+    *_PX4_SURFACE,
+    Mode("depth-hold", _px4(2), "Altitude", _DEPTH),
+    Mode("stabilize", _px4(7), "Stabilized"),
+    Mode("surface", _px4(4, 6), "Land"),
+)
+
+
+@dataclass(frozen=True)
+class Flavour:
+    """How one autopilot numbers things: what a ground station expects of its kind."""
+
+    name: str
+    autopilot: int
+    """MAV_AUTOPILOT."""
+    modes: tuple[Mode, ...]
+    main_and_sub: bool
+    """Whether DO_SET_MODE has main and sub mode in its parameters 2 and 3 (PX4)."""
+    bytewise_parameters: bool
+    """Whether PARAM_VALUE carries the bytes of an integer, not its value as a float (PX4)."""
+    home_is_item_0: bool
+    """Whether item 0 of a mission is home (ArduPilot)."""
+
+    def mode(self, name: str) -> Mode | None:
+        """Return a mode by our name, None if this kind of vehicle has none such."""
+        return next((mode for mode in self.modes if mode.name == name), None)
+
+    def by_custom_mode(self, custom_mode: int) -> Mode | None:
+        """Return a mode by the number in HEARTBEAT and SET_MODE, None if there is none."""
+        return next((mode for mode in self.modes if mode.custom_mode == custom_mode), None)
+
+    def by_command(self, main: float, sub: float) -> Mode | None:
+        """Return the mode that parameters 2 and 3 of DO_SET_MODE ask for, None if there is none.
+
+        ArduPilot reads its number from the first alone; ground stations leave the other 0 or
+        not a number.
+        """
+        if not math.isfinite(main) or not 0.0 <= main < 2.0**32:
+            return None
+        if not self.main_and_sub:
+            return self.by_custom_mode(round(main))
+        low = round(sub) if math.isfinite(sub) and 0.0 <= sub < 256.0 else 0
+        return self.by_custom_mode(_px4(round(main), low)) if main < 256.0 else None
+
+
+def flavour(autopilot_type: str, *, submerged: bool) -> Flavour:
+    """Return the flavour of ``ardupilotmega`` or ``px4`` for a boat or a submarine."""
+    modes: dict[bool, tuple[Mode, ...]]
+    if autopilot_type == "px4":
+        modes = {False: _PX4_SURFACE, True: _PX4_SUBMERGED}
+        return Flavour("px4", mavlink.MAV_AUTOPILOT_PX4, modes[submerged], True, True, False)
+    modes = {False: _ROVER, True: _SUB}
+    number = mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA
+    return Flavour("ardupilot", number, modes[submerged], False, False, True)

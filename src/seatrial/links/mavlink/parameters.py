@@ -1,0 +1,31 @@
+"""All parameters of a vehicle."""
+
+from __future__ import annotations
+
+from .parameter_file import ParameterFile
+from .parameter_table import ParameterTable
+from .parameters_ardupilot import ardupilot_parameters
+from .parameters_px4 import px4_parameters
+from .parameters_servo import read_servos
+from .parameters_tunable import tunable_parameters, with_tunables
+from .settings import Settings
+from .vehicle import Vehicle
+
+
+def vehicle_parameters(
+    vehicle: Vehicle,
+    settings: Settings,
+    actuators: str = "",
+    tunables: str = "",
+    file: ParameterFile | None = None,
+) -> ParameterTable:
+    """Return the parameters of a vehicle: those of its kind, then the rig's tunables.
+
+    ``actuators`` as in `read_servos`, ``tunables`` as in `tunable_parameters`. Raises InputError.
+    """
+    if vehicle.flavour.name == "px4":
+        definitions = px4_parameters(vehicle.identity, settings)
+    else:
+        definitions = ardupilot_parameters(vehicle.identity, settings, read_servos(actuators))
+    definitions = with_tunables(definitions, tunable_parameters(tunables), settings)
+    return ParameterTable(definitions, settings, file)

@@ -1,0 +1,112 @@
+"""Which missions and rally points the vehicle takes, and what all items must keep to."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+from pymavlink.dialects.v20 import all as mavlink
+
+from .frames import GLOBAL_FRAMES
+from .plan_items import Item
+from .vehicle import Vehicle
+
+_AT_A_PLACE = (
+    mavlink.MAV_CMD_NAV_WAYPOINT,
+    mavlink.MAV_CMD_NAV_LOITER_UNLIM,
+    mavlink.MAV_CMD_NAV_LOITER_TURNS,
+    mavlink.MAV_CMD_NAV_LOITER_TIME,
+)
+_NAVIGATION = (
+    *_AT_A_PLACE,
+    mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH,
+    mavlink.MAV_CMD_NAV_DELAY,
+)
+_LAST_NAVIGATION = mavlink.MAV_CMD_NAV_LAST
+"""Commands up to this one say where to go: one that is not known cannot be skipped."""
+
+
+class Refusal(NamedTuple):
+    """Why a list is not taken."""
+
+    result: int
+    """MAV_MISSION_RESULT."""
+    text: str
+
+
+Check = Callable[[Sequence[Item], Vehicle], Refusal | None]
+"""Returns what is wrong with a list of items, None if nothing is."""
+
+
+def first_item(vehicle: Vehicle) -> int:
+    """Return the number of a mission's first item: 1 where item 0 is home."""
+    return int(vehicle.flavour.home_is_item_0)
+
+
+def check_mission(items: Sequence[Item], vehicle: Vehicle) -> Refusal | None:
+    """Refuse places that are none, jumps out of the list, and commands that cannot be skipped.
+
+    Commands that do not say where to go are taken: those that are not known are skipped.
+    """
+    first = first_item(vehicle)
+    for sequence, item in enumerate(items[first:], first):
+        refusal = _check_command(item, vehicle, range(first, len(items)))
+        if refusal is not None:
+            return of_item(sequence, item, refusal)
+    return None
+
+
+def check_rally(items: Sequence[Item], vehicle: Vehicle) -> Refusal | None:
+    """Refuse what is not a rally point, and places that are none."""
+    for sequence, item in enumerate(items):
+        if item.command != mavlink.MAV_CMD_NAV_RALLY_POINT:
+            refusal = Refusal(mavlink.MAV_MISSION_UNSUPPORTED, "is not a rally point")
+            return of_item(sequence, item, refusal)
+        refused = check_place(item, item.place(vehicle))
+        if refused is not None:
+            return of_item(sequence, item, refused)
+    return None
+
+
+def check_place(item: Item, place: object) -> Refusal | None:
+    """Refuse an item in a frame without latitude and longitude, or whose ``place`` is None."""
+    if item.frame not in GLOBAL_FRAMES:
+        entry = mavlink.enums["MAV_FRAME"].get(item.frame)
+        frame = entry.name if entry else f"frame {item.frame}"
+        return Refusal(mavlink.MAV_MISSION_UNSUPPORTED_FRAME, f"{frame} is not supported")
+    if place is None:
+        return Refusal(mavlink.MAV_MISSION_INVALID_PARAM5_X, "is no place, or too far away")
+    return _check_numbers(item)
+
+
+def bad_parameter(index: int, found: float, needed: str) -> Refusal:
+    """Return the refusal of parameter ``index``, 1 to 7."""
+    result = mavlink.MAV_MISSION_INVALID_PARAM1 + index - 1
+    return Refusal(result, f"parameter {index} is {found:g}, {needed} is needed")
+
+
+def of_item(sequence: int, item: Item, refusal: Refusal) -> Refusal:
+    """Return a refusal whose text says which item it is about."""
+    return Refusal(refusal.result, f"item {sequence}, {item.name}: {refusal.text}")
+
+
+def _check_command(item: Item, vehicle: Vehicle, sequences: range) -> Refusal | None:
+    unknown = item.command not in mavlink.enums["MAV_CMD"]
+    if unknown or (item.command <= _LAST_NAVIGATION and item.command not in _NAVIGATION):
+        return Refusal(mavlink.MAV_MISSION_UNSUPPORTED, "is not supported")
+    if item.command in _AT_A_PLACE:
+        return check_place(item, item.destination(vehicle))
+    if item.command == mavlink.MAV_CMD_DO_JUMP and item.parameters[0] not in sequences:
+        return bad_parameter(1, item.parameters[0], f"an item, {sequences[0]} to {sequences[-1]},")
+    if item.command == mavlink.MAV_CMD_NAV_DELAY and not item.parameters[0] >= 0.0:
+        return bad_parameter(1, item.parameters[0], "a number of seconds, not a time of day,")
+    return _check_numbers(item)
+
+
+def _check_numbers(item: Item) -> Refusal | None:
+    """Refuse infinities; what is not a number says that nothing is asked for."""
+    for index, value in (*enumerate(item.parameters, 1), (7, item.z)):
+        if math.isinf(value):
+            return bad_parameter(index, value, "a finite number")
+    return None

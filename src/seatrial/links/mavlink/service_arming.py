@@ -1,0 +1,98 @@
+"""Arming: with checks that give their reasons; and commands that are refused politely."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from pymavlink.dialects.v20 import all as mavlink
+
+from .radio import Air, Sender
+from .service import ACCEPTED, CRITICAL, DENIED, FAILED, INFO, WARNING, Command, Handler, Service
+from .settings import COMPASS_CHECK, GPS_CHECK, Settings
+from .vehicle import Vehicle
+
+FORCE = 21196.0
+"""Parameter 2 of COMPONENT_ARM_DISARM that arms whatever the checks say."""
+
+Check = Callable[[], str | None]
+"""Returns what speaks against arming, None if nothing does."""
+
+
+class ArmingService(Service):
+    """COMPONENT_ARM_DISARM and RUN_PREARM_CHECKS.
+
+    A boat needs a position and a heading, a submarine a heading; other services add ``checks``
+    of theirs, and the settings say which of them count. Each reason against arming is
+    said. Disarming always works, and so does arming by `FORCE`, which says so. A reboot is
+    denied: the vehicle is one part of a simulation.
+    """
+
+    def __init__(self, vehicle: Vehicle, air: Air, settings: Settings) -> None:
+        super().__init__(vehicle, air)
+        self._settings = settings
+        self.checks: list[Check] = [self._needs_position, self._needs_heading]
+
+    @property
+    def commands(self) -> Mapping[int, Handler]:
+        """Commands that it carries out."""
+        return {
+            mavlink.MAV_CMD_COMPONENT_ARM_DISARM: self._arm_or_disarm,
+            mavlink.MAV_CMD_RUN_PREARM_CHECKS: self._run_checks,
+            mavlink.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN: self._refuse_reboot,
+        }
+
+    def disarm(self) -> None:
+        """Disarm."""
+        if self.vehicle.armed:
+            self.vehicle.armed = False
+            self.vehicle.say(INFO, "Disarmed")
+
+    def tick(self, now: float) -> None:
+        """Keep what the health bit says."""
+        self.vehicle.healthy = not self._reasons()
+
+    def _reasons(self) -> list[str]:
+        found = [check() for check in self.checks if self._settings.checks()]
+        return [reason for reason in found if reason is not None]
+
+    def _arm_or_disarm(self, command: Command, sender: Sender, now: float) -> int:
+        wanted, how = command.parameters[:2]
+        if wanted == 0.0:
+            self.disarm()
+            return ACCEPTED
+        if wanted != 1.0:
+            return DENIED
+        reasons = [] if self.vehicle.armed else self._reasons()
+        if reasons and how != FORCE:
+            self._say(reasons)
+            return FAILED
+        if not self.vehicle.armed:
+            self.vehicle.armed = True
+            forced = f" by force, against: {', '.join(reasons)}" if reasons else ""
+            self.vehicle.say(WARNING if forced else INFO, f"Armed{forced}")
+        return ACCEPTED
+
+    def _run_checks(self, command: Command, sender: Sender, now: float) -> int:
+        if self.vehicle.armed:
+            return FAILED
+        reasons = self._reasons()
+        self._say(reasons)
+        if not reasons:
+            self.vehicle.say(INFO, "Ready to arm")
+        return ACCEPTED
+
+    def _refuse_reboot(self, command: Command, sender: Sender, now: float) -> int:
+        self.vehicle.say(WARNING, "No reboot: this vehicle is simulated; start the trial again")
+        return DENIED
+
+    def _say(self, reasons: list[str]) -> None:
+        for reason in reasons:
+            self.vehicle.say(CRITICAL, f"PreArm: {reason}")
+
+    def _needs_position(self) -> str | None:
+        needed = self._settings.checks(GPS_CHECK) and not self.vehicle.identity.submerged
+        return "no position" if needed and not self.vehicle.estimates.position_valid else None
+
+    def _needs_heading(self) -> str | None:
+        needed = self._settings.checks(COMPASS_CHECK)
+        return "no heading" if needed and not self.vehicle.estimates.heading_valid else None

@@ -1,0 +1,32 @@
+"""Clock: TIMESYNC and PING, answered in simulated time."""
+
+from __future__ import annotations
+
+from pymavlink.dialects.v20 import all as mavlink
+
+from .codec import Message
+from .radio import Sender
+from .scaling import microseconds
+from .service import Service
+
+
+class ClockService(Service):
+    """Answers TIMESYNC (tc1 = 0) and PING (to nobody in particular) over the same link.
+
+    Times are simulated: a run that is faster or slower than real time drifts, and an answer
+    waits for the vehicle's next instant.
+    """
+
+    def handle(self, message: Message, sender: Sender, now: float) -> None:
+        """Answer."""
+        match message.get_type():
+            case "TIMESYNC":
+                if message.tc1 == 0:
+                    answer = mavlink.MAVLink_timesync_message(round(now * 1e9), message.ts1)
+                    self.air.send(sender.link, answer)
+            case "PING":
+                if message.target_system == 0 and message.target_component == 0:
+                    answer = mavlink.MAVLink_ping_message(
+                        microseconds(now), message.seq, sender.system, sender.component
+                    )
+                    self.air.send(sender.link, answer)

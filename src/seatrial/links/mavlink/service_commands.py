@@ -1,0 +1,54 @@
+"""Commands: COMMAND_LONG and COMMAND_INT to whoever carries them out, and always an answer."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from pymavlink.dialects.v20 import all as mavlink
+
+from .codec import Message
+from .frames import GLOBAL_FRAMES, LOCAL_FRAMES
+from .radio import Air, Sender
+from .service import UNSUPPORTED, Command, Handler, Service
+from .vehicle import Vehicle
+
+_NOT_GIVEN = 0x7FFFFFFF
+"""An integer coordinate that stands for not a number."""
+
+
+class CommandService(Service):
+    """Dispatches commands to ``handlers`` by number and answers with COMMAND_ACK.
+
+    The answer goes to the sender over its own link; a command that nobody carries out is
+    UNSUPPORTED.
+    """
+
+    capabilities = mavlink.MAV_PROTOCOL_CAPABILITY_COMMAND_INT
+
+    def __init__(self, vehicle: Vehicle, air: Air, handlers: Mapping[int, Handler]) -> None:
+        super().__init__(vehicle, air)
+        self._handlers = handlers
+
+    def handle(self, message: Message, sender: Sender, now: float) -> None:
+        """Carry a command out."""
+        kind = message.get_type()
+        if kind not in ("COMMAND_LONG", "COMMAND_INT"):
+            return
+        command = _of_long(message) if kind == "COMMAND_LONG" else _of_int(message)
+        handler = self._handlers.get(command.number)
+        result = UNSUPPORTED if handler is None else handler(command, sender, now)
+        answer = mavlink.MAVLink_command_ack_message(
+            command.number, result, 0, 0, sender.system, sender.component
+        )
+        self.air.send(sender.link, answer)
+
+
+def _of_long(m: Message) -> Command:
+    parameters = (m.param1, m.param2, m.param3, m.param4, m.param5, m.param6, m.param7)
+    return Command(m.command, parameters, mavlink.MAV_FRAME_GLOBAL)
+
+
+def _of_int(m: Message) -> Command:
+    unit = 1e-7 if m.frame in GLOBAL_FRAMES else 1e-4 if m.frame in LOCAL_FRAMES else 1.0
+    x, y = (float("nan") if value == _NOT_GIVEN else value * unit for value in (m.x, m.y))
+    return Command(m.command, (m.param1, m.param2, m.param3, m.param4, x, y, m.z), m.frame)

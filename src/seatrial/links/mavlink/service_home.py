@@ -1,0 +1,101 @@
+"""Home, to which the vehicle returns, and the origin, from which positions count."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import ClassVar
+
+from pymavlink.dialects.v20 import all as mavlink
+
+from .codec import Message
+from .frames import GLOBAL_FRAMES, is_near
+from .geodesy import Ned
+from .radio import Sender
+from .scaling import deg_e7, int32, microseconds
+from .service import ACCEPTED, DENIED, FAILED, Builder, Command, Handler, Service
+
+
+class HomeService(Service):
+    """HOME_POSITION and GPS_GLOBAL_ORIGIN out; DO_SET_HOME, SET_HOME_POSITION,
+    GET_HOME_POSITION and SET_GPS_GLOBAL_ORIGIN in.
+
+    Home is the origin until somebody sets it; whoever does is answered with the new one, as
+    are all others. The origin belongs to the trial and stays: who sets it is told where it is.
+    """
+
+    streams: ClassVar = {mavlink.MAVLINK_MSG_ID_HOME_POSITION: 2.0}
+
+    @property
+    def commands(self) -> Mapping[int, Handler]:
+        """Commands that it carries out."""
+        return {
+            mavlink.MAV_CMD_DO_SET_HOME: self._set_home,
+            mavlink.MAV_CMD_GET_HOME_POSITION: self._tell_home,
+        }
+
+    @property
+    def messages(self) -> Mapping[int, Builder]:
+        """Messages that it can build."""
+        return {
+            mavlink.MAVLINK_MSG_ID_HOME_POSITION: self._home,
+            mavlink.MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN: self._origin,
+        }
+
+    def handle(self, message: Message, sender: Sender, now: float) -> None:
+        """Set home, or tell the origin."""
+        match message.get_type():
+            case "SET_HOME_POSITION":
+                self._move(
+                    message.latitude * 1e-7, message.longitude * 1e-7, message.altitude * 1e-3, now
+                )
+            case "SET_GPS_GLOBAL_ORIGIN":
+                self.air.send(sender.link, self._origin(now)[0])
+
+    def _set_home(self, command: Command, sender: Sender, now: float) -> int:
+        if command.parameters[0] == 1.0:
+            if not self.vehicle.estimates.position_valid:
+                return FAILED
+            self._moved(self.vehicle.estimates.position_n, now)
+            return ACCEPTED
+        if command.frame not in GLOBAL_FRAMES:
+            return DENIED
+        latitude, longitude, altitude = command.parameters[4:]
+        return ACCEPTED if self._move(latitude, longitude, altitude, now) else DENIED
+
+    def _move(self, latitude: float, longitude: float, altitude: float, now: float) -> bool:
+        """Move home to degrees and m above the sea; say if that is a place near enough."""
+        if not (abs(latitude) <= 90.0 and abs(longitude) <= 180.0 and math.isfinite(altitude)):
+            return False
+        position = self.vehicle.origin.position(latitude, longitude, altitude)
+        if is_near(*position):
+            self._moved(position, now)
+        return is_near(*position)
+
+    def _moved(self, position: Ned, now: float) -> None:
+        self.vehicle.home_n = position
+        self.air.broadcast(self._home(now)[0])
+
+    def _tell_home(self, command: Command, sender: Sender, now: float) -> int:
+        self.air.send(sender.link, self._home(now)[0])
+        return ACCEPTED
+
+    def _home(self, now: float) -> list[Message]:
+        latitude, longitude, altitude = self.vehicle.origin.geodetic(self.vehicle.home_n)
+        return [
+            mavlink.MAVLink_home_position_message(
+                *(deg_e7(latitude), deg_e7(longitude), int32(altitude * 1e3)),
+                *self.vehicle.home_n,
+                [1.0, 0.0, 0.0, 0.0],
+                *(0.0, 0.0, 0.0),
+                microseconds(now),
+            )
+        ]
+
+    def _origin(self, now: float) -> list[Message]:
+        latitude, longitude, altitude = self.vehicle.origin.geodetic((0.0, 0.0, 0.0))
+        return [
+            mavlink.MAVLink_gps_global_origin_message(
+                *(deg_e7(latitude), deg_e7(longitude), int32(altitude * 1e3)), microseconds(now)
+            )
+        ]

@@ -1,0 +1,194 @@
+"""Missions: started, paused, told of; and single waypoints for guided mode."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any, ClassVar
+
+from pymavlink.dialects.v20 import all as mavlink
+
+from .codec import Message
+from .geodesy import Ned
+from .mission_runner import Leg, MissionRunner
+from .modes import Mode
+from .plan import Plan
+from .plan_checks import check_place
+from .plan_items import Item, from_message
+from .radio import Air, Sender
+from .service import (
+    ACCEPTED,
+    DENIED,
+    FAILED,
+    WARNING,
+    Builder,
+    Command,
+    Handler,
+    Service,
+    whole,
+)
+from .service_modes import ModeService
+from .settings import Settings
+from .vehicle import Target, Vehicle
+
+_NO_MISSION = 0xFFFF
+_GUIDED_ITEM = 2
+"""MISSION_ITEM's ``current`` for a place to go to at once."""
+
+
+class MissionService(Service):
+    """MISSION_CURRENT and MISSION_ITEM_REACHED out; MISSION_START, DO_PAUSE_CONTINUE,
+    DO_SET_MISSION_CURRENT, MISSION_SET_CURRENT and DO_CHANGE_SPEED in.
+
+    MISSION_CURRENT comes every second and at every change. The mode auto is refused without a
+    mission. MISSION_START goes on, or begins again after the end; DO_PAUSE_CONTINUE counts in
+    auto only, DO_CHANGE_SPEED too.
+
+    A MISSION_ITEM whose ``current`` is 2 is not part of a mission, but a place to go to in guided
+    mode: some clients know no other way.
+
+    ``reached`` is what guidance says, `leg` what it is to follow.
+    """
+
+    streams: ClassVar = {mavlink.MAVLINK_MSG_ID_MISSION_CURRENT: 1.0}
+
+    def __init__(
+        self,
+        vehicle: Vehicle,
+        air: Air,
+        plan: Plan,
+        settings: Settings,
+        modes: ModeService,
+        set_home: Handler,
+        refuge: Callable[[], Ned],
+    ) -> None:
+        super().__init__(vehicle, air)
+        self._plan, self._modes, self._set_home = plan, modes, set_home
+        self._runner = MissionRunner(vehicle, plan, settings, self._move_home, refuge)
+        modes.requirements.append(self._needs_mission)
+        self.reached = 0
+        """Number of the leg that is done, as guidance says; 0 for none."""
+        self._told: dict[str, Any] = {}
+        self._asked = False
+
+    @property
+    def leg(self) -> Leg:
+        """What guidance is to follow."""
+        return self._runner.leg
+
+    @property
+    def commands(self) -> Mapping[int, Handler]:
+        """Commands that it carries out."""
+        return {
+            mavlink.MAV_CMD_MISSION_START: self._start,
+            mavlink.MAV_CMD_DO_PAUSE_CONTINUE: self._pause_or_continue,
+            mavlink.MAV_CMD_DO_SET_MISSION_CURRENT: self._set_current,
+            mavlink.MAV_CMD_DO_CHANGE_SPEED: self._change_speed,
+        }
+
+    @property
+    def messages(self) -> Mapping[int, Builder]:
+        """Messages that it can build."""
+        return {mavlink.MAVLINK_MSG_ID_MISSION_CURRENT: self._current}
+
+    def handle(self, message: Message, sender: Sender, now: float) -> None:
+        """Set the current item, or go to a place in guided mode."""
+        match message.get_type():
+            case "MISSION_SET_CURRENT":
+                if not self._runner.set_current(message.seq):
+                    self.vehicle.say(WARNING, f"There is no mission item {message.seq}")
+                self._asked = True
+            case "MISSION_ITEM" | "MISSION_ITEM_INT" if message.current == _GUIDED_ITEM:
+                result = self._guide(from_message(message))
+                target = (sender.system, sender.component)
+                answer = mavlink.MAVLink_mission_ack_message(*target, result, self._plan.kind)
+                self.air.send(sender.link, answer)
+
+    def tick(self, now: float) -> None:
+        """Go on with the mission, and tell what has changed."""
+        self._runner.tick(now, self.reached)
+        for sequence in self._runner.passed:
+            self.air.broadcast(mavlink.MAVLink_mission_item_reached_message(sequence))
+        self._runner.passed.clear()
+        current = self._current(now)[0]
+        if self._asked or current.to_dict() != self._told:
+            self._asked, self._told = False, current.to_dict()
+            self.air.broadcast(current)
+
+    # ------------------------------------------------------------------ commands
+
+    def _start(self, command: Command, sender: Sender, now: float) -> int:
+        first, last = (0.0 if math.isnan(p) else p for p in command.parameters[:2])
+        sequence, count = whole(first), len(self._plan.items)
+        if sequence is None or sequence not in range(max(count, 1)) or last not in (0, count - 1):
+            return DENIED
+        mode = self.vehicle.flavour.mode("auto")
+        reason = "there is no such mode" if mode is None else self._modes.enter(mode)
+        if reason is not None:
+            self.vehicle.say(WARNING, f"Mission not started: {reason}")
+            return FAILED
+        self._runner.paused = False
+        if sequence:
+            self._runner.set_current(sequence)
+        elif self._runner.state == mavlink.MISSION_STATE_COMPLETE:
+            self._runner.restart()
+        return ACCEPTED
+
+    def _pause_or_continue(self, command: Command, sender: Sender, now: float) -> int:
+        goes_on = command.parameters[0]
+        if goes_on not in (0.0, 1.0) or self.vehicle.mode.name != "auto":
+            return DENIED
+        self._runner.paused = not goes_on
+        return ACCEPTED
+
+    def _set_current(self, command: Command, sender: Sender, now: float) -> int:
+        sequence, resets = (whole(p) for p in command.parameters[:2])
+        if sequence is None or (sequence >= 0 and not self._runner.set_current(sequence)):
+            return FAILED
+        if resets == 1:
+            self._runner.forget_jumps()
+        self._asked = True
+        return ACCEPTED
+
+    def _change_speed(self, command: Command, sender: Sender, now: float) -> int:
+        if self.vehicle.mode.name != "auto":
+            self.vehicle.say(WARNING, "Speeds change in a mission only")
+            return DENIED
+        self._runner.change_speed(command.parameters[1])
+        return ACCEPTED
+
+    def _needs_mission(self, mode: Mode) -> str | None:
+        return "no mission" if mode.name == "auto" and self._runner.is_empty else None
+
+    # ------------------------------------------------------------------ inside
+
+    def _guide(self, item: Item) -> int:
+        """Go to an item's place; return MAV_MISSION_RESULT."""
+        if self.vehicle.mode.name != "guided":
+            self.vehicle.say(WARNING, "Not in guided mode")
+            return int(mavlink.MAV_MISSION_DENIED)
+        place = item.place(self.vehicle)
+        refusal = check_place(item, place)
+        if place is None or refusal is not None:
+            return refusal.result if refusal else int(mavlink.MAV_MISSION_INVALID)
+        self.vehicle.target = Target("position", place)
+        return int(mavlink.MAV_MISSION_ACCEPTED)
+
+    def _move_home(self, item: Item, now: float) -> None:
+        """Carry DO_SET_HOME of a mission out."""
+        command = Command(item.command, (*item.parameters, *item.coordinates(), item.z), item.frame)
+        ourselves = Sender(self.vehicle.identity.system, self.vehicle.identity.component, -1)
+        if self._set_home(command, ourselves, now) != ACCEPTED:
+            self.vehicle.say(WARNING, "Mission: home cannot be moved there")
+
+    def _current(self, now: float) -> list[Message]:
+        runner = self._runner
+        in_auto = self.vehicle.mode.name == "auto"
+        if runner.is_empty:
+            state, sequence, total = mavlink.MISSION_STATE_NO_MISSION, 0, _NO_MISSION
+        else:
+            state, sequence = runner.state, runner.current
+            total = len(self._plan.items) - runner.first  # home does not count
+        return [
+            mavlink.MAVLink_mission_current_message(sequence, total, state, 1 if in_auto else 2)
+        ]

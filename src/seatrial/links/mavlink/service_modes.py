@@ -1,0 +1,117 @@
+"""Modes: asked for by command or message, listed, told."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import ClassVar
+
+from pymavlink.dialects.v20 import all as mavlink
+
+from .codec import Message
+from .modes import POSITION_MODES, Mode
+from .radio import Air, Sender
+from .service import (
+    ACCEPTED,
+    DENIED,
+    FAILED,
+    INFO,
+    UNSUPPORTED,
+    WARNING,
+    Builder,
+    Command,
+    Handler,
+    Service,
+)
+from .vehicle import Vehicle
+
+Requirement = Callable[[Mode], str | None]
+"""Returns why a mode cannot be entered now, None if nothing speaks against it."""
+
+
+class ModeService(Service):
+    """DO_SET_MODE, SET_MODE and RETURN_TO_LAUNCH in, CURRENT_MODE and AVAILABLE_MODES out.
+
+    A mode of `POSITION_MODES` needs a valid position; other services add ``requirements`` of
+    theirs. What is refused is said, with the reason.
+    """
+
+    streams: ClassVar = {mavlink.MAVLINK_MSG_ID_CURRENT_MODE: 1.0}
+
+    def __init__(self, vehicle: Vehicle, air: Air) -> None:
+        super().__init__(vehicle, air)
+        self.requirements: list[Requirement] = [self._needs_position]
+
+    @property
+    def commands(self) -> Mapping[int, Handler]:
+        """Commands that it carries out."""
+        return {
+            mavlink.MAV_CMD_DO_SET_MODE: self._set_mode,
+            mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH: self._return,
+        }
+
+    @property
+    def messages(self) -> Mapping[int, Builder]:
+        """Messages that it can build."""
+        return {
+            mavlink.MAVLINK_MSG_ID_CURRENT_MODE: self._current,
+            mavlink.MAVLINK_MSG_ID_AVAILABLE_MODES: self._available,
+        }
+
+    def enter(self, mode: Mode) -> str | None:
+        """Enter a mode; return why not, None if it is entered."""
+        for requirement in self.requirements:
+            reason = requirement(mode)
+            if reason is not None:
+                return reason
+        if mode != self.vehicle.mode:
+            self.vehicle.enter(mode)
+            self.vehicle.say(INFO, f"Mode {mode.shown}")
+        return None
+
+    def handle(self, message: Message, sender: Sender, now: float) -> None:
+        """Take SET_MODE."""
+        if message.get_type() != "SET_MODE":
+            return
+        if message.base_mode & mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED:
+            mode = self.vehicle.flavour.by_custom_mode(message.custom_mode)
+            self._entered(mode, message.custom_mode)
+
+    def _set_mode(self, command: Command, sender: Sender, now: float) -> int:
+        base, main, sub = command.parameters[:3]
+        custom = mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED
+        if not (0.0 <= base < 256.0 and int(base) & custom):
+            return DENIED
+        return self._entered(self.vehicle.flavour.by_command(main, sub), main)
+
+    def _return(self, command: Command, sender: Sender, now: float) -> int:
+        mode = self.vehicle.flavour.mode("return")
+        return UNSUPPORTED if mode is None else self._entered(mode, mode.custom_mode)
+
+    def _entered(self, mode: Mode | None, asked: float) -> int:
+        if mode is None:
+            self.vehicle.say(WARNING, f"There is no mode {asked:g}")
+            return DENIED
+        reason = self.enter(mode)
+        if reason is None:
+            return ACCEPTED
+        self.vehicle.say(WARNING, f"Mode {mode.shown} refused: {reason}")
+        return FAILED
+
+    def _needs_position(self, mode: Mode) -> str | None:
+        lost = mode.name in POSITION_MODES and not self.vehicle.estimates.position_valid
+        return "no position" if lost else None
+
+    def _current(self, now: float) -> list[Message]:
+        mode = self.vehicle.mode
+        return [
+            mavlink.MAVLink_current_mode_message(mode.standard, mode.custom_mode, mode.custom_mode)
+        ]
+
+    def _available(self, now: float) -> list[Message]:
+        modes = self.vehicle.flavour.modes
+        return [
+            mavlink.MAVLink_available_modes_message(
+                len(modes), index, mode.standard, mode.custom_mode, 0, mode.shown.encode()
+            )
+            for index, mode in enumerate(modes, 1)
+        ]

@@ -1,0 +1,144 @@
+"""Parameters: listed, read and set one by one."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from pymavlink.dialects.v20 import all as mavlink
+
+from .codec import Message
+from .parameter_definition import INT8, INT16, INT32, REAL32
+from .parameter_table import ParameterTable
+from .radio import Air, Sender
+from .service import WARNING, Service
+from .vehicle import Vehicle
+
+RATE = 100.0
+"""Parameters of a list that a link gets per second: 4 kB/s, which a slow radio still carries."""
+
+_LAYOUTS: Mapping[int, str] = {INT8: "<b3x", INT16: "<h2x", INT32: "<i", REAL32: "<f"}
+_BY_NAME = -1
+_SLACK_S = 1e-9  # what two doubles for one instant may differ by
+
+
+@dataclass
+class _Listing:
+    """A list on its way to a link: the next index, how many are left, when the next is due."""
+
+    index: int
+    left: int
+    due: float
+
+
+class ParameterService(Service):
+    """PARAM_REQUEST_LIST, PARAM_REQUEST_READ and PARAM_SET in; PARAM_VALUE, PARAM_ERROR out.
+
+    **Lists** go to the link that asked, `RATE` parameters a second of simulated time. Whoever
+    asks again meanwhile lets the list go round once more from where it is, so a station that
+    repeats itself, or a second one on the same link, gets all of it. What was lost is read by
+    index. Links have lists of their own.
+
+    **Reads** are answered at once, over the same link. **Setting** is answered to all links by
+    the new value; where it is refused, to the sender by the old value, as an ArduPilot does it,
+    with PARAM_ERROR and a status text that gives the reason. An unknown name or index gets
+    PARAM_ERROR alone: stations that do not know it wait for nothing, as with other vehicles.
+
+    **Integers** travel as numbers (ArduPilot; rounded, and exact up to 2^24) or as the four
+    bytes of their type (PX4, which refuses a value of another type than the parameter's).
+
+    Not here: the extended protocol, and PX4's hash of all parameters.
+    """
+
+    def __init__(self, vehicle: Vehicle, air: Air, table: ParameterTable) -> None:
+        super().__init__(vehicle, air)
+        self.table = table
+        self._listings: dict[int, _Listing] = {}
+        self._bytewise = vehicle.flavour.bytewise_parameters
+        vehicle.capabilities |= (
+            mavlink.MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_BYTEWISE
+            if self._bytewise
+            else mavlink.MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_C_CAST
+        )
+
+    def handle(self, message: Message, sender: Sender, now: float) -> None:
+        """Begin a list, answer a read, set a value."""
+        match message.get_type():
+            case "PARAM_REQUEST_LIST":
+                running = self._listings.get(sender.link)
+                index, due = (running.index, running.due) if running else (0, now)
+                self._listings[sender.link] = _Listing(index, len(self.table.names), due)
+            case "PARAM_REQUEST_READ":
+                self._read(message.param_id, message.param_index, sender)
+            case "PARAM_SET":
+                self._set(message, sender)
+
+    def tick(self, now: float) -> None:
+        """Send what is due of the lists, and forget those of links that are gone."""
+        links = set(self.air.links())
+        self._listings = {k: v for k, v in self._listings.items() if v.left and k in links}
+        for link, listing in self._listings.items():
+            while listing.left and now >= listing.due - _SLACK_S:
+                self.air.send(link, self._value(self.table.names[listing.index]))
+                listing.index = (listing.index + 1) % len(self.table.names)
+                listing.left -= 1
+                listing.due += 1.0 / RATE
+
+    def _read(self, name: str, index: int, sender: Sender) -> None:
+        if index != _BY_NAME:
+            known = 0 <= index < len(self.table.names)
+            name = self.table.names[index] if known else ""
+        if name in self.table:
+            self.air.send(sender.link, self._value(name))
+        else:
+            self._refuse(name, index, mavlink.MAV_PARAM_ERROR_DOES_NOT_EXIST, sender)
+
+    def _set(self, message: Message, sender: Sender) -> None:
+        name = message.param_id
+        if name not in self.table:
+            self._refuse(name, _BY_NAME, mavlink.MAV_PARAM_ERROR_DOES_NOT_EXIST, sender)
+            return
+        kind = self.table.kind(name)
+        if self._bytewise and message.param_type != kind:
+            error, reason = mavlink.MAV_PARAM_ERROR_VALUE_OUT_OF_RANGE, "it is of another type"
+        else:
+            refusal = self.table.put(name, self._decoded(message.param_value, kind))
+            if refusal is None:
+                self.air.broadcast(self._value(name))
+                return
+            error, reason = refusal.error, refusal.reason
+        self.air.send(sender.link, self._value(name))
+        self._refuse(name, self.table.index(name), error, sender)
+        self.vehicle.say(WARNING, f"{name} stays {self.table[name]:g}: {reason}")
+
+    def _refuse(self, name: str, index: int, error: int, sender: Sender) -> None:
+        answer = mavlink.MAVLink_param_error_message(
+            sender.system, sender.component, _identifier(name), index, error
+        )
+        self.air.send(sender.link, answer)
+
+    def _value(self, name: str) -> Message:
+        kind = self.table.kind(name)
+        return mavlink.MAVLink_param_value_message(
+            _identifier(name),
+            self._encoded(self.table[name], kind),
+            kind,
+            len(self.table.names),
+            self.table.index(name),
+        )
+
+    def _encoded(self, value: float, kind: int) -> float:
+        if not self._bytewise or kind == REAL32:
+            return value
+        packed = struct.pack(_LAYOUTS[kind], round(value))
+        return float(struct.unpack("<f", packed)[0])
+
+    def _decoded(self, value: float, kind: int) -> float:
+        if not self._bytewise or kind == REAL32:
+            return value
+        return float(struct.unpack(_LAYOUTS[kind], struct.pack("<f", value))[0])
+
+
+def _identifier(name: str) -> bytes:
+    return name.encode("ascii", "replace")[:16]

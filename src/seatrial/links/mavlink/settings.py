@@ -1,0 +1,48 @@
+"""What decides how the vehicle acts, and may change while it does: parameters lead here."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+ALL_CHECKS, COMPASS_CHECK, GPS_CHECK = 1 << 0, 1 << 2, 1 << 3
+"""Bits of `Settings.arming_check`, as ArduPilot's ARMING_CHECK has them."""
+
+
+@dataclass
+class Settings:
+    """Settings of one vehicle. Services read them when they need them and keep no copies.
+
+    SI. The values given at the start are the defaults of the parameters that lead here.
+    """
+
+    failsafe: str = "hold"
+    station_timeout: float = 5.0
+    stick_timeout: float = 3.0
+    target_timeout: float = 3.0
+    full_speed: float = 1.0
+    """Speed of full thrust in SET_ATTITUDE_TARGET, m/s."""
+    cruise_speed: float = 1.0
+    waypoint_speed: float = 0.0
+    """Speed to waypoints, m/s; 0 is the cruise speed."""
+    waypoint_radius: float = 3.0
+    """Distance at which a waypoint is reached, m."""
+    loiter_radius: float = 10.0
+    """Radius of turns that name none, m."""
+    fence_action: str = "hold"
+    """What it does outside its fence: one of the actions of the failsafe."""
+    fence_depth: float = 0.0
+    """Depth of the fence's floor, m; 0 for none."""
+    watches_stations: bool = True
+    """Whether the failsafe acts when all ground stations are lost."""
+    watches_sticks: bool = True
+    """Whether the failsafe acts when the sticks are lost."""
+    arming_check: int = ALL_CHECKS
+
+    @property
+    def leg_speed(self) -> float:
+        """Speed of a leg that names none, m/s."""
+        return self.waypoint_speed or self.cruise_speed
+
+    def checks(self, check: int = 0) -> bool:
+        """Say if arming waits for ``check``; without one, for what has no bit of its own."""
+        return bool(self.arming_check & (ALL_CHECKS | check) if check else self.arming_check)

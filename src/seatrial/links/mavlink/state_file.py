@@ -1,0 +1,57 @@
+"""What a vehicle remembers from one run to the next, in a file."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+from pathlib import Path
+from typing import Any
+
+from ...errors import InputError
+
+
+class StateFile:
+    """A JSON object on disk, one key per service that remembers something; none for no path.
+
+    Raises InputError for a file that is not such an object or cannot be read, and when it
+    cannot be written.
+    """
+
+    def __init__(self, path: Path | None) -> None:
+        self._path = path
+        self._content: dict[str, Any] = _read(path) if path is not None else {}
+
+    def get(self, key: str, default: Any) -> Any:
+        """Return what was put under ``key``, in this run or an earlier one."""
+        return self._content.get(key, default)
+
+    def put(self, key: str, value: Any) -> None:
+        """Remember ``value`` (plain data) under ``key``; on disk when this returns."""
+        self._content[key] = value
+        if self._path is not None:
+            self._write(self._path)
+
+    def _write(self, path: Path) -> None:
+        new = path.with_name(f".{path.name}.{os.getpid()}.new")
+        try:
+            new.write_text(json.dumps(self._content, indent=1) + "\n", "utf-8")
+            os.replace(new, path)  # never half a file
+        except OSError as error:
+            with contextlib.suppress(OSError):
+                new.unlink()
+            raise InputError(f"state file {path}: {error.strerror}") from None
+
+
+def _read(path: Path) -> dict[str, Any]:
+    try:
+        content = json.loads(path.read_text("utf-8"))
+    except FileNotFoundError:
+        return {}
+    except OSError as error:
+        raise InputError(f"state file {path}: {error.strerror}") from None
+    except ValueError as error:
+        raise InputError(f"state file {path}: not JSON: {error}") from None
+    if not isinstance(content, dict):
+        raise InputError(f"state file {path}: a JSON object is needed")
+    return content

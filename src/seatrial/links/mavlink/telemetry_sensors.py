@@ -1,0 +1,169 @@
+"""What the vehicle says of its sensors: satellites, inertia, pressure, wind, battery."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import ClassVar
+
+from pymavlink.dialects.v20 import all as mavlink
+
+from .codec import Message
+from .scaling import (
+    STANDARD_GRAVITY,
+    UNKNOWN_U16,
+    clamped,
+    compass_degrees,
+    deg_e7,
+    int16,
+    int32,
+    microseconds,
+    milliseconds,
+    turned,
+    uint16,
+)
+from .service import Builder, Service
+
+_IMU_AND_PRESSURE = 0x7 | 0x38 | 0x200
+"""HIGHRES_IMU's fields_updated: acceleration, rates, absolute pressure."""
+
+
+class SensorTelemetry(Service):
+    """GPS_RAW_INT, SCALED_IMU, HIGHRES_IMU, SCALED_PRESSURE (of the water, SCALED_PRESSURE2, in
+    a submarine), WIND and WIND_COV, BATTERY_STATUS, NAMED_VALUE_FLOAT.
+
+    The true wind is the apparent one, which is measured in the horizontal plane here, turned
+    by the heading, plus the vehicle's velocity.
+    """
+
+    streams: ClassVar = {
+        mavlink.MAVLINK_MSG_ID_GPS_RAW_INT: 0.5,
+        mavlink.MAVLINK_MSG_ID_SCALED_IMU: 0.5,
+        mavlink.MAVLINK_MSG_ID_HIGHRES_IMU: 0.5,
+        mavlink.MAVLINK_MSG_ID_SCALED_PRESSURE: 1.0,
+        mavlink.MAVLINK_MSG_ID_SCALED_PRESSURE2: 1.0,
+        mavlink.MAVLINK_MSG_ID_WIND: 1.0,
+        mavlink.MAVLINK_MSG_ID_WIND_COV: 1.0,
+        mavlink.MAVLINK_MSG_ID_BATTERY_STATUS: 1.0,
+        mavlink.MAVLINK_MSG_ID_NAMED_VALUE_FLOAT: 0.5,
+    }
+
+    @property
+    def messages(self) -> Mapping[int, Builder]:
+        """Messages that it can build."""
+        return {
+            mavlink.MAVLINK_MSG_ID_GPS_RAW_INT: self._gps,
+            mavlink.MAVLINK_MSG_ID_SCALED_IMU: self._scaled_imu,
+            mavlink.MAVLINK_MSG_ID_HIGHRES_IMU: self._highres_imu,
+            mavlink.MAVLINK_MSG_ID_SCALED_PRESSURE: self._pressure_of_air,
+            mavlink.MAVLINK_MSG_ID_SCALED_PRESSURE2: self._pressure_of_water,
+            mavlink.MAVLINK_MSG_ID_WIND: self._wind,
+            mavlink.MAVLINK_MSG_ID_WIND_COV: self._wind_cov,
+            mavlink.MAVLINK_MSG_ID_BATTERY_STATUS: self._battery,
+            mavlink.MAVLINK_MSG_ID_NAMED_VALUE_FLOAT: self._named,
+        }
+
+    def _gps(self, now: float) -> list[Message]:
+        e = self.vehicle.estimates
+        if self.vehicle.identity.submerged and not e.position_valid:
+            return []
+        latitude, longitude, altitude = self.vehicle.origin.geodetic(e.position_n)
+        north, east, _ = e.velocity_n
+        course = round(compass_degrees(math.atan2(east, north)) * 100) % 36000
+        fix = mavlink.GPS_FIX_TYPE_3D_FIX if e.position_valid else mavlink.GPS_FIX_TYPE_NO_FIX
+        return [
+            mavlink.MAVLink_gps_raw_int_message(
+                microseconds(now),
+                fix,
+                deg_e7(latitude),
+                deg_e7(longitude),
+                int32(altitude * 1e3),
+                *(UNKNOWN_U16, UNKNOWN_U16),
+                uint16(math.hypot(north, east) * 100),
+                course,
+                0xFF,
+            )
+        ]
+
+    def _scaled_imu(self, now: float) -> list[Message]:
+        e = self.vehicle.estimates
+        return [
+            mavlink.MAVLink_scaled_imu_message(
+                milliseconds(now),
+                *(int16(a / STANDARD_GRAVITY * 1e3) for a in e.specific_force),
+                *(int16(w * 1e3) for w in e.rates),
+                *(0, 0, 0),
+            )
+        ]
+
+    def _highres_imu(self, now: float) -> list[Message]:
+        e = self.vehicle.estimates
+        return [
+            mavlink.MAVLink_highres_imu_message(
+                microseconds(now),
+                *e.specific_force,
+                *e.rates,
+                *(0.0, 0.0, 0.0),
+                e.pressure / 100.0,
+                *(0.0, 0.0, 0.0),
+                _IMU_AND_PRESSURE,
+            )
+        ]
+
+    def _pressure_of_air(self, now: float) -> list[Message]:
+        if self.vehicle.identity.submerged:
+            return []
+        pressure = self.vehicle.estimates.pressure / 100.0
+        return [mavlink.MAVLink_scaled_pressure_message(milliseconds(now), pressure, 0.0, 0)]
+
+    def _pressure_of_water(self, now: float) -> list[Message]:
+        if not self.vehicle.identity.submerged:
+            return []
+        pressure = self.vehicle.estimates.pressure / 100.0
+        return [mavlink.MAVLink_scaled_pressure2_message(milliseconds(now), pressure, 0.0, 0)]
+
+    def _wind(self, now: float) -> list[Message]:
+        true = self._true_wind()
+        if true is None:
+            return []
+        comes_from = compass_degrees(math.atan2(-true[1], -true[0]))
+        return [mavlink.MAVLink_wind_message(comes_from, math.hypot(*true), 0.0)]
+
+    def _wind_cov(self, now: float) -> list[Message]:
+        true = self._true_wind()
+        if true is None:
+            return []
+        unknown = [math.nan] * 5
+        return [mavlink.MAVLink_wind_cov_message(microseconds(now), *true, 0.0, *unknown)]
+
+    def _battery(self, now: float) -> list[Message]:
+        e = self.vehicle.estimates
+        if e.voltage is None:
+            return []
+        return [
+            mavlink.MAVLink_battery_status_message(
+                0,
+                mavlink.MAV_BATTERY_FUNCTION_ALL,
+                mavlink.MAV_BATTERY_TYPE_UNKNOWN,
+                0x7FFF,
+                [uint16(e.voltage * 1e3), *[UNKNOWN_U16] * 9],
+                -1 if e.current is None else int16(e.current * 100),
+                *(-1, -1),
+                -1 if e.charge is None else clamped(e.charge * 100, 0, 100),
+            )
+        ]
+
+    def _named(self, now: float) -> list[Message]:
+        return [
+            mavlink.MAVLink_named_value_float_message(milliseconds(now), name.encode(), value)
+            for name, value in self.vehicle.estimates.named
+        ]
+
+    def _true_wind(self) -> tuple[float, float] | None:
+        """Return where the wind blows to, north and east, m/s."""
+        e = self.vehicle.estimates
+        if e.apparent_wind is None:
+            return None
+        speed, angle = e.apparent_wind
+        north, east = turned(e.attitude[2], speed * math.cos(angle), speed * math.sin(angle))
+        return north + e.velocity_n[0], east + e.velocity_n[1]

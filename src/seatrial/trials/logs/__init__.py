@@ -1,0 +1,1 @@
+"""Records as logs that other tools read, one format per file."""

@@ -1,0 +1,299 @@
+"""The component, against pymavlink's own connections on the loopback device."""
+
+import hashlib
+import itertools
+import math
+import time
+
+import pytest
+from pymavlink import mavutil
+from pymavlink.dialects.v20 import all as mavlink
+
+from seatrial.cosim.profile import load_profile
+from seatrial.errors import InputError, SimulationError
+from seatrial.links.mavlink.component import Mavlink
+
+WAIT_S = 10.0
+
+
+def made(**values):
+    component = Mavlink("link")
+    for name, value in {"position_valid": True, "links": "udpin:127.0.0.1:0", **values}.items():
+        component.set(name, value)
+    return component
+
+
+@pytest.fixture
+def started():
+    """Return a function that starts a component, closed after the test."""
+    components = []
+
+    def start(**values):
+        components.append(made(**values))
+        components[-1].initialise()
+        components[-1].begin()
+        return components[-1]
+
+    yield start
+    for component in components:
+        component.close()
+
+
+@pytest.fixture
+def connect():
+    """Return a function that connects a ground station to a URL of a component."""
+    connections = []
+
+    def to(url, system=255):
+        kind, _, place = url.partition(":")
+        there = {"udpin": f"udpout:{place}", "tcpin": f"tcp:{place}"}[kind]
+        connections.append(mavutil.mavlink_connection(there, source_system=system))
+        connections[-1].mav.heartbeat_send(6, 8, 0, 0, 4)
+        return connections[-1]
+
+    yield to
+    for connection in connections:
+        connection.close()
+
+
+def steps(component):
+    """Step by 10 ms, for ever."""
+    for k in itertools.count(round(component.now * 100)):
+        component.advance(k / 100, 0.01)
+        yield
+
+
+def until(component, wanted):
+    """Step until ``wanted()`` gives something, and return it; sockets take real time."""
+    deadline = time.monotonic() + WAIT_S
+    for _ in steps(component):
+        found = wanted()
+        if found:
+            return found
+        assert time.monotonic() < deadline, "nothing came"
+        time.sleep(0.0002)
+    return None
+
+
+def heard(component, station, kind, accept=lambda m: True):
+    """Step until the ground station hears such a message, and return it."""
+
+    def found():
+        message = station.recv_match(type=kind)
+        return message if message is not None and accept(message) else None
+
+    return until(component, found)
+
+
+@pytest.mark.parametrize("link", ["udpin:127.0.0.1:0", "tcpin:127.0.0.1:0"])
+def test_a_ground_station_sees_arms_and_drives_it(started, connect, link):
+    boat = started(links=link)
+    station = connect(boat.urls[0])
+    heartbeat = heard(boat, station, "HEARTBEAT")
+    assert (heartbeat.type, heartbeat.autopilot) == (11, 3)
+    assert station.target_system == 1
+    station.mav.command_long_send(1, 1, 400, 0, 1, 0, 0, 0, 0, 0, 0)
+    assert heard(boat, station, "COMMAND_ACK").result == mavlink.MAV_RESULT_ACCEPTED
+    station.set_mode("MANUAL")
+    until(boat, lambda: boat.get("mode") == "manual")
+    assert boat.get("armed")
+    station.mav.manual_control_send(1, 0, 250, 500, 0, 0)
+    until(boat, lambda: boat.get("manual") == [0.5, 0.0, 0.25, 0.0])
+    station.mav.command_long_send(1, 1, 400, 0, 0, 0, 0, 0, 0, 0, 0)
+    until(boat, lambda: not boat.get("armed"))
+    assert boat.get("manual") == [0.0] * 4
+
+
+def test_it_calls_a_ground_station_that_listens(started):
+    station = mavutil.mavlink_connection("udpin:127.0.0.1:0")
+    try:
+        port = station.port.getsockname()[1]
+        boat = started(links=f"udpout:127.0.0.1:{port}")
+        assert heard(boat, station, "HEARTBEAT").get_srcSystem() == 1
+        station.mav.heartbeat_send(6, 8, 0, 0, 4)
+        until(boat, lambda: boat.get("ground_stations") == 1)
+    finally:
+        station.close()
+
+
+def test_two_ground_stations_at_once(started, connect):
+    boat = started(links="udpin:127.0.0.1:0 tcpin:127.0.0.1:0")
+    one, other = connect(boat.urls[0], 255), connect(boat.urls[1], 250)
+    until(boat, lambda: boat.get("ground_stations") == 2)
+    one.mav.command_long_send(1, 1, 519, 0, 1, 0, 0, 0, 0, 0, 0)
+    other.mav.command_long_send(1, 1, 512, 0, 148, 0, 0, 0, 0, 0, 0)
+    assert heard(boat, one, "COMMAND_ACK").command == 519
+    assert heard(boat, other, "AUTOPILOT_VERSION")
+    assert heard(boat, other, "COMMAND_ACK").command == 512
+    # No frame is lost on the way to either, whoever gets which.
+    assert (one.mav_loss, other.mav_loss) == (0, 0)
+
+
+def test_a_second_ground_station_on_the_same_endpoint_loses_nothing(started, connect):
+    boat = started()
+    one, other = connect(boat.urls[0], 255), connect(boat.urls[0], 250)
+    until(boat, lambda: boat.get("ground_stations") == 2)
+    for _ in range(20):
+        one.mav.command_long_send(1, 1, 512, 0, 148, 0, 0, 0, 0, 0, 0)
+        assert heard(boat, one, "AUTOPILOT_VERSION")
+    heard(boat, other, "HEARTBEAT")
+    assert (one.mav_loss, other.mav_loss) == (0, 0)
+
+
+def test_guided_set_points_come_out_at_ports(started, connect):
+    boat = started()
+    boat.set("attitude", [0.0, 0.0, math.pi / 2])
+    station = connect(boat.urls[0])
+    station.mav.set_mode_send(1, 1, 15)
+    until(boat, lambda: boat.get("mode") == "guided")
+    assert not boat.get("target_valid")
+    station.mav.set_position_target_local_ned_send(
+        0, 1, 1, 8, 0xDC7, 0, 0, 0, 0.6, 0, 0, 0, 0, 0, 0, 0
+    )
+    until(boat, lambda: boat.get("target_valid"))
+    assert boat.get("target_kind") == "velocity"
+    assert boat.get("target_velocity") == pytest.approx([0.0, 0.6, 0.0], abs=1e-6)
+    for _ in itertools.islice(steps(boat), 310):
+        pass
+    assert not boat.get("target_valid")
+    station.mav.command_long_send(1, 1, 179, 0, 0, 0, 0, 0, 0.001, 0.002, 0)
+    until(boat, lambda: boat.get("home")[0] != 0.0)
+    # 0.001 and 0.002 degrees from where the equator meets Greenwich.
+    assert boat.get("home") == pytest.approx([110.574, 222.639, 0.0], abs=0.01)
+
+
+def test_truth_goes_out_beside_the_estimates(started, connect):
+    boat = started(truth="on")
+    boat.set("position_n", [1.0, 2.0, 3.0])
+    boat.set("true_position", [0.0, 0.0, 4.0])
+    boat.set("true_attitude", [math.pi / 2, 0.0, 0.0])
+    boat.set("true_velocity", [1.0, 2.0, 0.0])
+    station = connect(boat.urls[0])
+    truth = heard(boat, station, "SIM_STATE")
+    assert (truth.lat_int, truth.alt) == (0, -4.0)
+    # On its starboard side, what is abeam points down, and the weight acts to starboard.
+    assert (truth.vn, truth.vd) == (pytest.approx(1.0), pytest.approx(2.0))
+    assert (truth.yacc, truth.zacc) == (pytest.approx(-9.80665), pytest.approx(0.0, abs=1e-6))
+    assert heard(boat, station, "LOCAL_POSITION_NED").z == 3.0
+
+
+def test_named_values_and_battery_come_from_ports(started, connect):
+    boat = started(names="rudder sail")
+    boat.set("named", [0.25, -0.5, 9, 9, 9, 9, 9, 9])
+    boat.set("voltage", 15.5)
+    station = connect(boat.urls[0])
+    assert heard(boat, station, "NAMED_VALUE_FLOAT", lambda m: m.name == "sail").value == -0.5
+    assert heard(boat, station, "BATTERY_STATUS").voltages[0] == 15500
+
+
+def test_signatures(started, connect, tmp_path):
+    key = tmp_path / "key"
+    key.write_text("correct horse\n")
+    state = tmp_path / "state.json"
+    boat = started(signing_key_file=str(key), state_file=str(state))
+    stranger, owner = connect(boat.urls[0], 250), connect(boat.urls[0], 255)
+    owner.setup_signing(hashlib.sha256(b"correct horse").digest(), sign_outgoing=True)
+    until(boat, lambda: boat.get("ground_stations") == 2)  # presence needs none
+    arm = (1, 1, 400, 0, 1, 0, 0, 0, 0, 0, 0)
+    for station in (stranger, owner):
+        # Nobody changes the key over a link, not even who knows it.
+        station.mav.setup_signing_send(1, 1, list(range(32)), 0)
+    stranger.mav.command_long_send(*arm)
+    for _ in itertools.islice(steps(boat), 50):
+        time.sleep(0.001)
+    assert not boat.get("armed")
+    owner.mav.command_long_send(*arm)
+    until(boat, lambda: boat.get("armed"))
+    assert heard(boat, owner, "COMMAND_ACK")._signed
+    boat.close()
+    assert "signing_timestamp" in state.read_text()
+
+
+def test_a_run_without_anybody_is_the_same_each_time(started):
+    def run(**values):
+        boat = started(**values)
+        rows = []
+        for _ in itertools.islice(steps(boat), 1000):
+            rows.append([boat.get(p.name) for p in boat.ports.values() if p.kind == "output"])
+        return rows
+
+    assert run() == run(links="tcpin:127.0.0.1:0 udpin:127.0.0.1:0") == run(links="")
+
+
+def test_times_count_from_the_start_of_the_run(started, connect):
+    boat = made(date="2026-02-05")
+    boat.setup(-1000.0)
+    boat.initialise()
+    boat.begin()
+    try:
+        station = connect(boat.urls[0])
+        clock = heard(boat, station, "SYSTEM_TIME")
+        assert clock.time_boot_ms < 60_000
+        midnight = 1_770_249_600  # 2026-02-05 00:00 UTC, Unix time
+        assert clock.time_unix_usec == midnight * 10**6 + clock.time_boot_ms * 1000
+    finally:
+        boat.close()
+
+
+def test_it_cannot_be_rolled_back(started):
+    with pytest.raises(SimulationError, match="reaches outside the simulation"):
+        started().get_state()
+
+
+def test_closed_it_gives_its_ports_back(started):
+    first = started(links="udpin:127.0.0.1:0 tcpin:127.0.0.1:0")
+    links = " ".join(first.urls)
+    with pytest.raises(InputError, match=r"link: cannot open the link 'udpin:.*in use"):
+        started(links=links)
+    first.close()
+    first.close()
+    assert started(links=links).urls == links.split()
+
+
+def test_a_parameter_set_late_opens_the_links_again(started):
+    boat = made()
+    boat.initialise()
+    try:
+        boat.set("links", "tcpin:127.0.0.1:0")
+        boat.get("armed")
+        assert [url.partition(":")[0] for url in boat.urls] == ["tcpin"]
+    finally:
+        boat.close()
+
+
+@pytest.mark.parametrize(
+    ("values", "said"),
+    [
+        ({"links": "udpin:127.0.0.1:0 upd:x:1"}, "unknown kind of link 'upd'"),
+        ({"firmware_version": "one"}, "firmware_version is 'one'"),
+        ({"uid": "0x12"}, "uid is '0x12'"),
+        ({"uid": str(2**64)}, "whole number from 0 to 2"),
+        ({"date": "5.2.2026"}, "date is '5.2.2026'"),
+        ({"system_id": 1.5}, "system_id is 1.5"),
+        ({"system_id": 256.0}, "system_id is 256.0"),
+        ({"names": "a b c d e f g h i"}, "names has 9 names, at most 8"),
+        ({"names": "far_too_long_name"}, "'far_too_long_name' is not a name"),
+        ({"failsafe": "surface"}, "unknown failsafe of this vehicle 'surface'"),
+        ({"failsafe": "panic"}, "unknown value of failsafe 'panic'"),
+        ({"vehicle_type": "submarin"}, "did you mean 'submarine'"),
+        ({"autopilot_type": "generic"}, "known: ardupilotmega, px4"),
+        ({"signing_key_file": "key"}, "signing_key_file needs state_file"),
+        ({"signing_key_file": "/no/such", "state_file": "/no/state"}, "signing key file /no/such"),
+    ],
+)
+def test_what_cannot_be_is_refused_at_the_start(values, said):
+    component = made(**values)
+    with pytest.raises(InputError) as caught:
+        component.initialise()
+    assert said in str(caught.value)
+    assert component.urls == []  # and nothing stays open
+
+
+def test_the_profile_says_who_it_is(started, connect):
+    parameters = load_profile("hydrone").parameters("identity")
+    boat = started(**parameters)
+    station = connect(boat.urls[0])
+    heartbeat = heard(boat, station, "HEARTBEAT")
+    assert (heartbeat.get_srcSystem(), heartbeat.type, heartbeat.autopilot) == (1, 11, 3)
+    home = heard(boat, station, "HOME_POSITION")
+    assert (home.latitude, home.longitude) == (-317800000, -522600000)

@@ -1,0 +1,71 @@
+import pytest
+from pymavlink import mavutil
+
+from seatrial.links.mavlink.modes import flavour
+
+
+@pytest.mark.parametrize(
+    ("submerged", "numbers"),
+    [(False, mavutil.mode_mapping_rover), (True, mavutil.mode_mapping_sub)],
+)
+def test_ardupilot_numbers_are_those_of_ground_stations(submerged, numbers):
+    modes = flavour("ardupilotmega", submerged=submerged).modes
+    assert {mode.custom_mode: mode.shown for mode in modes}.items() <= numbers.items()
+
+
+# Names that ground stations know PX4's modes by.
+PX4_NAMES = {
+    "manual": "MANUAL",
+    "hold": "LOITER",
+    "auto": "MISSION",
+    "return": "RTL",
+    "guided": "OFFBOARD",
+    "depth-hold": "ALTCTL",
+    "stabilize": "STABILIZED",
+    "surface": "LAND",
+}
+
+
+@pytest.mark.parametrize("submerged", [False, True])
+def test_px4_numbers_are_those_of_ground_stations(submerged):
+    for mode in flavour("px4", submerged=submerged).modes:
+        flags = 0x51 if mode.name == "manual" else 0x1D
+        assert mavutil.interpret_px4_mode(flags, mode.custom_mode) == PX4_NAMES[mode.name]
+
+
+@pytest.mark.parametrize("autopilot", ["ardupilotmega", "px4"])
+@pytest.mark.parametrize("submerged", [False, True])
+def test_numbers_and_names_are_unique_and_found(autopilot, submerged):
+    kind = flavour(autopilot, submerged=submerged)
+    for mode in kind.modes:
+        assert kind.mode(mode.name) is mode
+        assert kind.by_custom_mode(mode.custom_mode) is mode
+
+
+NAN, INF = float("nan"), float("inf")
+
+
+@pytest.mark.parametrize("sub", [0.0, NAN])
+def test_ardupilot_reads_one_number(sub):
+    assert flavour("ardupilotmega", submerged=False).by_command(15.0, sub).name == "guided"
+    assert flavour("ardupilotmega", submerged=True).by_command(19.0, sub).name == "manual"
+
+
+@pytest.mark.parametrize(
+    ("main", "sub", "name"),
+    [
+        (1.0, NAN, "manual"),
+        (4.0, 3.0, "hold"),
+        (4.0, 4.0, "auto"),
+        (4.0, 5.0, "return"),
+        (6.0, 0.0, "guided"),
+    ],
+)
+def test_px4_reads_main_and_sub_mode(main, sub, name):
+    assert flavour("px4", submerged=False).by_command(main, sub).name == name
+
+
+@pytest.mark.parametrize("autopilot", ["ardupilotmega", "px4"])
+@pytest.mark.parametrize("main", [NAN, INF, -INF, -1.0, 99.0, 1e30, 2.0**32])
+def test_what_is_no_mode_is_none(autopilot, main):
+    assert flavour(autopilot, submerged=False).by_command(main, 0.0) is None

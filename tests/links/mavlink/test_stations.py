@@ -1,0 +1,130 @@
+import pytest
+from pymavlink.dialects.v20 import all as mavlink
+
+from seatrial.errors import InputError
+from seatrial.links.mavlink.radio import Sender
+
+from .bench import OTHER_STATION, STATION, Bench
+
+
+def test_before_the_first_ground_station_nothing_happens():
+    bench = Bench()
+    bench.arm()
+    bench.wait(60.0)
+    assert (bench.vehicle.armed, bench.vehicle.failsafe) == (True, False)
+
+
+@pytest.mark.parametrize("armed", [False, True])
+def test_losing_the_last_one_is_what_counts(armed):
+    bench = Bench(station_timeout=5.0)
+    bench.enter("guided")
+    if armed:
+        bench.arm()
+    bench.heartbeat(STATION)
+    bench.heartbeat(OTHER_STATION)
+    for _ in range(10):  # one of them stays
+        bench.wait(1.0)
+        bench.heartbeat(OTHER_STATION)
+    assert bench.vehicle.stations == 1
+    assert not bench.vehicle.failsafe
+    bench.wait(5.0)
+    assert not bench.vehicle.failsafe
+    bench.tick()
+    assert bench.vehicle.failsafe
+    assert bench.vehicle.stations == 0
+    assert bench.vehicle.mode.name == ("hold" if armed else "guided")
+    assert bench.vehicle.armed is armed
+
+
+def test_it_acts_once_and_again_after_somebody_was_back():
+    bench = Bench(station_timeout=2.0)
+    bench.arm()
+    for _ in range(2):
+        bench.enter("guided")
+        bench.heartbeat()
+        assert not bench.vehicle.failsafe
+        bench.wait(3.0)
+        assert bench.vehicle.mode.name == "hold"
+        bench.enter("guided")  # somebody without a heartbeat; nobody acts against that
+        bench.wait(10.0)
+        assert bench.vehicle.mode.name == "guided"
+
+
+@pytest.mark.parametrize(
+    ("action", "submerged", "mode", "armed"),
+    [
+        ("none", False, "guided", True),
+        ("disarm", False, "guided", False),
+        ("hold", False, "hold", True),
+        ("loiter", False, "loiter", True),
+        ("return", False, "return", True),
+        ("surface", True, "surface", True),
+    ],
+)
+def test_every_action(action, submerged, mode, armed):
+    bench = Bench(failsafe=action, submerged=submerged)
+    bench.enter("guided")
+    bench.arm()
+    bench.heartbeat()
+    bench.wait(6.0)
+    assert (bench.vehicle.mode.name, bench.vehicle.armed) == (mode, armed)
+    said = [m.text for m in bench.air.take("STATUSTEXT")]
+    assert any("all ground stations lost" in text for text in said)
+
+
+def test_a_mode_that_cannot_be_entered_becomes_disarmed():
+    bench = Bench(failsafe="return")
+    bench.arm()
+    bench.measure(position_valid=False)
+    bench.heartbeat()
+    bench.wait(6.0)
+    assert (bench.vehicle.mode.name, bench.vehicle.armed) == ("hold", False)
+    said = [m.text for m in bench.air.take("STATUSTEXT")]
+    assert "Failsafe: return impossible, no position" in said
+
+
+def test_it_is_told_in_the_heartbeat_until_somebody_is_back():
+    bench = Bench()
+    bench.heartbeat()
+    bench.wait(6.0)
+    bench.air.take()
+    bench.wait(1.0)
+    assert bench.air.take("HEARTBEAT")[0].system_status == mavlink.MAV_STATE_CRITICAL
+    bench.heartbeat()
+    bench.tick()
+    assert bench.air.take("HEARTBEAT")[0].system_status == mavlink.MAV_STATE_STANDBY
+    assert "Ground station is back" in [m.text for m in bench.air.take("STATUSTEXT")]
+
+
+def test_one_failsafe_lasts_while_another_ends():
+    bench = Bench()
+    bench.enter("manual")
+    bench.arm()
+    bench.heartbeat()
+    bench.hear(mavlink.MAVLink_manual_control_message(7, 0, 0, 1000, 0, 0))
+    bench.wait(6.0)  # neither is there any more
+    bench.hear(mavlink.MAVLink_manual_control_message(7, 0, 0, 1000, 0, 0))
+    assert bench.vehicle.failsafe
+    bench.heartbeat()
+    assert not bench.vehicle.failsafe
+
+
+def test_other_components_are_no_ground_stations():
+    bench = Bench()
+    bench.heartbeat(kind=mavlink.MAV_TYPE_ONBOARD_CONTROLLER)
+    bench.tick()
+    assert bench.vehicle.stations == 0
+
+
+def test_the_number_of_ground_stations_is_bounded():
+    bench = Bench()
+    for system in range(1, 250):
+        bench.heartbeat(Sender(system, 5, 0))
+    bench.tick()
+    assert bench.vehicle.stations == 32
+
+
+@pytest.mark.parametrize(("action", "submerged"), [("surface", False), ("return", True)])
+def test_an_action_that_the_vehicle_cannot_carry_out_is_refused(action, submerged):
+    with pytest.raises(InputError, match=f"unknown failsafe of this vehicle '{action}'.*disarm"):
+        Bench(failsafe=action, submerged=submerged)
