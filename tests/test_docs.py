@@ -36,6 +36,7 @@ FILES, COMPONENTS = DOCS / "files.md", DOCS / "components.md"
 DESIGN, SSP = DOCS / "design.md", DOCS / "ssp.md"
 IDENTIFICATION, TETHER = DOCS / "identification.md", DOCS / "tether.md"
 GUIDANCE = DOCS / "guidance.md"
+LOGS = DOCS / "logs.md"
 VEHICLES = sorted((DOCS / "vehicles").glob("*.md"))
 SEATRIAL = str(Path(sys.executable).with_name("seatrial"))
 
@@ -129,7 +130,7 @@ def run_commands(block: Block) -> None:
 
 @pytest.mark.parametrize(
     "page",
-    [FILES, COMPONENTS, *VEHICLES, DESIGN, SSP, IDENTIFICATION, TETHER, GUIDANCE],
+    [FILES, COMPONENTS, *VEHICLES, DESIGN, SSP, IDENTIFICATION, TETHER, GUIDANCE, LOGS],
     ids=lambda page: page.stem,
 )
 def test_examples_run(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

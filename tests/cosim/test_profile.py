@@ -90,6 +90,9 @@ def test_values_are_si(load):
         "reversed": 0.0,
     }
     assert profile.parameters("actuators.rudder")["reversed"] == 1.0
+    assert profile.parameters("identity")["actuators"] == (
+        "1 port 1100 1500 1900; 2 rudder 1000 1500 2000 reversed"
+    )
 
 
 def test_sections(load):

@@ -166,18 +166,19 @@ import hashlib, sys
 from pathlib import Path
 from seatrial.trials.run import run_trial
 from seatrial.trials.trial import load_trial
-trial = load_trial("videoray-tethered-taut").changed({"stop": "40 s"}, "test")
+trial = load_trial(sys.argv[2]).changed({"stop": "40 s"}, "test")
 folder = run_trial(trial, Path(sys.argv[1]), engine="direct").folder
 print(hashlib.sha256((folder / "signals.csv").read_bytes()).hexdigest())
 """
 
 
-def test_a_run_is_the_same_on_another_processor(tmp_path):
+@pytest.mark.parametrize("trial", ["videoray-tethered-taut", "videoray-tethered-station"])
+def test_a_run_is_the_same_on_another_processor(trial, tmp_path):
     """The processor decides which kernels OpenBLAS takes; those of AVX-512 round differently."""
     own = {name: value for name, value in os.environ.items() if name != "OPENBLAS_CORETYPE"}
     found = [
         subprocess.run(
-            [sys.executable, "-c", RUN, str(tmp_path / f"run{len(kernels)}")],
+            [sys.executable, "-c", RUN, str(tmp_path / f"run{len(kernels)}"), trial],
             env={**own, **kernels}, check=True, capture_output=True,
         ).stdout
         for kernels in ({}, {"OPENBLAS_CORETYPE": "Prescott"})

@@ -193,7 +193,8 @@ def test_the_manifest_says_which_wire_feeds_a_parameter(bench, write, tmp_path: 
     assert (trim["boat"]["value"], trim["boat"]["from"]) == (1.0, "start value of the FMU")
     assert (trim["twin"]["value"], trim["twin"]["from"]) == (None, "fed by boat.angle")
     assert manifest["connections"] == [["boat.angle", "twin.trim"]]
-    assert "fed by boat.angle" in write_report(folder).read_text("utf-8")
+    page = write_report(folder).read_text("utf-8")
+    assert "<td></td>\n  <td>rad</td>\n  <td></td>\n  <td>fed by boat.angle</td>" in page
 
 
 def test_what_is_recorded_can_be_chosen(bench, tmp_path: Path) -> None:

@@ -29,7 +29,7 @@ def hanging_shape(cable: Cable, surface: Vector, force: Vector, current: Vector)
     a segment's weight and drag act too; ``current`` (3, 1), m/s. Raises ArithmeticError if no
     shape is found.
     """
-    pull = float(np.linalg.norm(force))
+    pull = math.hypot(*force)
     if not pull:
         raise ArithmeticError("a cable that nothing pulls at may rest anywhere")
     shares = np.linspace(0.0, 1.0, cable.segments + 1)
@@ -59,7 +59,7 @@ def static_shape(
     tension = float(straight.tension.mean())
     if tension < 0.0:
         x, radius = _arc(cable, surface, vehicle, load)
-        tension = float(np.linalg.norm(load)) / cable.length * radius
+        tension = math.hypot(*load) / cable.length * radius
     if tension < _RESOLVED * cable.axial_stiffness:
         return x
     found = _settled(cable, x, v, current, tension, None)
@@ -112,13 +112,13 @@ def _arc(cable: Cable, surface: Vector, vehicle: Vector, load: Vector) -> tuple[
     The arc bulges to the side of ``load``, or down, or north.
     """
     n = cable.segments
-    chord = float(np.linalg.norm(vehicle - surface))
+    chord = math.hypot(*(vehicle - surface))
     along = (vehicle - surface) / chord if chord else np.array([1.0, 0.0, 0.0])
     side = _across(load, along)
     for direction in ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0)):
-        if np.linalg.norm(side) <= 1e-6 * np.linalg.norm(load):
+        if math.hypot(*side) <= 1e-6 * math.hypot(*load):
             side = _across(np.array(direction), along)
-    side = side / np.linalg.norm(side)
+    side = side / math.hypot(*side)
 
     def missing(half: float) -> float:
         return cable.l0 * math.sin(half) / math.sin(half / n) - chord
@@ -126,11 +126,12 @@ def _arc(cable: Cable, surface: Vector, vehicle: Vector, load: Vector) -> tuple[
     # Half of the angle that the arc spans: all of a circle if the ends are in one place.
     half = brentq(missing, 1e-9, math.pi) if missing(math.pi) < 0.0 else math.pi
     angles = half * (1.0 - (2.0 * np.arange(n) + 1.0) / n)
-    turns = np.outer(along, np.cos(angles)) + np.outer(side, np.sin(angles))
+    cos, sin = ([f(angle) for angle in angles] for f in (math.cos, math.sin))
+    turns = np.outer(along, cos) + np.outer(side, sin)
     x = np.cumsum(np.column_stack((surface, cable.l0 * turns)), axis=1)
     x[:, -1] = vehicle
     return x, 0.5 * cable.length / half
 
 
 def _across(vector: Vector, along: Vector) -> Vector:
-    return vector - (vector @ along) * along
+    return vector - math.fsum(vector * along) * along

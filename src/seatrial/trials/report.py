@@ -334,6 +334,8 @@ def _for_person(value: Any, unit: str) -> tuple[Any, str]:
 
 
 def _value_text(value: Any) -> str:
+    if value is None:  # it comes over a wire
+        return ""
     return number(value, 8) if isinstance(value, float) else str(value)
 
 

@@ -125,7 +125,7 @@ def test_arming_checks_are_a_mask() -> None:
         ("WP_RADIUS", math.nan, mavlink.MAV_PARAM_ERROR_VALUE_OUT_OF_RANGE, "at least 0"),
         ("WP_RADIUS", math.inf, mavlink.MAV_PARAM_ERROR_VALUE_OUT_OF_RANGE, "at least 0"),
         ("FS_ACTION", 7.0, mavlink.MAV_PARAM_ERROR_VALUE_OUT_OF_RANGE, "one of 0, 1, 2, 3, 4, 5"),
-        ("SYSID_THISMAV", 9.0, mavlink.MAV_PARAM_ERROR_READ_ONLY, "trial's files"),
+        ("SYSID_THISMAV", 9.0, mavlink.MAV_PARAM_ERROR_READ_ONLY, "belongs to the trial"),
     ],
 )
 def test_what_is_refused_leaves_everything_as_it_was(name, value, error, reason) -> None:

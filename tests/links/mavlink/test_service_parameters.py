@@ -26,7 +26,7 @@ DEFINITIONS = [
     Definition("SHORT", INT16, -300, -32768, 32767),
     Definition("LONG", INT32, 16777216, -4000000, 2**31 - 1),
     Definition("REAL", REAL32, 2.5, -1e6, 1e6),
-    Definition("STAYS", INT8, 1, fixed="it belongs to the trial's files"),
+    Definition("STAYS", INT8, 1, fixed="it belongs to the trial"),
     *(Definition(f"P{n}", REAL32, n / 8) for n in range(COUNT - 5)),
 ]
 
@@ -179,7 +179,7 @@ def test_what_is_refused_is_told_to_the_sender_alone(
 ) -> None:
     before = bench.table[name]
     bench.set(name, value, sender=OTHER_STATION)
-    value_told, refusal = bench.air.take(link=OTHER_STATION.link)
+    refusal, value_told = bench.air.take(link=OTHER_STATION.link)
     assert bench.air.said == []
     assert (value_told.get_type(), value_told.param_value) == ("PARAM_VALUE", before)
     assert (refusal.get_type(), refusal.param_id, refusal.error) == ("PARAM_ERROR", name, error)

@@ -66,7 +66,8 @@ class Mavlink(Logging, Sampled):
 
     **Parameters** are those that stations look for in vehicles of this kind, and the rig's
     ``tunables``, which are on the output ``tunable`` in their order, for wires to other
-    components' tunable parameters. What is set is kept in ``parameter_file``.
+    components' tunable parameters. What is set is kept in ``parameter_file``, relative to the
+    current folder.
 
     **Left alone** it carries out ``failsafe`` if it is armed: when all ground stations were
     silent for ``station_timeout``, and in a manual mode when the sticks were for

@@ -19,7 +19,7 @@ INT16: int = mavlink.MAV_PARAM_TYPE_INT16
 INT32: int = mavlink.MAV_PARAM_TYPE_INT32
 REAL32: int = mavlink.MAV_PARAM_TYPE_REAL32
 
-BELONGS_TO_TRIAL = "it belongs to the trial's files"
+BELONGS_TO_TRIAL = "it belongs to the trial"
 
 _LARGEST = float.fromhex("0x1.fffffep127")  # of 32 bits
 _NAME = re.compile(r"[A-Z][A-Z0-9_]{0,15}")

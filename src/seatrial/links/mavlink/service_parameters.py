@@ -41,9 +41,10 @@ class ParameterService(Service):
     index. Links have lists of their own.
 
     **Reads** are answered at once, over the same link. **Setting** is answered to all links by
-    the new value; where it is refused, to the sender by the old value, as an ArduPilot does it,
-    with PARAM_ERROR and a status text that gives the reason. An unknown name or index gets
-    PARAM_ERROR alone: stations that do not know it wait for nothing, as with other vehicles.
+    the new value; where it is refused, to the sender by PARAM_ERROR and, for those that do not
+    know it, by the old value, as an ArduPilot does it; a status text gives the reason. An
+    unknown name or index gets PARAM_ERROR alone: who does not know it waits in vain, as with
+    other vehicles.
 
     **Integers** travel as numbers (ArduPilot; rounded, and exact up to 2^24) or as the four
     bytes of their type (PX4, which refuses a value of another type than the parameter's).
@@ -108,8 +109,9 @@ class ParameterService(Service):
                 self.air.broadcast(self._value(name))
                 return
             error, reason = refusal.error, refusal.reason
-        self.air.send(sender.link, self._value(name))
+        # The error first: who knows it does not take the old value for a lost message.
         self._refuse(name, self.table.index(name), error, sender)
+        self.air.send(sender.link, self._value(name))
         self.vehicle.say(WARNING, f"{name} stays {self.table[name]:g}: {reason}")
 
     def _refuse(self, name: str, index: int, error: int, sender: Sender) -> None:
