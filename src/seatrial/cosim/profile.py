@@ -181,8 +181,9 @@ class Profile:
         """Return a section's values by name of the component's parameter, in the port's unit.
 
         A list has one value per axis. An actuator gives ``pulse_min``, ``pulse_neutral``,
-        ``pulse_max`` (s) and ``reversed`` (0 or 1); the identity comes with home and, as text, ``uid``,
-        ``date`` and all ``actuators``. Raises InputError for an unknown section.
+        ``pulse_max`` (s) and ``reversed`` (0 or 1); the identity comes with home and,
+        as text, ``uid``, ``date`` and all ``actuators``. Raises InputError for an unknown
+        section.
         """
         if section == "identity":
             return self._identity()
