@@ -1,7 +1,7 @@
 """The parts of the pages that come from code, parameter files and runs.
 
-``python docs/tables.py`` writes them anew, ``--check`` only says which are out of date
-(status 1). A part stands between a comment that names it and a comment that ends it; nothing
+``python docs/tables.py`` writes them anew, or those of the pages named; ``--check`` only says which
+are out of date (status 1). A part stands between a comment that names it and a comment that ends it; nothing
 else of a page is touched.
 """
 
@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 
 DOCS = Path(__file__).resolve().parent
@@ -56,15 +57,21 @@ def written(page: Path, name: str) -> str:
     )
 
 
+def _anew(parts: dict[str, str], found: re.Match[str]) -> str:
+    return found["begin"] + parts[found["name"]] + found["end"]
+
+
 def main(arguments: Sequence[str]) -> int:
-    """Write all parts anew, or with ``--check`` only compare; return the exit status."""
+    """Write parts anew, or with ``--check`` only compare; return the exit status."""
     stale = []
+    named = {(DOCS / name).resolve() for name in arguments if name != "--check"}
     for page, names in pages().items():
-        text = page.read_text("utf-8")
-        stale += [f"{page.relative_to(DOCS)}: {n}" for n in names if written(page, n) != made(n)]
+        if named and page not in named:
+            continue
+        text, parts = page.read_text("utf-8"), {name: made(name) for name in names}
+        stale += [f"{page.relative_to(DOCS)}: {n}" for n in names if written(page, n) != parts[n]]
         if "--check" not in arguments:
-            text = PART.sub(lambda m: m["begin"] + made(m["name"]) + m["end"], text)
-            page.write_text(text, "utf-8")
+            page.write_text(PART.sub(partial(_anew, parts), text), "utf-8")
     for place in stale:
         print(("out of date: " if "--check" in arguments else "written: ") + place)
     return 1 if stale and "--check" in arguments else 0

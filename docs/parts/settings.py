@@ -8,31 +8,54 @@ from functools import partial
 from parts import part
 from parts.markdown import shown_unit, shown_value, table
 from seatrial.cosim.parameters import Entry, load_vehicle
-from seatrial.cosim.profile import SENSORS
+from seatrial.cosim.profile_kinds import KINDS, keys
 from seatrial.ports import Parameter
 from seatrial.shipped import shipped_folder
 
 
 @part("sensor-keys")
 def sensor_keys() -> str:
-    """Keys of a profile's sensors: the parameters of their components."""
+    """Keys of a profile's sensors, one column a kind."""
     rows: dict[tuple[str, str, str], dict[str, str]] = {}
-    for kind, component in SENSORS.items():
-        for name, port in component.ports.items():
-            if isinstance(port, Parameter) and name != "seed":
-                starts = port.start if len(set(port.start)) > 1 else port.start[:1]
-                texts = [f"{start:.4g}" for start in starts]
-                axes = f" ({', '.join(port.axes)})" if port.axes else ""
-                row = rows.setdefault((name, shown_unit(port.unit), port.description + axes), {})
-                row[kind] = f"({', '.join(texts)})" if len(texts) > 1 else texts[0]
+    for kind in KINDS["sensors"]:
+        for name, port in keys("sensors", kind).items():
+            row = rows.setdefault((name, shown_unit(port.unit), _meaning(port)), {})
+            row[kind] = _start(port)
     common_first = sorted(rows.items(), key=lambda item: len(item[1]) == 1)
     return table(
-        ("key", "meaning", "unit", *SENSORS),
+        ("key", "meaning", "unit", *KINDS["sensors"]),
         [
-            (f"`{name}`", meaning, unit, *(starts.get(kind, "") for kind in SENSORS))
+            (f"`{name}`", meaning, unit, *(starts.get(kind, "") for kind in KINDS["sensors"]))
             for (name, unit, meaning), starts in common_first
         ],
     )
+
+
+@part("link-keys")
+def link_keys() -> str:
+    """Keys of a profile's links."""
+    return table(
+        ("kind", "key", "unit", "default", "meaning"),
+        [
+            (f"`{kind}`", f"`{name}`", shown_unit(port.unit), _start(port), _meaning(port))
+            for kind in KINDS["links"]
+            for name, port in keys("links", kind).items()
+        ],
+    )
+
+
+def _start(port: Parameter) -> str:
+    if port.type is str:
+        return f"`{port.start[0]}`" if port.start[0] else "empty"
+    starts = port.start if len(set(port.start)) > 1 else port.start[:1]
+    texts = [f"{start:.4g}" for start in starts]
+    return f"({', '.join(texts)})" if len(texts) > 1 else texts[0]
+
+
+def _meaning(port: Parameter) -> str:
+    choices = ": " + ", ".join(f"`{c}`" for c in port.choices) if port.choices else ""
+    axes = f" ({', '.join(port.axes)})" if port.axes else ""
+    return port.description + choices + axes
 
 
 def parameters(vehicle: str) -> str:

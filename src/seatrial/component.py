@@ -299,8 +299,12 @@ class Component:
         name, port, unit = scalar.name, scalar.port, scalar.unit
         if not isinstance(port, Parameter):
             return
-        if port.choices is not None and value not in port.choices:
-            raise InputError(f"{self.name}.{unknown(f'value of {name}', value, port.choices)}")
+        if port.type is str:
+            try:
+                port.check_text(value)
+            except InputError as error:
+                raise InputError(f"{self.name}.{error}") from None
+            return
         low, high = port.limit("min", scalar.index), port.limit("max", scalar.index)
         if (low is not None and value < low) or (high is not None and value > high):
             raise InputError(
@@ -350,12 +354,15 @@ class Noise:
         1.0, "1", "seed of this instance's noise (a whole number)", min=0.0, max=2.0**53
     )
 
-    def generator(self, index: int) -> np.random.Generator:
-        """Return the generator of sample ``index``; draw all that the sample needs from it."""
+    def generator(self, index: int, stream: int = 0) -> np.random.Generator:
+        """Return the generator of sample ``index``; draw all that the sample needs from it.
+
+        Other streams of a sample are for what is drawn only sometimes.
+        """
         if self.seed % 1.0:
             raise InputError(f"seed is {self.seed!r}, a whole number is needed")
         kind = zlib.crc32(type(self).__name__.encode())
-        bits = np.random.Philox(key=[int(self.seed), kind], counter=[0, 0, 0, index])
+        bits = np.random.Philox(key=[int(self.seed), kind], counter=[0, 0, stream, index])
         return np.random.Generator(bits)
 
 
@@ -368,6 +375,12 @@ class Logging:
     run_folder = Parameter(
         "", "1", "folder of the run, for logs of its own; empty: it keeps none", tunable=True
     )
+
+
+class Reachable:
+    """Mix-in for a component that programs outside connect to."""
+
+    reached_at = Output("1", "what others connect to, separated by spaces", type=str)
 
 
 def _is_fixed(port: Port) -> bool:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
+
+from .errors import InputError, unknown
 
 Kind = Literal["parameter", "input", "output"]
 Scalar = float | int | bool | str
@@ -124,7 +126,7 @@ class Parameter(Port):
     """A value fixed before a run, or between steps if ``tunable``: a Real or a String.
 
     Numbers are Real whatever the start value's type, because some masters can set nothing
-    else; text may be limited to ``choices``.
+    else. Text may be limited to ``choices``, or by ``check``, which raises InputError.
     """
 
     kind: Kind = "parameter"
@@ -141,6 +143,7 @@ class Parameter(Port):
         nominal: Limit = None,
         tunable: bool = False,
         choices: Sequence[str] | None = None,
+        check: Callable[[str], object] | None = None,
     ) -> None:
         if isinstance(start, bool):
             raise TypeError("a parameter is a number or a text: give 0.0 or 1.0 for a flag")
@@ -150,16 +153,30 @@ class Parameter(Port):
         )
         self.tunable = tunable
         self.choices = tuple(choices) if choices is not None else None
+        self.check = check
+
+    def check_text(self, value: str) -> None:
+        """Raise InputError, with what is allowed, for a text that is not."""
+        if self.choices is not None and value not in self.choices:
+            raise InputError(unknown(f"value of {self.name}", value, self.choices))
+        if self.check is not None:
+            self.check(value)
 
 
 class Input(Port):
-    """A value that arrives over at most one wire; ``start`` holds while nothing is connected."""
+    """A value that arrives over at most one wire; ``start`` holds while nothing is connected.
+
+    An ``optional`` input is normally not connected: a run does not mention it.
+    """
 
     kind: Kind = "input"
 
-    def __init__(self, unit: Units, description: str, **options: Any) -> None:
+    def __init__(
+        self, unit: Units, description: str, *, optional: bool = False, **options: Any
+    ) -> None:
         options.setdefault("start", "" if options.get("type") is str else 0)
         super().__init__(unit, description, **options)
+        self.optional = optional
 
 
 class Output(Port):

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from seatrial.cosim.files import available
-from seatrial.cosim.profile import SENSORS, load_profile
-from seatrial.ports import Parameter
+from seatrial.cosim.profile import load_profile
+from seatrial.cosim.profile_kinds import KINDS, keys
 from tests.cosim.test_profile import GOOD
 
 from .test_cli import seatrial
@@ -75,14 +75,12 @@ def test_describe_shows_what_the_file_says_in_units_that_people_read(write, tmp_
 
 
 @pytest.mark.parametrize("name", sorted(available("hil_profiles")))
-def test_describe_shows_every_parameter_of_every_sensor(name: str, tmp_path: Path) -> None:
+def test_describe_shows_every_parameter_of_every_table(name: str, tmp_path: Path) -> None:
     done = seatrial("profile", "describe", name, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     profile = load_profile(name)
-    for section in profile.sections():
-        if section.startswith("sensors."):
-            kind = getattr(profile.file.sensors, section.removeprefix("sensors.")).kind
-            shown = [line.split()[0] for line in rows(done.stdout, f"{section}: {kind}")[2:]]
-            ports = SENSORS[kind].ports.values()
-            parameters = [p.name for p in ports if isinstance(p, Parameter) and p.name != "seed"]
-            assert shown == parameters
+    for group in KINDS:
+        for table, entry in profile.tables(group).items():
+            shown = rows(done.stdout, f"{group}.{table}: {entry.kind}")
+            first = 2 if shown[0].startswith("  source") else 1
+            assert [line.split()[0] for line in shown[first:]] == list(keys(group, entry.kind))

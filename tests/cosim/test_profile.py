@@ -3,11 +3,11 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.cosim.profile import SENSORS, load_profile
+from seatrial.cosim.profile import load_profile
+from seatrial.cosim.profile_kinds import component_of
 from seatrial.devices.servo import Servo
 from seatrial.devices.thruster import Thruster
 from seatrial.errors import InputError
-from seatrial.links.mavlink.component import Mavlink
 
 GOOD = """\
 title = "A boat"
@@ -56,6 +56,12 @@ dropout = 0.01
 kind = "compass"
 source = "data sheet"
 heading_noise = "0.5 deg"
+
+[links.ground]
+kind = "mavlink"
+links = "udpin:127.0.0.1:0 tcpin:127.0.0.1:0"
+station_timeout = "10 s"
+failsafe = "return"
 """
 
 
@@ -90,14 +96,30 @@ def test_values_are_si(load):
         "reversed": 0.0,
     }
     assert profile.parameters("actuators.rudder")["reversed"] == 1.0
-    assert profile.parameters("identity")["actuators"] == (
-        "1 port 1100 1500 1900; 2 rudder 1000 1500 2000 reversed"
-    )
+
+
+def test_a_link_knows_the_whole_vehicle(load):
+    assert load().parameters("links.ground") == {
+        "system_id": 7.0,
+        "component_id": 1.0,
+        "vehicle_type": "surface_boat",
+        "autopilot_type": "px4",
+        "firmware_version": "1.2.3-dev",
+        "uid": str(2**64 - 1),
+        "latitude": pytest.approx(math.radians(-31.78)),
+        "longitude": -0.5,
+        "altitude": pytest.approx(1.2),
+        "date": "2026-02-05",
+        "actuators": "1 port 1100 1500 1900; 2 rudder 1000 1500 2000 reversed",
+        "links": "udpin:127.0.0.1:0 tcpin:127.0.0.1:0",
+        "station_timeout": 10.0,
+        "failsafe": "return",
+    }
 
 
 def test_sections(load):
     sections = ["actuators.port", "actuators.rudder", "sensors.gnss", "sensors.heading"]
-    assert load().sections() == [*sections, "identity"]
+    assert load().sections() == [*sections, "links.ground"]
 
 
 def test_unknown_section_has_near_misses(load):
@@ -109,7 +131,7 @@ def test_unknown_section_has_near_misses(load):
 
 def test_a_sensorless_profile_is_fine(write):
     text = GOOD[: GOOD.index("[actuators.port]")]
-    assert load_profile("bare.toml", write("bare.toml", text).parent).sections() == ["identity"]
+    assert load_profile("bare.toml", write("bare.toml", text).parent).sections() == []
 
 
 # Each mistake, and what the message must say of it.
@@ -126,7 +148,7 @@ MISTAKES = {
         ('"surface_boat"', '"surfaceboat"'),
         ["identity.vehicle_type", "'surfaceboat'", "did you mean 'surface_boat'", "submarine"],
     ),
-    "autopilot type": (('"px4"', '"pixhawk"'), ["identity.autopilot_type", "ardupilotmega, gen"]),
+    "autopilot type": (('"px4"', '"pixhawk"'), ["identity.autopilot_type", "ardupilotmega, px4"]),
     "version": (('"1.2.3-dev"', '"v1"'), ["identity.firmware_version", "4.5.0-dev", "'v1'"]),
     "no unit": (('"-31.78 deg"', '"-31.78"'), ["home.latitude", "no unit", "'-31.78'"]),
     "bare number": (('"-31.78 deg"', "-31.78"), ["home.latitude", "unit", "-31.78"]),
@@ -188,6 +210,30 @@ MISTAKES = {
     "zero period": (('"200 ms"', '"0 s"'), ["sensors.gnss.period", "at least 1e-06 s"]),
     "true for a number": (("channel = 2", "channel = true"), ["actuators.rudder.channel", "True"]),
     "title no text": (('title = "A boat"', "title = 3"), ["title", "string", "found 3"]),
+    "kind of link": (('"mavlink"', '"mavlinks"'), ["links.ground.kind", "did you mean 'mavlink'"]),
+    "link key": (
+        ("station_timeout", "station_time"),
+        ["links.ground.station_time", "did you mean 'station_timeout'"],
+    ),
+    "link key of the identity": (
+        ('failsafe = "return"', "system_id = 3"),
+        ["links.ground.system_id", "unknown key"],
+    ),
+    "URL": (
+        ("tcpin:127.0.0.1:0", "tcp:127.0.0.1:0"),
+        ["links.ground.links", "unknown kind of link 'tcp'", "did you mean 'tcpin'"],
+    ),
+    "port of a URL": (
+        ("tcpin:127.0.0.1:0", "tcpin:127.0.0.1:99999"),
+        ["links.ground.links", "the port is 99999, allowed 0 to 65535"],
+    ),
+    "choice": (
+        ('"return"', '"retur"'),
+        ["links.ground.failsafe", "did you mean 'return'"],
+    ),
+    "text": (('failsafe = "return"', "failsafe = 3"), ["links.ground.failsafe", "text", "found 3"]),
+    "time of a link": (('"10 s"', '"10 m"'), ["links.ground.station_timeout", "'m'", "'s'"]),
+    "link no table": (("[links.ground]", "[links]\nx = 3\n[links.y]"), ["links.x.kind"]),
     "table twice": (("[home]", "[[home]]"), ["home", "dictionary"]),
     "not TOML": (('title = "A boat"', "title = A boat"), ["not TOML", "line 1"]),
 }
@@ -260,16 +306,16 @@ SHIPPED = sorted((Path(__file__).parents[2] / "hil_profiles").glob("*.toml"))
 def test_shipped_profile_fits_its_components(path):
     profile = load_profile(str(path))
     for section in profile.sections():
-        kind, _, name = section.partition(".")
-        if kind == "sensors":
-            classes = [SENSORS[getattr(profile.file.sensors, name).kind]]
+        group, _, name = section.partition(".")
+        if group == "actuators":
+            classes = [Thruster, Servo]
         else:
-            classes = [Thruster, Servo] if kind == "actuators" else [Mavlink]
+            classes = [component_of(group, profile.tables(group)[name].kind)]
         for cls in classes:
             component = cls(name)
             for parameter, value in profile.parameters(section).items():
                 component.set(parameter, value)
-            component.initialise()
+            component.check_parameters()
 
 
 def test_hydrone_is_shipped():

@@ -33,7 +33,15 @@ from .export import export
 from .fmu import fmu_app
 from .identify import identify
 from .profile import profile_app
-from .show import Watch, console, print_case, print_listing, print_notes, print_verdicts
+from .show import (
+    Watch,
+    console,
+    print_case,
+    print_listing,
+    print_notes,
+    print_reachable,
+    print_verdicts,
+)
 from .ssp import ssp_app
 
 _FAILED, _BAD_INPUT, _BROKEN = 1, 2, 3
@@ -149,7 +157,9 @@ def run(
     print_notes(loaded.notes)
     with _stoppable() as stop:
         with Watch(loaded.name) as watch:
-            hooks = Hooks(watch.building, watch.progress, stop.requested, stop.interruptible)
+            hooks = Hooks(
+                watch.building, watch.progress, stop.requested, stop.interruptible, print_reachable
+            )
             result = run_trial(loaded, out, engine=chosen, hooks=hooks)
         print_verdicts(result)
         report_page = write_report(result.folder)

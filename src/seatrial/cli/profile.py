@@ -9,8 +9,8 @@ from typing import Annotated, Any
 import typer
 from rich.markup import escape
 
-from ..component import Component
-from ..cosim.profile import SENSORS, Actuator, Home, Identity, Profile, load_profile
+from ..cosim.profile import Actuator, Home, Identity, Profile, load_profile
+from ..cosim.profile_kinds import KINDS, keys
 from ..ports import Parameter
 from ..trials.readable import from_si, number, person_unit
 from .show import console
@@ -30,7 +30,7 @@ def check(name: Named) -> None:
 
 @profile_app.command()
 def describe(name: Named) -> None:
-    """Show a profile: identity, home, actuators, sensors with all their values."""
+    """Show a profile: identity, home, actuators, sensors and links with all their values."""
     profile = load_profile(name)
     console.print(f"[bold]{escape(profile.file.title)}[/bold]", soft_wrap=True)
     console.print(escape(str(profile.read_from.path)), soft_wrap=True)
@@ -38,12 +38,10 @@ def describe(name: Named) -> None:
     _print("home", _home(profile.file.home), profile.file.home.source)
     if profile.file.actuators:
         _print("actuators", _actuators(profile.file.actuators))
-    for section in profile.sections():
-        kind, _, sensor = section.partition(".")
-        if kind == "sensors":
-            entry = getattr(profile.file.sensors, sensor)
-            rows = _sensor(SENSORS[entry.kind], profile, section)
-            _print(f"{section}: {entry.kind}", rows, entry.source)
+    for group in KINDS:
+        for table, entry in profile.tables(group).items():
+            rows = _parameters(keys(group, entry.kind), profile, f"{group}.{table}")
+            _print(f"{group}.{table}: {entry.kind}", rows, entry.source)
 
 
 def _print(title: str, rows: Rows, source: str = "") -> None:
@@ -85,21 +83,20 @@ def _actuators(actuators: dict[str, Actuator]) -> Rows:
     return rows
 
 
-def _sensor(component: type[Component], profile: Profile, section: str) -> Rows:
-    """Return a sensor's parameters: those of the file, and its component's where it has none."""
+def _parameters(ports: dict[str, Parameter], profile: Profile, section: str) -> Rows:
+    """Return a table's parameters: those of the file, and its component's where it has none."""
     given = profile.parameters(section)
     rows = [("key", "value", "unit", "from", "meaning")]
-    for key, port in component.ports.items():
-        if isinstance(port, Parameter) and key != "seed":
-            unit = person_unit(port.unit_of(0))
-            value = _shown(given.get(key, port.start), unit)
-            origin = "profile" if key in given else "default"
-            rows.append((key, value, "" if unit == "1" else unit, origin, port.description))
+    for key, port in ports.items():
+        unit = person_unit(port.unit_of(0))
+        value = _shown(given.get(key, port.start), unit)
+        origin = "profile" if key in given else "default"
+        rows.append((key, value, "" if unit == "1" else unit, origin, port.description))
     return rows
 
 
 def _shown(value: Any, unit: str) -> str:
-    """Return one value, or those of the axes if they differ, in ``unit``."""
+    """Return one value, or those of the axes if they differ, in ``unit``; text as it is."""
     values = value if isinstance(value, list) else [value]
-    texts = [number(from_si(v, unit)) for v in values]
+    texts = [v if isinstance(v, str) else number(from_si(v, unit)) for v in values]
     return texts[0] if len(set(texts)) == 1 else f"({', '.join(texts)})"

@@ -79,6 +79,13 @@ def print_notes(notes: Iterable[str]) -> None:
         console.print(f"[dim]note: {escape(note)}[/dim]", soft_wrap=True)
 
 
+def print_reachable(name: str, where: str) -> None:
+    """Print what programs outside connect to, one a line, to be copied."""
+    console.print(f"{escape(name)}: connect to", soft_wrap=True)
+    for each in where.split():
+        console.print(f"  [bold]{escape(each)}[/bold]", soft_wrap=True)
+
+
 def print_verdicts(result: Result) -> None:
     """Print the verdict of each criterion and how the run went."""
     print_notes(result.notes)

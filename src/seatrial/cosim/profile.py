@@ -1,8 +1,8 @@
 """Profiles: one vehicle's electronics (``hil_profiles/*.toml``), for simulated and real boards.
 
 A profile says who the vehicle is on a link, where it starts, which output channel drives which
-port with which pulses, and what each sensor's data sheet says. Every value that has a unit is
-written with it (``"1100 us"``, ``"0.3 deg"``) and read into SI.
+port with which pulses, what each sensor's data sheet says, and which links it has. Every value
+that has a unit is written with it (``"1100 us"``, ``"0.3 deg"``) and read into SI.
 """
 
 from __future__ import annotations
@@ -10,75 +10,34 @@ from __future__ import annotations
 import datetime
 import math
 import re
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, create_model
-from pydantic_core import PydanticCustomError
 
-from ..component import Component
-from ..devices.ahrs import Ahrs
-from ..devices.anemometer import Anemometer
-from ..devices.compass import Compass
-from ..devices.depth import Depth
-from ..devices.gnss import Gnss
-from ..devices.imu import Imu
 from ..errors import InputError, unknown
-from ..ports import Parameter
-from ..units import quantity, unit
 from .files import FileModel, Source, find_file, read_toml, validated
+from .profile_kinds import KINDS, NAME, component_of, group_model, in_si, of_a_kind, refused
 
-SENSORS: dict[str, type[Component]] = {
-    "ahrs": Ahrs,
-    "anemometer": Anemometer,
-    "compass": Compass,
-    "depth": Depth,
-    "gnss": Gnss,
-    "imu": Imu,
-}
-"""Kinds of sensors, and the component whose parameters a sensor of that kind gives."""
-
-VEHICLE_TYPES = ("generic", "ground_rover", "submarine", "surface_boat")
+VEHICLE_TYPES = ("ground_rover", "submarine", "surface_boat")
 """MAVLink's MAV_TYPE, in lower case."""
-AUTOPILOT_TYPES = ("ardupilotmega", "generic", "px4")
+AUTOPILOT_TYPES = ("ardupilotmega", "px4")
 """MAVLink's MAV_AUTOPILOT, in lower case."""
 
 _VERSION = re.compile(r"\d+\.\d+\.\d+(-(dev|alpha|beta|rc))?")
-_NAME = re.compile(r"[A-Za-z][\w-]*", re.ASCII)
 _PORT = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*){1,2}")
-
-
-def _refused(message: str) -> PydanticCustomError:
-    # Braces would be taken for the template's own.
-    return PydanticCustomError("refused", "{message}", {"message": message})
-
-
-def _in_si(written: Any, target: str, low: float | None, high: float | None) -> float:
-    try:
-        if unit(target).exponents and not isinstance(written, str):
-            raise InputError(f"a quantity with its unit is needed, such as '1 {target}'")
-        value = quantity(written, target)
-    except InputError as error:
-        raise _refused(str(error)) from None
-    if low is not None and value < low:
-        raise _refused(f"at least {low:g} {target} needed")
-    if high is not None and value > high:
-        raise _refused(f"at most {high:g} {target} needed")
-    return value
 
 
 def _unit(target: str, low: float | None = None, high: float | None = None) -> BeforeValidator:
     """Read a quantity into ``target``, within limits."""
-    return BeforeValidator(lambda written: _in_si(written, target, low, high))
+    return BeforeValidator(lambda written: in_si(written, target, low, high))
 
 
 def _one_of(what: str, allowed: tuple[str, ...]) -> BeforeValidator:
     def check(written: Any) -> Any:
         if written not in allowed:
-            raise _refused(unknown(what, written, allowed))
+            raise refused(unknown(what, written, allowed))
         return written
 
     return BeforeValidator(check)
@@ -87,7 +46,7 @@ def _one_of(what: str, allowed: tuple[str, ...]) -> BeforeValidator:
 def _like(pattern: re.Pattern[str], example: str) -> BeforeValidator:
     def check(written: Any) -> Any:
         if not isinstance(written, str) or not pattern.fullmatch(written):
-            raise _refused(f"something like {example!r} is needed")
+            raise refused(f"something like {example!r} is needed")
         return written
 
     return BeforeValidator(check)
@@ -154,15 +113,16 @@ class Actuator(FileModel):
 
 
 class ProfileFile(FileModel):
-    """The content of a profile; ``sensors`` has one entry per sensor, by its name."""
+    """The content of a profile; ``sensors`` and ``links`` have one entry each, by name."""
 
     title: str = Field(title="text", description="for listings")
     identity: Identity = Field(title="table", description="who the vehicle is on a MAVLink network")
     home: Home = Field(title="table", description="where and when the origin of north-east-down is")
-    actuators: dict[Annotated[str, _like(_NAME, "port")], Actuator] = Field(
+    actuators: dict[Annotated[str, _like(NAME, "port")], Actuator] = Field(
         default_factory=dict, title="table per output channel", description="by name"
     )
     sensors: Any = Field(None, title="table per sensor", description="by name")
+    links: Any = Field(None, title="table per link", description="by name")
 
 
 @dataclass(frozen=True)
@@ -173,36 +133,39 @@ class Profile:
     read_from: Source
 
     def sections(self) -> list[str]:
-        """Return what `parameters` can be asked for: actuators.NAME, sensors.NAME, identity."""
-        sensors = [f"sensors.{name}" for name in type(self.file.sensors).model_fields]
-        return [*(f"actuators.{name}" for name in self.file.actuators), *sensors, "identity"]
+        """Return what `parameters` can be asked for: actuators.NAME, sensors.NAME, links.NAME."""
+        named = [f"{group}.{name}" for group in KINDS for name in self.tables(group)]
+        return [*(f"actuators.{name}" for name in self.file.actuators), *named]
+
+    def tables(self, group: str) -> dict[str, Any]:
+        """Return the tables of ``sensors`` or ``links``, by name."""
+        entries = getattr(self.file, group)
+        return {name: getattr(entries, name) for name in type(entries).model_fields}
 
     def parameters(self, section: str) -> dict[str, Any]:
         """Return a section's values by name of the component's parameter, in the port's unit.
 
         A list has one value per axis. An actuator gives ``pulse_min``, ``pulse_neutral``,
-        ``pulse_max`` (s) and ``reversed`` (0 or 1); the identity comes with home and,
-        as text, ``uid``, ``date`` and all ``actuators``. Raises InputError for an unknown
+        ``pulse_max`` (s) and ``reversed`` (0 or 1). A link also gives those of identity, home
+        and, as text, ``actuators`` that its component has. Raises InputError for an unknown
         section.
         """
-        if section == "identity":
-            return self._identity()
         entry = self._section(section)
-        if not isinstance(entry, Actuator):
-            values: dict[str, Any] = entry.model_dump(
-                exclude={"kind", "source"}, exclude_unset=True
-            )
-            return values
-        pulses = ("pulse_min", "pulse_neutral", "pulse_max")
-        return {**{p: getattr(entry, p) for p in pulses}, "reversed": float(entry.reversed)}
+        if isinstance(entry, Actuator):
+            pulses = ("pulse_min", "pulse_neutral", "pulse_max")
+            return {**{p: getattr(entry, p) for p in pulses}, "reversed": float(entry.reversed)}
+        values: dict[str, Any] = entry.model_dump(exclude={"kind", "source"}, exclude_unset=True)
+        if section.startswith("links."):
+            ports = component_of("links", entry.kind).ports
+            shared = {name: value for name, value in self._shared().items() if name in ports}
+            return {**shared, **values}
+        return values
 
     def source(self, section: str) -> str:
         """Return where a section's values come from. Raises InputError as `parameters`."""
-        if section == "identity":
-            return self.file.home.source
-        return str(self._section(section).source)
+        return self._section(section).source or self.file.home.source
 
-    def _identity(self) -> dict[str, Any]:
+    def _shared(self) -> dict[str, Any]:
         identity, home = self.file.identity, self.file.home
         return {
             "system_id": float(identity.system_id),
@@ -226,10 +189,8 @@ class Profile:
         if section not in self.sections():
             path = self.read_from.path
             raise InputError(f"{path}: {unknown('section', section, self.sections())}")
-        kind, _, name = section.partition(".")
-        if kind == "sensors":
-            return getattr(self.file.sensors, name)
-        return self.file.actuators[name]
+        group, _, name = section.partition(".")
+        return self.tables(group)[name] if group in KINDS else self.file.actuators[name]
 
 
 def load_profile(name: str | Path, relative_to: Path | None = None) -> Profile:
@@ -240,16 +201,54 @@ def load_profile(name: str | Path, relative_to: Path | None = None) -> Profile:
     """
     path = find_file("hil_profiles", str(name), relative_to)
     content, read_from = read_toml(path)
-    sensors, mistakes = _sensors_of_a_kind(content.get("sensors", {}))
-    mistakes = [f"{path}: {mistake}" for mistake in mistakes]
+    mistakes: list[str] = []
+    groups: dict[str, dict[str, Any]] = {}
+    for group in KINDS:
+        groups[group], wrong = of_a_kind(group, content.get(group, {}))
+        mistakes += [f"{path}: {mistake}" for mistake in wrong]
+    models: dict[str, Any] = {
+        group: (group_model(group, tables), ...) for group, tables in groups.items()
+    }
+    model = create_model("ProfileFile", __base__=ProfileFile, **models)
     try:
-        file = validated(_file_model(sensors), {**content, "sensors": sensors}, path)
+        file = validated(model, {**content, **groups}, path)
     except InputError as error:
         raise InputError("\n".join([*mistakes, str(error)])) from None
     mistakes += [f"{path}: {mistake}" for mistake in _channel_mistakes(file)]
     if mistakes:
         raise InputError("\n".join(mistakes))
     return Profile(file, read_from)
+
+
+class Profiles:
+    """The profiles that a rig's components name, each read once; ``own`` is the rig's.
+
+    Raises InputError as `load_profile`.
+    """
+
+    def __init__(self, own: str | None, folder: Path) -> None:
+        self._own, self._folder = own, folder
+        self._read: dict[str, Profile] = {}
+        if self._own is not None:
+            self._load(self._own)
+
+    def find(self, written: str, where: str) -> tuple[Profile, str]:
+        """Return the profile and the section of "SECTION" or "PROFILE:SECTION".
+
+        Raises InputError, which begins with ``where``, if there is no profile to look in.
+        """
+        name, colon, section = written.rpartition(":")
+        if not colon and self._own is None:
+            raise InputError(
+                f"{where}: the rig names no profile, and {written!r} none of its own, as in "
+                f"'hydrone:{written}'"
+            )
+        return self._load(name if colon else str(self._own)), section
+
+    def _load(self, name: str) -> Profile:
+        if name not in self._read:
+            self._read[name] = load_profile(name, self._folder)
+        return self._read[name]
 
 
 def _channel_mistakes(file: ProfileFile) -> list[str]:
@@ -273,63 +272,3 @@ def _channel_mistakes(file: ProfileFile) -> list[str]:
         channels.setdefault(actuator.channel, where)
         ports.setdefault(actuator.port, where)
     return mistakes
-
-
-# ------------------------------------------------------------------ schema of the sensors
-
-
-def _sensors_of_a_kind(written: Any) -> tuple[dict[str, Any], list[str]]:
-    """Return the sensors whose kind is known, and what is wrong with the others."""
-    if not isinstance(written, dict):
-        return {}, [f"sensors: a table per sensor is needed, found {written!r}"]
-    good, mistakes = {}, []
-    for name, table in written.items():
-        kind = table.get("kind") if isinstance(table, dict) else None
-        if not _NAME.fullmatch(name) or hasattr(FileModel, name):
-            mistakes.append(f"sensors: {name!r} cannot be a sensor's name")
-            continue
-        if isinstance(kind, str) and kind in SENSORS:
-            good[name] = table
-            continue
-        message = unknown("kind of sensor", kind, SENSORS) if kind else "this key is missing"
-        mistakes.append(f"sensors.{name}.kind: {message}")
-    return good, mistakes
-
-
-def _file_model(sensors: dict[str, Any]) -> type[ProfileFile]:
-    """Return the schema for a file with these sensors: each has its kind's parameters as keys."""
-    models: dict[str, Any] = {
-        name: (_sensor_model(table["kind"]), ...) for name, table in sensors.items()
-    }
-    entries = create_model("Sensors", __base__=FileModel, **models)
-    return create_model("ProfileFile", __base__=ProfileFile, sensors=(entries, ...))
-
-
-@cache
-def _sensor_model(kind: str) -> type[FileModel]:
-    fields: dict[str, Any] = {"kind": (Literal[kind], ...), "source": (str, ...)}
-    for name, port in SENSORS[kind].ports.items():
-        # A seed belongs to an instance and a run, not to a data sheet.
-        if isinstance(port, Parameter) and name != "seed":
-            value = Annotated[float | list[float], BeforeValidator(_reader(port))]
-            fields[name] = (value, 0.0)
-    return create_model(kind, __base__=FileModel, **fields)
-
-
-def _reader(port: Parameter) -> Callable[[Any], float | list[float]]:
-    """Return what reads a parameter as written: a quantity, or a list of one per axis."""
-
-    def read(written: Any) -> float | list[float]:
-        if not isinstance(written, list):
-            return _in_si(written, port.unit_of(0), port.limit("min", 0), port.limit("max", 0))
-        if port.axes is None or len(written) != port.size:
-            axes = (
-                f"one value, or {port.size} ({', '.join(port.axes)})" if port.axes else "one value"
-            )
-            raise _refused(f"{axes} needed")
-        return [
-            _in_si(value, port.unit_of(i), port.limit("min", i), port.limit("max", i))
-            for i, value in enumerate(written)
-        ]
-
-    return read

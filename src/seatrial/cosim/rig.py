@@ -51,7 +51,7 @@ class ComponentEntry(FileModel):
     parameters: str | None = None
     """A vehicle's parameter set: ``hydrone``, or ``hydrone.TABLE`` for a table of another name."""
     profile: str | None = None
-    """A section of the rig's profile: ``sensors.gnss``, ``actuators.port``, ``identity``."""
+    """A section of the rig's profile, ``sensors.gnss``, or of another, ``gloria:sensors.gnss``."""
     set: dict[str, Any] = Field(default_factory=dict)
     step: str | None = None
     isolated: bool = False

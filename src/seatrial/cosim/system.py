@@ -19,7 +19,7 @@ from ..fmi.load import load_fmu, open_instance
 from ..fmi.source import find_source
 from ..units import conversion
 from .parameters import ParameterSet, load_vehicle, split_reference
-from .profile import Profile, load_profile
+from .profile import Profile, Profiles
 from .rig import ComponentEntry, Rig, WireEntry, duration_ns
 from .values import Given, from_entry, from_written, port_names, port_scalars
 
@@ -123,13 +123,17 @@ class System:
         return {w.target[1]: ".".join(w.source) for w in self.wires if w.target[0] == component}
 
     def unconnected_inputs(self) -> list[str]:
-        """Return the inputs that no wire reaches and nobody set; whole ports by their name."""
+        """Return the inputs that no wire reaches and nobody set; whole ports by their name.
+
+        Optional ones are not among them.
+        """
         wired = {wire.target for wire in self.wires}
         found: dict[str, None] = {}
         for name, part in self.parts.items():
             variables = part.instance.variables
             inputs = {n for n, v in variables.items() if v.causality == "input"}
-            loose = {n for n in inputs if (name, n) not in wired and n not in part.given}
+            reached = {n for n in inputs if (name, n) in wired or n in part.given}
+            loose = {n for n in inputs - reached if not variables[n].optional}
             whole = {}
             for variable in (n for n in variables if n in loose):
                 port = variables.port_of(variable)
@@ -170,15 +174,14 @@ def assemble(
     where a component has one. Raises InputError for anything in the files that does not fit.
     """
     system = System(rig, engine, seed, variant or rig.file.variant, {}, [])
-    folder = rig.read_from.path.parent
-    profile = load_profile(rig.file.profile, folder) if rig.file.profile else None
+    profiles = Profiles(rig.file.profile, rig.read_from.path.parent)
     once: dict[str, str] = {}
     try:
         for name, entry in rig.file.components.items():
             progress(f"{name} ({entry.fmu})")
             part = _part(rig, name, entry, engine, once)
             system.parts[name] = part
-            _give_parameters(system, part, entry, profile)
+            _give_parameters(system, part, entry, profiles)
         if system.variant and not any(e.parameters for e in rig.file.components.values()):
             raise InputError(
                 f"{rig.read_from.path}: variant {system.variant!r}: no component takes parameters "
@@ -260,9 +263,7 @@ def _instance(
     return open_instance(loaded, name), loaded.sha256, code
 
 
-def _give_parameters(
-    system: System, part: Part, entry: ComponentEntry, profile: Profile | None
-) -> None:
+def _give_parameters(system: System, part: Part, entry: ComponentEntry, profiles: Profiles) -> None:
     path, variables = system.rig.read_from.path, part.instance.variables
     where = f"{path}: components.{part.name}"
     seed_port = variables.get("seed")
@@ -277,19 +278,17 @@ def _give_parameters(
             scalars = settable(variables, port, values.origin)
             part.given.update(from_entry(value, scalars, f"{values.origin}"))
     if entry.profile is not None:
-        if profile is None:
-            raise InputError(f"{where}.profile: the rig names no profile")
-        _give_profile(system, part, entry.profile, profile, f"{where}.profile")
+        profile, section = profiles.find(entry.profile, f"{where}.profile")
+        _give_profile(part, section, profile, f"{where}.profile")
     for port, written in entry.set.items():
         system.set(f"{part.name}.{port}", written, f"{where}.set")
 
 
-def _give_profile(system: System, part: Part, section: str, profile: Profile, where: str) -> None:
+def _give_profile(part: Part, section: str, profile: Profile, where: str) -> None:
     variables = part.instance.variables
     values = profile.parameters(section)
-    if not section.startswith("sensors."):
-        # A channel says what its driver and what its actuator need, the identity what several
-        # links need: each takes its share.
+    if section.startswith("actuators."):
+        # A channel says what its driver and what its actuator need: each takes its share.
         values = {port: value for port, value in values.items() if port in variables}
         if not values:
             raise InputError(f"{where}: nothing in {section} is a parameter of {part.fmu}")

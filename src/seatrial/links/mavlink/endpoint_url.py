@@ -55,6 +55,19 @@ def open_endpoint(url: str) -> Endpoint:
         raise InputError(f"cannot open the link {url!r}: {error.strerror or error}") from None
 
 
+def check_urls(links: str) -> None:
+    """Raise InputError for the first of ``links``, separated by spaces, that is malformed."""
+    for url in links.split():
+        _parts(url)
+
+
+def other_end(url: str) -> str:
+    """Return what the other end opens, as pymavlink and MAVProxy write it."""
+    kind, _, place = url.partition(":")
+    others = {"udpout": "udpin", "udpin": "udpout", "tcpin": "tcp", "tcpout": "tcpin"}
+    return f"{others[kind]}:{place}" if kind in others else url
+
+
 def _parts(url: str) -> tuple[str, str, int]:
     kind = url.partition(":")[0]
     if kind not in _FORMS:
