@@ -1,0 +1,355 @@
+"""A CAN bus as a component: frames of its nodes in, frames for its nodes out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+from ...component import NS, Component, Input, Logging, Noise, Output, Parameter
+from ...errors import InputError, SimulationError, unknown
+from ..text import Inbox, Outbox
+from .bus_state import restore, saved
+from .controller import Controller
+from .disturbances import Disturbances
+from .frame import Frame
+from .operations import (
+    BitRate,
+    Buffering,
+    BusError,
+    Confirm,
+    FormatError,
+    Operation,
+    Status,
+    Transmit,
+    Wakeup,
+    decode,
+    encode,
+)
+from .simulated_bus import PS, Broken, Sent, SimulatedBus
+
+NODES = 12
+"""Most nodes of one bus."""
+WATCHED = 8
+"""Most identifiers whose latency is on an output."""
+FAULTS = ("none", "off", "babbling", "defective")
+"""Values of a node's fault."""
+
+_NODES = tuple(f"n{number}" for number in range(1, NODES + 1))
+_WATCHED = tuple(f"l{number}" for number in range(1, WATCHED + 1))
+_PS_PER_NS = 1000
+
+
+class CanBus(Logging, Noise, Component):
+    """A CAN or CAN FD bus of up to 12 nodes, in exact simulated time.
+
+    **Nodes** are named by ``nodes`` and have the ports ``tx.n1``, ``rx.n1`` and so on, in their
+    order. What passes there are operations of FMI-LS-BUS (`operations`) in texts
+    (`seatrial.links.text`): to the bus `Transmit`, `BitRate`, `Buffering`; from it `Transmit`,
+    `Confirm`, `ArbitrationLost`, `BusError`, `FormatError`, each with its time. A node that expects
+    another bit rate is refused.
+
+    **Time.** Frames, queues and arbitration are `SimulatedBus`'s: to the bit, however coarse the
+    communication step. In the step from t to t + h the bus lives until t, since all that nodes
+    asked for until then is known; so what ended by t is on ``rx`` at t + h, with the time at which
+    it ended: one step late, and never wrong.
+
+    **Controllers** have ``mailboxes`` and a queue of ``queue_length`` (`Controller`), and come back
+    from bus-off if ``recovery`` is on. Those of ``listen_only`` never send, acknowledge or object.
+
+    **What goes wrong**: ``bit_error_rate`` for all, ``receive_error_rate`` of single nodes
+    (`Disturbances`): error frames, and frames sent again. ``loss`` and ``receive_loss``: frames
+    that are sent and acknowledged and yet do not reach any node's, or one node's, software: a full
+    buffer. ``fault`` of a node: off (out of the bus), babbling (sends the highest priority all the
+    time), defective (its own frames are broken, until it is off the bus).
+
+    **Outputs.** ``load`` is the share of time that frames, error frames and intermissions took
+    in the last ``load_window``. Counts are of the whole run. ``latency`` is the time from the
+    request to the end of the frame, of the last frame of each identifier in ``watched`` (numbers,
+    as 0x09F11217, 29 bits if there are more than three digits).
+
+    Not modelled: CAN XL, sleep and wake-up, propagation and clock tolerance, overload frames,
+    the 6 to 12 bits of superposed flags in between.
+
+    Raises InputError at the start for nodes and identifiers that cannot be.
+    """
+
+    transient = Component.transient | {"_bus", "_wrong"}
+
+    nodes = Parameter("n1 n2", "1", "names of the nodes, separated by spaces")
+    bit_rate = Parameter(250_000.0, "1/s", "bit rate", min=1000.0, max=1e6)
+    data_bit_rate = Parameter(
+        2_000_000.0, "1/s", "bit rate of CAN FD's data phase", min=1000.0, max=2e7
+    )
+    mailboxes = Parameter(3.0, "1", "mailboxes of each controller", min=1.0, max=1000.0)
+    queue_length = Parameter(100.0, "1", "longest queue before the mailboxes", min=0.0, max=1e6)
+    recovery = Parameter("on", "1", "whether nodes come back from bus-off", choices=("on", "off"))
+    listen_only = Parameter("", "1", "names of nodes that only listen")
+    bit_error_rate = Parameter(
+        0.0, "1", "probability that a bit is wrong", min=0.0, max=1.0, tunable=True
+    )
+    receive_error_rate = Parameter(
+        0.0,
+        "1",
+        "probability that a node alone sees a wrong bit",
+        axes=_NODES,
+        min=0.0,
+        max=1.0,
+        tunable=True,
+    )
+    loss = Parameter(
+        0.0, "1", "probability that no node's software gets a frame", min=0.0, max=1.0, tunable=True
+    )
+    receive_loss = Parameter(
+        0.0,
+        "1",
+        "probability that a node's software does not get a frame",
+        axes=_NODES,
+        min=0.0,
+        max=1.0,
+        tunable=True,
+    )
+    watched = Parameter("", "1", "identifiers whose latency is told, separated by spaces")
+    load_window = Parameter(1.0, "s", "time over which the load is counted", min=1e-3)
+
+    tx = Input("1", "what nodes tell the bus", type=str, axes=_NODES, optional=True)
+    fault = Input(
+        "1", f"{', '.join(FAULTS)}", type=str, axes=_NODES, start=("none",) * NODES, optional=True
+    )
+
+    rx = Output("1", "what the bus tells nodes", type=str, axes=_NODES)
+    load = Output("1", "share of time that the bus is busy")
+    frames = Output("1", "frames sent", type=int)
+    error_frames = Output("1", "error frames", type=int)
+    state = Output("1", "1 error active, 2 error passive, 3 bus-off", type=int, axes=_NODES)
+    tec = Output("1", "transmit error counter", type=int, axes=_NODES)
+    rec = Output("1", "receive error counter", type=int, axes=_NODES)
+    queued = Output("1", "frames that wait", type=int, axes=_NODES)
+    dropped = Output("1", "frames that found no place", type=int, axes=_NODES)
+    sent = Output("1", "frames sent", type=int, axes=_NODES)
+    received = Output("1", "frames received", type=int, axes=_NODES)
+    lost = Output("1", "frames that were sent and not received", type=int, axes=_NODES)
+    latency = Output("s", "of the identifiers watched", axes=_WATCHED)
+
+    feedthrough: ClassVar = {}
+
+    # ------------------------------------------------------------------ running
+
+    def start(self, t: float) -> None:
+        """Make the bus; raises InputError for names and identifiers that cannot be."""
+        names = _names(self.nodes, NODES)
+        silent = _among(self.listen_only, names, "listen_only")
+        self._keys = _identifiers(self.watched)
+        recovers = self.recovery == "on"
+        controllers = [
+            Controller(
+                name,
+                _whole("queue_length", self.queue_length),
+                _whole("mailboxes", self.mailboxes),
+                name in silent,
+                recovers,
+            )
+            for name in names
+        ]
+        self._wrong = Disturbances(self.generator, len(names))
+        self._bus = SimulatedBus(
+            controllers,
+            _whole("bit_rate", self.bit_rate),
+            _whole("data_bit_rate", self.data_bit_rate),
+            self._wrong,
+            self._was_sent,
+            self._was_broken,
+            now_ps=self.now_ns * _PS_PER_NS,
+        )
+        self._inboxes: list[dict[str, Any]] = [{} for _ in names]
+        self._outboxes: list[dict[str, Any]] = [{} for _ in names]
+        self._buffers = [True] * len(names)
+        self._coming: list[list[Any]] = []
+        self._latencies = [0.0] * WATCHED
+        self._frames = self._broken_frames = 0
+        self._busy: list[list[int]] = [[self.now_ns, 0]]
+
+    def step(self, t: float, h: float) -> None:
+        """Take in what nodes have asked for, and let the bus live until ``t``."""
+        self._apply_faults()
+        for node in range(len(self._inboxes)):
+            for when, data in Inbox(self._inboxes[node]).take(self.tx[node]):
+                self._hear(node, when, data)
+        self._bus.run(self.now_ns * _PS_PER_NS)
+        self._deliver(self.now_ns)
+        self._count_load(self.now_ns)
+
+    def outputs(self, t: float) -> None:
+        """Publish what the bus told, and its counts."""
+        nothing = NODES - len(self._outboxes)
+        self.rx = [*(Outbox(memory).text for memory in self._outboxes), *[""] * nothing]
+        each = self._bus.controllers
+        for port, values in (
+            ("state", [int(c.state) for c in each]),
+            ("tec", [c.tec for c in each]),
+            ("rec", [c.rec for c in each]),
+            ("queued", [c.waiting for c in each]),
+            ("dropped", [c.dropped for c in each]),
+            ("sent", [c.sent for c in each]),
+            ("received", [c.received for c in each]),
+            ("lost", [c.lost for c in each]),
+        ):
+            setattr(self, port, [*values, *[0] * nothing])
+        self.frames, self.error_frames = self._frames, self._broken_frames
+        self.latency = self._latencies
+        begun, last = self._busy[0], self._busy[-1]
+        passed = last[0] - begun[0]
+        self.load = (last[1] - begun[1]) / (passed * _PS_PER_NS) if passed else 0.0
+
+    def get_state(self) -> dict[str, Any]:
+        """Return a copy of the whole state, the bus's included, as plain data."""
+        return {**super().get_state(), "bus": saved(self._bus)}
+
+    def set_state(self, state: Mapping[str, Any]) -> None:
+        """Restore what `get_state` returned."""
+        super().set_state({name: value for name, value in state.items() if name != "bus"})
+        restore(self._bus, state["bus"])
+
+    # ------------------------------------------------------------------ nodes
+
+    def _hear(self, node: int, when: int, data: bytes) -> None:
+        try:
+            operations = decode(data)
+        except InputError:
+            self._say(node, when, FormatError(data))
+            return
+        for operation in operations:
+            match operation:
+                case Transmit(frame):
+                    self._ask(node, when, frame)
+                case BitRate(rate, fd):
+                    self._agree(node, rate, fd)
+                case Buffering(waits):
+                    self._buffers[node] = waits
+                case Status() | Wakeup():
+                    pass  # this bus counts its nodes' errors itself, and does not sleep
+                case _:
+                    self._say(node, when, FormatError(data))
+
+    def _ask(self, node: int, when: int, frame: Frame) -> None:
+        self._bus.ask(when * _PS_PER_NS, node, frame)
+
+    def _agree(self, node: int, rate: int, fd: bool) -> None:
+        own = self.data_bit_rate if fd else self.bit_rate
+        if rate != own:
+            name = self._bus.controllers[node].name
+            what = "data_bit_rate" if fd else "bit_rate"
+            raise SimulationError(
+                f"{self.name}: node {name!r} has {rate} bit/s, the bus's {what} is {own:g}"
+            )
+
+    def _say(self, node: int, when: int, operation: Operation) -> None:
+        Outbox(self._outboxes[node]).put(when, encode(operation))
+
+    def _deliver(self, until_ns: int) -> None:
+        """Tell nodes what ended by then, in order."""
+        due = [entry for entry in self._coming if entry[0] <= until_ns]
+        self._coming = [entry for entry in self._coming if entry[0] > until_ns]
+        for when, node, data in due:
+            Outbox(self._outboxes[node]).put(when, bytes.fromhex(data))
+        for memory in self._outboxes:
+            Outbox(memory).flush()
+
+    def _tell(self, end_ps: int, node: int, operation: Operation) -> None:
+        # Rounded up: nothing is told before it has happened.
+        self._coming.append([-(-end_ps // _PS_PER_NS), node, encode(operation).hex()])
+
+    # ------------------------------------------------------------------ what happens
+
+    def _was_sent(self, sent: Sent) -> None:
+        self._frames += 1
+        frame = sent.frame
+        key = [frame.identifier, frame.extended]
+        if key in self._keys:
+            place = self._keys.index(key)
+            self._latencies[place] = (sent.end_ps - sent.asked_ps) / PS
+        gone = self._lost_by(self._bus.attempts)
+        for node, each in enumerate(self._bus.controllers):
+            if node == sent.node:
+                self._tell(sent.end_ps, node, Confirm(frame.identifier))
+            elif node == sent.deaf or not each.plugged or each.off:
+                continue
+            elif node in gone:
+                each.lost += 1
+            else:
+                self._tell(sent.end_ps, node, Transmit(frame))
+
+    def _lost_by(self, attempt: int) -> set[int]:
+        """Return the nodes whose software loses the frame of an attempt."""
+        nodes = len(self._bus.controllers)
+        if not self.loss and not any(self.receive_loss):
+            return set()
+        draws = self.generator(attempt, 1).random(1 + nodes).tolist()
+        if draws[0] < self.loss:
+            return set(range(nodes))
+        return {n for n in range(nodes) if draws[1 + n] < self.receive_loss[n]}
+
+    def _was_broken(self, broken: Broken) -> None:
+        self._broken_frames += 1
+        for node, each in enumerate(self._bus.controllers):
+            if each.plugged and not each.listens_only:
+                sender, first = node == broken.node, node == broken.first
+                error = BusError(broken.frame.identifier, broken.error, first, sender)
+                self._tell(broken.end_ps, node, error)
+
+    def _apply_faults(self) -> None:
+        bus, wrong = self._bus, self._wrong
+        wrong.bit_error_rate = self.bit_error_rate
+        wrong.receive_error_rate = self.receive_error_rate[: len(bus.controllers)]
+        for node, each in enumerate(bus.controllers):
+            fault = self.fault[node]
+            if fault not in FAULTS:
+                raise InputError(f"{self.name}.{unknown(f'fault.{_NODES[node]}', fault, FAULTS)}")
+            each.babbles = fault == "babbling"
+            if each.plugged and fault == "off":
+                each.unplug()
+            elif not each.plugged and fault != "off":
+                each.plug()
+        wrong.defective = {n for n in range(len(bus.controllers)) if self.fault[n] == "defective"}
+
+    def _count_load(self, now_ns: int) -> None:
+        ahead = max(0, self._bus.free_ps - now_ns * _PS_PER_NS)  # of a frame that has begun
+        self._busy.append([now_ns, self._bus.busy_ps - ahead])
+        oldest = now_ns - round(self.load_window * NS)
+        while len(self._busy) > 2 and self._busy[1][0] <= oldest:
+            self._busy.pop(0)
+
+
+def _names(written: str, most: int) -> list[str]:
+    names = written.split()
+    if not 1 <= len(names) <= most or len(set(names)) < len(names):
+        raise InputError(f"nodes is {written!r}, 1 to {most} different names are needed")
+    return names
+
+
+def _among(written: str, names: list[str], what: str) -> list[str]:
+    for name in written.split():
+        if name not in names:
+            raise InputError(unknown(f"node in {what}", name, names))
+    return written.split()
+
+
+def _identifiers(written: str) -> list[list[Any]]:
+    """Return (identifier, extended) of each; more than three digits are an extended one."""
+    found = []
+    for text in written.split():
+        try:
+            number = int(text, 16)
+        except ValueError:
+            raise InputError(f"watched: {text!r} is no identifier, such as 0x09F11217") from None
+        extended = len(text.removeprefix("0x")) > 3
+        Frame(number, extended=extended)
+        found.append([number, extended])
+    if len(found) > WATCHED:
+        raise InputError(f"watched has {len(found)} identifiers, {WATCHED} at most")
+    return found
+
+
+def _whole(name: str, value: float) -> int:
+    if value % 1.0:
+        raise InputError(f"{name} is {value!r}, a whole number is needed")
+    return int(value)
