@@ -12,6 +12,9 @@ $(INSTALLED): pyproject.toml
 		{ echo "Python's venv is missing; on Debian: apt install python3-venv"; exit 1; }
 	$(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	@# MAVProxy, a judge of the MAVLink link, without what its windows need (OpenCV, VTK, Matplotlib):
+	@# no extra can leave that out, and its other modules need nothing that is not here.
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps 'MAVProxy>=1.8.75,<1.9'
 	@touch $@
 
 # The trial's verdict is the published one: a landing off the centre heels the deck too far.

@@ -1,4 +1,4 @@
-"""sailing-guidance: course over marks by wearing round."""
+"""sailing-guidance: guidance of a sailing boat that wears round."""
 
 from seatrial.control.sailing_guidance import SailingGuidance
 from seatrial.fmi.slave import Slave

@@ -9,7 +9,7 @@ import numpy as np
 
 def is_c_text(text: str) -> bool:
     """Say if FMI can carry ``text``: no NUL, no lone surrogate."""
-    return "\0" not in text and not any("\ud800" <= c <= "\udfff" for c in text)
+    return "\0" not in text and (text.isascii() or not any("\ud800" <= c <= "\udfff" for c in text))
 
 
 def copied(value: Any, where: str) -> Any:

@@ -71,7 +71,7 @@ class Plant(Component):
     Steps use the classical Runge-Kutta method of order 4 with equal sub-steps no longer than
     ``max_step``, inputs held. Feed-through is declared, and checked against
     the expressions. Text parameters choose
-    between equations and reach `equations` as text.
+    between equations and reach `equations` as text; text inputs do not reach them.
     """
 
     max_step = Parameter(0.01, "s", "longest integration sub-step", min=1e-6)
@@ -92,19 +92,23 @@ class Plant(Component):
         super().__init_subclass__(**options)
         ports = list(cls.ports.values())
         for port in ports:
+            if port.kind == "input" and port.type is str:
+                continue
             if port.kind != "parameter" and port.type is not float:
                 raise TypeError(f"{cls.__name__}.{port.name}: a plant's ports are real numbers")
             if isinstance(port, Parameter) and port.type is str and port.tunable:
                 raise TypeError(f"{cls.__name__}.{port.name}: equations cannot change in a run")
         cls._models = {}
         cls.state_ports = tuple(p for p in ports if isinstance(p, State))
-        cls.input_ports = tuple(p for p in ports if p.kind == "input")
+        cls.input_ports = tuple(p for p in ports if p.kind == "input" and p.type is float)
         cls.output_ports = tuple(
             p for p in ports if p.kind == "output" and not isinstance(p, State)
         )
         cls._texts = tuple(p.name for p in ports if p.kind == "parameter" and p.type is str)
         # Ports of one kind stand side by side in the flat list of values.
-        places = [s.reference for s in cls.scalars if s.port.kind == "input"]
+        places = [s.reference for s in cls.scalars if s.port in cls.input_ports]
+        if places and places[-1] - places[0] >= len(places):
+            raise TypeError(f"{cls.__name__}: text inputs stand before or after all others")
         cls._u_slice = slice(places[0], places[-1] + 1) if places else slice(0, 0)
         reals = [s for s in cls.scalars if isinstance(s.port, Parameter) and s.port.type is float]
         cls._p_references = tuple(s.reference for s in reals)

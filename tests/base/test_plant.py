@@ -416,6 +416,18 @@ def test_ports_of_a_plant_are_real(port) -> None:
         declared(lambda s, x, u, p: ({"x": x.x}, {}), q=port())
 
 
+def test_a_text_input_does_not_reach_the_equations() -> None:
+    def equations(self, x, u, p):
+        assert set(vars(u)) == {"u"}
+        return {"x": x.x + u.u}, {}
+
+    plant = running(declared(equations, fault=Input("1", "failure", type=str, start="none")), u=2.0)
+    plant.set("fault", "off")
+    plant.advance(0.0, 0.1)
+    with pytest.raises(TypeError, match="Odd: text inputs stand before or after all others"):
+        declared(equations, text=Input("1", "text", type=str), v=Input("m", "v"))
+
+
 def test_text_that_chooses_equations_cannot_be_tunable() -> None:
     with pytest.raises(TypeError, match=r"Odd\.law: equations cannot change in a run"):
         declared(lambda s, x, u, p: ({"x": x.x}, {}), law=Parameter("a", "1", "law", tunable=True))

@@ -125,3 +125,42 @@ def test_without_wind_nothing_heels():
 def test_refuses_what_cannot_be(values, message):
     with pytest.raises(InputError, match=message):
         started(SailControl, **values)
+
+
+# ---------------------------------------------------------------------- by hand
+
+
+def sheeted(angle, sheet=0.0, wind=(0.0, 0.0), **changes):
+    """Return the sail's angle, deg, in an apparent wind that blows to ``angle``, deg."""
+    found = started(
+        SailControl,
+        trimming=False,
+        sheet=sheet,
+        apparent_wind=[5.0, math.radians(angle)],
+        wind=list(wind),
+        **changes,
+    )
+    assert found.get("flap") == 0.0
+    return math.degrees(found.get("sail"))
+
+
+@pytest.mark.parametrize(("angle", "sail"), [(180, 0), (-150, 30), (150, -30), (-100, 80)])
+def test_an_eased_sail_streams_with_its_trailing_edge_downwind(angle, sail):
+    # Wind from starboard, which blows to port: the boom lies to port.
+    assert sheeted(angle, wind=[0.0, -5.0 if sail > 0 else 5.0]) == pytest.approx(sail)
+
+
+def test_an_eased_sail_gives_no_lift():
+    found = started(SailControl, trimming=False, apparent_wind=[5.0, math.radians(-120)])
+    assert found.get("heeling_moment") == pytest.approx(0.0, abs=2.0)
+
+
+@pytest.mark.parametrize(("sheet", "sail"), [(0.0, 80), (0.5, 45), (0.9, 9), (1.0, 0), (2.0, 0)])
+def test_the_sheet_hauls_the_boom_in(sheet, sail):
+    assert sheeted(-100, sheet, wind=[0.0, -5.0]) == pytest.approx(sail, abs=1e-9)
+
+
+@pytest.mark.parametrize("heading", [10, -10])
+def test_wind_from_astern_presses_the_boom_out_to_its_limit(heading):
+    found = sheeted(-heading, wind=[5.0, 0.0], heading=math.radians(heading))
+    assert abs(found) == pytest.approx(90.0)

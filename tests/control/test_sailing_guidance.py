@@ -9,12 +9,20 @@ from tests.devices.running import started
 
 DEG = math.radians(1.0)
 NORTHERLY = [-5.0, 0.0]  # it blows to the south: the eye of the wind is north
-UNDER_WAY = {"wind": NORTHERLY, "speed": 2.0, "turn_rate": 1e3, "lead": math.pi}
+NEUTRAL, PILOTED, STAYS, FOLLOWS, STEERS, BEATS = range(6)
 
 
-def guidance(mark=(0.0, 0.0), position=(0.0, 0.0), heading=90.0, **changes):
-    values = {**UNDER_WAY, "mark_1": list(mark), "position_n": [*position, 0.0]}
-    return started(SailingGuidance, **{**values, "heading": heading * DEG, **changes})
+def guidance(position=(0.0, 0.0), heading=90.0, speed=2.0, **changes):
+    """Return an armed boat under way, whose heading wanted does not lag unless it is told to."""
+    along = [speed * math.cos(heading * DEG), speed * math.sin(heading * DEG), 0.0]
+    values = {"armed": True, "wind": NORTHERLY, "turn_rate": 1e3, "lead": math.pi}
+    placed = {"position_n": [*position, 0.0], "velocity_n": along, "heading": heading * DEG}
+    return started(SailingGuidance, **{**values, **placed, **changes})
+
+
+def leg(end, start=(0.0, 0.0), number=1, **settings):
+    ends = {"leg_from": [*start, 0.0], "leg_to": [*end, 0.0]}
+    return {"mode": "auto", "leg": number, **ends, **settings}
 
 
 def at(bearing, distance=100.0):
@@ -25,28 +33,57 @@ def wrapped(angle):
     return math.degrees(math.remainder(angle, math.tau))
 
 
+def steer(boat, seconds, speed=2.0, current=(0.0, 0.0), each=None):
+    """Move a boat that turns as it is told, without leeway; it has way while its sail is trimmed."""
+    period = boat.period
+    north, east, _ = boat.position_n
+    for _ in range(round(seconds / period)):
+        heading = boat.get("heading_wanted")
+        sails = boat.get("engaged.sail")
+        if each and each(north, east, heading):
+            return True
+        boat.advance(boat.now, period)
+        u = speed if sails else 0.0
+        v_n = u * math.cos(heading) + current[0], u * math.sin(heading) + current[1]
+        north, east = north + period * v_n[0], east + period * v_n[1]
+        boat.set("heading", heading)
+        boat.set("velocity_n", [*v_n, 0.0])
+        boat.set("position_n", [north, east, 0.0])
+    return False
+
+
+# ---------------------------------------------------------------------- legs
+
+
 @pytest.mark.parametrize("bearing", [60, 90, 179, -150, -66])
-def test_heads_for_a_mark_off_the_wind(bearing):
-    found = guidance(at(bearing), heading=bearing)
+def test_sails_a_leg_off_the_wind(bearing):
+    found = guidance(heading=bearing, **leg(at(bearing)))
     assert wrapped(found.get("course")) == pytest.approx(bearing)
-    assert wrapped(found.get("heading_wanted")) == pytest.approx(bearing)
     assert found.get("distance") == pytest.approx(100.0)
+    assert (found.get("state"), found.get("engaged")) == (FOLLOWS, [True, True])
 
 
-@pytest.mark.parametrize(
-    ("bearing", "heading", "course"),
-    [
-        *((0, 90, 60), (0, -90, -60), (30, 90, 60), (-30, 90, 60), (59, 90, 60)),
-        *((-64, 90, 60), (-66, 90, -66)),  # the other tack from 65 degrees on
-    ],
-)
-def test_an_upwind_mark_is_left_to_the_tack_that_it_is_on(bearing, heading, course):
-    assert wrapped(guidance(at(bearing), heading=heading).get("course")) == pytest.approx(course)
+def test_beside_a_leg_it_heads_for_the_line_as_line_of_sight_has_it():
+    found = guidance((-10.0, 20.0), **leg(at(90)), lookahead=20.0)
+    assert found.get("cross_track") == pytest.approx(10.0)
+    assert wrapped(found.get("course")) == pytest.approx(90 - math.degrees(math.atan(0.5)))
+    # But no closer to the wind than it can.
+    found = guidance((-60.0, 20.0), **leg(at(90)), lookahead=20.0)
+    assert wrapped(found.get("course")) == pytest.approx(60.0)
+
+
+def test_off_the_wind_it_comes_back_onto_the_line():
+    found = guidance((-10.0, 0.0), **leg((0.0, 400.0)), lookahead=20.0, turn_rate=6 * DEG)
+    steer(found, 100)
+    # e' = -U e / sqrt(lookahead^2 + e^2): after t it is near exp(-U t / lookahead) of 10 m.
+    assert abs(found.get("cross_track")) < 0.01
+    assert found.get("state") == FOLLOWS
 
 
 def turns(heading, course, count=400):
     """Return the headings wanted, deg, of a boat that follows them at once."""
-    found = guidance(at(course, 1e5), heading=heading, turn_rate=6 * DEG)
+    target = {"mode": "guided", "target_kind": "heading", "target_heading": course * DEG}
+    found = guidance(heading=heading, turn_rate=6 * DEG, target_speed=1.0, **target)
     headings, wearing = [heading], []
     for k in range(count):
         wanted = found.get("heading_wanted")
@@ -54,6 +91,7 @@ def turns(heading, course, count=400):
         wearing.append(found.get("wearing"))
         found.advance(0.1 * k, 0.1)
         found.set("heading", wanted)
+        found.set("velocity_n", [2.0 * math.cos(wanted), 2.0 * math.sin(wanted), 0.0])
     return headings, wearing
 
 
@@ -70,67 +108,150 @@ def test_turns_at_the_rate_and_never_through_the_eye_of_the_wind(heading, course
     assert any(wearing) == (abs(turned) > 180)
 
 
-def test_the_heading_wanted_waits_for_the_boat():
-    found = guidance(at(180, 1e5), heading=90, turn_rate=6 * DEG, lead=20 * DEG)
-    for k in range(200):
-        found.advance(0.1 * k, 0.1)
-    assert wrapped(found.get("heading_wanted")) == pytest.approx(110.0, abs=0.6)
-
-
-def test_marks_are_passed_one_after_the_other():
-    marks = {"count": 2.0, "mark_1": [0.0, 50.0], "mark_2": [0.0, 100.0], "radius": 8.0}
-    found, rows = started(SailingGuidance, **UNDER_WAY, **marks, heading=math.pi / 2), []
-    for k in range(60):
-        found.set("position_n", [0.0, 2.0 * k, 0.0])
-        rows.append((found.get("passed"), found.get("distance")))
-        found.advance(0.1 * k, 0.1)
-    # At 42 m the first is at 8 m, which is not within; 44 m is. The course is kept afterwards.
-    assert [passed for passed, _ in rows] == [0] * 22 + [1] * 25 + [2] * 13
-    assert rows[30][1] == pytest.approx(40.0)
-    assert wrapped(found.get("course")) == pytest.approx(90.0)
-
-
 def test_without_way_it_bears_away_until_it_has_way_again():
-    found, courses = guidance(at(70, 1e5), heading=70, steerage=0.5, recovered=2.0), []
+    found, courses = guidance(heading=70, **leg(at(70, 1e5)), recovered=2.0), []
     for k, speed in enumerate([0.6, 0.4, 0.6, 0.9, 1.1, 0.6]):
-        found.set("speed", speed)
+        found.set("velocity_n", [*at(70, speed), 0.0])
         courses.append(wrapped(found.get("course")))
         found.advance(0.1 * k, 0.1)
     assert courses == pytest.approx([70, 110, 110, 110, 70, 70], abs=1e-6)
 
 
-def test_without_a_position_nothing_changes():
-    found = guidance(at(90), heading=50, position_valid=False)
-    assert wrapped(found.get("heading_wanted")) == pytest.approx(50)
-    found.set("position_valid", True)
-    assert wrapped(found.get("heading_wanted")) == pytest.approx(90)
-    found.advance(0.0, 0.1)
-    found.set("position_valid", False)
-    found.set("heading", 0.0)
-    assert wrapped(found.get("heading_wanted")) == pytest.approx(90)
+@pytest.mark.parametrize("end", [(300.0, 0.0), (250.0, 120.0)])
+def test_beats_to_an_end_upwind_and_a_new_line_begins_where_it_is_laid(end):
+    found = guidance(heading=100, **leg(end, leg_radius=12.0), turn_rate=6 * DEG)
+    tacks, states = set(), set()
 
-
-@pytest.mark.parametrize("mark", [(300.0, 0.0), (250.0, 120.0)])
-def test_beats_to_a_mark_upwind(mark):
-    """A boat of 2 m/s that turns as it is told, without leeway."""
-    found = guidance(mark, heading=100, turn_rate=6 * DEG, radius=12.0)
-    north = east = 0.0
-    tacks = set()
-    for k in range(10_000):
-        heading = found.get("heading_wanted")
+    def arrives(north, east, heading):
         assert abs(wrapped(heading)) > 59.9
         tacks.add(math.copysign(1.0, wrapped(heading)))
-        if found.get("passed"):
-            break
-        found.advance(0.1 * k, 0.1)
-        north += 0.2 * math.cos(heading)
-        east += 0.2 * math.sin(heading)
-        found.set("heading", heading)
-        found.set("position_n", [north, east, 0.0])
-    assert found.get("passed") == 1
+        states.add(found.get("state"))
+        return found.get("reached") == 1
+
+    assert steer(found, 1000, each=arrives)
+    assert math.dist(found.position_n[:2], end) <= 12.0
     assert tacks == {1.0, -1.0}
+    assert {BEATS, FOLLOWS} <= states
+    assert found.get("cross_track_rms") < 25.0  # of the last board, not of the boards before
 
 
-def test_refuses_a_broken_number_of_marks():
-    with pytest.raises(InputError, match=r"count is 1\.5, a whole number is needed"):
-        started(SailingGuidance, count=1.5)
+def test_waits_at_the_end_of_a_leg():
+    found = guidance(at(90, 95.0), **leg(at(90), leg_radius=8.0, leg_wait=2.0))
+    reached = []
+    for k in range(30):
+        reached.append(found.get("reached"))
+        found.advance(0.1 * k, 0.1)
+    assert reached.index(1) == 20
+    assert found.get("engaged.sail") is False
+
+
+def test_a_new_number_of_the_same_leg_is_a_leg_of_its_own():
+    found = guidance(at(90), **leg(at(90), leg_radius=8.0))
+    found.advance(0.0, 0.1)
+    assert found.get("reached") == 1
+    found.set("leg", 2)
+    assert found.get("reached") == 2
+
+
+# ---------------------------------------------------------------------- staying
+
+
+def test_holding_in_a_current_it_sails_back_from_the_drift_limit():
+    found = guidance(mode="hold", drift_limit=40.0, capture_radius=20.0, turn_rate=6 * DEG)
+    offs, sailed = [], []
+
+    def watch(north, east, heading):
+        offs.append(math.hypot(north, east))
+        sailed.append(found.get("engaged.sail"))
+        return False
+
+    steer(found, 600, current=(0.0, 0.3), each=watch)
+    assert any(sailed[1000:])
+    assert not all(sailed[1000:])
+    # A boat that turns at 6 deg/s sweeps 2 U / rate = 38 m.
+    assert max(offs) < 40.0 + 2 * 2.0 / (6 * DEG) + 10.0
+
+
+def test_lying_to_it_rounds_up_while_it_has_way_and_then_nobody_steers():
+    found = guidance(heading=170, mode="hold", lying=70 * DEG)
+    assert wrapped(found.get("course")) == pytest.approx(70)
+    assert (found.get("engaged"), found.get("state")) == ([True, False], STAYS)
+    found.set("velocity_n", [0.0, 0.0, 0.0])
+    assert found.get("engaged") == [False, False]
+    assert found.get("heading_wanted") == pytest.approx(170 * DEG)
+
+
+@pytest.mark.parametrize("radius", [60.0, -60.0])
+def test_goes_round_a_circle_though_the_wind_is_in_the_way(radius):
+    found = guidance((0.0, 60.0), mode="hold", turn_rate=6 * DEG)
+    found.set("position_n", [0.0, 0.0, 0.0])
+    found.set("loiter_radius", radius)
+    found.set("mode", "loiter")
+    bearings = []
+    steer(found, 900, each=lambda n, e, h: bearings.append(math.atan2(e, n)))
+    way = sum(math.remainder(b - a, math.tau) for a, b in itertools.pairwise(bearings[100:]))
+    assert math.copysign(1, radius) * way > 1.5 * math.tau
+
+
+# ---------------------------------------------------------------------- orders
+
+
+def test_disarmed_the_rudder_is_amidships_and_the_sail_streams():
+    found = guidance(mode="manual", manual=[1.0, 0.0, 1.0, 0.0], armed=False)
+    assert found.get("engaged") == [False, False]
+    assert found.get("direct") == [0.0, 0.0]
+    assert found.get("state") == NEUTRAL
+
+
+def test_sticks_go_through_in_manual_only():
+    found = guidance(mode="manual", manual=[0.5, 0.0, -2.0, 0.0], position_valid=False)
+    assert (found.get("direct"), found.get("state")) == ([-1.0, 0.5], PILOTED)
+    found.set("manual", [-1.0, 0.0, 0.0, 0.0])
+    assert found.get("direct") == [0.0, 0.0]  # a sheet does not push
+    found.set("mode", "hold")
+    assert found.get("direct") == [0.0, 0.0]
+
+
+def test_without_a_position_for_longer_than_the_timeout_it_is_neutral():
+    found, states = guidance(heading=90, **leg(at(90))), []
+    found.advance(0.0, 0.1)
+    found.set("position_valid", False)
+    for k in range(1, 20):
+        states.append(found.get("state"))
+        found.advance(0.1 * k, 0.1)
+    assert states == [FOLLOWS] * 10 + [NEUTRAL] * 9
+
+
+@pytest.mark.parametrize(
+    ("kind", "wanted"),
+    [
+        ("velocity", {"target_velocity": [0.0, 1.0, 0.0]}),
+        ("heading", {"target_heading": 90 * DEG, "target_speed": 1.0}),
+        ("position", {"target_position": [0.0, 100.0, 0.0]}),
+    ],
+)
+def test_guided_sails_where_it_is_told(kind, wanted):
+    found = guidance(heading=120, mode="guided", target_kind=kind, **wanted)
+    assert wrapped(found.get("course")) == pytest.approx(90.0)
+    assert found.get("engaged") == [True, True]
+
+
+def test_a_speed_of_0_is_to_lie_to():
+    found = guidance(mode="guided", target_kind="velocity", target_velocity=[0.0, 0.0, 0.0])
+    assert found.get("engaged.sail") is False
+
+
+def test_returns_home():
+    found = guidance((0.0, -100.0), mode="return", home=[0.0, 0.0, 0.0], acceptance_radius=8.0)
+    assert steer(found, 100, each=lambda n, e, h: found.get("state") == STAYS)
+    assert math.hypot(*found.position_n[:2]) <= 8.0
+
+
+def test_refuses_a_mode_that_it_has_not():
+    with pytest.raises(InputError, match=r"unknown mode 'surface'.*loiter"):
+        guidance(mode="surface").get("state")
+
+
+def test_refuses_radii_that_do_not_go_together():
+    with pytest.raises(InputError, match=r"capture_radius .* must be less than drift_limit"):
+        guidance(drift_limit=20.0)

@@ -115,6 +115,84 @@ def test_a_stop_ends_a_long_wait_within_a_slice() -> None:
     assert pacer.wake_ups.count == 0
 
 
+def test_another_factor_counts_from_the_point_on_at_which_it_comes() -> None:
+    wall = Wall()
+    start, pacer, points = wall.ns, wall.pacer(1.0, "catch-up"), []
+    for k in range(1, 31):
+        if k in (11, 21):
+            pacer.change({11: 4.0, 21: 0.5}[k], (k - 1) * STEP)
+        wall.ns += MS
+        pacer.keep(k * STEP)
+        points.append((wall.ns - start) / MS)
+    by_hand = [10.0 * k for k in range(1, 11)]
+    by_hand += [100 + 2.5 * k for k in range(1, 11)] + [125 + 20 * k for k in range(1, 11)]
+    assert points == by_hand
+    assert (pacer.overruns.count, pacer.lost_ns, pacer.drift_ns) == (0, 0, 0)
+
+
+def test_the_same_factor_changes_nothing() -> None:
+    wall = Wall()
+    pacer = wall.pacer(1.0, "catch-up")
+    wall.ns += 35 * MS
+    assert pacer.keep(STEP) == 25 * MS
+    pacer.change(1.0, STEP)
+    wall.ns += MS
+    assert pacer.keep(2 * STEP) == 16 * MS
+
+
+@pytest.mark.parametrize("policy", ["catch-up", "slip"])
+def test_a_run_that_could_not_keep_up_does_not_race_on_when_it_is_slowed(policy) -> None:
+    wall = Wall()
+    pacer = wall.pacer(100.0, policy)
+    for k in range(1, 101):  # steps of 1 ms, of which 0.1 ms are allowed
+        wall.ns += MS
+        pacer.keep(k * STEP)
+    late, begun = pacer.overruns.count, wall.ns
+    assert late == 100
+    pacer.change(1.0, 100 * STEP)
+    for k in range(101, 111):
+        wall.ns += MS
+        pacer.keep(k * STEP)
+        assert wall.ns - begun == (k - 100) * STEP
+    assert pacer.overruns.count == late
+    assert pacer.lost_ns == pacer.drift_ns == 90 * MS
+
+
+@pytest.mark.parametrize("policy", ["catch-up", "slip", "abort"])
+def test_a_pause_is_left_out(policy: OverrunPolicy) -> None:
+    wall = Wall()
+    start, pacer, points = wall.ns, wall.pacer(1.0, policy), []
+    for k in range(1, 11):
+        wall.ns += MS
+        if k == 5:
+            wall.ns += 1000 * MS
+            pacer.pause(1000 * MS)
+        assert pacer.keep(k * STEP) == 0
+        points.append((wall.ns - start) // MS)
+    assert points == [10, 20, 30, 40, *range(1050, 1101, 10)]
+    assert (pacer.overruns.count, pacer.lost_ns, pacer.drift_ns) == (0, 0, 0)
+    assert pacer.as_json()["paused_s"] == 1.0
+
+
+@given(
+    st.lists(
+        st.tuples(st.integers(0, 40), st.sampled_from([0.5, 1.0, 2.0, 8.0]), st.integers(0, 500)),
+        min_size=1, max_size=60,
+    )
+)  # fmt: skip
+def test_no_point_comes_early_whatever_changes(steps: list[tuple[int, float, int]]) -> None:
+    # Neither less wall time than simulated time over the factor, nor a race after changes.
+    wall = Wall()
+    pacer = wall.pacer(1.0, "slip")
+    for k, (busy, factor, paused) in enumerate(steps, start=1):
+        before = wall.ns
+        pacer.change(factor, (k - 1) * STEP)
+        wall.ns += (busy + paused) * MS
+        pacer.pause(paused * MS)
+        pacer.keep(k * STEP)
+        assert wall.ns - before == max(round(STEP / factor), busy * MS) + paused * MS
+
+
 @pytest.mark.parametrize("factor", [1.0, 4.0])
 def test_the_real_clock_is_never_early(factor: float) -> None:
     pacer = Pacer(factor, "catch-up")

@@ -315,3 +315,11 @@ def test_unconnected_inputs_are_reported(direct) -> None:
         '"ramp.y" = "sum.u"',
     )
     assert system.unconnected_inputs() == ["sum.angle"]
+
+
+def test_optional_inputs_are_not_among_the_unconnected_ones(bench: Bench) -> None:
+    system = bench.master('gnss = { fmu = "gnss" }').system
+    assert system.parts["gnss"].instance.variables["fault"].optional
+    assert system.unconnected_inputs() == [
+        "gnss.position", "gnss.attitude", "gnss.velocity", "gnss.rates"
+    ]  # fmt: skip

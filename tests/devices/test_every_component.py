@@ -10,13 +10,15 @@ from seatrial.control.course import Course
 from seatrial.control.depth_hold import DepthHold
 from seatrial.control.dynamic_positioning import DynamicPositioning
 from seatrial.control.flat_tracking import FlatTracking
-from seatrial.control.guidance import MODES, TARGETS, Guidance
+from seatrial.control.guidance import Guidance
+from seatrial.control.guidance_orders import TARGETS
 from seatrial.control.heading_autopilot import HeadingAutopilot
 from seatrial.control.heading_hold import HeadingHold
 from seatrial.control.helm import Helm
 from seatrial.control.nominal_trajectory import NominalTrajectory
 from seatrial.control.pulse_allocation import PulseAllocation
 from seatrial.control.reference_filter import HeadingReference
+from seatrial.control.rudder_helm import RudderHelm
 from seatrial.control.sail_control import SailControl
 from seatrial.control.sailing_guidance import SailingGuidance
 from seatrial.control.sailing_heading_backstepping import SailingHeadingBackstepping
@@ -30,6 +32,7 @@ from seatrial.devices.anemometer import Anemometer
 from seatrial.devices.angle_servo import AngleServo
 from seatrial.devices.compass import Compass
 from seatrial.devices.depth import Depth
+from seatrial.devices.fault import FAULTS
 from seatrial.devices.force_actuator import ForceActuator
 from seatrial.devices.gnss import Gnss
 from seatrial.devices.imu import Imu
@@ -71,7 +74,18 @@ CLASSES = {
         "N_r": -48.0,
     },
     SailingNavigation: {},
-    SailingGuidance: {"count": 2.0, "mark_1": [1.0, 1.0], "mark_2": [20.0, 0.0], "radius": 2.0},
+    SailingGuidance: {
+        "armed": True,
+        "position_valid": True,
+        "leg_radius": 4.0,
+        "leg_wait": 0.0,
+        "lookahead": 2.0,
+        "drift_limit": 3.0,
+        "capture_radius": 2.0,
+        "loiter_radius": 4.0,
+        "steerage": 0.1,
+    },
+    RudderHelm: {},
     ForceActuator: {"capacity": [2.0, 2.0, 2.0]},
     HeadingAutopilot: {"rudder_limit": 100.0, "integral_gain": 0.1},
     HeadingReference: {},
@@ -108,14 +122,14 @@ CLASSES = {
         "moment_limit": 100.0,
     },
 }
-TEXTS = {"mode": MODES, "target_kind": TARGETS}
+TEXTS = {"fault": ("none", *FAULTS), "target_kind": TARGETS}
 every = pytest.mark.parametrize("cls", CLASSES, ids=lambda cls: cls.__name__)
 
 
-def some_value(port, random):
-    """Return a value that a port could have."""
+def some_value(cls, port, random):
+    """Return a value that a component's port could have."""
     if port.type is str:
-        return random.choice(TEXTS[port.name])
+        return random.choice(cls.modes if port.name == "mode" else TEXTS[port.name])
     if port.type is bool:
         values = [random.random() < 0.7 for _ in range(port.size)]
     elif port.type is int:
@@ -130,7 +144,7 @@ def some_value(port, random):
 def some_inputs(cls, seed):
     generator = random.Random(seed)
     inputs = [p for p in cls.ports.values() if p.kind == "input"]
-    return {p.name: some_value(p, generator) for p in inputs}
+    return {p.name: some_value(cls, p, generator) for p in inputs}
 
 
 def names(cls, kind):
@@ -208,7 +222,7 @@ def test_only_declared_inputs_act_at_once(cls):
         before = {name: component.get(name) for name in names(cls, "output")}
         for name in names(cls, "input"):
             old = component.get(name)
-            component.set(name, some_value(cls.ports[name], generator))
+            component.set(name, some_value(cls, cls.ports[name], generator))
             for output, value in before.items():
                 if component.get(output) != value:
                     found.setdefault(output, set()).add(name)

@@ -22,7 +22,7 @@ class Probe(Sensor):
     """Measures two numbers."""
 
     truth = Input("m", "truth", axes="xy")
-    y = Measured("m", "measured", axes="xy")
+    y = Measured("m", "measured", axes="xy", span=((-1.0, 0.0), (1.0, 10.0)))
     feedthrough = {"y": ("truth",)}  # noqa: RUF012
 
     def measure(self):

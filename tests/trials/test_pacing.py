@@ -13,10 +13,33 @@ from seatrial.trials.run import Result, run_trial
 from seatrial.trials.trial import Trial, load_trial
 
 BOAT = '''
-"""Two boats; one takes its time."""
+"""Boats, one of which takes its time."""
 import time
 
 from seatrial.component import Component, Output, Parameter
+
+
+class Pace(Component):
+    """Wants another pace from 0.1 s on, and then stands still for a while."""
+
+    later = Parameter(4.0, "1", "factor from then on")
+    stands = Parameter(0.0, "s", "wall time for which it stands still in the step at 0.1 s")
+    speedup = Output("1", "factor", start=1.0)
+    paused = Output("s", "wall time that it stood still")
+    text = Output("1", "no number", type=str)
+
+    def start(self, t):
+        self.stood = 0.0
+
+    def step(self, t, h):
+        if self.stands and abs(t - 0.1) < 1e-9:
+            begun = time.monotonic()
+            time.sleep(self.stands)
+            self.stood = time.monotonic() - begun
+
+    def outputs(self, t):
+        self.speedup = self.later if t > 0.0999 else 1.0
+        self.paused = self.stood
 
 
 class Quick(Component):
@@ -47,6 +70,7 @@ step = "10 ms"
 [components]
 quick = { fmu = "boat.py:Quick", step = "20 ms" }
 slow  = { fmu = "boat.py:Slow" }
+pace  = { fmu = "boat.py:Pace" }
 """
 TRIAL = 'rig = "rig.toml"\nstop = "0.2 s"\n'
 
@@ -123,6 +147,57 @@ def test_an_overrun_aborts(bench, tmp_path: Path) -> None:
     assert "slow took longest" in write_report(tmp_path / "run").read_text("utf-8")
 
 
+FOLLOWING = '[real_time]\nfactor = "pace.speedup"\npaused = "pace.paused"\n'
+
+
+def test_the_factor_may_be_a_signal(bench, tmp_path: Path) -> None:
+    result, timing = run(bench(FOLLOWING), tmp_path / "run")
+    assert result.status == "complete"
+    assert timing["wall_s"]["run"] >= 0.1 + 0.1 / 4
+    assert timing["pacing"]["factor"] == 4.0
+    slow = bench(FOLLOWING).changed({"pace.later": 0.1}, "test")
+    _, timing = run(slow, tmp_path / "slow")
+    assert timing["wall_s"]["run"] >= 0.1 + 0.1 / 0.1
+
+
+def test_a_pause_is_no_overrun(bench, tmp_path: Path) -> None:
+    trial = bench(FOLLOWING.replace("[real_time]", "[real_time]\noverrun = 'abort'"))
+    trial = trial.changed({"pace.stands": 2.0, "pace.later": 0.05}, "test")
+    result, timing = run(trial, tmp_path / "run")
+    assert result.status == "complete", result.error
+    assert timing["pacing"]["paused_s"] >= 2.0
+    assert timing["pacing"]["overruns"]["longest_s"] < 2.0
+    assert timing["wall_s"]["run"] >= 2.0 + 0.1 + 0.1 / 0.05
+
+
+def test_a_signal_that_is_no_factor_ends_the_run(bench, tmp_path: Path) -> None:
+    trial = bench(FOLLOWING).changed({"pace.later": 0.0}, "test")
+    result, timing = run(trial, tmp_path / "run")
+    assert result.status == "failed"
+    assert result.error.startswith("real_time.factor: pace.speedup is 0.0 at t = 0.1 s, at least")
+    assert timing["steps"] == 10
+
+
+@pytest.mark.parametrize(
+    ("written", "message"),
+    [
+        ('factor = "pace.speed"', r"real_time.factor: .*did you mean 'pace.speedup'"),
+        ('factor = "pace.text"', "real_time.factor: pace.text is a text, a number is needed"),
+        (
+            'factor = "pace.paused"',
+            "real_time.factor: pace.paused is in s, a signal in 1 is needed",
+        ),
+        ('paused = "pace.speedup"', "real_time.paused: pace.speedup is in 1, a signal in s"),
+        ('paused = "gone.paused"', r"real_time.paused: unknown signal 'gone.paused'"),
+    ],
+)
+def test_a_signal_that_does_not_fit_is_named(written, message, bench, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=message) as error:
+        run(bench(f"real_time = {{ {written} }}\n"), tmp_path / "run")
+    assert "trial.toml" in str(error.value)
+    assert not (tmp_path / "run").exists()
+
+
 def test_steps_are_timed_by_component(bench, tmp_path: Path) -> None:
     _, timing = run(bench(takes=0.004), tmp_path / "run")
     quick, slow = (timing["step_times"][name] for name in ("quick", "slow"))
@@ -160,6 +235,8 @@ def test_the_command_line_goes_before_the_file(bench) -> None:
         ("real_time = { factor = inf }", r"real_time.factor: .*finite"),
         ('real_time = { factor = "1" }', r"real_time.factor: .*number"),
         ('real_time = { overrun = "wait" }', "real_time.overrun: .*'catch-up', 'slip' or 'abort'"),
+        ('real_time = { factor = "speedup" }', "real_time.factor: .*component.port"),
+        ("real_time = { paused = 1 }", "real_time.paused: .*string"),
         ("real_time = { facto = 1 }", "did you mean 'factor'"),
         ("real_time = 2", "real_time: "),
     ],

@@ -34,9 +34,15 @@ def test_track_has_the_wind_and_the_marks(tmp_path: Path) -> None:
     page = write_report(run_trial(trial, tmp_path / "out", engine="direct").folder)
     figure = figure_below(page.read_text("utf-8"), "Track from above")
     marks = {
-        t["name"]: (t["y"][0], t["x"][0]) for t in figure["data"] if t["name"].startswith("mark")
+        t["name"]: (t["y"][0], t["x"][0])
+        for t in figure["data"]
+        if t["name"].startswith("waypoint")
     }
-    assert marks == {"mark 1": (-34.73, 196.96), "mark 2": (-69.46, 0.0), "mark 3": (0.0, 0.0)}
+    assert marks == {
+        "waypoint 1": (-34.73, 196.96),
+        "waypoint 2": (-69.46, 0.0),
+        "waypoint 3": (0.0, 0.0),
+    }
     arrow, text = figure["layout"]["annotations"]
     wind = load_run(tmp_path / "out").signals
     north, east = (wind[f"wind.velocity.{axis}"].mean() for axis in ("north", "east"))

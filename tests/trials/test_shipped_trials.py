@@ -1,5 +1,6 @@
 """Every shipped trial: as FMUs and in process it leaves the same bytes."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -9,17 +10,21 @@ from seatrial.shipped import shipped_folder
 from seatrial.trials.run import run_trial
 from seatrial.trials.trial import load_trial
 
-TRIALS = sorted(path.stem for path in (shipped_folder("harness") / "trials").glob("*.toml"))
+NAMES = sorted(path.stem for path in (shipped_folder("harness") / "trials").glob("*.toml"))
+PACED = [name for name in NAMES if load_trial(name).file.real_time]
+"""Trials in real time, for whoever connects."""
+TRIALS = [name for name in NAMES if name not in PACED]
 
 
 def test_every_shipped_trial_can_be_named() -> None:
-    assert set(TRIALS) <= set(available("harness/trials"))
+    assert set(NAMES) <= set(available("harness/trials"))
+    assert PACED
 
 
 def test_no_campaign_hides_behind_a_trial() -> None:
     campaigns = {path.stem for path in (shipped_folder("harness") / "campaigns").glob("*.toml")}
     assert campaigns
-    assert campaigns.isdisjoint(TRIALS)
+    assert campaigns.isdisjoint(NAMES)
 
 
 @pytest.mark.parametrize("name", TRIALS)
@@ -27,6 +32,20 @@ def test_fmus_and_components_in_process_leave_the_same_bytes(name: str, tmp_path
     signals = []
     for engine in ("fmu", "direct"):
         result = run_trial(load_trial(name), tmp_path / engine, engine=engine)
+        assert result.status == "complete", result.error
+        signals.append((result.folder / "signals.csv").read_bytes())
+    assert signals[0] == signals[1]
+
+
+@pytest.mark.parametrize("name", PACED)
+def test_with_nobody_connected_they_leave_the_same_bytes_too(name: str, tmp_path: Path) -> None:
+    trial = load_trial(name)
+    links = [c for c, entry in trial.rig.file.components.items() if entry.fmu == "mavlink"]
+    trial = trial.changed({"stop": "2 s", **{f"{c}.links": "" for c in links}}, "test")
+    trial = replace(trial, file=trial.file.model_copy(update={"real_time": None}))
+    signals = []
+    for engine in ("fmu", "direct"):
+        result = run_trial(trial, tmp_path / engine, engine=engine)
         assert result.status == "complete", result.error
         signals.append((result.folder / "signals.csv").read_bytes())
     assert signals[0] == signals[1]

@@ -130,6 +130,9 @@ def run(
         float | None,
         typer.Option(metavar="FACTOR", help="Simulated seconds per second of wall time."),
     ] = None,
+    in_real_time: Annotated[
+        bool, typer.Option("--realtime", help="In real time: as the trial says, or factor 1.")
+    ] = False,
     overrun: Annotated[
         str | None,
         typer.Option(metavar="POLICY", help="In real time: 'catch-up', 'slip' or 'abort'."),
@@ -151,9 +154,14 @@ def run(
             raise InputError("--set works with a trial; a campaign sets its own parameters")
         if pace:
             raise InputError("--real-time and --overrun work with a trial, not with a campaign")
+        if in_real_time:
+            raise InputError("--realtime works with a trial, not with a campaign")
         _run_campaign(campaign, out, chosen)
         return
-    loaded = _paced(load_trial(trial, changes=changes, origin="--set"), pace)
+    loaded = load_trial(trial, changes=changes, origin="--set")
+    if in_real_time and loaded.file.real_time is None:
+        pace.setdefault("factor", 1.0)
+    loaded = _paced(loaded, pace)
     print_notes(loaded.notes)
     with _stoppable() as stop:
         with Watch(loaded.name) as watch:

@@ -28,15 +28,17 @@ class AxisHold(Sampled):
     What is steady (weight that buoyancy does not balance, a tether's pull, a current) ends up in
     I. Not modelled: drag, lags of thrusters and sensors; keep w well below their inverse.
 
+    Gains may change at any step: I is kept as a demand, so that what it holds stays.
+
     A subclass declares mass, capacity, inputs and the demand, and says in `_axis` and `_places`
     what they are.
     """
 
     period = Parameter(0.1, "s", "sample period", min=1e-6)
-    natural_frequency = Parameter(1.0, "rad/s", "w", min=1e-9)
-    damping_ratio = Parameter(1.0, "1", "zeta", min=0.0)
-    integral_pole = Parameter(0.1, "rad/s", "sigma", min=0.0)
-    rate_filter = Parameter(0.2, "s", "time constant of the filtered rate", min=0.0)
+    natural_frequency = Parameter(1.0, "rad/s", "w", min=1e-9, tunable=True)
+    damping_ratio = Parameter(1.0, "1", "zeta", min=0.0, tunable=True)
+    integral_pole = Parameter(0.1, "rad/s", "sigma", min=0.0, tunable=True)
+    rate_filter = Parameter(0.2, "s", "time constant of the filtered rate", min=0.0, tunable=True)
 
     def _axis(self) -> tuple[float, float, float]:
         """Return mass, capacity and the limit of the target's rate."""
@@ -52,12 +54,6 @@ class AxisHold(Sampled):
 
     def reset(self, t: float) -> None:
         """Start with no integral, at rest."""
-        w, zeta, sigma = self.natural_frequency, self.damping_ratio, self.integral_pole
-        m, self._capacity, self._fastest = self._axis()
-        self._kp = m * (w * w + 2.0 * zeta * w * sigma)
-        self._kd = m * (2.0 * zeta * w + sigma)
-        self._ki = m * w * w * sigma
-        self._kept = math.exp(-self.period / self.rate_filter) if self.rate_filter else 0.0
         self._integral = self._rate = 0.0
         # Nothing has been measured yet.
         self._before: float | None = None
@@ -66,19 +62,28 @@ class AxisHold(Sampled):
     def update(self, t: float, k: int) -> None:
         """Advance integral, filtered rate and target."""
         wanted, rate, error = self._demanded(), self._filtered_rate(), self._error()
-        cut_off = (self._limited(wanted) - wanted) / self._kp
-        self._integral += self.period * self._ki * (error + cut_off)
+        kp, _, ki = self._gains()
+        cut_off = (self._limited(wanted) - wanted) / kp
+        self._integral += self.period * ki * (error + cut_off)
         target = self._at() + self.period * self._target_rate()
         self._rate, self._before, self._target = rate, self._places()[1], target
 
     def _demanded(self) -> float:
         """Return the demand before it is limited."""
-        damping = self._kd * (self._target_rate() - self._filtered_rate())
-        demanded: float = self._kp * self._error() + damping + self._integral
+        kp, kd, _ = self._gains()
+        damping = kd * (self._target_rate() - self._filtered_rate())
+        demanded: float = kp * self._error() + damping + self._integral
         return demanded
 
+    def _gains(self) -> tuple[float, float, float]:
+        """Return Kp, Kd and Ki."""
+        w, zeta, sigma = self.natural_frequency, self.damping_ratio, self.integral_pole
+        m, _, _ = self._axis()
+        kp = m * (w * w + 2.0 * zeta * w * sigma)
+        return kp, m * (2.0 * zeta * w + sigma), m * w * w * sigma
+
     def _limited(self, demand: float) -> float:
-        most: float = self._capacity
+        _, most, _ = self._axis()
         return min(max(demand, -most), most)
 
     def _at(self) -> float:
@@ -91,7 +96,7 @@ class AxisHold(Sampled):
 
     def _target_rate(self) -> float:
         """Return the rate of the target until the next instant."""
-        fastest: float = self._fastest
+        _, _, fastest = self._axis()
         needed: float = self._apart(self._places()[0], self._at()) / self.period
         return min(max(needed, -fastest), fastest)
 
@@ -99,5 +104,6 @@ class AxisHold(Sampled):
         if self._before is None:
             return 0.0
         rate = self._apart(self._places()[1], self._before) / self.period
-        filtered: float = rate + (self._rate - rate) * self._kept
+        kept = math.exp(-self.period / self.rate_filter) if self.rate_filter else 0.0
+        filtered: float = rate + (self._rate - rate) * kept
         return filtered

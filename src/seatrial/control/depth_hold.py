@@ -19,8 +19,8 @@ class DepthHold(AxisHold):
     """
 
     mass = Parameter(10.45, "kg", "mass with added mass in heave", min=1e-9)
-    capacity = Parameter(20.0, "N", "largest force", min=0.0)
-    rate_limit = Parameter(0.3, "m/s", "largest rate of the target", min=1e-9)
+    capacity = Parameter(20.0, "N", "largest force", min=0.0, tunable=True)
+    rate_limit = Parameter(0.3, "m/s", "largest rate of the target", min=1e-9, tunable=True)
 
     depth_wanted = Input("m", "depth to hold, positive down")
     depth = Input("m", "measured depth, positive down")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 from .guidance_path import (
@@ -15,8 +16,8 @@ from .guidance_path import (
     line_of_sight,
 )
 
-NEUTRAL, MANUAL, STAY, FOLLOW, STEER = range(5)
-"""What a craft does: nothing, what a person says, stay, follow a leg, steer a heading."""
+NEUTRAL, MANUAL, STAY, FOLLOW, STEER, BEAT = range(6)
+"""What a craft does: nothing, what a person says, stay, follow a leg, steer a heading, beat."""
 
 
 class Goal(NamedTuple):
@@ -43,8 +44,8 @@ class Law(NamedTuple):
     integral_gain: float
     drift_limit: float
     capture_radius: float
-    approach_gain: float
-    depth_tolerance: float
+    approach_gain: float = math.inf
+    depth_tolerance: float = math.inf
 
 
 class Past(NamedTuple):

@@ -19,13 +19,13 @@ class HeadingHold(AxisHold):
     thrusters have.
     """
 
-    natural_frequency = Parameter(1.6, "rad/s", "w", min=1e-9)
-    damping_ratio = Parameter(0.8, "1", "zeta", min=0.0)
-    integral_pole = Parameter(0.2, "rad/s", "sigma", min=0.0)
-    rate_filter = Parameter(0.05, "s", "time constant of the filtered rate", min=0.0)
+    natural_frequency = Parameter(1.6, "rad/s", "w", min=1e-9, tunable=True)
+    damping_ratio = Parameter(0.8, "1", "zeta", min=0.0, tunable=True)
+    integral_pole = Parameter(0.2, "rad/s", "sigma", min=0.0, tunable=True)
+    rate_filter = Parameter(0.05, "s", "time constant of the filtered rate", min=0.0, tunable=True)
     inertia = Parameter(0.1338, "kg.m2", "inertia in yaw with added inertia", min=1e-9)
-    capacity = Parameter(4.7, "N.m", "largest moment", min=0.0)
-    rate_limit = Parameter(0.4, "rad/s", "largest rate of the target", min=1e-9)
+    capacity = Parameter(4.7, "N.m", "largest moment", min=0.0, tunable=True)
+    rate_limit = Parameter(0.4, "rad/s", "largest rate of the target", min=1e-9, tunable=True)
 
     heading_wanted = Input("rad", "heading to hold, clockwise from north")
     heading = Input("rad", "measured heading, clockwise from north")

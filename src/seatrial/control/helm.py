@@ -23,10 +23,10 @@ class Helm(Component):
     Defaults: the Hydrone catamaran, which has no sway and no heave.
     """
 
-    surge_limit = Parameter(30.0, "N", "surge force of a full stick", min=0.0)
-    sway_limit = Parameter(0.0, "N", "sway force of a full stick", min=0.0)
-    moment_limit = Parameter(12.0, "N.m", "yaw moment of a full stick", min=0.0)
-    heave_limit = Parameter(0.0, "N", "heave force of a full stick", min=0.0)
+    surge_limit = Parameter(30.0, "N", "surge force of a full stick", min=0.0, tunable=True)
+    sway_limit = Parameter(0.0, "N", "sway force of a full stick", min=0.0, tunable=True)
+    moment_limit = Parameter(12.0, "N.m", "yaw moment of a full stick", min=0.0, tunable=True)
+    heave_limit = Parameter(0.0, "N", "heave force of a full stick", min=0.0, tunable=True)
 
     engaged = Input("1", "which autopilots act", type=bool, axes=("speed", "heading", "depth"))
     direct = Input("1", "sticks, -1 to 1", axes=("surge", "sway", "yaw", "heave"))

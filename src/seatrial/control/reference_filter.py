@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import ClassVar
 
 from ..component import Input, Output, Parameter
 from ..sampled import Sampled
@@ -24,18 +25,33 @@ class HeadingReference(Sampled):
     target held. ``heading`` and ``rate`` react to the target one period later; ``heading``
     counts any number of turns.
 
+    While it is not ``engaged``, it is where the craft is: at ``measured_heading``, turning at
+    ``measured_rate`` (within the limit) without acceleration. So an autopilot that is engaged
+    after a person has steered begins where the craft is.
+
     rad, clockwise from north; rad/s, to starboard positive.
     """
 
     period = Parameter(0.1, "s", "sample period", min=1e-6)
-    natural_frequency = Parameter(0.1, "rad/s", "w", min=1e-9)
-    damping_ratio = Parameter(1.0, "1", "zeta", min=1e-9)
-    rate_limit = Parameter(0.02, "rad/s", "largest rate of turn", min=1e-9)
+    natural_frequency = Parameter(0.1, "rad/s", "w", min=1e-9, tunable=True)
+    damping_ratio = Parameter(1.0, "1", "zeta", min=1e-9, tunable=True)
+    rate_limit = Parameter(0.02, "rad/s", "largest rate of turn", min=1e-9, tunable=True)
     heading_start = Parameter(0.0, "rad", "heading at the start, where the model is at rest")
 
     target = Input("rad", "course wanted, clockwise from north")
+    engaged = Input(
+        "1", "whether an autopilot follows it", type=bool, start=True, optional=True
+    )
+    measured_heading = Input("rad", "heading of the craft, clockwise from north", optional=True)
+    measured_rate = Input("rad/s", "rate of turn of the craft, to starboard", optional=True)
+
     heading = Output("rad", "heading to follow, clockwise from north, any number of turns")
     rate = Output("rad/s", "its derivative, to starboard positive")
+
+    feedthrough: ClassVar = {
+        "heading": ("engaged", "measured_heading"),
+        "rate": ("engaged", "measured_rate"),
+    }
 
     def reset(self, t: float) -> None:
         """Start at rest."""
@@ -43,11 +59,11 @@ class HeadingReference(Sampled):
 
     def sample(self, t: float, k: int) -> None:
         """Publish heading and rate."""
-        self.heading, self.rate, _ = self._motion
+        self.heading, self.rate, _ = self._now()
 
     def update(self, t: float, k: int) -> None:
         """Integrate over a period."""
-        h, x = self.period, self._motion
+        h, x = self.period, self._now()
         k1 = self._slope(x)
         k2 = self._slope(_moved(x, k1, 0.5 * h))
         k3 = self._slope(_moved(x, k2, 0.5 * h))
@@ -59,6 +75,12 @@ class HeadingReference(Sampled):
         if abs(rate) > self.rate_limit:
             rate, acceleration = math.copysign(self.rate_limit, rate), 0.0
         self._motion = psi, rate, acceleration
+
+    def _now(self) -> _Motion:
+        if self.engaged:
+            return self._motion
+        rate = min(max(self.measured_rate, -self.rate_limit), self.rate_limit)
+        return self.measured_heading, rate, 0.0
 
     def _slope(self, motion: _Motion) -> _Motion:
         psi, rate, acceleration = motion

@@ -41,6 +41,11 @@ class SailControl(Sampled):
     the greatest drive; if none does, the one with the least side force. Upwind the angle stays
     at ``upwind_sail`` if that keeps to it, and is eased from there otherwise.
 
+    **By hand.** Not ``trimming``, the flap is 0 and the sail streams in the wind like a boom on a
+    sheet, at the angle of attack 0, but goes out no further than (1 - ``sheet``) ``sail_limit``:
+    with ``sheet`` = 0, as a disarmed boat has it, nothing drives as long as the apparent wind is
+    before the beam. No limit on heel acts then.
+
     ``apparent_wind`` is the flow at the centre of effort of the sail amidships: speed, and the
     direction it blows to from the bow, to starboard positive. ``wind`` is the true one: where
     it blows to. ``sail`` is positive with the boom to port, ``flap`` the size of its angle;
@@ -57,9 +62,13 @@ class SailControl(Sampled):
     upwind_threshold = Parameter(
         100.0 * _DEG, "rad", "angle from dead downwind beyond which it is upwind", min=0.0
     )
-    upwind_sail = Parameter(40.0 * _DEG, "rad", "angle of the sail upwind", min=0.0)
+    upwind_sail = Parameter(40.0 * _DEG, "rad", "angle of the sail upwind", min=0.0, tunable=True)
     hysteresis = Parameter(
-        0.0, "rad", "angle from dead downwind within which the sail keeps its side", min=0.0
+        0.0,
+        "rad",
+        "angle from dead downwind within which the sail keeps its side",
+        min=0.0,
+        tunable=True,
     )
     sail_entry = Parameter(
         "patched", "1", "C_L of the sail at flap 15, alpha 175 deg", choices=SAIL_ENTRIES
@@ -68,9 +77,13 @@ class SailControl(Sampled):
         "physical", "1", "C_L beyond 90 deg: as in the tables, or negated", choices=HIGH_ALPHA
     )
     roll_limit = Parameter("off", "1", "whether heel is limited", choices=("off", "on"))
-    design_heel = Parameter(15.0 * _DEG, "rad", "steady heel allowed", min=0.0, max=45.0 * _DEG)
-    spill_heel = Parameter(35.0 * _DEG, "rad", "heel at which no moment is allowed", min=0.0)
-    lead = Parameter(1.0, "s", "time by which the heel is foreseen", min=0.0)
+    design_heel = Parameter(
+        15.0 * _DEG, "rad", "steady heel allowed", min=0.0, max=45.0 * _DEG, tunable=True
+    )
+    spill_heel = Parameter(
+        35.0 * _DEG, "rad", "heel at which no moment is allowed", min=0.0, tunable=True
+    )
+    lead = Parameter(1.0, "s", "time by which the heel is foreseen", min=0.0, tunable=True)
     heeling_arm = Parameter(1.0, "m", "sail's centre of effort over the keel's", min=0.0)
     righting_moment = Parameter(1.0, "N.m", "weight times GM_T", min=0.0)
     sail_area = Parameter(1.0, "m2", "area of the sail", min=0.0)
@@ -87,12 +100,16 @@ class SailControl(Sampled):
     )
     heel = Input("rad", "heel, starboard down")
     roll_rate = Input("rad/s", "roll rate, starboard down")
+    trimming = Input(
+        "1", "whether it sets the sail for drive", type=bool, start=True, optional=True
+    )
+    sheet = Input("1", "share of the sheet that is hauled in, if not, 0 to 1", optional=True)
 
     sail = Output("rad", "angle wanted of the sail, boom to port positive")
     flap = Output("rad", "size wanted of the flap's angle")
     heeling_moment = Output("N.m", "heeling moment predicted, to starboard positive")
 
-    _ACTING = ("heading", "wind", "apparent_wind", "heel", "roll_rate")
+    _ACTING = ("heading", "wind", "apparent_wind", "heel", "roll_rate", "trimming", "sheet")
     feedthrough: ClassVar = {"sail": _ACTING, "flap": _ACTING, "heeling_moment": _ACTING}
 
     def reset(self, t: float) -> None:
@@ -113,7 +130,7 @@ class SailControl(Sampled):
     def sample(self, t: float, k: int) -> None:
         """Set sail and flap."""
         side = self._side_now()
-        chosen = self._chosen(side)
+        chosen = self._chosen(side) if self.trimming else self._sheeted(side)
         self.sail, self.flap = side * chosen.angle, chosen.flap
         # The side force to starboard of a sail to port heels to starboard.
         self.heeling_moment = side * chosen.side * self._moment_per_side()
@@ -147,6 +164,15 @@ class SailControl(Sampled):
             return fixed
         return best_setting(table, beta, self.upwind_sail, self.sail_limit, allowed)
 
+    def _sheeted(self, side: int) -> Setting:
+        """Return the setting of a sail that streams as far as its sheet lets it."""
+        beta = side * self.apparent_wind[1]
+        streaming = math.remainder(beta + math.pi, math.tau)
+        most = (1.0 - min(max(self.sheet, 0.0), 1.0)) * self.sail_limit
+        # Wind from abaft the beam presses the boom to where it is.
+        out = most if abs(streaming) > math.pi / 2 else min(max(streaming, -most), most)
+        return setting(sail_naca0015(*self._table), beta, out, 0.0)
+
     def _side_force_allowed(self, side: int) -> float | None:
         """Return the greatest coefficient of the side force that the heel allows, if limited."""
         per_side = self._moment_per_side()
@@ -154,7 +180,9 @@ class SailControl(Sampled):
             return None
         # With the boom to port the wind comes from starboard: leeward is port.
         lee = -side * (self.heel + self.lead * self.roll_rate)
-        share = (self.spill_heel - lee) / (self.spill_heel - self.design_heel)
+        # A design heel that was tuned beyond the spill heel is all there is.
+        room = max(self.spill_heel - self.design_heel, 1e-9)
+        share = (self.spill_heel - lee) / room
         most = self.righting_moment * math.sin(self.design_heel) * math.cos(self.design_heel)
         allowed: float = most * min(max(share, 0.0), 1.0) / per_side
         return allowed

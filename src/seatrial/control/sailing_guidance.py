@@ -6,34 +6,55 @@ import math
 from typing import ClassVar, NamedTuple
 
 from ..component import Input, Output, Parameter
-from ..errors import InputError
-from ..sampled import Sampled
+from .guidance_motion import BEAT, FOLLOW, MANUAL, NEUTRAL, Command
+from .guidance_orders import Decision, GuidanceOrders
+from .guidance_path import Point, bearing
+from .sailing_course import laid, side, turn, turned
 
-_MARKS = 6
-_NE = ("north", "east")
+MODES = ("manual", "hold", "guided", "auto", "return", "loiter")
+"""Values of the input ``mode``."""
+
+_ANY_SPEED = 1.0  # m/s; the wind says how fast it goes, 0 is to stop
 
 
-class _Decision(NamedTuple):
-    """What follows from the inputs and the memory at one instant. SI, angles in rad."""
+class _Sailed(NamedTuple):
+    """A decision, and what the wind makes of it. SI, angles in rad."""
 
+    decision: Decision
+    heading: float
+    """Heading wanted now."""
     course: float
-    command: float
+    """Course to be on in the end."""
     tack: int
-    wearing: bool
-    passed: int
+    wearing: bool = False
+    held: tuple[bool, bool] = (False, False)
+    """Whether the autopilots for heading and sail act."""
 
 
-class SailingGuidance(Sampled):
-    """Takes a boat round up to six marks, wearing round where others tack.
+class SailingGuidance(GuidanceOrders):
+    """Guidance in six modes of a boat that wears round where others tack.
 
-    The boat heads for the first mark not yet passed; a mark is passed within ``radius``. After
-    the last one it keeps its course.
+    ======= ===============================================================================
+    manual  ``direct`` has the sticks: yaw for the rudder, surge for the sheet
+    hold    stay where the mode was set
+    guided  position: go there and stay; velocity: sail its direction; heading: sail
+            ``target_heading``. Without ``target_valid`` as hold
+    auto    follow leg number ``leg``, then stay there until another number comes
+            (`Course`, or a mission service); as hold while it is 0
+    return  go to ``home`` and stay
+    loiter  circle, with ``loiter_radius``, about where the mode was set
+    ======= ===============================================================================
 
-    **Course.** off is the bearing of the mark from where the wind comes from, in +-180 deg,
-    positive to starboard of it. If |off| is at least ``closest``, the course is the bearing.
-    Else it is ``closest`` off the wind on the present tack, the sign of off when a course
-    was last laid, until the mark bears ``closest`` + ``margin`` on the other one. So the boat
-    beats in long boards.
+    The wind says how fast it goes: of speeds only 0 is obeyed, which is to lie to.
+
+    **Neutral.** Not ``armed``, or without a heading or (but in manual) a position for longer than
+    ``timeout``, no autopilot acts and ``direct`` is 0: rudder amidships, sail streaming.
+
+    **Course.** Legs, lines to a position and circles are followed by line of sight as in
+    `Guidance`. What is wanted goes through `laid`: no course is closer to the wind than
+    ``closest``; a direction closer than that is beaten to, until it lies ``margin`` more than
+    ``closest`` on the other tack. While the end of a leg lies so, the boat beats for the end and
+    not along the line; the line then begins where the end could be laid.
 
     **Bearing away.** A keel needs speed: below ``steerage`` ahead the boat makes leeway, loses
     more speed and ends in irons. Then ``closest`` is ``away`` instead, until it makes
@@ -41,128 +62,203 @@ class SailingGuidance(Sampled):
 
     **Turns.** The heading wanted goes to the course at ``turn_rate``, the shorter way, unless
     that leads through the eye of the wind: then the longer way, through dead downwind, which is
-    wearing round. It waits while it is more than ``lead`` away from the heading. It starts at
-    the heading.
+    wearing round (`turn`). It waits while it is more than ``lead`` away from the heading.
+
+    **Staying.** Within ``drift_limit`` the boat lies to: the sail streams, and it rounds up to
+    ``lying`` off the wind; without way (below ``steerage``) nobody steers. Beyond, it sails for
+    the point, until within ``capture_radius``, from where its way takes it some lengths on.
+    A circle is sailed as far as the wind allows: upwind it becomes boards.
 
     ``wind`` is the true wind: where it blows to. Positions in {n}, m; headings clockwise from
-    north, rad. Without a valid position the last heading wanted stays, at first the heading.
+    north, rad; ``heading_wanted`` is the heading while no autopilot holds it.
 
-    Not modelled: leeway and current (the boat aims at the mark all the time and is set off a
-    straight line), other boats, laylines that allow for the ground lost in wearing.
+    Not modelled: other boats, laylines that allow for leeway, current and the ground lost in
+    wearing.
 
-    Raises InputError at the start for a number of marks that is not whole.
+    Raises InputError at the start for capture_radius not less than drift_limit, and in a run for
+    a mode or kind of target that is none.
     """
 
-    period = Parameter(0.1, "s", "sample period", min=1e-6)
-    count = Parameter(1.0, "1", "number of marks", min=1.0, max=float(_MARKS))
-    mark_1 = Parameter(0.0, "m", "first mark", axes=_NE)
-    mark_2 = Parameter(0.0, "m", "second mark", axes=_NE)
-    mark_3 = Parameter(0.0, "m", "third mark", axes=_NE)
-    mark_4 = Parameter(0.0, "m", "fourth mark", axes=_NE)
-    mark_5 = Parameter(0.0, "m", "fifth mark", axes=_NE)
-    mark_6 = Parameter(0.0, "m", "sixth mark", axes=_NE)
-    radius = Parameter(8.0, "m", "distance at which a mark is passed", min=0.0)
+    modes = MODES
+
+    lookahead = Parameter(20.0, "m", "lookahead distance", min=1e-3, tunable=True)
+    integral_gain = Parameter(
+        0.0, "m/s", "gain of the integral of the cross-track error", min=0.0, tunable=True
+    )
+    acceptance_radius = Parameter(
+        8.0, "m", "distance at which a position is reached", min=0.0, tunable=True
+    )
+    drift_limit = Parameter(40.0, "m", "drift from which it goes back", min=0.0, tunable=True)
+    capture_radius = Parameter(
+        20.0, "m", "distance at which it is back, up to drift_limit", min=0.0, tunable=True
+    )
+    loiter_radius = Parameter(
+        60.0, "m", "radius of circles, negative for anticlockwise", tunable=True
+    )
     closest = Parameter(
-        math.radians(60.0), "rad", "least angle off the wind", min=0.0, max=math.pi / 2
+        math.radians(60.0),
+        "rad",
+        "least angle off the wind",
+        min=0.0,
+        max=math.pi / 2,
+        tunable=True,
     )
-    margin = Parameter(math.radians(5.0), "rad", "more than that before the other tack", min=0.0)
+    margin = Parameter(
+        math.radians(5.0), "rad", "more than that before the other tack", min=0.0, tunable=True
+    )
     away = Parameter(
-        math.radians(110.0), "rad", "least angle off the wind without way", min=0.0, max=math.pi
+        math.radians(110.0),
+        "rad",
+        "least angle off the wind without way",
+        min=0.0,
+        max=math.pi,
+        tunable=True,
     )
-    steerage = Parameter(0.5, "m/s", "speed ahead below which it bears away", min=0.0)
-    recovered = Parameter(2.0, "1", "times steerage at which it luffs up again", min=1.0)
-    turn_rate = Parameter(math.radians(6.0), "rad/s", "rate of the heading wanted", min=1e-9)
+    lying = Parameter(
+        math.radians(70.0),
+        "rad",
+        "angle off the wind at which it lies to",
+        min=0.0,
+        max=math.pi,
+        tunable=True,
+    )
+    steerage = Parameter(0.5, "m/s", "speed ahead below which it bears away", min=0.0, tunable=True)
+    recovered = Parameter(
+        2.0, "1", "times steerage at which it luffs up again", min=1.0, tunable=True
+    )
+    turn_rate = Parameter(
+        math.radians(6.0), "rad/s", "rate of the heading wanted", min=1e-9, tunable=True
+    )
     lead = Parameter(
-        math.radians(45.0), "rad", "lead at which the heading wanted waits", min=1e-9, max=math.pi
+        math.radians(45.0),
+        "rad",
+        "lead at which the heading wanted waits",
+        min=1e-9,
+        max=math.pi,
+        tunable=True,
     )
 
-    position_n = Input("m", "position, north-east-down", axes=(*_NE, "down"))
-    position_valid = Input("1", "whether the position is valid", type=bool, start=True)
-    heading = Input("rad", "heading, clockwise from north")
-    speed = Input("m/s", "velocity ahead")
-    wind = Input("m/s", "true wind over ground: where it blows to, {n}", axes=_NE)
+    mode = Input("1", f"one of {', '.join(MODES)}", type=str, start="hold")
+    wind = Input("m/s", "true wind over ground: where it blows to, {n}", axes=("north", "east"))
 
-    heading_wanted = Output("rad", "heading wanted, clockwise from north")
+    engaged = Output("1", "which autopilots act", type=bool, axes=("heading", "sail"))
+    direct = Output("1", "rudder to starboard, -1 to 1, and sheet, 0 to 1", axes=("yaw", "sheet"))
     course = Output("rad", "course to be on in the end, clockwise from north")
-    distance = Output("m", "distance to the mark headed for")
-    passed = Output("1", "number of marks passed", type=int)
     wearing = Output("1", "whether it turns the long way, away from the wind", type=bool)
+    state = Output(
+        "1", "0 neutral, 1 piloted, 2 stays, 3 follows a leg, 4 steers, 5 beats", type=int
+    )
 
-    _ACTING = ("position_n", "position_valid", "heading", "speed", "wind")
+    _ABLE = ("mode", "armed", "position_valid", "heading_valid")
+    _TASK = (
+        *("target_kind", "target_valid", "target_position", "target_velocity", "target_heading"),
+        *("target_speed", "leg", "leg_from", "leg_to", "leg_speed", "leg_radius", "leg_circle"),
+        *("home", "position_n"),
+    )
+    _SAILED = (*_ABLE, *_TASK, "heading", "velocity_n", "wind")
     feedthrough: ClassVar = {
-        "heading_wanted": _ACTING,
-        "course": _ACTING,
-        "distance": ("position_n", "position_valid"),
-        "passed": ("position_n", "position_valid"),
-        "wearing": _ACTING,
+        "engaged": (*_ABLE, *_TASK, "heading", "velocity_n"),
+        "direct": ("mode", "armed", "manual"),
+        "heading_wanted": _SAILED,
+        "course": _SAILED,
+        "wearing": _SAILED,
+        "state": _SAILED,
+        "cross_track": _SAILED,
+        "distance": (*_ABLE, *_TASK),
+        "reached": (*_ABLE, "leg", "leg_to", "leg_radius", "leg_wait", "position_n"),
     }
 
+    # ------------------------------------------------------------------ running
+
     def reset(self, t: float) -> None:
-        """Start before the first mark; raises InputError for a broken number of marks."""
-        if self.count % 1.0:
-            raise InputError(f"{self.name}.count is {self.count!r}, a whole number is needed")
-        self._marks = [getattr(self, f"mark_{n + 1}") for n in range(int(self.count))]
-        self._passed, self._tack, self._slow = 0, 0, False
-        self._kept: list[float] = []
+        """Start with nothing wanted; raises InputError for radii that do not go together."""
+        super().reset(t)
+        self._tack, self._slow = 0, False
+        self._before: float | None = None
 
     def sample(self, t: float, k: int) -> None:
-        """Say which way to go."""
-        decision = self._decide()
-        self.heading_wanted, self.course = decision.command, decision.course
-        self.wearing, self.passed = decision.wearing, decision.passed
-        self.distance = math.hypot(*self._way_to_mark(min(decision.passed, len(self._marks) - 1)))
+        """Say which way to go, and who steers."""
+        sailed = self._decide()
+        self._publish(sailed.decision)
+        self.engaged = sailed.held
+        piloted = sailed.decision.command.motion == MANUAL
+        surge, _, yaw, _ = self.manual if piloted else (0.0,) * 4
+        self.direct = min(max(yaw, -1.0), 1.0), min(max(surge, 0.0), 1.0)
+        self.heading_wanted = math.remainder(sailed.heading, math.tau)
+        self.course = math.remainder(sailed.course, math.tau)
+        self.wearing = sailed.wearing
 
     def update(self, t: float, k: int) -> None:
-        """Remember marks passed, tack and heading wanted."""
-        decision = self._decide()
-        self._passed, self._tack, self._slow = decision.passed, decision.tack, self._is_slow()
-        self._kept = [decision.command, decision.course]
+        """Remember task, tack and heading wanted."""
+        sailed = self._decide()
+        self._remember(sailed.decision)
+        self._tack, self._before, self._slow = sailed.tack, sailed.heading, self._is_slow()
 
-    def _decide(self) -> _Decision:
-        before, course = self._kept or (self.heading, self.heading)
-        if not self.position_valid:
-            return _Decision(course, before, self._tack, False, self._passed)
-        passed = self._passed
-        if passed < len(self._marks) and math.hypot(*self._way_to_mark(passed)) < self.radius:
-            passed += 1
-        course, tack = self._laid(passed)
-        turn = self._turn(before, course)
-        most = self.turn_rate * self.period
-        command = before + min(max(turn, -most), most)
-        lead = math.remainder(command - self.heading, math.tau)
-        if abs(lead) > self.lead and lead * turn > 0.0:
-            command = before
-        return _Decision(course, command, tack, abs(turn) > math.pi, passed)
+    # ------------------------------------------------------------------ deciding
 
-    def _way_to_mark(self, number: int) -> tuple[float, float]:
-        mark, here = self._marks[number], self.position_n
-        return mark[0] - here[0], mark[1] - here[1]
+    def _decide(self) -> _Sailed:
+        here, manual = self._here(), self._checked_mode() == "manual"
+        before = self.heading if self._before is None else self._before
+        if not (self.armed and self._known(not manual, not manual)):
+            return self._unsteered(NEUTRAL, here)
+        if manual:
+            return self._unsteered(MANUAL, here)
+        decision = self._ordered(before, here[2])
+        if decision.command.speed == 0.0:
+            return self._lying(decision, before)
+        return self._sailing(decision, before)
 
-    def _laid(self, passed: int) -> tuple[float, int]:
-        """Return the course and the tack it is on: 1 if it lies to starboard of the wind's eye."""
-        eye = math.atan2(-self.wind[1], -self.wind[0])
-        if passed == len(self._marks):
-            return (self._kept[1] if self._kept else self.heading), self._tack
-        north, east = self._way_to_mark(passed)
-        bearing = math.atan2(east, north)
-        off = math.remainder(bearing - eye, math.tau)
-        own = self._tack or (1 if math.remainder(self.heading - eye, math.tau) >= 0.0 else -1)
-        other_side = off * own < 0.0
+    def _unsteered(self, motion: int, here: Point) -> _Sailed:
+        decision = Decision(Command(motion, self.heading, 0.0, here[2]))
+        return _Sailed(decision, self.heading, self.heading, 0)
+
+    def _lying(self, decision: Decision, before: float) -> _Sailed:
+        """Lie to: steered while there is way, the sail streaming."""
+        tack = side(math.remainder(before - self._eye(), math.tau))
+        lying = self._towards(decision, self._eye() + tack * self.lying, tack, before)
+        if self._is_slow():
+            return lying._replace(heading=self.heading, held=(False, False))
+        return lying._replace(held=(True, False))
+
+    def _sailing(self, decision: Decision, before: float) -> _Sailed:
+        """Sail the course that is wanted, or the nearest to it."""
+        wanted, here, eye = decision.command, self._here(), self._eye()
+        tack = self._tack or side(math.remainder(before - eye, math.tau))
         closest = self.away if self._is_slow() else self.closest
-        if abs(off) >= closest + (self.margin if other_side else 0.0):
-            return bearing, 1 if off >= 0.0 else -1
-        return eye + own * closest, own
+        if wanted.motion == FOLLOW:
+            to_end = laid(bearing(here, decision.end), eye, tack, closest, self.margin)
+            tack = to_end.tack
+            if to_end.beats:
+                # A new line begins where the end can be laid.
+                wanted = wanted._replace(motion=BEAT, across=0.0, integral_rate=0.0)
+                past = decision.past._replace(integral=0.0)
+                decision = decision._replace(command=wanted, start=here, past=past)
+                return self._towards(decision, to_end.course, tack, before)
+        along = laid(wanted.heading, eye, tack, closest, self.margin)
+        if along.beats:
+            decision = decision._replace(command=wanted._replace(integral_rate=0.0))
+        return self._towards(decision, along.course, along.tack, before)
+
+    def _towards(self, decision: Decision, course: float, tack: int, before: float) -> _Sailed:
+        """Turn the heading wanted on towards a course."""
+        to_turn = turn(before, course, self._eye())
+        most = self.turn_rate * self.period
+        wanted = turned(before, to_turn, most, self.heading, self.lead)
+        wearing = abs(to_turn) > math.pi
+        return _Sailed(decision, wanted, course, tack, wearing, (True, True))
+
+    # ------------------------------------------------------------------ what the boat can do
+
+    def _cruise(self) -> float:
+        return _ANY_SPEED
+
+    # ------------------------------------------------------------------ what is measured
+
+    def _eye(self) -> float:
+        """Return where the wind comes from, rad clockwise from north."""
+        north, east = self.wind
+        return math.atan2(-east, -north)
 
     def _is_slow(self) -> bool:
-        enough = self.steerage * (self.recovered if self._slow else 1.0)
-        return bool(self.speed < enough)
-
-    def _turn(self, before: float, course: float) -> float:
-        """Return the turn from ``before`` to ``course`` that keeps out of the wind's eye, rad."""
-        eye = math.atan2(-self.wind[1], -self.wind[0])
-        turn = math.remainder(course - before, math.tau)
-        off = math.remainder(before - eye, math.tau)
-        # Where the turn ends, counted on through the eye: a change of sign has passed it.
-        if off * (off + turn) < 0.0:
-            turn -= math.copysign(math.tau, turn)
-        return turn
+        enough: float = self.steerage * (self.recovered if self._slow else 1.0)
+        return self._speed() < enough

@@ -37,7 +37,9 @@ class SailingHeading(Sampled):
     rudder_place = Parameter((-1.0, 0.0), "m", "centre of effort, body axes", axes="xz")
     rudder_area = Parameter(0.01, "m2", "area of the rudder", min=1e-9)
     water_density = Parameter(1000.0, "kg/m3", "density of the water", min=1e-9)
-    rudder_limit = Parameter(math.radians(12.0), "rad", "greatest rudder angle", min=0.0)
+    rudder_limit = Parameter(
+        math.radians(12.0), "rad", "greatest rudder angle", min=0.0, tunable=True
+    )
 
     heading_wanted = Input("rad", "heading to hold, clockwise from north")
     heading = Input("rad", "heading, clockwise from north")

@@ -26,12 +26,12 @@ class SpeedHold(Sampled):
     """
 
     period = Parameter(0.1, "s", "sample period", min=1e-6)
-    natural_frequency = Parameter(0.4, "rad/s", "w", min=1e-9)
-    damping_ratio = Parameter(1.0, "1", "zeta", min=1e-9)
+    natural_frequency = Parameter(0.4, "rad/s", "w", min=1e-9, tunable=True)
+    damping_ratio = Parameter(1.0, "1", "zeta", min=1e-9, tunable=True)
     mass = Parameter(23.087, "kg", "mass with added mass in surge", min=1e-9)
-    linear_drag = Parameter(2.0, "N.s/m", "d1", min=0.0)
-    quadratic_drag = Parameter(24.6, "N.s2/m2", "d2", min=0.0)
-    capacity = Parameter(35.0, "N", "largest force", min=0.0)
+    linear_drag = Parameter(2.0, "N.s/m", "d1", min=0.0, tunable=True)
+    quadratic_drag = Parameter(24.6, "N.s2/m2", "d2", min=0.0, tunable=True)
+    capacity = Parameter(35.0, "N", "largest force", min=0.0, tunable=True)
 
     enabled = Input("1", "whether to act", type=bool)
     speed_wanted = Input("m/s", "speed to hold, along the bow")

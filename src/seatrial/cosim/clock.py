@@ -23,7 +23,7 @@ class Pacer:
     A step that ends before its deadline waits for it; one that ends later is an overrun. With
     ``catch-up`` the deadlines stay where they are and the run goes on without waiting until it
     has caught up; with ``slip`` they all move by the lateness, which is lost. With ``abort``
-    whoever runs the steps ends the run.
+    whoever runs the steps ends the run. `change` gives another factor, `pause` leaves time out.
 
     ``now`` is a monotonic clock in ns, ``sleep`` takes seconds.
     """
@@ -43,6 +43,8 @@ class Pacer:
         """By how much the deadlines have moved."""
         self.drift_ns = 0
         """By how much the last point came later than one of a run without any lateness."""
+        self.paused_ns = 0
+        """Wall time that does not count."""
         self._now, self._sleep, self._spin_ns = now, sleep, spin_ns
         self._wall_start = self._time_start = 0
 
@@ -55,7 +57,7 @@ class Pacer:
 
         Returns by how many ns the step to it ended too late, 0 if it was in time.
         """
-        due = self._wall_start + round((t_ns - self._time_start) / self.factor)
+        due = self._due(t_ns)
         deadline = due + self.lost_ns
         arrived = self._now()
         lateness = max(0, arrived - deadline)
@@ -71,6 +73,26 @@ class Pacer:
             self.wake_ups.add(woken - deadline, t_ns)
         self.drift_ns = woken - due
         return 0
+
+    def change(self, factor: float, t_ns: int) -> None:
+        """Go on with another factor from the point ``t_ns``, which was presented just now.
+
+        Lateness that there was is lost: a run that could not keep up does not race on.
+        """
+        if factor == self.factor:
+            return
+        due = self._due(t_ns)
+        self.lost_ns += max(0, self._now() - due - self.lost_ns)
+        self._wall_start, self._time_start = due, t_ns
+        self.factor = factor
+
+    def pause(self, elapsed_ns: int) -> None:
+        """Leave wall time out that has passed since the last point."""
+        self.paused_ns += elapsed_ns
+        self._wall_start += elapsed_ns
+
+    def _due(self, t_ns: int) -> int:
+        return self._wall_start + round((t_ns - self._time_start) / self.factor)
 
     def _wait(self, deadline: int, stop_requested: Callable[[], bool]) -> int:
         """Return the wall time at which it was over."""
@@ -96,6 +118,7 @@ class Pacer:
             "factor": self.factor,
             "overrun": self.policy,
             "lost_s": self.lost_ns / NS,
+            "paused_s": self.paused_ns / NS,
             "drift_s": self.drift_ns / NS,
             "overruns": self.overruns.as_json(),
             "slack": self.slack.as_json(),

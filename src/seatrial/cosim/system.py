@@ -188,7 +188,11 @@ def assemble(
                 "of a vehicle, so there is nothing to vary"
             )
         system.wires = _wires(system)
+        fed = {wire.target for wire in system.wires}
         for name, part in system.parts.items():
+            # What a vehicle's file says of all its rigs gives way to a wire of this one.
+            for variable in [v for v in part.given if part.given[v].mark and (name, v) in fed]:
+                del part.given[variable]
             for variable in part.given:
                 system.refuse_wired(name, variable, part.given[variable].origin)
     except BaseException:

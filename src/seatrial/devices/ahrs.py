@@ -53,6 +53,7 @@ class Ahrs(Sensor):
         "rad",
         "Euler angles, ZYX; psi from 0 to 2 pi",
         axes=("phi", "theta", "psi"),
+        span=((-math.pi, -math.pi / 2, 0.0), (math.pi, math.pi / 2, math.tau)),
         noise=(0.134 * _DEG, 0.05 * _DEG, 0.195 * _DEG),
         resolution=0.1 * _DEG,
     )
@@ -60,6 +61,7 @@ class Ahrs(Sensor):
         "m/s2",
         "gravity and acceleration, body axes",
         axes="xyz",
+        span=(-20.0, 20.0),
         noise=(0.024, 0.016, 0.043),
         resolution=0.01,
     )

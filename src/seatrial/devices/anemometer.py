@@ -40,10 +40,13 @@ class Anemometer(Sensor):
     velocity = Input("m/s", "velocity of the body origin, body axes", axes=("u", "v", "w"))
     rates = Input("rad/s", "angular velocity, body axes", axes=("p", "q", "r"))
 
-    speed = Measured("m/s", "speed of the apparent wind", noise=0.1, resolution=0.1)
+    speed = Measured(
+        "m/s", "speed of the apparent wind", span=(0.0, 50.0), noise=0.1, resolution=0.1
+    )
     angle = Measured(
         "rad",
         "direction that the apparent wind blows to from the bow, to starboard positive",
+        span=(-math.pi, math.pi),
         noise=_DEG,
         instability=_DEG,
         resolution=_DEG,

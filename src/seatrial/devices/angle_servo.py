@@ -8,9 +8,11 @@ from typing import ClassVar
 from ..component import Input, Output, Parameter
 from ..errors import InputError
 from ..sampled import Sampled
+from .actuator import Actuator
+from .fault import SHARE_WRONG
 
 
-class AngleServo(Sampled):
+class AngleServo(Actuator, Sampled):
     """Position servo with range and rate, moved every ``period`` by a command in radians.
 
         angle_k = angle_(k-1) + e limited to +-(rate period),
@@ -19,6 +21,9 @@ class AngleServo(Sampled):
     The move belongs to the instant: it is on the output at once and stays until the next
     instant. A servo that turns evenly through the period is on average half a period later.
     ``angle_(-1)`` is ``angle_start``. Angles rad, rate rad/s.
+
+    Failures are those of `Actuator`; the shaft of a wrong one, within its range, is a tenth of the
+    range further than it should be.
 
     Not modelled: acceleration, load torque, backlash, resolution.
 
@@ -35,7 +40,7 @@ class AngleServo(Sampled):
     command = Input("rad", "angle wanted")
     angle = Output("rad", "angle of the shaft")
 
-    feedthrough: ClassVar = {"angle": ("command",)}
+    feedthrough: ClassVar = {"angle": ("command", "fault")}
 
     def reset(self, t: float) -> None:
         """Start at rest; raises InputError for angles out of order."""
@@ -50,13 +55,22 @@ class AngleServo(Sampled):
                 f"{self.angle_min!r} to {self.angle_max!r} rad"
             )
         self._angle: float = self.angle_start
+        self.begin_at(self.angle_start)
 
     def sample(self, t: float, k: int) -> None:
         """Move towards the command."""
-        wanted = min(max(self.command, self.angle_min), self.angle_max)
-        most = self.rate * self.period
+        received = self.received(t, [self.command], [self.angle_min], [self.angle_max])
+        if received is None or self.fault == "stuck":
+            self.angle = self._angle
+            return
+        wanted = min(max(received[0], self.angle_min), self.angle_max)
+        if self.fault == "wrong":
+            further = SHARE_WRONG * (self.angle_max - self.angle_min)
+            wanted = min(wanted + further, self.angle_max)
+        most = self.rate * self.period / self.slowness
         self.angle = self._angle + min(max(wanted - self._angle, -most), most)
 
     def update(self, t: float, k: int) -> None:
         """Remember where the shaft is."""
         self._angle = self.angle
+        self.take(t, [self.command], [self.angle_min], [self.angle_max])

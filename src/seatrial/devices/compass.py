@@ -38,6 +38,7 @@ class Compass(Sensor):
     heading = Measured(
         "rad",
         "heading, clockwise from north, 0 to 2 pi",
+        span=(0.0, math.tau),
         noise=0.3 * _DEG,
         instability=0.5 * _DEG,
         resolution=0.1 * _DEG,

@@ -34,7 +34,12 @@ class Depth(Sensor):
     position = Input("m", "body origin in north-east-down", axes="xyz")
     attitude = Input("rad", "Euler angles, ZYX", axes=("phi", "theta", "psi"))
     depth = Measured(
-        "m", "depth of the sensor, positive down", noise=0.002, instability=0.02, resolution=0.002
+        "m",
+        "depth of the sensor, positive down",
+        span=(0.0, 300.0),
+        noise=0.002,
+        instability=0.02,
+        resolution=0.002,
     )
 
     feedthrough: ClassVar = {"depth": ("position", "attitude")}

@@ -5,10 +5,14 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from ..component import Component, Input, Output, Parameter
+from ..component import Input, Output, Parameter
+from .actuator import Actuator
+
+_SLOW_LAG = 1.0
+"""Least lag of one that is slow, s: an ideal one has none that could be longer."""
 
 
-class ForceActuator(Component):
+class ForceActuator(Actuator):
     """Surge force, sway force and yaw moment, each with a limit and a first-order lag.
 
         T y' = clip(demand, capacity) - y,    clip(x, a) = x held between -a and a
@@ -16,6 +20,9 @@ class ForceActuator(Component):
     exact for a demand held over the step. With ``time_constant`` T = 0 it is ideal: the output
     is the limited demand at the same instant. X, Y in N and N in N.m in body axes (x bow,
     y starboard, z down), about the body origin; the moment is positive to starboard.
+
+    Failures are those of `Actuator`, for all three axes together: a wrong one has half of its
+    forces; a slow one has ten times its lag, and at least 1 s.
 
     Defaults are the ideal thrusters of source 003, with what it calls 100 % as capacity.
 
@@ -32,26 +39,37 @@ class ForceActuator(Component):
     force = Output("N", "force on the ship, body axes", axes="xy")
     moment = Output("N.m", "yaw moment on the ship, positive to starboard")
 
-    feedthrough: ClassVar = {"force": ("demand",), "moment": ("demand",)}
+    feedthrough: ClassVar = {"force": ("demand", "fault"), "moment": ("demand", "fault")}
 
     def start(self, t: float) -> None:
         """Start without force."""
         self._load = [0.0, 0.0, 0.0]
+        self.begin_at(0.0, 0.0, 0.0)
 
     def step(self, t: float, h: float) -> None:
         """Follow the demand as it is."""
-        if self.time_constant > 0.0:
-            kept = math.exp(-h / self.time_constant)
-            self._load = [
-                goal + (load - goal) * kept
-                for goal, load in zip(self._limited(), self._load, strict=True)
-            ]
+        goals = self._goals(self.take(t, self.demand, *self._range()))
+        lag = self._lag()
+        kept = math.exp(-h / lag) if lag > 0.0 else 0.0
+        self._load = [
+            goal + (load - goal) * kept for goal, load in zip(goals, self._load, strict=True)
+        ]
 
     def outputs(self, t: float) -> None:
         """Publish force and moment."""
-        x, y, self.moment = self._load if self.time_constant > 0.0 else self._limited()
+        if self._lag() > 0.0:
+            x, y, self.moment = self._load
+        else:
+            x, y, self.moment = self._goals(self.received(t, self.demand, *self._range()))
         self.force = x, y
 
-    def _limited(self) -> list[float]:
-        pairs = zip(self.demand, self.capacity, strict=True)
-        return [min(max(demand, -most), most) for demand, most in pairs]
+    def _goals(self, received: list[float] | None) -> list[float]:
+        pairs = zip(received or (0.0, 0.0, 0.0), self.capacity, strict=True)
+        return [self.effect * min(max(demand, -most), most) for demand, most in pairs]
+
+    def _range(self) -> tuple[list[float], list[float]]:
+        return [-most for most in self.capacity], list(self.capacity)
+
+    def _lag(self) -> float:
+        lag: float = self.slowness * self.time_constant
+        return max(lag, _SLOW_LAG) if self.fault == "slow" else lag

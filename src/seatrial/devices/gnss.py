@@ -42,6 +42,7 @@ class Gnss(Sensor):
         "m",
         "position of the antenna, north-east-down",
         axes=_NED,
+        span=(-500.0, 500.0),
         noise=(0.1, 0.1, 0.15),
         instability=(2.1, 2.1, 3.2),
         resolution=0.001,
@@ -50,6 +51,7 @@ class Gnss(Sensor):
         "m/s",
         "velocity of the antenna, north-east-down",
         axes=_NED,
+        span=(-10.0, 10.0),
         noise=0.05,
         resolution=0.001,
     )

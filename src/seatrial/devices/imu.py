@@ -44,6 +44,7 @@ class Imu(Sensor):
         "rad/s",
         "angular velocity, body axes",
         axes="xyz",
+        span=(-250.0 * _DEG, 250.0 * _DEG),
         noise=0.035 * _DEG,
         instability=0.003 * _DEG,
         resolution=250.0 / 32768 * _DEG,
@@ -52,6 +53,7 @@ class Imu(Sensor):
         "m/s2",
         "specific force, body axes",
         axes="xyz",
+        span=(-4 * 9.80665, 4 * 9.80665),
         noise=0.007,
         instability=0.0005,
         resolution=4 * 9.80665 / 32768,
@@ -60,6 +62,7 @@ class Imu(Sensor):
         "rad",
         "roll and pitch of the attitude solution",
         axes=("phi", "theta"),
+        span=((-math.pi, -math.pi / 2), (math.pi, math.pi / 2)),
         noise=0.1 * _DEG,
         instability=0.3 * _DEG,
     )

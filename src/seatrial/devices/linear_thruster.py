@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 
-from ..component import NS, Component, Input, Output, Parameter
+from ..component import NS, Input, Output, Parameter
+from .actuator import Actuator
 
 
-class LinearThruster(Component):
+class LinearThruster(Actuator):
     """Thruster whose thrust is linear in a command beta from -1 to 1, late and with a lag.
 
         T y' = F(beta(t - delay)) - y
@@ -22,6 +23,9 @@ class LinearThruster(Component):
     Outside the dead band F is on the line through the origin, so that it jumps at the edge.
     Linear in beta as source 000 has it (5.18), which tried a quadratic law too and found that
     one worse; the delay is that of its eq. 5.15.
+
+    Failures are those of `Actuator`. Where no command arrives it is the motor that stands still:
+    commands go on their way and act again when it is mended.
 
     Not modelled: loss of thrust with the speed of the water through the propeller, thrust that
     differs between ahead and astern, supply voltage, a limit on how fast the command may change.
@@ -40,12 +44,15 @@ class LinearThruster(Component):
         self._delay_ns = round(self.delay * NS)
         self._thrust = self._goal = 0.0
         self._coming: list[list[float]] = []
+        self.begin_at(0.0)
 
     def step(self, t: float, h: float) -> None:
         """Send the command on its way, and follow those that take effect until ``t + h``."""
         at_ns = round(t * NS)
         end_ns = at_ns + round(h * NS)
-        goal = self._goal_of(self.command)
+        received = self.take(t, [self.command], [-1.0], [1.0])
+        self._left = 0.0 if received is None else self.effect
+        goal = self._goal_of(self.command if received is None else received[0])
         if goal != (self._coming[-1][1] if self._coming else self._goal):
             self._coming.append([at_ns + self._delay_ns, goal])
         while self._coming and self._coming[0][0] < end_ns:
@@ -65,5 +72,6 @@ class LinearThruster(Component):
         return float(self.full_thrust * min(max(command, -1.0), 1.0))
 
     def _follow(self, duration: float) -> None:
-        kept = math.exp(-duration / self.time_constant)
-        self._thrust = self._goal + (self._thrust - self._goal) * kept
+        kept = math.exp(-duration / (self.slowness * self.time_constant))
+        goal = self._left * self._goal
+        self._thrust = goal + (self._thrust - goal) * kept

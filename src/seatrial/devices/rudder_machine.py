@@ -11,9 +11,11 @@ import casadi as ca
 from ..component import Input, Parameter
 from ..errors import InputError
 from ..plant import Plant, State
+from .actuator import Actuator
+from .fault import SHARE_WRONG
 
 
-class RudderMachine(Plant):
+class RudderMachine(Actuator, Plant):
     """Rudder that follows its command with a lag and a limited rate.
 
         d(angle)/dt = clip((clip(command, limit) - angle) / time_constant, rate)
@@ -25,6 +27,10 @@ class RudderMachine(Plant):
 
     Defaults: 5 deg/s and 1 s as in the MSS toolbox's model of the Mariner; 35 degrees, the
     limit that classification societies ask for (the toolbox has 40).
+
+    Failures are those of `Actuator`: without a command, or stuck, the blade is locked where it is;
+    to a wrong one the command is a tenth of the whole range too much; in a slow one lag and
+    rate are ten times slower.
 
     Not modelled: dead band and pumps that start and stop, load of the water on the blade.
 
@@ -51,6 +57,23 @@ class RudderMachine(Plant):
                 f"{-self.limit!r} to {self.limit!r} rad"
             )
         super().start(t)
+        self.begin_at(self.command)
+
+    def step(self, t: float, h: float) -> None:
+        """Integrate over ``h`` with the command that arrives, if the blade is free."""
+        limit: float = self.limit
+        received = self.take(t, [self.command], [-limit], [limit])
+        if received is None or self.fault == "stuck":
+            return
+        (self._acting,) = received
+        if self.fault == "wrong":
+            self._acting += SHARE_WRONG * 2.0 * limit
+        # The equations do not depend on time: slower is the same in less of it.
+        super().step(t, h / self.slowness)
+
+    def _load(self) -> None:
+        super()._load()
+        self._u[0] = self._acting
 
     def equations(
         self, x: SimpleNamespace, u: SimpleNamespace, p: SimpleNamespace

@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 
 from ..component import NS, Noise, Output, Parameter
 from ..sampled import Sampled
+from .fault import SHARE_WRONG, SLOWER, Fallible
 
 
 class Measured(Output):
@@ -15,7 +16,8 @@ class Measured(Output):
 
     Declares four parameters, each zero for an ideal sensor: ``NAME_noise``, standard deviation
     of a sample's white noise; ``NAME_bias``, constant; ``NAME_instability``, standard deviation
-    of a slowly varying bias; ``NAME_resolution``, the quantisation step.
+    of a slowly varying bias; ``NAME_resolution``, the quantisation step. ``span`` has the least and
+    the greatest value that a broken instrument shows, alike for all axes or per axis.
     """
 
     ERRORS = ("noise", "bias", "instability", "resolution")
@@ -25,6 +27,7 @@ class Measured(Output):
         unit: str,
         description: str,
         *,
+        span: tuple[Any, Any],
         noise: Any = 0.0,
         bias: Any = 0.0,
         instability: Any = 0.0,
@@ -32,6 +35,8 @@ class Measured(Output):
         axes: Sequence[str] | None = None,
     ) -> None:
         super().__init__(unit, description, axes=axes)
+        self.low: list[float] = self._spread(span[0])
+        self.high: list[float] = self._spread(span[1])
         self._errors = dict(zip(self.ERRORS, (noise, bias, instability, resolution), strict=True))
 
     def __set_name__(self, owner: type, name: str) -> None:
@@ -50,7 +55,7 @@ class Measured(Output):
             setattr(owner, f"{name}_{error}", parameter)
 
 
-class Sensor(Noise, Sampled):
+class Sensor(Noise, Fallible, Sampled):
     """Base of the sensors: every ``period`` a measurement, published ``delay`` later.
 
     Whoever writes one declares `Measured` outputs and overrides `measure`. Measurement k, of
@@ -69,6 +74,22 @@ class Sensor(Noise, Sampled):
     ``count`` is the number of measurements published so far and tells old from new; ``valid``
     is false before the first and while the last one due was lost.
 
+    ``fault`` makes it fail, measurement by measurement:
+
+    ============ ===================================================================
+    off          it is lost
+    stuck        the last one that arrived is published again, as a valid one
+    garbage      random values, uniform over the output's `Measured.span`
+    wrong        a tenth of the span too much
+    slow         none is due, but for every tenth: outputs stay as they are
+    delayed      it is published 10 periods later than otherwise
+    intermittent it is lost with probability 1/2
+    ============ ===================================================================
+
+    Lost, garbage and wrong ones take the same way as all others: what was measured before the
+    failure still arrives. Before there is a measurement, stuck is as off. What is overtaken by
+    a newer one, when a delay ends, is never published.
+
     All random numbers of measurement k come from `Noise.generator` (k). Two sensors with the
     same ``seed`` draw the same numbers: give each its own.
     """
@@ -83,6 +104,9 @@ class Sensor(Noise, Sampled):
     count = Output("1", "number of measurements published so far", type=int)
 
     def __init_subclass__(cls, **options: Any) -> None:
+        if "feedthrough" in vars(cls):  # a failure acts on everything that is published
+            through = {name: (*inputs, "fault") for name, inputs in cls.feedthrough.items()}
+            cls.feedthrough = {**through, "valid": ("fault",), "count": ("fault",)}
         super().__init_subclass__(**options)
         cls.measured = tuple(p for p in cls.ports.values() if isinstance(p, Measured))
 
@@ -103,29 +127,30 @@ class Sensor(Noise, Sampled):
             [v for port in self.measured for v in self._error(port, error)]
             for error in Measured.ERRORS
         )
+        self._low = [v for port in self.measured for v in port.low]
+        self._high = [v for port in self.measured for v in port.high]
         self._kept = math.exp(-self.period / self.correlation_time)
-        self._count = 0
+        self._count, self._arrived = 0, False
         self._last = [0.0] * len(self._bias)
+        self._shown: list[Any] = [self._last, 0, False]
         self._queue: list[list[Any]] = []
         self._draw(0)
         self._walk = [s * v for s, v in zip(self._instability, self._drift, strict=True)]
-        self._publish(self._last, 0, False)
-
-    def sample(self, t: float, k: int) -> None:
-        """Publish the measurement, if nothing delays it."""
-        if self._delay_ns == 0:
-            self._publish(*self._measurement())
 
     def update(self, t: float, k: int) -> None:
         """Queue the measurement if it is delayed, and draw the next one's random numbers."""
-        now_ns = round(t * NS)
-        values, self._count, arrived = self._measurement()
-        self._last = values
-        if self._delay_ns:
+        now_ns, late_ns = round(t * NS), self._late_ns()
+        self._last, self._count, self._arrived = self._measurement(k)
+        measured = [self._last, self._count, self._arrived]
+        if late_ns:
             # The last one due stays: it may not have been published yet.
             while len(self._queue) > 1 and self._queue[1][0] <= now_ns:
                 self._queue.pop(0)
-            self._queue.append([now_ns + self._delay_ns, values, self._count, arrived])
+            while self._queue and self._queue[-1][0] >= now_ns + late_ns:
+                self._queue.pop()
+            self._queue.append([now_ns + late_ns, *measured])
+        else:
+            self._queue, self._shown = [], measured
         self._draw(k + 1)
         grown = math.sqrt(1.0 - self._kept**2)
         self._walk = [
@@ -134,11 +159,13 @@ class Sensor(Noise, Sampled):
         ]
 
     def hold(self, t: float) -> None:
-        """Publish the last measurement that fell due."""
+        """Publish the measurement of this instant, or the last that fell due."""
         now_ns = round(t * NS)
+        if self._instant_ns() == now_ns and not self._late_ns():
+            self._publish(*self._measurement(self._next))
+            return
         due = [entry for entry in self._queue if entry[0] <= now_ns]
-        if due:
-            self._publish(*due[-1][1:])
+        self._publish(*(due[-1][1:] if due else self._shown))
 
     # ------------------------------------------------------------------ inside
 
@@ -157,18 +184,44 @@ class Sensor(Noise, Sampled):
             self._lost, normal = False, [0.0] * (2 * n)
         self._white, self._drift = normal[:n], normal[n:]
 
-    def _measurement(self) -> tuple[list[float], int, bool]:
-        """Return the values, the count and whether it arrives, of the measurement now."""
-        if self._lost:
+    def _late_ns(self) -> int:
+        """Return the time from a measurement now to its output, ns."""
+        late_ns: int = self._delay_ns
+        return late_ns + (SLOWER * self._period_ns if self.fault == "delayed" else 0)
+
+    def _measurement(self, k: int) -> tuple[list[float], int, bool]:
+        """Return the values, the count and whether it arrives, of measurement ``k`` now."""
+        fault = self.failure()
+        if fault == "slow" and k % SLOWER:
+            return self._last, self._count, self._arrived
+        if self._lost or self._fails(fault, k):
             return self._last, self._count, False
-        noisy = [
+        if fault == "stuck":
+            return self._last, self._count + 1, True
+        values = self._garbage(k) if fault == "garbage" else self._noisy()
+        if fault == "wrong":
+            ends = zip(values, self._low, self._high, strict=True)
+            values = [y + SHARE_WRONG * (high - low) for y, low, high in ends]
+        steps = zip(values, self._resolution, strict=True)
+        return self.finish([_quantised(y, step) for y, step in steps]), self._count + 1, True
+
+    def _fails(self, fault: str, k: int) -> bool:
+        """Say if a failure loses measurement ``k``."""
+        if fault == "intermittent":
+            return bool(self.generator(k, 1).random() < 0.5)
+        return fault == "off" or (fault == "stuck" and not self._count)
+
+    def _garbage(self, k: int) -> list[float]:
+        drawn: list[float] = self.generator(k, 1).uniform(self._low, self._high).tolist()
+        return drawn
+
+    def _noisy(self) -> list[float]:
+        return [
             x + bias + walk + noise * white
             for x, bias, walk, noise, white in zip(
                 self.measure(), self._bias, self._walk, self._noise, self._white, strict=True
             )
         ]
-        steps = zip(noisy, self._resolution, strict=True)
-        return self.finish([_quantised(y, step) for y, step in steps]), self._count + 1, True
 
     def _publish(self, values: list[float], count: int, valid: bool) -> None:
         place = 0

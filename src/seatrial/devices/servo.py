@@ -7,9 +7,11 @@ import math
 from ..component import NS, Input, Output, Parameter
 from ..errors import InputError
 from ..sampled import Sampled
+from .actuator import Actuator
+from .fault import SHARE_WRONG
 
 
-class Servo(Sampled):
+class Servo(Actuator, Sampled):
     """Position servo driven by a pulse every ``period`` (50 Hz frames).
 
     At each frame (counted in whole nanoseconds from the start of the run, whatever the
@@ -27,6 +29,8 @@ class Servo(Sampled):
     4.8 V: 1500 +- 400 us for +- 45 degrees, 0.21 s per 60 degrees, dead band 8 us.
 
     Angles rad, rate rad/s, pulses s. The angle never reacts to the pulse at the same instant.
+    Failures are those of `Actuator`, from the next frame on; the shaft of a wrong one, within its
+    range, is a tenth of the range further than it should be.
     Not modelled: acceleration, load torque, backlash.
 
     Raises InputError at the start if pulses or angles do not rise, or ``angle_start`` lies
@@ -67,39 +71,48 @@ class Servo(Sampled):
         self._from: float = self.angle_start
         self._to: float = self.angle_start
         self._since_ns = self.now_ns
+        self._pace: float = self.rate
+        self.begin_at(self.pulse_neutral)
 
     def update(self, t: float, k: int) -> None:
         """Take the pulse of this frame."""
         self._from, self._since_ns = self._angle_at(round(t * NS)), round(t * NS)
-        self._to = self._resting_angle(self._from)
+        self._pace = self.rate / self.slowness
+        received = self.take(t, [self.pulse], [self.pulse_min], [self.pulse_max])
+        if received is None or self.fault == "stuck":
+            self._to = self._from
+        else:
+            self._to = self._resting_angle(self._from, received[0])
 
     def hold(self, t: float) -> None:
         """Publish the angle reached."""
         self.angle = self._angle_at(round(t * NS))
 
     def _angle_at(self, time_ns: int) -> float:
-        turned: float = self.rate * (time_ns - self._since_ns) / NS
+        turned: float = self._pace * (time_ns - self._since_ns) / NS
         if turned >= abs(self._to - self._from):
             return self._to
         return self._from + math.copysign(turned, self._to - self._from)
 
-    def _resting_angle(self, angle: float) -> float:
+    def _resting_angle(self, angle: float, pulse: float) -> float:
         """Return where the shaft, now at ``angle``, comes to rest if the pulse stays."""
-        if self.pulse <= 0.0:
+        if pulse <= 0.0:
             return angle
         slope = (self.angle_max - self.angle_min) / (self.pulse_max - self.pulse_min)
         band = slope * self.dead_band
-        error = self._wanted() - angle
+        error = self._wanted(pulse) - angle
         if abs(error) <= band:
             return angle
         return angle + math.copysign(abs(error) - band, error)
 
-    def _wanted(self) -> float:
+    def _wanted(self, pulse: float) -> float:
         """Return the angle that the pulse asks for."""
         middle = 0.5 * (self.angle_min + self.angle_max)
-        away = self.pulse - self.pulse_neutral
+        away = pulse - self.pulse_neutral
         span = (self.pulse_max if away > 0.0 else self.pulse_min) - self.pulse_neutral
         share = math.copysign(min(away / span, 1.0), away)
         half_range = 0.5 * (self.angle_max - self.angle_min)
         wanted: float = middle + (-share if self.reversed else share) * half_range
+        if self.fault == "wrong":
+            wanted = min(wanted + SHARE_WRONG * 2.0 * half_range, self.angle_max)
         return wanted

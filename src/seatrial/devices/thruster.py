@@ -6,15 +6,16 @@ import math
 from bisect import bisect_right
 from collections.abc import Sequence
 
-from ..component import Component, Input, Output, Parameter
+from ..component import Input, Output, Parameter
 from ..errors import InputError
+from .actuator import Actuator
 from .t200 import CURRENT, FORCE, PULSE
 
 SHORTEST_SIGNAL, LONGEST_SIGNAL = 0.8e-3, 2.2e-3
 """Pulses outside these, s, are not a signal to a speed controller (assumed, BLHeli-like)."""
 
 
-class Thruster(Component):
+class Thruster(Actuator):
     """Blue Robotics T200 with a Basic ESC: pulse width in, thrust and current out.
 
     Steady state, from the published bollard table at 16 V (`seatrial.devices.t200`), linear in
@@ -46,6 +47,9 @@ class Thruster(Component):
     two leads swapped: the pulse acts mirrored about neutral. ``time_constant`` is assumed:
     0.1 to 0.2 s is usual for this class of thruster; no source gives it for the T200.
 
+    Failures are those of `Actuator`: a wrong one has half of its thrust, and draws its current all
+    the same.
+
     Raises InputError at the start if the pulses do not rise.
     """
 
@@ -68,13 +72,16 @@ class Thruster(Component):
                 f"{self.pulse_min!r}, {self.pulse_neutral!r}, {self.pulse_max!r} s"
             )
         self._thrust = self._current = 0.0
+        self.begin_at(self.pulse_neutral)
 
     def step(self, t: float, h: float) -> None:
         """Follow the table's values for the pulse and voltage as they are."""
-        pulse = self._table_pulse()
+        received = self.take(t, [self.pulse], [self.pulse_min], [self.pulse_max])
+        pulse = self._table_pulse(0.0 if received is None else received[0])
         supply = (max(self.supply_voltage, 0.0) / 16.0) ** 1.15
-        kept = math.exp(-h / self.time_constant)
-        thrust, current = supply * interpolate(pulse, FORCE), supply * interpolate(pulse, CURRENT)
+        kept = math.exp(-h / (self.slowness * self.time_constant))
+        thrust = self.effect * supply * interpolate(pulse, FORCE)
+        current = supply * interpolate(pulse, CURRENT)
         self._thrust = thrust + (self._thrust - thrust) * kept
         self._current = current + (self._current - current) * kept
 
@@ -82,9 +89,8 @@ class Thruster(Component):
         """Publish thrust and current."""
         self.thrust, self.current = self._thrust, self._current
 
-    def _table_pulse(self) -> float:
+    def _table_pulse(self, pulse: float) -> float:
         """Return the pulse that has the same effect in the table's calibration, s."""
-        pulse: float = self.pulse
         neutral: float = self.pulse_neutral
         if not SHORTEST_SIGNAL <= pulse <= LONGEST_SIGNAL:
             return 1.5e-3

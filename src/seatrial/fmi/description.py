@@ -11,7 +11,7 @@ from pythonfmu.default_experiment import DefaultExperiment
 from pythonfmu.enums import Fmi2Causality, Fmi2Initial, Fmi2Variability
 from pythonfmu.variables import Boolean, Integer, Real, String
 
-from ..component import Component, Parameter
+from ..component import Component, Input, Parameter
 from ..errors import InputError
 from ..ports import ScalarPort
 from ..units import unit
@@ -30,8 +30,9 @@ _CAUSALITY = {
 def describe(slave: Slave, base: Callable[[dict[str, str]], Element]) -> Element:
     """Return the model description of ``slave``, ``base`` being pythonfmu's own ``to_xml``.
 
-    Adds units, min, max, nominal, exact start values, variability, output dependencies and
-    InitialUnknowns, and names the capabilities that the component really has.
+    Adds units, min, max, nominal, exact start values, variability, output dependencies,
+    InitialUnknowns and an annotation on optional inputs, and names the capabilities that the
+    component really has.
 
     Raises InputError for a unit that cannot be written in FMI's base units.
     """
@@ -44,6 +45,9 @@ def describe(slave: Slave, base: Callable[[dict[str, str]], Element]) -> Element
     assert variables is not None
     for scalar, element in zip(component.scalars, variables, strict=True):
         _complete_variable(component, scalar, element[0])
+        if isinstance(scalar.port, Input) and scalar.port.optional:
+            tool = SubElement(SubElement(element, "Annotations"), "Tool", {"name": "seatrial"})
+            SubElement(tool, "optional")
     _insert_units(root, component)
     structure = root.find("ModelStructure")
     assert structure is not None

@@ -9,7 +9,7 @@ from typing import Any
 
 from ..component import Component
 from ..errors import DiscardError, InputError, SimulationError
-from ..ports import Parameter, ScalarPort
+from ..ports import Input, Parameter, ScalarPort
 from .instance import ByType, Reader, Value, Variable, Variables, Writer
 
 
@@ -117,4 +117,5 @@ def _variable(component: Component, scalar: ScalarPort) -> Variable:
         maximum=port.limit("max", scalar.index),
         nominal=port.limit("nominal", scalar.index),
         description=port.description,
+        optional=isinstance(port, Input) and port.optional,
     )

@@ -45,6 +45,8 @@ class Variable:
     """Names and values of an enumeration."""
     element: int = 0
     """Place in its array, row by row."""
+    optional: bool = False
+    """An input that is normally not connected."""
 
     @property
     def measure(self) -> Unit | str:

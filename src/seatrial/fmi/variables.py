@@ -114,6 +114,7 @@ class _Reading:
         inherited = {a: getattr(v, a) or getattr(declared, a, None) for a in _INHERITED}
         limits = {a: _number(inherited[a]) if kind in (int, float) else None for a in _LIMITS}
         unit = (inherited["unit"] or "") if kind is float else ""
+        optional = element.find("Annotations/Tool[@name='seatrial']/optional") is not None
         starts = self._starts(v, element, len(names))
         return [
             Variable(
@@ -132,6 +133,7 @@ class _Reading:
                 integers=self._integers.get(v.type, INTEGERS["Int32"]),
                 items={item.name: int(item.value) for item in getattr(declared, "items", ())},
                 element=place,
+                optional=optional,
             )
             for place, name in enumerate(names)
         ]

@@ -15,10 +15,10 @@ Both ends must step equally: a reader that sees every value misses no number.
 
 from __future__ import annotations
 
-import base64
 import binascii
 import re
 from collections.abc import Iterable
+from functools import lru_cache
 from typing import Any
 
 from ..errors import InputError, SimulationError
@@ -34,14 +34,16 @@ def encode(sequence: int, chunks: Iterable[Chunk]) -> str:
 
     Raises InputError for a negative sequence or time.
     """
-    parts = [str(sequence)]
     if sequence < 0:
         raise InputError(f"a sequence number cannot be negative: {sequence}")
-    for time_ns, data in chunks:
-        if time_ns < 0:
-            raise InputError(f"the time of a chunk cannot be negative: {time_ns} ns")
-        parts.append(f"{time_ns}:{base64.b64encode(data).decode()}")
-    return ";".join(parts)
+    return ";".join([str(sequence), *(chunk(time_ns, data) for time_ns, data in chunks)])
+
+
+def chunk(time_ns: int, data: bytes) -> str:
+    """Return one chunk's part of a text. Raises InputError for a negative time."""
+    if time_ns < 0:
+        raise InputError(f"the time of a chunk cannot be negative: {time_ns} ns")
+    return f"{time_ns}:{binascii.b2a_base64(data, newline=False).decode()}"
 
 
 def decode(text: str) -> tuple[int, list[Chunk]]:
@@ -57,14 +59,16 @@ def decode(text: str) -> tuple[int, list[Chunk]]:
             f"{_shown(text)} is not a bytes text such as '3;1500000000:SGVsbG8=' "
             "(SEQUENCE;TIME in ns:BASE64;...)"
         )
-    chunks = []
-    for part in match.group(2).split(";")[1:]:
-        time_text, _, data = part.partition(":")
-        try:
-            chunks.append((int(time_text), base64.b64decode(data, validate=True)))
-        except binascii.Error as error:
-            raise InputError(f"{_shown(data)} in a bytes text is not base64: {error}") from None
-    return int(match.group(1)), chunks
+    return int(match.group(1)), [_chunk(part) for part in match.group(2).split(";")[1:]]
+
+
+@lru_cache(4096)  # what a bus says is read by many
+def _chunk(part: str) -> Chunk:
+    time_text, _, data = part.partition(":")
+    try:
+        return int(time_text), binascii.a2b_base64(data, strict_mode=True)
+    except binascii.Error as error:
+        raise InputError(f"{_shown(data)} in a bytes text is not base64: {error}") from None
 
 
 class Outbox:
@@ -89,7 +93,11 @@ class Outbox:
     def put(self, time_ns: int, data: bytes) -> None:
         """Add bytes sent at simulated time ``time_ns`` (ns, not negative) to what waits."""
         # As text already: bytes are not plain data of a component's state.
-        self._memory["waiting"].append(encode(0, [(time_ns, data)]).partition(";")[2])
+        self.put_chunk(chunk(time_ns, data))
+
+    def put_chunk(self, written: str) -> None:
+        """Add what `chunk` returned: it may go to several boxes."""
+        self._memory["waiting"].append(written)
 
     def flush(self) -> str:
         """Publish what waits under a new number, once at the end of a step; return `text`.

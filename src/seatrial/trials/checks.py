@@ -84,6 +84,26 @@ def check_plots(trial: Trial, system: System) -> None:
             raise InputError(f"{where}: signals of one unit are needed, not {listed}")
 
 
+def check_real_time(trial: Trial, system: System) -> None:
+    """Raise InputError for a signal of ``real_time`` that is no number of its unit."""
+    entry = trial.file.real_time
+    if entry is None:
+        return
+    outputs = _outputs(system)
+    for key, signal, unit in (("factor", entry.factor, "1"), ("paused", entry.paused, "s")):
+        if not isinstance(signal, str):
+            continue
+        where = f"{trial.read_from.path}: real_time.{key}"
+        try:
+            _require_number(signal, outputs)
+        except InputError as error:
+            raise InputError(f"{where}: {error}") from None
+        if (outputs[signal].unit or "1") != unit:
+            raise InputError(
+                f"{where}: {signal} is in {outputs[signal].unit}, a signal in {unit} is needed"
+            )
+
+
 def _require_number(signal: str, outputs: Mapping[str, Variable]) -> None:
     if signal not in outputs:
         raise InputError(unknown("signal", signal, outputs))

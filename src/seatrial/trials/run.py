@@ -13,16 +13,16 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from ..component import Logging, seconds
-from ..cosim.clock import Pacer
+from ..component import Logging, Reachable, seconds
 from ..cosim.master import Master
 from ..cosim.recorder import Recorder
 from ..cosim.system import Engine, System, assemble
 from ..cosim.values import from_written, port_scalars
 from ..errors import InputError, SimulationError
-from .checks import check_criteria, check_events, check_plots
+from .checks import check_criteria, check_events, check_plots, check_real_time
 from .endings import Endings
 from .manifest import manifest
+from .pacing import Pace
 from .trial import Event, Trial
 from .verdict import Verdict
 
@@ -39,6 +39,8 @@ class Hooks:
     stop_requested: Callable[[], bool] = lambda: False
     interruptible: Callable[[], AbstractContextManager[object]] = nullcontext
     """Around what a component may never return from: elsewhere no signal raises anything."""
+    reachable: Callable[[str, str], None] = lambda _name, _where: None
+    """In real time: a component that programs outside connect to, and where."""
 
 
 class StoppedError(SimulationError):
@@ -96,15 +98,18 @@ def run_trial(
             trial.record_every,
             sorted(set().union(*(criterion.signals for _, criterion in trial.criteria))),
         )
-        pacer, endings = _pacer(trial), Endings(trial, master, units)
-        status, error = _simulate(trial, master, recorder, endings, pacer, out, engine, hooks, wall)
+        entry, endings = trial.file.real_time, Endings(trial, master, units)
+        pace = None if entry is None else Pace(entry, master)
+        if pace is not None:
+            _tell_reachable(master, hooks)
+        status, error = _simulate(trial, master, recorder, endings, pace, out, engine, hooks, wall)
     finally:
         with contextlib.suppress(KeyboardInterrupt), hooks.interruptible():
             system.free()  # nothing of the run depends on it any more
     verdicts = [] if status == "failed" else _judge(trial, recorder, out, units)
     notes = [*_loose_inputs(trial, system), *master.notes()]
-    if pacer is not None:
-        notes.append(pacer.note())
+    if pace is not None:
+        notes.append(pace.pacer.note())
     return Result(out, status, error, verdicts, notes, wall)
 
 
@@ -117,17 +122,21 @@ def _tell_folder(master: Master, out: Path) -> None:
             master.set(name, ["run_folder"], [str(out.resolve())])
 
 
+def _tell_reachable(master: Master, hooks: Hooks) -> None:
+    """Say which components programs outside connect to, and where."""
+    for name, part in master.system.parts.items():
+        port = part.instance.variables.get("reached_at")
+        if port is not None and port.description == Reachable.reached_at.description:
+            (where,) = part.instance.reader(["reached_at"])()
+            hooks.reachable(name, str(where))
+
+
 def _loose_inputs(trial: Trial, system: System) -> list[str]:
     """Return a note on the inputs that neither a wire nor an event reaches, if there are any."""
     moved = {event.key for event in trial.events()}
     loose = [name for name in system.unconnected_inputs() if name not in moved]
     said = f"inputs that nothing feeds keep their start values: {', '.join(loose)}"
     return [said] if loose else []
-
-
-def _pacer(trial: Trial) -> Pacer | None:
-    entry = trial.file.real_time
-    return None if entry is None else Pacer(entry.factor, entry.overrun)
 
 
 def _refuse_if_stopped(hooks: Hooks) -> None:
@@ -203,6 +212,7 @@ def _prepared(trial: Trial, engine: Engine, hooks: Hooks) -> tuple[System, dict[
         units = check_criteria(trial, system)
         check_plots(trial, system)
         check_events(trial, system)
+        check_real_time(trial, system)
     except BaseException:
         system.free()
         raise
@@ -225,7 +235,7 @@ def _simulate(
     master: Master,
     recorder: Recorder,
     endings: Endings,
-    pacer: Pacer | None,
+    pace: Pace | None,
     out: Path,
     engine: Engine,
     hooks: Hooks,
@@ -239,7 +249,7 @@ def _simulate(
     error: str | None = "ended by an error of seatrial itself"
     try:
         with hooks.interruptible():
-            status, error = _loop(trial, master, recorder, endings, pacer, hooks), None
+            status, error = _loop(trial, master, recorder, endings, pace, hooks), None
     except SimulationError as problem:
         error = str(problem)
     except KeyboardInterrupt:
@@ -250,13 +260,13 @@ def _simulate(
         wall["run"] = time.perf_counter() - begun
         with contextlib.suppress(OSError):  # the disk may be full: what was recorded stays
             recorder.close()
-            write_json(out / "timing.json", _timing(master, pacer, started, wall))
+            write_json(out / "timing.json", _timing(master, pace, started, wall))
             write_json(out / "manifest.json", {**content, "status": status, "error": error})
     return status, error
 
 
 def _timing(
-    master: Master, pacer: Pacer | None, started: str, wall: dict[str, float]
+    master: Master, pace: Pace | None, started: str, wall: dict[str, float]
 ) -> dict[str, Any]:
     simulated = seconds(master.time_ns - master.start_ns)
     content = {
@@ -267,7 +277,7 @@ def _timing(
         "real_time_factor": simulated / wall["run"],
         "step_times": {name: times.as_json() for name, times in master.step_times.items()},
     }
-    return content if pacer is None else {**content, "pacing": pacer.as_json()}
+    return content if pace is None else {**content, "pacing": pace.pacer.as_json()}
 
 
 def _loop(
@@ -275,14 +285,14 @@ def _loop(
     master: Master,
     recorder: Recorder,
     endings: Endings,
-    pacer: Pacer | None,
+    pace: Pace | None,
     hooks: Hooks,
 ) -> str:
     events, status = trial.events(), "complete"
     whole, steps = seconds(trial.stop_ns - trial.start_ns), trial.steps
     shown = time.perf_counter()
-    if pacer is not None:
-        pacer.start(master.time_ns)
+    if pace is not None:
+        pace.start()
     while True:
         while events and events[0].at_ns <= master.time_ns:
             _apply(events.pop(0), master)
@@ -295,36 +305,16 @@ def _loop(
             return "stopped"
         if master.steps >= steps:
             break
-        if pacer is None:
+        if pace is None:
             master.step()
         else:
-            _paced_step(master, pacer, recorder, hooks)
-        if (pacer or master.steps % 16 == 0) and time.perf_counter() - shown > 0.1:
+            pace.step(recorder, hooks.stop_requested)
+        if (pace or master.steps % 16 == 0) and time.perf_counter() - shown > 0.1:
             shown = time.perf_counter()
             hooks.progress(seconds(master.time_ns - master.start_ns), whole)
     hooks.progress(whole, whole)
     master.terminate()
     return status
-
-
-def _paced_step(master: Master, pacer: Pacer, recorder: Recorder, hooks: Hooks) -> None:
-    """Take a step and wait until its end is due; SimulationError if it is late and must not be."""
-
-    def interrupted() -> bool:
-        recorder.flush_if_due()  # a wait may be long
-        return hooks.stop_requested()
-
-    before = {name: times.total_ns for name, times in master.step_times.items()}
-    master.step()
-    lateness = pacer.keep(master.time_ns, interrupted)
-    if lateness and pacer.policy == "abort":
-        spent = {name: t.total_ns - before[name] for name, t in master.step_times.items()}
-        slowest = max(spent, key=spent.__getitem__)
-        raise SimulationError(
-            f"at t = {master.time!r} s the step ended {lateness / 1e6:.3g} ms after its deadline "
-            f"in real time (factor {pacer.factor:g}, overrun = 'abort'); {slowest} took longest, "
-            f"{spent[slowest] / 1e6:.3g} ms"
-        )
 
 
 def _apply(event: Event, master: Master) -> None:

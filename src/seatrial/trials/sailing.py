@@ -16,8 +16,6 @@ from .run_folder import Run
 _STEADY = 0.25  # share of a run, at its end, that a point of the polar diagram is the mean of
 _DIRECTIONS = 5  # a polar diagram needs at least so many different angles off the wind
 _WIND = "#5b6770"
-_MARKS = {"sailing-guidance": "mark", "course": "waypoint"}
-"""Components with a course as parameters, and what they call the places to pass."""
 
 
 @dataclass(frozen=True)
@@ -32,26 +30,25 @@ class PolarPoint:
 
 def add_wind_and_marks(figure: go.Figure, run: Run) -> None:
     """Draw the run's mean wind as an arrow, and the marks of its course, into a track."""
-    for kind, mark in _MARKS.items():
-        for name in _of_kind(run, kind):
-            _draw_marks(figure, run.manifest["components"][name]["parameters"], mark)
+    for name in _of_kind(run, "course"):
+        _draw_marks(figure, run.manifest["components"][name]["parameters"])
     wind = _mean_wind(run)
     if wind is not None:
         _draw_wind(figure, wind)
 
 
-def _draw_marks(figure: go.Figure, parameters: Mapping[str, Any], mark: str) -> None:
+def _draw_marks(figure: go.Figure, parameters: Mapping[str, Any]) -> None:
     for number in range(1, int(parameters["count"]["value"]) + 1):
-        north, east = (parameters[f"{mark}_{number}.{a}"]["value"] for a in ("north", "east"))
+        north, east = (parameters[f"waypoint_{number}.{a}"]["value"] for a in ("north", "east"))
         figure.add_scatter(
             x=[east],
             y=[north],
             mode="markers+text",
             text=[str(number)],
             textposition="middle right",
-            name=f"{mark} {number}",
+            name=f"waypoint {number}",
             marker={"size": 12, "symbol": "triangle-up-open", "color": "#d1690e"},
-            hovertemplate=f"{mark} {number}: north %{{y:.4g}} m, east %{{x:.4g}} m",
+            hovertemplate=f"waypoint {number}: north %{{y:.4g}} m, east %{{x:.4g}} m",
         )
 
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import AfterValidator, Field
+from pydantic_core import PydanticCustomError
 
 from ..cosim.clock import OverrunPolicy
 from ..cosim.files import FileModel, Source, find_file, read_toml, validated
@@ -49,11 +50,22 @@ class PlotEntry(FileModel):
     signals: list[str] = Field(min_length=1)
 
 
+def _signal(written: str) -> str:
+    if "." not in written:
+        raise PydanticCustomError("signal", "A signal, component.port, is needed")
+    return written
+
+
+_Signal = Annotated[str, AfterValidator(_signal)]
+
+
 class RealTimeEntry(FileModel):
     """How a run keeps to wall time."""
 
-    factor: float = Field(default=1.0, ge=1e-9, allow_inf_nan=False)
-    """Simulated seconds per second of wall time."""
+    factor: Annotated[float, Field(ge=1e-9, allow_inf_nan=False)] | _Signal = 1.0
+    """Simulated seconds per second of wall time, or the signal that says so."""
+    paused: _Signal | None = None
+    """Signal with the seconds of wall time that do not count."""
     overrun: OverrunPolicy = "catch-up"
 
 

@@ -46,10 +46,20 @@ class WrittenDown:
 
 
 class Bench:
-    """A node with time that is let pass in steps of 10 ms; messages are from `STATION`."""
+    """A node with time that is let pass in steps of 10 ms; messages are from `STATION`.
+
+    ``pace`` is how many of its seconds pass in one of wall time.
+    """
 
     def __init__(
-        self, *, submerged=False, autopilot="ardupilotmega", valid=True, plans=None, **settings
+        self,
+        *,
+        submerged=False,
+        autopilot="ardupilotmega",
+        valid=True,
+        plans=None,
+        failures=(),
+        **settings,
     ):
         kind = flavour(autopilot, submerged=submerged)
         types = (mavlink.MAV_TYPE_SURFACE_BOAT, mavlink.MAV_TYPE_SUBMARINE)
@@ -58,9 +68,13 @@ class Bench:
         self.vehicle.estimates = Estimates(position_valid=valid, heading_valid=valid)
         self.air = WrittenDown()
         self.settings = Settings(**settings)
-        parameters = vehicle_parameters(self.vehicle, self.settings)
-        self.node = Node(self.vehicle, self.air, self.settings, parameters, plans)
-        self.ticks = 0
+        self.parameters = vehicle_parameters(self.vehicle, self.settings)
+        self.ticks, self.pace = 0, 1.0
+        self.node = Node(
+            *(self.vehicle, self.air, self.settings, self.parameters, plans),
+            clock=lambda: self.now / self.pace,
+            failures=failures,
+        )
 
     @property
     def now(self):

@@ -126,8 +126,8 @@ def as_float(m):
 class Client:
     """One transfer at a time, with everything repeated that is not answered."""
 
-    def __init__(self, speak):
-        self.speak = speak
+    def __init__(self, speak, retry_s=RETRY_S):
+        self.speak, self._retry_s = speak, retry_s
         self.items, self.result, self.count = [], None, None
         self._last, self._since = None, 0.0
 
@@ -161,7 +161,7 @@ class Client:
                 self._ask(now)
 
     def tick(self, now):
-        if self._last is not None and now - self._since >= RETRY_S:
+        if self._last is not None and now - self._since >= self._retry_s:
             self._say(self._last, now)
 
     def _ask(self, now):

@@ -2,6 +2,7 @@
 
 import pytest
 from pymavlink.dialects.v20 import all as mavlink
+from pymavlink.mavftp_op import FTP_OP, OP_Nack
 
 from seatrial.links.mavlink.radio import Sender
 
@@ -11,6 +12,7 @@ ARM, MODE = mavlink.MAV_CMD_COMPONENT_ARM_DISARM, mavlink.MAV_CMD_DO_SET_MODE
 OK, DENIED = mavlink.MAV_RESULT_ACCEPTED, mavlink.MAV_RESULT_DENIED
 UNSUPPORTED, FAILED = mavlink.MAV_RESULT_UNSUPPORTED, mavlink.MAV_RESULT_FAILED
 NAN = float("nan")
+UNKNOWN_COMMAND = 7  # of FTP's errors
 
 
 # ------------------------------------------------------------------ dispatch
@@ -125,11 +127,48 @@ def test_the_health_bit_follows_the_checks():
         assert bool(status.onboard_control_sensors_health & bit) is valid
 
 
-def test_a_reboot_is_refused_politely():
+@pytest.mark.parametrize(
+    ("number", "why"),
+    [
+        (mavlink.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, "simulated"),
+        (mavlink.MAV_CMD_PREFLIGHT_CALIBRATION, "belong to the trial"),
+        (mavlink.MAV_CMD_DO_SET_SERVO, "autopilot's"),
+        (mavlink.MAV_CMD_DO_REPEAT_SERVO, "autopilot's"),
+        (mavlink.MAV_CMD_DO_SET_RELAY, "no relays"),
+        (mavlink.MAV_CMD_DO_REPEAT_RELAY, "no relays"),
+    ],
+)
+def test_what_it_cannot_do_is_refused_with_the_reason(number, why):
     bench = Bench()
-    assert bench.command(mavlink.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, 1) == DENIED
+    assert bench.command(number, 1, 1500) == DENIED
     bench.tick()
-    assert "simulated" in "".join(m.text for m in bench.air.take("STATUSTEXT"))
+    assert why in "".join(m.text for m in bench.air.take("STATUSTEXT"))
+
+
+def test_no_key_is_taken_over_a_link():
+    bench = Bench()
+    bench.hear(mavlink.MAVLink_setup_signing_message(7, 1, [1] * 32, 1))
+    bench.tick()
+    assert "signing_key_file" in "".join(m.text for m in bench.air.take("STATUSTEXT"))
+
+
+@pytest.mark.parametrize("opcode", [1, 2, 3, 4, 15])
+def test_there_are_no_files(opcode):
+    bench = Bench()
+    asked = FTP_OP(65535, 9, opcode, 3, 0, 0, 17, b"@SY").pack()
+    payload = list(asked.ljust(251, b"\0"))
+    bench.hear(mavlink.MAVLink_file_transfer_protocol_message(0, 7, 1, payload))
+    (answer,) = bench.air.take("FILE_TRANSFER_PROTOCOL", STATION.link)
+    assert (answer.target_system, answer.target_component) == (STATION.system, STATION.component)
+    refusal = FTP_OP(0, 9, OP_Nack, 1, opcode, 0, 0, bytes([UNKNOWN_COMMAND])).pack()
+    assert bytes(answer.payload) == refusal.ljust(251, b"\0")
+    bench.hear(answer)  # an answer gets none
+    assert bench.air.take("FILE_TRANSFER_PROTOCOL") == []
+
+
+@pytest.mark.parametrize("number", [395, 397])  # COMPONENT_INFORMATION, COMPONENT_METADATA
+def test_descriptions_of_components_are_refused_at_once(number):
+    assert Bench().command(mavlink.MAV_CMD_REQUEST_MESSAGE, number) == UNSUPPORTED
 
 
 # ------------------------------------------------------------------ modes

@@ -290,8 +290,8 @@ def test_what_cannot_be_is_refused_at_the_start(values, said):
 
 
 def test_the_profile_says_who_it_is(started, connect):
-    parameters = load_profile("hydrone").parameters("identity")
-    boat = started(**parameters)
+    parameters = load_profile("hydrone").parameters("links.ground")
+    boat = started(**{**parameters, "links": "udpin:127.0.0.1:0"})
     station = connect(boat.urls[0])
     heartbeat = heard(boat, station, "HEARTBEAT")
     assert (heartbeat.get_srcSystem(), heartbeat.type, heartbeat.autopilot) == (1, 11, 3)

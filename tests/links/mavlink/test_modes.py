@@ -1,7 +1,10 @@
 import pytest
 from pymavlink import mavutil
+from pymavlink.dialects.v20 import all as mavlink
 
 from seatrial.links.mavlink.modes import flavour
+
+from .bench import STATION, Bench
 
 
 @pytest.mark.parametrize(
@@ -40,6 +43,27 @@ def test_numbers_and_names_are_unique_and_found(autopilot, submerged):
     for mode in kind.modes:
         assert kind.mode(mode.name) is mode
         assert kind.by_custom_mode(mode.custom_mode) is mode
+
+
+@pytest.mark.parametrize("autopilot", ["ardupilotmega", "px4"])
+def test_modes_are_told_one_by_one_or_all_at_once(autopilot):
+    bench = Bench(autopilot=autopilot, submerged=True)
+    number, modes = mavlink.MAVLINK_MSG_ID_AVAILABLE_MODES, bench.vehicle.flavour.modes
+
+    def told(index):
+        bench.air.take()
+        result = bench.command(mavlink.MAV_CMD_REQUEST_MESSAGE, number, index)
+        found = bench.air.take("AVAILABLE_MODES", STATION.link)
+        assert all(m.number_modes == len(modes) for m in found)
+        return result, [(m.mode_index, m.custom_mode, m.mode_name) for m in found]
+
+    each = [(n, mode.custom_mode, mode.shown) for n, mode in enumerate(modes, 1)]
+    assert told(0) == (mavlink.MAV_RESULT_ACCEPTED, each)
+    assert told(NAN) == (mavlink.MAV_RESULT_ACCEPTED, each)
+    for index, mode in enumerate(each, 1):
+        assert told(index) == (mavlink.MAV_RESULT_ACCEPTED, [mode])
+    for index in (-1, len(modes) + 1, 255):
+        assert told(index) == (mavlink.MAV_RESULT_DENIED, [])
 
 
 NAN, INF = float("nan"), float("inf")

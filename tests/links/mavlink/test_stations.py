@@ -36,6 +36,21 @@ def test_losing_the_last_one_is_what_counts(armed):
     assert bench.vehicle.armed is armed
 
 
+@pytest.mark.parametrize("pace", [0.2, 1.0, 5.0, 20.0])
+def test_a_station_that_beats_each_second_stays_at_any_pace(pace):
+    bench = Bench(station_timeout=5.0)
+    bench.pace = pace
+    bench.enter("guided")
+    bench.arm()
+    for _ in range(10):
+        bench.heartbeat()
+        bench.wait(pace)  # a second of the station's
+    assert (bench.vehicle.stations, bench.vehicle.mode.name) == (1, "guided")
+    assert "lost" not in "".join(bench.texts())
+    bench.wait(max(1.0, pace) * 5.0)
+    assert (bench.vehicle.stations, bench.vehicle.mode.name) == (0, "hold")
+
+
 def test_it_acts_once_and_again_after_somebody_was_back():
     bench = Bench(station_timeout=2.0)
     bench.arm()

@@ -24,7 +24,7 @@ def interval_of(bench, number):
 
 def test_what_a_ground_station_needs_comes_unasked():
     bench = Bench()
-    bench.measure(voltage=16.0)
+    bench.measure(voltage=16.0, pressure=101_325.0)
     bench.wait(4.0)
     heard = {m.get_type() for m in bench.air.take(link=0)}
     assert heard >= {

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from pymavlink.dialects.v20 import all as mavlink
 from pymavlink.quaternion import Quaternion
 
-from seatrial.links.mavlink.vehicle import Truth
+from seatrial.links.mavlink.vehicle import Target, Truth, Way
 
 from .bench import ORIGIN, Bench
 
@@ -110,7 +110,41 @@ def test_pressure_of_air_and_water():
     assert said("SCALED_PRESSURE", pressure=101_000.0).press_abs == 1010.0
     assert silent("SCALED_PRESSURE2")
     assert said("SCALED_PRESSURE2", submerged=True, pressure=201_325.0).press_abs == 2013.25
-    assert silent("SCALED_PRESSURE", submerged=True)
+    assert silent("SCALED_PRESSURE", submerged=True, pressure=201_325.0)
+    assert silent("SCALED_PRESSURE")
+    assert silent("SCALED_PRESSURE2", submerged=True)
+    assert said("HIGHRES_IMU").fields_updated & 0x200 == 0
+
+
+def test_distance_to_the_ground():
+    m = said("DISTANCE_SENSOR", ground_distance=12.344)
+    assert (m.current_distance, m.orientation) == (1234, mavlink.MAV_SENSOR_ROTATION_PITCH_270)
+    assert silent("DISTANCE_SENSOR")
+
+
+WAY = Way(heading=math.radians(200.0), speed=0.8, depth=3.0, cross_track=-1.5, distance=70.4)
+
+
+def test_where_it_heads_for():
+    m = said("NAV_CONTROLLER_OUTPUT", way=WAY, velocity_n=(0.5, 0.0, 0.0))
+    assert (m.nav_bearing, m.target_bearing, m.wp_dist) == (-160, -160, 70)
+    assert (m.xtrack_error, m.alt_error) == (-1.5, 0.0)
+    assert m.aspd_error == pytest.approx(0.3)
+    deep = said("NAV_CONTROLLER_OUTPUT", submerged=True, way=WAY, position_n=(0.0, 0.0, 12.0))
+    assert deep.alt_error == 9.0  # 3 m deep is wanted: higher
+    assert silent("NAV_CONTROLLER_OUTPUT")
+
+
+def test_the_bearing_of_where_it_goes():
+    bench = Bench()
+    bench.enter("guided")
+    bench.measure(way=WAY, position_n=(100.0, 50.0, 0.0))
+    bench.vehicle.target = Target("position", (100.0, 150.0, 0.0))
+    assert bench.one(ID["MAVLINK_MSG_ID_NAV_CONTROLLER_OUTPUT"]).target_bearing == 90
+    bench.enter("return")
+    bench.tick()
+    bearing = bench.one(ID["MAVLINK_MSG_ID_NAV_CONTROLLER_OUTPUT"]).target_bearing
+    assert bearing == round(math.degrees(math.atan2(-50.0, -100.0)))
 
 
 def test_true_wind_from_the_apparent_one():
@@ -216,6 +250,8 @@ def test_values_of_any_size_can_be_sent(x, submerged):
         charge=x[5],
         pulses=tuple(x) + tuple(x[:4]),
         named=(("x", x[0]),),
+        ground_distance=x[0],
+        way=Way(*x[:5]),
     )
     bench.wait(1.0)  # the air of the bench packs every message
     assert len(bench.air.said) > 20

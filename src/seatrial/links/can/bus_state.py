@@ -6,12 +6,15 @@ from dataclasses import fields
 from typing import Any
 
 from .controller import Controller, Request
-from .operations import Transmit, decode, encode
-from .simulated_bus import SimulatedBus
+from .frame import Frame
+from .operations import Error, Transmit, decode, encode
+from .simulated_bus import Attempt, SimulatedBus
 
-_BUS = ("now_ps", "free_ps", "busy_ps", "attempts", "requests", "counted_ps")
+_BUS = ("now_ps", "free_ps", "taken_ps", "attempts", "requests", "counted_ps")
 _LISTS = ("queue", "ready")
-_NUMBERS = tuple(f.name for f in fields(Controller) if f.name not in (*_LISTS, "name"))
+_NUMBERS = tuple(f.name for f in fields(Controller) if f.name not in (*_LISTS, "name", "sending"))
+_ATTEMPT = ("start_ps", "end_ps", "first", "deaf")
+_NODES = ("senders", "losers", "gave_way")
 
 
 def saved(bus: SimulatedBus) -> dict[str, Any]:
@@ -19,13 +22,8 @@ def saved(bus: SimulatedBus) -> dict[str, Any]:
     return {
         **{name: getattr(bus, name) for name in _BUS},
         "arriving": [[when, node, _plain(request)] for when, _, node, request in bus.arriving],
-        "controllers": [
-            {
-                **{name: getattr(each, name) for name in _NUMBERS},
-                **{name: [_plain(request) for request in getattr(each, name)] for name in _LISTS},
-            }
-            for each in bus.controllers
-        ],
+        "controllers": [_plain_controller(each) for each in bus.controllers],
+        "attempt": None if bus.attempt is None else _plain_attempt(bus.attempt),
     }
 
 
@@ -41,15 +39,52 @@ def restore(bus: SimulatedBus, state: dict[str, Any]) -> None:
         controller.queue.clear()
         controller.queue.extend(_request(plain) for plain in values["queue"])
         controller.ready[:] = [_request(plain) for plain in values["ready"]]
+        sending = values["sending"]
+        controller.sending = None if sending is None else _request(sending)
+    bus.attempt = None if state["attempt"] is None else _attempt(state["attempt"])
+
+
+def _plain_controller(each: Controller) -> dict[str, Any]:
+    return {
+        **{name: getattr(each, name) for name in _NUMBERS},
+        **{name: [_plain(request) for request in getattr(each, name)] for name in _LISTS},
+        "sending": None if each.sending is None else _plain(each.sending),
+    }
+
+
+def _plain_attempt(attempt: Attempt) -> dict[str, Any]:
+    return {
+        **{name: getattr(attempt, name) for name in _ATTEMPT},
+        **{name: list(getattr(attempt, name)) for name in _NODES},
+        "frame": _text(attempt.frame),
+        "error": None if attempt.error is None else int(attempt.error),
+    }
+
+
+def _attempt(plain: dict[str, Any]) -> Attempt:
+    senders, losers, gave_way = (list(plain[name]) for name in _NODES)
+    return Attempt(
+        *(plain["start_ps"], plain["end_ps"], _frame(plain["frame"])),
+        *(senders, losers, gave_way),
+        None if plain["error"] is None else Error(plain["error"]),
+        *(plain["first"], plain["deaf"]),
+    )
 
 
 def _plain(request: Request) -> list[Any]:
-    frame = encode(Transmit(request.frame)).hex()
-    return [request.priority, request.number, request.asked_ps, frame]
+    return [request.priority, request.number, request.asked_ps, _text(request.frame)]
 
 
 def _request(plain: list[Any]) -> Request:
     priority, number, asked_ps, text = plain
+    return Request(priority, number, asked_ps, _frame(text))
+
+
+def _text(frame: Frame) -> str:
+    return encode(Transmit(frame)).hex()
+
+
+def _frame(text: str) -> Frame:
     (operation,) = decode(bytes.fromhex(text))
     assert isinstance(operation, Transmit)
-    return Request(priority, number, asked_ps, operation.frame)
+    return operation.frame

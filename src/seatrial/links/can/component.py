@@ -7,12 +7,14 @@ from typing import Any, ClassVar
 
 from ...component import NS, Component, Input, Logging, Noise, Output, Parameter
 from ...errors import InputError, SimulationError, unknown
-from ..text import Inbox, Outbox
+from ..text import Inbox, Outbox, chunk
 from .bus_state import restore, saved
 from .controller import Controller
 from .disturbances import Disturbances
 from .frame import Frame
+from .journal import Journal
 from .operations import (
+    ArbitrationLost,
     BitRate,
     Buffering,
     BusError,
@@ -25,7 +27,7 @@ from .operations import (
     decode,
     encode,
 )
-from .simulated_bus import PS, Broken, Sent, SimulatedBus
+from .simulated_bus import PS, Broken, GivenUp, Sent, SimulatedBus
 
 NODES = 12
 """Most nodes of one bus."""
@@ -50,8 +52,8 @@ class CanBus(Logging, Noise, Component):
 
     **Time.** Frames, queues and arbitration are `SimulatedBus`'s: to the bit, however coarse the
     communication step. In the step from t to t + h the bus lives until t, since all that nodes
-    asked for until then is known; so what ended by t is on ``rx`` at t + h, with the time at which
-    it ended: one step late, and never wrong.
+    asked for until then is known; so what ended by t is on ``rx`` and on all other outputs at
+    t + h: one step late, with the time at which it ended, and never wrong.
 
     **Controllers** have ``mailboxes`` and a queue of ``queue_length`` (`Controller`), and come back
     from bus-off if ``recovery`` is on. Those of ``listen_only`` never send, acknowledge or object.
@@ -64,16 +66,19 @@ class CanBus(Logging, Noise, Component):
 
     **Outputs.** ``load`` is the share of time that frames, error frames and intermissions took
     in the last ``load_window``. Counts are of the whole run. ``latency`` is the time from the
-    request to the end of the frame, of the last frame of each identifier in ``watched`` (numbers,
-    as 0x09F11217, 29 bits if there are more than three digits).
+    request to the end of the frame, for each identifier in ``watched`` (numbers, as 0x09F11217,
+    29 bits if there are more than three digits): the longest of those that ended since the step
+    before, or else the last.
 
-    Not modelled: CAN XL, sleep and wake-up, propagation and clock tolerance, overload frames,
-    the 6 to 12 bits of superposed flags in between.
+    In ``run_folder`` it leaves ``NAME.blf``, ``NAME.log`` and ``NAME.json`` (`Journal`).
+
+    Not modelled: CAN XL, sleep, propagation and clock tolerance, overload frames, the 6 to 12
+    bits of superposed flags in between.
 
     Raises InputError at the start for nodes and identifiers that cannot be.
     """
 
-    transient = Component.transient | {"_bus", "_wrong"}
+    transient = Component.transient | {"_bus", "_wrong", "_journal", "_ports"}
 
     nodes = Parameter("n1 n2", "1", "names of the nodes, separated by spaces")
     bit_rate = Parameter(250_000.0, "1/s", "bit rate", min=1000.0, max=1e6)
@@ -132,6 +137,10 @@ class CanBus(Logging, Noise, Component):
 
     feedthrough: ClassVar = {}
 
+    def __init__(self, name: str = "component") -> None:
+        super().__init__(name)
+        self._journal: Journal | None = None
+
     # ------------------------------------------------------------------ running
 
     def start(self, t: float) -> None:
@@ -139,51 +148,39 @@ class CanBus(Logging, Noise, Component):
         names = _names(self.nodes, NODES)
         silent = _among(self.listen_only, names, "listen_only")
         self._keys = _identifiers(self.watched)
-        recovers = self.recovery == "on"
-        controllers = [
-            Controller(
-                name,
-                _whole("queue_length", self.queue_length),
-                _whole("mailboxes", self.mailboxes),
-                name in silent,
-                recovers,
-            )
-            for name in names
-        ]
-        self._wrong = Disturbances(self.generator, len(names))
-        self._bus = SimulatedBus(
-            controllers,
-            _whole("bit_rate", self.bit_rate),
-            _whole("data_bit_rate", self.data_bit_rate),
-            self._wrong,
-            self._was_sent,
-            self._was_broken,
-            now_ps=self.now_ns * _PS_PER_NS,
-        )
+        self._begun_ns = self.now_ns
         self._inboxes: list[dict[str, Any]] = [{} for _ in names]
         self._outboxes: list[dict[str, Any]] = [{} for _ in names]
-        self._buffers = [True] * len(names)
-        self._coming: list[list[Any]] = []
         self._latencies = [0.0] * WATCHED
-        self._frames = self._broken_frames = 0
+        self._longest = [0.0] * WATCHED
+        self._frames = self._error_frames = 0
         self._busy: list[list[int]] = [[self.now_ns, 0]]
+        self._losses = [0.0] * (1 + len(names))
+        self._build(names, silent)
 
     def step(self, t: float, h: float) -> None:
         """Take in what nodes have asked for, and let the bus live until ``t``."""
-        self._apply_faults()
-        for node in range(len(self._inboxes)):
-            for when, data in Inbox(self._inboxes[node]).take(self.tx[node]):
+        if self._journal is not None:
+            self._journal.open(self.run_folder)
+        for node, inbox in enumerate(self._inboxes):
+            for when, data in Inbox(inbox).take(self.tx[node]):
                 self._hear(node, when, data)
+        self._longest = [0.0] * WATCHED
         self._bus.run(self.now_ns * _PS_PER_NS)
-        self._deliver(self.now_ns)
+        self._latencies = [
+            new or last for new, last in zip(self._longest, self._latencies, strict=True)
+        ]
+        for port in self._ports:
+            port.flush()
         self._count_load(self.now_ns)
+        self._apply_faults()
 
     def outputs(self, t: float) -> None:
         """Publish what the bus told, and its counts."""
-        nothing = NODES - len(self._outboxes)
-        self.rx = [*(Outbox(memory).text for memory in self._outboxes), *[""] * nothing]
         each = self._bus.controllers
-        for port, values in (
+        nothing = (0,) * (NODES - len(each))
+        self.rx = [*(port.text for port in self._ports), *("" for _ in nothing)]
+        for name, values in (
             ("state", [int(c.state) for c in each]),
             ("tec", [c.tec for c in each]),
             ("rec", [c.rec for c in each]),
@@ -193,21 +190,52 @@ class CanBus(Logging, Noise, Component):
             ("received", [c.received for c in each]),
             ("lost", [c.lost for c in each]),
         ):
-            setattr(self, port, [*values, *[0] * nothing])
-        self.frames, self.error_frames = self._frames, self._broken_frames
+            whole = (*values, *nothing)
+            if getattr(self, name) != whole:  # mostly it is the same, and quicker read than set
+                setattr(self, name, whole)
+        self.frames, self.error_frames = self._frames, self._error_frames
         self.latency = self._latencies
         begun, last = self._busy[0], self._busy[-1]
         passed = last[0] - begun[0]
         self.load = (last[1] - begun[1]) / (passed * _PS_PER_NS) if passed else 0.0
 
+    def close(self) -> None:
+        """End the logs."""
+        if self._journal is not None:
+            self._journal.close(self._bus, self._begun_ns * _PS_PER_NS)
+
     def get_state(self) -> dict[str, Any]:
         """Return a copy of the whole state, the bus's included, as plain data."""
-        return {**super().get_state(), "bus": saved(self._bus)}
+        return {**super().get_state(), "bus": saved(self._bus), "wrong": self._wrong.saved()}
 
     def set_state(self, state: Mapping[str, Any]) -> None:
         """Restore what `get_state` returned."""
-        super().set_state({name: value for name, value in state.items() if name != "bus"})
+        own = {name: value for name, value in state.items() if name not in ("bus", "wrong")}
+        super().set_state(own)
         restore(self._bus, state["bus"])
+        self._wrong.restore(state["wrong"])
+        self._ports = [Outbox(memory) for memory in self._outboxes]
+
+    def _build(self, names: list[str], silent: list[str]) -> None:
+        queue, mailboxes = _whole("queue_length", self), _whole("mailboxes", self)
+        recovers = self.recovery == "on"
+        controllers = [
+            Controller(name, queue, mailboxes, name in silent, recovers) for name in names
+        ]
+        self._wrong = Disturbances(self.generator, len(names))
+        self._bus = SimulatedBus(
+            controllers,
+            _whole("bit_rate", self),
+            _whole("data_bit_rate", self),
+            self._wrong,
+            self._was_sent,
+            self._was_broken,
+            self._was_given_up,
+            now_ps=self.now_ns * _PS_PER_NS,
+            counted_ps=self.now_ns * _PS_PER_NS,
+        )
+        self._ports = [Outbox(memory) for memory in self._outboxes]
+        self._journal = Journal(self.name)
 
     # ------------------------------------------------------------------ nodes
 
@@ -220,18 +248,19 @@ class CanBus(Logging, Noise, Component):
         for operation in operations:
             match operation:
                 case Transmit(frame):
-                    self._ask(node, when, frame)
+                    self._bus.ask(when * _PS_PER_NS, node, frame)
                 case BitRate(rate, fd):
                     self._agree(node, rate, fd)
                 case Buffering(waits):
-                    self._buffers[node] = waits
-                case Status() | Wakeup():
-                    pass  # this bus counts its nodes' errors itself, and does not sleep
+                    self._bus.controllers[node].waits = waits
+                case Wakeup():
+                    for other in range(len(self._ports)):
+                        if other != node:
+                            self._say(other, when, operation)
+                case Status():
+                    pass  # this bus counts its nodes' errors itself
                 case _:
                     self._say(node, when, FormatError(data))
-
-    def _ask(self, node: int, when: int, frame: Frame) -> None:
-        self._bus.ask(when * _PS_PER_NS, node, frame)
 
     def _agree(self, node: int, rate: int, fd: bool) -> None:
         own = self.data_bit_rate if fd else self.bit_rate
@@ -242,81 +271,83 @@ class CanBus(Logging, Noise, Component):
                 f"{self.name}: node {name!r} has {rate} bit/s, the bus's {what} is {own:g}"
             )
 
-    def _say(self, node: int, when: int, operation: Operation) -> None:
-        Outbox(self._outboxes[node]).put(when, encode(operation))
-
-    def _deliver(self, until_ns: int) -> None:
-        """Tell nodes what ended by then, in order."""
-        due = [entry for entry in self._coming if entry[0] <= until_ns]
-        self._coming = [entry for entry in self._coming if entry[0] > until_ns]
-        for when, node, data in due:
-            Outbox(self._outboxes[node]).put(when, bytes.fromhex(data))
-        for memory in self._outboxes:
-            Outbox(memory).flush()
-
-    def _tell(self, end_ps: int, node: int, operation: Operation) -> None:
-        # Rounded up: nothing is told before it has happened.
-        self._coming.append([-(-end_ps // _PS_PER_NS), node, encode(operation).hex()])
+    def _say(self, node: int, when_ns: int, operation: Operation) -> None:
+        self._ports[node].put(when_ns, encode(operation))
 
     # ------------------------------------------------------------------ what happens
 
     def _was_sent(self, sent: Sent) -> None:
         self._frames += 1
-        frame = sent.frame
+        attempt, frame = self._bus.attempts, sent.frame
+        latency = sent.end_ps - sent.asked_ps
         key = [frame.identifier, frame.extended]
         if key in self._keys:
             place = self._keys.index(key)
-            self._latencies[place] = (sent.end_ps - sent.asked_ps) / PS
-        gone = self._lost_by(self._bus.attempts)
-        for node, each in enumerate(self._bus.controllers):
-            if node == sent.node:
-                self._tell(sent.end_ps, node, Confirm(frame.identifier))
-            elif node == sent.deaf or not each.plugged or each.off:
-                continue
-            elif node in gone:
-                each.lost += 1
+            self._longest[place] = max(self._longest[place], latency / PS)
+        if self._journal is not None:
+            self._journal.sent(attempt, sent, latency)
+        when = _rounded_up(sent.end_ps)
+        for node in sent.senders:
+            self._say(node, when, Confirm(frame.identifier))
+        gone = self._losers(attempt)
+        received = chunk(when, encode(Transmit(frame)))
+        for node in sent.receivers:
+            if node in gone:
+                self._bus.controllers[node].lost += 1
             else:
-                self._tell(sent.end_ps, node, Transmit(frame))
+                self._ports[node].put_chunk(received)
 
-    def _lost_by(self, attempt: int) -> set[int]:
+    def _losers(self, attempt: int) -> set[int]:
         """Return the nodes whose software loses the frame of an attempt."""
-        nodes = len(self._bus.controllers)
-        if not self.loss and not any(self.receive_loss):
+        losses = self._losses
+        if not any(losses):
             return set()
-        draws = self.generator(attempt, 1).random(1 + nodes).tolist()
-        if draws[0] < self.loss:
-            return set(range(nodes))
-        return {n for n in range(nodes) if draws[1 + n] < self.receive_loss[n]}
+        draws = self.generator(attempt, 1).random(len(losses)).tolist()
+        if draws[0] < losses[0]:
+            return set(range(len(losses)))
+        return {node for node in range(len(losses) - 1) if draws[1 + node] < losses[1 + node]}
 
     def _was_broken(self, broken: Broken) -> None:
-        self._broken_frames += 1
+        self._error_frames += 1
+        if self._journal is not None:
+            self._journal.broken(self._bus.attempts, broken)
         for node, each in enumerate(self._bus.controllers):
             if each.plugged and not each.listens_only:
-                sender, first = node == broken.node, node == broken.first
+                first, sender = node == broken.first, node in broken.senders
                 error = BusError(broken.frame.identifier, broken.error, first, sender)
-                self._tell(broken.end_ps, node, error)
+                self._say(node, _rounded_up(broken.end_ps), error)
+
+    def _was_given_up(self, lost: GivenUp) -> None:
+        when = _rounded_up(lost.when_ps)
+        self._say(lost.node, when, ArbitrationLost(lost.frame.identifier))
 
     def _apply_faults(self) -> None:
-        bus, wrong = self._bus, self._wrong
-        wrong.bit_error_rate = self.bit_error_rate
-        wrong.receive_error_rate = self.receive_error_rate[: len(bus.controllers)]
+        bus = self._bus
         for node, each in enumerate(bus.controllers):
             fault = self.fault[node]
             if fault not in FAULTS:
                 raise InputError(f"{self.name}.{unknown(f'fault.{_NODES[node]}', fault, FAULTS)}")
             each.babbles = fault == "babbling"
             if each.plugged and fault == "off":
-                each.unplug()
+                bus.unplug(node)
             elif not each.plugged and fault != "off":
-                each.plug()
-        wrong.defective = {n for n in range(len(bus.controllers)) if self.fault[n] == "defective"}
+                bus.plug(node)
+        nodes = len(bus.controllers)
+        self._wrong.bit_error_rate = self.bit_error_rate
+        self._wrong.receive_error_rate = list(self.receive_error_rate[:nodes])
+        self._wrong.defective = [n for n in range(nodes) if self.fault[n] == "defective"]
+        self._losses = [self.loss, *self.receive_loss[:nodes]]
 
     def _count_load(self, now_ns: int) -> None:
-        ahead = max(0, self._bus.free_ps - now_ns * _PS_PER_NS)  # of a frame that has begun
-        self._busy.append([now_ns, self._bus.busy_ps - ahead])
+        self._busy.append([now_ns, self._bus.busy_ps])
         oldest = now_ns - round(self.load_window * NS)
         while len(self._busy) > 2 and self._busy[1][0] <= oldest:
             self._busy.pop(0)
+
+
+def _rounded_up(time_ps: int) -> int:
+    """Return a time in ns: nothing is told before it has happened."""
+    return -(-time_ps // _PS_PER_NS)
 
 
 def _names(written: str, most: int) -> list[str]:
@@ -349,7 +380,8 @@ def _identifiers(written: str) -> list[list[Any]]:
     return found
 
 
-def _whole(name: str, value: float) -> int:
+def _whole(name: str, component: Component) -> int:
+    value: float = getattr(component, name)
     if value % 1.0:
         raise InputError(f"{name} is {value!r}, a whole number is needed")
     return int(value)

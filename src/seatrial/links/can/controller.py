@@ -15,6 +15,10 @@ BUS_OFF_ABOVE = 255
 """A transmit error counter above this takes a node off the bus."""
 RECOVERY_SEQUENCES = 128
 """Sequences of 11 recessive bits that a node off the bus waits for."""
+NOISE = Frame(0, bytes(8))
+"""What a babbling node sends."""
+_BEFORE_ALL = -1
+"""Its priority: nothing goes before it."""
 
 
 @dataclass(slots=True, order=True)
@@ -35,7 +39,8 @@ class Controller:
 
     Requests wait in a queue, first come, first served, and go on to one of ``mailboxes`` as soon
     as one is free; of those the controller sends the one with the highest priority. With a single
-    mailbox an urgent frame waits behind others that are not.
+    mailbox an urgent frame waits behind others that are not. A frame keeps its mailbox until it
+    is sent.
     """
 
     name: str
@@ -47,6 +52,8 @@ class Controller:
     recovers: bool = True
     """It comes back from bus-off."""
 
+    waits: bool = True
+    """A frame that loses an arbitration stays in its mailbox; else it is given up."""
     plugged: bool = True
     """On the bus."""
     babbles: bool = False
@@ -59,33 +66,36 @@ class Controller:
     """Bus-off."""
     sequences: int = 0
     """Off the bus: sequences of 11 recessive bits seen since."""
+    back_ps: int = 0
+    """When it last came onto the bus."""
     suspended_until_ps: int = 0
     """Error passive: no start before this, after a frame of its own."""
     queue: deque[Request] = field(default_factory=deque)
     ready: list[Request] = field(default_factory=list)
-    """The mailboxes, a heap."""
+    """The mailboxes, a heap, without the one that is being sent."""
+    sending: Request | None = None
+    """What is on the bus."""
+    asked: int = 0
+    """Requests."""
     sent: int = 0
+    """Frames sent, noise included."""
     received: int = 0
     lost: int = 0
     """Frames that were on the bus and did not get through to this node."""
     dropped: int = 0
-    """Requests that found the queue full, or the node off the bus."""
-    errors: int = 0
-    """Frames of its own that ended in an error."""
+    """Requests that found no place, or were given up."""
 
     @property
     def state(self) -> State:
         """State of fault confinement."""
         if self.off:
             return State.BUS_OFF
-        if self.tec >= PASSIVE_FROM or self.rec >= PASSIVE_FROM:
-            return State.ERROR_PASSIVE
-        return State.ERROR_ACTIVE
+        return State.ERROR_PASSIVE if self.passive else State.ERROR_ACTIVE
 
     @property
     def passive(self) -> bool:
         """Error passive."""
-        return self.state is State.ERROR_PASSIVE
+        return not self.off and (self.tec >= PASSIVE_FROM or self.rec >= PASSIVE_FROM)
 
     @property
     def takes_part(self) -> bool:
@@ -94,28 +104,51 @@ class Controller:
 
     @property
     def waiting(self) -> int:
-        """Requests that wait."""
-        return len(self.queue) + len(self.ready)
+        """Requests that wait, the one on the bus among them."""
+        return len(self.queue) + self._occupied
+
+    @property
+    def priority(self) -> int:
+        """Of what it would send next; it must have something."""
+        return _BEFORE_ALL if self.babbles else self.ready[0].priority
 
     def ask(self, request: Request) -> None:
         """Take a request in, or drop it."""
-        if not self.takes_part:
+        self.asked += 1
+        if not self.takes_part or request.asked_ps < self.back_ps:
             self.dropped += 1
-        elif len(self.ready) < self.mailboxes:
+        elif self._occupied < self.mailboxes:
             heapq.heappush(self.ready, request)
         elif len(self.queue) < self.queue_length:
             self.queue.append(request)
         else:
             self.dropped += 1
 
+    def begin(self, now_ps: int) -> Frame:
+        """Start to send; return the frame."""
+        if self.babbles:
+            self.sending = Request(_BEFORE_ALL, 0, now_ps, NOISE)
+        else:
+            self.sending = heapq.heappop(self.ready)
+        return self.sending.frame
+
     def sent_one(self) -> Request:
-        """Take the request that was sent out of its mailbox."""
-        request = heapq.heappop(self.ready)
-        if self.queue:
-            heapq.heappush(self.ready, self.queue.popleft())
+        """End what it sends with success; return it."""
+        request = self._end()
         self.sent += 1
         self.tec = max(0, self.tec - 1)
         return request
+
+    def give_up(self) -> None:
+        """End what it sends without success, and do not repeat it."""
+        if self._end().number:
+            self.dropped += 1
+
+    def lose(self) -> None:
+        """Keep what it sends for later."""
+        request, self.sending = self.sending, None
+        if request is not None and request.number:
+            heapq.heappush(self.ready, request)
 
     def got_one(self) -> None:
         """Count a frame that came through."""
@@ -126,7 +159,7 @@ class Controller:
 
     def failed_to_send(self, more: int = 8) -> None:
         """Count an error in a frame of its own; too many take it off the bus."""
-        self.errors += 1
+        self.lose()
         self.tec += more
         if self.tec > BUS_OFF_ABOVE:
             self.tec, self.off, self.sequences = BUS_OFF_ABOVE + 1, True, 0
@@ -136,29 +169,31 @@ class Controller:
         """Count an error in somebody else's frame."""
         self.rec = min(self.rec + more, BUS_OFF_ABOVE)
 
-    def recover(self, sequences: int) -> None:
-        """Count sequences of 11 recessive bits; enough of them end a bus-off."""
-        if self.off and self.recovers:
-            self.sequences += sequences
-            if self.sequences >= RECOVERY_SEQUENCES:
-                self.restart()
-
-    def restart(self) -> None:
-        """Begin anew, error active."""
-        self.off, self.tec, self.rec, self.sequences = False, 0, 0, 0
-
     def unplug(self) -> None:
         """Leave the bus; what waited is dropped."""
         self.plugged = False
         self.forget()
 
-    def plug(self) -> None:
+    def restart(self, now_ps: int) -> None:
         """Come back, error active."""
-        self.plugged = True
-        self.restart()
+        self.plugged, self.off, self.back_ps = True, False, now_ps
+        self.tec = self.rec = self.sequences = 0
 
     def forget(self) -> None:
         """Drop what waits."""
         self.dropped += self.waiting
         self.queue.clear()
         self.ready.clear()
+        self.sending = None
+
+    @property
+    def _occupied(self) -> int:
+        own = self.sending is not None and self.sending.number > 0
+        return len(self.ready) + own
+
+    def _end(self) -> Request:
+        request, self.sending = self.sending, None
+        assert request is not None
+        if self.queue and self._occupied < self.mailboxes:
+            heapq.heappush(self.ready, self.queue.popleft())
+        return request

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -20,14 +21,23 @@ class Disturbances:
     With ``bit_error_rate`` p each bit is wrong for everybody with probability p: a frame of n
     bits is hit with probability 1 - (1 - p)^n, first at bit floor(ln(1 - x) / ln(1 - p)) with x
     uniform. With ``receive_error_rate`` of a node it alone sees a wrong bit. A node among
-    ``defective`` breaks each of its own frames at its first data bit.
+    ``defective`` breaks each of its own frames where its data begin: at bit 19 or 39.
     """
 
     def __init__(self, generator: Generator, nodes: int) -> None:
         self._generator = generator
         self.bit_error_rate = 0.0
-        self.receive_error_rate: Sequence[float] = (0.0,) * nodes
-        self.defective: set[int] = set()
+        self.receive_error_rate = [0.0] * nodes
+        self.defective: list[int] = []
+
+    def saved(self) -> list[Any]:
+        """Return what is set, as plain data."""
+        return [self.bit_error_rate, list(self.receive_error_rate), list(self.defective)]
+
+    def restore(self, state: list[Any]) -> None:
+        """Bring back what `saved` returned."""
+        self.bit_error_rate = state[0]
+        self.receive_error_rate, self.defective = list(state[1]), list(state[2])
 
     def __call__(self, attempt: int, node: int, frame: Frame, bits: int) -> Disturbance | None:
         """Return what goes wrong with a frame, or None."""

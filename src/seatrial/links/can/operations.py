@@ -9,6 +9,7 @@ from __future__ import annotations
 import struct
 from dataclasses import dataclass
 from enum import IntEnum
+from functools import lru_cache
 
 from ...errors import InputError
 from .frame import Frame
@@ -164,6 +165,11 @@ def decode(data: bytes) -> list[Operation]:
 
     Raises InputError for bytes that are no operations; CAN XL is not known here.
     """
+    return list(_decoded_all(data))
+
+
+@lru_cache(4096)  # a frame is read by all nodes of a bus
+def _decoded_all(data: bytes) -> tuple[Operation, ...]:
     found: list[Operation] = []
     while data:
         if len(data) < _HEADER.size:
@@ -173,7 +179,7 @@ def decode(data: bytes) -> list[Operation]:
             raise InputError(f"a bus operation of {length} bytes, {len(data)} are there")
         found.append(_decoded(code, data[_HEADER.size : length]))
         data = data[length:]
-    return found
+    return tuple(found)
 
 
 def _whole(code: int, arguments: bytes) -> bytes:

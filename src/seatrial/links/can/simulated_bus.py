@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import heapq
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from .bits import INTERMISSION, TAIL, Length, first_difference, length
-from .controller import Controller, Request
+from .bits import INTERMISSION, TAIL, first_difference, length
+from .controller import RECOVERY_SEQUENCES, Controller, Request
 from .frame import Frame
 from .operations import Error
 
@@ -19,13 +19,13 @@ SEQUENCE_BITS = 11
 SUSPENDED_BITS = 8
 """An error passive node lets others go first for so long after a frame of its own."""
 ACTIVE_FLAG, LONGEST_FLAG = 6, 12
-"""Error flags: of one kind of node alone, and superposed where others react to the first."""
+"""Error flags: of all nodes at once, and superposed where others react to the first."""
 DELIMITER = 8
 """Recessive bits after error flags."""
 ACKNOWLEDGED_BEFORE_END = 9
 """Bits of a frame from the acknowledgement on."""
-NOISE = Frame(0, bytes(8))
-"""What a babbling node sends: nothing goes before it."""
+STUFF_VIOLATION = 6
+"""Equal bits in a row that are an error."""
 
 
 class Sent(NamedTuple):
@@ -33,22 +33,31 @@ class Sent(NamedTuple):
 
     start_ps: int
     end_ps: int
-    asked_ps: int
-    node: int
     frame: Frame
-    deaf: int
-    """The one node that did not get it, or -1."""
+    senders: list[int]
+    """More than one if several sent the very same frame at once."""
+    asked_ps: int
+    """When the first of them asked for it."""
+    receivers: list[int]
 
 
 class Broken(NamedTuple):
-    """An error frame: when it was over, whose frame was broken, and who noticed first."""
+    """A frame that ended in an error frame."""
 
     end_ps: int
-    node: int
     frame: Frame
+    senders: list[int]
     error: Error
     first: int
-    """The node that noticed, or the sender."""
+    """The node that noticed first."""
+
+
+class GivenUp(NamedTuple):
+    """A frame that lost an arbitration, of a node that does not wait."""
+
+    when_ps: int
+    node: int
+    frame: Frame
 
 
 class Disturbance(NamedTuple):
@@ -62,9 +71,24 @@ Fate = Callable[[int, int, Frame, int], Disturbance | None]
 """Of attempt number, sender, frame and bits: what goes wrong, or None."""
 
 
-def no_disturbance(_attempt: int, _node: int, _frame: Frame, _bits: int) -> Disturbance | None:
-    """Let every frame through."""
-    return None
+@dataclass(slots=True)
+class Attempt:
+    """What is on the bus."""
+
+    start_ps: int
+    end_ps: int
+    """Of the frame, or of the error frame that ends it."""
+    frame: Frame
+    senders: list[int]
+    losers: list[int]
+    """Nodes that lost the arbitration and do not wait."""
+    gave_way: list[int]
+    """Error passive nodes whose frame had the same arbitration field."""
+    error: Error | None = None
+    first: int = -1
+    """Who notices the error first."""
+    deaf: int = -1
+    """A receiver that alone gets it wrong, and cannot stop it."""
 
 
 @dataclass
@@ -82,7 +106,8 @@ class SimulatedBus:
     among them just loses the frame. A frame that nobody acknowledges is an error at the bit of the
     acknowledgement. The sender of a broken frame sends it again. Counters: sender + 8, receivers
     + 1, and + 8 more for one that noticed alone and first; not for a passive sender that misses an
-    acknowledgement, which thus stays as it is.
+    acknowledgement, which thus stays as it is. A sender that is unplugged leaves recessive bits,
+    and the sixth is the others' error.
 
     **Two senders with one arbitration field** go on together until their bits differ: then that is
     an error of both, unless the recessive one is passive and has to give way.
@@ -90,7 +115,8 @@ class SimulatedBus:
     **Off the bus** a node counts sequences of 11 recessive bits: one after each frame, the rest
     while the bus is idle.
 
-    Times are whole picoseconds; `run` calls ``sent`` and ``broken`` as things happen.
+    Times are whole picoseconds; `run` reports to ``on_sent``, ``on_broken`` and ``on_given_up``
+    what has ended, in order. Who acknowledges a frame is settled at its start.
     """
 
     controllers: list[Controller]
@@ -98,19 +124,21 @@ class SimulatedBus:
     """bit/s."""
     data_rate: int
     """bit/s, of the data phase of CAN FD frames that switch."""
-    fate: Fate = no_disturbance
-    sent: Callable[[Sent], None] = lambda _: None
-    broken: Callable[[Broken], None] = lambda _: None
+    fate: Fate = lambda *_: None
+    on_sent: Callable[[Sent], None] = lambda _: None
+    on_broken: Callable[[Broken], None] = lambda _: None
+    on_given_up: Callable[[GivenUp], None] = lambda _: None
     now_ps: int = 0
     """Everything until here has happened."""
     free_ps: int = 0
     """When the next frame may start."""
-    busy_ps: int = 0
-    """Time that frames, error frames and intermissions have taken."""
+    taken_ps: int = 0
+    """Time until `free_ps` in which the bus was taken; see `busy_ps`."""
     attempts: int = 0
     requests: int = 0
     counted_ps: int = 0
     """Until when recessive bits were counted for nodes off the bus."""
+    attempt: Attempt | None = None
     arriving: list[tuple[int, int, int, Request]] = field(default_factory=list)
     """Requests of the future: (when, number, node, request), a heap."""
 
@@ -122,6 +150,11 @@ class SimulatedBus:
         """Nominal bit time, ps."""
         return self._bit
 
+    @property
+    def busy_ps(self) -> int:
+        """Time that frames, error frames and intermissions have taken until now."""
+        return self.taken_ps - max(0, self.free_ps - self.now_ps)
+
     def ask(self, when_ps: int, node: int, frame: Frame) -> None:
         """Ask for a frame to be sent, not before ``when_ps`` nor in the past."""
         self.requests += 1
@@ -130,17 +163,39 @@ class SimulatedBus:
         heapq.heappush(self.arriving, (when, self.requests, node, request))
 
     def run(self, until_ps: int) -> None:
-        """Let everything happen that begins before ``until_ps``.
-
-        A frame that has begun is carried out whole: its report comes at once, and says when it
-        ends.
-        """
-        while (start := self._next_start(until_ps)) is not None:
-            self._idle(start)
-            self._attempt(start)
+        """Let everything happen that ends by ``until_ps`` or begins before it."""
+        while True:
+            if self.attempt is not None:
+                if self.attempt.end_ps > until_ps:
+                    break
+                self._arrive(self.attempt.end_ps)
+                self._end(self.attempt)
+            start = self._next_start(until_ps)
+            if start is None:
+                break
+            self._begin(start)
+        if self.attempt is None:
+            self._idle(until_ps)
         self._arrive(until_ps)
-        self._idle(until_ps)
         self.now_ps = max(self.now_ps, until_ps)
+
+    def unplug(self, node: int) -> None:
+        """Take a node off the bus now; a frame that it sends is cut."""
+        self.controllers[node].unplug()
+        attempt = self.attempt
+        if attempt is None or node not in attempt.senders:
+            return
+        attempt.senders.remove(node)
+        if not attempt.senders:
+            cut = self.now_ps + (STUFF_VIOLATION + ACTIVE_FLAG + DELIMITER) * self._bit
+            self.taken_ps -= self.free_ps - attempt.start_ps
+            attempt.error, attempt.first = Error.STUFF, -1
+            attempt.end_ps = min(attempt.end_ps, cut)
+            self._take(attempt)
+
+    def plug(self, node: int) -> None:
+        """Let a node take part from now on, error active."""
+        self.controllers[node].restart(self.now_ps)
 
     # ------------------------------------------------------------------ when
 
@@ -148,15 +203,17 @@ class SimulatedBus:
         """Return when the next frame starts, or None if none does before ``until_ps``."""
         t = max(self.free_ps, self.now_ps)
         while t < until_ps:
+            self._idle(t)
             self._arrive(t)
             later = []
             for each in self.controllers:
-                if each.babbles:
-                    self._babble(each, t)
-                if each.ready and each.takes_part:
+                if (each.ready or each.babbles) and each.takes_part:
                     if each.suspended_until_ps <= t:
                         return t
                     later.append(each.suspended_until_ps)
+                elif each.babbles and each.off and each.recovers and each.plugged:
+                    missing = RECOVERY_SEQUENCES - each.sequences
+                    later.append(self.counted_ps + missing * SEQUENCE_BITS * self._bit)
             if self.arriving:
                 later.append(self.arriving[0][0])
             if not later:
@@ -170,122 +227,113 @@ class SimulatedBus:
             _, _, node, request = heapq.heappop(arriving)
             self.controllers[node].ask(request)
 
-    def _babble(self, controller: Controller, t: int) -> None:
-        if controller.takes_part and not (controller.ready and controller.ready[0].number == 0):
-            heapq.heappush(controller.ready, Request(-1, 0, t, NOISE))
-
     def _idle(self, until_ps: int) -> None:
         """Let the bus be idle until then: nodes off the bus count recessive bits."""
-        sequences = (until_ps - self.counted_ps) // (SEQUENCE_BITS * self._bit)
-        if sequences > 0:
-            self.counted_ps += sequences * SEQUENCE_BITS * self._bit
-            self._count_sequences(sequences)
+        sequence = SEQUENCE_BITS * self._bit
+        count = (until_ps - self.counted_ps) // sequence
+        if count > 0:
+            self._count_sequences(count)
+            self.counted_ps += count * sequence
 
-    def _count_sequences(self, sequences: int) -> None:
+    def _count_sequences(self, count: int) -> None:
+        """Let nodes off the bus count ``count`` sequences from `counted_ps` on."""
         for each in self.controllers:
-            if each.off:
-                each.recover(sequences)
+            if each.off and each.recovers:
+                missing = RECOVERY_SEQUENCES - each.sequences
+                each.sequences += count
+                if missing <= count and each.plugged:
+                    each.restart(self.counted_ps + missing * SEQUENCE_BITS * self._bit)
 
-    # ------------------------------------------------------------------ a frame
+    # ------------------------------------------------------------------ a frame begins
 
-    def _attempt(self, start: int) -> None:
-        """Carry out the frame that starts now: sent, or broken."""
-        best, senders = 1 << 32, []
+    def _begin(self, start: int) -> None:
+        """Put the frame that starts now onto the bus, and settle how it ends."""
+        self.attempts += 1
+        senders, losers = self._arbitrate(start)
+        frames = {node: self.controllers[node].begin(start) for node in senders}
+        gave_way: list[int] = []
+        bit = self._collide(senders, gave_way, frames) if len(senders) > 1 else None
+        frame = frames[senders[0]]
+        attempt = Attempt(start, 0, frame, senders, losers, gave_way)
+        for node in losers:
+            self.controllers[node].begin(start)
+        bits = length(frame)
+        if bit is not None:
+            self._fail(attempt, Disturbance(bit), Error.BIT, LONGEST_FLAG)
+        elif not self._disturbed(attempt, sum(bits)):
+            if self._is_heard(attempt):
+                attempt.end_ps = start + bits.nominal * self._bit + bits.data * self._data_bit
+            else:
+                unheard = Disturbance(sum(bits) - ACKNOWLEDGED_BEFORE_END)
+                self._fail(attempt, unheard, Error.ACK, ACTIVE_FLAG)
+        self._take(attempt)
+
+    def _arbitrate(self, start: int) -> tuple[list[int], list[int]]:
+        """Return who sends, and who loses and does not wait for another time."""
+        best, senders, impatient = 1 << 32, [], []
         for node, each in enumerate(self.controllers):
-            if each.ready and each.suspended_until_ps <= start and each.takes_part:
-                priority = each.ready[0].priority
+            if not (each.ready or each.babbles) or not each.takes_part:
+                continue
+            if each.suspended_until_ps <= start:
+                priority = each.priority
                 if priority < best:
                     best, senders = priority, [node]
                 elif priority == best:
                     senders.append(node)
-        self.attempts += 1
-        if len(senders) > 1:
-            bit = self._collide(senders)
-            if bit is not None:
-                self._break(start, senders, Disturbance(bit), Error.BIT, LONGEST_FLAG)
-                return
-        sender = senders[0]
-        frame = self.controllers[sender].ready[0].frame
-        bits = length(frame)
-        wrong = self.fate(self.attempts, sender, frame, sum(bits))
-        if wrong is not None:
-            if wrong.receiver is None:
-                self._break(start, senders, wrong, Error.BIT, ACTIVE_FLAG)
-                return
-            if self._can_interrupt(wrong.receiver):
-                self._break(start, senders, wrong, Error.CRC, LONGEST_FLAG)
-                return
-        deaf = -1 if wrong is None or wrong.receiver is None else wrong.receiver
-        if not any(
-            each.takes_part and node not in senders and node != deaf
-            for node, each in enumerate(self.controllers)
-        ):
-            unheard = Disturbance(sum(bits) - ACKNOWLEDGED_BEFORE_END)
-            self._break(start, senders, unheard, Error.ACK, ACTIVE_FLAG)
-            return
-        self._succeed(start, senders, bits, deaf)
+                if not each.waits:
+                    impatient.append(node)
+        return senders, [node for node in impatient if node not in senders]
 
-    def _collide(self, senders: list[int]) -> int | None:
+    def _disturbed(self, attempt: Attempt, bits: int) -> bool:
+        """Ask what goes wrong; say if that ends the frame."""
+        wrong = self.fate(self.attempts, attempt.senders[0], attempt.frame, bits)
+        if wrong is None:
+            return False
+        if wrong.receiver is None:
+            self._fail(attempt, wrong, Error.BIT, ACTIVE_FLAG)
+            return True
+        receiver = self.controllers[wrong.receiver]
+        if receiver.takes_part and not receiver.passive:
+            self._fail(attempt, wrong, Error.CRC, LONGEST_FLAG)
+            return True
+        attempt.deaf = wrong.receiver
+        return False
+
+    def _is_heard(self, attempt: Attempt) -> bool:
+        """Say if anybody acknowledges the frame."""
+        silent = {*attempt.senders, *attempt.gave_way, attempt.deaf}
+        return any(
+            each.takes_part and node not in silent and each.back_ps <= attempt.start_ps
+            for node, each in enumerate(self.controllers)
+        )
+
+    def _collide(
+        self, senders: list[int], gave_way: list[int], frames: dict[int, Frame]
+    ) -> int | None:
         """Return the bit at which senders of one arbitration field break each other's frames.
 
         None if they do not: their frames are the same, or those that would notice are passive
-        and have given way; they are then no longer among ``senders``.
+        and give way; they are then no longer among ``senders``.
         """
         while len(senders) > 1:
-            frames = [self.controllers[node].ready[0].frame for node in senders]
-            other = next((n for n, frame in enumerate(frames) if frame != frames[0]), None)
+            first = frames[senders[0]]
+            other = next((node for node in senders if frames[node] != first), None)
             if other is None:
                 return None
-            bit, first_recessive = first_difference(frames[0], frames[other])
-            recessive = senders[0 if first_recessive else other]
+            bit, first_recessive = first_difference(first, frames[other])
+            recessive = senders[0] if first_recessive else other
             if not self.controllers[recessive].passive:
                 return bit
-            self._failed(recessive, self.free_ps)
             senders.remove(recessive)
+            gave_way.append(recessive)
         return None
 
-    def _can_interrupt(self, node: int) -> bool:
-        each = self.controllers[node]
-        return each.takes_part and not each.passive
-
-    def _succeed(self, start: int, senders: list[int], bits: Length, deaf: int) -> None:
-        end = start + bits.nominal * self._bit + bits.data * self._data_bit
-        self._occupy(start, end)
-        for node, each in enumerate(self.controllers):
-            if node in senders:
-                request = each.sent_one()
-                self._suspend(each)
-                self.sent(Sent(start, end, request.asked_ps, node, request.frame, deaf))
-            elif node == deaf:
-                each.lost += 1
-                each.failed_to_receive(0 if each.listens_only else 1)
-            elif each.plugged and not each.off:
-                each.got_one()
-
-    def _break(
-        self, start: int, senders: Sequence[int], wrong: Disturbance, error: Error, flag: int
-    ) -> None:
-        """End a frame with an error frame; its senders will try again."""
-        frame = self.controllers[senders[0]].ready[0].frame
-        end = start + self._until(frame, wrong.bit + 1) + (flag + DELIMITER) * self._bit
-        self._occupy(start, end)
-        for node, each in enumerate(self.controllers):
-            if node in senders:
-                alone = error is Error.ACK and each.passive
-                self._failed(node, end, 0 if alone else 8)
-            elif each.takes_part:
-                each.failed_to_receive(9 if node == wrong.receiver else 1)
-        first = senders[0] if wrong.receiver is None else wrong.receiver
-        self.broken(Broken(end, senders[0], frame, error, first))
-
-    def _failed(self, node: int, end: int, more: int = 8) -> None:
-        each = self.controllers[node]
-        each.failed_to_send(more)
-        self._suspend(each)
-
-    def _suspend(self, each: Controller) -> None:
-        if each.passive:
-            each.suspended_until_ps = self.free_ps + SUSPENDED_BITS * self._bit
+    def _fail(self, attempt: Attempt, wrong: Disturbance, error: Error, flag: int) -> None:
+        """Let the frame end in an error frame."""
+        until = self._until(attempt.frame, wrong.bit + 1)
+        attempt.end_ps = attempt.start_ps + until + (flag + DELIMITER) * self._bit
+        attempt.error = error
+        attempt.first = attempt.senders[0] if wrong.receiver is None else wrong.receiver
 
     def _until(self, frame: Frame, count: int) -> int:
         """Return how long the first ``count`` bits of a frame last, ps."""
@@ -294,9 +342,66 @@ class SimulatedBus:
         fast = min(count - before, data)
         return (count - fast) * self._bit + fast * self._data_bit
 
-    def _occupy(self, start: int, end: int) -> None:
-        """Keep the bus busy until the intermission is over; nodes off the bus count it."""
-        self.free_ps = end + INTERMISSION * self._bit
-        self.busy_ps += self.free_ps - start
-        self.counted_ps = self.free_ps
+    def _take(self, attempt: Attempt) -> None:
+        """Keep the bus taken until the intermission is over."""
+        self.attempt = attempt
+        self.free_ps = attempt.end_ps + INTERMISSION * self._bit
+        self.taken_ps += self.free_ps - attempt.start_ps
+
+    # ------------------------------------------------------------------ a frame ends
+
+    def _end(self, attempt: Attempt) -> None:
+        self.attempt = None
+        self.counted_ps = self.free_ps - SEQUENCE_BITS * self._bit
         self._count_sequences(1)
+        self.counted_ps = self.free_ps
+        for node in attempt.losers:
+            request = self.controllers[node].sending
+            if request is not None:
+                self.controllers[node].give_up()
+                self.on_given_up(GivenUp(attempt.end_ps, node, request.frame))
+        for node in attempt.gave_way:
+            if self.controllers[node].plugged:
+                self._failed(node, 8)
+        if attempt.error is None:
+            self._succeed(attempt)
+        else:
+            self._break(attempt, attempt.error)
+
+    def _succeed(self, attempt: Attempt) -> None:
+        asked, receivers = attempt.start_ps, []
+        apart = {*attempt.senders, *attempt.gave_way}
+        for node, each in enumerate(self.controllers):
+            if node in attempt.senders:
+                asked = min(asked, each.sent_one().asked_ps)
+                self._suspend(each)
+            elif not each.plugged or each.off or each.back_ps > attempt.start_ps:
+                continue
+            elif node == attempt.deaf:
+                each.lost += 1
+                each.failed_to_receive(0 if each.listens_only else 1)
+            elif node not in apart:
+                each.got_one()
+                receivers.append(node)
+        self.on_sent(
+            Sent(attempt.start_ps, attempt.end_ps, attempt.frame, attempt.senders, asked, receivers)
+        )
+
+    def _break(self, attempt: Attempt, error: Error) -> None:
+        apart = {*attempt.senders, *attempt.gave_way}
+        for node, each in enumerate(self.controllers):
+            if node in attempt.senders:
+                alone = error is Error.ACK and each.passive
+                self._failed(node, 0 if alone else 8)
+            elif each.takes_part and node not in apart and each.back_ps <= attempt.start_ps:
+                each.failed_to_receive(9 if node == attempt.first else 1)
+        self.on_broken(Broken(attempt.end_ps, attempt.frame, attempt.senders, error, attempt.first))
+
+    def _failed(self, node: int, more: int) -> None:
+        each = self.controllers[node]
+        each.failed_to_send(more)
+        self._suspend(each)
+
+    def _suspend(self, each: Controller) -> None:
+        if each.passive:
+            each.suspended_until_ps = self.free_ps + SUSPENDED_BITS * self._bit

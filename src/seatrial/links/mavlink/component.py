@@ -2,33 +2,44 @@
 
 from __future__ import annotations
 
-import datetime
-import re
 from pathlib import Path
 
 from pymavlink.dialects.v20 import all as mavlink
 
-from ...component import Input, Logging, Output, Parameter
+from ...component import Input, Logging, Output, Parameter, Reachable
 from ...craft.kinematics import to_body, to_ned
 from ...errors import InputError
 from ...sampled import Sampled
 from .endpoint import Endpoint
-from .endpoint_url import open_endpoint
+from .endpoint_url import check_urls, open_endpoint, other_end
 from .failsafe import ACTIONS
 from .geodesy import Origin
+from .given import midnight_us, serial_number, value_names, version, whole_number
 from .modes import MANUAL_MODES, flavour
 from .node import Node
 from .parameter_file import ParameterFile
 from .parameter_table import ParameterTable
 from .parameters import vehicle_parameters
+from .parameters_simulation import FASTEST, SLOWEST
 from .parameters_tunable import MOST_TUNABLES, tunable_parameters
+from .pause import stand_still
 from .radio import Radio
 from .scaling import STANDARD_GRAVITY
+from .service_failures import UNITS, failing_units
 from .settings import Settings
 from .signing import Signing, read_key
 from .state_file import StateFile
 from .tlog import TelemetryLog
-from .vehicle import CHANNELS, STICKS_RELEASED, Estimates, Identity, Target, Truth, Vehicle
+from .vehicle import (
+    CHANNELS,
+    STICKS_RELEASED,
+    Estimates,
+    Identity,
+    Target,
+    Truth,
+    Vehicle,
+    Way,
+)
 
 VEHICLE_TYPES = {
     "ground_rover": mavlink.MAV_TYPE_GROUND_ROVER,
@@ -39,11 +50,11 @@ VEHICLE_TYPES = {
 _NED = ("north", "east", "down")
 _EULER = ("phi", "theta", "psi")
 _NAMED = tuple(f"n{number}" for number in range(1, 9))
-_VERSION = re.compile(r"\d{1,3}\.\d{1,3}\.\d{1,3}(-(dev|alpha|beta|rc))?")
-_NAME = re.compile(r"[!-~]{1,10}")
+_STAYS = 2
+"""The least of guidance's states in which it goes or stays somewhere."""
 
 
-class Mavlink(Logging, Sampled):
+class Mavlink(Logging, Reachable, Sampled):
     """A vehicle that ground stations see, command and guide over MAVLink 2.
 
     Every ``period`` it takes in what has arrived, and sends what is due; what it was told is on
@@ -73,6 +84,11 @@ class Mavlink(Logging, Sampled):
     silent for ``station_timeout``, and in a manual mode when the sticks were for
     ``stick_timeout``. Set-points count for ``target_timeout``. See `Failsafe`.
 
+    **Live**: stations set the ``speedup``, which a trial may pace its run by, and inject failures:
+    ``failure`` goes to the input ``fault`` of devices, for the units that ``failures`` lists
+    (`FailureService`). At a speed-up of 0 it stands still in its step, serves its links, and so
+    keeps everything waiting (`stand_still`).
+
     **Signatures**: with ``signing_key_file``, whose first line is the pass phrase, unsigned and
     repeated frames are refused, but for presence; ``state_file`` keeps the newest timestamp.
     Both are relative to the current folder. A key never comes over a link.
@@ -91,10 +107,12 @@ class Mavlink(Logging, Sampled):
     """
 
     rolls_back = False
-    transient = Sampled.transient | {"_node", "_radio", "_log", "_parameters"}
+    transient = Sampled.transient | {"_node", "_radio", "_log", "_parameters", "_settings"}
 
     period = Parameter(0.01, "s", "sample period", min=1e-6)
-    links = Parameter("udpout:127.0.0.1:14550", "1", "URLs of the links, separated by spaces")
+    links = Parameter(
+        "udpout:127.0.0.1:14550", "1", "URLs of the links, separated by spaces", check=check_urls
+    )
     system_id = Parameter(1.0, "1", "MAVLink system", min=1.0, max=255.0)
     component_id = Parameter(1.0, "1", "MAVLink component", min=1.0, max=255.0)
     vehicle_type = Parameter(
@@ -128,6 +146,12 @@ class Mavlink(Logging, Sampled):
     )
     tunables = Parameter("", "1", "NAME START LOW HIGH of each tunable parameter; with ;")
     parameter_file = Parameter("", "1", "file of the parameters that were set; empty: none")
+    speedup_start = Parameter(
+        1.0, "1", "simulated time per wall time until it is set", min=SLOWEST, max=FASTEST
+    )
+    failures = Parameter(
+        "", "1", "units whose failures are wired, separated by spaces", check=failing_units
+    )
     names = Parameter("", "1", "names of the first values of `named`, separated by spaces")
     signing_key_file = Parameter("", "1", "file with the pass phrase; empty: no signatures")
     state_file = Parameter("", "1", "file for what outlives the run; empty: none")
@@ -141,7 +165,13 @@ class Mavlink(Logging, Sampled):
     accelerometer = Input(
         "m/s2", "specific force, body axes", axes="xyz", start=(0.0, 0.0, -9.80665)
     )
-    pressure = Input("Pa", "absolute pressure of the air, or the water", start=101325.0)
+    imu_valid = Input(
+        "1", "whether rates and specific force are valid", type=bool, start=True, optional=True
+    )
+    pressure = Input(
+        "Pa", "absolute pressure of the air or, submerged, the water, 0 if it is not measured"
+    )
+    ground_distance = Input("m", "distance to the ground below, 0 if it is not measured")
     wind_speed = Input("m/s", "speed of the apparent wind")
     wind_angle = Input("rad", "where the apparent wind blows to from the bow, to starboard")
     wind_valid = Input("1", "whether the wind is measured", type=bool)
@@ -157,6 +187,12 @@ class Mavlink(Logging, Sampled):
     true_attitude = Input("rad", "true Euler angles, ZYX", axes=_EULER)
     true_rates = Input("rad/s", "true angular velocity, body axes", axes=("p", "q", "r"))
     true_acceleration = Input("m/s2", "true inertial acceleration, body axes", axes="xyz")
+    nav_state = Input("1", "guidance: 2 stays, 3 follows a leg, 4 steers, else less", type=int)
+    nav_heading = Input("rad", "guidance: heading wanted, clockwise from north")
+    nav_speed = Input("m/s", "guidance: speed wanted over ground along the bow")
+    nav_depth = Input("m", "guidance: depth wanted, positive down")
+    nav_cross_track = Input("m", "guidance: cross-track error, positive to starboard of the leg")
+    nav_distance = Input("m", "guidance: horizontal distance to where it goes")
     leg_reached = Input("1", "number of the leg that is done, 0 while none is", type=int)
 
     mode = Output("1", "manual, hold, loiter, guided, auto, return, ...", type=str, start="hold")
@@ -186,6 +222,9 @@ class Mavlink(Logging, Sampled):
         "the tunable parameters, in any unit",
         axes=tuple(f"t{n}" for n in range(1, MOST_TUNABLES + 1)),
     )
+    failure = Output("1", "failure of each unit, none without", axes=UNITS, type=str, start="none")
+    speedup = Output("1", "simulated time per wall time that is wanted", start=1.0)
+    paused = Output("s", "wall time that it stood still")
     ground_stations = Output("1", "number of ground stations that are there", type=int)
 
     def __init__(self, name: str = "component") -> None:
@@ -206,14 +245,19 @@ class Mavlink(Logging, Sampled):
             assert mode is not None
             origin = Origin(self.latitude, self.longitude, self.altitude)
             vehicle = Vehicle(identity, kind, origin, mode)
-            self._value_names = self._checked_names()
+            self._value_names = value_names(self.names, len(_NAMED))
             self._begun = t
             self._log = TelemetryLog(identity.boot_unix_us)
             self._radio = self._opened(identity)
             plans = Path(self.plan_folder) if self.plan_folder else None
-            settings = self._settings()
+            settings = self._made_settings()
             self._parameters = self._table(vehicle, settings)
-            self._node = Node(vehicle, self._radio, settings, self._parameters, plans)
+            self._settings = settings
+            self._failing: dict[str, str] = {}
+            self._node = Node(
+                *(vehicle, self._radio, settings, self._parameters, plans),
+                failures=failing_units(self.failures),
+            )
         except InputError as error:
             self.close()
             raise InputError(f"{self.name}: {error}") from None
@@ -238,7 +282,13 @@ class Mavlink(Logging, Sampled):
         self.leg_wait, self.leg_circle = leg.wait, leg.circle
         tuned = [self._parameters[name] for name in self._tunable_names]
         self.tunable = (*tuned, *(0.0,) * (MOST_TUNABLES - len(tuned)))
+        failing = self._node.failures.failing
+        if failing != self._failing:  # seldom, and there are many
+            self._failing = dict(failing)
+            self.failure = [failing.get(unit, "none") for unit in UNITS]
+        self.speedup = self._settings.speedup
         self.failsafe_active, self.ground_stations = vehicle.failsafe, vehicle.stations
+        self.reached_at = " ".join(other_end(url) for url in self.urls)
 
     def update(self, t: float, k: int) -> None:
         """Take in what has arrived, and send what is due."""
@@ -250,9 +300,13 @@ class Mavlink(Logging, Sampled):
         self._node.missions.reached = self.leg_reached
         self._vehicle.estimates = self._estimates()
         self._vehicle.truth = self._truth() if self.truth == "on" else None
-        for message, sender in self._radio.poll():
-            self._node.receive(message, sender, now)
-        self._node.tick(now)
+        self._exchange(now)
+        if self._settings.paused:
+            stand_still(lambda: self._exchange(now), self._node, self._settings, self._parameters)
+
+    def hold(self, t: float) -> None:
+        """Say how long it stood still."""
+        self.paused = self._vehicle.paused_s
 
     def close(self) -> None:
         """Close the links."""
@@ -273,23 +327,28 @@ class Mavlink(Logging, Sampled):
         assert self._node is not None
         return self._node.vehicle
 
+    def _exchange(self, now: float) -> bool:
+        """Take in what has arrived, and send what is due; say if anything has arrived."""
+        assert self._radio is not None
+        assert self._node is not None
+        arrived = self._radio.poll()
+        for message, sender in arrived:
+            self._node.receive(message, sender, now)
+        self._node.tick(now)
+        return bool(arrived)
+
     def _identity(self) -> Identity:
-        if not _VERSION.fullmatch(self.firmware_version):
-            raise InputError(
-                f"firmware_version is {self.firmware_version!r}, something like '4.5.0' or "
-                "'4.5.0-dev' is needed"
-            )
         return Identity(
-            _whole("system_id", self.system_id),
-            _whole("component_id", self.component_id),
+            whole_number("system_id", self.system_id),
+            whole_number("component_id", self.component_id),
             VEHICLE_TYPES[self.vehicle_type],
             self.vehicle_type == "submarine",
-            self.firmware_version,
-            _serial_number(self.uid),
-            _midnight_us(self.date),
+            version(self.firmware_version),
+            serial_number(self.uid),
+            midnight_us(self.date),
         )
 
-    def _settings(self) -> Settings:
+    def _made_settings(self) -> Settings:
         return Settings(
             self.failsafe,
             self.station_timeout,
@@ -301,6 +360,7 @@ class Mavlink(Logging, Sampled):
             loiter_radius=self.loiter_radius,
             fence_action=self.fence_action,
             fence_depth=self.fence_depth,
+            speedup=self.speedup_start,
         )
 
     def _table(self, vehicle: Vehicle, settings: Settings) -> ParameterTable:
@@ -329,15 +389,6 @@ class Mavlink(Logging, Sampled):
             raise
         return Radio(endpoints, identity.system, identity.component, signing, self._log)
 
-    def _checked_names(self) -> list[str]:
-        names: list[str] = self.names.split()
-        if len(names) > len(_NAMED):
-            raise InputError(f"names has {len(names)} names, at most {len(_NAMED)} are allowed")
-        for name in names:
-            if not _NAME.fullmatch(name):
-                raise InputError(f"names: {name!r} is not a name of 1 to 10 ASCII characters")
-        return names
-
     def _estimates(self) -> Estimates:
         measured = self.voltage > 0.0
         return Estimates(
@@ -348,13 +399,25 @@ class Mavlink(Logging, Sampled):
             heading_valid=self.heading_valid,
             rates=self.rates,
             specific_force=self.accelerometer,
-            pressure=self.pressure,
+            imu_valid=self.imu_valid,
+            pressure=self.pressure if self.pressure > 0.0 else None,
+            ground_distance=self.ground_distance if self.ground_distance > 0.0 else None,
             apparent_wind=(self.wind_speed, self.wind_angle) if self.wind_valid else None,
             voltage=self.voltage if measured else None,
             current=self.current if measured else None,
             charge=self.charge if measured else None,
             pulses=self.pulse,
             named=tuple(zip(self._value_names, self.named, strict=False)),
+            way=self._way() if self.nav_state >= _STAYS else None,
+        )
+
+    def _way(self) -> Way:
+        return Way(
+            self.nav_heading,
+            self.nav_speed,
+            self.nav_depth,
+            self.nav_cross_track,
+            self.nav_distance,
         )
 
     def _truth(self) -> Truth:
@@ -368,24 +431,3 @@ class Mavlink(Logging, Sampled):
             self.true_rates,
             (felt[0], felt[1], felt[2]),
         )
-
-
-def _whole(name: str, value: float) -> int:
-    if value != round(value):
-        raise InputError(f"{name} is {value!r}, a whole number is needed")
-    return round(value)
-
-
-def _serial_number(text: str) -> int:
-    if not text.isdecimal() or not 0 <= int(text) < 1 << 64:
-        raise InputError(f"uid is {text!r}, a whole number from 0 to 2^64 - 1 is needed")
-    return int(text)
-
-
-def _midnight_us(date: str) -> int:
-    try:
-        day = datetime.date.fromisoformat(date)
-    except ValueError:
-        raise InputError(f"date is {date!r}, a day like '2026-02-05' is needed") from None
-    midnight = datetime.datetime.combine(day, datetime.time(), datetime.UTC)
-    return round(midnight.timestamp() * 1e6)

@@ -22,7 +22,8 @@ FASTEST = 100.0
 
 _MOST_AT_ONCE = 2000
 """Items that take no time, one after the other: more are jumps without an end."""
-_OWN_SPEED = -2.0
+OWN_SPEED = -2.0
+"""What stands for the vehicle's own speed."""
 
 _NOT_STARTED: int = mavlink.MISSION_STATE_NOT_STARTED
 _ACTIVE: int = mavlink.MISSION_STATE_ACTIVE
@@ -136,7 +137,7 @@ class MissionRunner:
 
     def change_speed(self, speed: float) -> None:
         """Change the speed of this leg and of those to come, m/s; -2 is the vehicle's own."""
-        if speed == _OWN_SPEED:
+        if speed == OWN_SPEED:
             self._speed = None
         elif 0.0 < speed <= FASTEST:
             self._speed = speed

@@ -60,6 +60,8 @@ _PX4_SURFACE = (
     Mode("return", _px4(4, 5), "Return", _RETURNS),
     Mode("guided", _px4(6), "Offboard"),
 )
+_PX4_REPOSITION = Mode("guided", _px4(4, 3), "Hold", _HOLDS)
+"""What a PX4 shows while it goes where DO_REPOSITION sent it: it stays, only elsewhere."""
 _PX4_SUBMERGED = (
     *_PX4_SURFACE,
     Mode("depth-hold", _px4(2), "Altitude", _DEPTH),
@@ -82,6 +84,8 @@ class Flavour:
     """Whether PARAM_VALUE carries the bytes of an integer, not its value as a float (PX4)."""
     home_is_item_0: bool
     """Whether item 0 of a mission is home (ArduPilot)."""
+    reposition: Mode | None
+    """Mode in which it goes where DO_REPOSITION sends it, None for guided mode."""
 
     def mode(self, name: str) -> Mode | None:
         """Return a mode by our name, None if this kind of vehicle has none such."""
@@ -110,7 +114,8 @@ def flavour(autopilot_type: str, *, submerged: bool) -> Flavour:
     modes: dict[bool, tuple[Mode, ...]]
     if autopilot_type == "px4":
         modes = {False: _PX4_SURFACE, True: _PX4_SUBMERGED}
-        return Flavour("px4", mavlink.MAV_AUTOPILOT_PX4, modes[submerged], True, True, False)
+        number = mavlink.MAV_AUTOPILOT_PX4
+        return Flavour("px4", number, modes[submerged], True, True, False, _PX4_REPOSITION)
     modes = {False: _ROVER, True: _SUB}
     number = mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA
-    return Flavour("ardupilot", number, modes[submerged], False, False, True)
+    return Flavour("ardupilot", number, modes[submerged], False, False, True, None)

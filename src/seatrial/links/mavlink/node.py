@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import time
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from pymavlink.dialects.v20 import all as mavlink
 
 from .codec import Message
 from .failsafe import Failsafe
+from .geodesy import Ned
 from .parameter_table import ParameterTable
 from .plan import Plans
 from .radio import Air, Sender
@@ -15,7 +18,9 @@ from .service import Builder, Handler, Service
 from .service_arming import ArmingService
 from .service_clock import ClockService
 from .service_commands import CommandService
+from .service_failures import FailureService
 from .service_fence import FenceService
+from .service_files import FileService
 from .service_guided import GuidedService
 from .service_home import HomeService
 from .service_missions import MissionService
@@ -23,12 +28,15 @@ from .service_modes import ModeService
 from .service_parameters import ParameterService
 from .service_presence import PresenceService
 from .service_rally import RallyService
+from .service_refusals import RefusalService
 from .service_stations import StationService
 from .service_sticks import StickService
 from .service_streams import StreamService
 from .service_transfer import TransferService
 from .settings import Settings
 from .telemetry_motion import MotionTelemetry
+from .telemetry_navigation import NavigationTelemetry
+from .telemetry_odometry import OdometryTelemetry
 from .telemetry_sensors import SensorTelemetry
 from .telemetry_system import SystemTelemetry
 from .vehicle import Vehicle
@@ -40,6 +48,8 @@ class Node:
     `receive` takes messages one by one, `tick` lets time pass; answers and streams go to
     ``air``. Messages of the vehicle itself, and those meant for another system or component,
     are nobody's business here. Missions, fence and rally points are kept in ``plans``, a folder.
+    ``clock`` is wall time, s, by which ground stations live. ``failures`` are the units that can
+    fail.
     Raises InputError for settings that the vehicle cannot have, and for what is in the folder.
     """
 
@@ -50,6 +60,8 @@ class Node:
         settings: Settings,
         parameters: ParameterTable,
         plans: Path | None = None,
+        clock: Callable[[], float] = time.monotonic,
+        failures: Sequence[str] = (),
     ) -> None:
         self.vehicle = vehicle
         handlers: dict[int, Handler] = {}
@@ -62,29 +74,37 @@ class Node:
         rally = RallyService(vehicle, air, lists.rally)
         fence = FenceService(vehicle, air, lists.fence, settings, failsafe)
         arming.checks.append(fence.check)
+        guided = GuidedService(vehicle, air, modes, settings)
         self.missions = MissionService(
             *(vehicle, air, lists.mission, settings, modes),
             home.commands[mavlink.MAV_CMD_DO_SET_HOME],
             lambda: rally.refuge,
+            guided.change_speed,
         )
         self.rally = rally
+        self.failures = FailureService(vehicle, air, settings, failures)
         self.services: list[Service] = [
             CommandService(vehicle, air, handlers),
             arming,
             modes,
-            StationService(vehicle, air, failsafe, settings),
+            StationService(vehicle, air, failsafe, settings, clock),
             StickService(vehicle, air, failsafe, settings),
-            GuidedService(vehicle, air, modes, settings),
+            guided,
             home,
             TransferService(vehicle, air, lists),
             fence,
             rally,
             self.missions,
             ParameterService(vehicle, air, parameters),
+            self.failures,
             ClockService(vehicle, air),
+            FileService(vehicle, air),
+            RefusalService(vehicle, air),
             MotionTelemetry(vehicle, air),
+            OdometryTelemetry(vehicle, air),
             SensorTelemetry(vehicle, air),
             SystemTelemetry(vehicle, air),
+            NavigationTelemetry(vehicle, air, lambda: self.goal),
             # What the others changed is told last.
             PresenceService(vehicle, air),
             StreamService(vehicle, air, builders, intervals),
@@ -94,6 +114,19 @@ class Node:
             builders.update(service.messages)
             intervals.update(service.streams)
             vehicle.capabilities |= service.capabilities
+
+    @property
+    def goal(self) -> Ned | None:
+        """Where the vehicle goes to, in {n}; None for a heading, a velocity, or nowhere."""
+        target, leg = self.vehicle.target, self.missions.leg
+        match self.vehicle.mode.name:
+            case "auto" if leg.number:
+                return leg.end
+            case "return":
+                return self.rally.refuge
+            case "guided" if target is not None and target.kind == "position":
+                return target.position
+        return None
 
     def receive(self, message: Message, sender: Sender, now: float) -> None:
         """Give a message to all services, at simulated time ``now``, s."""

@@ -43,6 +43,10 @@ class Definition:
     """Passes a value on to the settings."""
     fixed: str = ""
     """Why nobody can set it; empty if anybody can."""
+    or_zero: bool = False
+    """Whether 0 is allowed too."""
+    passing: str = ""
+    """Why no file keeps it; empty if one does."""
 
     def __post_init__(self) -> None:
         if not _NAME.fullmatch(self.name):
@@ -63,6 +67,8 @@ class Definition:
         taken = shortest(value) if self.kind == REAL32 else float(round(value))
         if self.numbers:
             return taken if taken in self.numbers else None
+        if self.or_zero and taken == 0.0:
+            return 0.0
         return taken if self.low <= taken <= self.high else None
 
     @property
@@ -71,6 +77,7 @@ class Definition:
         if self.numbers:
             return "one of " + ", ".join(str(number) for number in sorted(self.numbers))
         whole = "" if self.kind == REAL32 else "a whole number, "
+        whole += "0, or " if self.or_zero else ""
         if self.high == _LARGEST:
             return f"{whole}at least {self.low:g}"
         return f"{whole}{self.low:g} to {self.high:g}"

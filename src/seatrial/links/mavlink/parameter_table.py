@@ -75,7 +75,7 @@ class ParameterTable:
         if taken is None:
             reason = f"{definition.allowed} is allowed"
             return Refusal(mavlink.MAV_PARAM_ERROR_VALUE_OUT_OF_RANGE, reason)
-        kept = {**self._kept, name: taken}
+        kept = self._kept if definition.passing else {**self._kept, name: taken}
         if self._file is not None and kept != self._kept:
             try:
                 self._file.write(kept)
@@ -97,8 +97,8 @@ class ParameterTable:
         if name not in self._definitions:
             raise InputError(f"this vehicle has no parameter {name}")
         definition = self._definitions[name]
-        if definition.fixed:
-            raise InputError(f"{name} cannot be set: {definition.fixed}")
+        if definition.fixed or definition.passing:
+            raise InputError(f"{name} cannot be set: {definition.fixed or definition.passing}")
         taken = definition.accepted(value)
         if taken is None:
             raise InputError(f"{name} is {value:g}, {definition.allowed} is allowed")

@@ -7,6 +7,7 @@ from .parameter_table import ParameterTable
 from .parameters_ardupilot import ardupilot_parameters
 from .parameters_px4 import px4_parameters
 from .parameters_servo import read_servos
+from .parameters_simulation import simulation_parameters
 from .parameters_tunable import tunable_parameters, with_tunables
 from .settings import Settings
 from .vehicle import Vehicle
@@ -19,13 +20,15 @@ def vehicle_parameters(
     tunables: str = "",
     file: ParameterFile | None = None,
 ) -> ParameterTable:
-    """Return the parameters of a vehicle: those of its kind, then the rig's tunables.
+    """Return the parameters of a vehicle: those of its kind, of the simulation, of the rig.
 
     ``actuators`` as in `read_servos`, ``tunables`` as in `tunable_parameters`. Raises InputError.
     """
-    if vehicle.flavour.name == "px4":
+    is_px4 = vehicle.flavour.name == "px4"
+    if is_px4:
         definitions = px4_parameters(vehicle.identity, settings)
     else:
         definitions = ardupilot_parameters(vehicle.identity, settings, read_servos(actuators))
+    definitions = [*definitions, *simulation_parameters(settings, is_px4=is_px4)]
     definitions = with_tunables(definitions, tunable_parameters(tunables), settings)
     return ParameterTable(definitions, settings, file)

@@ -54,8 +54,14 @@ def compass_degrees(angle: float) -> float:
 
 
 def quaternion(attitude: Ned) -> list[float]:
-    """Return the quaternion (w, x, y, z) body to {n} of Euler angles ZYX."""
-    (cr, sr), (cp, sp), (cy, sy) = ((math.cos(a / 2), math.sin(a / 2)) for a in attitude)
+    """Return the quaternion (w, x, y, z) body to {n} of Euler angles ZYX.
+
+    It is continuous in headings from -pi to pi: of the two for one rotation, w is not negative
+    at small angles of roll and pitch.
+    """
+    phi, theta, psi = attitude
+    half = phi / 2, theta / 2, math.remainder(psi, math.tau) / 2
+    (cr, sr), (cp, sp), (cy, sy) = ((math.cos(a), math.sin(a)) for a in half)
     return [
         cr * cp * cy + sr * sp * sy,
         sr * cp * cy - cr * sp * sy,

@@ -1,4 +1,4 @@
-"""Arming: with checks that give their reasons; and commands that are refused politely."""
+"""Arming, with checks that give their reasons."""
 
 from __future__ import annotations
 
@@ -23,8 +23,7 @@ class ArmingService(Service):
 
     A boat needs a position and a heading, a submarine a heading; other services add ``checks``
     of theirs, and the settings say which of them count. Each reason against arming is
-    said. Disarming always works, and so does arming by `FORCE`, which says so. A reboot is
-    denied: the vehicle is one part of a simulation.
+    said. Disarming always works, and so does arming by `FORCE`, which says so.
     """
 
     def __init__(self, vehicle: Vehicle, air: Air, settings: Settings) -> None:
@@ -38,7 +37,6 @@ class ArmingService(Service):
         return {
             mavlink.MAV_CMD_COMPONENT_ARM_DISARM: self._arm_or_disarm,
             mavlink.MAV_CMD_RUN_PREARM_CHECKS: self._run_checks,
-            mavlink.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN: self._refuse_reboot,
         }
 
     def disarm(self) -> None:
@@ -80,10 +78,6 @@ class ArmingService(Service):
         if not reasons:
             self.vehicle.say(INFO, "Ready to arm")
         return ACCEPTED
-
-    def _refuse_reboot(self, command: Command, sender: Sender, now: float) -> int:
-        self.vehicle.say(WARNING, "No reboot: this vehicle is simulated; start the trial again")
-        return DENIED
 
     def _say(self, reasons: list[str]) -> None:
         for reason in reasons:

@@ -11,6 +11,7 @@ from pymavlink.dialects.v20 import all as mavlink
 from .codec import Message
 from .frames import GLOBAL_FRAMES, LOCAL_FRAMES, global_position, is_near
 from .geodesy import Ned
+from .mission_runner import FASTEST, OWN_SPEED
 from .radio import Air, Sender
 from .scaling import milliseconds, turned, yaw
 from .service import (
@@ -28,16 +29,15 @@ from .service_modes import ModeService
 from .settings import Settings
 from .vehicle import Target, Vehicle
 
-FASTEST = 100.0
-"""Velocities beyond, m/s, are refused."""
-
 _IGNORE_XY, _IGNORE_Z = 0x3, 0x4
 _IGNORE_VX_VY, _IGNORE_VZ = 0x18, 0x20
-_IGNORE_YAW = 0x400
+_IGNORE_YAW, _IGNORE_YAW_RATE = 0x400, 0x800
 _IGNORE_THRUST, _IGNORE_ATTITUDE = 0x40, 0x80
 
 _FROM_ORIGIN = mavlink.MAV_FRAME_LOCAL_NED
 _NORTH_EAST = (_FROM_ORIGIN, mavlink.MAV_FRAME_LOCAL_OFFSET_NED)
+_MOST_LEAD = 0.5
+"""By how much a heading that turns may be ahead of the vehicle's, rad."""
 
 
 class GuidedService(Service):
@@ -47,10 +47,13 @@ class GuidedService(Service):
     The three messages count in guided mode and until the time-out each; then the vehicle stops.
     Of what a mask lets through, a position goes before a velocity, a velocity before a yaw;
     an attitude gives the heading, its thrust the share of the full speed. DO_REPOSITION stays,
-    and enters guided mode if it says so. A boat keeps the height it has.
+    and enters guided mode if it says so (PX4: Hold, which it shows on the way too). A boat keeps
+    the height it has.
 
-    Frames: from the origin, from the vehicle (offset), along its heading (body), or global.
-    Not obeyed: accelerations and yaw rates, and a yaw together with a position or velocity.
+    Frames: from the origin, from the vehicle (offset), along its heading (body), or global. A
+    velocity along the heading, with a yaw rate, holds the heading that the vehicle had and turns
+    it at that rate; its part abeam is not obeyed. Without a yaw rate it is a velocity over ground.
+    Not obeyed: accelerations, other yaw rates, and a yaw together with a position or velocity.
     """
 
     capabilities = (
@@ -62,6 +65,7 @@ class GuidedService(Service):
     def __init__(self, vehicle: Vehicle, air: Air, modes: ModeService, settings: Settings) -> None:
         super().__init__(vehicle, air)
         self._modes, self._settings = modes, settings
+        self._before = 0.0
 
     @property
     def commands(self) -> Mapping[int, Handler]:
@@ -75,7 +79,7 @@ class GuidedService(Service):
 
     def handle(self, message: Message, sender: Sender, now: float) -> None:
         """Take a set-point."""
-        if self.vehicle.mode.name != "guided":
+        if self.vehicle.mode != self.vehicle.flavour.mode("guided"):
             return
         match message.get_type():
             case "SET_POSITION_TARGET_LOCAL_NED":
@@ -90,11 +94,23 @@ class GuidedService(Service):
             self.vehicle.target = replace(target, expires=now + self._settings.target_timeout)
 
     def tick(self, now: float) -> None:
-        """Forget a set-point that has expired."""
+        """Turn a heading that has a rate, and forget a set-point that has expired."""
         target = self.vehicle.target
+        if target is not None and target.turn is not None:
+            self.vehicle.target = self._turned(target, target.turn, now - self._before)
+        self._before = now
         if target is not None and target.expires is not None and now > target.expires:
             self.vehicle.target = None
             self.vehicle.say(WARNING, "Set-points have stopped, so does the vehicle")
+
+    def change_speed(self, speed: float) -> None:
+        """Change the speed to positions until the mode ends, m/s; -2 is the vehicle's own."""
+        vehicle = self.vehicle
+        if speed != OWN_SPEED and not 0.0 < speed <= FASTEST:
+            return
+        vehicle.guided_speed = 0.0 if speed == OWN_SPEED else speed
+        if vehicle.target is not None and vehicle.target.kind == "position":
+            vehicle.target = replace(vehicle.target, speed=vehicle.guided_speed)
 
     # ------------------------------------------------------------------ messages
 
@@ -102,7 +118,7 @@ class GuidedService(Service):
         if m.coordinate_frame not in LOCAL_FRAMES:
             return None
         if m.type_mask & _IGNORE_XY == 0:
-            return Target("position", position=self._local_position(m))
+            return self._going(self._local_position(m))
         return self._moving(m, m.coordinate_frame)
 
     def _global(self, m: Message) -> Target | None:
@@ -114,12 +130,17 @@ class GuidedService(Service):
         position = global_position(
             self.vehicle, m.coordinate_frame, m.lat_int * 1e-7, m.lon_int * 1e-7, altitude
         )
-        return None if position is None else Target("position", position=position)
+        return None if position is None else self._going(position)
+
+    def _going(self, position: Ned) -> Target:
+        return Target("position", position, speed=self.vehicle.guided_speed)
 
     def _moving(self, m: Message, frame: int) -> Target | None:
         """Return what a message asks for that has no position."""
         if m.type_mask & _IGNORE_VX_VY == 0:
             down = 0.0 if m.type_mask & _IGNORE_VZ else m.vz
+            if frame not in _NORTH_EAST and m.type_mask & _IGNORE_YAW_RATE == 0:
+                return self._turning(m.vx, down, m.yaw_rate)
             north, east = self._north_east(frame, m.vx, m.vy)
             return Target("velocity", velocity=(north, east, self._dive(down, 0.0)))
         if m.type_mask & _IGNORE_YAW == 0:
@@ -136,6 +157,22 @@ class GuidedService(Service):
 
     def _steering(self, heading: float, speed: float) -> Target:
         return Target("heading", self.vehicle.estimates.position_n, heading=heading, speed=speed)
+
+    def _turning(self, ahead: float, down: float, rate: float) -> Target:
+        """Return a heading that turns, from where the one before was, or the vehicle is."""
+        before = self.vehicle.target
+        if before is None or before.turn is None:
+            before = self._steering(self.vehicle.estimates.attitude[2], 0.0)
+        return replace(before, speed=ahead, velocity=(0.0, 0.0, down), turn=rate)
+
+    def _turned(self, target: Target, rate: float, seconds: float) -> Target:
+        measured = self.vehicle.estimates.attitude[2]
+        lead = math.remainder(target.heading + rate * seconds - measured, math.tau)
+        if rate:
+            lead = min(max(lead, -_MOST_LEAD), _MOST_LEAD)
+        north, east, down = target.position
+        down = self._dive(down + target.velocity[2] * seconds, down)
+        return replace(target, heading=measured + lead, position=(north, east, down))
 
     def _local_position(self, m: Message) -> Ned:
         frame, here = m.coordinate_frame, self.vehicle.estimates.position_n
@@ -160,18 +197,18 @@ class GuidedService(Service):
         if command.frame not in GLOBAL_FRAMES:
             return DENIED
         position = global_position(self.vehicle, command.frame, latitude, longitude, altitude)
-        target = None if position is None else Target("position", position)
-        if target is None or not _is_sane(target):
+        if position is None:
             return DENIED
-        if self.vehicle.mode.name != "guided":
+        mode = self.vehicle.flavour.reposition or self.vehicle.flavour.mode("guided")
+        if mode is None or self.vehicle.mode != mode:
             if not flags & mavlink.MAV_DO_REPOSITION_FLAGS_CHANGE_MODE:
                 self.vehicle.say(WARNING, "Not in guided mode")
                 return DENIED
-            mode = self.vehicle.flavour.mode("guided")
             reason = "there is none" if mode is None else self._modes.enter(mode)
             if reason is not None:
                 self.vehicle.say(WARNING, f"Guided mode refused: {reason}")
                 return FAILED
+        target = self._going(position)
         self.vehicle.target = replace(target, speed=speed) if 0.0 < speed <= FASTEST else target
         return ACCEPTED
 
@@ -199,7 +236,7 @@ def _is_sane(target: Target) -> bool:
     return (
         is_near(*target.position)
         and _within((*target.velocity, target.speed), FASTEST)
-        and _within((target.heading,), 1e3)
+        and _within((target.heading, target.turn or 0.0), 1e3)
     )
 
 

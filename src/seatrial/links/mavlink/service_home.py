@@ -13,7 +13,7 @@ from .frames import GLOBAL_FRAMES, is_near
 from .geodesy import Ned
 from .radio import Sender
 from .scaling import deg_e7, int32, microseconds
-from .service import ACCEPTED, DENIED, FAILED, Builder, Command, Handler, Service
+from .service import ACCEPTED, DENIED, FAILED, WARNING, Builder, Command, Handler, Service
 
 
 class HomeService(Service):
@@ -50,6 +50,7 @@ class HomeService(Service):
                     message.latitude * 1e-7, message.longitude * 1e-7, message.altitude * 1e-3, now
                 )
             case "SET_GPS_GLOBAL_ORIGIN":
+                self.vehicle.say(WARNING, "The origin stays: it belongs to the trial")
                 self.air.send(sender.link, self._origin(now)[0])
 
     def _set_home(self, command: Command, sender: Sender, now: float) -> int:

@@ -42,7 +42,7 @@ class MissionService(Service):
 
     MISSION_CURRENT comes every second and at every change. The mode auto is refused without a
     mission. MISSION_START goes on, or begins again after the end; DO_PAUSE_CONTINUE counts in
-    auto only, DO_CHANGE_SPEED too.
+    auto only, DO_CHANGE_SPEED in guided mode too.
 
     A MISSION_ITEM whose ``current`` is 2 is not part of a mission, but a place to go to in guided
     mode: some clients know no other way.
@@ -61,9 +61,11 @@ class MissionService(Service):
         modes: ModeService,
         set_home: Handler,
         refuge: Callable[[], Ned],
+        change_guided_speed: Callable[[float], None],
     ) -> None:
         super().__init__(vehicle, air)
         self._plan, self._modes, self._set_home = plan, modes, set_home
+        self._change_guided_speed = change_guided_speed
         self._runner = MissionRunner(vehicle, plan, settings, self._move_home, refuge)
         modes.requirements.append(self._needs_mission)
         self.reached = 0
@@ -151,10 +153,12 @@ class MissionService(Service):
         return ACCEPTED
 
     def _change_speed(self, command: Command, sender: Sender, now: float) -> int:
-        if self.vehicle.mode.name != "auto":
-            self.vehicle.say(WARNING, "Speeds change in a mission only")
+        if self.vehicle.mode.name not in ("auto", "guided"):
+            self.vehicle.say(WARNING, "Speeds change in a mission and in guided mode only")
             return DENIED
-        self._runner.change_speed(command.parameters[1])
+        in_auto = self.vehicle.mode.name == "auto"
+        change = self._runner.change_speed if in_auto else self._change_guided_speed
+        change(command.parameters[1])
         return ACCEPTED
 
     def _needs_mission(self, mode: Mode) -> str | None:

@@ -29,10 +29,11 @@ Requirement = Callable[[Mode], str | None]
 
 
 class ModeService(Service):
-    """DO_SET_MODE, SET_MODE and RETURN_TO_LAUNCH in, CURRENT_MODE and AVAILABLE_MODES out.
+    """DO_SET_MODE, SET_MODE, RETURN_TO_LAUNCH and NAV_LAND in, CURRENT_MODE and AVAILABLE_MODES
+    out.
 
-    A mode of `POSITION_MODES` needs a valid position; other services add ``requirements`` of
-    theirs. What is refused is said, with the reason.
+    A submarine that is to land surfaces. A mode of `POSITION_MODES` needs a valid position; other
+    services add ``requirements`` of theirs. What is refused is said, with the reason.
     """
 
     streams: ClassVar = {mavlink.MAVLINK_MSG_ID_CURRENT_MODE: 1.0}
@@ -47,6 +48,7 @@ class ModeService(Service):
         return {
             mavlink.MAV_CMD_DO_SET_MODE: self._set_mode,
             mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH: self._return,
+            mavlink.MAV_CMD_NAV_LAND: self._surface,
         }
 
     @property
@@ -84,7 +86,13 @@ class ModeService(Service):
         return self._entered(self.vehicle.flavour.by_command(main, sub), main)
 
     def _return(self, command: Command, sender: Sender, now: float) -> int:
-        mode = self.vehicle.flavour.mode("return")
+        return self._entered_if_any("return")
+
+    def _surface(self, command: Command, sender: Sender, now: float) -> int:
+        return self._entered_if_any("surface")
+
+    def _entered_if_any(self, name: str) -> int:
+        mode = self.vehicle.flavour.mode(name)
         return UNSUPPORTED if mode is None else self._entered(mode, mode.custom_mode)
 
     def _entered(self, mode: Mode | None, asked: float) -> int:

@@ -35,7 +35,7 @@ class _Listing:
 class ParameterService(Service):
     """PARAM_REQUEST_LIST, PARAM_REQUEST_READ and PARAM_SET in; PARAM_VALUE, PARAM_ERROR out.
 
-    **Lists** go to the link that asked, `RATE` parameters a second of simulated time. Whoever
+    **Lists** go to the link that asked, `RATE` parameters a second of link time. Whoever
     asks again meanwhile lets the list go round once more from where it is, so a station that
     repeats itself, or a second one on the same link, gets all of it. What was lost is read by
     index. Links have lists of their own.
@@ -68,7 +68,8 @@ class ParameterService(Service):
         match message.get_type():
             case "PARAM_REQUEST_LIST":
                 running = self._listings.get(sender.link)
-                index, due = (running.index, running.due) if running else (0, now)
+                begun = self.vehicle.link_time(now)
+                index, due = (running.index, running.due) if running else (0, begun)
                 self._listings[sender.link] = _Listing(index, len(self.table.names), due)
             case "PARAM_REQUEST_READ":
                 self._read(message.param_id, message.param_index, sender)
@@ -77,7 +78,7 @@ class ParameterService(Service):
 
     def tick(self, now: float) -> None:
         """Send what is due of the lists, and forget those of links that are gone."""
-        links = set(self.air.links())
+        links, now = set(self.air.links()), self.vehicle.link_time(now)
         self._listings = {k: v for k, v in self._listings.items() if v.left and k in links}
         for link, listing in self._listings.items():
             while listing.left and now >= listing.due - _SLACK_S:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from pymavlink.dialects.v20 import all as mavlink
 
 from .codec import Message
@@ -18,15 +20,26 @@ _LOST = "all ground stations lost"
 class StationService(Service):
     """Ground stations by their HEARTBEAT (of type GCS), each lost after the time-out without.
 
+    The time-out counts by simulated and by wall time (``clock``, s): stations beat by theirs,
+    and would be lost between two beats of theirs when a trial is much faster.
+
     When the last one is lost the failsafe acts, unless it is told not to watch them; before the
     first one was seen nothing happens.
     """
 
-    def __init__(self, vehicle: Vehicle, air: Air, failsafe: Failsafe, settings: Settings) -> None:
+    def __init__(
+        self,
+        vehicle: Vehicle,
+        air: Air,
+        failsafe: Failsafe,
+        settings: Settings,
+        clock: Callable[[], float],
+    ) -> None:
         super().__init__(vehicle, air)
-        self._failsafe, self._settings = failsafe, settings
-        self.seen: dict[tuple[int, int], float] = {}
-        """(system, component) of those that are there, and when each was heard last, s."""
+        self._failsafe, self._settings, self._clock = failsafe, settings, clock
+        self.seen: dict[tuple[int, int], tuple[float, float]] = {}
+        """(system, component) of those that are there, and when each was heard last, by both
+        times, s."""
         self._left_alone = False
 
     def handle(self, message: Message, sender: Sender, now: float) -> None:
@@ -38,15 +51,19 @@ class StationService(Service):
             if len(self.seen) >= _MOST:
                 return
             self.vehicle.say(INFO, f"Ground station {sender.system}:{sender.component}")
-        self.seen[who] = now
+        self.seen[who] = (now, self._clock())
         if self._left_alone:
             self._left_alone = False
             self._failsafe.end(_LOST, "Ground station is back")
 
     def tick(self, now: float) -> None:
         """Lose those that have been silent too long."""
-        timeout = self._settings.station_timeout
-        there = {who: at for who, at in self.seen.items() if now - at <= timeout}
+        timeout, wall = self._settings.station_timeout, self._clock()
+        there = {
+            who: (at, wall_at)
+            for who, (at, wall_at) in self.seen.items()
+            if min(now - at, wall - wall_at) <= timeout
+        }
         lost, self.seen = len(there) < len(self.seen), there
         self.vehicle.stations = len(there)
         if lost and not there and self._settings.watches_stations:

@@ -15,6 +15,9 @@ from .vehicle import Vehicle
 _FIXED = (mavlink.MAVLINK_MSG_ID_HEARTBEAT,)
 """Messages whose rate nobody changes: presence depends on them."""
 
+_NUMBERED = (mavlink.MAVLINK_MSG_ID_AVAILABLE_MODES,)
+"""Messages of which one is asked for by its index, from 1; 0 asks for all."""
+
 GROUPS: Mapping[int, tuple[int, ...]] = {
     mavlink.MAV_DATA_STREAM_RAW_SENSORS: (
         mavlink.MAVLINK_MSG_ID_SCALED_IMU,
@@ -47,6 +50,7 @@ GROUPS: Mapping[int, tuple[int, ...]] = {
         mavlink.MAVLINK_MSG_ID_BATTERY_STATUS,
         mavlink.MAVLINK_MSG_ID_WIND,
         mavlink.MAVLINK_MSG_ID_EKF_STATUS_REPORT,
+        mavlink.MAVLINK_MSG_ID_DISTANCE_SENSOR,
         mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE,
     ),
 }
@@ -109,16 +113,12 @@ class StreamService(Service):
         self._schedules = {link: self._schedule(link) for link in links}
         for link, schedule in self._schedules.items():
             for number, interval in schedule.intervals.items():
-                due = schedule.due.get(number, now)
-                if now >= due - _SLACK_S:
-                    schedule.due[number] = max(due + interval, now)
-                    self._send(link, number, now)
-
-    def _send(self, link: int, number: int, now: float) -> bool:
-        built = self._builders[number](now)
-        for message in built:
-            self.air.send(link, message)
-        return bool(built)
+                at = self.vehicle.link_time(now) if number in _FIXED else now
+                due = schedule.due.get(number, at)
+                if at >= due - _SLACK_S:
+                    schedule.due[number] = max(due + interval, at)
+                    for message in self._builders[number](now):
+                        self.air.send(link, message)
 
     def _schedule(self, link: int) -> _Schedule:
         if link not in self._schedules:
@@ -155,7 +155,12 @@ class StreamService(Service):
         return ACCEPTED
 
     def _send_once(self, command: Command, sender: Sender, now: float) -> int:
-        number = whole(command.parameters[0])
+        number, index = whole(command.parameters[0]), whole(command.parameters[1]) or 0
         if number is None or number not in self._builders:
             return UNSUPPORTED
-        return ACCEPTED if self._send(sender.link, number, now) else DENIED
+        built = self._builders[number](now)
+        if number in _NUMBERED and index != 0:
+            built = built[index - 1 : index] if index > 0 else []
+        for message in built:
+            self.air.send(sender.link, message)
+        return ACCEPTED if built else DENIED

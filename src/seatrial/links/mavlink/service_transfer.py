@@ -65,7 +65,7 @@ class TransferService(Service):
     **Download.** Whoever asks for a list gets the items of that moment, whatever is uploaded
     meanwhile, until they acknowledge it or ask for nothing during 30 s.
 
-    Lists in part are not supported. Times are simulated.
+    Lists in part are not supported. Times are those of the link (`Vehicle.link_time`).
     """
 
     capabilities = (
@@ -83,6 +83,7 @@ class TransferService(Service):
 
     def handle(self, message: Message, sender: Sender, now: float) -> None:
         """Take a message of the protocol."""
+        now = self.vehicle.link_time(now)
         match message.get_type():
             case "MISSION_COUNT":
                 self._begin(message, sender, now)
@@ -103,6 +104,7 @@ class TransferService(Service):
 
     def tick(self, now: float) -> None:
         """Ask again for what has not come, and give up in time."""
+        now = self.vehicle.link_time(now)
         self._offers = {who: offer for who, offer in self._offers.items() if now < offer.expires}
         upload = self._upload
         if upload is None:

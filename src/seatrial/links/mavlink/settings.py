@@ -37,6 +37,11 @@ class Settings:
     watches_sticks: bool = True
     """Whether the failsafe acts when the sticks are lost."""
     arming_check: int = ALL_CHECKS
+    speedup: float = 1.0
+    """Simulated seconds per second of wall time; while paused, those before and afterwards."""
+    paused: bool = False
+    failures_allowed: bool = True
+    """Whether stations may inject failures."""
 
     @property
     def leg_speed(self) -> float:

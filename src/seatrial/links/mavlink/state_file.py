@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import contextlib
 import json
-import os
 from pathlib import Path
 from typing import Any
 
 from ...errors import InputError
+from .whole_file import write_whole
 
 
 class StateFile:
@@ -33,13 +32,9 @@ class StateFile:
             self._write(self._path)
 
     def _write(self, path: Path) -> None:
-        new = path.with_name(f".{path.name}.{os.getpid()}.new")
         try:
-            new.write_text(json.dumps(self._content, indent=1) + "\n", "utf-8")
-            os.replace(new, path)  # never half a file
+            write_whole(path, json.dumps(self._content, indent=1) + "\n")
         except OSError as error:
-            with contextlib.suppress(OSError):
-                new.unlink()
             raise InputError(f"state file {path}: {error.strerror}") from None
 
 

@@ -24,13 +24,15 @@ from .scaling import (
 )
 from .service import Builder, Service
 
-_IMU_AND_PRESSURE = 0x7 | 0x38 | 0x200
-"""HIGHRES_IMU's fields_updated: acceleration, rates, absolute pressure."""
+_IMU, _PRESSURE = 0x7 | 0x38, 0x200
+"""Of HIGHRES_IMU's fields_updated: acceleration and rates; absolute pressure."""
+_FARTHEST_CM = 0xFFFF
 
 
 class SensorTelemetry(Service):
     """GPS_RAW_INT, SCALED_IMU, HIGHRES_IMU, SCALED_PRESSURE (of the water, SCALED_PRESSURE2, in
-    a submarine), WIND and WIND_COV, BATTERY_STATUS, NAMED_VALUE_FLOAT.
+    a submarine), DISTANCE_SENSOR (downwards), WIND and WIND_COV, BATTERY_STATUS,
+    NAMED_VALUE_FLOAT.
 
     The true wind is the apparent one, which is measured in the horizontal plane here, turned
     by the heading, plus the vehicle's velocity.
@@ -42,6 +44,7 @@ class SensorTelemetry(Service):
         mavlink.MAVLINK_MSG_ID_HIGHRES_IMU: 0.5,
         mavlink.MAVLINK_MSG_ID_SCALED_PRESSURE: 1.0,
         mavlink.MAVLINK_MSG_ID_SCALED_PRESSURE2: 1.0,
+        mavlink.MAVLINK_MSG_ID_DISTANCE_SENSOR: 0.5,
         mavlink.MAVLINK_MSG_ID_WIND: 1.0,
         mavlink.MAVLINK_MSG_ID_WIND_COV: 1.0,
         mavlink.MAVLINK_MSG_ID_BATTERY_STATUS: 1.0,
@@ -57,6 +60,7 @@ class SensorTelemetry(Service):
             mavlink.MAVLINK_MSG_ID_HIGHRES_IMU: self._highres_imu,
             mavlink.MAVLINK_MSG_ID_SCALED_PRESSURE: self._pressure_of_air,
             mavlink.MAVLINK_MSG_ID_SCALED_PRESSURE2: self._pressure_of_water,
+            mavlink.MAVLINK_MSG_ID_DISTANCE_SENSOR: self._distance,
             mavlink.MAVLINK_MSG_ID_WIND: self._wind,
             mavlink.MAVLINK_MSG_ID_WIND_COV: self._wind_cov,
             mavlink.MAVLINK_MSG_ID_BATTERY_STATUS: self._battery,
@@ -104,23 +108,43 @@ class SensorTelemetry(Service):
                 *e.specific_force,
                 *e.rates,
                 *(0.0, 0.0, 0.0),
-                e.pressure / 100.0,
+                (e.pressure or 0.0) / 100.0,
                 *(0.0, 0.0, 0.0),
-                _IMU_AND_PRESSURE,
+                _IMU | (0 if e.pressure is None else _PRESSURE),
             )
         ]
 
     def _pressure_of_air(self, now: float) -> list[Message]:
-        if self.vehicle.identity.submerged:
+        pressure = self.vehicle.estimates.pressure
+        if self.vehicle.identity.submerged or pressure is None:
             return []
-        pressure = self.vehicle.estimates.pressure / 100.0
-        return [mavlink.MAVLink_scaled_pressure_message(milliseconds(now), pressure, 0.0, 0)]
+        return [
+            mavlink.MAVLink_scaled_pressure_message(milliseconds(now), pressure / 100.0, 0.0, 0)
+        ]
 
     def _pressure_of_water(self, now: float) -> list[Message]:
-        if not self.vehicle.identity.submerged:
+        pressure = self.vehicle.estimates.pressure
+        if not self.vehicle.identity.submerged or pressure is None:
             return []
-        pressure = self.vehicle.estimates.pressure / 100.0
-        return [mavlink.MAVLink_scaled_pressure2_message(milliseconds(now), pressure, 0.0, 0)]
+        return [
+            mavlink.MAVLink_scaled_pressure2_message(milliseconds(now), pressure / 100.0, 0.0, 0)
+        ]
+
+    def _distance(self, now: float) -> list[Message]:
+        distance = self.vehicle.estimates.ground_distance
+        if distance is None:
+            return []
+        return [
+            mavlink.MAVLink_distance_sensor_message(
+                milliseconds(now),
+                *(0, _FARTHEST_CM),
+                uint16(distance * 100),
+                mavlink.MAV_DISTANCE_SENSOR_ULTRASOUND,
+                0,
+                mavlink.MAV_SENSOR_ROTATION_PITCH_270,
+                0xFF,
+            )
+        ]
 
     def _wind(self, now: float) -> list[Message]:
         true = self._true_wind()

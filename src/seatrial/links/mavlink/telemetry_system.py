@@ -11,7 +11,7 @@ from .codec import Message
 from .scaling import UNKNOWN_U16, clamped, int16, microseconds, milliseconds, uint16
 from .service import Builder, Service
 
-_ALWAYS = mavlink.MAV_SYS_STATUS_SENSOR_3D_GYRO | mavlink.MAV_SYS_STATUS_SENSOR_3D_ACCEL
+_IMU = mavlink.MAV_SYS_STATUS_SENSOR_3D_GYRO | mavlink.MAV_SYS_STATUS_SENSOR_3D_ACCEL
 _HEADING = mavlink.MAV_SYS_STATUS_SENSOR_3D_MAG | mavlink.MAV_SYS_STATUS_AHRS
 
 _EKF_ATTITUDE = mavlink.EKF_ATTITUDE
@@ -56,8 +56,8 @@ class SystemTelemetry(Service):
 
     def _status(self, now: float) -> list[Message]:
         e = self.vehicle.estimates
-        present = _ALWAYS | _HEADING | mavlink.MAV_SYS_STATUS_PREARM_CHECK
-        healthy = _ALWAYS | (_HEADING if e.heading_valid else 0)
+        present = _IMU | _HEADING | mavlink.MAV_SYS_STATUS_PREARM_CHECK
+        healthy = (_IMU if e.imu_valid else 0) | (_HEADING if e.heading_valid else 0)
         present |= mavlink.MAV_SYS_STATUS_GEOFENCE  # or a ground station tells of a breach
         if not self.vehicle.fence_breached:
             healthy |= mavlink.MAV_SYS_STATUS_GEOFENCE

@@ -29,6 +29,20 @@ class Identity:
 
 
 @dataclass(frozen=True)
+class Way:
+    """What guidance wants, and how far off the vehicle is. SI, rad."""
+
+    heading: float
+    speed: float
+    """Over ground, along the bow."""
+    depth: float
+    cross_track: float
+    """From leg or circle, positive to starboard of it."""
+    distance: float
+    """Horizontal, to the end of the leg or the point to stay at."""
+
+
+@dataclass(frozen=True)
 class Estimates:
     """What the vehicle measures. SI, rad; {n} north-east-down, {b} bow-starboard-down."""
 
@@ -40,7 +54,12 @@ class Estimates:
     heading_valid: bool = True
     rates: Ned = (0.0, 0.0, 0.0)
     specific_force: Ned = (0.0, 0.0, -9.80665)
-    pressure: float = 101325.0
+    imu_valid: bool = True
+    """Whether rates and specific force are valid."""
+    pressure: float | None = None
+    """Absolute, of the air, or in a submarine of the water."""
+    ground_distance: float | None = None
+    """To the ground below."""
     apparent_wind: tuple[float, float] | None = None
     """Speed, and direction it blows to from the bow, to starboard positive."""
     voltage: float | None = None
@@ -50,6 +69,8 @@ class Estimates:
     pulses: tuple[float, ...] = (0.0,) * CHANNELS
     """Servo pulses; 0 is an output that is not used."""
     named: tuple[tuple[str, float], ...] = ()
+    way: Way | None = None
+    """None while guidance neither stays somewhere nor goes anywhere."""
 
 
 @dataclass(frozen=True)
@@ -73,6 +94,9 @@ class Target:
     velocity: Ned = (0.0, 0.0, 0.0)
     heading: float = 0.0
     speed: float = 0.0
+    turn: float | None = None
+    """Rate at which the heading turns, rad/s, and the position's down goes with the velocity's;
+    None for a heading that stays."""
     expires: float | None = None
     """Simulated time at which it counts no longer, s; None if it stays."""
 
@@ -98,6 +122,8 @@ class Vehicle:
     estimates: Estimates = field(default_factory=Estimates)
     truth: Truth | None = None
     target: Target | None = None
+    guided_speed: float = 0.0
+    """Speed to guided positions that name none, m/s; 0 is the vehicle's own."""
     sticks: tuple[float, float, float, float] = STICKS_RELEASED
     """Surge, sway, yaw, heave, -1 to 1: ahead, to starboard, turn to starboard, down."""
     channels: list[int] = field(default_factory=lambda: [0] * 18)
@@ -112,6 +138,8 @@ class Vehicle:
     """Whether nothing speaks against arming."""
     capabilities: int = 0
     """MAV_PROTOCOL_CAPABILITY, of all services together."""
+    paused_s: float = 0.0
+    """Wall time that it stood still, s."""
     texts: list[StatusText] = field(default_factory=list)
     """What is still to be said."""
 
@@ -119,7 +147,11 @@ class Vehicle:
         """Say something to all ground stations, at the end of this instant."""
         self.texts.append(StatusText(severity, text))
 
+    def link_time(self, now: float) -> float:
+        """Return the time that protocols live by, s: simulated, and in pauses wall time."""
+        return now + self.paused_s
+
     def enter(self, mode: Mode) -> None:
-        """Change the mode; set-points of the one before count no longer."""
+        """Change the mode; set-points and speeds of the one before count no longer."""
         if mode != self.mode:
-            self.mode, self.target = mode, None
+            self.mode, self.target, self.guided_speed = mode, None, 0.0

@@ -1,0 +1,37 @@
+"""Who has the helm of a craft with a rudder: the autopilot, a person, or nobody."""
+
+from __future__ import annotations
+
+import math
+from typing import ClassVar
+
+from ..component import Component, Input, Output, Parameter
+
+
+class RudderHelm(Component):
+    """Passes on the autopilot's rudder while it is ``engaged``, else the stick's.
+
+        rudder = rudder_held   if engaged,   else -stick rudder_limit
+
+    ``stick`` is positive to turn to starboard, and counts up to +-1; a positive rudder turns to
+    port. ``engaged`` and ``stick`` are those of `Guidance` or `SailingGuidance`: of a craft that
+    is not armed nothing is engaged and the stick is 0, so that the rudder is amidships. rad.
+    Static.
+    """
+
+    rudder_limit = Parameter(
+        math.radians(35.0), "rad", "rudder angle of a full stick", min=0.0, tunable=True
+    )
+
+    engaged = Input("1", "whether the autopilot steers", type=bool)
+    stick = Input("1", "turn to starboard, -1 to 1")
+    rudder_held = Input("rad", "rudder of the autopilot, positive to turn to port")
+
+    rudder = Output("rad", "rudder wanted, positive to turn to port")
+
+    feedthrough: ClassVar = {"rudder": ("engaged", "stick", "rudder_held")}
+
+    def outputs(self, t: float) -> None:
+        """Choose."""
+        steered = -min(max(self.stick, -1.0), 1.0) * self.rudder_limit
+        self.rudder = self.rudder_held if self.engaged else steered

@@ -1,0 +1,82 @@
+"""Doors by URL.
+
+======================================== ====================================================
+``socketcand:HOST:PORT``                 a server that speaks as socketcand does
+``slcan-tcp:HOST:PORT``                  a server that speaks as serial adapters do (LAWICEL)
+``slcan-pty``                            the same at a pseudo-terminal
+``virtual:CHANNEL``                      python-can's bus within this process
+``python-can:INTERFACE:CHANNEL:BITRATE`` anything that python-can has; ``:BITRATE`` if it needs
+                                         one; real buses only if hardware is allowed
+======================================== ====================================================
+
+HOST is a name or an IPv4 address of this machine, PORT 0 any free one.
+"""
+
+from __future__ import annotations
+
+import re
+import socket
+
+from ...errors import InputError, unknown
+from ..mavlink.endpoint_tcp import TcpServer
+from .door import Door
+from .door_python_can import PythonCanDoor
+from .door_slcan import SlcanDoor
+from .door_socketcand import SocketcandDoor
+from .pseudo_terminal import PseudoTerminal
+
+_FORMS = {
+    "socketcand": "socketcand:127.0.0.1:29536",
+    "slcan-tcp": "slcan-tcp:127.0.0.1:29537",
+    "slcan-pty": "slcan-pty",
+    "virtual": "virtual:can0",
+    "python-can": "python-can:socketcan:can0:250000",
+}
+_SHAPES = {
+    "socketcand": r"(?P<host>[^:/]+):(?P<port>\d{1,5})",
+    "slcan-tcp": r"(?P<host>[^:/]+):(?P<port>\d{1,5})",
+    "slcan-pty": r"",
+    "virtual": r"(?P<channel>.+)",
+    "python-can": r"(?P<interface>[a-z_0-9]+):"
+    r"(?P<channel>socket://[^:]+:\d+|[^:]+)(?::(?P<bitrate>\d{4,7}))?",
+}
+
+
+def check_door(url: str) -> None:
+    """Raise InputError for a URL that is malformed."""
+    _parts(url)
+
+
+def open_door(url: str) -> Door:
+    """Open the door ``url``.
+
+    Raises InputError, with the URL, for one that is malformed or cannot be opened (a port in
+    use, no such bus, hardware that nobody allowed).
+    """
+    kind, parts = _parts(url)
+    if kind in ("virtual", "python-can"):
+        bitrate = int(parts["bitrate"]) if parts.get("bitrate") else None
+        return PythonCanDoor(url, parts.get("interface", "virtual"), parts["channel"], bitrate)
+    if kind == "slcan-pty":
+        return SlcanDoor(PseudoTerminal())
+    return _listening(url, kind, parts)
+
+
+def _listening(url: str, kind: str, parts: dict[str, str]) -> Door:
+    try:
+        found = socket.getaddrinfo(parts["host"], None, socket.AF_INET, socket.SOCK_STREAM)
+        server = TcpServer((str(found[0][4][0]), int(parts["port"])))
+    except (OSError, OverflowError, UnicodeError) as error:
+        cause = getattr(error, "strerror", None) or error
+        raise InputError(f"cannot open the door {url!r}: {cause}") from None
+    return SocketcandDoor(server) if kind == "socketcand" else SlcanDoor(server)
+
+
+def _parts(url: str) -> tuple[str, dict[str, str]]:
+    kind, _, rest = url.partition(":")
+    if kind not in _FORMS:
+        raise InputError(f"door {url!r}: {unknown('kind of door', kind, _FORMS)}")
+    match = re.fullmatch(_SHAPES[kind], rest)
+    if match is None:
+        raise InputError(f"door {url!r} is not of the form {_FORMS[kind]!r}")
+    return kind, match.groupdict()

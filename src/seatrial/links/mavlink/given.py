@@ -1,0 +1,55 @@
+"""What a person gives the component as texts and numbers, checked."""
+
+from __future__ import annotations
+
+import datetime
+import re
+
+from ...errors import InputError
+
+_VERSION = re.compile(r"\d{1,3}\.\d{1,3}\.\d{1,3}(-(dev|alpha|beta|rc))?")
+_NAME = re.compile(r"[!-~]{1,10}")
+
+
+def whole_number(name: str, value: float) -> int:
+    """Return a parameter that must be a whole number as one; raise InputError."""
+    if value != round(value):
+        raise InputError(f"{name} is {value!r}, a whole number is needed")
+    return round(value)
+
+
+def serial_number(text: str) -> int:
+    """Return the serial number that ``uid`` writes out; raise InputError."""
+    if not text.isdecimal() or not 0 <= int(text) < 1 << 64:
+        raise InputError(f"uid is {text!r}, a whole number from 0 to 2^64 - 1 is needed")
+    return int(text)
+
+
+def version(text: str) -> str:
+    """Return ``firmware_version`` if it is one; raise InputError."""
+    if not _VERSION.fullmatch(text):
+        raise InputError(
+            f"firmware_version is {text!r}, something like '4.5.0' or '4.5.0-dev' is needed"
+        )
+    return text
+
+
+def midnight_us(date: str) -> int:
+    """Return the Unix time of midnight UTC of a day, us; raise InputError."""
+    try:
+        day = datetime.date.fromisoformat(date)
+    except ValueError:
+        raise InputError(f"date is {date!r}, a day like '2026-02-05' is needed") from None
+    midnight = datetime.datetime.combine(day, datetime.time(), datetime.UTC)
+    return round(midnight.timestamp() * 1e6)
+
+
+def value_names(text: str, most: int) -> list[str]:
+    """Return the names of ``names``, at most ``most``; raise InputError."""
+    names = text.split()
+    if len(names) > most:
+        raise InputError(f"names has {len(names)} names, at most {most} are allowed")
+    for name in names:
+        if not _NAME.fullmatch(name):
+            raise InputError(f"names: {name!r} is not a name of 1 to 10 ASCII characters")
+    return names

@@ -1,0 +1,80 @@
+"""Pause: simulated time stands still, and the links are served all the same."""
+
+from __future__ import annotations
+
+import signal
+import threading
+import time
+from collections.abc import Callable
+from types import FrameType
+from typing import Any
+
+from .node import Node
+from .parameter_table import ParameterTable
+from .parameters_simulation import SPEEDUP
+from .service import NOTICE, WARNING
+from .settings import Settings
+
+POLL_S = 0.02
+
+
+class Interruption:
+    """Notices, while it is entered, a signal that asks the process to end.
+
+    The handler that there is still runs. Only a Python program's main thread can notice.
+    """
+
+    def __init__(self) -> None:
+        self.asked = False
+        self._before: dict[int, Callable[[int, FrameType | None], Any]] = {}
+
+    def __enter__(self) -> Interruption:
+        if threading.current_thread() is threading.main_thread():
+            for number in (signal.SIGINT, signal.SIGTERM):
+                before = signal.getsignal(number)
+                if callable(before):
+                    self._before[number] = before
+                    signal.signal(number, self._note)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for number, before in self._before.items():
+            signal.signal(number, before)
+
+    def _note(self, number: int, frame: FrameType | None) -> None:
+        self.asked = True
+        self._before[number](number, frame)
+
+
+def stand_still(
+    exchange: Callable[[], bool],
+    node: Node,
+    settings: Settings,
+    parameters: ParameterTable,
+    *,
+    clock: Callable[[], float] = time.monotonic,
+    sleep: Callable[[float], None] = time.sleep,
+) -> None:
+    """Serve the links until the pause is over; `Vehicle.paused_s` tells how long it took.
+
+    ``exchange`` takes in what has arrived, sends what is due, and says if anything has arrived.
+    It is over when a station sets SIM_SPEEDUP above 0, when nobody is left who could, that is
+    when nothing arrived for ``station_timeout`` of wall time, or when the process is asked to
+    end. Then the run goes on at the speed before.
+    """
+    vehicle = node.vehicle
+    vehicle.say(NOTICE, f"Paused: {SPEEDUP} above 0 goes on")
+    begun, before = clock(), vehicle.paused_s
+    heard = begun
+    with Interruption() as interruption:
+        while settings.paused and not interruption.asked:
+            sleep(POLL_S)
+            now = clock()
+            vehicle.paused_s = before + now - begun
+            if exchange():
+                heard = now
+            elif now - heard > settings.station_timeout:
+                parameters.put(SPEEDUP, settings.speedup)
+                vehicle.say(WARNING, "Nobody is left who could end the pause")
+    if not settings.paused:
+        vehicle.say(NOTICE, f"Goes on at {SPEEDUP} {settings.speedup:g}")
