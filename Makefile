@@ -41,6 +41,8 @@ lint: $(INSTALLED)
 benchmark: $(INSTALLED)
 	$(BIN)/python -m benchmarks.compare --write
 	$(BIN)/python -m benchmarks.tether --write
+	$(BIN)/python -m benchmarks.can --write
+	$(BIN)/python -m benchmarks.can_latency --write
 
 fmus: $(INSTALLED)
 	$(BIN)/seatrial fmu build --out build/fmus

@@ -12,6 +12,7 @@ import subprocess
 import sys
 import tomllib
 from collections.abc import Iterator
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -29,6 +30,7 @@ from seatrial.trials.run import run_trial
 from seatrial.trials.run_folder import load_run
 from seatrial.trials.trial import load_trial
 from seatrial.units import quantity
+from tests.peers.running import HOST, free_port, running, wait_for
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
@@ -36,9 +38,12 @@ FILES, COMPONENTS = DOCS / "files.md", DOCS / "components.md"
 DESIGN, SSP = DOCS / "design.md", DOCS / "ssp.md"
 IDENTIFICATION, TETHER = DOCS / "identification.md", DOCS / "tether.md"
 GUIDANCE = DOCS / "guidance.md"
-LOGS = DOCS / "logs.md"
+CAN, LOGS, MAVLINK = DOCS / "can.md", DOCS / "logs.md", DOCS / "mavlink.md"
 VEHICLES = sorted((DOCS / "vehicles").glob("*.md"))
 SEATRIAL = str(Path(sys.executable).with_name("seatrial"))
+LIVE = re.compile(r"^\$ seatrial run (\S+-mission)\n", re.M)
+"""A trial for ground stations: it goes on while the rest of the page is run."""
+STATION_PORT = "14550"
 
 
 def _script(path: Path) -> Any:
@@ -90,16 +95,37 @@ def run_page(page: Path, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Write a page's files and run its commands and Python, in the order of the page."""
     monkeypatch.chdir(folder)
     monkeypatch.syspath_prepend(str(folder))
-    found = blocks(page)
+    found, port = blocks(page), str(free_port())
+    if any(LIVE.match(block.text) for block in found):
+        found = [block._replace(text=block.text.replace(STATION_PORT, port)) for block in found]
     for block in found:
         if block.file:
             path = folder / block.file
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(block.text, "utf-8")
+    with ExitStack() as background:
+        run_blocks(page, [live(block, folder, port, background) for block in found])
+    for block in found:
+        sys.modules.pop(block.file.removesuffix(".py"), None)
+
+
+def live(block: Block, folder: Path, port: str, background: ExitStack) -> Block:
+    """Start the trial for ground stations that a block starts with; return the rest of it."""
+    trial = LIVE.match(block.text)
+    if trial is None:
+        return block
+    links = f"udpout:{HOST}:{port}"
+    running_trial = background.enter_context(running(trial[1], folder, mavlink__links=links))
+    wait_for(lambda: running_trial.is_running, f"{trial[1]} runs", 180.0)
+    return block._replace(text=block.text[trial.end() :])
+
+
+def run_blocks(page: Path, found: list[Block]) -> None:
+    """Run commands and Python, in the order of the page."""
     names: dict[str, Any] = {}
     runner = doctest.DocTestRunner(optionflags=doctest.ELLIPSIS, verbose=False)
     for block in found:
-        if block.language == "console":
+        if block.language == "console" and block.text:
             run_commands(block)
         elif block.language == "python" and block.text.startswith(">>>"):
             test = doctest.DocTestParser().get_doctest(
@@ -109,10 +135,8 @@ def run_page(page: Path, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
             runner.run(test, out=said.append, clear_globs=False)
             assert not said, "".join(said)
             names = test.globs
-        else:
+        elif block.text:
             assert block.file, f"{page.name}, line {block.line}: a block that nothing runs"
-    for block in found:
-        sys.modules.pop(block.file.removesuffix(".py"), None)
 
 
 def run_commands(block: Block) -> None:
@@ -130,7 +154,19 @@ def run_commands(block: Block) -> None:
 
 @pytest.mark.parametrize(
     "page",
-    [FILES, COMPONENTS, *VEHICLES, DESIGN, SSP, IDENTIFICATION, TETHER, GUIDANCE, LOGS],
+    [
+        FILES,
+        COMPONENTS,
+        *VEHICLES,
+        DESIGN,
+        SSP,
+        IDENTIFICATION,
+        TETHER,
+        GUIDANCE,
+        LOGS,
+        MAVLINK,
+        CAN,
+    ],
     ids=lambda page: page.stem,
 )
 def test_examples_run(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -172,6 +172,7 @@ def test_a_pause_is_left_out(policy: OverrunPolicy) -> None:
     assert points == [10, 20, 30, 40, *range(1050, 1101, 10)]
     assert (pacer.overruns.count, pacer.lost_ns, pacer.drift_ns) == (0, 0, 0)
     assert pacer.as_json()["paused_s"] == 1.0
+    assert pacer.note() == "no overrun: every step ended before its deadline; 1 s paused"
 
 
 @given(

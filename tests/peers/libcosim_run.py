@@ -17,7 +17,8 @@ from libcosimpy.CosimObserver import CosimObserver
 from libcosimpy.CosimSlave import CosimLocalSlave
 
 
-def run(job: dict[str, Any]) -> list[list[float]]:
+def assembled(job: dict[str, Any]) -> tuple[CosimExecution, dict[str, int], CosimObserver]:
+    """Return the system, the indices of its slaves by name, and an observer of their values."""
     log_output_level(CosimLogLevel.WARNING)
     execution = CosimExecution.from_step_size(round(job["step"] * 1e9))
     index = {}
@@ -33,6 +34,11 @@ def run(job: dict[str, Any]) -> list[list[float]]:
         assert connect(index[source], vr_out, index[target], vr_in) == 0
     observer = CosimObserver.create_last_value()
     assert execution.add_observer(observer=observer)
+    return execution, index, observer
+
+
+def run(job: dict[str, Any]) -> list[list[float]]:
+    execution, index, observer = assembled(job)
     groups = [(index[name], references) for name, references in job["watch"]]
 
     def row() -> list[float]:

@@ -21,8 +21,8 @@ FLIGHT_S = 480.0
 def flown(module: str, trial: str, flavour: str, folder: Path) -> tuple[Run, dict[str, Any]]:
     """Return the record, and what the program ``module`` wrote into its log.
 
-    The times that ground stations, sticks and set-points count are simulated, so ``FACTOR`` times
-    shorter to their peers, and longer here.
+    The times for which sticks and set-points count are simulated, ``FACTOR`` times shorter to
+    their peers: they are longer here.
     """
     port, log, said = free_port(), folder / "log.json", folder / "flight.txt"
     given = {

@@ -112,7 +112,7 @@ def test_two_stations_see_three_vehicles_and_each_obeys_its_own_orders(tmp_path,
     # One station hears all vehicles at its port, the other is a client of each.
     by_udp = Station(255, f"udpin:{HOST}:{port}")
     with running("fleet", tmp_path, stop="6000 s", **links) as trial:
-        wait_for(lambda: trial.is_running, "the trial")
+        wait_for(lambda: trial.is_running, "the trial", 180.0)
         by_tcp = Station(250, *(f"tcp:{HOST}:{server}" for server in servers.values()))
         stations = (by_udp, by_tcp)
         served(stations, lambda: all(s.systems() == set(NAMES) for s in stations), "all vehicles")

@@ -35,7 +35,7 @@ class Craft:
 CRAFTS = {
     "hydrone": Craft("hydrone", "hull", ROVER, ((20, 0, 0), (20, 15, 0)), 3.0, 100, 2.0),
     "videoray": Craft("videoray", "vehicle", SUB, ((0, 0, 2), (5, 0, 2), (5, 4, 3)), 1.0, 120, 0.5),
-    "gloria": Craft("gloria", "boat", ROVER, ((0, 50, 0), (35, 80, 0)), 8.0, 150, 15.0),
+    "gloria": Craft("gloria", "boat", ROVER, ((0, 50, 0), (35, 80, 0)), 8.0, 150, 25.0),
     "mariner": Craft("mariner", "ship", ROVER, ((2500, 0, 0), (4500, 2000, 0)), 1e3, 1200, 400.0),
 }
 every = pytest.mark.parametrize("craft", CRAFTS.values(), ids=CRAFTS)

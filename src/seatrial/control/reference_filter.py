@@ -39,9 +39,7 @@ class HeadingReference(Sampled):
     heading_start = Parameter(0.0, "rad", "heading at the start, where the model is at rest")
 
     target = Input("rad", "course wanted, clockwise from north")
-    engaged = Input(
-        "1", "whether an autopilot follows it", type=bool, start=True, optional=True
-    )
+    engaged = Input("1", "whether an autopilot follows it", type=bool, start=True, optional=True)
     measured_heading = Input("rad", "heading of the craft, clockwise from north", optional=True)
     measured_rate = Input("rad/s", "rate of turn of the craft, to starboard", optional=True)
 

@@ -109,8 +109,12 @@ class SailControl(Sampled):
     flap = Output("rad", "size wanted of the flap's angle")
     heeling_moment = Output("N.m", "heeling moment predicted, to starboard positive")
 
-    _ACTING = ("heading", "wind", "apparent_wind", "heel", "roll_rate", "trimming", "sheet")
-    feedthrough: ClassVar = {"sail": _ACTING, "flap": _ACTING, "heeling_moment": _ACTING}
+    _ACTING = ("heading", "wind", "apparent_wind", "heel", "roll_rate", "trimming")
+    feedthrough: ClassVar = {
+        "sail": (*_ACTING, "sheet"),
+        "flap": _ACTING,
+        "heeling_moment": (*_ACTING, "sheet"),
+    }
 
     def reset(self, t: float) -> None:
         """Start without a side; raises InputError for angles out of order."""

@@ -45,7 +45,7 @@ class SailingGuidance(GuidanceOrders):
     loiter  circle, with ``loiter_radius``, about where the mode was set
     ======= ===============================================================================
 
-    The wind says how fast it goes: of speeds only 0 is obeyed, which is to lie to.
+    The wind says how fast it goes: of speeds only 0 and less are obeyed, which is to lie to.
 
     **Neutral.** Not ``armed``, or without a heading or (but in manual) a position for longer than
     ``timeout``, no autopilot acts and ``direct`` is 0: rudder amidships, sail streaming.
@@ -150,21 +150,21 @@ class SailingGuidance(GuidanceOrders):
     )
 
     _ABLE = ("mode", "armed", "position_valid", "heading_valid")
-    _TASK = (
-        *("target_kind", "target_valid", "target_position", "target_velocity", "target_heading"),
-        *("target_speed", "leg", "leg_from", "leg_to", "leg_speed", "leg_radius", "leg_circle"),
-        *("home", "position_n"),
+    _GOAL = (
+        *("target_kind", "target_valid", "target_position", "leg", "leg_to", "home", "position_n"),
     )
-    _SAILED = (*_ABLE, *_TASK, "heading", "velocity_n", "wind")
+    _STATE = ("target_speed", "leg_speed", "leg_radius")
+    _SPEED = (*_GOAL, *_STATE, "target_velocity", "leg_circle")
+    _SAILED = (*_ABLE, *_SPEED, "leg_from", "target_heading", "heading", "velocity_n", "wind")
     feedthrough: ClassVar = {
-        "engaged": (*_ABLE, *_TASK, "heading", "velocity_n"),
+        "engaged": (*_ABLE, *_SPEED, "heading", "velocity_n"),
         "direct": ("mode", "armed", "manual"),
         "heading_wanted": _SAILED,
         "course": _SAILED,
         "wearing": _SAILED,
-        "state": _SAILED,
-        "cross_track": _SAILED,
-        "distance": (*_ABLE, *_TASK),
+        "state": (*_ABLE, *_GOAL, *_STATE, "heading", "velocity_n", "wind"),
+        "cross_track": (*_ABLE, *_SPEED, "leg_from", "heading", "velocity_n", "wind"),
+        "distance": (*_ABLE, *_GOAL),
         "reached": (*_ABLE, "leg", "leg_to", "leg_radius", "leg_wait", "position_n"),
     }
 
@@ -204,7 +204,7 @@ class SailingGuidance(GuidanceOrders):
         if manual:
             return self._unsteered(MANUAL, here)
         decision = self._ordered(before, here[2])
-        if decision.command.speed == 0.0:
+        if decision.command.speed <= 0.0:
             return self._lying(decision, before)
         return self._sailing(decision, before)
 

@@ -103,14 +103,15 @@ class Pacer:
 
     def note(self) -> str:
         """Return for a person how well the run kept its time."""
+        paused = f"; {self.paused_ns / NS:.3g} s paused" if self.paused_ns else ""
         if not self.overruns.count:
-            return "no overrun: every step ended before its deadline"
+            return f"no overrun: every step ended before its deadline{paused}"
         said = (
             f"{self.overruns.count} of {self.overruns.count + self.slack.count} steps ended after "
             f"their deadline, the latest {self.overruns.longest_ns / 1e6:.3g} ms, "
             f"at t = {(self.overruns.longest_at_ns or 0) / NS:g} s"
         )
-        return said + (f"; {self.lost_ns / NS:.3g} s lost" if self.lost_ns else "")
+        return said + (f"; {self.lost_ns / NS:.3g} s lost" if self.lost_ns else "") + paused
 
     def as_json(self) -> dict[str, Any]:
         """Return what ``timing.json`` says of it."""

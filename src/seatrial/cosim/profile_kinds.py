@@ -28,6 +28,8 @@ KINDS: dict[str, dict[str, str]] = {
         "imu": "devices.imu:Imu",
     },
     "links": {
+        "can-gateway": "links.can.gateway:CanGateway",
+        "canbus": "links.can.component:CanBus",
         "mavlink": "links.mavlink.component:Mavlink",
     },
 }

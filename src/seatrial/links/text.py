@@ -26,7 +26,8 @@ from ..errors import InputError, SimulationError
 Chunk = tuple[int, bytes]
 """Simulated time, ns, and bytes."""
 
-_TEXT = re.compile(r"(0|[1-9][0-9]*)((?:;(?:0|[1-9][0-9]*):[A-Za-z0-9+/=]*)*)")
+_NUMBER = re.compile(r"0|[1-9][0-9]{0,19}")
+_PART = re.compile(rf"({_NUMBER.pattern}):([A-Za-z0-9+/=]*)")
 
 
 def encode(sequence: int, chunks: Iterable[Chunk]) -> str:
@@ -53,22 +54,28 @@ def decode(text: str) -> tuple[int, list[Chunk]]:
     """
     if not text:
         return 0, []
-    match = _TEXT.fullmatch(text)
-    if match is None:
-        raise InputError(
-            f"{_shown(text)} is not a bytes text such as '3;1500000000:SGVsbG8=' "
-            "(SEQUENCE;TIME in ns:BASE64;...)"
-        )
-    return int(match.group(1)), [_chunk(part) for part in match.group(2).split(";")[1:]]
+    head, *parts = text.split(";")
+    if not _NUMBER.fullmatch(head):
+        raise _refused(text)
+    return int(head), [_chunk(part) for part in parts]
 
 
 @lru_cache(4096)  # what a bus says is read by many
 def _chunk(part: str) -> Chunk:
-    time_text, _, data = part.partition(":")
+    match = _PART.fullmatch(part)
+    if match is None:
+        raise _refused(part)
     try:
-        return int(time_text), binascii.a2b_base64(data, strict_mode=True)
+        return int(match[1]), binascii.a2b_base64(match[2], strict_mode=True)
     except binascii.Error as error:
-        raise InputError(f"{_shown(data)} in a bytes text is not base64: {error}") from None
+        raise InputError(f"{_shown(match[2])} in a bytes text is not base64: {error}") from None
+
+
+def _refused(text: str) -> InputError:
+    return InputError(
+        f"{_shown(text)} is not a bytes text such as '3;1500000000:SGVsbG8=' "
+        "(SEQUENCE;TIME in ns:BASE64;...)"
+    )
 
 
 class Outbox:

@@ -176,7 +176,7 @@ def test_what_is_asked_for_is_sent_dropped_or_waits(asked, mailboxes, queue, rat
         busy = sum(s.end_ps - s.start_ps for s in bench.sent) / US
         assert busy <= bench.bus.busy_ps / US <= until
         for node, controller in enumerate(bench.nodes):
-            due = sum(1 for when, n, *_ in asked if n == node and when <= until)
+            due = sum(1 for when, n, *_ in asked if n == node and when < until)
             assert controller.asked == due
             assert controller.asked == controller.sent + controller.dropped + controller.waiting
     for sent in bench.sent:

@@ -71,11 +71,13 @@ def frames(draw, fd=False):
     return Frame(identifier, data, extended, fd=fd, bit_rate_switch=switch, error_state=state)
 
 
+@settings(deadline=None)
 @given(frames())
 def test_classic_frames_are_as_long_as_their_construction(frame):
     assert length(frame) == (len(wire.classic(frame)), 0)
 
 
+@settings(deadline=None)
 @given(frames(fd=True))
 def test_fd_frames_are_as_long_as_their_construction(frame):
     slow, fast, tail = wire.fd(frame)
@@ -85,6 +87,7 @@ def test_fd_frames_are_as_long_as_their_construction(frame):
         assert length(frame) == (len(slow + fast + tail), 0)
 
 
+@settings(deadline=None)
 @given(frames())
 def test_classic_frames_keep_to_the_bounds_of_the_standard(frame):
     """From the start of frame to the CRC there are n bits, and at most (n - 1) / 4 stuff bits."""
@@ -97,6 +100,7 @@ def test_the_worst_case_is_reached():
     assert stuffed(0b11111_0000_1111_0000_1111, 21) == 5 == (21 - 1) // 4
 
 
+@settings(deadline=None)
 @given(st.binary(max_size=80))
 def test_the_crc_is_that_of_the_bitwise_definition(data):
     bits = [int(digit) for byte in data for digit in format(byte, "08b")]
@@ -124,7 +128,7 @@ def test_random_frames_of_eight_bytes(extended, least, mean, most):
     assert most - 3 <= max(found) <= most + 5
 
 
-@settings(max_examples=50)
+@settings(max_examples=50, deadline=None)
 @given(frames(), st.integers(0, 63))
 def test_the_first_difference_is_where_the_wires_part(frame, which):
     if not frame.data:

@@ -1,7 +1,7 @@
 """The codec against the layered standard's definitions: codes, sizes, bytes written out."""
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from seatrial.errors import InputError
@@ -103,11 +103,13 @@ def test_what_is_no_operation_is_refused(written, what):
         decode(bytes.fromhex(written))
 
 
+@settings(deadline=None)
 @given(st.one_of(frames(), frames(fd=True)))
 def test_frames_come_back(frame):
     assert decode(encode(Transmit(frame))) == [Transmit(frame)]
 
 
+@settings(deadline=None)
 @given(st.one_of(st.binary(max_size=60), frames().map(lambda f: encode(Transmit(f)))), st.data())
 def test_any_bytes_are_operations_or_refused(octets, data):
     spoiled = bytearray(octets)

@@ -83,7 +83,7 @@ def messages_leave_it_sane(random):
     bench, heard, sender = some_bench(random), codec(), peer()
     for _ in range(random.randint(1, MOST_MESSAGES)):
         deliver(bench, heard, message(random).pack(sender))
-    bench.wait(0.5)
+    bench.wait(0.05)
     is_sane(bench)
 
 

@@ -1,6 +1,7 @@
 """What the messages say, against the conversions written out here or made by pymavlink."""
 
 import math
+from dataclasses import replace
 
 import pytest
 from hypothesis import given
@@ -132,6 +133,8 @@ def test_where_it_heads_for():
     assert m.aspd_error == pytest.approx(0.3)
     deep = said("NAV_CONTROLLER_OUTPUT", submerged=True, way=WAY, position_n=(0.0, 0.0, 12.0))
     assert deep.alt_error == 9.0  # 3 m deep is wanted: higher
+    sails = said("NAV_CONTROLLER_OUTPUT", way=replace(WAY, speed=None), velocity_n=(0.5, 0.0, 0.0))
+    assert sails.aspd_error == 0.0
     assert silent("NAV_CONTROLLER_OUTPUT")
 
 

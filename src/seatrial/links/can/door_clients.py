@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from ...errors import InputError
 from ..mavlink.endpoint import Channel, Endpoint
@@ -82,12 +82,12 @@ class ClientsDoor(Door):
     def poll(self) -> list[tuple[int, Frame]]:
         """Return frames that have arrived, and who sent each."""
         arrived = self._endpoint.poll()
-        self._meet()
+        self._greet([*self._endpoint.channels(), *(channel for channel, _ in arrived)])
         found = []
         for channel, data in arrived:
-            if channel in self._clients:
-                frames = self._clients[channel].receive(data)
-                found += [(self._numbers[channel], frame) for frame in frames]
+            frames = self._clients[channel].receive(data)
+            found += [(self._numbers[channel], frame) for frame in frames]
+        self._forget(self._endpoint.channels())  # whoever is gone may have said something before
         for client in self._clients.values():
             client.tick()
         return found
@@ -107,13 +107,13 @@ class ClientsDoor(Door):
         """Close all connections."""
         self._endpoint.close()
 
-    def _meet(self) -> None:
-        """Greet who is new, forget who is gone."""
-        present = self._endpoint.channels()
-        for channel in [each for each in self._clients if each not in present]:
-            del self._clients[channel], self._numbers[channel]
+    def _greet(self, present: Sequence[Channel]) -> None:
         for channel in present:
             if channel not in self._clients:
                 self._clients[channel] = self._client(channel)
                 self._numbers[channel] = self._next
                 self._next += 1
+
+    def _forget(self, present: Sequence[Channel]) -> None:
+        for channel in [each for each in self._clients if each not in present]:
+            del self._clients[channel], self._numbers[channel]

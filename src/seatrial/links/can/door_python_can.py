@@ -35,7 +35,7 @@ class PythonCanDoor(Door):
             options["preserve_timestamps"] = True
         try:
             self._bus = can.Bus(channel, interface, ignore_config=True, **options)
-        except (can.CanError, OSError, ValueError, TypeError, ImportError) as error:
+        except (can.CanError, NotImplementedError, OSError, TypeError, ValueError) as error:
             raise InputError(f"cannot open the door {url!r}: {error}") from None
         self._is_simulated = interface == "virtual"
         self.reached_at = url

@@ -134,13 +134,10 @@ _PRIMARY, _SECONDARY = 1, 2
 def encode(operation: Operation) -> bytes:
     """Return an operation as bytes."""
     match operation:
-        case Transmit(frame) if frame.fd:
-            return _whole(FD_TRANSMIT, _fd(frame))
         case Transmit(frame):
-            # As many bytes as a remote frame asks for: its length would be lost otherwise.
-            data = bytes(frame.requested) if frame.remote else frame.data
-            header = (frame.identifier, frame.extended, frame.remote, len(data))
-            return _whole(CAN_TRANSMIT, _CAN.pack(*header) + data)
+            return (
+                _whole(FD_TRANSMIT, _fd(frame)) if frame.fd else _whole(CAN_TRANSMIT, _can(frame))
+            )
         case Confirm(identifier):
             return _whole(CONFIRM, _ID.pack(identifier))
         case ArbitrationLost(identifier):
@@ -184,6 +181,12 @@ def _decoded_all(data: bytes) -> tuple[Operation, ...]:
 
 def _whole(code: int, arguments: bytes) -> bytes:
     return _HEADER.pack(code, _HEADER.size + len(arguments)) + arguments
+
+
+def _can(frame: Frame) -> bytes:
+    # As many bytes as a remote frame asks for: its length would be lost otherwise.
+    data = bytes(frame.requested) if frame.remote else frame.data
+    return _CAN.pack(frame.identifier, frame.extended, frame.remote, len(data)) + data
 
 
 def _fd(frame: Frame) -> bytes:

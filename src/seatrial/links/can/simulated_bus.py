@@ -176,7 +176,7 @@ class SimulatedBus:
             self._begin(start)
         if self.attempt is None:
             self._idle(until_ps)
-        self._arrive(until_ps)
+        self._arrive(until_ps - 1)  # at that very time, faults of that time count already
         self.now_ps = max(self.now_ps, until_ps)
 
     def unplug(self, node: int) -> None:
@@ -301,11 +301,11 @@ class SimulatedBus:
 
     def _is_heard(self, attempt: Attempt) -> bool:
         """Say if anybody acknowledges the frame."""
-        silent = {*attempt.senders, *attempt.gave_way, attempt.deaf}
-        return any(
-            each.takes_part and node not in silent and each.back_ps <= attempt.start_ps
-            for node, each in enumerate(self.controllers)
-        )
+        silent = (*attempt.senders, *attempt.gave_way, attempt.deaf)
+        for node, each in enumerate(self.controllers):
+            if each.takes_part and node not in silent and each.back_ps <= attempt.start_ps:
+                return True
+        return False
 
     def _collide(
         self, senders: list[int], gave_way: list[int], frames: dict[int, Frame]
@@ -355,11 +355,6 @@ class SimulatedBus:
         self.counted_ps = self.free_ps - SEQUENCE_BITS * self._bit
         self._count_sequences(1)
         self.counted_ps = self.free_ps
-        for node in attempt.losers:
-            request = self.controllers[node].sending
-            if request is not None:
-                self.controllers[node].give_up()
-                self.on_given_up(GivenUp(attempt.end_ps, node, request.frame))
         for node in attempt.gave_way:
             if self.controllers[node].plugged:
                 self._failed(node, 8)
@@ -367,25 +362,28 @@ class SimulatedBus:
             self._succeed(attempt)
         else:
             self._break(attempt, attempt.error)
+        for node in attempt.losers:
+            request = self.controllers[node].sending
+            if request is not None:
+                self.controllers[node].give_up()
+                self.on_given_up(GivenUp(attempt.end_ps, node, request.frame))
 
     def _succeed(self, attempt: Attempt) -> None:
-        asked, receivers = attempt.start_ps, []
-        apart = {*attempt.senders, *attempt.gave_way}
+        start, senders, deaf = attempt.start_ps, attempt.senders, attempt.deaf
+        asked, receivers = start, []
         for node, each in enumerate(self.controllers):
-            if node in attempt.senders:
+            if node in senders:
                 asked = min(asked, each.sent_one().asked_ps)
                 self._suspend(each)
-            elif not each.plugged or each.off or each.back_ps > attempt.start_ps:
+            elif not each.plugged or each.off or each.back_ps > start or node in attempt.gave_way:
                 continue
-            elif node == attempt.deaf:
+            elif node == deaf:
                 each.lost += 1
                 each.failed_to_receive(0 if each.listens_only else 1)
-            elif node not in apart:
+            else:
                 each.got_one()
                 receivers.append(node)
-        self.on_sent(
-            Sent(attempt.start_ps, attempt.end_ps, attempt.frame, attempt.senders, asked, receivers)
-        )
+        self.on_sent(Sent(start, attempt.end_ps, attempt.frame, senders, asked, receivers))
 
     def _break(self, attempt: Attempt, error: Error) -> None:
         apart = {*attempt.senders, *attempt.gave_way}

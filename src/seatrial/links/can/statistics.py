@@ -41,14 +41,14 @@ class Statistics:
         """Return all of it as plain data, times in s."""
         return {
             "duration_s": duration_s,
-            "load": busy_s / duration_s if duration_s else 0.0,
+            "load": round(busy_s / duration_s, 9) if duration_s else 0.0,
             "frames": sum(counts.total() for counts in self._latencies.values()),
             "error_frames": dict(sorted(self._error_frames.items())),
             "identifiers": [
                 {
                     "identifier": f"0x{identifier:0{8 if extended else 3}X}",
                     "frames": counts.total(),
-                    "rate_hz": counts.total() / duration_s if duration_s else 0.0,
+                    "rate_hz": round(counts.total() / duration_s, 6) if duration_s else 0.0,
                     "latency_s": _latency(counts),
                 }
                 for (identifier, extended), counts in sorted(self._latencies.items())
@@ -71,7 +71,7 @@ def _latency(counts: Counter[int]) -> dict[str, float]:
     values, total = sorted(counts), counts.total()
     found = {
         "min": values[0] / 1e6,
-        "mean": sum(value * count for value, count in counts.items()) / total / 1e6,
+        "mean": round(sum(value * count for value, count in counts.items()) / total / 1e6, 9),
         "max": values[-1] / 1e6,
     }
     for percent in _PERCENTILES:

@@ -80,6 +80,8 @@ class CanTraffic(Noise, Component):
 
     def start(self, t: float) -> None:
         """Begin to count."""
+        if self.size % 1.0:
+            raise InputError(f"{self.name}: size is {self.size!r}, a whole number is needed")
         self._begun_ns = self.now_ns
         self._messages = [_message(text) for text in _parts(self.messages)]
         self._identifiers = [_identifier(text, "background") for text in self.background.split()]

@@ -169,19 +169,28 @@ class Mavlink(Logging, Reachable, Sampled):
         "1", "whether rates and specific force are valid", type=bool, start=True, optional=True
     )
     pressure = Input(
-        "Pa", "absolute pressure of the air or, submerged, the water, 0 if it is not measured"
+        "Pa",
+        "absolute pressure of the air or, submerged, the water, 0 if it is not measured",
+        optional=True,
     )
-    ground_distance = Input("m", "distance to the ground below, 0 if it is not measured")
-    wind_speed = Input("m/s", "speed of the apparent wind")
-    wind_angle = Input("rad", "where the apparent wind blows to from the bow, to starboard")
-    wind_valid = Input("1", "whether the wind is measured", type=bool)
-    voltage = Input("V", "voltage of the battery, 0 if it is not measured")
-    current = Input("A", "current out of the battery")
-    charge = Input("1", "share of the battery's charge that is left", start=1.0)
+    ground_distance = Input(
+        "m", "distance to the ground below, 0 if it is not measured", optional=True
+    )
+    wind_speed = Input("m/s", "speed of the apparent wind", optional=True)
+    wind_angle = Input(
+        "rad", "where the apparent wind blows to from the bow, to starboard", optional=True
+    )
+    wind_valid = Input("1", "whether the wind is measured", type=bool, optional=True)
+    voltage = Input("V", "voltage of the battery, 0 if it is not measured", optional=True)
+    current = Input("A", "current out of the battery", optional=True)
+    charge = Input("1", "share of the battery's charge that is left", start=1.0, optional=True)
     pulse = Input(
-        "s", "servo pulses, 0 for none", axes=tuple(f"ch{n}" for n in range(1, CHANNELS + 1))
+        "s",
+        "servo pulses, 0 for none",
+        axes=tuple(f"ch{n}" for n in range(1, CHANNELS + 1)),
+        optional=True,
     )
-    named = Input("1", "values that `names` names, in any unit", axes=_NAMED)
+    named = Input("1", "values that `names` names, in any unit", axes=_NAMED, optional=True)
     true_position = Input("m", "true position, north-east-down", axes="xyz")
     true_velocity = Input("m/s", "true velocity, body axes", axes=("u", "v", "w"))
     true_attitude = Input("rad", "true Euler angles, ZYX", axes=_EULER)
@@ -189,8 +198,13 @@ class Mavlink(Logging, Reachable, Sampled):
     true_acceleration = Input("m/s2", "true inertial acceleration, body axes", axes="xyz")
     nav_state = Input("1", "guidance: 2 stays, 3 follows a leg, 4 steers, else less", type=int)
     nav_heading = Input("rad", "guidance: heading wanted, clockwise from north")
-    nav_speed = Input("m/s", "guidance: speed wanted over ground along the bow")
-    nav_depth = Input("m", "guidance: depth wanted, positive down")
+    nav_speed = Input(
+        "m/s",
+        "guidance: speed wanted over ground along the bow, below 0 for none",
+        start=-1.0,
+        optional=True,
+    )
+    nav_depth = Input("m", "guidance: depth wanted, positive down", optional=True)
     nav_cross_track = Input("m", "guidance: cross-track error, positive to starboard of the leg")
     nav_distance = Input("m", "guidance: horizontal distance to where it goes")
     leg_reached = Input("1", "number of the leg that is done, 0 while none is", type=int)
@@ -414,7 +428,7 @@ class Mavlink(Logging, Reachable, Sampled):
     def _way(self) -> Way:
         return Way(
             self.nav_heading,
-            self.nav_speed,
+            self.nav_speed if self.nav_speed >= 0.0 else None,
             self.nav_depth,
             self.nav_cross_track,
             self.nav_distance,

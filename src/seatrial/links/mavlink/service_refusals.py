@@ -25,7 +25,7 @@ _REASONS: Mapping[int, str] = {
 
 
 class RefusalService(Service):
-    """Denies reboot, calibration, servos and relays, and says why; so it does with SETUP_SIGNING."""
+    """Denies reboot, calibration, servos and relays, refuses SETUP_SIGNING, and says why."""
 
     @property
     def commands(self) -> Mapping[int, Handler]:

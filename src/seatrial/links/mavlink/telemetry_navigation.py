@@ -51,7 +51,7 @@ class NavigationTelemetry(Service):
                 _bearing(bearing),
                 uint16(way.distance),
                 down - way.depth if self.vehicle.identity.submerged else 0.0,
-                way.speed - ahead,
+                0.0 if way.speed is None else way.speed - ahead,
                 way.cross_track,
             )
         ]

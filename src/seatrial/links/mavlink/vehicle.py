@@ -33,8 +33,8 @@ class Way:
     """What guidance wants, and how far off the vehicle is. SI, rad."""
 
     heading: float
-    speed: float
-    """Over ground, along the bow."""
+    speed: float | None
+    """Over ground, along the bow; None if no speed is wanted."""
     depth: float
     cross_track: float
     """From leg or circle, positive to starboard of it."""

@@ -1,0 +1,193 @@
+"""What a frame on the simulated CAN bus costs: ``python -m benchmarks.can``.
+
+Random data frames of 8 bytes from ten nodes on a bus of 250 kbit/s that is full, in steps of 10 ms:
+frames per second of processor time, the median over rounds and its range. Machines differ and so do
+the hours of one machine; so each round also adds up numbers in a loop, and the table has how many
+such additions a frame costs. ``--write`` puts the table into docs/can.md.
+"""
+
+from __future__ import annotations
+
+import argparse
+import platform
+import random
+import statistics
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from seatrial.cosim.master import Master
+from seatrial.cosim.rig import load_rig
+from seatrial.cosim.system import assemble
+from seatrial.links.can.component import NODES, CanBus
+from seatrial.links.can.controller import Controller
+from seatrial.links.can.frame import Frame
+from seatrial.links.can.node import CanNode
+from seatrial.links.can.simulated_bus import SimulatedBus
+
+PAGE = Path(__file__).parents[1] / "docs" / "can.md"
+SENDERS = 10
+BETWEEN_NS = 550_000
+"""Between requests; frames last 524 to 576 us."""
+STEP_NS = 10_000_000
+ADDITIONS = 1_000_000
+RIG = """
+step = "10 ms"
+
+[components]
+can = {{ fmu = "canbus", set = {{ nodes = "{names}", queue_length = 1000 }} }}
+{nodes}
+
+[connections]
+{wires}
+"""
+
+
+def frames(count: int) -> list[tuple[int, int, Frame]]:
+    """Return (time in ns, node, frame) of requests that fill the bus."""
+    rng = random.Random(1)
+    return [
+        (
+            k * BETWEEN_NS,
+            k % SENDERS,
+            Frame(0x09F10000 + rng.randrange(256), rng.randbytes(8), True),
+        )
+        for k in range(count)
+    ]
+
+
+def arbitration(count: int) -> float:
+    """Return the time of the bus alone: queues, arbitration, lengths, counters; s."""
+    bus = SimulatedBus([Controller(str(n), 1000, 3) for n in range(SENDERS)], 250_000, 2_000_000)
+    asked = frames(count)
+    begin = time.process_time()
+    for when, node, frame in asked:
+        bus.ask(when * 1000, node, frame)
+    bus.run(10**18)
+    spent = time.process_time() - begin
+    assert bus.attempts == count
+    return spent
+
+
+def component(count: int, *, heard: bool, folder: str = "") -> float:
+    """Return the time of the component, its nodes asking, and all hearing if wanted; s."""
+    bus = CanBus("can")
+    bus.set("nodes", " ".join(f"n{n}" for n in range(SENDERS)))
+    bus.set("queue_length", 1000.0)
+    bus.initialise()
+    bus.begin()
+    bus.set("run_folder", folder)
+    memories: list[dict[str, object]] = [{} for _ in range(SENDERS)]
+    asked, place, now, received = frames(count), 0, 0, 0
+    begin = time.process_time()
+    while bus.get("frames") < count:
+        nodes = [CanNode(memory) for memory in memories]
+        if heard:
+            received += sum(len(node.hear(rx)) for node, rx in zip(nodes, bus.rx, strict=False))
+        while place < count and asked[place][0] <= now + STEP_NS:
+            when, number, frame = asked[place]
+            nodes[number].send(when, frame)
+            place += 1
+        bus.advance(now / 1e9, STEP_NS / 1e9)
+        bus.set("tx", [node.flush() for node in nodes] + [""] * (NODES - SENDERS))
+        now += STEP_NS
+    bus.close()
+    spent = time.process_time() - begin
+    assert received >= (count - 40) * SENDERS * heard
+    return spent
+
+
+def rig(count: int, engine: str) -> float:
+    """Return the time of a rig of ``can-traffic`` and ``canbus``, in process or as FMUs; s."""
+    names = [f"n{n + 1}" for n in range(SENDERS)]
+    each = [
+        f'{n} = {{ fmu = "can-traffic", set = {{ load = 0.1, background = "0x09F1{k:04X}" }} }}'
+        for k, n in enumerate(names)
+    ]
+    wires = [f'"{n}.tx" = "can.tx.{n}"\n"can.rx.{n}" = "{n}.rx"' for n in names]
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "rig.toml")
+        path.write_text(
+            RIG.format(names=" ".join(names), nodes="\n".join(each), wires="\n".join(wires)),
+            "utf-8",
+        )
+        system = assemble(load_rig(str(path)), engine)
+        try:
+            master = Master(system)
+            master.initialise()
+            begin = time.process_time()
+            for _ in range(count * BETWEEN_NS // STEP_NS):
+                master.step()
+            spent = time.process_time() - begin
+            sent = master.signals[master.names.index(("can", "frames"))]
+        finally:
+            system.free()
+    return spent * count / float(sent)
+
+
+def addition() -> float:
+    """Return the time of one addition in a loop, s."""
+    begin, total = time.process_time(), 0
+    for k in range(ADDITIONS):
+        total += k
+    return (time.process_time() - begin) / ADDITIONS
+
+
+def logged(count: int) -> float:
+    """Return the time of the component with its logs, s."""
+    with tempfile.TemporaryDirectory() as folder:
+        return component(count, heard=True, folder=folder)
+
+
+ROWS: dict[str, Callable[[int], float]] = {
+    "arbitration alone": arbitration,
+    "the component; nodes ask": lambda count: component(count, heard=False),
+    "the component; nodes ask, and hear all": lambda count: component(count, heard=True),
+    "the same, with logs": logged,
+    "a rig of ten `can-traffic`, in process": lambda count: rig(count, "direct"),
+    "the same as FMUs": lambda count: rig(count, "fmu"),
+}
+
+
+def table(rounds: int, count: int) -> str:
+    """Return the table in Markdown."""
+    lines = [
+        "| what | frames per second | times a full bus of 250 kbit/s | additions per frame |",
+        "| --- | --- | --- | --- |",
+    ]
+    for name, work in ROWS.items():
+        found = [(work(count) / count, addition()) for _ in range(rounds)]
+        rates = [1 / spent for spent, _ in found]
+        rate = statistics.median(rates)
+        additions = statistics.median(spent / unit for spent, unit in found)
+        lines.append(
+            f"| {name} | {rate:,.0f} ({min(rates):,.0f} to {max(rates):,.0f}) "
+            f"| {rate * BETWEEN_NS / 1e9:.1f} | {additions:,.0f} |"
+        )
+    return "\n".join(lines)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawTextHelpFormatter
+    )
+    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--frames", type=int, default=10_000)
+    parser.add_argument("--write", action="store_true", help="put the table into docs/can.md")
+    options = parser.parse_args()
+    unit = addition() * 1e9
+    text = (
+        f"Python {platform.python_version()}, {options.rounds} rounds of {options.frames} frames; "
+        f"an addition in a loop took {unit:.0f} ns.\n\n"
+    )
+    text += table(options.rounds, options.frames)
+    print(text)
+    if options.write:
+        begin, end = "<!-- measured -->\n", "<!-- end of measured -->"
+        before, _, rest = PAGE.read_text("utf-8").partition(begin)
+        PAGE.write_text(f"{before}{begin}\n{text}\n\n{end}{rest.partition(end)[2]}", "utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,49 @@
+"""CAN: ports of the components."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from parts import part
+from parts.markdown import shown_unit, table
+from seatrial.component import Component
+from seatrial.links.can.component import CanBus
+from seatrial.links.can.gateway import CanGateway
+from seatrial.links.can.traffic import CanTraffic
+from seatrial.ports import Parameter, Port
+
+_HIDDEN = ("seed", "run_folder")
+
+
+def _start(port: Port) -> str:
+    if port.kind == "output":
+        return ""
+    start = port.start[0]
+    return f"`{start}`" if isinstance(start, str) and start else f"{start:g}" if start != "" else ""
+
+
+def _name(port: Port) -> str:
+    if port.axes is None:
+        return f"`{port.name}`"
+    return f"`{port.name}.{port.axes[0]}` to `{port.axes[-1]}`"
+
+
+def _kind(port: Port) -> str:
+    return "tunable parameter" if isinstance(port, Parameter) and port.tunable else port.kind
+
+
+def ports(component: type[Component]) -> str:
+    """Ports of a component: what they are, unit and start value."""
+    return table(
+        ("port", "kind", "unit", "start", "meaning"),
+        [
+            (_name(port), _kind(port), shown_unit(port.unit), _start(port), port.description)
+            for name, port in component.ports.items()
+            if name not in _HIDDEN
+        ],
+    )
+
+
+part("canbus-ports")(partial(ports, CanBus))
+part("can-gateway-ports")(partial(ports, CanGateway))
+part("can-traffic-ports")(partial(ports, CanTraffic))

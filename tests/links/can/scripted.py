@@ -1,0 +1,58 @@
+"""A `CanBus` between nodes that ask for given frames at given times, stepped by hand."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from seatrial.links.can.component import NODES, CanBus
+from seatrial.links.can.frame import Frame
+from seatrial.links.can.node import CanNode
+from seatrial.links.can.operations import Confirm, Operation, Transmit
+
+MS = 10**6
+"""Nanoseconds in a millisecond."""
+Asked = Sequence[tuple[int, int, Frame]]
+"""Time (ns), node and frame of each request, in order."""
+
+
+class Scripted:
+    """Steps the bus as Jacobi does: what is asked for in a step is on ``tx`` at its end."""
+
+    def __init__(self, bus: Any, asked: Asked, events: Mapping[int, dict] | None = None) -> None:
+        self.bus, self.asked, self.events = bus, sorted(asked, key=lambda a: a[0]), events or {}
+        self.now, self.next = 0, 0
+        self.memories: list[dict] = [{} for _ in range(NODES)]
+        self.heard: list[list[tuple[int, Operation]]] = [[] for _ in range(NODES)]
+        self.told_at: list[list[int]] = [[] for _ in range(NODES)]
+
+    def run(self, until_ns: int, step_ns: int) -> None:
+        while self.now < until_ns:
+            for name, value in self.events.get(self.now, {}).items():
+                self.bus.set(name, value)
+            nodes = [CanNode(memory) for memory in self.memories]
+            for number, text in enumerate(self.bus.get("rx")):
+                new = nodes[number].hear(text)
+                self.heard[number] += new
+                self.told_at[number] += [self.now] * len(new)
+            while self.next < len(self.asked) and self.asked[self.next][0] <= self.now + step_ns:
+                when, number, frame = self.asked[self.next]
+                nodes[number].send(when, frame)
+                self.next += 1
+            self.bus.advance(self.now / 1e9, step_ns / 1e9)
+            self.bus.set("tx", [node.flush() for node in nodes])
+            self.now += step_ns
+
+    def received(self, number: int) -> list[tuple[int, Frame]]:
+        return [(t, each.frame) for t, each in self.heard[number] if isinstance(each, Transmit)]
+
+    def confirmed(self, number: int) -> list[tuple[int, int]]:
+        return [(t, e.identifier) for t, e in self.heard[number] if isinstance(e, Confirm)]
+
+
+def bus(**values: Any) -> CanBus:
+    """Return a bus that runs."""
+    made = CanBus("can")
+    for name, value in {"nodes": "a b c", **values}.items():
+        made.set(name, value)
+    made.initialise()
+    made.begin()
+    return made

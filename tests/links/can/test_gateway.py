@@ -1,0 +1,373 @@
+"""The doors of the gateway with the programs that are to come through them."""
+
+import logging
+import socket
+import sys
+import threading
+import time
+
+import can
+import pytest
+from dronecan.driver.slcan import SLCAN
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from seatrial.errors import InputError
+from seatrial.links.can.door_slcan import SlcanDoor
+from seatrial.links.can.door_socketcand import SocketcandDoor
+from seatrial.links.can.frame import Frame
+from seatrial.links.can.gateway import CanGateway
+from seatrial.links.can.messages import frame_of, message
+from seatrial.links.hardware import ALLOWED
+from seatrial.links.mavlink.endpoint import Channel, Endpoint
+
+from .served import WAIT_S, Served
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="pseudo-terminals")
+
+COUNT = 1500
+OURS = [
+    Frame(n % 0x7FF if n % 2 else 0x18FF0000 + n, bytes([n % 251] * (n % 9)), n % 2 == 0)
+    for n in range(COUNT)
+]
+THEIRS = [Frame(0x123, n.to_bytes(8, "big")) for n in range(COUNT)]
+
+
+@pytest.fixture(autouse=True)
+def _quiet():
+    """python-can's socketcand client warns of every text that comes in two parts."""
+    logging.getLogger("can").setLevel(logging.ERROR)
+
+
+def open_bus(served, **options):
+    """Return python-can's bus at a door."""
+    kind, _, place = served.at.partition(":")
+    if kind == "socketcand":
+        host, _, port = place.partition(":")
+        return can.Bus("can0", "socketcand", host=host, port=int(port), ignore_config=True)
+    if kind == "virtual":
+        return can.Bus(place, "virtual", ignore_config=True)
+    return can.Bus(
+        served.at, "slcan", bitrate=1_000_000, sleep_after_open=0, ignore_config=True, **options
+    )
+
+
+def read(bus, count):
+    """Return the messages that come until there are so many."""
+    found, deadline = [], time.monotonic() + WAIT_S
+    while len(found) < count and time.monotonic() < deadline:
+        received = bus.recv(1.0)
+        if received is not None:
+            found.append(received)
+    return found
+
+
+DOORS = ["socketcand:127.0.0.1:0", "slcan-tcp:127.0.0.1:0", "slcan-pty", "virtual:gateway-{}"]
+
+
+@pytest.mark.parametrize("door", DOORS)
+def test_nothing_is_lost_either_way_at_a_thousand_frames_a_second(door, request):
+    with Served(door.format(request.node.name)) as served, open_bus(served) as bus:
+        served.wait(lambda: served.gateway.get("clients") == 1)
+        served.send(Frame(0x7F0))
+        while bus.recv(1.0) is None:  # it is attached
+            pass
+        served.send(*OURS)
+        sender = threading.Thread(target=lambda: [bus.send(message(f, 0.0)) for f in THEIRS])
+        sender.start()
+        arrived = read(bus, COUNT)
+        sender.join(WAIT_S)
+        served.wait(lambda: len(served.heard) == COUNT)
+        assert [frame for _, frame in served.heard] == THEIRS
+        assert [frame_of(each) for each in arrived] == OURS
+        assert served.gateway.get("frames_in") == COUNT
+        assert served.gateway.get("forgotten") == 0
+
+
+@pytest.mark.parametrize("door", ["socketcand:127.0.0.1:0", "virtual:gateway-{}"])
+def test_times_are_simulated(door, request):
+    """An extended frame of 8 bytes lasts 131 to 143 us, and its peer asked at a whole 2 ms."""
+    with Served(door.format(request.node.name)) as served, open_bus(served) as bus:
+        served.wait(lambda: served.now > 500_000_000)
+        served.send(Frame(0x18FF0000, b"12345678", True))
+        (found,) = read(bus, 1)
+        assert 0.5 < found.timestamp < served.now / 1e9
+        assert 118e-6 <= found.timestamp % 0.002 <= 143e-6
+
+
+@pytest.mark.parametrize("door", ["slcan-tcp:127.0.0.1:0", "virtual:gateway-{}"])
+def test_remote_and_fd_frames(door, request):
+    frames = [
+        Frame(0x321, remote=True, requested=5),
+        Frame(0x1ABCDEF0, extended=True, remote=True, requested=8),
+        Frame(0x222, bytes(range(24)), fd=True),
+        Frame(0x1ABCDEF0, bytes(range(64)), True, fd=True, bit_rate_switch=True),
+    ]
+    with Served(door.format(request.node.name)) as served, open_bus(served) as bus:
+        served.send(Frame(0x7F0))
+        read(bus, 1)
+        served.send(*frames)
+        assert [frame_of(each) for each in read(bus, 4)] == frames
+        for frame in frames:
+            bus.send(message(frame, 0.0))
+        served.wait(lambda: len(served.heard) == 4)
+        assert [frame for _, frame in served.heard] == frames
+
+
+def test_socketcands_clients_hear_each_other_and_not_themselves():
+    with (
+        Served("socketcand:127.0.0.1:0") as served,
+        open_bus(served) as one,
+        open_bus(served) as two,
+    ):
+        served.wait(lambda: served.gateway.get("clients") == 2)
+        one.send(message(Frame(0x100, b"one"), 0.0))
+        assert frame_of(read(two, 1)[0]) == Frame(0x100, b"one")
+        two.send(message(Frame(0x200, b"two"), 0.0))
+        assert frame_of(read(one, 1)[0]) == Frame(0x200, b"two")
+        served.send(Frame(0x300))
+        assert [frame_of(read(each, 1)[0]) for each in (one, two)] == [Frame(0x300)] * 2
+    assert [frame for _, frame in served.heard] == [Frame(0x100, b"one"), Frame(0x200, b"two")]
+
+
+def test_what_a_client_says_before_it_goes_arrives():
+    with Served("socketcand:127.0.0.1:0") as served:
+        for number in range(10):
+            with open_bus(served) as bus:
+                for _ in range(20):
+                    bus.send(message(Frame(number), 0.0))
+        served.wait(lambda: len(served.heard) == 200)
+
+
+def test_error_frames_reach_socketcands_clients():
+    with Served("socketcand:127.0.0.1:0") as served, open_bus(served) as bus:
+        served.bus.set("receive_error_rate.n2", 1.0)
+        served.send(Frame(0x100))
+        found = read(bus, 3)
+        assert all(each.is_error_frame for each in found)
+
+
+def test_the_handshake_stands_alone_on_a_busy_bus():
+    """python-can's client wants each reply in a read of its own, whatever is on the bus."""
+    with Served("socketcand:127.0.0.1:0") as served:
+        served.send(*[Frame(0x100 + n % 256) for n in range(10_000)])
+        for _ in range(5):
+            with open_bus(served) as bus:
+                assert read(bus, 1)
+        served.wait(lambda: served.gateway.get("clients") == 0)
+
+
+def text_client(served):
+    where = served.at.removeprefix("socketcand:").removeprefix("socket://")
+    host, _, port = where.partition(":")
+    made = socket.create_connection((host, int(port)), timeout=WAIT_S)
+    return made, made.makefile("rwb", buffering=0)
+
+
+def until(file, end):
+    found = b""
+    while not found.endswith(end):
+        found += file.read(1)
+    return found.decode()
+
+
+def test_socketcands_words_that_python_can_does_not_have():
+    """As in the protocol's description: echo, FD, remote frames, and what is not understood."""
+    with Served("socketcand:127.0.0.1:0") as served:
+        connection, file = text_client(served)
+        with connection, file:
+            assert until(file, b">") == "< hi >"
+            file.write(b"< open vcan0 >")
+            assert until(file, b">") == "< ok >"
+            file.write(b"< rawmode >")
+            assert until(file, b">") == "< ok >"
+            file.write(b"< echo >")
+            assert until(file, b">") == "< echo >"
+            file.write(b"< fdsend 123 01 12 1 2 3 4 5 6 7 8 9 a b c >< send 1AAAAAAA 2 1 F1 >")
+            file.write(b"< sendrtr 1F334455 3 >")
+            served.wait(lambda: len(served.heard) == 3)
+            served.send(Frame(0x7FF, bytes(12), fd=True, bit_rate_switch=True))
+            assert until(file, b">").startswith("< fdframe 7FF 01 ")
+            served.send(Frame(0x7FF, remote=True, requested=2))
+            assert until(file, b">").startswith("< rtr 7FF ")
+            for wrong in (
+                "< dance >",
+                "< send 123 9 1 >",
+                "< send 800 0 >",
+                "< send >",
+                "< send x 0 >",
+            ):
+                file.write(wrong.encode())
+                assert until(file, b">") == "< error unknown command >"
+        fd = Frame(0x123, bytes(range(1, 13)), fd=True, bit_rate_switch=True)
+        assert [frame for _, frame in served.heard] == [
+            fd,
+            Frame(0x1AAAAAAA, b"\x01\xf1", True),
+            Frame(0x1F334455, extended=True, remote=True, requested=3),
+        ]
+
+
+def test_an_adapter_answers_every_command():
+    with Served("slcan-tcp:127.0.0.1:0") as served:
+        connection, file = text_client(served)
+
+        def answer(command):
+            file.write(command.encode() + b"\r")
+            found = b""
+            while found[-1:] not in (b"\r", b"\a"):
+                found += file.read(1)
+            return found.decode()
+
+        with connection, file:
+            assert [answer(each) for each in ("", "C", "S8", "s031C", "M00000000", "X1")] == [
+                "\r"
+            ] * 6
+            assert answer("t1230") == "\a"  # closed
+            assert answer("V") == "V1010\r"
+            assert answer("N") == "NSIMU\r"
+            assert answer("F") == "F00\r"
+            assert [answer(each) for each in ("Z1", "O", "t12321122", "T1234567800")] == [
+                *("\r", "\r", "\r"),
+                "\a",
+            ]
+            for wrong in (
+                "t",
+                "t123",
+                "tXYZ0",
+                "t8000",
+                "t1239112233445566778899",
+                "T200000000",
+                "?",
+            ):
+                assert answer(wrong) == "\a"
+            served.send(Frame(0x321, b"\xab"))
+            line = until(file, b"\r")
+            assert line[:7] == "t3211AB"
+            assert 0 <= int(line[7:11], 16) < 60_000
+            assert answer("L") == "\r"
+            assert answer("t1230") == "\a"  # it only listens
+        assert [frame for _, frame in served.heard] == [Frame(0x123, b"\x11\x22")]
+
+
+def test_dronecans_slcan_driver_at_a_pseudo_terminal():
+    with Served("slcan-pty") as served:
+        driver = SLCAN(served.at, bitrate=1_000_000)
+        try:
+            driver.send(0x1401557F, b"\x01\x02", extended=True)
+            served.wait(lambda: len(served.heard) == 1)
+            served.send(*(Frame(0x1401557F + n, bytes([n]), True) for n in range(100)))
+            found = [driver.receive(WAIT_S) for _ in range(100)]
+        finally:
+            driver.close()
+        assert served.heard[0][1] == Frame(0x1401557F, b"\x01\x02", True)
+        assert [(f.id, f.data, f.extended) for f in found] == [
+            (0x1401557F + n, bytes([n]), True) for n in range(100)
+        ]
+
+
+def gateway(door):
+    made = CanGateway("door")
+    made.set("door", door)
+    made.initialise()
+    return made
+
+
+@pytest.mark.parametrize(
+    ("door", "what"),
+    [
+        ("socketcnd:127.0.0.1:1", "did you mean 'socketcand'"),
+        ("socketcand:127.0.0.1", "of the form 'socketcand:127.0.0.1:29536'"),
+        ("socketcand:127.0.0.1:99999", "cannot open the door"),
+        ("slcan-tcp:no.such.host.invalid:1", "cannot open the door"),
+        ("slcan-pty:7", "of the form 'slcan-pty'"),
+        ("virtual:", "of the form 'virtual:can0'"),
+        ("python-can:socketcan:can0", "is a real bus; allow it with --hardware"),
+        ("python-can:slcan:/dev/ttyACM0:250000", "is a real bus"),
+        ("python-can:udp_multicast:239.0.0.1", "is a real bus"),
+        ("python-can:nosuchbus:x", "is a real bus"),
+    ],
+)
+def test_doors_that_cannot_be_are_named(door, what, monkeypatch):
+    monkeypatch.delenv(ALLOWED, raising=False)
+    with pytest.raises(InputError, match=what):
+        gateway(door)
+
+
+def test_an_unknown_bus_is_named_where_hardware_is_allowed(monkeypatch):
+    monkeypatch.setenv(ALLOWED, "1")
+    with pytest.raises(InputError, match="cannot open the door 'python-can:nosuchbus:x'"):
+        gateway("python-can:nosuchbus:x")
+
+
+def test_a_port_in_use_is_named():
+    first = gateway("socketcand:127.0.0.1:0")
+    with pytest.raises(InputError, match="in use"):
+        gateway(first.get("reached_at"))
+    first.close()
+    gateway(first.get("reached_at")).close()
+
+
+def test_a_real_adapters_program_is_a_door_too(monkeypatch):
+    """python-can's slcan interface at this side of a pseudo-terminal, an adapter at the other."""
+    monkeypatch.delenv(ALLOWED, raising=False)
+    with Served("slcan-pty") as adapter, Served(f"python-can:slcan:{adapter.at}:1000000") as served:
+        adapter.send(Frame(0x7F0))
+        served.wait(lambda: len(served.heard) == 1)
+        served.send(Frame(0x111, b"there"))
+        adapter.wait(lambda: len(adapter.heard) == 1)
+        assert adapter.heard[0][1] == Frame(0x111, b"there")
+
+
+class Deaf(Channel):
+    def __init__(self):
+        self.said = b""
+
+    def send(self, data):
+        self.said += data
+
+
+class Fed(Endpoint):
+    """An endpoint whose one peer sends what it is given."""
+
+    url = "tcpin:127.0.0.1:1"
+
+    def __init__(self):
+        self.peer, self.next = Deaf(), []
+
+    def channels(self):
+        return [self.peer]
+
+    def poll(self):
+        found, self.next = [(self.peer, each) for each in self.next], []
+        return found
+
+    def close(self):
+        pass
+
+
+@pytest.mark.parametrize("kind", [SocketcandDoor, SlcanDoor])
+@settings(deadline=None)
+@given(data=st.data())
+def test_no_text_whatsoever_breaks_a_door(kind, data):
+    endpoint = Fed()
+    door = kind(endpoint)
+    words = [
+        b"< ",
+        b" >",
+        b"send",
+        b" 123",
+        b" 8",
+        b"fdsend",
+        b"sendrtr",
+        b"open x",
+        b"\r",
+        b"O\r",
+        b"t1232",
+        b"T",
+        b"B",
+    ]
+    part = st.one_of(st.sampled_from(words), st.binary(max_size=12))
+    for _ in range(3):
+        endpoint.next = [b"".join(data.draw(st.lists(part, max_size=12)))]
+        for _, frame in door.poll():
+            door.send(0, frame)

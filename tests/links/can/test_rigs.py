@@ -1,0 +1,139 @@
+"""Buses in rigs: the delay of the coupling, both carriers, and what `seatrial run` leaves."""
+
+from pathlib import Path
+
+import can
+import pytest
+
+from seatrial.trials.run import run_trial
+from seatrial.trials.trial import load_trial
+
+LISTENER = '''
+from seatrial.component import Component, Input, Output
+from seatrial.links.can.node import CanNode
+from seatrial.links.can.operations import Transmit
+
+
+class Listener(Component):
+    """Says how late it hears: the time at the beginning of its step, less the frame's end."""
+
+    discrete = True
+    rx = Input("1", "what the bus tells", type=str)
+    tx = Output("1", "what it tells the bus", type=str)
+    earliest = Output("s", "of all frames")
+    latest = Output("s", "of all frames")
+    heard = Output("1", "frames", type=int)
+
+    def start(self, t):
+        self._can, self._late = {}, []
+
+    def step(self, t, h):
+        for when, operation in CanNode(self._can).hear(self.rx):
+            if isinstance(operation, Transmit):
+                self._late.append(t - when / 1e9)
+
+    def outputs(self, t):
+        self.heard = len(self._late)
+        self.earliest = min(self._late, default=0.0)
+        self.latest = max(self._late, default=0.0)
+'''
+RIG = """
+step = "{step}"
+algorithm = "{algorithm}"
+
+[components]
+{components}
+
+[connections]
+"talker.tx"   = "can.tx.n1"
+"listener.tx" = "can.tx.n2"
+"can.rx.n1"   = "talker.rx"
+"can.rx.n2"   = "listener.rx"
+"""
+CAN = 'can = { fmu = "canbus" }'
+TALKER = (
+    'talker = { fmu = "can-traffic", set = { messages = "0x123 0.00037 2; 0x18FF0001 0.0013 8" } }'
+)
+LISTENS = 'listener = { fmu = "listener.py:Listener" }'
+TRIAL = """
+rig  = "rig.toml"
+stop = "200 ms"
+"""
+
+
+def run(folder, name, *, order, algorithm="jacobi", step="1 ms", engine="direct"):
+    """Return the last row of a run, by signal, and the bus's log."""
+    text = RIG.format(step=step, algorithm=algorithm, components="\n".join(order))
+    (folder / "rig.toml").write_text(text, "utf-8")
+    (folder / "listener.py").write_text(LISTENER, "utf-8")
+    (folder / "trial.toml").write_text(TRIAL, "utf-8")
+    result = run_trial(load_trial(str(folder / "trial.toml")), folder / name, engine=engine)
+    assert result.status == "complete", result.error
+    rows = (result.folder / "signals.csv").read_text("utf-8").splitlines()
+    last = dict(zip(rows[0].split(","), rows[-1].split(","), strict=False))
+    return last, Path(result.folder, "can.log").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("algorithm", "order", "steps"),
+    [
+        ("jacobi", (CAN, TALKER, LISTENS), 1),
+        ("jacobi", (LISTENS, TALKER, CAN), 1),
+        ("plain-jacobi", (CAN, TALKER, LISTENS), 1),
+        ("gauss-seidel", (CAN, TALKER, LISTENS), 0),
+        ("gauss-seidel", (LISTENS, TALKER, CAN), 1),
+    ],
+)
+def test_a_frame_is_heard_so_many_steps_after_its_end(tmp_path, algorithm, order, steps):
+    """More than ``steps`` of 1 ms, and less than one more; the bus itself is never wrong."""
+    last, log = run(tmp_path, "run", order=order, algorithm=algorithm)
+    assert int(last["listener.heard"]) > 500
+    assert float(last["listener.earliest"]) == pytest.approx(steps * 1e-3, abs=5e-5)
+    assert float(last["listener.latest"]) == pytest.approx((steps + 1) * 1e-3, abs=5e-5)
+    _, reference = run(tmp_path, "reference", order=(CAN, TALKER, LISTENS))
+    assert log == reference
+
+
+def test_the_step_of_the_rig_does_not_change_the_bus(tmp_path):
+    logs = [
+        run(tmp_path, f"run{number}", order=(CAN, TALKER, LISTENS), step=step)[1].splitlines()
+        for number, step in enumerate(("0.1 ms", "1 ms", "10 ms"))
+    ]
+    common = min(map(len, logs))  # the last step's frames are not on the bus yet
+    assert common > 500
+    assert logs[0][:common] == logs[1][:common] == logs[2][:common]
+
+
+@pytest.mark.parametrize("name", ["can-load", "can-node-off", "can-babbling"])
+def test_shipped_trials_hold(name, tmp_path):
+    result = run_trial(load_trial(name), tmp_path / "run", engine="direct")
+    assert result.status == "complete", result.error
+    assert [name for name, _, verdict in result.verdicts if not verdict.passed] == []
+
+
+def test_both_carriers_leave_the_same_logs(tmp_path):
+    runs = [
+        run_trial(load_trial("can-bus-off"), tmp_path / engine, engine=engine)
+        for engine in ("direct", "fmu")
+    ]
+    for result in runs:
+        assert result.status == "complete", result.error
+        assert [name for name, _, verdict in result.verdicts if not verdict.passed] == []
+    for file in ("can.blf", "can.log", "can.json", "signals.csv"):
+        one, other = ((result.folder / file).read_bytes() for result in runs)
+        assert one == other
+    with can.LogReader(str(runs[0].folder / "can.blf")) as log:
+        kinds = [each.is_error_frame for each in log]
+    assert kinds.count(False) > 300
+    assert kinds.count(True) > 300
+
+
+def test_a_bus_above_its_bit_rate_fails_its_trial(tmp_path):
+    """Who shares the queue of the load waits longest; whoever has a higher priority does not."""
+    trial = load_trial("can-load").changed({"display.load": 1.1, "stop": "2 s"}, "test")
+    result = run_trial(trial, tmp_path / "run", engine="direct")
+    failed = [name for name, _, verdict in result.verdicts if not verdict.passed]
+    assert failed == [
+        "the display's state takes less than 20 ms, its period",
+        "nothing is dropped",
+    ]
