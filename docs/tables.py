@@ -1,8 +1,8 @@
 """The parts of the pages that come from code, parameter files and runs.
 
-``python docs/tables.py`` writes them anew, or those of the pages named; ``--check`` only says which
-are out of date (status 1). A part stands between a comment that names it and a comment that ends it; nothing
-else of a page is touched.
+``python docs/tables.py`` writes them anew, or those of the pages named; ``--check`` only says
+which are out of date (status 1). A part stands between a comment that names it and a comment that
+ends it; nothing else of a page is touched.
 """
 
 from __future__ import annotations

@@ -5,6 +5,8 @@ from pathlib import Path
 import can
 import pytest
 
+from seatrial.errors import InputError
+from seatrial.links.hardware import ALLOWED
 from seatrial.trials.run import run_trial
 from seatrial.trials.trial import load_trial
 
@@ -137,3 +139,70 @@ def test_a_bus_above_its_bit_rate_fails_its_trial(tmp_path):
         "the display's state takes less than 20 ms, its period",
         "nothing is dropped",
     ]
+
+
+PROFILE = """
+title = "A boat with a CAN bus"
+
+[identity]
+system_id        = 1
+component_id     = 1
+vehicle_type     = "surface_boat"
+autopilot_type   = "ardupilotmega"
+firmware_version = "0.1.0-dev"
+uid              = 1
+
+[home]
+latitude  = "0 deg"
+longitude = "0 deg"
+altitude  = "0 m"
+date      = 2026-01-01
+source    = "invented"
+
+[links.bus]
+kind = "can-gateway"
+door = "{door}"
+"""
+DOOR = """
+step = "1 ms"
+profile = "boat"
+
+[components]
+can  = { fmu = "canbus", set = { nodes = "node door", bit_rate = 500000 } }
+node = { fmu = "can-traffic", set = { messages = "0x123 0.01 2" } }
+door = { fmu = "can-gateway", profile = "links.bus" }
+
+[connections]
+"node.tx"   = "can.tx.n1"
+"door.tx"   = "can.tx.n2"
+"can.rx.n1" = "node.rx"
+"can.rx.n2" = "door.rx"
+"""
+
+
+def through(folder, door):
+    for name, text in (
+        ("hil_profiles/boat.toml", PROFILE.format(door=door)),
+        ("harness/rigs/door.toml", DOOR),
+        ("harness/trials/door.toml", 'rig = "door"\nstop = "100 ms"\n'),
+    ):
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(text, "utf-8")
+    trial = load_trial(str(folder / "harness/trials/door.toml"))
+    return run_trial(trial, folder / "run", engine="direct")
+
+
+def test_a_profile_names_the_bus(tmp_path):
+    with can.Bus(str(tmp_path), "virtual", ignore_config=True) as outside:
+        assert through(tmp_path, f"python-can:virtual:{tmp_path}").status == "complete"
+        found = [outside.recv(1.0).timestamp for _ in range(9)]
+    # Asked for every 10 ms; 11 bits and 2 bytes last 60 to 79 bits of 2 us.
+    assert all(120e-6 <= time - 0.01 * k <= 160e-6 for k, time in enumerate(found))
+
+
+def test_a_profile_that_names_hardware_needs_permission(tmp_path, monkeypatch):
+    monkeypatch.delenv(ALLOWED, raising=False)
+    with pytest.raises(
+        InputError, match="'python-can:socketcan:can0' is a real bus; allow it with"
+    ):
+        through(tmp_path, "python-can:socketcan:can0")

@@ -4,15 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from pymavlink.dialects.v20 import all as mavlink
-
-from ...component import Input, Logging, Output, Parameter, Reachable
 from ...craft.kinematics import to_body, to_ned
 from ...errors import InputError
 from ...sampled import Sampled
 from .endpoint import Endpoint
-from .endpoint_url import check_urls, open_endpoint, other_end
-from .failsafe import ACTIONS
+from .endpoint_url import open_endpoint, other_end
 from .geodesy import Origin
 from .given import midnight_us, serial_number, value_names, version, whole_number
 from .modes import MANUAL_MODES, flavour
@@ -20,9 +16,9 @@ from .node import Node
 from .parameter_file import ParameterFile
 from .parameter_table import ParameterTable
 from .parameters import vehicle_parameters
-from .parameters_simulation import FASTEST, SLOWEST
 from .parameters_tunable import MOST_TUNABLES, tunable_parameters
 from .pause import stand_still
+from .ports import NAMED_VALUES, VEHICLE_TYPES, MavlinkPorts
 from .radio import Radio
 from .scaling import STANDARD_GRAVITY
 from .service_failures import UNITS, failing_units
@@ -31,7 +27,6 @@ from .signing import Signing, read_key
 from .state_file import StateFile
 from .tlog import TelemetryLog
 from .vehicle import (
-    CHANNELS,
     STICKS_RELEASED,
     Estimates,
     Identity,
@@ -41,20 +36,11 @@ from .vehicle import (
     Way,
 )
 
-VEHICLE_TYPES = {
-    "ground_rover": mavlink.MAV_TYPE_GROUND_ROVER,
-    "surface_boat": mavlink.MAV_TYPE_SURFACE_BOAT,
-    "submarine": mavlink.MAV_TYPE_SUBMARINE,
-}
-
-_NED = ("north", "east", "down")
-_EULER = ("phi", "theta", "psi")
-_NAMED = tuple(f"n{number}" for number in range(1, 9))
 _STAYS = 2
 """The least of guidance's states in which it goes or stays somewhere."""
 
 
-class Mavlink(Logging, Reachable, Sampled):
+class Mavlink(MavlinkPorts):
     """A vehicle that ground stations see, command and guide over MAVLink 2.
 
     Every ``period`` it takes in what has arrived, and sends what is due; what it was told is on
@@ -109,138 +95,6 @@ class Mavlink(Logging, Reachable, Sampled):
     rolls_back = False
     transient = Sampled.transient | {"_node", "_radio", "_log", "_parameters", "_settings"}
 
-    period = Parameter(0.01, "s", "sample period", min=1e-6)
-    links = Parameter(
-        "udpout:127.0.0.1:14550", "1", "URLs of the links, separated by spaces", check=check_urls
-    )
-    system_id = Parameter(1.0, "1", "MAVLink system", min=1.0, max=255.0)
-    component_id = Parameter(1.0, "1", "MAVLink component", min=1.0, max=255.0)
-    vehicle_type = Parameter(
-        "surface_boat", "1", "MAV_TYPE, in lower case", choices=tuple(VEHICLE_TYPES)
-    )
-    autopilot_type = Parameter(
-        "ardupilotmega", "1", "MAV_AUTOPILOT, in lower case", choices=("ardupilotmega", "px4")
-    )
-    firmware_version = Parameter("0.1.0-dev", "1", "version that it reports")
-    uid = Parameter("1", "1", "serial number that it reports, a whole number up to 2^64 - 1")
-    latitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-1.5707964, max=1.5707964)
-    longitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-3.1415927, max=3.1415927)
-    altitude = Parameter(0.0, "m", "of the origin")
-    date = Parameter("2026-01-01", "1", "day on which the run starts, at midnight UTC")
-    failsafe = Parameter("hold", "1", "what it does when left alone", choices=ACTIONS)
-    station_timeout = Parameter(5.0, "s", "silence after which a ground station is lost", min=0.0)
-    stick_timeout = Parameter(3.0, "s", "time for which sticks count", min=0.0)
-    target_timeout = Parameter(3.0, "s", "time for which a set-point counts", min=0.0)
-    full_speed = Parameter(1.0, "m/s", "speed of full thrust in an attitude set-point", min=0.0)
-    truth = Parameter("off", "1", "whether the truth is sent", choices=("off", "on"))
-    waypoint_radius = Parameter(3.0, "m", "distance at which a waypoint is reached", min=0.0)
-    cruise_speed = Parameter(1.0, "m/s", "speed of legs that name none", min=0.0)
-    loiter_radius = Parameter(10.0, "m", "radius of turns that name none", min=0.1)
-    fence_action = Parameter("hold", "1", "what it does outside its fence", choices=ACTIONS)
-    fence_depth = Parameter(0.0, "m", "depth of the fence's floor, 0 for none", min=0.0)
-    plan_folder = Parameter(
-        "", "1", "folder of mission, fence and rally points; empty: they end with the run"
-    )
-    actuators = Parameter(
-        "", "1", "CHANNEL NAME MIN NEUTRAL MAX of each output channel, pulses in us; with ;"
-    )
-    tunables = Parameter("", "1", "NAME START LOW HIGH of each tunable parameter; with ;")
-    parameter_file = Parameter("", "1", "file of the parameters that were set; empty: none")
-    speedup_start = Parameter(
-        1.0, "1", "simulated time per wall time until it is set", min=SLOWEST, max=FASTEST
-    )
-    failures = Parameter(
-        "", "1", "units whose failures are wired, separated by spaces", check=failing_units
-    )
-    names = Parameter("", "1", "names of the first values of `named`, separated by spaces")
-    signing_key_file = Parameter("", "1", "file with the pass phrase; empty: no signatures")
-    state_file = Parameter("", "1", "file for what outlives the run; empty: none")
-
-    position_n = Input("m", "position, north-east-down", axes=_NED)
-    velocity_n = Input("m/s", "velocity over ground, north-east-down", axes=_NED)
-    position_valid = Input("1", "whether position and velocity are valid", type=bool)
-    attitude = Input("rad", "Euler angles, ZYX", axes=_EULER)
-    heading_valid = Input("1", "whether the heading is valid", type=bool, start=True)
-    rates = Input("rad/s", "angular velocity, body axes", axes=("p", "q", "r"))
-    accelerometer = Input(
-        "m/s2", "specific force, body axes", axes="xyz", start=(0.0, 0.0, -9.80665)
-    )
-    imu_valid = Input(
-        "1", "whether rates and specific force are valid", type=bool, start=True, optional=True
-    )
-    pressure = Input(
-        "Pa",
-        "absolute pressure of the air or, submerged, the water, 0 if it is not measured",
-        optional=True,
-    )
-    ground_distance = Input(
-        "m", "distance to the ground below, 0 if it is not measured", optional=True
-    )
-    wind_speed = Input("m/s", "speed of the apparent wind", optional=True)
-    wind_angle = Input(
-        "rad", "where the apparent wind blows to from the bow, to starboard", optional=True
-    )
-    wind_valid = Input("1", "whether the wind is measured", type=bool, optional=True)
-    voltage = Input("V", "voltage of the battery, 0 if it is not measured", optional=True)
-    current = Input("A", "current out of the battery", optional=True)
-    charge = Input("1", "share of the battery's charge that is left", start=1.0, optional=True)
-    pulse = Input(
-        "s",
-        "servo pulses, 0 for none",
-        axes=tuple(f"ch{n}" for n in range(1, CHANNELS + 1)),
-        optional=True,
-    )
-    named = Input("1", "values that `names` names, in any unit", axes=_NAMED, optional=True)
-    true_position = Input("m", "true position, north-east-down", axes="xyz")
-    true_velocity = Input("m/s", "true velocity, body axes", axes=("u", "v", "w"))
-    true_attitude = Input("rad", "true Euler angles, ZYX", axes=_EULER)
-    true_rates = Input("rad/s", "true angular velocity, body axes", axes=("p", "q", "r"))
-    true_acceleration = Input("m/s2", "true inertial acceleration, body axes", axes="xyz")
-    nav_state = Input("1", "guidance: 2 stays, 3 follows a leg, 4 steers, else less", type=int)
-    nav_heading = Input("rad", "guidance: heading wanted, clockwise from north")
-    nav_speed = Input(
-        "m/s",
-        "guidance: speed wanted over ground along the bow, below 0 for none",
-        start=-1.0,
-        optional=True,
-    )
-    nav_depth = Input("m", "guidance: depth wanted, positive down", optional=True)
-    nav_cross_track = Input("m", "guidance: cross-track error, positive to starboard of the leg")
-    nav_distance = Input("m", "guidance: horizontal distance to where it goes")
-    leg_reached = Input("1", "number of the leg that is done, 0 while none is", type=int)
-
-    mode = Output("1", "manual, hold, loiter, guided, auto, return, ...", type=str, start="hold")
-    armed = Output("1", "whether to act", type=bool)
-    manual = Output(
-        "1",
-        "sticks, -1 to 1: ahead, to starboard, turn to starboard, down",
-        axes=("surge", "sway", "yaw", "heave"),
-    )
-    target_kind = Output("1", "position, velocity or heading", type=str, start="position")
-    target_valid = Output("1", "whether there is a set-point", type=bool)
-    target_position = Output("m", "position to go to; its down with a heading", axes=_NED)
-    target_velocity = Output("m/s", "velocity over ground", axes=_NED)
-    target_heading = Output("rad", "heading, clockwise from north")
-    target_speed = Output("m/s", "speed along the bow with a heading; to a position, 0 if not said")
-    home = Output("m", "position to return to: home, or a rally point", axes=_NED)
-    leg = Output("1", "number of the mission's leg, another for each; 0 for none", type=int)
-    leg_from = Output("m", "where the leg begins", axes=_NED)
-    leg_to = Output("m", "where the leg ends", axes=_NED)
-    leg_speed = Output("m/s", "speed on the leg")
-    leg_radius = Output("m", "distance at which its end is reached")
-    leg_wait = Output("s", "time to stay at its end")
-    leg_circle = Output("m", "radius of the circle to stay on at its end, 0 for none")
-    failsafe_active = Output("1", "whether a failsafe acted and still lasts", type=bool)
-    tunable = Output(
-        "1",
-        "the tunable parameters, in any unit",
-        axes=tuple(f"t{n}" for n in range(1, MOST_TUNABLES + 1)),
-    )
-    failure = Output("1", "failure of each unit, none without", axes=UNITS, type=str, start="none")
-    speedup = Output("1", "simulated time per wall time that is wanted", start=1.0)
-    paused = Output("s", "wall time that it stood still")
-    ground_stations = Output("1", "number of ground stations that are there", type=int)
-
     def __init__(self, name: str = "component") -> None:
         super().__init__(name)
         self._node: Node | None = None
@@ -259,7 +113,7 @@ class Mavlink(Logging, Reachable, Sampled):
             assert mode is not None
             origin = Origin(self.latitude, self.longitude, self.altitude)
             vehicle = Vehicle(identity, kind, origin, mode)
-            self._value_names = value_names(self.names, len(_NAMED))
+            self._value_names = value_names(self.names, NAMED_VALUES)
             self._begun = t
             self._log = TelemetryLog(identity.boot_unix_us)
             self._radio = self._opened(identity)
