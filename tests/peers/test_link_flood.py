@@ -132,8 +132,9 @@ def test_a_flood_is_read_to_the_end(tmp_path: Path, seconds: int) -> None:
         flooded, simulated = share(trial, clock, lambda: flood(port, frames))
         run = trial.stop()
     assert list(received(run.folder / "mavlink.tlog")) == frames
+    # On a busy machine simulated time falls behind, and more of them come in a second of it.
+    each = (flooded - idle) * simulated / len(frames)
     print(
-        f"{len(frames) / simulated:.0f} messages per simulated second take {flooded:.2f} s of a "
-        f"core, none {idle:.2f} s"
+        f"{each * 1e3:.2f} ms of a core for a message; {RATE}/s add {each * RATE:.2f} to {idle:.2f}"
     )
-    assert flooded < 1.0  # with a core of its own it keeps its pace, however busy the machine is
+    assert idle + each * RATE < 1.0  # with a core of its own it keeps its pace

@@ -36,13 +36,13 @@ def test_losing_the_last_one_is_what_counts(armed):
     assert bench.vehicle.armed is armed
 
 
-@pytest.mark.parametrize("pace", [0.2, 1.0, 5.0, 20.0])
+@pytest.mark.parametrize("pace", [0.2, 1.0, 5.0, 10.0])
 def test_a_station_that_beats_each_second_stays_at_any_pace(pace):
     bench = Bench(station_timeout=5.0)
     bench.pace = pace
     bench.enter("guided")
     bench.arm()
-    for _ in range(10):
+    for _ in range(3):
         bench.heartbeat()
         bench.wait(pace)  # a second of the station's
     assert (bench.vehicle.stations, bench.vehicle.mode.name) == (1, "guided")

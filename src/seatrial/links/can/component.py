@@ -162,8 +162,8 @@ class CanBus(Logging, Noise, Component):
         """Take in what nodes have asked for, and let the bus live until ``t``."""
         if self._journal is not None:
             self._journal.open(self.run_folder)
-        for node, inbox in enumerate(self._inboxes):
-            for when, data in Inbox(inbox).take(self.tx[node]):
+        for node, (inbox, text) in enumerate(zip(self._inboxes, self.tx, strict=False)):
+            for when, data in Inbox(inbox).take(text):
                 self._hear(node, when, data)
         self._longest = [0.0] * WATCHED
         self._bus.run(self.now_ns * _PS_PER_NS)
@@ -322,9 +322,9 @@ class CanBus(Logging, Noise, Component):
         self._say(lost.node, when, ArbitrationLost(lost.frame.identifier))
 
     def _apply_faults(self) -> None:
-        bus = self._bus
+        bus, faults = self._bus, self.fault
         for node, each in enumerate(bus.controllers):
-            fault = self.fault[node]
+            fault = faults[node]
             if fault not in FAULTS:
                 raise InputError(f"{self.name}.{unknown(f'fault.{_NODES[node]}', fault, FAULTS)}")
             each.babbles = fault == "babbling"
@@ -335,7 +335,7 @@ class CanBus(Logging, Noise, Component):
         nodes = len(bus.controllers)
         self._wrong.bit_error_rate = self.bit_error_rate
         self._wrong.receive_error_rate = list(self.receive_error_rate[:nodes])
-        self._wrong.defective = [n for n in range(nodes) if self.fault[n] == "defective"]
+        self._wrong.defective = [n for n in range(nodes) if faults[n] == "defective"]
         self._losses = [self.loss, *self.receive_loss[:nodes]]
 
     def _count_load(self, now_ns: int) -> None:
