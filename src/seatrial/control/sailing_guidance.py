@@ -9,7 +9,7 @@ from ..component import Input, Output, Parameter
 from .guidance_motion import BEAT, FOLLOW, MANUAL, NEUTRAL, Command
 from .guidance_orders import Decision, GuidanceOrders
 from .guidance_path import Point, bearing
-from .sailing_course import laid, side, turn, turned
+from .sailing_course import Laid, laid, side, turn, turned
 
 MODES = ("manual", "hold", "guided", "auto", "return", "loiter")
 """Values of the input ``mode``."""
@@ -53,7 +53,8 @@ class SailingGuidance(GuidanceOrders):
     **Course.** Legs, lines to a position and circles are followed by line of sight as in
     `Guidance`. What is wanted goes through `laid`: no course is closer to the wind than
     ``closest``; a direction closer than that is beaten to, until it lies ``margin`` more than
-    ``closest`` on the other tack. While the end of a leg lies so, the boat beats for the end and
+    ``closest`` on the other tack, and ``closest`` still when the boat has worn round and lost
+    ``wearing_loss`` of ground. While the end of a leg lies so, the boat beats for the end and
     not along the line; the line then begins where the end could be laid.
 
     **Bearing away.** A keel needs speed: below ``steerage`` ahead the boat makes leeway, loses
@@ -72,8 +73,7 @@ class SailingGuidance(GuidanceOrders):
     ``wind`` is the true wind: where it blows to. Positions in {n}, m; headings clockwise from
     north, rad; ``heading_wanted`` is the heading while no autopilot holds it.
 
-    Not modelled: other boats, laylines that allow for leeway, current and the ground lost in
-    wearing.
+    Not modelled: other boats, laylines that allow for leeway and current.
 
     Raises InputError at the start for capture_radius not less than drift_limit, and in a run for
     a mode or kind of target that is none.
@@ -113,6 +113,9 @@ class SailingGuidance(GuidanceOrders):
         min=0.0,
         max=math.pi,
         tunable=True,
+    )
+    wearing_loss = Parameter(
+        40.0, "m", "ground lost to leeward in wearing round", min=0.0, tunable=True
     )
     lying = Parameter(
         math.radians(70.0),
@@ -226,7 +229,7 @@ class SailingGuidance(GuidanceOrders):
         tack = self._tack or side(math.remainder(before - eye, math.tau))
         closest = self.away if self._is_slow() else self.closest
         if wanted.motion == FOLLOW:
-            to_end = laid(bearing(here, decision.end), eye, tack, closest, self.margin)
+            to_end = self._laid_to(decision.end, tack, closest)
             tack = to_end.tack
             if to_end.beats:
                 # A new line begins where the end can be laid.
@@ -238,6 +241,20 @@ class SailingGuidance(GuidanceOrders):
         if along.beats:
             decision = decision._replace(command=wanted._replace(integral_rate=0.0))
         return self._towards(decision, along.course, along.tack, before)
+
+    def _laid_to(self, end: Point, tack: int, closest: float) -> Laid:
+        """Return the course to the end of a leg; on the other tack only if wearing pays."""
+        here, eye = self._here(), self._eye()
+        to_end = laid(bearing(here, end), eye, tack, closest, self.margin)
+        upwind = math.cos(to_end.course - eye) > 0.0
+        if to_end.tack == tack or not upwind:
+            return to_end
+        lost = self.wearing_loss
+        after = here[0] - lost * math.cos(eye), here[1] - lost * math.sin(eye), here[2]
+        off = math.remainder(bearing(after, end) - eye, math.tau)
+        if abs(off) >= closest:
+            return to_end
+        return Laid(eye + tack * closest, tack, True)
 
     def _towards(self, decision: Decision, course: float, tack: int, before: float) -> _Sailed:
         """Turn the heading wanted on towards a course."""

@@ -42,13 +42,36 @@ def test_a_station_that_beats_each_second_stays_at_any_pace(pace):
     bench.pace = pace
     bench.enter("guided")
     bench.arm()
-    for _ in range(3):
+    for _ in range(4):
         bench.heartbeat()
         bench.wait(pace)  # a second of the station's
     assert (bench.vehicle.stations, bench.vehicle.mode.name) == (1, "guided")
     assert "lost" not in "".join(bench.texts())
-    bench.wait(max(1.0, pace) * 5.0)
+    bench.wait(max(5.0, 3.0 * pace))  # the time-out, and three beats that it missed
     assert (bench.vehicle.stations, bench.vehicle.mode.name) == (0, "hold")
+
+
+def test_a_station_in_simulated_time_is_lost_by_it_at_any_pace():
+    bench = Bench(station_timeout=5.0)
+    bench.pace = 1000.0
+    bench.arm()
+    for _ in range(4):
+        bench.heartbeat()
+        bench.wait(1.0)
+    bench.wait(4.0)
+    assert bench.vehicle.stations == 1
+    bench.tick()
+    assert (bench.vehicle.stations, bench.vehicle.failsafe) == (0, True)
+
+
+def test_beats_that_come_doubled_are_no_faster_ones():
+    bench = Bench(station_timeout=5.0)
+    bench.pace = 10.0
+    for _ in range(6):
+        bench.heartbeat()
+        bench.heartbeat()
+        bench.wait(10.0)
+        assert bench.vehicle.stations == 1
 
 
 def test_it_acts_once_and_again_after_somebody_was_back():

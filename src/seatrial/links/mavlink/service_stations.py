@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable
+from dataclasses import dataclass, field
 
 from pymavlink.dialects.v20 import all as mavlink
 
@@ -14,14 +16,38 @@ from .settings import Settings
 from .vehicle import Vehicle
 
 _MOST = 32
+_BEATS = 3
+"""Beats that a station must have missed to be lost; as many are remembered."""
 _LOST = "all ground stations lost"
 
 
-class StationService(Service):
-    """Ground stations by their HEARTBEAT (of type GCS), each lost after the time-out without.
+@dataclass
+class _Station:
+    """When a station was heard last, s: simulated time, and wall time."""
 
-    The time-out counts by simulated and by wall time (``clock``, s): stations beat by theirs,
-    and would be lost between two beats of theirs when a trial is much faster.
+    at: float
+    wall_at: float
+    intervals: deque[float] = field(default_factory=lambda: deque(maxlen=_BEATS))
+    """Of wall time, between its last beats."""
+
+    def beat(self, now: float, wall: float) -> None:
+        """Hear it again."""
+        self.intervals.append(wall - self.wall_at)
+        self.at, self.wall_at = now, wall
+
+    def is_there(self, now: float, wall: float, timeout: float) -> bool:
+        """Say if its silence is no longer than it may be."""
+        known = len(self.intervals) == _BEATS  # fewer may be one beat that came doubled
+        patience = min(timeout, _BEATS * max(self.intervals)) if known else timeout
+        return now - self.at <= timeout or wall - self.wall_at <= patience
+
+
+class StationService(Service):
+    """Ground stations by their HEARTBEAT (of type GCS).
+
+    Each is lost after the time-out without, in simulated time, if it has missed three beats of
+    its own too, by wall time (``clock``, s), or for that time-out: in a trial that is much faster
+    stations would be lost between two beats.
 
     When the last one is lost the failsafe acts, unless it is told not to watch them; before the
     first one was seen nothing happens.
@@ -37,9 +63,8 @@ class StationService(Service):
     ) -> None:
         super().__init__(vehicle, air)
         self._failsafe, self._settings, self._clock = failsafe, settings, clock
-        self.seen: dict[tuple[int, int], tuple[float, float]] = {}
-        """(system, component) of those that are there, and when each was heard last, by both
-        times, s."""
+        self._there: dict[tuple[int, int], _Station] = {}
+        """By system and component."""
         self._left_alone = False
 
     def handle(self, message: Message, sender: Sender, now: float) -> None:
@@ -47,11 +72,13 @@ class StationService(Service):
         if message.get_type() != "HEARTBEAT" or message.type != mavlink.MAV_TYPE_GCS:
             return
         who = (sender.system, sender.component)
-        if who not in self.seen:
-            if len(self.seen) >= _MOST:
-                return
+        if who in self._there:
+            self._there[who].beat(now, self._clock())
+        elif len(self._there) < _MOST:
+            self._there[who] = _Station(now, self._clock())
             self.vehicle.say(INFO, f"Ground station {sender.system}:{sender.component}")
-        self.seen[who] = (now, self._clock())
+        else:
+            return
         if self._left_alone:
             self._left_alone = False
             self._failsafe.end(_LOST, "Ground station is back")
@@ -59,12 +86,8 @@ class StationService(Service):
     def tick(self, now: float) -> None:
         """Lose those that have been silent too long."""
         timeout, wall = self._settings.station_timeout, self._clock()
-        there = {
-            who: (at, wall_at)
-            for who, (at, wall_at) in self.seen.items()
-            if min(now - at, wall - wall_at) <= timeout
-        }
-        lost, self.seen = len(there) < len(self.seen), there
+        there = {who: one for who, one in self._there.items() if one.is_there(now, wall, timeout)}
+        lost, self._there = len(there) < len(self._there), there
         self.vehicle.stations = len(there)
         if lost and not there and self._settings.watches_stations:
             self._left_alone = True
