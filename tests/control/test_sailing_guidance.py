@@ -135,6 +135,16 @@ def test_beats_to_an_end_upwind_and_a_new_line_begins_where_it_is_laid(end):
     assert found.get("cross_track_rms") < 25.0  # of the last board, not of the boards before
 
 
+def test_it_wears_for_the_other_tack_once_the_ground_that_is_lost_can_be_spared():
+    # 60 deg off the wind a boat that is d below the end must be d tan(60 deg) aside: 30 m from
+    # the end upwind it is 51.96 m, and with 20 m lost in wearing 86.6 m.
+    for aside, course in ((80.0, 60), (90.0, -math.degrees(math.atan2(90.0, 30.0)))):
+        at_end = leg((30.0, -aside), leg_radius=1.0)
+        found = guidance(heading=60, **at_end, wearing_loss=20.0, margin=0.0)
+        found.advance(0.0, 0.1)
+        assert wrapped(found.get("course")) == pytest.approx(course)
+
+
 def test_waits_at_the_end_of_a_leg():
     found = guidance(at(90, 95.0), **leg(at(90), leg_radius=8.0, leg_wait=2.0))
     reached = []
