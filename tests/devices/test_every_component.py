@@ -90,6 +90,7 @@ CLASSES = {
         "steerage": 0.1,
         "turn_rate": 1e3,
         "lead": 3.0,
+        "wearing_loss": 0.0,
     },
     RudderHelm: {},
     ForceActuator: {"capacity": [2.0, 2.0, 2.0]},
