@@ -18,8 +18,8 @@ from seatrial.links.can.door_socketcand import SocketcandDoor
 from seatrial.links.can.frame import Frame
 from seatrial.links.can.gateway import CanGateway
 from seatrial.links.can.messages import frame_of, message
+from seatrial.links.endpoints.endpoint import Channel, Endpoint
 from seatrial.links.hardware import ALLOWED
-from seatrial.links.mavlink.endpoint import Channel, Endpoint
 
 from .served import WAIT_S, Served
 

@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 
 from ...errors import InputError
-from ..mavlink.endpoint import Channel, Endpoint
+from ..endpoints.endpoint import Channel, Endpoint
 from .door import Door
 from .frame import Frame
 from .operations import Error

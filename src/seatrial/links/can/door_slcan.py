@@ -7,7 +7,7 @@ not: some programs wait for that. Bit rates are accepted and not used: the bus h
 
 from __future__ import annotations
 
-from ..mavlink.endpoint import Channel, Endpoint
+from ..endpoints.endpoint import Channel, Endpoint
 from .door_clients import Client, ClientsDoor
 from .frame import FD_LENGTHS, Frame
 

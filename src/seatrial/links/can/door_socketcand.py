@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import time
 
-from ..mavlink.endpoint import Channel
-from ..mavlink.endpoint_tcp import TcpServer
+from ..endpoints.endpoint import Channel
+from ..endpoints.tcp import TcpServer
 from .door_clients import Client, ClientsDoor
 from .frame import Frame
 from .messages import error_class

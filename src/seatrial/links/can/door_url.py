@@ -18,12 +18,12 @@ import re
 import socket
 
 from ...errors import InputError, unknown
-from ..mavlink.endpoint_tcp import TcpServer
+from ..endpoints.pseudo_terminal import PseudoTerminal
+from ..endpoints.tcp import TcpServer
 from .door import Door
 from .door_python_can import PythonCanDoor
 from .door_slcan import SlcanDoor
 from .door_socketcand import SocketcandDoor
-from .pseudo_terminal import PseudoTerminal
 
 _FORMS = {
     "socketcand": "socketcand:127.0.0.1:29536",

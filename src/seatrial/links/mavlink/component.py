@@ -7,8 +7,8 @@ from pathlib import Path
 from ...craft.kinematics import to_body, to_ned
 from ...errors import InputError
 from ...sampled import Sampled
-from .endpoint import Endpoint
-from .endpoint_url import open_endpoint, other_end
+from ..endpoints.endpoint import Endpoint
+from ..endpoints.url import open_endpoint, other_end
 from .geodesy import Origin
 from .given import midnight_us, serial_number, value_names, version, whole_number
 from .modes import MANUAL_MODES, flavour
@@ -47,7 +47,7 @@ class Mavlink(MavlinkPorts):
     the outputs from the instant after. Times and rates are simulated; the wall clock serves
     sockets and signatures alone. So a run that nobody listens to is the same each time.
 
-    **Links**: URLs separated by spaces, as `endpoint_url` has them. Peers that are not there are
+    **Links**: URLs separated by spaces, as `endpoints.url` has them. Peers that are not there are
     no error; a malformed URL, or a port that cannot be had, is. Streams and their rates are
     those of `service_streams` and of each link.
 

@@ -6,7 +6,7 @@ from pymavlink.dialects.v20 import all as mavlink
 
 from ...component import Input, Logging, Output, Parameter, Reachable
 from ...sampled import Sampled
-from .endpoint_url import check_urls
+from ..endpoints.url import check_urls
 from .failsafe import ACTIONS
 from .parameters_simulation import FASTEST, SLOWEST
 from .parameters_tunable import MOST_TUNABLES

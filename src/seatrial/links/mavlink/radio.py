@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
+from ..endpoints.endpoint import Channel, Endpoint
 from .codec import Codec, Message
-from .endpoint import Channel, Endpoint
 from .signing import Signing
 from .tlog import TelemetryLog
 

@@ -8,10 +8,10 @@ import tty
 import pytest
 
 from seatrial.errors import InputError
+from seatrial.links.endpoints import tcp
+from seatrial.links.endpoints.udp import MOST_PEERS
+from seatrial.links.endpoints.url import open_endpoint
 from seatrial.links.hardware import ALLOWED
-from seatrial.links.mavlink import endpoint_tcp
-from seatrial.links.mavlink.endpoint_udp import MOST_PEERS
-from seatrial.links.mavlink.endpoint_url import open_endpoint
 
 WAIT_S = 5.0
 
@@ -140,7 +140,7 @@ def test_a_client_that_does_not_read_loses_frames_and_stops_nobody(opened):
 
 
 def test_tcp_client_connects_again(opened, monkeypatch):
-    monkeypatch.setattr(endpoint_tcp, "RETRY_S", 0.01)
+    monkeypatch.setattr(tcp, "RETRY_S", 0.01)
     with socket.create_server(("127.0.0.1", 0)) as server:
         server.settimeout(WAIT_S)
         port = server.getsockname()[1]
@@ -201,6 +201,31 @@ def test_a_serial_line_that_takes_nothing_stops_nobody(opened, line):
     assert os.read(ours, 280) == bytes(280)
 
 
+def test_a_pseudo_terminal_is_a_serial_port_at_its_place(opened, tmp_path):
+    place = tmp_path / "vehicle"
+    endpoint = opened(f"pty:{place}")
+    assert endpoint.url == f"pty:{place}"
+    other = opened(f"serial:{place}:115200")
+    other.channels()[0].send(b"ping")
+    assert [data for _, data in polled(endpoint)] == [b"ping"]
+    endpoint.channels()[0].send(b"pong")
+    assert [data for _, data in polled(other)] == [b"pong"]
+
+
+def test_a_pseudo_terminals_place_is_free_again_afterwards(tmp_path):
+    place = tmp_path / "vehicle"
+    open_endpoint(f"pty:{place}").close()
+    assert not place.is_symlink()
+    place.symlink_to("/dev/pts/no-such")  # as a killed run leaves it
+    open_endpoint(f"pty:{place}").close()
+    place.write_text("a person's file")
+    with pytest.raises(InputError, match=rf"'pty:{place}': there is something else"):
+        open_endpoint(f"pty:{place}")
+    assert place.read_text() == "a person's file"
+    with pytest.raises(InputError, match="No such file or directory"):
+        open_endpoint(f"pty:{tmp_path}/no-such/vehicle")
+
+
 def test_a_real_port_needs_permission(monkeypatch):
     monkeypatch.delenv(ALLOWED, raising=False)
     with pytest.raises(InputError, match=r"serial:/dev/null:9600.*real port.*--hardware"):
@@ -225,6 +250,7 @@ def test_a_real_port_needs_permission(monkeypatch):
         ("udpin:127.0.0.1:65536", "the port is 65536, allowed 0 to 65535"),
         ("udpout:127.0.0.1:0", "the port is 0, allowed 1 to 65535"),
         ("serial:/dev/ttyS0:0", "the baud rate is 0"),
+        ("pty", "is not of the form 'pty:/tmp/vehicle'"),
         (f"udpout:{'x' * 64}:14550", f"host '{'x' * 64}'"),  # refused without asking anybody
         ("udpin:192.0.2.1:0", "cannot open the link 'udpin:192.0.2.1:0': "),
     ],

@@ -6,9 +6,11 @@
 ``tcpin:HOST:PORT``         a server with any number of clients
 ``tcpout:HOST:PORT``        a client, which connects again when the connection is lost
 ``serial:DEVICE:BAUD``      a serial port; a real one only if hardware is allowed
+``pty:PATH``                a new pseudo-terminal, which others open as a serial port at PATH
 =========================== =================================================================
 
-HOST is a name or an IPv4 address, PORT 0 at ``udpin`` and ``tcpin`` any free one.
+HOST is a name or an IPv4 address, PORT 0 at ``udpin`` and ``tcpin`` any free one. PATH becomes a
+symbolic link to the terminal, for as long as the endpoint is open.
 """
 
 from __future__ import annotations
@@ -19,9 +21,10 @@ from collections.abc import Callable
 
 from ...errors import InputError, unknown
 from .endpoint import Endpoint
-from .endpoint_serial import SerialEndpoint
-from .endpoint_tcp import TcpClient, TcpServer
-from .endpoint_udp import UdpListener, UdpSender
+from .pseudo_terminal import PseudoTerminal
+from .serial_port import SerialEndpoint
+from .tcp import TcpClient, TcpServer
+from .udp import UdpListener, UdpSender
 
 _FORMS = {
     "udpout": "udpout:127.0.0.1:14550",
@@ -29,6 +32,7 @@ _FORMS = {
     "tcpin": "tcpin:127.0.0.1:5760",
     "tcpout": "tcpout:127.0.0.1:5762",
     "serial": "serial:/dev/ttyUSB0:57600",
+    "pty": "pty:/tmp/vehicle",
 }
 _URL = re.compile(r"(?P<kind>[a-z]+):(?P<place>.+):(?P<number>\d{1,9})")
 
@@ -42,6 +46,8 @@ def open_endpoint(url: str) -> Endpoint:
     kind, place, number = _parts(url)
     if kind == "serial":
         return SerialEndpoint(url, place, number)
+    if kind == "pty":
+        return PseudoTerminal(place)
     address = _resolved(url, place, number)
     opened: dict[str, Callable[[tuple[str, int]], Endpoint]] = {
         "udpout": UdpSender,
@@ -65,6 +71,8 @@ def other_end(url: str) -> str:
     """Return what the other end opens, as pymavlink and MAVProxy write it."""
     kind, _, place = url.partition(":")
     others = {"udpout": "udpin", "udpin": "udpout", "tcpin": "tcp", "tcpout": "tcpin"}
+    if kind == "pty":
+        return place
     return f"{others[kind]}:{place}" if kind in others else url
 
 
@@ -72,6 +80,10 @@ def _parts(url: str) -> tuple[str, str, int]:
     kind = url.partition(":")[0]
     if kind not in _FORMS:
         raise InputError(f"link {url!r}: {unknown('kind of link', kind, _FORMS)}")
+    if kind == "pty":
+        if url == "pty" or url == "pty:":
+            raise InputError(f"link {url!r} is not of the form {_FORMS[kind]!r}")
+        return kind, url.removeprefix("pty:"), 0
     match = _URL.fullmatch(url)
     plain = match is not None and (kind == "serial" or not set(match["place"]) & set(":/"))
     if match is None or not plain:

@@ -1,0 +1,96 @@
+"""A pseudo-terminal: a serial port with this program in the place of a device. POSIX only."""
+
+from __future__ import annotations
+
+import os
+import tty
+from collections.abc import Sequence
+from pathlib import Path
+
+from ...errors import InputError
+from .endpoint import LARGEST_DATAGRAM, Channel, Endpoint
+
+LONGEST_QUEUE = 1 << 16
+"""Bytes kept for somebody who does not read; what comes beyond is lost."""
+
+
+class _End(Channel):
+    def __init__(self, descriptor: int) -> None:
+        self._descriptor = descriptor
+        self._queue = bytearray()
+
+    def send(self, data: bytes) -> None:
+        if len(self._queue) + len(data) <= LONGEST_QUEUE:
+            self._queue += data
+            self.flush()
+
+    def flush(self) -> None:
+        """Write what the terminal takes now."""
+        try:
+            while self._queue:
+                del self._queue[: os.write(self._descriptor, self._queue)]
+        except BlockingIOError:
+            pass
+
+
+class PseudoTerminal(Endpoint):
+    """One end of a new pseudo-terminal; ``url`` is the device that others open.
+
+    A ``place`` becomes a symbolic link to that device until the endpoint is closed. Raises
+    InputError if there is something at ``place`` other than such a link from before.
+    """
+
+    def __init__(self, place: str = "") -> None:
+        self._place = Path(place) if place else None
+        if self._place is not None:
+            _clear(self._place)
+        self._own, self._other = os.openpty()  # the other stays open: whoever has it may go
+        tty.setraw(self._other)
+        os.set_blocking(self._own, False)
+        self._device = os.ttyname(self._other)
+        self.url = f"pty:{place}" if place else self._device
+        self._peers = [_End(self._own)]
+        if self._place is not None:
+            try:
+                self._place.symlink_to(self._device)
+            except OSError as error:
+                self._close_ends()
+                raise InputError(
+                    f"cannot open the link {self.url!r}: {error.strerror or error}"
+                ) from None
+
+    def channels(self) -> Sequence[Channel]:
+        """Return the one peer, whether anybody has opened the device or not."""
+        return self._peers
+
+    def poll(self) -> list[tuple[Channel, bytes]]:
+        """Return what has arrived."""
+        self._peers[0].flush()
+        try:
+            data = os.read(self._own, LARGEST_DATAGRAM)
+        except BlockingIOError:
+            return []
+        return [(self._peers[0], data)] if data else []
+
+    def close(self) -> None:
+        """Close both ends, and take the symbolic link away."""
+        # Another run may have put its own link there in the meantime.
+        if self._place is not None and _leads_to(self._place) == self._device:
+            self._place.unlink()
+        self._close_ends()
+
+    def _close_ends(self) -> None:
+        os.close(self._own)
+        os.close(self._other)
+
+
+def _leads_to(place: Path) -> str:
+    return str(place.readlink()) if place.is_symlink() else ""
+
+
+def _clear(place: Path) -> None:
+    """Take away a link to a terminal that a run left behind when it was killed."""
+    if _leads_to(place).startswith("/dev/pts/"):
+        place.unlink()
+    elif place.exists() or place.is_symlink():
+        raise InputError(f"cannot open the link 'pty:{place}': there is something else at {place}")
