@@ -20,6 +20,15 @@ PASSED, FAILED, MIXED, UNJUDGED = "#1f7a4d", "#b3261e", "#a15c00", "#5b6770"
 _LIMIT = "#b3261e"
 _PANEL_HEIGHT = 165
 _GRID = "#e6eaee"
+_EVENT = {"color": "#9aa5af", "width": 1, "dash": "dot"}
+_TITLE = {
+    "x": 0,
+    "y": 1,
+    "xanchor": "left",
+    "yanchor": "bottom",
+    "showarrow": False,
+    "font": {"size": 13},
+}
 
 
 @dataclass(frozen=True)
@@ -102,13 +111,23 @@ def time_figure(
         vertical_spacing=min(0.2, 38 / height),
         horizontal_spacing=0.09,
     )
+    titles, lines = [], []
     for c, column in enumerate(columns, start=1):
         for r, panel in enumerate(column, start=1):
             _draw_panel(figure, time, panel, r, c)
+            x, y = (axis.plotly_name.replace("axis", "") for axis in figure.get_subplot(r, c))
+            place = {"xref": f"{x} domain", "yref": f"{y} domain"}
+            titles.append({"text": _panel_title(panel), **place, **_TITLE})
+            lines += [{"x0": at, "x1": at, "xref": x, "yref": f"{y} domain"} for at in events]
         figure.update_xaxes(title_text="time, s", showticklabels=True, row=len(column), col=c)
-    for at in events:
-        figure.add_vline(x=at, line={"color": "#9aa5af", "width": 1, "dash": "dot"})
-    figure.update_layout(height=height, showlegend=False, **layout())
+    # All at once: each one that is added alone has all the others checked again.
+    figure.update_layout(
+        annotations=titles,
+        shapes=[{"type": "line", "y0": 0, "y1": 1, "line": _EVENT, **line} for line in lines],
+        height=height,
+        showlegend=False,
+        **layout(),
+    )
     return figure
 
 
@@ -138,19 +157,6 @@ def _draw_panel(figure: go.Figure, time: FloatArray, panel: Panel, row: int, col
             row=row,
             col=col,
         )
-    figure.add_annotation(
-        text=_panel_title(panel),
-        xref="x domain",
-        yref="y domain",
-        x=0,
-        y=1,
-        xanchor="left",
-        yanchor="bottom",
-        showarrow=False,
-        font_size=13,
-        row=row,
-        col=col,
-    )
     if not len(time):
         return
     for mark in panel.marks:
