@@ -10,9 +10,10 @@ from pathlib import Path
 
 import pytest
 
+from tests.command import Done, seatrial
+
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text("utf-8")
-SEATRIAL = str(Path(sys.executable).with_name("seatrial"))
 
 
 def block(after: str, language: str, number: int = 0) -> str:
@@ -21,12 +22,10 @@ def block(after: str, language: str, number: int = 0) -> str:
     return re.findall(rf"```{language}\n(.*?)```", text, re.DOTALL)[number]
 
 
-def run(line: str, folder: Path) -> subprocess.CompletedProcess[str]:
+def run(line: str, folder: Path) -> Done:
     words = shlex.split(line.partition("#")[0].removeprefix("$ "))
     assert words[0] == "seatrial"
-    return subprocess.run(
-        [SEATRIAL, *words[1:]], cwd=folder, capture_output=True, text=True, check=False
-    )
+    return seatrial(*words[1:], cwd=folder)
 
 
 def test_the_component_of_twenty_lines(tmp_path: Path) -> None:

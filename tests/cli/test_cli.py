@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from seatrial.errors import unknown
+from tests.command import seatrial
 
 SEATRIAL = str(Path(sys.executable).with_name("seatrial"))
 
@@ -31,12 +32,6 @@ class Bad(Component):
             else:
                 raise RuntimeError("flooded")
 '''
-
-
-def seatrial(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [SEATRIAL, *arguments], cwd=cwd, capture_output=True, text=True, check=False
-    )
 
 
 @pytest.fixture
@@ -205,7 +200,15 @@ def test_doctor_and_list(tmp_path: Path) -> None:
     listing = seatrial("list", cwd=tmp_path).stdout
     for name in ("hydrone-landing", "hydrone-pads", "marine-craft", "hydrone-open-loop"):
         assert name in listing
-    assert seatrial("--version", cwd=tmp_path).stdout.startswith("seatrial ")
+
+
+def test_the_installed_command(tmp_path: Path) -> None:
+    done = subprocess.run([SEATRIAL, "--version"], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith("seatrial ")
+    done = subprocess.run([SEATRIAL, "run", "x"], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith("seatrial: unknown trial 'x'")
 
 
 def test_near_misses() -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from .test_cli import seatrial
+from tests.command import seatrial
 
 
 def test_it_prints_gains_and_leaves_a_page(tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ import pytest
 from mcap.reader import make_reader
 from pyarrow import parquet
 
-from tests.cli.test_ssp import seatrial
+from tests.command import seatrial
 from tests.trials.conftest import write_run_folder
 
 
@@ -25,13 +25,13 @@ def rows(folder: Path) -> int:
 
 
 def test_a_record_as_mcap_and_as_parquet(run: Path, tmp_path: Path) -> None:
-    done = seatrial("export", "run", "--mcap", folder=tmp_path)
+    done = seatrial("export", "run", "--mcap", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith("run/signals.mcap  (")
     with (run / "signals.mcap").open("rb") as file:
         statistics = make_reader(file).get_summary().statistics
     assert statistics.message_count == 2 * rows(run)  # hull and downwash
-    done = seatrial("export", "run", "--parquet", "--out", "x.parquet", folder=tmp_path)
+    done = seatrial("export", "run", "--parquet", "--out", "x.parquet", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert parquet.read_metadata(tmp_path / "x.parquet").num_rows == rows(run)
 
@@ -46,6 +46,6 @@ def test_a_record_as_mcap_and_as_parquet(run: Path, tmp_path: Path) -> None:
     ],
 )
 def test_mistakes_are_named(run: Path, tmp_path: Path, arguments, said: str) -> None:
-    done = seatrial("export", *arguments, folder=tmp_path)
+    done = seatrial("export", *arguments, cwd=tmp_path)
     assert done.returncode == 2
     assert said in done.stderr

@@ -9,9 +9,8 @@ import pytest
 from seatrial.cosim.files import available
 from seatrial.cosim.profile import load_profile
 from seatrial.cosim.profile_kinds import KINDS, keys
+from tests.command import seatrial
 from tests.cosim.test_profile import GOOD
-
-from .test_cli import seatrial
 
 
 @pytest.mark.parametrize("name", sorted(available("hil_profiles")))

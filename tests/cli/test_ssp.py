@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import csv
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
+from tests.command import seatrial
 from tests.cosim.ssp_files import BOATS, MINIMAL, Yard, speed
 
 RIG = """step = "10 ms"
@@ -21,14 +20,6 @@ damper = { fmu = "boats.py:Damper" }
 """
 
 
-def seatrial(*arguments: str, folder: Path) -> subprocess.CompletedProcess[str]:
-    code = "from seatrial.cli import main; main()"
-    return subprocess.run(
-        [sys.executable, "-c", code, *arguments], cwd=folder, capture_output=True, text=True,
-        check=False,
-    )  # fmt: skip
-
-
 @pytest.fixture(scope="module")
 def yard(tmp_path_factory: pytest.TempPathFactory) -> Yard:
     return Yard(tmp_path_factory.mktemp("yard"))
@@ -37,15 +28,15 @@ def yard(tmp_path_factory: pytest.TempPathFactory) -> Yard:
 def test_export_check_and_run_go_together(write, tmp_path: Path) -> None:
     write("boats.py", BOATS)
     write("quay.toml", RIG)
-    done = seatrial("ssp", "export", "quay.toml", folder=tmp_path)
+    done = seatrial("ssp", "export", "quay.toml", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert "a rig has no stop time" in done.stdout
-    done = seatrial("ssp", "check", "quay.ssp", folder=tmp_path)
+    done = seatrial("ssp", "check", "quay.ssp", cwd=tmp_path)
     assert done.returncode == 0, done.stdout
     assert "rejects" not in done.stdout
     done = seatrial(
         "run", "quay.ssp", "--set", "stop=1 s", "--set", "hull.mass=4", "--out", "run",
-        folder=tmp_path,
+        cwd=tmp_path,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "run" / "report.html").is_file()
@@ -57,19 +48,19 @@ def test_export_check_and_run_go_together(write, tmp_path: Path) -> None:
 def test_the_status_says_what_is_rejected(yard: Yard, tmp_path: Path) -> None:
     yard.package(tmp_path / "x.ssp", MINIMAL.replace('"Minimal" version="1.0"', '"Minimal" version="1.1"'))  # fmt: skip
     for tool, status in (("libcosim", 0), ("ecos", 1), ("fmpy", 0), ("omsimulator", 0)):
-        done = seatrial("ssp", "check", "x.ssp", "--for", tool, folder=tmp_path)
+        done = seatrial("ssp", "check", "x.ssp", "--for", tool, cwd=tmp_path)
         assert done.returncode == status, done.stdout
-    assert "reads version 1.0 only" in seatrial("ssp", "check", "x.ssp", folder=tmp_path).stdout
+    assert "reads version 1.0 only" in seatrial("ssp", "check", "x.ssp", cwd=tmp_path).stdout
 
 
 def test_a_wrong_package_or_tool_is_one_message(yard: Yard, tmp_path: Path) -> None:
     yard.package(tmp_path / "x.ssp", MINIMAL.replace("resources/Hull.fmu", "../Hull.fmu"))
-    done = seatrial("run", "x.ssp", folder=tmp_path)
+    done = seatrial("run", "x.ssp", cwd=tmp_path)
     assert done.returncode == 2
     assert done.stderr.startswith("seatrial: x.ssp: SystemStructure.ssd: line 7: source")
     assert not (tmp_path / "runs").exists()
-    assert seatrial("ssp", "check", "x.ssp", folder=tmp_path).returncode == 1
-    done = seatrial("ssp", "check", "x.ssp", "--for", "ecosim", folder=tmp_path)
+    assert seatrial("ssp", "check", "x.ssp", cwd=tmp_path).returncode == 1
+    done = seatrial("ssp", "check", "x.ssp", "--for", "ecosim", cwd=tmp_path)
     assert done.returncode == 2
     assert "did you mean 'ecos'" in done.stderr
-    assert seatrial("run", "none.ssp", folder=tmp_path).returncode == 2
+    assert seatrial("run", "none.ssp", cwd=tmp_path).returncode == 2

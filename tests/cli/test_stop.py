@@ -12,7 +12,9 @@ from pathlib import Path
 
 import pytest
 
-from .test_cli import SEATRIAL, seatrial
+from tests.command import seatrial
+
+from .test_cli import SEATRIAL
 
 COMPONENT = '''
 """Takes its time."""

@@ -1,9 +1,6 @@
 """From a user's log to a vehicle file that a rig takes, and to its page."""
 
 import re
-import subprocess
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,10 +13,10 @@ from seatrial.trials.identify.experiment import load_experiment
 from seatrial.trials.identify.page import write_page
 from seatrial.trials.identify.study import study
 from seatrial.trials.identify.vehicle_file import base_vehicle, write_vehicle
+from tests.command import seatrial
 
 from .conftest import EXPERIMENT
 
-SEATRIAL = str(Path(sys.executable).with_name("seatrial"))
 BASE = EXPERIMENT + '\n[result]\nvehicle = "videoray"\nthruster = "horizontal-thruster"\n'
 
 
@@ -142,8 +139,7 @@ def test_parts_that_are_too_short(pool, rows, held_out, said):
 
 
 def identify(*arguments, cwd):
-    command = [SEATRIAL, "identify", *arguments]
-    return subprocess.run(command, cwd=cwd, capture_output=True, text=True, check=False)
+    return seatrial("identify", *arguments, cwd=cwd)
 
 
 def test_the_command(pool, tmp_path):
