@@ -19,9 +19,9 @@ import io
 import re
 import sys
 import tokenize
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import cache, cached_property, lru_cache
 from pathlib import Path
 
 from ..errors import InputError
@@ -34,10 +34,15 @@ _NO_INIT = b'"""Part of pythonfmu (MIT licence, beside this file)."""\n'
 class Bundle:
     """Files for an FMU's ``resources`` by relative path, and the name of its script."""
 
-    files: dict[str, bytes]
     script: str
     requirements: tuple[str, ...]
     """Third-party distributions that the files import, as pip requirements."""
+    write: Callable[[], dict[str, bytes]]
+
+    @cached_property
+    def files(self) -> dict[str, bytes]:
+        """Contents by path; written when asked for, as a run in process needs the name alone."""
+        return self.write()
 
 
 def bundle(stem: str, source: bytes, folder: Path) -> Bundle:
@@ -64,20 +69,24 @@ def bundle(stem: str, source: bytes, folder: Path) -> Bundle:
     requirements = tuple(needed.values())
     digest.update(stem.encode() + b"\0" + source + "\0".join(requirements).encode())
     tag = digest.hexdigest()[:12]
-    root = f"bundle_{tag}"
-    own = frozenset(name.partition(".")[0] for name in modules)
-    files = {f"{root}/__init__.py": _preflight(stem, needed)}
-    files |= {f"{root}/{place}": content for place, content in data.items()}
-    for name, (path, text) in modules.items():
-        place = name.replace(".", "/") + ("/__init__.py" if path.name == "__init__.py" else ".py")
-        files[f"{root}/{place}"] = _renamed(text, str(path), own, root)
-    if "pythonfmu" in own:
-        files[f"{root}/pythonfmu/LICENSE"] = _pythonfmu_licence()
-    script = f"{stem}_{tag}"
-    files[f"{script}.py"] = _renamed(source, f"{stem}.py", own, root)
-    files["slavemodule.txt"] = script.encode()
-    files["requirements.txt"] = "".join(f"{r}\n" for r in requirements).encode()
-    return Bundle(files, script, requirements)
+
+    def write() -> dict[str, bytes]:
+        root = f"bundle_{tag}"
+        own = frozenset(name.partition(".")[0] for name in modules)
+        files = {f"{root}/__init__.py": _preflight(stem, needed)}
+        files |= {f"{root}/{place}": content for place, content in data.items()}
+        for name, (path, text) in modules.items():
+            end = "/__init__.py" if path.name == "__init__.py" else ".py"
+            place = name.replace(".", "/") + end
+            files[f"{root}/{place}"] = _renamed(text, str(path), own, root)
+        if "pythonfmu" in own:
+            files[f"{root}/pythonfmu/LICENSE"] = _pythonfmu_licence()
+        files[f"{stem}_{tag}.py"] = _renamed(source, f"{stem}.py", own, root)
+        files["slavemodule.txt"] = f"{stem}_{tag}".encode()
+        files["requirements.txt"] = "".join(f"{r}\n" for r in requirements).encode()
+        return files
+
+    return Bundle(f"{stem}_{tag}", requirements, write)
 
 
 class _Local:
@@ -90,16 +99,25 @@ class _Local:
     def find(self, name: str) -> Path | None:
         """Return the file of module ``name``, None if it is not one that travels."""
         top, *rest = name.split(".")
-        base = self.roots.get(top, self.folder / top)
-        path = base.joinpath(*rest)
-        for candidate in (path / "__init__.py", path.with_suffix(".py")):
-            if candidate.is_file():
-                return candidate
-        return None
+        if top in self.roots:
+            return _package_file(self.roots[top], *rest)
+        return _module_file(self.folder / top, *rest)
 
     def is_namespace(self, name: str) -> bool:
         """Say if ``name`` is a folder beside the script without an ``__init__.py``."""
         return "." not in name and (self.folder / name).is_dir() and self.find(name) is None
+
+
+def _module_file(base: Path, *rest: str) -> Path | None:
+    path = base.joinpath(*rest)
+    for candidate in (path / "__init__.py", path.with_suffix(".py")):
+        if candidate.is_file():
+            return candidate
+    return None
+
+
+# A rig asks for the same hundred modules once per component, and packages stay as installed.
+_package_file = lru_cache(maxsize=4096)(_module_file)
 
 
 def _package(name: str) -> Path:
@@ -314,13 +332,23 @@ def _renamed_statement(
 @cache
 def _requirement(package: str) -> str:
     """Return the pip requirement of an imported package, with seatrial's own bounds on it."""
-    distributions = importlib.metadata.packages_distributions().get(package, [package])
-    distribution = sorted(set(distributions))[0]
-    for line in importlib.metadata.requires("seatrial") or []:
-        name = re.match(r"[A-Za-z0-9._-]+", line)
-        if name and name.group().lower() == distribution.lower() and ";" not in line:
-            return line
-    return distribution
+    bounds = _bounds()
+    if package in bounds:
+        return bounds[package]
+    distribution = min(_distributions().get(package, [package]))
+    return bounds.get(distribution.lower(), distribution)
+
+
+@cache
+def _bounds() -> dict[str, str]:
+    """Return seatrial's own requirements by the names of the distributions."""
+    lines = [line for line in importlib.metadata.requires("seatrial") or [] if ";" not in line]
+    return {found[0].lower(): line for line in lines if (found := re.match(r"[\w.-]+", line))}
+
+
+@cache  # it reads the lists of files of everything that is installed
+def _distributions() -> Mapping[str, list[str]]:
+    return importlib.metadata.packages_distributions()
 
 
 def _preflight(stem: str, needed: dict[str, str]) -> bytes:
