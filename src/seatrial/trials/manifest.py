@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import importlib.metadata
 import platform
 from collections.abc import Mapping
@@ -87,7 +88,7 @@ def _component(part: Part, feeders: Mapping[str, str], step: float) -> dict[str,
         if variable.name in feeders:
             value, origin = None, f"fed by {feeders[variable.name]}"
         parameters[variable.name] = {
-            "value": None if value is None else storable(value),
+            **_value(value),
             "unit": variable.unit,
             "from": origin,
             "source": "" if given is None else given.source,
@@ -100,3 +101,11 @@ def _component(part: Part, feeders: Mapping[str, str], step: float) -> dict[str,
         "step": step,
         "parameters": parameters,
     }
+
+
+def _value(value: Any) -> dict[str, Any]:
+    """Return a value as it is stored; a file by its path, as its name and what is in it."""
+    if isinstance(value, str) and Path(value).is_absolute() and Path(value).is_file():
+        sha256 = hashlib.sha256(Path(value).read_bytes()).hexdigest()
+        return {"value": Path(value).name, "sha256": sha256}
+    return {"value": None if value is None else storable(value)}

@@ -1,0 +1,1 @@
+"""Messages that a DBC describes, between a CAN bus and ports."""

@@ -1,0 +1,1 @@
+"""NMEA 0183: sentences to and from instruments, chart plotters and autopilots."""

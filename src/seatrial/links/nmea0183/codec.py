@@ -1,0 +1,72 @@
+"""NMEA 0183 sentences to bytes and back: pynmeagps, and what it leaves to do.
+
+Fields, their order and the checksums are pynmeagps's, and so are the fields' names.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from pynmeagps import NMEAMessage, NMEAReader
+from pynmeagps.exceptions import (
+    NMEAMessageError,
+    NMEAParseError,
+    NMEAStreamError,
+    NMEATypeError,
+)
+from pynmeagps.nmeatypes_core import GET
+from pynmeagps.nmeatypes_get import NMEA_PAYLOADS_GET
+
+_HEMISPHERES = ("NS", "EW")
+_REFUSALS = (
+    *(NMEAMessageError, NMEAParseError, NMEAStreamError, NMEATypeError),
+    # It lets these through for some malformed sentences.
+    *(ArithmeticError, AttributeError, LookupError, TypeError, ValueError),
+)
+
+
+def encode(talker: str, formatter: str, fields: Mapping[str, Any]) -> bytes:
+    """Return a sentence: ``$``, talker, formatter, fields, checksum, carriage return, line feed.
+
+    ``fields`` are all fields of the formatter, but for the hemispheres: text as it is to be sent,
+    "" for an empty one, None for one at the end that is not sent; lat and lon are numbers,
+    degrees, north and east positive, or "".
+    """
+    given = {name: _whole_minutes(value) for name, value in fields.items() if value is not None}
+    message = NMEAMessage(talker, formatter, GET, **given)
+    placeless = fields.get("lat") == ""
+    if placeless or None in fields.values():  # it has a word for each field, hemispheres too
+        written = zip(NMEA_PAYLOADS_GET[formatter], message.payload, strict=False)
+        payload = [
+            "" if placeless and name in _HEMISPHERES else text
+            for name, text in written
+            if fields.get(name, "") is not None
+        ]
+        message = NMEAMessage(talker, formatter, GET, payload=payload)
+    return bytes(message.serialize())
+
+
+def decode(line: bytes) -> Any:
+    """Return a sentence with its fields as attributes: numbers, text, "" for an empty one.
+
+    Returns None for what is no sentence, has no checksum or a wrong one, characters that are not
+    ASCII or not printable, or numbers that are not finite. Fields of a formatter that nobody knows
+    have no names.
+    """
+    if not (line.isascii() and line.decode("ascii").isprintable()):
+        return None
+    try:
+        message = NMEAReader.parse(line)
+    except _REFUSALS:
+        return None
+    if message is None:
+        return None
+    numbers = (value for value in vars(message).values() if isinstance(value, float))
+    return message if all(map(math.isfinite, numbers)) else None
+
+
+def _whole_minutes(value: Any) -> Any:
+    """Return degrees rounded as they are written: else there are minutes such as 60.00000."""
+    return round(value * 60.0, 5) / 60.0 if isinstance(value, float) else value

@@ -1,0 +1,214 @@
+"""NMEA 0183 as a component: what instruments know out, what chart plotters want in."""
+
+from __future__ import annotations
+
+import datetime
+import math
+from typing import Any
+from weakref import WeakKeyDictionary
+
+from ...component import NS
+from ...errors import InputError
+from ...sampled import Sampled
+from ..endpoints.endpoint import Channel, Endpoint
+from ..endpoints.url import open_endpoint, other_end
+from ..mavlink.geodesy import Origin
+from ..text import Inbox, Outbox
+from .codec import decode, encode
+from .lines import Lines
+from .orders import Order, heading_ordered, last_told, read_order
+from .ports import Nmea0183Ports
+from .readings import Readings
+from .schedule import schedule
+from .sentences import SENTENCES
+
+
+class Nmea0183(Nmea0183Ports):
+    """A talker and a listener on NMEA 0183: over UDP, TCP, serial lines, and as text on ports.
+
+    **Talking.** ``sentences`` has who says what how often: ``GPRMC 1; WIMWV-R 0.5``, talker and
+    sentence (`SENTENCES`) and the period in s. Sentence k of one goes out at the first multiple
+    of ``period`` that is not before the start of the run + k times its own period, in the order
+    of the text, with the readings of that instant; to all ``links`` (`endpoints.url`), and to
+    ``tx``, as `links.text` has it. A datagram is one sentence. UTC is midnight of ``date`` +
+    the simulated time; the wall clock plays no part.
+
+    A reading whose input ``..._valid`` is false, which it is if nothing feeds it, leaves its
+    fields empty and has status V, mode N or quality 0. Headings are true: HDG is heading -
+    ``variation``. True wind (MWV-T) is the wind over ground, as its direction from the bow; it
+    needs the heading.
+
+    **Listening** to all links and ``rx``: HSC, APB and RMB (`read_order`) become the ``target_``
+    outputs, which are named after the inputs of guidance: a heading, from HSC or, if there is
+    none, APB; or else the waypoint of RMB, whose depth is 0; with ``cruise_speed``. They count for
+    ``order_timeout``, and so do cross-track error, arrival and the waypoint's name, from whichever
+    came last. Other sentences are only counted; lines with a wrong checksum or none are refused.
+
+    Serial lines have the baud rate of their URL: at 4800, some 480 characters a second pass; what
+    does not, waits, and is lost when too much waits. Not here: AIS, queries, DSC, tag blocks,
+    GNSS constellations (GGA has 10 satellites).
+
+    It cannot be rolled back: what was said has been said. Raises InputError at the start for a
+    link, date or sentence that cannot be.
+    """
+
+    rolls_back = False
+    transient = Sampled.transient | {"_endpoints", "_collected", "_schedule"}
+
+    def __init__(self, name: str = "component") -> None:
+        super().__init__(name)
+        self._endpoints: list[Endpoint] = []
+        self._collected: WeakKeyDictionary[Channel, Lines] = WeakKeyDictionary()
+
+    # ------------------------------------------------------------------ running
+
+    def reset(self, t: float) -> None:
+        """Open the links."""
+        self.close()
+        try:
+            self._midnight = _midnight(self.date).isoformat()
+            for url in self.links.split():
+                self._endpoints.append(open_endpoint(url))
+        except InputError as error:
+            self.close()
+            raise InputError(f"{self.name}: {error}") from None
+        self._begun_ns = self.now_ns
+        self._schedule = schedule(self.sentences)
+        self._counts = [0] * len(self._schedule)
+        self._in: dict[str, Any] = {}
+        self._out: dict[str, Any] = {}
+        self._half = ""
+        self._sent = self._received = self._refused = 0
+        self._orders: dict[str, tuple[int, Order]] = {}
+
+    def step(self, t: float, h: float) -> None:
+        """Take in what came by the port, and run the instants of the step."""
+        lines = Lines(self._half)
+        for _, data in Inbox(self._in).take(self.rx):
+            self._read(lines.take(data), self.now_ns)
+        self._half = lines.waiting
+        super().step(t, h)
+        Outbox(self._out).flush()
+
+    def sample(self, t: float, k: int) -> None:
+        """Publish what was ordered until now."""
+        orders = self._fresh(round(t * NS))
+        heading = heading_ordered(orders)
+        place = orders["RMB"].place if "RMB" in orders else None
+        self.target_valid = heading is not None or place is not None
+        self.target_kind = "position" if heading is None and place is not None else "heading"
+        self.target_heading = 0.0 if heading is None else heading
+        self.target_position = (0.0, 0.0, 0.0) if place is None else self._position(*place)
+        self.target_speed = self.cruise_speed if self.target_valid else 0.0
+        told = last_told(orders)
+        self.cross_track_valid = told.cross_track is not None
+        self.cross_track = told.cross_track or 0.0
+        self.waypoint, self.arrived = told.waypoint or "", bool(told.arrived)
+        self.reached_at = " ".join(other_end(each.url) for each in self._endpoints)
+
+    def update(self, t: float, k: int) -> None:
+        """Take in what has arrived, and send what is due."""
+        now_ns = round(t * NS)
+        for endpoint in self._endpoints:
+            for channel, data in endpoint.poll():
+                lines = self._collected.setdefault(channel, Lines())
+                end = b"\n" if endpoint.url.startswith("udp") else b""
+                self._read(lines.take(data + end), now_ns)
+        readings: Readings | None = None
+        for number, each in enumerate(self._schedule):
+            if now_ns < self._begun_ns + self._counts[number] * each.period_ns:
+                continue
+            passed = now_ns - self._begun_ns
+            self._counts[number] = passed // each.period_ns + 1
+            readings = readings or self._readings(passed)
+            self._send(now_ns, encode(each.talker, each.name[:3], SENTENCES[each.name](readings)))
+
+    def hold(self, t: float) -> None:
+        """Publish what was said, and counts."""
+        self.tx = Outbox(self._out).text
+        self.sentences_sent, self.sentences_received = self._sent, self._received
+        self.lines_refused = self._refused
+
+    def close(self) -> None:
+        """Close the links."""
+        for endpoint in self._endpoints:
+            endpoint.close()
+        self._endpoints = []
+
+    @property
+    def urls(self) -> list[str]:
+        """URLs of the links as they are bound: with a port's number where 0 was asked for."""
+        return [endpoint.url for endpoint in self._endpoints]
+
+    # ------------------------------------------------------------------ talking
+
+    def _send(self, now_ns: int, sentence: bytes) -> None:
+        self._sent += 1
+        Outbox(self._out).put(now_ns, sentence)
+        for endpoint in self._endpoints:
+            for channel in endpoint.channels():
+                channel.send(sentence)
+
+    def _readings(self, passed_ns: int) -> Readings:
+        time = datetime.datetime.fromisoformat(self._midnight) + datetime.timedelta(
+            microseconds=passed_ns // 1000
+        )
+        there, steered, moved = self.position_valid, self.heading_valid, self.imu_valid
+        north, east, _ = self.velocity_n
+        return Readings(
+            time,
+            self.variation,
+            self.transducer_offset,
+            self._origin.geodetic(self.position_n) if there else None,
+            (north, east) if there else None,
+            self.heading if steered else None,
+            self.rate_of_turn if moved else None,
+            self.roll_pitch if moved else None,
+            (self.wind_speed, self.wind_angle + math.pi) if self.wind_valid else None,
+            self._true_wind() if steered and self.true_wind_valid else None,
+            self.water_speed if self.water_speed_valid else None,
+            self.depth if self.depth_valid else None,
+            self.water_temperature if self.water_temperature_valid else None,
+            self.rudder if self.rudder_valid else None,
+        )
+
+    def _true_wind(self) -> tuple[float, float]:
+        """Return its speed, and where it comes from, clockwise from the bow."""
+        north, east = self.true_wind
+        return math.hypot(north, east), math.atan2(-east, -north) - self.heading
+
+    @property
+    def _origin(self) -> Origin:
+        return Origin(self.latitude, self.longitude, self.altitude)
+
+    # ------------------------------------------------------------------ listening
+
+    def _read(self, lines: list[bytes], now_ns: int) -> None:
+        for line in lines:
+            if line.startswith(b"!"):
+                continue  # AIS
+            message = decode(line)
+            if message is None:
+                self._refused += 1
+                continue
+            self._received += 1
+            order = read_order(message, self.variation)
+            if order is not None:
+                self._orders.pop(message.msgID, None)  # so that the newest is the last one
+                self._orders[message.msgID] = (now_ns, order)
+
+    def _fresh(self, now_ns: int) -> dict[str, Order]:
+        oldest = now_ns - round(self.order_timeout * NS)
+        return {name: order for name, (when, order) in self._orders.items() if when >= oldest}
+
+    def _position(self, latitude: float, longitude: float) -> tuple[float, float, float]:
+        north, east, _ = self._origin.position(latitude, longitude, self.altitude)
+        return north, east, 0.0
+
+
+def _midnight(date: str) -> datetime.datetime:
+    try:
+        day = datetime.date.fromisoformat(date)
+    except ValueError:
+        raise InputError(f"date is {date!r}, a day such as '2026-02-05' is needed") from None
+    return datetime.datetime(day.year, day.month, day.day, tzinfo=datetime.UTC)

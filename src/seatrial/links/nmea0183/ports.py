@@ -1,0 +1,85 @@
+"""The NMEA 0183 component's parameters, inputs and outputs."""
+
+from __future__ import annotations
+
+from ...component import Input, Output, Parameter, Reachable
+from ...sampled import Sampled
+from ..endpoints.url import check_urls
+from .schedule import schedule
+
+_NED = ("north", "east", "down")
+
+
+class Nmea0183Ports(Reachable, Sampled):
+    """What `Nmea0183` is told and says."""
+
+    period = Parameter(0.05, "s", "time between two looks at links and clock", min=1e-6)
+    links = Parameter(
+        "udpout:127.0.0.1:10110", "1", "URLs of the links, separated by spaces", check=check_urls
+    )
+    sentences = Parameter(
+        "GPRMC 1; GPGGA 1; GPVTG 1; HEHDT 0.2; HCHDG 0.2; TIROT 0.2; WIMWV-R 0.5; IIXDR 0.5",
+        "1",
+        "TALKER+SENTENCE PERIOD of each to send, in s; with ;",
+        check=schedule,
+    )
+    latitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-1.5707964, max=1.5707964)
+    longitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-3.1415927, max=3.1415927)
+    altitude = Parameter(0.0, "m", "of the origin")
+    date = Parameter("2020-01-01", "1", "day whose midnight, UTC, is the start of the run")
+    variation = Parameter(
+        0.0, "rad", "magnetic variation, positive east", min=-3.1415927, max=3.1415927
+    )
+    transducer_offset = Parameter(
+        0.0, "m", "from the depth's transducer up to the waterline, or, negative, down to the keel"
+    )
+    cruise_speed = Parameter(1.0, "m/s", "speed that goes with orders: they name none", min=0.0)
+    order_timeout = Parameter(5.0, "s", "time for which an order counts", min=0.0)
+
+    rx = Input("1", "bytes that arrive, as text", type=str, optional=True)
+    position_n = Input("m", "position, north-east-down", axes=_NED)
+    velocity_n = Input("m/s", "velocity over ground, north-east-down", axes=_NED)
+    position_valid = Input("1", "whether position and velocity are valid", type=bool)
+    heading = Input("rad", "true heading, clockwise from north")
+    heading_valid = Input("1", "whether the heading is valid", type=bool)
+    rate_of_turn = Input("rad/s", "rate of turn, positive to starboard", optional=True)
+    roll_pitch = Input(
+        "rad", "roll and pitch, starboard side down, bow up", axes=("phi", "theta"), optional=True
+    )
+    imu_valid = Input(
+        "1", "whether rate of turn, roll and pitch are valid", type=bool, optional=True
+    )
+    wind_speed = Input("m/s", "speed of the apparent wind", optional=True)
+    wind_angle = Input(
+        "rad", "where the apparent wind blows to from the bow, to starboard", optional=True
+    )
+    wind_valid = Input("1", "whether the apparent wind is valid", type=bool, optional=True)
+    true_wind = Input(
+        "m/s",
+        "true wind over ground: where it blows to, {n}",
+        axes=("north", "east"),
+        optional=True,
+    )
+    true_wind_valid = Input("1", "whether the true wind is valid", type=bool, optional=True)
+    water_speed = Input("m/s", "speed through the water along the bow", optional=True)
+    water_speed_valid = Input("1", "whether it is valid", type=bool, optional=True)
+    depth = Input("m", "depth of the water below the transducer", optional=True)
+    depth_valid = Input("1", "whether it is valid", type=bool, optional=True)
+    water_temperature = Input("K", "temperature of the water", start=273.15, optional=True)
+    water_temperature_valid = Input("1", "whether it is valid", type=bool, optional=True)
+    rudder = Input("rad", "angle of the rudder, positive to turn to starboard", optional=True)
+    rudder_valid = Input("1", "whether it is valid", type=bool, optional=True)
+
+    tx = Output("1", "bytes that are sent, as text", type=str)
+    target_kind = Output("1", "heading or position", type=str, start="heading")
+    target_valid = Output("1", "whether there is an order", type=bool)
+    target_heading = Output("rad", "heading ordered, clockwise from north")
+    target_position = Output("m", "waypoint ordered, north-east-down", axes=_NED)
+    target_speed = Output("m/s", "speed that goes with it, 0 without an order")
+    cross_track = Output("m", "cross-track error that was told, positive to starboard of the leg")
+    cross_track_valid = Output("1", "whether it was", type=bool)
+    waypoint = Output("1", "name of the waypoint that was told", type=str)
+    arrived = Output("1", "whether it was told that the waypoint is reached", type=bool)
+    sentences_sent = Output("1", "sentences sent", type=int)
+    sentences_received = Output("1", "sentences received", type=int)
+    lines_refused = Output("1", "lines received that are no sentences", type=int)

@@ -1,0 +1,220 @@
+"""What each sentence says of the readings; its fields by pynmeagps's names.
+
+Source: E. S. Raymond, "NMEA Revealed" (gpsd project), which has the fields, units and status
+marks of NMEA 0183 up to 4.x from many public sources; the standard itself is not public.
+
+A reading that is not valid leaves its fields empty, and has status V where there is one (A if it
+is valid), mode N instead of A, or fix quality 0 instead of 1. Angles have two decimals, knots
+two, variation one; lat and lon are in 1e-5 minutes (2 cm). No sentence is longer than 82
+characters.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+from .readings import Pair, Readings
+
+Fields = dict[str, Any]
+
+KNOT = 1852.0 / 3600.0
+"""m/s."""
+FOOT = 0.3048
+FATHOM = 6.0 * FOOT
+CELSIUS = 273.15
+
+
+def _rmc(of: Readings) -> Fields:
+    return {
+        "time": _time(of),
+        "status": _status(of.position),
+        **_place(of),
+        "spd": _number(of.speed, 2, KNOT),
+        "cog": bearing(of.course),
+        "date": of.time.date(),
+        **_variation(of, "mv", "mvEW"),
+        "posMode": _mode(of.position),
+        "navStatus": None,  # of version 4.1; to some readers V, "none given", is no fix
+    }
+
+
+def _gga(of: Readings) -> Fields:
+    altitude = None if of.position is None else of.position[2]
+    return {
+        "time": _time(of),
+        **_place(of),
+        "quality": "0" if of.position is None else "1",
+        "numSV": "00" if of.position is None else "10",  # nominal: no constellation is simulated
+        "HDOP": "" if of.position is None else "1.0",
+        "alt": _number(altitude, 2),
+        "altUnit": "M",
+        "sep": "",
+        "sepUnit": "M",
+        "diffAge": "",
+        "diffStation": "",
+    }
+
+
+def _vtg(of: Readings) -> Fields:
+    return {
+        "cogt": bearing(of.course),
+        "cogtUnit": "T",
+        "cogm": bearing(of.magnetic(of.course)),
+        "cogmUnit": "M",
+        "sogn": _number(of.speed, 2, KNOT),
+        "sognUnit": "N",
+        "sogk": _number(of.speed, 2, 1.0 / 3.6),
+        "sogkUnit": "K",
+        "posMode": _mode(of.velocity),
+    }
+
+
+def _hdt(of: Readings) -> Fields:
+    return {"headingT": bearing(of.heading), "headingTu": "T"}
+
+
+def _hdg(of: Readings) -> Fields:
+    return {
+        "headingM": bearing(of.magnetic(of.heading)),
+        "deviation": "",
+        "deviationEW": "",
+        **_variation(of, "variation", "variationEW"),
+    }
+
+
+def _rot(of: Readings) -> Fields:
+    per_minute = math.radians(1.0) / 60.0
+    return {"rot": _number(of.rate_of_turn, 1, per_minute), "valid": _status(of.rate_of_turn)}
+
+
+def _apparent_wind(of: Readings) -> Fields:
+    return _mwv(of.apparent_wind, "R")
+
+
+def _true_wind(of: Readings) -> Fields:
+    return _mwv(of.true_wind, "T")
+
+
+def _mwv(wind: Pair | None, reference: str) -> Fields:
+    speed, angle = (None, None) if wind is None else wind
+    return {
+        "angle": bearing(angle),
+        "reference": reference,
+        "speed": _number(speed, 2, KNOT),
+        "speedu": "N",
+        "status": _status(wind),
+    }
+
+
+def _xdr(of: Readings) -> Fields:
+    """Return pitch and roll as two transducers of angle, with the names that plotters know."""
+    roll, pitch = (None, None) if of.roll_pitch is None else of.roll_pitch
+    fields: Fields = {}
+    for number, (name, angle) in enumerate((("PTCH", pitch), ("ROLL", roll)), start=1):
+        fields |= {
+            f"tdrtype_{number:02}": "A",
+            f"data_{number:02}": _number(angle, 2, math.radians(1.0)),
+            f"dataunit_{number:02}": "D",
+            f"tdrid_{number:02}": name,
+        }
+    return fields
+
+
+def _vhw(of: Readings) -> Fields:
+    return {
+        "hdgT": bearing(of.heading),
+        "hgdTu": "T",
+        "hdgM": bearing(of.magnetic(of.heading)),
+        "hgdMu": "M",
+        "spdN": _number(of.water_speed, 2, KNOT),
+        "spdNu": "N",
+        "spdK": _number(of.water_speed, 2, 1.0 / 3.6),
+        "spdKu": "K",
+    }
+
+
+def _dbt(of: Readings) -> Fields:
+    return {
+        "depthf": _number(of.depth, 2, FOOT),
+        "depthfu": "f",
+        "depthm": _number(of.depth, 2),
+        "depthmu": "M",
+        "depthfath": _number(of.depth, 2, FATHOM),
+        "depthfathu": "F",
+    }
+
+
+def _dpt(of: Readings) -> Fields:
+    return {
+        "depth": _number(of.depth, 2),
+        "offset": _number(of.transducer_offset, 2),
+        "rangescale": "",
+    }
+
+
+def _mtw(of: Readings) -> Fields:
+    kelvin = of.water_temperature
+    return {"temp": _number(None if kelvin is None else kelvin - CELSIUS, 2), "tempu": "C"}
+
+
+def _rsa(of: Readings) -> Fields:
+    return {
+        "stbdangle": _number(of.rudder, 2, math.radians(1.0)),
+        "stbdstatus": _status(of.rudder),
+        "portangle": "",
+        "portstatus": "V",  # there is one rudder, which is the starboard one
+    }
+
+
+SENTENCES: dict[str, Callable[[Readings], Fields]] = {
+    "RMC": _rmc,
+    "GGA": _gga,
+    "VTG": _vtg,
+    "HDT": _hdt,
+    "HDG": _hdg,
+    "ROT": _rot,
+    "MWV-R": _apparent_wind,
+    "MWV-T": _true_wind,
+    "XDR": _xdr,
+    "VHW": _vhw,
+    "DBT": _dbt,
+    "DPT": _dpt,
+    "MTW": _mtw,
+    "RSA": _rsa,
+}
+"""What can be sent, by formatter; of wind the apparent one, R, and the true one, T."""
+
+
+def bearing(direction: float | None) -> str:
+    """Return a direction in degrees, 0.00 to 359.99."""
+    return "" if direction is None else f"{round(math.degrees(direction), 2) % 360.0:.2f}"
+
+
+def _number(value: float | None, decimals: int, unit: float = 1.0) -> str:
+    # Adding 0 takes the sign off what was rounded to minus zero.
+    return "" if value is None else f"{round(value / unit, decimals) + 0.0:.{decimals}f}"
+
+
+def _time(of: Readings) -> str:
+    return f"{of.time:%H%M%S}.{of.time.microsecond // 10_000:02}"
+
+
+def _place(of: Readings) -> Fields:
+    if of.position is None:
+        return {"lat": "", "lon": ""}
+    return {"lat": of.position[0], "lon": of.position[1]}
+
+
+def _variation(of: Readings, name: str, side: str) -> Fields:
+    degrees = round(math.degrees(of.variation), 1)
+    return {name: f"{abs(degrees):.1f}", side: "W" if degrees < 0.0 else "E"}
+
+
+def _status(reading: object) -> str:
+    return "V" if reading is None else "A"
+
+
+def _mode(reading: object) -> str:
+    return "N" if reading is None else "A"

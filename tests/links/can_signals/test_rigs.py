@@ -1,0 +1,73 @@
+"""Actuators on a bus: shipped rigs, and their logs as cantools and canmatrix decode them."""
+
+import csv
+import re
+import subprocess
+import sys
+
+import can
+import canmatrix.formats
+import pytest
+
+from seatrial.cosim.profile import load_profile
+from seatrial.errors import InputError
+from seatrial.shipped import shipped_folder
+from seatrial.trials.run import run_trial
+from seatrial.trials.trial import load_trial
+
+PROFILES = shipped_folder("hil_profiles")
+
+
+def test_thrusters_on_a_bus(tmp_path):
+    """The trial holds; each frame of the log is what the ports had, to half a step of scaling."""
+    result = run_trial(load_trial("hydrone-can"), tmp_path / "run", engine="direct")
+    assert result.status == "complete", result.error
+    assert [name for name, _, verdict in result.verdicts if not verdict.passed] == []
+    assert "hydrone.dbc" in (result.folder / "manifest.json").read_text("utf-8")
+    assert str(PROFILES) not in (result.folder / "manifest.json").read_text("utf-8")
+
+    with (result.folder / "signals.csv").open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    heard = [
+        float(row["port_node.received.s1"]) for row in rows if row["port_node.valid.s1"] == "1"
+    ]
+    matrix = canmatrix.formats.loadp_flat(str(PROFILES / "hydrone.dbc"))
+    command = matrix.frame_by_name("ThrusterCommand")
+    with can.LogReader(str(result.folder / "can.log")) as log:
+        sent = [
+            float(command.decode(bytes(each.data))["PortPulse"].phys_value)
+            for each in log
+            if each.arbitration_id == 0x100
+        ]
+    assert sorted({round(pulse * 1e6, 1) for pulse in heard}) == sorted(set(sent[: len(heard)]))
+
+    # The command line tool reads the log as candump's.
+    with (result.folder / "can.log").open(encoding="utf-8") as log:
+        head = "".join(next(log) for _ in range(30))
+    said = subprocess.run(
+        [sys.executable, "-m", "cantools", "decode", str(PROFILES / "hydrone.dbc")],
+        input=head,
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout
+    assert re.findall(r"PortPulse: ([\d.]+) us", said)[0] == str(sent[0])
+    assert "StarboardCurrent" in said
+
+
+def test_servos_on_a_disturbed_bus(tmp_path):
+    result = run_trial(load_trial("gloria-can"), tmp_path / "run", engine="direct")
+    assert result.status == "complete", result.error
+    assert [name for name, _, verdict in result.verdicts if not verdict.passed] == []
+
+
+def test_a_profile_names_the_file_beside_it(tmp_path):
+    text = (PROFILES / "hydrone.toml").read_text("utf-8")
+    (tmp_path / "boat.toml").write_text(text, "utf-8")
+    with pytest.raises(InputError) as caught:
+        load_profile(tmp_path / "boat.toml")
+    for part in ("boat.toml", "links.port_node.database", str(tmp_path / "hydrone.dbc")):
+        assert part in str(caught.value)
+    (tmp_path / "hydrone.dbc").write_bytes((PROFILES / "hydrone.dbc").read_bytes())
+    found = load_profile(tmp_path / "boat.toml").parameters("links.port_node")
+    assert found["database"] == str(tmp_path / "hydrone.dbc")
