@@ -2,6 +2,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 INSTALLED := .venv/.installed
+JUDGES := tests/peers/node/node_modules/.installed
 
 .PHONY: demo test test-long lint fmus benchmark clean
 
@@ -26,10 +27,15 @@ demo: $(INSTALLED)
 	@$(BIN)/seatrial run hydrone-pads || test $$? -eq 1
 	@echo "Open the two reports in a browser."
 
-test: $(INSTALLED)
+# canboat, a judge of the NMEA 2000 nodes; without npm its tests are skipped, and say so.
+$(JUDGES): tests/peers/node/package.json
+	@command -v npm >/dev/null || { echo "npm is missing: no judge of NMEA 2000"; exit 0; }; \
+		npm install --prefix $(<D) --no-audit --no-fund --no-package-lock --ignore-scripts && touch $@
+
+test: $(INSTALLED) $(JUDGES)
 	$(BIN)/python -m pytest -n auto --dist worksteal -m "not long"
 
-test-long: $(INSTALLED)
+test-long: $(INSTALLED) $(JUDGES)
 	$(BIN)/python -m pytest -n auto --dist worksteal
 
 lint: $(INSTALLED)

@@ -1,0 +1,63 @@
+"""NMEA 2000: messages, fields and ports of the node."""
+
+from __future__ import annotations
+
+from nmea2000.backend import DATABASE
+from nmea2000.native_units import NATIVE_UNITS
+
+from parts import part
+from parts.can import ports
+from parts.markdown import shown_number, table
+from seatrial.links.nmea2000.catalogue import DATA, Pgn
+from seatrial.links.nmea2000.codec import is_fast
+from seatrial.links.nmea2000.component import Nmea2000
+from seatrial.links.nmea2000.ports import NOT_WIRED
+
+
+def _field(pgn: Pgn, name: str) -> tuple[str, str]:
+    """Return resolution and unit of a field on the bus."""
+    native = NATIVE_UNITS.get((pgn.id, name))
+    if native is not None:
+        return shown_number(native[1] or 1.0), native[0]
+    known = next(f for f in DATABASE.pgn_variants(pgn.number)[0].fields if f.id == name)
+    if known.field_type != "NUMBER" and known.field_type != "TIME":
+        return "", ""
+    return shown_number(known.resolution), known.unit or ""
+
+
+@part("nmea2000-messages")
+def messages() -> str:
+    """Return the messages: number, name, interval, priority, kind of packet."""
+    rows = [
+        (
+            str(pgn.number),
+            pgn.title,
+            f"{shown_number(pgn.interval_s)} s",
+            str(pgn.priority),
+            "fast packet" if is_fast(pgn.number) else "one frame",
+        )
+        for pgn in DATA.values()
+    ]
+    return table(("PGN", "message", "interval", "priority", "goes as"), rows)
+
+
+@part("nmea2000-fields")
+def fields() -> str:
+    """Return the fields: where they come from and go to, resolution, unit, sense."""
+    rows = []
+    for pgn in DATA.values():
+        for each in pgn.fields:
+            if each.name == "sid":
+                continue
+            resolution, unit = _field(pgn, each.name)
+            said = f"`{each.said}`" if each.said else ""
+            heard = f"`{each.heard}`" if each.heard else ""
+            name = f"`{each.name}`"
+            rows.append((str(pgn.number), name, said, heard, resolution, unit, each.sense))
+    return table(("PGN", "field", "from", "to", "resolution", "unit", "sense"), rows)
+
+
+@part("nmea2000-ports")
+def node_ports() -> str:
+    """Return the node's ports."""
+    return ports(Nmea2000).replace(f"{NOT_WIRED:g}", "not wired")

@@ -1,0 +1,122 @@
+"""DroneCAN's own CAN bus over UDP multicast, as ArduPilot's simulator has it too.
+
+One frame is one datagram to group 239.65.82.BUS, port 57732, little endian: magic 0x2934, 16 bits
+of CRC-16-CCITT over the rest, 16 bits of flags (1: CAN FD), 32 bits of identifier (bit 31: 29 bits
+of it), data. Source: `dronecan` 1.0.27, driver/mcast.py.
+"""
+
+from __future__ import annotations
+
+import binascii
+import contextlib
+import socket
+import struct
+import sys
+
+from ...errors import InputError
+from .door import MOST_FRAMES, Door
+from .frame import Frame
+
+GROUP, PORT = "239.65.82.{}", 57732
+MAGIC = 0x2934
+LOOPBACK = "127.0.0.1"
+
+_HEAD, _BODY = struct.Struct("<HH"), struct.Struct("<HI")
+_FD, _EXTENDED = 1, 1 << 31
+_REMOTE, _ERROR = 1 << 30, 1 << 29
+_LONGEST = 2 * 64
+
+
+def packed(frame: Frame) -> bytes | None:
+    """Return a frame as a datagram, None for a remote frame: there is no word for it."""
+    if frame.remote:
+        return None
+    identifier = frame.identifier | (_EXTENDED if frame.extended else 0)
+    body = _BODY.pack(_FD if frame.fd else 0, identifier) + frame.data
+    return _HEAD.pack(MAGIC, binascii.crc_hqx(body, 0xFFFF)) + body
+
+
+def unpacked(datagram: bytes) -> Frame | None:
+    """Return the frame of a datagram, None if it is none."""
+    if len(datagram) < _HEAD.size + _BODY.size:
+        return None
+    magic, crc = _HEAD.unpack_from(datagram)
+    body = datagram[_HEAD.size :]
+    flags, identifier = _BODY.unpack_from(body)
+    if (magic, crc) != (MAGIC, binascii.crc_hqx(body, 0xFFFF)) or identifier & (_REMOTE | _ERROR):
+        return None
+    try:
+        return Frame(
+            identifier & ~_EXTENDED,
+            body[_BODY.size :],
+            bool(identifier & _EXTENDED),
+            fd=bool(flags & _FD),
+        )
+    except InputError:
+        return None
+
+
+class DroneCanMulticastDoor(Door):
+    """A bus of this machine's programs; they hear each other without it.
+
+    It joins and sends on the loopback interface alone. Programs that leave the choice to the
+    system are there too if the route of the group leads there.
+
+    Raises OSError for a bus that cannot be joined.
+    """
+
+    def __init__(self, bus: int) -> None:
+        self._group = GROUP.format(bus)
+        self.reached_at = f"mcast:{bus}"
+        self._senders: dict[tuple[str, int], int] = {}
+        self._heard, self._said = _socket(), _socket()
+        try:
+            self._heard.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            # Bound to the group, a socket hears nothing else; Windows cannot.
+            self._heard.bind((LOOPBACK if sys.platform == "win32" else self._group, PORT))
+            member = socket.inet_aton(self._group) + socket.inet_aton(LOOPBACK)
+            self._heard.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, member)
+            interface = socket.inet_aton(LOOPBACK)
+            self._said.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, interface)
+            self._said.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 0)
+            self._said.bind((LOOPBACK, 0))
+        except OSError:
+            self.close()
+            raise
+
+    @property
+    def clients(self) -> int:
+        """Return how many have said something."""
+        return len(self._senders)
+
+    def poll(self) -> list[tuple[int, Frame]]:
+        """Return frames that have arrived, and who sent each; others' datagrams are passed over."""
+        found: list[tuple[int, Frame]] = []
+        own = self._said.getsockname()
+        while len(found) < MOST_FRAMES:
+            try:
+                datagram, sender = self._heard.recvfrom(_LONGEST)
+            except OSError:
+                break
+            frame = unpacked(datagram) if sender != own else None
+            if frame is not None:
+                found.append((self._senders.setdefault(sender, len(self._senders)), frame))
+        return found
+
+    def send(self, time_ns: int, frame: Frame, sender: int | None = None) -> None:
+        """Send a frame, unless it came from there."""
+        datagram = packed(frame)
+        if sender is None and datagram is not None:
+            with contextlib.suppress(OSError):  # a datagram may be lost
+                self._said.sendto(datagram, (self._group, PORT))
+
+    def close(self) -> None:
+        """Leave the bus."""
+        self._heard.close()
+        self._said.close()
+
+
+def _socket() -> socket.socket:
+    opened = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    opened.setblocking(False)
+    return opened

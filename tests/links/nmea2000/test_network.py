@@ -1,0 +1,365 @@
+"""Nodes on the simulated bus: addresses, requests, intervals, loss, and rolling back."""
+
+import copy
+from itertools import pairwise
+
+import pytest
+
+from seatrial.cosim.profile import load_profile
+from seatrial.errors import InputError
+from seatrial.links.can.frame import Frame
+from seatrial.links.nmea2000.catalogue import ALL, DATA, NETWORK
+from seatrial.links.nmea2000.codec import GLOBAL, Encoder, Message
+from seatrial.links.nmea2000.name import name_of
+
+from .network import Network, node
+
+COMPASS = {"sends": "127250", "heading": 1.0, "device_function": 140.0, "device_class": 60.0}
+ASKER = 200
+
+
+def ask(network, pgn, to):
+    network.say(Message(59904, {"pgn": pgn}, source=ASKER, destination=to))
+
+
+def after(network, seconds):
+    """Run on; return the messages since."""
+    before = len(network.messages)
+    network.run(seconds)
+    return [message for _, message in network.messages[before:]]
+
+
+@pytest.fixture(scope="module")
+def settled():
+    """A compass and a pilot that wanted one address, settled."""
+    made = Network({"compass": COMPASS, "pilot": {"sends": "127245", "rudder_order": 0.1}})
+    made.run(1.0)
+    return made
+
+
+def test_the_lower_name_has_the_address_and_nobody_sends_without_one(settled):
+    names = {m.source: name_of(m.fields) for m in settled.said(60928)}
+    compass, pilot = (settled.nodes[n].get("claimed_address") for n in ("compass", "pilot"))
+    assert {compass, pilot} == {35, 36}
+    assert names[35] < names[36]
+    for address in (35, 36):
+        claimed = [t for t, m in settled.messages if m.pgn == 60928 and m.source == address]
+        data = [t for t, m in settled.messages if m.pgn in DATA and m.source == address]
+        assert min(data) > max(claimed) + 249_000_000
+
+
+def test_a_frame_of_the_bus_has_priority_pgn_and_source(settled):
+    """J1939-21: priority << 26 | PGN << 8 | source; destination in the PGN's low byte."""
+    compass = settled.nodes["compass"].get("claimed_address")
+    identifiers = {frame.identifier for _, frame in settled.frames}
+    assert 2 << 26 | 127250 << 8 | compass in identifiers
+    assert 6 << 26 | 60928 << 8 | GLOBAL << 8 | compass in identifiers
+
+
+def test_the_interval_is_exact_and_the_sid_counts(settled):
+    found = [(t, m) for t, m in settled.messages if m.pgn == 127250]
+    times = [t for t, _ in found]
+    assert all(99e6 < b - a < 101e6 for a, b in pairwise(times))
+    sids = [m.fields["sid"] for _, m in found]
+    assert sids == list(range(len(sids)))
+
+
+def test_requests_are_answered(settled):
+    compass = settled.nodes["compass"].get("claimed_address")
+    for pgn in (126996, 126998, 126464, 126993, 60928):
+        ask(settled, pgn, compass)
+    found = after(settled, 0.3)
+    said = {m.pgn: m for m in found if m.source == compass}
+    assert said[126996].fields["modelId"] == "seatrial"
+    assert said[126996].fields["productCode"] == 1
+    assert said[126998].fields["manufacturerInformation"] == "simulated"
+    assert said[126993].fields["dataTransmitOffset"] == 60.0
+    assert said[60928].fields["deviceFunction"] == 140
+    lists = {
+        m.fields["functionCode"]: {i["pgn"] for i in m.items} for m in found if m.pgn == 126464
+    }
+    assert lists[0] == {127250, *NETWORK}
+    assert {127245, 127237, 59904} <= lists[1]
+    assert all(m.destination == ASKER for m in found if m.pgn == 126464)
+
+
+def test_a_request_for_claims_to_all_is_answered_by_all(settled):
+    ask(settled, 60928, GLOBAL)
+    claims = [m.source for m in after(settled, 0.2) if m.pgn == 60928]
+    assert sorted(claims) == [35, 36]
+
+
+def test_what_it_does_not_have_is_refused_unless_all_were_asked(settled):
+    compass = settled.nodes["compass"].get("claimed_address")
+    ask(settled, 130306, compass)
+    (refusal,) = [m for m in after(settled, 0.2) if m.pgn == 59392]
+    assert (refusal.source, refusal.fields["control"], refusal.fields["pgn"]) == (
+        compass,
+        1,
+        130306,
+    )
+    ask(settled, 130306, GLOBAL)
+    assert not [m for m in after(settled, 0.2) if m.pgn == 59392]
+
+
+def test_data_can_be_asked_for(settled):
+    network = Network({"compass": {**COMPASS, "intervals": "127250 0"}})
+    network.run(1.0)
+    assert not network.said(127250)
+    ask(network, 127250, GLOBAL)
+    network.run(0.1)
+    (found,) = network.said(127250)
+    assert found.fields["heading"] == pytest.approx(1.0, abs=5e-5)
+
+
+def request_interval(network, to, pgn, seconds):
+    fields = {"functionCode": 0, "pgn": pgn, "transmissionInterval": seconds}
+    fields |= {"numberOfParameters": 0}
+    message = Message(126208, fields, ASKER, to, id="nmeaRequestGroupFunction")
+    network.say(message)
+
+
+@pytest.mark.parametrize(
+    ("pgn", "seconds", "errors", "count"),
+    [
+        *((127250, 0.5, (0, 0), 4), (127250, 0.0, (0, 0), 1), (127250, 0.001, (0, 2), 20)),
+        *((130306, 0.5, (2, 0), 20), (126720, 0.5, (1, 0), 20), (127250, None, (0, 0), 21)),
+    ],
+)
+def test_intervals_are_changed_over_the_bus(pgn, seconds, errors, count):
+    """Acknowledged as canboat's lookups have it: 1 not supported, 2 not available, 2 too low."""
+    network = Network({"compass": COMPASS})
+    network.run(1.0)
+    request_interval(network, 35, pgn, seconds)
+    found = after(network, 2.02)
+    (answer,) = [m for m in found if m.pgn == 126208 and m.source == 35]
+    assert answer.id == "nmeaAcknowledgeGroupFunction"
+    assert answer.destination == ASKER
+    names = ("pgnErrorCode", "transmissionIntervalPriorityErrorCode")
+    assert tuple(answer.fields[name] for name in names) == errors
+    assert abs(len([m for m in found if m.pgn == 127250]) - count) <= 1
+
+
+def test_fields_are_commanded_over_the_bus():
+    """Parameters are numbered from 1, reserved ones included: 5 is the mode, 11 the heading."""
+    network = Network({"pilot": {}})
+    network.run(1.0)
+    items = (
+        {"parameter": 5, "value": 4},
+        {"parameter": 11, "value": 1.25},
+        {"parameter": 99, "value": 1},
+    )
+    fields = {"functionCode": 1, "pgn": 127237, "priority": 8, "numberOfParameters": 2}
+    network.say(Message(126208, fields, ASKER, 35, items[:2], id="nmeaCommandGroupFunction"))
+    found = after(network, 0.2)
+    pilot = network.nodes["pilot"]
+    assert pilot.get("bus_heading_to_steer") == pytest.approx(1.25, abs=5e-5)
+    assert pilot.get("bus_heading_to_steer_valid")
+    assert pilot.get("bus_steering_mode") == 4
+    (answer,) = [m for m in found if m.pgn == 126208 and m.source == 35]
+    assert [each["parameter"] for each in answer.items] == [0, 0]
+
+
+def test_the_heartbeat_comes_every_minute():
+    network = Network({"node": {}}, step_ns=1_000_000_000)
+    network.run(130.0)
+    beats = [(t, m.fields["sequenceCounter"]) for t, m in network.messages if m.pgn == 126993]
+    assert [count for _, count in beats] == [0, 1, 2]
+    assert beats[2][0] - beats[1][0] == pytest.approx(60e9, abs=1e6)
+
+
+@pytest.mark.parametrize("count", [2, 4])
+def test_nodes_switched_on_together_settle_on_the_bus(count):
+    """They all want 35, and differ in one instance: the bus's own collisions included."""
+    network = Network({f"n{k}": {"device_instance": float(k)} for k in range(count)})
+    network.run(2.0)
+    addresses = [n.get("claimed_address") for n in network.nodes.values()]
+    assert addresses[0] == 35  # the lowest NAME
+    assert sorted(addresses) == list(range(35, 35 + count))
+
+
+def test_a_claim_in_the_middle_of_a_fast_packet_ends_it():
+    """The rest would otherwise go on with another node's frames of the same address."""
+    network = Network({"reader": {"address": 90.0}})
+    network.run(1.0)
+
+    def gnss(latitude):
+        fields = {"sid": 1, "latitude": latitude, "longitude": 5.0, "altitude": 0.0, "method": 1}
+        return Encoder({}).encode(Message(129029, fields, source=35))
+
+    one, other = gnss(10.0), gnss(20.0)
+    claim = {"uniqueNumber": 1, "manufacturerCode": 1, "deviceFunction": 1, "deviceClass": 1}
+    for frames in (one[:3], Encoder({}).encode(Message(60928, claim, 35)), other[3:]):
+        for frame in frames:
+            network.send(frame)
+        network.run(0.03)  # a claim has a low priority
+    reader = network.nodes["reader"]
+    assert not reader.get("bus_position_valid")
+    # Without the claim, nobody could tell.
+    for frame in (*one[:3], *other[3:]):
+        network.send(frame)
+    network.run(0.2)
+    assert reader.get("bus_position_valid")
+
+
+def test_a_node_that_loses_its_address_in_a_fast_packet_goes_on_from_another():
+    network = Network({"gnss": {"sends": "129029", "position_n": [0.0, 0.0, 0.0]}})
+    network.run(1.005)  # the packet of t = 1 s is being sent
+    lower = dict.fromkeys(network.nodes["gnss"]._identity.claim(), 0)
+    network.say(Message(60928, lower, source=35))
+    network.run(2.0)
+    gnss = network.nodes["gnss"]
+    assert gnss.get("claimed_address") == 36
+    assert gnss.get("contests") == 1
+    assert {m.source for m in network.said(129029)} <= {35, 36}
+    assert network.said(129029, 36)
+    silent = [t for t, m in network.messages if m.source in (35, 36) and m.pgn in DATA]
+    moved = max(t for t, m in network.messages if m.pgn == 60928 and m.source == 36)
+    assert not [t for t in silent if moved < t < moved + 250_000_000]
+
+
+def test_five_percent_of_loss_gives_no_wrong_value():
+    settings = {
+        "sends": "127250 129029 127237 126992",
+        "intervals": "129029 0.1; 127237 0.1; 126992 0.1",
+        "position_n": [0.0, 0.0, 0.0],
+        "latitude": 0.5,
+        "longitude": -0.7,
+        "heading": 1.2345,
+        "heading_to_steer": 2.5,
+    }
+    network = Network({"all": settings, "reader": {"address": 90.0}}, {"loss": 0.05})
+    network.run(15.0)
+    counts = {}
+    for pgn in (127250, 129029, 127237):
+        found = network.said(pgn)
+        counts[pgn] = len(found) / 147
+        for each in found:
+            known = {
+                127250: ("heading", 1.2345),
+                129029: ("latitude", 28.64788975654116),
+                127237: ("headingToSteerCourse", 2.5),
+            }[pgn]
+            assert each.fields[known[0]] == pytest.approx(known[1], abs=1e-9)
+    assert counts[127250] == pytest.approx(0.95, abs=0.06)
+    assert counts[129029] == pytest.approx(0.95**7, abs=0.13)
+    assert counts[127237] == pytest.approx(0.95**4, abs=0.11)
+
+
+def test_a_copy_of_the_state_goes_on_to_the_same_bytes():
+    """Also in the middle of a fast packet, for who reads and who sends."""
+    gnss = {"sends": "129029 127250 129025", "position_n": [1.0, 2.0, 3.0]}
+    network = Network({"gnss": gnss, "reader": {}}, step_ns=1_000_000)
+    network.run(1.0)
+    reader, sender = network.nodes["reader"], network.nodes["gnss"]
+    while not reader.get_state()["_unfinished"]:
+        network.run(0.001)
+    twins = node("reader"), node("gnss", **gnss)
+    for twin, original in zip(twins, (reader, sender), strict=True):
+        twin.set_state(copy.deepcopy(original.get_state()))
+    for _ in range(300):
+        t = network.now / 1e9
+        network.run(0.001)
+        for twin, original in zip(twins, (reader, sender), strict=True):
+            twin.set("rx", original.get("rx"))
+            twin.advance(t, 0.001)
+            assert twin.get_state() == original.get_state()
+    assert reader.get("bus_position_n") == pytest.approx([1.0, 2.0, 3.0], abs=0.02)
+
+
+def test_names_of_the_standard_give_the_number():
+    """The NAME of canboat's own function."""
+    from nmea2000._canboat import iso_name
+
+    made = node(uid=str(2**40 + 12345), manufacturer_code=229.0, device_function=145.0)
+    claim = made._identity.claim()
+    assert name_of(claim) == iso_name(
+        229,
+        (2**40 + 12345) % 2**21,
+        device_function=145,
+        device_class=25,
+        device_instance=0,
+        system_instance=0,
+        industry_group=4,
+        arbitrary_address_capable=True,
+    )
+
+
+def test_intervals_are_those_of_canboats_table():
+    from nmea2000.backend import DATABASE
+
+    for pgn in DATA.values():
+        (known,) = DATABASE.pgn_variants(pgn.number)
+        assert known.id == pgn.id
+        assert known.transmission_interval == round(pgn.interval_s * 1000)
+        assert {field.name for field in pgn.fields} <= {field.id for field in known.fields}
+    assert ALL[126993].interval_s == 60.0
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        ({"sends": "127250 127252"}, "unknown PGN '127252'; did you mean"),
+        ({"sends": "127250 127250"}, "127250 is there twice"),
+        ({"intervals": "127250 fast"}, "is not PGN SECONDS"),
+        ({"intervals": "127250 0.001"}, "allowed 0.01 to 3600 s"),
+        ({"uid": "abc"}, "uid is 'abc', a whole number"),
+        ({"date": "yesterday"}, "a day like '2026-02-05' is needed"),
+        ({"device_function": 1.5}, "device_function is 1.5, a whole number is needed"),
+    ],
+)
+def test_mistakes_are_named(settings, message):
+    with pytest.raises(InputError, match=message):
+        node(**settings)
+
+
+def test_frames_of_others_do_no_harm():
+    network = Network({"node": {}})
+    network.run(0.5)
+    for frame in (
+        Frame(0x123, b"12"),
+        Frame(0x1FFFFFFF, bytes(8), True),
+        Frame(0x09F80500, b"", True),
+    ):
+        network.send(frame)
+    network.send(Frame(0x09F80523, b"\x40", True))
+    network.run(0.1)
+    assert network.nodes["node"].get("claimed_address") == 35
+
+
+PROFILE = """
+title = "A boat with an NMEA 2000 sounder"
+[identity]
+system_id = 1
+component_id = 1
+vehicle_type = "surface_boat"
+autopilot_type = "ardupilotmega"
+firmware_version = "0.1.0-dev"
+uid = 4242
+[home]
+latitude = "10 deg"
+longitude = "20 deg"
+altitude = "0 m"
+date = 2026-01-01
+source = "invented"
+[links.sounder]
+kind = "nmea2000"
+sends = "{sends}"
+address = 40
+"""
+
+
+def test_a_profile_gives_a_node_its_serial_number_origin_and_date(tmp_path):
+    path = tmp_path / "boat.toml"
+    path.write_text(PROFILE.format(sends="128267"), "utf-8")
+    values = load_profile(path).parameters("links.sounder")
+    assert values["uid"] == "4242"
+    assert (values["date"], values["address"]) == ("2026-01-01", 40.0)
+    assert values["latitude"] == pytest.approx(0.174533, abs=1e-6)
+
+
+def test_a_profile_with_an_unknown_pgn_is_refused_with_near_misses(tmp_path):
+    path = tmp_path / "boat.toml"
+    path.write_text(PROFILE.format(sends="128276"), "utf-8")
+    with pytest.raises(InputError, match=r"links\.sounder\.sends.*'128276'; did you mean '128267'"):
+        load_profile(path)

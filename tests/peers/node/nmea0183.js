@@ -1,0 +1,10 @@
+// Sentences in, a line each; out, what Signal K makes of each: a JSON object of values by path.
+const readline = require('readline')
+const Parser = require('@signalk/nmea0183-signalk')
+
+const parser = new Parser({ validateChecksum: true })
+readline.createInterface({ input: process.stdin }).on('line', (line) => {
+  const delta = parser.parse(line)
+  const values = delta ? delta.updates.flatMap((update) => update.values) : []
+  console.log(JSON.stringify(Object.fromEntries(values.map((each) => [each.path, each.value]))))
+})
