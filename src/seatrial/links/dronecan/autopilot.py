@@ -1,0 +1,153 @@
+"""An autopilot's DroneCAN: commands to ESCs and servos, and what the other nodes say."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from dronecan.transport import Transfer
+
+from ...component import NS, Input, Output, Parameter
+from ..mavlink.geodesy import Origin
+from .channels import AXES, MOST_CHANNELS, channels_of
+from .commands import messages
+from .navigation import Fix2, Solution, fixed, solved
+from .node import OFFLINE_NS, DroneCanNode, NodeStatus, Task
+from .parameters import Setting
+from .telemetry import QUANTITIES, ActuatorStatus, EscStatus, is_status_of, reported
+from .transfers import HIGH
+
+_NED = ("north", "east", "down")
+
+
+class DroneCanAutopilot(DroneCanNode):
+    """The node that commands the others.
+
+    Every ``command_period`` it sends ``command`` to the ``channels``, named as in
+    `DroneCanPeripheral`: one RawCommand for all esc, one RPMCommand for all rpm, one
+    ArrayCommand for all actuators, at high priority; beyond their range they are cut off. While
+    ``enabled`` is false it sends none, and the others' failsafe acts.
+
+    What the channels' status says, is on outputs, 0 until it is known; ``status_valid`` says if
+    it is younger than ``timeout``. So are position and velocity of the last Fix2 that had a fix
+    (north-east-down from ``latitude``, ``longitude``, ``altitude``) and attitude, rates and
+    acceleration of the last ahrs.Solution, with ``position_valid`` and ``attitude_valid``; of
+    several senders, the last one counts. A Fix2 without a fix ends ``position_valid`` at once.
+
+    ``others`` counts the nodes whose NodeStatus came in the last 3 s.
+
+    Raises InputError at the start for channels that cannot be.
+    """
+
+    messages = (EscStatus, ActuatorStatus, Fix2, Solution, NodeStatus)
+    transient = DroneCanNode.transient | {"_channels", "_origin"}
+
+    channels = Parameter("esc0 esc1", "1", "what command.c1, c2... are", check=channels_of)
+    command_period = Parameter(0.02, "s", "period of commands", min=1e-3, max=60.0)
+    timeout = Parameter(1.0, "s", "age at which what others said no longer counts", min=1e-3)
+    latitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-1.5707, max=1.5707)
+    longitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-3.1416, max=3.1416)
+    altitude = Parameter(0.0, "m", "of the origin")
+
+    command = Input("1", "command: -1 to 1, or in the channel's unit", axes=AXES, optional=True)
+    enabled = Input("1", "whether commands are sent", type=bool, start=True, optional=True)
+
+    voltage = Output("V", "voltage at each ESC", axes=AXES)
+    current = Output("A", "current of each ESC", axes=AXES)
+    temperature = Output("K", "temperature of each ESC", axes=AXES)
+    speed = Output("1", "speed: rad/s, or m/s", axes=AXES)
+    position = Output("1", "position of each actuator: rad, or m", axes=AXES)
+    force = Output("1", "force of each actuator: N, or N.m", axes=AXES)
+    status_valid = Output("1", "whether a channel's status is known", type=bool, axes=AXES)
+    position_n = Output("m", "of the antenna, north-east-down", axes=_NED)
+    velocity_n = Output("m/s", "of the antenna, north-east-down", axes=_NED)
+    position_valid = Output("1", "whether there is a fix", type=bool)
+    attitude = Output("rad", "Euler angles, ZYX", axes=("phi", "theta", "psi"))
+    rates = Output("rad/s", "angular velocity, body axes", axes="pqr")
+    acceleration = Output("m/s2", "specific force, body axes", axes="xyz")
+    attitude_valid = Output("1", "whether attitude counts", type=bool)
+    others = Output("1", "other nodes that are there", type=int)
+
+    # ------------------------------------------------------------------ running
+
+    def begin(self) -> None:
+        """Forget what others said."""
+        self._written: str = self.setting("CHANNELS")
+        self._set_up()
+        for name in (*QUANTITIES, "position_n", "velocity_n", "attitude", "rates", "acceleration"):
+            setattr(self, name, 0.0)
+        self._reported_ns: list[int | None] = [None] * len(self._channels)
+        self._fix_ns: int | None = None
+        self._motion_ns: int | None = None
+        self._nodes: dict[int, int] = {}
+
+    def outputs(self, t: float) -> None:
+        """Publish what counts still, and what it says."""
+        super().outputs(t)
+        missing = MOST_CHANNELS - len(self._channels)
+        fresh = [self._counts(at) for at in self._reported_ns]
+        self.publish("status_valid", (*fresh, *(False,) * missing))
+        self.publish("position_valid", self._counts(self._fix_ns))
+        self.publish("attitude_valid", self._counts(self._motion_ns))
+        self.publish("others", sum(self.now_ns - at < OFFLINE_NS for at in self._nodes.values()))
+
+    def settings(self) -> Sequence[Setting]:
+        """Return the parameters that the bus may see."""
+        return (
+            Setting("CHANNELS", self.channels, check=channels_of),
+            Setting("COMMAND_PERIOD", self.command_period, 1e-3, 60.0),
+        )
+
+    def tasks(self) -> Sequence[Task]:
+        """Return what it says again and again."""
+        return (Task("commands", self.setting("COMMAND_PERIOD"), self._say_commands, False),)
+
+    def heard(self, time_ns: int, transfer: Transfer) -> None:
+        """Take in what another node says."""
+        message = transfer.payload
+        if message._type is NodeStatus:
+            self._nodes[transfer.source_node_id] = time_ns
+        elif message._type is Fix2:
+            found = fixed(self._origin, message)
+            self._fix_ns = time_ns if found is not None else None
+            if found is not None:
+                self.position_n, self.velocity_n = found
+        elif message._type is Solution:
+            motion = solved(message)
+            if motion is not None:
+                self._motion_ns = time_ns
+                self.attitude, self.rates, self.acceleration = motion
+        else:
+            for place, channel in enumerate(self._channels):
+                if is_status_of(channel, message):
+                    self._reported_ns[place] = time_ns
+                    self._report(place, reported(message))
+
+    def set_state(self, state: Mapping[str, Any]) -> None:
+        """Restore what `get_state` returned."""
+        super().set_state(state)
+        if "_link" in state:
+            self._set_up()
+
+    # ------------------------------------------------------------------ inside
+
+    def _set_up(self) -> None:
+        """Make what follows from parameters."""
+        self._channels = channels_of(self._written)
+        self._origin = Origin(self.latitude, self.longitude, self.altitude)
+
+    def _report(self, place: int, found: Mapping[str, float]) -> None:
+        """Publish what the status of a channel says."""
+        for name in QUANTITIES:
+            values = list(getattr(self, name))
+            values[place] = found.get(name, 0.0)
+            setattr(self, name, values)
+
+    def _counts(self, at: int | None) -> bool:
+        return at is not None and self.now_ns - at < round(self.timeout * NS)
+
+    def _say_commands(self, time_ns: int) -> None:
+        if self.enabled:
+            values = self.command[: len(self._channels)]
+            for message in messages(self._channels, values):
+                self.say(time_ns, message, HIGH)
