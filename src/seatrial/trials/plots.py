@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from html import escape
 from itertools import pairwise
@@ -19,6 +19,7 @@ COLOURS = ("#0b6ea8", "#d1690e", "#3a8f5c", "#8a4fa3", "#8c6d31", "#4a5a68")
 PASSED, FAILED, MIXED, UNJUDGED = "#1f7a4d", "#b3261e", "#a15c00", "#5b6770"
 _LIMIT = "#b3261e"
 _PANEL_HEIGHT = 165
+_GUTTER = 0.09
 _GRID = "#e6eaee"
 _EVENT = {"color": "#9aa5af", "width": 1, "dash": "dot"}
 _TITLE = {
@@ -102,33 +103,53 @@ def time_figure(
     time: FloatArray, columns: Sequence[Sequence[Panel]], events: Sequence[float] = ()
 ) -> go.Figure:
     """Return panels in columns, all over the same time, with events as vertical lines."""
+    height = _PANEL_HEIGHT * max(len(column) for column in columns) + 70
+    traces: list[dict[str, Any]] = []
+    axes: dict[str, Any] = {}
+    titles, events_drawn = [], []
+    for number, (panel, across, along, is_last) in enumerate(_placed(columns, height), start=1):
+        x, y = (axis if number == 1 else f"{axis}{number}" for axis in "xy")
+        traces += [{**trace, "xaxis": x, "yaxis": y} for trace in _traces(time, panel)]
+        axes[f"xaxis{number}"] = {"anchor": y, "domain": across, "showticklabels": is_last}
+        axes[f"yaxis{number}"] = {"anchor": x, "domain": along}
+        if number > 1:
+            axes[f"xaxis{number}"]["matches"] = "x"
+        if is_last:
+            axes[f"xaxis{number}"]["title"] = {"text": "time, s"}
+        place = {"xref": f"{x} domain", "yref": f"{y} domain"}
+        titles.append({"text": _panel_title(panel), **place, **_TITLE})
+        ends = {"xref": x, "yref": f"{y} domain", "y0": 0, "y1": 1}
+        events_drawn += [
+            {"type": "line", "x0": at, "x1": at, "line": _EVENT, **ends} for at in events
+        ]
+    # All at once: whatever is added later has the whole figure checked again.
+    return go.Figure(
+        traces,
+        {
+            **axes,
+            "annotations": titles,
+            "shapes": events_drawn,
+            "height": height,
+            "showlegend": False,
+            **layout(),
+        },
+    )
+
+
+def _placed(
+    columns: Sequence[Sequence[Panel]], height: float
+) -> Iterator[tuple[Panel, list[float], list[float], bool]]:
+    """Yield panels, their parts of the width and of the height, and if one ends its column."""
     rows = max(len(column) for column in columns)
-    height = _PANEL_HEIGHT * rows + 70
-    figure = make_subplots(
-        rows=rows,
-        cols=len(columns),
-        shared_xaxes="all",
-        vertical_spacing=min(0.2, 38 / height),
-        horizontal_spacing=0.09,
-    )
-    titles, lines = [], []
-    for c, column in enumerate(columns, start=1):
-        for r, panel in enumerate(column, start=1):
-            _draw_panel(figure, time, panel, r, c)
-            x, y = (axis.plotly_name.replace("axis", "") for axis in figure.get_subplot(r, c))
-            place = {"xref": f"{x} domain", "yref": f"{y} domain"}
-            titles.append({"text": _panel_title(panel), **place, **_TITLE})
-            lines += [{"x0": at, "x1": at, "xref": x, "yref": f"{y} domain"} for at in events]
-        figure.update_xaxes(title_text="time, s", showticklabels=True, row=len(column), col=c)
-    # All at once: each one that is added alone has all the others checked again.
-    figure.update_layout(
-        annotations=titles,
-        shapes=[{"type": "line", "y0": 0, "y1": 1, "line": _EVENT, **line} for line in lines],
-        height=height,
-        showlegend=False,
-        **layout(),
-    )
-    return figure
+    gap = min(0.2, 38 / height)
+    wide = (1.0 - _GUTTER * (len(columns) - 1)) / len(columns)
+    high = (1.0 - gap * (rows - 1)) / rows
+    for c, column in enumerate(columns):
+        left = c * (wide + _GUTTER)
+        for r, panel in enumerate(column):
+            top = 1.0 - r * (high + gap)
+            is_last = r == len(column) - 1
+            yield panel, [left, min(left + wide, 1.0)], [max(top - high, 0.0), top], is_last
 
 
 def _panel_title(panel: Panel) -> str:
@@ -143,33 +164,28 @@ def _panel_title(panel: Panel) -> str:
     return title
 
 
-def _draw_panel(figure: go.Figure, time: FloatArray, panel: Panel, row: int, col: int) -> None:
+def _traces(time: FloatArray, panel: Panel) -> Iterator[dict[str, Any]]:
     unit = escape(panel.unit) if panel.unit not in ("", "1") else ""
+    shown = {"type": "scatter", "hovertemplate": f"%{{y:.5g}} {unit}"}
     for index, line in enumerate(panel.lines):
         x, y = decimate(time, line.values)
-        figure.add_scatter(
-            x=x,
-            y=y,
-            name=escape(line.label),
-            mode="lines" if len(x) > 1 else "markers",
-            line={"width": 1.6, "color": COLOURS[index % len(COLOURS)]},
-            hovertemplate=f"%{{y:.5g}} {unit}",
-            row=row,
-            col=col,
-        )
-    if not len(time):
-        return
-    for mark in panel.marks:
-        figure.add_scatter(
-            x=[time[0], time[-1]],
-            y=[mark.value, mark.value],
-            name=escape(mark.label),
-            mode="lines",
-            line={"width": 1.3, "color": _LIMIT, "dash": "dot" if mark.is_band else "dash"},
-            hovertemplate=f"%{{y:.5g}} {unit}",
-            row=row,
-            col=col,
-        )
+        yield {
+            **shown,
+            "x": x,
+            "y": y,
+            "name": escape(line.label),
+            "mode": "lines" if len(x) > 1 else "markers",
+            "line": {"width": 1.6, "color": COLOURS[index % len(COLOURS)]},
+        }
+    for mark in panel.marks if len(time) else ():
+        yield {
+            **shown,
+            "x": [time[0], time[-1]],
+            "y": [mark.value, mark.value],
+            "name": escape(mark.label),
+            "mode": "lines",
+            "line": {"width": 1.3, "color": _LIMIT, "dash": "dot" if mark.is_band else "dash"},
+        }
 
 
 def track_figure(tracks: Sequence[tuple[str, FloatArray, FloatArray]]) -> go.Figure:
