@@ -16,7 +16,7 @@ from seatrial.cosim.master import Master
 from seatrial.cosim.profile import load_profile
 from seatrial.cosim.rig import load_rig
 from seatrial.cosim.system import assemble
-from seatrial.links.mavlink.geodesy import Origin
+from seatrial.links.geodesy import Origin
 
 WAYPOINT, LOITER_TURNS, RETURN, JUMP, SPEED = 16, 18, 20, 177, 178
 _EVERY_S = 0.5

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from pymavlink.dialects.v20 import all as mavlink
 
-from seatrial.links.mavlink.geodesy import Origin
+from seatrial.links.geodesy import Origin
 from seatrial.links.mavlink.modes import flavour
 from seatrial.links.mavlink.node import Node, Settings
 from seatrial.links.mavlink.parameters import vehicle_parameters

@@ -8,7 +8,7 @@ from typing import Any
 from dronecan.transport import Transfer
 
 from ...component import NS, Input, Output, Parameter
-from ..mavlink.geodesy import Origin
+from ..geodesy import Origin
 from .channels import AXES, MOST_CHANNELS, channels_of
 from .commands import messages
 from .navigation import Fix2, Solution, fixed, solved

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
-from ..mavlink.geodesy import Ned, Origin
+from ..geodesy import Ned, Origin
 from .codec import equipment
 
 Fix2: Any = equipment.gnss.Fix2

@@ -9,8 +9,8 @@ from dronecan.transport import Transfer
 
 from ...component import NS, Input, Output, Parameter
 from ...errors import InputError, unknown
-from ..mavlink.geodesy import Origin
-from ..mavlink.given import midnight_us
+from ..geodesy import Origin
+from ..given import midnight_us
 from .channels import AXES, MOST_CHANNELS, channels_of
 from .commands import ArrayCommand, RawCommand, RPMCommand, commanded
 from .navigation import Motion, fix, solution

@@ -9,8 +9,8 @@ from ...errors import InputError
 from ...sampled import Sampled
 from ..endpoints.endpoint import Endpoint
 from ..endpoints.url import open_endpoint, other_end
-from .geodesy import Origin
-from .given import midnight_us, serial_number, value_names, version, whole_number
+from ..geodesy import Origin
+from ..given import midnight_us, serial_number, value_names, version, whole_number
 from .modes import MANUAL_MODES, flavour
 from .node import Node
 from .parameter_file import ParameterFile

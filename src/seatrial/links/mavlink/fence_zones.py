@@ -9,7 +9,7 @@ from itertools import pairwise
 
 from pymavlink.dialects.v20 import all as mavlink
 
-from .geodesy import Ned
+from ..geodesy import Ned
 from .plan_checks import Refusal, bad_parameter, check_place, of_item
 from .plan_items import Item
 from .vehicle import Vehicle

@@ -6,7 +6,7 @@ import math
 
 from pymavlink.dialects.v20 import all as mavlink
 
-from .geodesy import Ned
+from ..geodesy import Ned
 from .vehicle import Vehicle
 
 _ABOVE_SEA = {mavlink.MAV_FRAME_GLOBAL, mavlink.MAV_FRAME_GLOBAL_INT}

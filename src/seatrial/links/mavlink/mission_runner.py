@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 from pymavlink.dialects.v20 import all as mavlink
 
-from .geodesy import Ned
+from ..geodesy import Ned
 from .plan import Plan
 from .plan_checks import first_item
 from .plan_items import Item

@@ -8,9 +8,9 @@ from pathlib import Path
 
 from pymavlink.dialects.v20 import all as mavlink
 
+from ..geodesy import Ned
 from .codec import Message
 from .failsafe import Failsafe
-from .geodesy import Ned
 from .parameter_table import ParameterTable
 from .plan import Plans
 from .radio import Air, Sender

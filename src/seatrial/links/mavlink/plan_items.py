@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from pymavlink.dialects.v20 import all as mavlink
 
+from ..geodesy import Ned
 from .codec import Message
 from .frames import GLOBAL_FRAMES, global_position
-from .geodesy import Ned
 from .radio import Sender
 from .scaling import deg_e7, int32
 from .vehicle import Vehicle

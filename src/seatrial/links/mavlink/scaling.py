@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from .geodesy import Ned
+from ..geodesy import Ned
 
 UNKNOWN_U16 = 0xFFFF
 STANDARD_GRAVITY = 9.80665

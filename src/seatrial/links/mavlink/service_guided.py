@@ -8,9 +8,9 @@ from dataclasses import replace
 
 from pymavlink.dialects.v20 import all as mavlink
 
+from ..geodesy import Ned
 from .codec import Message
 from .frames import GLOBAL_FRAMES, LOCAL_FRAMES, global_position, is_near
-from .geodesy import Ned
 from .mission_runner import FASTEST, OWN_SPEED
 from .radio import Air, Sender
 from .scaling import milliseconds, turned, yaw

@@ -8,9 +8,9 @@ from typing import ClassVar
 
 from pymavlink.dialects.v20 import all as mavlink
 
+from ..geodesy import Ned
 from .codec import Message
 from .frames import GLOBAL_FRAMES, is_near
-from .geodesy import Ned
 from .radio import Sender
 from .scaling import deg_e7, int32, microseconds
 from .service import ACCEPTED, DENIED, FAILED, WARNING, Builder, Command, Handler, Service

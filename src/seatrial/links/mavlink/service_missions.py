@@ -8,8 +8,8 @@ from typing import Any, ClassVar
 
 from pymavlink.dialects.v20 import all as mavlink
 
+from ..geodesy import Ned
 from .codec import Message
-from .geodesy import Ned
 from .mission_runner import Leg, MissionRunner
 from .modes import Mode
 from .plan import Plan

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from .geodesy import Ned
+from ..geodesy import Ned
 from .plan import Plan
 from .radio import Air
 from .service import Service

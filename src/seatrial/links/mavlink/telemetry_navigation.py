@@ -8,8 +8,8 @@ from typing import ClassVar
 
 from pymavlink.dialects.v20 import all as mavlink
 
+from ..geodesy import Ned
 from .codec import Message
-from .geodesy import Ned
 from .radio import Air
 from .scaling import int16, uint16
 from .service import Builder, Service

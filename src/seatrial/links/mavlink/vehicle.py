@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from .geodesy import Ned, Origin
+from ..geodesy import Ned, Origin
 from .modes import Flavour, Mode
 
 CHANNELS = 16

@@ -12,7 +12,7 @@ from ...errors import InputError
 from ...sampled import Sampled
 from ..endpoints.endpoint import Channel, Endpoint
 from ..endpoints.url import open_endpoint, other_end
-from ..mavlink.geodesy import Origin
+from ..geodesy import Origin
 from ..text import Inbox, Outbox
 from .codec import decode, encode
 from .lines import Lines

@@ -10,8 +10,8 @@ from ...component import NS, Component
 from ...errors import InputError
 from ..can.node import CanNode
 from ..can.operations import Transmit
-from ..mavlink.geodesy import Ned, Origin
-from ..mavlink.given import serial_number, whole_number
+from ..geodesy import Ned, Origin
+from ..given import serial_number, whole_number
 from .address_claim import AddressClaim
 from .catalogue import DATA, intervals, sends
 from .codec import GLOBAL, Decoder, Encoder, Message, header

@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from ...component import NS, seconds
-from ..mavlink.geodesy import Origin
+from ..geodesy import Origin
 from .codec import Fields, Message
 from .ports import ENGINES, NOT_WIRED, Nmea2000Ports
 

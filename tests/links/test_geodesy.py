@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from seatrial.links.mavlink.geodesy import Origin
+from seatrial.links.geodesy import Origin
 
 # WGS 84: semi-major axis, m, and first eccentricity squared.
 A, E2 = 6378137.0, 6.69437999014e-3

@@ -5,7 +5,7 @@ from __future__ import annotations
 import datetime
 import re
 
-from ...errors import InputError
+from ..errors import InputError
 
 _VERSION = re.compile(r"\d{1,3}\.\d{1,3}\.\d{1,3}(-(dev|alpha|beta|rc))?")
 _NAME = re.compile(r"[!-~]{1,10}")
