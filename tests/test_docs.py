@@ -30,6 +30,7 @@ from seatrial.trials.run import run_trial
 from seatrial.trials.run_folder import load_run
 from seatrial.trials.trial import load_trial
 from seatrial.units import quantity
+from tests.command import seatrial
 from tests.peers.running import HOST, free_port, running, wait_for
 
 ROOT = Path(__file__).parents[1]
@@ -40,7 +41,6 @@ IDENTIFICATION, TETHER = DOCS / "identification.md", DOCS / "tether.md"
 GUIDANCE = DOCS / "guidance.md"
 CAN, LOGS, MAVLINK = DOCS / "can.md", DOCS / "logs.md", DOCS / "mavlink.md"
 VEHICLES = sorted((DOCS / "vehicles").glob("*.md"))
-SEATRIAL = str(Path(sys.executable).with_name("seatrial"))
 LIVE = re.compile(r"^\$ seatrial run (\S+-mission)\n", re.M)
 """A trial for ground stations: it goes on while the rest of the page is run."""
 STATION_PORT = "14550"
@@ -145,8 +145,11 @@ def run_commands(block: Block) -> None:
     for line, shown in commands:
         words = shlex.split(line, comments=True)
         assert words[0] in ("seatrial", "python")
-        program = [SEATRIAL] if words[0] == "seatrial" else [sys.executable]
-        done = subprocess.run([*program, *words[1:]], capture_output=True, text=True, check=False)
+        if words[0] == "seatrial":
+            done: Any = seatrial(*words[1:], cwd=Path())
+        else:
+            program = [sys.executable, *words[1:]]
+            done = subprocess.run(program, capture_output=True, text=True, check=False)
         got = done.stdout + done.stderr
         matches = doctest.OutputChecker().check_output(shown, got, doctest.ELLIPSIS)
         assert matches or (not shown and done.returncode == 0), f"{line}\n{got}"
@@ -166,6 +169,11 @@ def run_commands(block: Block) -> None:
         LOGS,
         MAVLINK,
         CAN,
+        DOCS / "can-signals.md",
+        DOCS / "dronecan.md",
+        DOCS / "nmea0183.md",
+        DOCS / "nmea2000.md",
+        DOCS / "videoray-stream.md",
     ],
     ids=lambda page: page.stem,
 )
@@ -383,17 +391,43 @@ def test_exit_statuses_of_the_page(write: Any) -> None:
 # ---------------------------------------------------------------------- tables made from code
 
 
-def made_parts() -> list[Any]:
+VERDICTS = "-trials"
+"""How the tables end that need minutes of whole trials."""
+
+
+def made_parts(*, verdicts: bool | None = None) -> list[Any]:
+    """Return page and name of the tables; those of trials' verdicts are compared in the long run."""
     return [
-        pytest.param(page, name, id=name)
+        pytest.param(
+            page,
+            name,
+            id=name,
+            marks=pytest.mark.long if name.endswith(VERDICTS) and verdicts is None else (),
+        )
         for page, names in TABLES.pages().items()
         for name in names
+        if verdicts is None or name.endswith(VERDICTS) == verdicts
     ]
 
 
 @pytest.mark.parametrize(("page", "name"), made_parts())
 def test_a_table_is_up_to_date(page: Path, name: str) -> None:
     assert TABLES.written(page, name) == TABLES.made(name), "run: python docs/tables.py"
+
+
+@pytest.mark.parametrize(("page", "name"), made_parts(verdicts=True))
+def test_a_table_of_verdicts_has_every_criterion(page: Path, name: str) -> None:
+    trials = (ROOT / "harness/trials").glob(f"{name.removesuffix(VERDICTS)}-*.toml")
+    loaded = {path.stem: load_trial(path.stem) for path in sorted(trials)}
+    expected = [
+        [f"`{trial}`", criterion]
+        for trial, found in loaded.items()
+        for criterion, _ in found.criteria
+        if not found.file.real_time
+    ]
+    shown = list(rows_after(page, f"<!-- made by docs/tables.py: {name} -->"))
+    assert [row[:2] for row in shown] == expected, f"run: python docs/tables.py {page.name}"
+    assert {row[2] for row in shown} <= {"yes", "**no**"}
 
 
 def test_every_table_that_can_be_made_is_in_a_page() -> None:

@@ -150,12 +150,10 @@ class Controller:
         if request is not None and request.number:
             heapq.heappush(self.ready, request)
 
-    def got_one(self) -> None:
-        """Count a frame that came through."""
-        self.received += 1
-        if self.rec:
-            # Above 127 ISO 11898-1 leaves the choice from 119 to 127.
-            self.rec = min(self.rec, PASSIVE_FROM) - 1
+    def recover(self) -> None:
+        """Count a frame that came through against the errors received."""
+        # Above 127 ISO 11898-1 leaves the choice from 119 to 127.
+        self.rec = min(self.rec, PASSIVE_FROM) - 1
 
     def failed_to_send(self, more: int = 8) -> None:
         """Count an error in a frame of its own; too many take it off the bus."""

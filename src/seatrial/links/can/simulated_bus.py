@@ -371,18 +371,22 @@ class SimulatedBus:
     def _succeed(self, attempt: Attempt) -> None:
         start, senders, deaf = attempt.start_ps, attempt.senders, attempt.deaf
         asked, receivers = start, []
+        for node in senders:
+            each = self.controllers[node]
+            asked = min(asked, each.sent_one().asked_ps)
+            self._suspend(each)
+        apart = (*senders, *attempt.gave_way)
         for node, each in enumerate(self.controllers):
-            if node in senders:
-                asked = min(asked, each.sent_one().asked_ps)
-                self._suspend(each)
-            elif not each.plugged or each.off or each.back_ps > start or node in attempt.gave_way:
+            if not each.plugged or each.off or each.back_ps > start or node in apart:
                 continue
-            elif node == deaf:
+            if node == deaf:
                 each.lost += 1
                 each.failed_to_receive(0 if each.listens_only else 1)
-            else:
-                each.got_one()
-                receivers.append(node)
+                continue
+            each.received += 1
+            if each.rec:
+                each.recover()
+            receivers.append(node)
         self.on_sent(Sent(start, attempt.end_ps, attempt.frame, senders, asked, receivers))
 
     def _break(self, attempt: Attempt, error: Error) -> None:
