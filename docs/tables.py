@@ -19,13 +19,18 @@ sys.path.insert(0, str(DOCS))  # also when this file is loaded by its path
 from parts import (  # noqa: E402, F401  each registers its parts
     PARTS,
     can,
+    can_signals,
+    dronecan,
     hydrone,
     mavlink,
+    nmea0183,
+    nmea2000,
     profile,
     settings,
     ships,
     tether,
     videoray_control,
+    videoray_stream,
 )
 
 PART = re.compile(

@@ -27,8 +27,10 @@ from ..trials.report import write_report
 from ..trials.run import Hooks, Result, run_trial
 from ..trials.trial import Trial, load_trial
 from .convergence import print_convergence
+from .decode import decode_app
 from .design import design
 from .doctor import doctor
+from .drive import drive
 from .export import export
 from .fmu import fmu_app
 from .identify import identify
@@ -54,6 +56,7 @@ app = typer.Typer(
 )
 app.add_typer(fmu_app, name="fmu", help="List, build, check and describe FMUs.")
 app.add_typer(profile_app, name="profile", help="Check and describe profiles of electronics.")
+app.add_typer(decode_app, name="decode", help="Show recorded streams as text.")
 app.add_typer(ssp_app, name="ssp", help="Export and check SSP packages.")
 
 
@@ -271,6 +274,7 @@ def compare(
 
 app.command("design")(design)
 app.command("doctor")(doctor)
+app.command("drive")(drive)
 app.command("export")(export)
 app.command("identify")(identify)
 

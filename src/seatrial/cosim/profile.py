@@ -18,7 +18,16 @@ from pydantic import BeforeValidator, Field, create_model
 
 from ..errors import InputError, unknown
 from .files import FileModel, Source, find_file, read_toml, validated
-from .profile_kinds import KINDS, NAME, component_of, group_model, in_si, of_a_kind, refused
+from .profile_kinds import (
+    FILES,
+    KINDS,
+    NAME,
+    component_of,
+    group_model,
+    in_si,
+    of_a_kind,
+    refused,
+)
 
 VEHICLE_TYPES = ("ground_rover", "submarine", "surface_boat")
 """MAVLink's MAV_TYPE, in lower case."""
@@ -145,7 +154,8 @@ class Profile:
     def parameters(self, section: str) -> dict[str, Any]:
         """Return a section's values by name of the component's parameter, in the port's unit.
 
-        A list has one value per axis. An actuator gives ``pulse_min``, ``pulse_neutral``,
+        A list has one value per axis; a file is where the profile says, relative to itself. An
+        actuator gives ``pulse_min``, ``pulse_neutral``,
         ``pulse_max`` (s) and ``reversed`` (0 or 1). A link also gives those of identity, home
         and, as text, ``actuators`` that its component has. Raises InputError for an unknown
         section.
@@ -158,7 +168,9 @@ class Profile:
         if section.startswith("links."):
             ports = component_of("links", entry.kind).ports
             shared = {name: value for name, value in self._shared().items() if name in ports}
-            return {**shared, **values}
+            folder = self.read_from.path.parent
+            files = {name: str(folder / values[name]) for name in FILES if values.get(name)}
+            return {**shared, **values, **files}
         return values
 
     def source(self, section: str) -> str:
@@ -215,6 +227,7 @@ def load_profile(name: str | Path, relative_to: Path | None = None) -> Profile:
     except InputError as error:
         raise InputError("\n".join([*mistakes, str(error)])) from None
     mistakes += [f"{path}: {mistake}" for mistake in _channel_mistakes(file)]
+    mistakes += [f"{path}: {mistake}" for mistake in _file_mistakes(file, path.parent)]
     if mistakes:
         raise InputError("\n".join(mistakes))
     return Profile(file, read_from)
@@ -249,6 +262,17 @@ class Profiles:
         if name not in self._read:
             self._read[name] = load_profile(name, self._folder)
         return self._read[name]
+
+
+def _file_mistakes(file: ProfileFile, folder: Path) -> list[str]:
+    """Return which files of links are not there."""
+    return [
+        f"links.{name}.{key}: there is no file {folder / written}"
+        for name in type(file.links).model_fields
+        for key in FILES
+        if (written := getattr(getattr(file.links, name), key, None))
+        and not (folder / written).is_file()
+    ]
 
 
 def _channel_mistakes(file: ProfileFile) -> list[str]:

@@ -29,8 +29,16 @@ KINDS: dict[str, dict[str, str]] = {
     },
     "links": {
         "can-gateway": "links.can.gateway:CanGateway",
+        "can-signals": "links.can_signals.component:CanSignals",
         "canbus": "links.can.component:CanBus",
+        "dronecan-autopilot": "links.dronecan.autopilot:DroneCanAutopilot",
+        "dronecan-peripheral": "links.dronecan.peripheral:DroneCanPeripheral",
         "mavlink": "links.mavlink.component:Mavlink",
+        "pro4-rov": "links.videoray.rov:Pro4Rov",
+        "pro4-topside": "links.videoray.topside:Pro4Topside",
+        "serial-gateway": "links.serial_gateway:SerialGateway",
+        "nmea0183": "links.nmea0183.component:Nmea0183",
+        "nmea2000": "links.nmea2000.component:Nmea2000",
     },
 }
 """Groups of tables, their kinds, and the component whose parameters a table of a kind gives."""
@@ -40,6 +48,9 @@ SHARED = (
     *("latitude", "longitude", "altitude", "date", "actuators"),
 )
 """Parameters of links that the rest of the profile gives: identity, home and actuators."""
+
+FILES = ("database",)
+"""Parameters of links that name a file, relative to the profile."""
 
 NAME = re.compile(r"[A-Za-z][\w-]*", re.ASCII)
 

@@ -1,0 +1,47 @@
+"""The picture of `seatrial drive` in videoray-stream.md: ``python docs/drive.py`` draws it anew."""
+
+from __future__ import annotations
+
+import io
+import math
+from pathlib import Path
+
+from rich.console import Console
+
+from seatrial.cli.drive_pilot import Pilot
+from seatrial.cli.drive_screen import picture
+from seatrial.component import Component
+from seatrial.links.videoray.rov import Pro4Rov
+from seatrial.links.videoray.topside import Pro4Topside
+
+PICTURE = Path(__file__).resolve().parent / "images" / "drive.svg"
+STEP = 0.01
+STICKS = (0.3, -0.2, 0.0)
+
+
+def main() -> None:
+    """Let both ends talk for two seconds of simulated time, and draw what the pilot sees."""
+    rov, topside = Pro4Rov("rov"), Pro4Topside("topside")
+    ends: tuple[Component, ...] = (rov, topside)
+    for end in ends:
+        end.setup(0.0)
+        end.initialise()
+        end.begin()
+    rov.set("attitude", [math.radians(6.0), math.radians(-4.0), math.radians(312.0)])
+    rov.set("depth", 12.4)
+    for number in range(200):
+        said, heard = topside.get("tx"), rov.get("tx")
+        rov.set("rx", said)
+        topside.set("rx", heard)
+        for end in ends:
+            end.advance(number * STEP, STEP)
+    pilot = Pilot(armed=True, lights=0.6, camera_tilt=math.radians(-20.0))
+    pilot.hold_heading, pilot.heading_wanted = True, math.radians(325.0)
+    pilot.hold_depth, pilot.depth_wanted = True, 12.5
+    console = Console(width=80, record=True, force_terminal=True, file=io.StringIO())
+    console.print(picture(topside, pilot, STICKS))
+    console.save_svg(str(PICTURE), title="seatrial drive")
+
+
+if __name__ == "__main__":
+    main()

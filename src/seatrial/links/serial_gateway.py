@@ -1,0 +1,100 @@
+"""Serial bytes of a simulation out to a terminal, a port or a serial line, and in."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from ..component import Component, Input, Logging, Output, Parameter, Reachable
+from ..errors import InputError
+from .endpoints.endpoint import Endpoint
+from .endpoints.url import check_urls, open_endpoint, other_end
+from .text import Inbox, Outbox
+
+
+def check_hex(text: str) -> None:
+    """Raise InputError for a text that is not bytes as hexadecimal numbers."""
+    try:
+        bytes.fromhex(text)
+    except ValueError:
+        raise InputError(f"farewell: {text!r} is not bytes such as 'FAAF 0100'") from None
+
+
+class SerialGateway(Logging, Reachable, Component):
+    """Bytes on a String port to the programs or the device at a URL, and theirs to a String port.
+
+    ``links`` are URLs of `endpoints.url`, separated by spaces: a pseudo-terminal or a TCP port for
+    programs, a serial port for a device. Every step it sends what ``rx`` has, and puts what has
+    arrived on ``tx`` with the time of the beginning of that step: outside, the wall clock counts.
+    Whoever is there gets all. Bytes leave in the step that has them, at whatever baud rate the
+    other end reckons with.
+
+    ``farewell`` is sent when it closes, however the run ends: for a real vehicle the request
+    that stops its thrusters.
+
+    It cannot be rolled back. Raises InputError at the start for a link that is malformed or
+    cannot be opened, or is hardware that nobody allowed.
+    """
+
+    feedthrough: ClassVar = {}
+    discrete = True
+    rolls_back = False
+    transient = Component.transient | {"_endpoints"}
+
+    links = Parameter(
+        "tcpin:127.0.0.1:0", "1", "URLs of the other ends, separated by spaces", check=check_urls
+    )
+    farewell = Parameter("", "1", "bytes sent at the end, hexadecimal", check=check_hex)
+
+    rx = Input("1", "bytes for the other end", type=str, optional=True)
+
+    tx = Output("1", "bytes from the other end", type=str)
+    sent = Output("1", "bytes sent", type=int)
+    received = Output("1", "bytes received", type=int)
+
+    def __init__(self, name: str = "component") -> None:
+        super().__init__(name)
+        self._endpoints: list[Endpoint] = []
+
+    def start(self, t: float) -> None:
+        """Open the links."""
+        self.close()
+        try:
+            for url in self.links.split():
+                self._endpoints.append(open_endpoint(url))
+        except InputError as error:
+            self.close()
+            raise InputError(f"{self.name}: {error}") from None
+        self._rx: dict[str, Any] = {}
+        self._tx: dict[str, Any] = {}
+        self._sent = self._received = 0
+
+    def step(self, t: float, h: float) -> None:
+        """Carry bytes out and in."""
+        box = Outbox(self._tx)
+        for endpoint in self._endpoints:
+            for _, data in endpoint.poll():
+                self._received += len(data)
+                box.put(self.now_ns, data)
+        box.flush()
+        for _, data in Inbox(self._rx).take(self.rx):
+            self._sent += len(data)
+            self._send(data)
+
+    def outputs(self, t: float) -> None:
+        """Publish what came, and counts."""
+        self.tx = Outbox(self._tx).text
+        self.sent, self.received = self._sent, self._received
+        self.reached_at = " ".join(other_end(endpoint.url) for endpoint in self._endpoints)
+
+    def close(self) -> None:
+        """Say farewell and close the links."""
+        if self.farewell:
+            self._send(bytes.fromhex(self.farewell))
+        for endpoint in self._endpoints:
+            endpoint.close()
+        self._endpoints = []
+
+    def _send(self, data: bytes) -> None:
+        for endpoint in self._endpoints:
+            for channel in endpoint.channels():
+                channel.send(data)

@@ -1,0 +1,56 @@
+"""Plays a recorded stream into a simulation."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, ClassVar
+
+from ...component import NS, Component, Output, Parameter
+from ..text import Outbox
+from .stream_file import FROM_DEVICE, TO_DEVICE, read_stream
+
+
+class StreamPlayer(Component):
+    """Says what was recorded one way, at the times at which it was said.
+
+    ``file`` is a stream (`stream_file`), relative to the current folder; ``direction`` is
+    to-device, to stand for the topside, or from-device, to stand for the vehicle. In the step
+    from t to t + h it puts on ``tx`` what began from t to before t + h, as the recorded one did:
+    with the same rig around it and the same step, the run is the same.
+
+    Raises InputError at the start for a file that is none.
+    """
+
+    feedthrough: ClassVar = {}
+    discrete = True
+    transient = Component.transient | {"_pieces"}
+
+    file = Parameter("", "1", "recorded stream; empty: nothing is played")
+    direction = Parameter(
+        "to-device", "1", "which way is played", choices=("to-device", "from-device")
+    )
+
+    tx = Output("1", "bytes that were said", type=str)
+    played = Output("1", "pieces played", type=int)
+
+    def start(self, t: float) -> None:
+        """Read the file."""
+        wanted = TO_DEVICE if self.direction == "to-device" else FROM_DEVICE
+        pieces = read_stream(Path(self.file)) if self.file else ()
+        self._pieces = [p for p in pieces if p.direction == wanted and p.time_ns >= self.now_ns]
+        self._played = 0
+        self._tx: dict[str, Any] = {}
+
+    def step(self, t: float, h: float) -> None:
+        """Say what is due."""
+        end = self.now_ns + round(h * NS)
+        box = Outbox(self._tx)
+        while self._played < len(self._pieces) and self._pieces[self._played].time_ns < end:
+            piece = self._pieces[self._played]
+            box.put(piece.time_ns, piece.data)
+            self._played += 1
+        box.flush()
+
+    def outputs(self, t: float) -> None:
+        """Publish what is said."""
+        self.tx, self.played = Outbox(self._tx).text, self._played
