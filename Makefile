@@ -28,9 +28,9 @@ demo: $(INSTALLED)
 	@echo "Open the two reports in a browser."
 
 # canboat, a judge of the NMEA 2000 nodes; without npm its tests are skipped, and say so.
-$(JUDGES): tests/peers/node/package.json
+$(JUDGES): tests/peers/node/package-lock.json
 	@command -v npm >/dev/null || { echo "npm is missing: no judge of NMEA 2000"; exit 0; }; \
-		npm install --prefix $(<D) --no-audit --no-fund --no-package-lock --ignore-scripts && touch $@
+		npm ci --prefix $(<D) --no-audit --no-fund --ignore-scripts && touch $@
 
 test: $(INSTALLED) $(JUDGES)
 	$(BIN)/python -m pytest -n auto --dist worksteal -m "not long"
