@@ -31,6 +31,22 @@ def test_settles_at_the_published_table(row):
     assert current == pytest.approx(row["current_A"], abs=1e-9)
 
 
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: f"{row['pwm_us']:g}us")
+def test_turns_as_fast_as_published(row):
+    thruster = started(Thruster, time_constant=0.1, pulse=row["pwm_us"] / 1e6)
+    thruster.advance(0.0, 4.0)
+    ahead = math.copysign(1.0, row["force_kgf"])
+    assert thruster.get("speed") == pytest.approx(ahead * row["rpm"] * math.pi / 30, abs=1e-9)
+
+
+def test_turns_slower_on_less_voltage_as_its_thrust_says():
+    full, low = (started(Thruster, pulse=1.9e-3, supply_voltage=volts) for volts in (16.0, 12.0))
+    for thruster in (full, low):
+        thruster.advance(0.0, 10.0)
+    thrusts, speeds = ([each.get(name) for each in (low, full)] for name in ("thrust", "speed"))
+    assert (speeds[0] / speeds[1]) ** 2 == pytest.approx(thrusts[0] / thrusts[1], rel=1e-12)
+
+
 def test_is_linear_between_the_rows():
     low, high = ROWS[-2], ROWS[-1]
     thrust, current = settled((low["pwm_us"] + high["pwm_us"]) / 2e6)

@@ -5,6 +5,8 @@ fifth row and the edges of the dead band. Bollard thrust: the thruster held stil
 on a Basic ESC.
 """
 
+import math
+
 # fmt: off
 PULSE = (
     0.0011, 0.00112, 0.00114, 0.00116, 0.00118, 0.0012, 0.00122, 0.00124, 0.00126, 0.00128,
@@ -35,3 +37,14 @@ CURRENT = (
     4.58, 5.69, 7.0, 8.7, 10.4, 11.93, 13.99, 16.41, 19.13, 21.8, 23.83,
 )
 """Supply current, A."""
+
+RPM = (
+    -3464.713, -3394.78, -3282.25, -3152.96, -3003.32, -2864.72, -2736.37, -2598.64, -2440.17,
+    -2277.85, -2140.15, -1968.2, -1807.39, -1630.35, -1448.45, -1246.14, -1016.48, -758.15, -449.5,
+    -317.17, 0, 0, 0, 308.25, 440.8, 749.32, 1007.38, 1237.07, 1443.5, 1628.86, 1802.32, 1960.82,
+    2128.7, 2266.35, 2445.98, 2608.66, 2735.48, 2888, 3041.86, 3180.33, 3307.84, 3437.91, 3533.445,
+)
+"""Revolutions per minute, positive where the thrust is ahead: the table has the magnitude."""
+
+SPEED = tuple(rpm * math.pi / 30.0 for rpm in RPM)
+"""Angular velocity of the propeller, rad/s."""

@@ -9,23 +9,25 @@ from collections.abc import Sequence
 from ..component import Input, Output, Parameter
 from ..errors import InputError
 from .actuator import Actuator
-from .t200 import CURRENT, FORCE, PULSE
+from .t200 import CURRENT, FORCE, PULSE, SPEED
 
 SHORTEST_SIGNAL, LONGEST_SIGNAL = 0.8e-3, 2.2e-3
 """Pulses outside these, s, are not a signal to a speed controller (assumed, BLHeli-like)."""
 
 
 class Thruster(Actuator):
-    """Blue Robotics T200 with a Basic ESC: pulse width in, thrust and current out.
+    """Blue Robotics T200 with a Basic ESC: pulse width in, thrust, current and speed out.
 
     Steady state, from the published bollard table at 16 V (`seatrial.devices.t200`), linear in
     the pulse between its rows, at supply voltage V:
 
         thrust = F(pulse) (V / 16 V)^1.15,    current = I(pulse) (V / 16 V)^1.15
+        speed = n(pulse) (V / 16 V)^(1.15 / 2)
 
-    and both follow it with a first-order lag, solved exactly for the pulse held over a step:
-    y(t + h) = y_inf + (y(t) - y_inf) exp(-h / time_constant). So neither output reacts to an
-    input at the same instant.
+    and all follow it with a first-order lag, solved exactly for the pulse held over a step:
+    y(t + h) = y_inf + (y(t) - y_inf) exp(-h / time_constant). So no output reacts to an input at
+    the same instant. The speed is for telemetry: its exponent is the thrust's with the thrust of
+    a propeller going by the square of its speed, and while it changes that square is not kept.
 
     **Signal.** Dead band of the table: 1472 to 1528 us gives nothing. Beyond ``pulse_min`` and
     ``pulse_max`` the controller is at full power. A width of 0, or outside 800 to 2200 us, is
@@ -63,6 +65,7 @@ class Thruster(Actuator):
     supply_voltage = Input("V", "voltage at the speed controller", start=16.0)
     thrust = Output("N", "thrust along the axis, positive ahead")
     current = Output("A", "supply current")
+    speed = Output("rad/s", "angular velocity of the propeller, positive ahead")
 
     def start(self, t: float) -> None:
         """Start at rest; raises InputError if the pulses do not rise."""
@@ -71,7 +74,7 @@ class Thruster(Actuator):
                 f"{self.name}: pulse_min, pulse_neutral and pulse_max must rise, got "
                 f"{self.pulse_min!r}, {self.pulse_neutral!r}, {self.pulse_max!r} s"
             )
-        self._thrust = self._current = 0.0
+        self._thrust = self._current = self._speed = 0.0
         self.begin_at(self.pulse_neutral)
 
     def step(self, t: float, h: float) -> None:
@@ -82,12 +85,14 @@ class Thruster(Actuator):
         kept = math.exp(-h / (self.slowness * self.time_constant))
         thrust = self.effect * supply * interpolate(pulse, FORCE)
         current = supply * interpolate(pulse, CURRENT)
+        speed = math.sqrt(supply) * interpolate(pulse, SPEED)
         self._thrust = thrust + (self._thrust - thrust) * kept
         self._current = current + (self._current - current) * kept
+        self._speed = speed + (self._speed - speed) * kept
 
     def outputs(self, t: float) -> None:
-        """Publish thrust and current."""
-        self.thrust, self.current = self._thrust, self._current
+        """Publish thrust, current and speed."""
+        self.thrust, self.current, self.speed = self._thrust, self._current, self._speed
 
     def _table_pulse(self, pulse: float) -> float:
         """Return the pulse that has the same effect in the table's calibration, s."""
