@@ -28,6 +28,7 @@ KINDS: dict[str, dict[str, str]] = {
         "imu": "devices.imu:Imu",
     },
     "links": {
+        "arduino": "links.arduino.component:Arduino",
         "can-gateway": "links.can.gateway:CanGateway",
         "can-signals": "links.can_signals.component:CanSignals",
         "canbus": "links.can.component:CanBus",
@@ -49,7 +50,7 @@ SHARED = (
 )
 """Parameters of links that the rest of the profile gives: identity, home and actuators."""
 
-FILES = ("database",)
+FILES = ("database", "sketch", "firmware")
 """Parameters of links that name a file, relative to the profile."""
 
 NAME = re.compile(r"[A-Za-z][\w-]*", re.ASCII)
