@@ -10,6 +10,7 @@ from __future__ import annotations
 import datetime
 import math
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
@@ -169,7 +170,11 @@ class Profile:
             ports = component_of("links", entry.kind).ports
             shared = {name: value for name, value in self._shared().items() if name in ports}
             folder = self.read_from.path.parent
-            files = {name: str(folder / values[name]) for name in FILES if values.get(name)}
+            files = {
+                name: str(folder / values[name])
+                for name in FILES.get(entry.kind, ())
+                if values.get(name)
+            }
             return {**shared, **values, **files}
         return values
 
@@ -230,7 +235,11 @@ def load_profile(name: str | Path, relative_to: Path | None = None) -> Profile:
     mistakes += [f"{path}: {mistake}" for mistake in _file_mistakes(file, path.parent)]
     if mistakes:
         raise InputError("\n".join(mistakes))
-    return Profile(file, read_from)
+    profile = Profile(file, read_from)
+    mistakes = [f"{path}: {mistake}" for mistake in _misfits(profile)]
+    if mistakes:
+        raise InputError("\n".join(mistakes))
+    return profile
 
 
 class Profiles:
@@ -264,14 +273,27 @@ class Profiles:
         return self._read[name]
 
 
+def _misfits(profile: Profile) -> Iterator[str]:
+    """Yield what components say of their sections' values together."""
+    for group in KINDS:
+        for name, table in profile.tables(group).items():
+            section = f"{group}.{name}"
+            component = component_of(group, table.kind)(section)
+            try:
+                for key, value in profile.parameters(section).items():
+                    component.set(key, value)
+                component.check_parameters()
+            except InputError as error:
+                yield str(error)
+
+
 def _file_mistakes(file: ProfileFile, folder: Path) -> list[str]:
     """Return which files of links are not there."""
     return [
         f"links.{name}.{key}: there is no file {folder / written}"
         for name in type(file.links).model_fields
-        for key in FILES
-        if (written := getattr(getattr(file.links, name), key, None))
-        and not (folder / written).is_file()
+        for key in FILES.get(getattr(file.links, name).kind, ())
+        if (written := getattr(getattr(file.links, name), key)) and not (folder / written).is_file()
     ]
 
 

@@ -50,8 +50,8 @@ SHARED = (
 )
 """Parameters of links that the rest of the profile gives: identity, home and actuators."""
 
-FILES = ("database", "sketch", "firmware")
-"""Parameters of links that name a file, relative to the profile."""
+FILES = {"arduino": ("sketch", "firmware"), "can-signals": ("database",)}
+"""Parameters that name a file, relative to the profile, by the kind of the link."""
 
 NAME = re.compile(r"[A-Za-z][\w-]*", re.ASCII)
 

@@ -71,3 +71,23 @@ def test_a_profile_names_the_file_beside_it(tmp_path):
     (tmp_path / "hydrone.dbc").write_bytes((PROFILES / "hydrone.dbc").read_bytes())
     found = load_profile(tmp_path / "boat.toml").parameters("links.port_node")
     assert found["database"] == str(tmp_path / "hydrone.dbc")
+
+
+@pytest.mark.parametrize(
+    ("change", "dbc", "said"),
+    [
+        (("ThrusterCommand.PortPulse 1100", "ThrusterCommand.PortPuls 1100"), ("", ""), "did you mean 'PortPulse'"),
+        (("PortPulse 1100 1900 us", "PortPulse 1100 7000 us"), ("", ""), "carries 0 to 2500 us"),
+        (("", ""), ("BO_ 386 ", "BO_ 385 "), "PortStatus and StarboardStatus"),
+    ],
+)  # fmt: skip
+def test_a_profile_with_a_mistake_is_refused_with_file_and_key(tmp_path, change, dbc, said):
+    text = (PROFILES / "hydrone.toml").read_text("utf-8")
+    (tmp_path / "boat.toml").write_text(text.replace(*change, 1), "utf-8")
+    text = (PROFILES / "hydrone.dbc").read_text("utf-8")
+    (tmp_path / "hydrone.dbc").write_text(text.replace(*dbc), "utf-8")
+    with pytest.raises(InputError) as caught:
+        load_profile(tmp_path / "boat.toml")
+    assert said in str(caught.value)
+    key = "sends" if change[0] else "database"
+    assert f"boat.toml: links.autopilot_node: {key}: " in str(caught.value)

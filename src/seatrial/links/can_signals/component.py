@@ -78,9 +78,13 @@ class CanSignals(Component):
 
     # ------------------------------------------------------------------ running
 
-    def start(self, t: float) -> None:
+    def check_parameters(self) -> None:
         """Read the DBC; raises InputError if it does not fit."""
+        super().check_parameters()
         self._read_database()
+
+    def start(self, t: float) -> None:
+        """Start with nothing sent and nothing heard."""
         self._begun_ns = self.now_ns
         self._counts = [0] * len(self._sent)
         self._last = [""] * len(self._sent)

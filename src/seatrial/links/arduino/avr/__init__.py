@@ -1,0 +1,7 @@
+"""Real firmware: the program around simavr, and a Servo library for it, in C and C++."""
+
+DATA_FILES = (
+    "Servo.cpp",
+    "Servo.h",
+    "emulated_board.c",
+)

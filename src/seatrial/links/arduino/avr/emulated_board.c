@@ -1,0 +1,253 @@
+/* A board on simavr: FD FIRMWARE MCU PINS, where PINS has port and bit of each, as E0,E1,... */
+#include <sim_avr.h>
+#include <sim_elf.h>
+#include <sim_hex.h>
+#include <avr_adc.h>
+#include <avr_extint.h>
+#include <avr_ioport.h>
+#include <avr_timer.h>
+#include <avr_twi.h>
+#include <avr_uart.h>
+#include <sim_io.h>
+#include <sim_cycle_timers.h>
+
+#include "link.h"
+#include "parts.h"
+#include "waves.h"
+
+#define CLOCK 16e6
+#define UARTS 4
+#define PINS 70
+/* simavr takes 11 bits for a byte, always: a line at full rate would overrun it. */
+#define LINE_BITS 11.0
+
+typedef struct {
+    uint8_t *bytes;
+    double *earliest;
+    uint32_t first, count, room;
+    double baud, free;
+    avr_irq_t *input;
+    int waiting;
+} line;
+
+static avr_t *avr;
+static line lines[UARTS];
+static char ports[PINS], bits[PINS];
+static uint8_t numbers[PINS];
+static uint64_t target;
+static avr_irq_t *twi_input;
+static int twi_reading;
+
+static void said(avr_t *from, const int level, const char *format, va_list values)
+{
+    (void)from, (void)level, (void)format, (void)values;
+}
+
+static void slept(avr_t *of, avr_cycle_count_t cycles) { (void)of, (void)cycles; }
+
+/* ------------------------------------------------------------------ lines */
+
+static avr_cycle_count_t arrive(avr_t *of, avr_cycle_count_t when, void *which)
+{
+    line *one = (line *)which;
+    (void)of;
+    uint8_t data = one->bytes[one->first++];
+    one->free = (double)when;
+    if (one->input)
+        avr_raise_irq(one->input, data);
+    if (one->first == one->count) {
+        one->first = one->count = 0;
+        one->waiting = 0;
+        return 0;
+    }
+    double begin = fmax(one->earliest[one->first], one->free);
+    return (avr_cycle_count_t)(begin + LINE_BITS * CLOCK / one->baud);
+}
+
+static void queue(line *one, uint8_t data, double earliest)
+{
+    if (one->count == one->room) {
+        one->room = one->room ? 2 * one->room : 256;
+        one->bytes = (uint8_t *)realloc(one->bytes, one->room);
+        one->earliest = (double *)realloc(one->earliest, one->room * sizeof(double));
+    }
+    one->bytes[one->count] = data;
+    one->earliest[one->count++] = earliest;
+    if (!one->waiting && one->baud > 0.0) {
+        double begin = fmax(fmax(earliest, one->free), (double)avr->cycle);
+        one->waiting = 1;
+        avr_cycle_timer_register(avr, (avr_cycle_count_t)(begin + LINE_BITS * CLOCK / one->baud) - avr->cycle, arrive, one);
+    }
+}
+
+static void transmitted(avr_irq_t *irq, uint32_t value, void *which)
+{
+    (void)irq;
+    link_put(OUT_UART, (uint8_t)(intptr_t)which, (uint16_t)(value & 0xFF), avr->cycle);
+}
+
+static void connect_uart(int index)
+{
+    uint32_t flags = 0;
+    char name = (char)('0' + index);
+    if (avr_ioctl(avr, AVR_IOCTL_UART_GET_FLAGS(name), &flags) < 0)
+        return;
+    flags &= ~(uint32_t)(AVR_UART_FLAG_STDIO | AVR_UART_FLAG_POLL_SLEEP);
+    avr_ioctl(avr, AVR_IOCTL_UART_SET_FLAGS(name), &flags);
+    avr_irq_t *out = avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ(name), UART_IRQ_OUTPUT);
+    avr_irq_register_notify(out, transmitted, (void *)(intptr_t)index);
+    lines[index].input = avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ(name), UART_IRQ_INPUT);
+}
+
+/* ------------------------------------------------------------------ pins */
+
+static avr_irq_t *pin_irq(uint8_t pin)
+{
+    return avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ(ports[pin]), bits[pin] - '0');
+}
+
+static void turned(avr_irq_t *irq, uint32_t value, void *which)
+{
+    (void)irq;
+    link_put(OUT_EDGE, *(uint8_t *)which, value ? 1 : 0, avr->cycle);
+}
+
+static avr_cycle_count_t wave_due(avr_t *of, avr_cycle_count_t when, void *unused)
+{
+    (void)of, (void)unused;
+    wave *one;
+    while ((one = wave_turn(when, CLOCK)))
+        avr_raise_irq(pin_irq(one->pin), one->level);
+    uint64_t next = wave_next();
+    return next == NEVER ? 0 : next;
+}
+
+static void restart_waves(void)
+{
+    uint64_t next = wave_next();
+    avr_cycle_timer_cancel(avr, wave_due, 0);
+    if (next != NEVER)
+        avr_cycle_timer_register(avr, next > avr->cycle ? next - avr->cycle : 1, wave_due, 0);
+}
+
+/* ------------------------------------------------------------------ I2C */
+
+static void twi(avr_irq_t *irq, uint32_t value, void *unused)
+{
+    (void)irq, (void)unused;
+    avr_twi_msg_irq_t message;
+    message.u.v = value;
+    uint8_t address = message.u.twi.addr;
+    if (message.u.twi.msg & TWI_COND_STOP)
+        part_open = 0;
+    if (message.u.twi.msg & TWI_COND_START) {
+        twi_reading = address & 1;
+        if (part_begin(address >> 1, twi_reading))
+            avr_raise_irq(twi_input, avr_twi_irq_msg(TWI_COND_ACK, address, 1));
+    }
+    if (!part_open)
+        return;
+    if (message.u.twi.msg & TWI_COND_WRITE) {
+        avr_raise_irq(twi_input, avr_twi_irq_msg(TWI_COND_ACK, address, 1));
+        part_write(message.u.twi.data);
+    }
+    if (message.u.twi.msg & TWI_COND_READ)
+        avr_raise_irq(twi_input, avr_twi_irq_msg(TWI_COND_READ, address, part_read()));
+}
+
+/* ------------------------------------------------------------------ running */
+
+static void take_input(const link_input *input)
+{
+    uint8_t index = input->index;
+    switch (input->kind) {
+    case IN_UART: queue(&lines[index % UARTS], (uint8_t)input->value, input->number); break;
+    case IN_BAUD: lines[index % UARTS].baud = input->number; break;
+    case IN_VOLTS:
+        avr_raise_irq(avr_io_getirq(avr, AVR_IOCTL_ADC_GETIRQ, ADC_IRQ_ADC0 + index), (uint32_t)(input->number * 1000.0 + 0.5));
+        break;
+    case IN_LEVEL: avr_raise_irq(pin_irq(index), input->number != 0.0); break;
+    case IN_FREQUENCY:
+    case IN_PULSE:
+        wave_set(index, input->kind == IN_PULSE, input->number, avr->cycle);
+        restart_waves();
+        break;
+    case IN_QUANTITY: part_quantities[index % QUANTITIES] = input->number; break;
+    case IN_PART: part_add((uint8_t)input->value, index); break;
+    case IN_WATCH: avr_irq_register_notify(pin_irq(index), turned, &numbers[index]); break;
+    }
+}
+
+static avr_cycle_count_t stop(avr_t *of, avr_cycle_count_t when, void *unused)
+{
+    (void)of, (void)when, (void)unused;
+    return 0; /* it is there so that no run of instructions goes beyond the target */
+}
+
+static void end(const char *why)
+{
+    link_answer(avr ? avr->cycle : 0, why);
+    _exit(0);
+}
+
+static int load(const char *file, const char *mcu)
+{
+    elf_firmware_t firmware;
+    memset(&firmware, 0, sizeof firmware);
+    if (strstr(file, ".hex")) {
+        uint32_t size = 0, start = 0;
+        uint8_t *flash = read_ihex_file(file, &size, &start);
+        if (!flash)
+            return 0;
+        firmware.flash = flash;
+        firmware.flashsize = size;
+        firmware.flashbase = start;
+    } else if (elf_read_firmware(file, &firmware) != 0) {
+        return 0;
+    }
+    avr = avr_make_mcu_by_name(mcu);
+    if (!avr)
+        return 0;
+    avr_init(avr);
+    avr->log = LOG_NONE;
+    avr->sleep = slept;
+    firmware.frequency = (uint32_t)CLOCK;
+    avr_load_firmware(avr, &firmware);
+    avr->frequency = (uint32_t)CLOCK;
+    avr->vcc = avr->avcc = avr->aref = 5000;
+    return 1;
+}
+
+int main(int count, char **arguments)
+{
+    if (count < 5)
+        return 2;
+    link_out = atoi(arguments[1]);
+    avr_global_logger_set(said);
+    if (!load(arguments[2], arguments[3]))
+        end("simavr cannot load the firmware for this microcontroller");
+    const char *at = arguments[4];
+    for (int pin = 0; pin < PINS && *at; pin++, at += at[2] ? 3 : 2) {
+        ports[pin] = at[0];
+        bits[pin] = at[1];
+        numbers[pin] = (uint8_t)pin;
+    }
+    for (int uart = 0; uart < UARTS; uart++)
+        connect_uart(uart);
+    twi_input = avr_io_getirq(avr, AVR_IOCTL_TWI_GETIRQ(0), TWI_IRQ_INPUT);
+    avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_TWI_GETIRQ(0), TWI_IRQ_OUTPUT), twi, 0);
+    avr->run_cycle_limit = 1000;
+    for (;;) {
+        target = link_await(take_input);
+        if (target > avr->cycle)
+            avr_cycle_timer_register(avr, target - avr->cycle, stop, 0);
+        while (avr->cycle < target) {
+            int state = avr_run(avr);
+            if (state == cpu_Crashed)
+                end("the microcontroller crashed: an instruction that is none, or the stack ran into the data");
+            if (state == cpu_Done)
+                end("the microcontroller sleeps with interrupts off: it will never wake");
+        }
+        link_answer(target, "");
+    }
+}

@@ -1,0 +1,204 @@
+"""An Arduino board as a component: a sketch's pins and serial ports on ports of a rig."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, ClassVar
+
+from ...component import NS, Component
+from ...craft.kinematics import to_body
+from ...errors import InputError
+from ..text import Inbox, Outbox
+from .board import EDGE, UART, Board, Event, Inputs
+from .build import build_host
+from .emulator import build_emulator, firmware_file
+from .mcus import CLOCK, MCUS
+from .ports import ArduinoPorts
+from .pulses import Pulses
+from .real_board import RealBoard
+from .sketch import find_sketch
+from .wiring import PARTS, UARTS, Wire, read_uarts, read_wires
+
+_GYRO, _FORCE, _FIELD, _PRESSURE, _TEMPERATURE = 0, 3, 6, 9, 10
+_ATMOSPHERE = 101325.0
+_WATCHED = ("servo", "pwm", "output")
+
+
+class Arduino(ArduinoPorts):
+    """An Arduino Mega or Uno with a sketch, in lockstep with the rest, by CPU cycles at 16 MHz.
+
+    **Back ends.** ``host``: the unmodified sketch, compiled by the system's C++ compiler with an
+    Arduino API in simulated time; int has 16 bits. ``simavr``: the firmware, compiled by
+    avr-gcc with the Arduino core, or ``firmware`` as it is, on an emulated microcontroller.
+    ``board``: a real board at serial ports, on the wall clock: nothing but its UARTs.
+
+    **Wires**: what is connected where. ``PIN servo N`` gives pulse N, ``pwm`` duty, ``output`` and
+    ``input`` levels, ``voltage`` an ADC channel (5 V full scale), ``receiver`` a channel of an RC
+    receiver (pulses every 20 ms). ``PIN anemometer F``: a square wave of F Hz per m/s of
+    ``wind_speed``. ``PIN vane V``: a potentiometer, V volts a full turn, that points to where the
+    wind comes from, clockwise from the bow: V (wind_angle + pi) / 2 pi. ``ADDRESS mpu6050`` has
+    ``gyro`` and ``accelerometer``, ``hmc5883l`` the ``magnetic_field`` in body axes by
+    ``attitude``, ``ms5837`` (30BA) the pressure at ``depth`` under one atmosphere.
+
+    **Time.** Inputs count from the beginning of the step on. What happens on pins and lines is
+    stamped with its cycle; an output at t has what happened before t. Bytes that arrive on
+    ``rx`` are put on the line one after the other at the baud rate of ``uarts``, not before
+    their time and not before the step that has them; those that a UART sends are on ``tx`` when
+    their stop bit is over.
+
+    The sketch runs in a program of its own. If it crashes, overruns its stack, runs for
+    ``patience`` without returning or calling anything, or opens a UART at another rate than
+    its line has, the step raises SimulationError that says where. It cannot be rolled back.
+
+    Raises InputError at the start for wires that cannot be, tools that are not installed, and a
+    sketch that does not compile or uses what the back end has not.
+    """
+
+    feedthrough: ClassVar = {}
+    discrete = True
+    rolls_back = False
+    transient = Component.transient | {"_board", "_program", "_pulses", "_told", "_wires"}
+
+    def __init__(self, name: str = "component") -> None:
+        super().__init__(name)
+        self._board: Board | RealBoard | None = None
+
+    # ------------------------------------------------------------------ running
+
+    def start(self, t: float) -> None:
+        """Build what is to run, and connect the wires."""
+        self.close()
+        mcu = MCUS[self.mcu]
+        try:
+            self._wires = read_wires(self.wires, mcu)
+            self._rates = {k: v for k, v in read_uarts(self.uarts).items() if k < mcu.uarts}
+            self._begin()
+        except InputError as error:
+            raise InputError(f"{self.name}: {error}") from None
+        self._begun_ns = self.now_ns
+        self._told: dict[tuple[str, int], float] = {}
+        self._pulses = {w.place: Pulses() for w in self._wires if w.kind in _WATCHED}
+        self._rx: list[dict[str, Any]] = [{} for _ in range(UARTS)]
+        self._tx: list[dict[str, Any]] = [{} for _ in range(UARTS)]
+        self._sent = self._received = 0
+        self._cycle = 0
+
+    def step(self, t: float, h: float) -> None:
+        """Let the board run from ``t`` to ``t + h``."""
+        inputs = Inputs()
+        if not self._told:
+            self._connect(inputs)
+        self._put_bytes(inputs)
+        self._put_signals(inputs)
+        end_ns = round((t + h) * NS) - self._begun_ns
+        self._cycle = end_ns * (CLOCK // 1_000_000) // 1000
+        assert self._board is not None
+        self._take(self._board.run(self._cycle, inputs))
+
+    def outputs(self, t: float) -> None:
+        """Publish pulses, levels and bytes."""
+        self.tx = [Outbox(memory).text for memory in self._tx]
+        self.bytes_sent, self.bytes_received = self._sent, self._received
+        widths, shares, levels = [0.0] * 12, [0.0] * 8, [False] * 8
+        for wire in self._wires:
+            if wire.kind == "servo":
+                widths[wire.number - 1] = self._pulses[wire.place].width(self._cycle)
+            elif wire.kind == "pwm":
+                shares[wire.number - 1] = self._pulses[wire.place].share(self._cycle)
+            elif wire.kind == "output":
+                levels[wire.number - 1] = bool(self._pulses[wire.place].level)
+        self.pulse, self.duty, self.output = widths, shares, levels
+
+    def close(self) -> None:
+        """End what runs."""
+        if self._board is not None:
+            self._board.close()
+            self._board = None
+
+    # ------------------------------------------------------------------ inside
+
+    def _begin(self) -> None:
+        mcu = MCUS[self.mcu]
+        if self.backend == "board":
+            self._board = RealBoard(self.name, self.links, self.farewell, self._wires)
+            return
+        if self.backend == "host":
+            if self.firmware:
+                raise InputError("firmware needs the back end 'simavr'; 'host' runs a sketch")
+            program, *more = build_host(find_sketch(self.sketch), mcu), str(self.patience)
+        else:
+            firmware = firmware_file(self.sketch, self.firmware, mcu)
+            program, *more = build_emulator(mcu), str(firmware), mcu.name, ",".join(mcu.ports)
+        self._board = Board(self.name, program, *more)
+
+    def _connect(self, inputs: Inputs) -> None:
+        for uart, rate in self._rates.items():
+            inputs.put("S", uart, rate)
+        for wire in self._wires:
+            if wire.kind in PARTS:
+                inputs.put("I", wire.place, value=PARTS[wire.kind])
+            elif wire.kind in _WATCHED:
+                inputs.put("W", wire.place)
+
+    def _put_bytes(self, inputs: Inputs) -> None:
+        for uart, text in enumerate(self.rx):
+            for time_ns, data in Inbox(self._rx[uart]).take(text):
+                cycle = max(0, time_ns - self._begun_ns) * (CLOCK // 1_000_000) // 1000
+                self._received += len(data)
+                for byte in data:
+                    inputs.put("U", uart, cycle, byte)
+
+    def _put_signals(self, inputs: Inputs) -> None:
+        for wire in self._wires:
+            for key, value in self._signals(wire):
+                if self._told.get(key) != value:
+                    self._told[key] = value
+                    inputs.put(*key, value)
+        self._told[("", 0)] = 0.0  # connected
+
+    def _signals(self, wire: Wire) -> list[tuple[tuple[str, int], float]]:
+        """Return what a wire has to tell the board: kind and index, value."""
+        kind, n = wire.kind, wire.number - 1
+        if kind == "voltage":
+            return [(("A", self._channel(wire)), self.voltage[n])]
+        if kind == "input":
+            return [(("L", wire.place), float(self.level[n]))]
+        if kind == "receiver":
+            return [(("R", wire.place), self.receiver[n])]
+        if kind == "anemometer":
+            return [(("F", wire.place), max(0.0, wire.factor * self.wind_speed))]
+        if kind == "vane":
+            turn = (self.wind_angle + math.pi) / math.tau % 1.0
+            return [(("A", self._channel(wire)), wire.factor * turn)]
+        if kind == "mpu6050":
+            motion = [*self.gyro, *self.accelerometer]
+            return [(("V", _GYRO + i), value) for i, value in enumerate(motion)]
+        if kind == "hmc5883l":
+            field = to_body(self.attitude, self.magnetic_field)
+            return [(("V", _FIELD + i), value) for i, value in enumerate(field)]
+        if kind == "ms5837":
+            pressure = _ATMOSPHERE + self.water_density * self.gravity * self.depth
+            return [
+                (("V", _PRESSURE), pressure),
+                (("V", _TEMPERATURE), self.water_temperature),
+            ]
+        return []
+
+    def _channel(self, wire: Wire) -> int:
+        return wire.place - MCUS[self.mcu].first_analog
+
+    def _take(self, events: list[Event]) -> None:
+        said: list[list[Event]] = [[] for _ in range(UARTS)]
+        for event in events:
+            kind, index, value, cycle = event
+            if kind == EDGE:
+                self._pulses[index].edge(value, cycle)
+            elif kind == UART:
+                said[index].append(event)
+        for memory, bytes_of_it in zip(self._tx, said, strict=True):
+            if bytes_of_it:
+                box = Outbox(memory)
+                time_ns = self._begun_ns + bytes_of_it[0][3] * 1000 // (CLOCK // 1_000_000)
+                box.put(time_ns, bytes(event[2] for event in bytes_of_it))
+                box.flush()
+                self._sent += len(bytes_of_it)

@@ -1,0 +1,153 @@
+/* The Arduino API on a computer, in simulated time; written from its public documentation. */
+#ifndef Arduino_h
+#define Arduino_h
+
+#include <ctype.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <string>
+
+#include "avr/interrupt.h"
+#include "avr/pgmspace.h"
+
+typedef uint8_t byte;
+typedef bool boolean;
+typedef uint16_t word;
+
+#define ARDUINO 10819
+#define ARDUINO_ARCH_AVR 1
+#ifndef F_CPU
+#define F_CPU 16000000UL
+#endif
+
+#define HIGH 1
+#define LOW 0
+#define INPUT 0
+#define OUTPUT 1
+#define INPUT_PULLUP 2
+#define CHANGE 1
+#define FALLING 2
+#define RISING 3
+#define LSBFIRST 0
+#define MSBFIRST 1
+#define DEFAULT 1
+#define EXTERNAL 0
+#define INTERNAL 3
+#define INTERNAL1V1 2
+#define INTERNAL2V56 3
+#define DEC 10
+#define HEX 16
+#define OCT 8
+#define BIN 2
+#define LED_BUILTIN 13
+#define NOT_AN_INTERRUPT (-1)
+
+#define PI 3.1415926535897932384626433832795f
+#define HALF_PI 1.5707963267948966192313216916398f
+#define TWO_PI 6.283185307179586476925286766559f
+#define DEG_TO_RAD 0.017453292519943295769236907684886f
+#define RAD_TO_DEG 57.295779513082320876798154814105f
+#define EULER 2.718281828459045235360287471352f
+
+#define min(a, b) ((a) < (b) ? (a) : (b))
+#define max(a, b) ((a) > (b) ? (a) : (b))
+#undef abs
+#define abs(x) ((x) > 0 ? (x) : -(x))
+#define constrain(x, low, high) ((x) < (low) ? (low) : ((x) > (high) ? (high) : (x)))
+#define radians(deg) ((deg) * DEG_TO_RAD)
+#define degrees(rad) ((rad) * RAD_TO_DEG)
+#define sq(x) ((x) * (x))
+#define lowByte(w) ((uint8_t)((w) & 0xff))
+#define highByte(w) ((uint8_t)((uint16_t)(w) >> 8))
+#define bit(b) ((uint32_t)1 << (b))
+#define bitRead(value, b) (((value) >> (b)) & 1)
+#define bitSet(value, b) ((value) |= ((uint32_t)1 << (b)))
+#define bitClear(value, b) ((value) &= ~((uint32_t)1 << (b)))
+#define bitWrite(value, b, to) ((to) ? bitSet(value, b) : bitClear(value, b))
+#define clockCyclesPerMicrosecond() (F_CPU / 1000000L)
+
+#ifdef BOARD_MEGA
+enum { A0 = 54, A1, A2, A3, A4, A5, A6, A7, A8, A9, A10, A11, A12, A13, A14, A15 };
+enum { SDA = 20, SCL = 21, SS = 53, MOSI = 51, MISO = 50, SCK = 52 };
+#define NUM_DIGITAL_PINS 70
+#define NUM_ANALOG_INPUTS 16
+#else
+enum { A0 = 14, A1, A2, A3, A4, A5, A6, A7 };
+enum { SDA = 18, SCL = 19, SS = 10, MOSI = 11, MISO = 12, SCK = 13 };
+#define NUM_DIGITAL_PINS 20
+#define NUM_ANALOG_INPUTS 6
+#endif
+
+uint32_t millis();
+uint32_t micros();
+void delay(uint32_t ms);
+void delayMicroseconds(unsigned us);
+void yield();
+
+void pinMode(uint8_t pin, uint8_t mode);
+void digitalWrite(uint8_t pin, uint8_t level);
+int16_t digitalRead(uint8_t pin);
+int16_t analogRead(uint8_t pin);
+void analogWrite(uint8_t pin, int value);
+void analogReference(uint8_t mode);
+uint32_t pulseIn(uint8_t pin, uint8_t level, uint32_t timeout = 1000000);
+uint32_t pulseInLong(uint8_t pin, uint8_t level, uint32_t timeout = 1000000);
+void shiftOut(uint8_t data, uint8_t clock, uint8_t order, uint8_t value);
+uint8_t shiftIn(uint8_t data, uint8_t clock, uint8_t order);
+
+int16_t digitalPinToInterrupt(int pin);
+void attachInterrupt(uint8_t interrupt, void (*handler)(), int mode);
+void detachInterrupt(uint8_t interrupt);
+
+int32_t map(int32_t x, int32_t in_min, int32_t in_max, int32_t out_min, int32_t out_max);
+int32_t random(int32_t most);
+int32_t random(int32_t least, int32_t most);
+void randomSeed(uint32_t seed);
+
+/* avr-libc's: an int is 16 bits, l 32, and %f is not there. */
+int sketch_snprintf(char *to, size_t size, const char *format, ...);
+int sketch_sprintf(char *to, const char *format, ...);
+int sketch_vsnprintf(char *to, size_t size, const char *format, va_list values);
+#define snprintf sketch_snprintf
+#define sprintf sketch_sprintf
+#define vsnprintf sketch_vsnprintf
+#define snprintf_P sketch_snprintf
+#define sprintf_P sketch_sprintf
+char *dtostrf(double value, signed char width, unsigned char precision, char *to);
+char *itoa(int value, char *to, int base);
+char *ltoa(long value, char *to, int base);
+char *utoa(unsigned value, char *to, int base);
+char *ultoa(unsigned long value, char *to, int base);
+
+inline bool isDigit(int c) { return isdigit(c); }
+inline bool isAlpha(int c) { return isalpha(c); }
+inline bool isAlphaNumeric(int c) { return isalnum(c); }
+inline bool isSpace(int c) { return isspace(c); }
+inline bool isWhitespace(int c) { return c == ' ' || c == '\t'; }
+inline bool isUpperCase(int c) { return isupper(c); }
+inline bool isLowerCase(int c) { return islower(c); }
+inline bool isHexadecimalDigit(int c) { return isxdigit(c); }
+inline bool isPunct(int c) { return ispunct(c); }
+inline bool isPrintable(int c) { return isprint(c); }
+inline bool isControl(int c) { return iscntrl(c); }
+inline bool isAscii(int c) { return c >= 0 && c < 128; }
+inline uint16_t makeWord(uint16_t w) { return w; }
+inline uint16_t makeWord(uint8_t high, uint8_t low) { return (uint16_t)(high << 8 | low); }
+#define word(...) makeWord(__VA_ARGS__)
+
+void setup();
+void loop();
+
+#include "WString.h"
+
+#include "Stream.h"
+
+#include "HardwareSerial.h"
+
+#endif

@@ -1,0 +1,34 @@
+/* SPI, as its master; nothing is connected: it reads 0xFF. */
+#ifndef SPI_h
+#define SPI_h
+
+#include "Arduino.h"
+
+#define SPI_MODE0 0x00
+#define SPI_MODE1 0x04
+#define SPI_MODE2 0x08
+#define SPI_MODE3 0x0C
+
+struct SPISettings {
+    SPISettings(uint32_t hertz = 4000000, uint8_t order = MSBFIRST, uint8_t mode = SPI_MODE0)
+        : clock(hertz) { (void)order; (void)mode; }
+    uint32_t clock;
+};
+
+class SPIClass {
+public:
+    void begin() {}
+    void end() {}
+    void beginTransaction(SPISettings settings) { clock_ = settings.clock; }
+    void endTransaction() {}
+    uint8_t transfer(uint8_t data);
+    uint16_t transfer16(uint16_t data) { transfer((uint8_t)(data >> 8)); transfer((uint8_t)data); return 0xFFFF; }
+    void transfer(void *data, size_t size) { for (size_t i = 0; i < size; i++) ((uint8_t *)data)[i] = transfer(((uint8_t *)data)[i]); }
+
+private:
+    uint32_t clock_ = 4000000;
+};
+
+extern SPIClass SPI;
+
+#endif

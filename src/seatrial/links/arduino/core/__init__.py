@@ -1,0 +1,16 @@
+"""The Arduino API in simulated time, in C++."""
+
+DATA_FILES = (
+    "Arduino.h",
+    "EEPROM.h",
+    "HardwareSerial.h",
+    "Print.h",
+    "SPI.h",
+    "Servo.h",
+    "Stream.h",
+    "WString.h",
+    "Wire.h",
+    "api.cpp",
+    "machine.cpp",
+    "machine.h",
+)

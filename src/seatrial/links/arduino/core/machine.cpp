@@ -1,0 +1,478 @@
+#include "machine.h"
+
+#include <pthread.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <sys/mman.h>
+#include <ucontext.h>
+
+#include <deque>
+
+#include "link.h"
+#include "parts.h"
+#include "waves.h"
+
+void setup();
+void loop();
+
+namespace machine {
+
+uint64_t now;
+
+namespace {
+
+constexpr int INTERRUPTS = 6, SERVOS = 12, RING = 64;
+constexpr size_t STACK = 64 << 10, GUARD = 64 << 10;
+constexpr uint64_t FRAME = (uint64_t)(0.02 * CLOCK);
+#ifdef BOARD_MEGA
+constexpr int INTERRUPT_PIN[INTERRUPTS] = {2, 3, 21, 20, 19, 18};
+#else
+constexpr int INTERRUPT_PIN[INTERRUPTS] = {2, 3, -1, -1, -1, -1};
+#endif
+
+uint64_t target, next_due = NEVER; /* nothing happens before main(): constructors only */
+uint64_t last_call, patience;
+char *stack;
+
+struct Incoming {
+    uint8_t data;
+    uint64_t earliest;
+};
+
+struct Uart {
+    double line_baud = 0.0, bit = 0.0; /* baud; cycles of a bit, 0 while closed */
+    std::deque<Incoming> line;
+    double line_free = 0.0, arrival = 1e18;
+    std::deque<uint8_t> in, out;
+    uint8_t shifting = 0;
+    double sent = 1e18; /* when the byte being shifted out is through */
+} uarts[UARTS];
+
+struct Pin {
+    bool level, input, watched;
+    int share; /* of 255; -1: no PWM */
+    double edge;
+} pins[PINS];
+int modulated;
+
+struct Servo {
+    int pin = -1;
+    double us = 1500.0;
+} servos[SERVOS];
+int servo_count, servo_turn = -1;
+uint64_t servo_next = NEVER, frame_start;
+
+struct Interrupt {
+    void (*handler)();
+    int mode;
+    bool pending;
+} externals[INTERRUPTS];
+bool interrupts_on = true, in_interrupt;
+uint64_t watchdog_cycles, watchdog_due = NEVER;
+double adc[16];
+
+void show(uint8_t pin)
+{
+    if (pins[pin].watched)
+        link_put(OUT_EDGE, pin, pins[pin].level, now);
+}
+
+void put_level(uint8_t pin, bool to)
+{
+    if (pins[pin].level == to)
+        return;
+    pins[pin].level = to;
+    show(pin);
+    for (int each = 0; each < INTERRUPTS; each++) {
+        Interrupt &one = externals[each];
+        bool wanted = one.mode == 1 || one.mode == (to ? 3 : 2);
+        if (INTERRUPT_PIN[each] == pin && one.handler && wanted)
+            one.pending = true;
+    }
+}
+
+void schedule(Uart &uart)
+{
+    if (uart.line.empty()) {
+        uart.arrival = 1e18;
+        return;
+    }
+    double begin = fmax((double)uart.line.front().earliest, uart.line_free);
+    double bit = uart.line_baud > 0.0 ? CLOCK / uart.line_baud : uart.bit;
+    uart.arrival = begin + 10.0 * bit;
+}
+
+void take_input(const link_input *input)
+{
+    uint8_t index = input->index;
+    Uart &uart = uarts[index % UARTS];
+    switch (input->kind) {
+    case IN_UART:
+        uart.line.push_back({(uint8_t)input->value, (uint64_t)fmax(input->number, (double)now)});
+        if (uart.line.size() == 1)
+            schedule(uart);
+        break;
+    case IN_BAUD: uart.line_baud = input->number; break;
+    case IN_VOLTS: adc[index % 16] = input->number; break;
+    case IN_LEVEL: put_level(index % PINS, input->number != 0.0); break;
+    case IN_FREQUENCY: wave_set(index, 0, input->number, now); break;
+    case IN_PULSE: wave_set(index, 1, input->number, now); break;
+    case IN_QUANTITY: part_quantities[index % QUANTITIES] = input->number; break;
+    case IN_PART: part_add((uint8_t)input->value, index); break;
+    case IN_WATCH: pins[index % PINS].watched = true; break;
+    }
+}
+
+void shift_next(Uart &uart, double from)
+{
+    if (uart.out.empty()) {
+        uart.sent = 1e18;
+        return;
+    }
+    uart.shifting = uart.out.front();
+    uart.out.pop_front();
+    uart.sent = from + 10.0 * uart.bit;
+}
+
+void turn_servos()
+{
+    if (servo_turn >= 0 && servos[servo_turn].pin >= 0)
+        put_level((uint8_t)servos[servo_turn].pin, false);
+    if (++servo_turn == servo_count) {
+        uint64_t following = frame_start + FRAME;
+        servo_turn = -1;
+        servo_next = following > now ? following : now + 64;
+        return;
+    }
+    if (servo_turn == 0)
+        frame_start = now;
+    if (servos[servo_turn].pin >= 0)
+        put_level((uint8_t)servos[servo_turn].pin, true);
+    servo_next = now + (uint64_t)lround(servos[servo_turn].us * 16.0);
+}
+
+double modulation_period(uint8_t pin)
+{
+#ifdef BOARD_MEGA
+    bool fast = pin == 4 || pin == 13;
+#else
+    bool fast = pin == 5 || pin == 6;
+#endif
+    return CLOCK / (fast ? 976.5625 : 490.196);
+}
+
+void turn_modulated(uint8_t pin)
+{
+    Pin &one = pins[pin];
+    double high = one.share / 255.0, period = modulation_period(pin);
+    put_level(pin, !one.level);
+    one.edge += period * (one.level ? high : 1.0 - high);
+}
+
+/* When the first thing falls due, and, in `do_it`, let it happen at its time. */
+uint64_t first(bool do_it)
+{
+    double soonest = 1e18;
+    enum { NOTHING, ARRIVAL, SENT, MODULATED } what = NOTHING;
+    int which = 0;
+    for (int each = 0; each < UARTS; each++) {
+        if (uarts[each].arrival < soonest)
+            soonest = uarts[each].arrival, what = ARRIVAL, which = each;
+        if (uarts[each].sent < soonest)
+            soonest = uarts[each].sent, what = SENT, which = each;
+    }
+    for (int pin = 0; modulated && pin < PINS; pin++)
+        if (pins[pin].share >= 0 && pins[pin].edge < soonest)
+            soonest = pins[pin].edge, what = MODULATED, which = pin;
+    uint64_t due = soonest < 1e18 ? (uint64_t)soonest : NEVER;
+    uint64_t wave_due = wave_next();
+    uint64_t all = due;
+    all = wave_due < all ? wave_due : all;
+    all = servo_next < all ? servo_next : all;
+    all = watchdog_due < all ? watchdog_due : all;
+    all = target < all ? target : all;
+    if (!do_it)
+        return all;
+    uint64_t late = now;
+    now = all; /* what happens is stamped with its own time */
+    if (all == due && what == ARRIVAL) {
+        Uart &uart = uarts[which];
+        uint8_t data = uart.line.front().data;
+        uart.line.pop_front();
+        uart.line_free = uart.arrival;
+        schedule(uart);
+        if (uart.bit > 0.0 && uart.in.size() < RING - 1)
+            uart.in.push_back(data);
+    } else if (all == due && what == SENT) {
+        link_put(OUT_UART, (uint8_t)which, uarts[which].shifting, now);
+        shift_next(uarts[which], uarts[which].sent);
+    } else if (all == due && what == MODULATED) {
+        turn_modulated((uint8_t)which);
+    } else if (all == wave_due) {
+        wave *one = wave_turn(now, CLOCK);
+        put_level(one->pin, one->level);
+    } else if (all == servo_next) {
+        turn_servos();
+    } else if (all == watchdog_due) {
+        end("the watchdog was not fed in time: the board would start again");
+    } else {
+        link_answer(now, "");
+        target = link_await(take_input);
+    }
+    now = late > now ? late : now;
+    return all;
+}
+
+void interrupt()
+{
+    if (in_interrupt || !interrupts_on)
+        return;
+    for (int each = 0; each < INTERRUPTS; each++) {
+        if (!externals[each].pending)
+            continue;
+        externals[each].pending = false;
+        in_interrupt = true;
+        last_call = now;
+        charge(80); /* registers saved and restored, the handler called */
+        externals[each].handler();
+        in_interrupt = false;
+    }
+}
+
+void happen()
+{
+    while (next_due <= now) {
+        first(true);
+        next_due = first(false);
+    }
+    interrupt();
+    next_due = first(false);
+}
+
+void refuse_hang()
+{
+    if (now - last_call > patience)
+        end("it has run for %.3g s of its time without returning from loop() or calling anything: "
+            "an endless loop",
+            (double)(now - last_call) / CLOCK);
+}
+
+void crashed(int number, siginfo_t *info, void *context)
+{
+    char *at = (char *)info->si_addr;
+    if (number == SIGSEGV && at >= stack - GUARD && at < stack)
+        end("it overran its stack of %zu kB: a recursion without end, or large local arrays "
+            "(the board has 8 kB or less in all)",
+            STACK >> 10);
+    greg_t place = ((ucontext_t *)context)->uc_mcontext.gregs[REG_RIP];
+    end("it crashed: %s [at 0x%llx]", strsignal(number), (unsigned long long)place);
+}
+
+void catch_crashes()
+{
+    static char alternative[64 << 10];
+    stack_t other = {alternative, 0, sizeof alternative};
+    sigaltstack(&other, nullptr);
+    struct sigaction action = {};
+    action.sa_sigaction = crashed;
+    action.sa_flags = SA_SIGINFO | SA_ONSTACK | SA_NODEFER;
+    for (int number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT})
+        sigaction(number, &action, nullptr);
+}
+
+void *run(void *)
+{
+    catch_crashes();
+    target = link_await(take_input);
+    next_due = first(false);
+    setup();
+    for (;;) {
+        last_call = now;
+        loop();
+        charge(16);
+    }
+}
+
+} // namespace
+
+void charge(uint32_t cycles)
+{
+    last_call = now;
+    now += cycles;
+    if (now >= next_due)
+        happen();
+}
+
+void pass_until(uint64_t when, bool event)
+{
+    while (now < when) {
+        uint64_t due = next_due = first(false);
+        now = due < when ? (due > now ? due : now) : when;
+        last_call = now;
+        if (now >= next_due)
+            happen();
+        if (event)
+            return;
+    }
+}
+
+void drive(uint8_t pin, bool to)
+{
+    if (pin >= PINS)
+        return;
+    if (pins[pin].share >= 0)
+        modulated--;
+    pins[pin].share = -1;
+    put_level(pin, to);
+}
+
+bool level(uint8_t pin) { return pin < PINS && pins[pin].level; }
+double volts(uint8_t channel) { return adc[channel % 16]; }
+
+void modulate(uint8_t pin, int share)
+{
+    if (pin >= PINS)
+        return;
+    if (pins[pin].share < 0) {
+        modulated++;
+        pins[pin].level = true;
+        show(pin);
+        pins[pin].edge = (double)now + modulation_period(pin) * share / 255.0;
+    }
+    pins[pin].share = share;
+    next_due = first(false);
+}
+
+void open_uart(uint8_t uart, uint32_t baud)
+{
+    Uart &one = uarts[uart];
+    if (baud && one.line_baud > 0.0 && fabs(baud / one.line_baud - 1.0) > 0.03)
+        end("it opens UART %d at %u baud, and the line there has %.0f", uart, baud, one.line_baud);
+    one.bit = baud ? CLOCK / baud : 0.0;
+    one.in.clear();
+    schedule(one);
+    next_due = first(false);
+}
+
+int received(uint8_t uart) { return (int)uarts[uart].in.size(); }
+
+int take(uint8_t uart, bool keep)
+{
+    Uart &one = uarts[uart];
+    if (one.in.empty())
+        return -1;
+    int data = one.in.front();
+    if (!keep)
+        one.in.pop_front();
+    return data;
+}
+
+int room(uint8_t uart) { return RING - 1 - (int)uarts[uart].out.size(); }
+
+void send(uint8_t uart, uint8_t data)
+{
+    Uart &one = uarts[uart];
+    if (one.bit <= 0.0)
+        return;
+    while (room(uart) <= 0)
+        pass_until(now + (uint64_t)(10.0 * one.bit) + 1, true);
+    one.out.push_back(data);
+    if (one.sent >= 1e18)
+        shift_next(one, (double)now);
+    next_due = first(false);
+}
+
+void drain(uint8_t uart)
+{
+    while (uarts[uart].sent < 1e18)
+        pass_until((uint64_t)uarts[uart].sent + 1, true);
+}
+
+int new_servo() { return servo_count < SERVOS ? servo_count++ : -1; }
+
+void set_servo(int servo, int pin, double us)
+{
+    if (servo < 0)
+        return;
+    if (pin != servos[servo].pin && servos[servo].pin >= 0)
+        put_level((uint8_t)servos[servo].pin, false);
+    servos[servo] = {pin, us};
+    if (servo_next == NEVER && pin >= 0)
+        servo_next = now + 64;
+    next_due = first(false);
+}
+
+void on_edge(uint8_t number, void (*handler)(), int mode)
+{
+    if (number < INTERRUPTS)
+        externals[number] = {handler, mode, false};
+}
+
+void enable(bool on)
+{
+    interrupts_on = on;
+    if (on)
+        interrupt();
+}
+
+bool enabled() { return interrupts_on && !in_interrupt; }
+
+void watchdog(uint64_t cycles)
+{
+    watchdog_cycles = cycles;
+    watchdog_due = cycles ? now + cycles : NEVER;
+    next_due = first(false);
+}
+
+void feed()
+{
+    if (watchdog_cycles)
+        watchdog(watchdog_cycles);
+}
+
+void end(const char *format, ...)
+{
+    char text[400];
+    va_list values;
+    va_start(values, format);
+    vsnprintf(text, sizeof text, format, values);
+    va_end(values);
+    link_answer(now, text);
+    _exit(0);
+}
+
+} // namespace machine
+
+/* Called by the compiler in each stretch of the sketch's code that has no jumps. */
+extern "C" void __sanitizer_cov_trace_pc()
+{
+    using namespace machine;
+    now += 12;
+    if (now >= next_due) {
+        refuse_hang();
+        happen();
+    }
+}
+
+int main(int, char **arguments)
+{
+    using namespace machine;
+    link_out = atoi(arguments[1]);
+    patience = (uint64_t)(atof(arguments[2]) * CLOCK);
+    for (Pin &pin : pins)
+        pin.share = -1;
+    stack = (char *)mmap(nullptr, GUARD + STACK, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    stack += GUARD;
+    mprotect(stack, STACK, PROT_READ | PROT_WRITE);
+    pthread_attr_t attributes;
+    pthread_attr_init(&attributes);
+    pthread_attr_setstack(&attributes, stack, STACK);
+    pthread_t thread;
+    pthread_create(&thread, &attributes, run, nullptr);
+    pthread_join(thread, nullptr);
+    return 0;
+}
+
+extern "C" int part_link_begin(uint8_t address, int reading) { return part_begin(address, reading); }
+extern "C" int part_link_write(uint8_t data) { return part_write(data); }
+extern "C" uint8_t part_link_read() { return part_read(); }

@@ -1,0 +1,44 @@
+/* The simulated board: time in CPU cycles, and what happens when. */
+#ifndef MACHINE_H
+#define MACHINE_H
+
+#include <stdint.h>
+
+namespace machine {
+
+constexpr double CLOCK = 16e6;
+constexpr int UARTS = 4, PINS = 70;
+
+extern uint64_t now; /* cycles since the start of the run */
+
+/* Let `cycles` pass: what a call costs. Everything that falls due happens on the way. */
+void charge(uint32_t cycles);
+/* Let time pass until `when`, or, with `event`, until something has happened. */
+void pass_until(uint64_t when, bool event = false);
+
+void drive(uint8_t pin, bool level); /* an output, from now on */
+bool level(uint8_t pin);
+double volts(uint8_t channel);
+void modulate(uint8_t pin, int share); /* PWM, 0 to 255 */
+
+void open_uart(uint8_t uart, uint32_t baud);
+int received(uint8_t uart); /* bytes that wait */
+int take(uint8_t uart, bool keep);
+int room(uint8_t uart);
+void send(uint8_t uart, uint8_t data);
+void drain(uint8_t uart);
+
+int new_servo();
+void set_servo(int servo, int pin, double us); /* pin -1: detached */
+
+void on_edge(uint8_t interrupt, void (*handler)(), int mode);
+void enable(bool interrupts);
+bool enabled();
+void watchdog(uint64_t cycles); /* 0: off */
+void feed();
+
+[[noreturn]] void end(const char *format, ...);
+
+} // namespace machine
+
+#endif

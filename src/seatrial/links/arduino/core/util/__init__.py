@@ -1,0 +1,5 @@
+"""Headers of avr-libc that sketches include."""
+
+DATA_FILES = (
+    "atomic.h",
+)

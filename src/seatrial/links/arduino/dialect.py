@@ -1,0 +1,75 @@
+"""A sketch's source with an AVR board's widths of numbers, for a computer's compiler."""
+
+from __future__ import annotations
+
+import re
+
+from .tokens import Token, tokens
+
+LIMITS = (
+    "products and sums of int are computed with 32 bits: an overflow of 16 bits stays hidden "
+    "until the value is stored",
+    "pointers, size_t and enums have the computer's widths, and structures its padding",
+    "code takes about 12 cycles from one jump to the next, whatever it computes: timing of the "
+    "code itself is a guess (simavr counts cycles)",
+    "interrupts come between stretches of code, never within one",
+    "memory is not the board's: a sketch too large for it is not noticed (simavr's build tells)",
+)
+"""What the host back end does not show, as `seatrial sketch check` prints it."""
+
+_BINARY = re.compile(r"B[01]{1,8}")
+_SUFFIX = re.compile(r"(?P<number>(?:0[xX][0-9a-fA-F']+|0[bB][01']+|[0-9']+))(?P<suffix>[uUlL]+)")
+_INTEGERS = {"int", "long", "short", "unsigned", "signed"}
+
+
+def narrowed(source: str) -> str:
+    """Return C++ in which int has 16 bits, long 32, and double is float; lines stay as they are.
+
+    int becomes short, long int, long long stays; suffixes of numbers, and B1010, likewise.
+    """
+    found = list(tokens(source))
+    out = [_single(token) for token in found]
+    at = 0
+    while at < len(found):
+        if found[at].text not in _INTEGERS:
+            at += 1
+            continue
+        run = _run(found, at)
+        out[run[0]] = _integer([found[i].text for i in run])
+        for i in run[1:]:
+            out[i] = ""
+        at = run[-1] + 1
+    return "".join(out)
+
+
+def _run(found: list[Token], at: int) -> list[int]:
+    """Return the places of the words of one integer type that begins at ``at``."""
+    run = [at]
+    while True:
+        following = at + 1
+        while following < len(found) and found[following].kind == "space":
+            following += 1
+        if following >= len(found) or found[following].text not in _INTEGERS:
+            return run
+        if "\n" in "".join(t.text for t in found[at + 1 : following]):
+            return run  # a directive ends with its line
+        run.append(following)
+        at = following
+
+
+def _integer(words: list[str]) -> str:
+    sign = "unsigned " if "unsigned" in words else "signed " if "signed" in words else ""
+    longs = words.count("long")
+    return sign + ("long long" if longs > 1 else "int" if longs else "short")
+
+
+def _single(token: Token) -> str:
+    if token.kind == "word":
+        if token.text == "double":
+            return "float"
+        return f"0b{token.text[1:]}" if _BINARY.fullmatch(token.text) else token.text
+    if token.kind == "number" and (match := _SUFFIX.fullmatch(token.text)):
+        suffix = match["suffix"].lower()
+        long = "" if suffix.count("l") < 2 else "ll"
+        return match["number"] + ("u" if "u" in suffix else "") + long
+    return token.text

@@ -1,0 +1,72 @@
+"""The Arduino component's parameters, inputs and outputs."""
+
+from __future__ import annotations
+
+from ...component import Component, Input, Output, Parameter
+from .mcus import MCUS
+from .wiring import OTHERS, SERVOS, UARTS, read_uarts, read_wires
+
+BACKENDS = ("host", "simavr", "board")
+_UARTS = tuple(f"uart{i}" for i in range(UARTS))
+
+
+def _axes(letter: str, count: int = OTHERS) -> tuple[str, ...]:
+    return tuple(f"{letter}{i}" for i in range(1, count + 1))
+
+
+class ArduinoPorts(Component):
+    """What an `Arduino` is told and says."""
+
+    backend = Parameter("host", "1", "what runs the sketch", choices=BACKENDS)
+    mcu = Parameter("atmega2560", "1", "microcontroller", choices=tuple(MCUS))
+    sketch = Parameter("", "1", "folder of the sketch, or its .ino")
+    firmware = Parameter("", "1", "simavr: a .hex or .elf file in the place of a sketch")
+    uarts = Parameter(
+        "0 115200", "1", "UART BAUD of each line; with ;", check=read_uarts
+    )
+    wires = Parameter(
+        "", "1", "PIN KIND NUMBER or ADDRESS DEVICE of all that is connected; with ;", check=read_wires
+    )
+    links = Parameter(
+        "", "1", "board: UART=URL of each, separated by spaces, as 0=serial:/dev/ttyACM0:115200"
+    )
+    farewell = Parameter("", "1", "board: bytes sent to each UART at the end, hexadecimal")
+    patience = Parameter(
+        5.0, "s", "host: time for which a sketch may run without calling anything", min=1e-3
+    )
+    magnetic_field = Parameter(
+        (2.3e-5, 0.0, 0.0), "T", "field of the earth, north-east-down", axes=("north", "east", "down")
+    )
+    water_density = Parameter(1000.0, "kg/m3", "of the water over the pressure sensor", min=0.0)
+    gravity = Parameter(9.80665, "m/s2", "acceleration of gravity", min=0.0)
+
+    rx = Input("1", "bytes that arrive at each UART, as text", type=str, axes=_UARTS, optional=True)
+    wind_speed = Input("m/s", "speed of the wind at cups", optional=True)
+    wind_angle = Input(
+        "rad", "where it blows to from the bow, to starboard, at the vane", optional=True
+    )
+    gyro = Input("rad/s", "angular velocity, body axes", axes="xyz", optional=True)
+    accelerometer = Input(
+        "m/s2",
+        "specific force, body axes",
+        axes="xyz",
+        start=(0.0, 0.0, -9.80665),
+        optional=True,
+    )
+    attitude = Input(
+        "rad", "Euler angles, ZYX, for the magnetometer", axes=("phi", "theta", "psi"), optional=True
+    )
+    depth = Input("m", "depth of the pressure sensor", optional=True)
+    water_temperature = Input("K", "temperature of the water", start=293.15, optional=True)
+    receiver = Input(
+        "s", "pulses of the RC receiver's channels, 0 for none", axes=_axes("c"), optional=True
+    )
+    voltage = Input("V", "at analogue inputs", axes=_axes("v"), optional=True)
+    level = Input("1", "at digital inputs", type=bool, axes=_axes("i"), optional=True)
+
+    tx = Output("1", "bytes that left each UART, as text", type=str, axes=_UARTS)
+    pulse = Output("s", "width of the last servo pulse, 0 for none", axes=_axes("s", SERVOS))
+    duty = Output("1", "share of time that PWM outputs are high", axes=_axes("p"))
+    output = Output("1", "levels of digital outputs", type=bool, axes=_axes("o"))
+    bytes_sent = Output("1", "bytes that left the UARTs", type=int)
+    bytes_received = Output("1", "bytes that were put on the lines to the UARTs", type=int)

@@ -1,0 +1,42 @@
+"""Pulses from the edges of a pin, as a servo or a motor controller takes them."""
+
+from __future__ import annotations
+
+from .mcus import CLOCK
+
+_LOST = CLOCK // 10
+"""Cycles without an edge after which there are no pulses any more."""
+
+
+class Pulses:
+    """Edges of one pin, by cycle."""
+
+    def __init__(self) -> None:
+        self.level = 0
+        self._rise = self._fall = -1
+        self._width = 0
+        self._share = 0.0
+
+    def edge(self, level: int, cycle: int) -> None:
+        """Take in that the pin has another level."""
+        if level == self.level:
+            return
+        self.level = level
+        if not level:
+            if self._rise >= 0:
+                self._width = cycle - self._rise
+            self._fall = cycle
+            return
+        if self._rise >= 0 and self._fall > self._rise:
+            self._share = (self._fall - self._rise) / (cycle - self._rise)
+        self._rise = cycle
+
+    def width(self, now: int) -> float:
+        """Return the last whole pulse's width, s; 0 if none came for 0.1 s."""
+        return self._width / CLOCK if 0 <= self._fall and now - self._fall < _LOST else 0.0
+
+    def share(self, now: int) -> float:
+        """Return the share of time that the pin is high, over the last whole period."""
+        if now - max(self._rise, self._fall, 0) >= _LOST // 5 or self._rise < 0:
+            return float(self.level)
+        return self._share

@@ -1,0 +1,76 @@
+"""What of a sketch the host back end cannot run, with file, line and what to do."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from .sketch import Sketch, included, read_source
+from .tokens import tokens
+
+_HERE = Path(__file__).parent
+_ELSE = "use the back end simavr, or"
+
+_STANDARD = (
+    *("assert.h", "ctype.h", "errno.h", "float.h", "inttypes.h", "limits.h", "math.h", "stdarg.h"),
+    *("stdbool.h", "stddef.h", "stdint.h", "stdio.h", "stdlib.h", "string.h", "new.h", "WProgram.h"),
+)
+_REGISTERS = re.compile(
+    r"(?:PORT|DDR|PIN)[A-L]\d?|TCCR\d[ABC]|TCNT\d[HL]?|OCR\d[ABC]?[HL]?|ICR\d[HL]?|TIMSK\d|TIFR\d"
+    r"|ADMUX|ADCSR[AB]|ADC[HLW]?|DIDR\d|UCSR\d[ABC]|UBRR\d[HL]?|UDR\d|SP[CSD]R|TW[BSDAC]R|TWAMR"
+    r"|EICR[AB]|EIMSK|EIFR|PCICR|PCMSK\d|PCIFR|MCUSR|MCUCR|SMCR|PRR\d?|WDTCSR|SREG|ACSR|GTCCR"
+    r"|EECR|EEDR|EEAR[HL]?|SPH|SPL|_SFR_\w+|RAMEND"
+)
+_WORDS = {
+    "ISR": "interrupt routines of the hardware are the emulator's: attachInterrupt has edges",
+    "SIGNAL": "interrupt routines of the hardware are the emulator's: attachInterrupt has edges",
+    "asm": "machine code of the AVR",
+    "__asm__": "machine code of the AVR",
+    "tone": "sounds",
+    "noTone": "sounds",
+    "portInputRegister": "ports as registers: digitalRead reads a pin",
+    "portOutputRegister": "ports as registers: digitalWrite drives a pin",
+    "digitalPinToPort": "ports as registers: digitalWrite drives a pin",
+    "digitalPinToBitMask": "ports as registers: digitalWrite drives a pin",
+    "serialEvent": "calls between loops: read Serial in loop()",
+    "__heap_start": "the board's memory",
+    "__brkval": "the board's memory",
+}
+
+
+def unsupported(sketch: Sketch) -> list[str]:
+    """Return what is unsupported, a line each: ``FILE:LINE: WHAT: what to do``."""
+    files = [*sketch.tabs, *sketch.others, *sketch.library_sources()]
+    problems = []
+    for file in files:
+        source = read_source(file)
+        for header, line in included(source):
+            if not _has(sketch, file, header):
+                problems.append(f"{file}:{line}: {_missing(header)}")
+        for token in tokens(source):
+            if token.kind != "word":
+                continue
+            if _REGISTERS.fullmatch(token.text):
+                problems.append(
+                    f"{file}:{token.line}: {token.text} is a register of the AVR: {_ELSE} the "
+                    "Arduino API (digitalWrite, analogWrite, attachInterrupt, ...)"
+                )
+            elif token.text in _WORDS:
+                problems.append(
+                    f"{file}:{token.line}: {token.text}: {_WORDS[token.text]}; {_ELSE} leave it out"
+                )
+    return problems
+
+
+def _has(sketch: Sketch, file: Path, header: str) -> bool:
+    places = (file.parent, sketch.folder, *sketch.libraries, _HERE / "core")
+    return header in _STANDARD or any((place / header).is_file() for place in places)
+
+
+def _missing(header: str) -> str:
+    if header.startswith(("avr/", "util/")):
+        return f"<{header}> is of the AVR's hardware: {_ELSE} the Arduino API"
+    return (
+        f"the library of <{header}> is not there: put its folder into 'libraries' in or beside "
+        "the sketch's folder"
+    )
