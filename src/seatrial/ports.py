@@ -72,7 +72,8 @@ class Port:
                 f"port {self.name or self.description!r} has {self.size} axes "
                 f"({', '.join(self.axes)}), got {len(values)} values"
             )
-        return [self._scalar(v) for v in values]
+        own = self.type
+        return [v if type(v) is own else self._scalar(v) for v in values]
 
     def _scalar(self, value: Any) -> Scalar:
         if self.type is str:
@@ -119,6 +120,9 @@ class Port:
         return tuple(component.values[self.offset : self.offset + self.size])
 
     def __set__(self, component: Any, value: Any) -> None:
+        if self.axes is None and type(value) is self.type:  # mostly there is nothing to convert
+            component.values[self.offset] = value
+            return
         component.values[self.offset : self.offset + self.size] = self._spread(value)
 
 
