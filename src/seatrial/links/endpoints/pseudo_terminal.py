@@ -8,29 +8,11 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ...errors import InputError
+from .descriptor import DescriptorChannel
 from .endpoint import LARGEST_DATAGRAM, Channel, Endpoint
 
 LONGEST_QUEUE = 1 << 16
 """Bytes kept for somebody who does not read; what comes beyond is lost."""
-
-
-class _End(Channel):
-    def __init__(self, descriptor: int) -> None:
-        self._descriptor = descriptor
-        self._queue = bytearray()
-
-    def send(self, data: bytes) -> None:
-        if len(self._queue) + len(data) <= LONGEST_QUEUE:
-            self._queue += data
-            self.flush()
-
-    def flush(self) -> None:
-        """Write what the terminal takes now."""
-        try:
-            while self._queue:
-                del self._queue[: os.write(self._descriptor, self._queue)]
-        except BlockingIOError:
-            pass
 
 
 class PseudoTerminal(Endpoint):
@@ -49,7 +31,7 @@ class PseudoTerminal(Endpoint):
         os.set_blocking(self._own, False)
         self._device = os.ttyname(self._other)
         self.url = f"pty:{place}" if place else self._device
-        self._peers = [_End(self._own)]
+        self._peers = [DescriptorChannel(self._own, LONGEST_QUEUE)]
         if self._place is not None:
             try:
                 self._place.symlink_to(self._device)

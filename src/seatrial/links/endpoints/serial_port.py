@@ -2,39 +2,17 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 
 import serial
 
 from ...errors import InputError
 from ..hardware import ALLOWED, is_allowed, is_simulated_port
+from .descriptor import DescriptorChannel
 from .endpoint import LARGEST_DATAGRAM, Channel, Endpoint
 
 LONGEST_QUEUE = 1 << 14
 """Bytes kept for a line that is too slow; frames beyond are lost."""
-
-
-class _Port(Channel):
-    def __init__(self, opened: serial.Serial) -> None:
-        self._serial = opened
-        self._queue = bytearray()
-
-    def send(self, data: bytes) -> None:
-        if len(self._queue) + len(data) <= LONGEST_QUEUE:
-            self._queue += data
-            self.flush()
-
-    def flush(self) -> None:
-        """Write what the line takes now."""
-        try:
-            while self._queue:
-                # Serial.write repeats itself for ever on a line that takes nothing.
-                del self._queue[: os.write(self._serial.fileno(), self._queue)]
-        except BlockingIOError:
-            pass
-        except OSError:
-            self._queue.clear()  # unplugged
 
 
 class SerialEndpoint(Endpoint):
@@ -55,7 +33,7 @@ class SerialEndpoint(Endpoint):
         except (OSError, ValueError) as error:
             raise InputError(f"cannot open the link {url!r}: {error}") from None
         self.url = url
-        self._peers = [_Port(self._serial)]
+        self._peers = [DescriptorChannel(self._serial.fileno(), LONGEST_QUEUE)]
 
     def channels(self) -> Sequence[Channel]:
         """Return the one peer."""
