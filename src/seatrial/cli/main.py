@@ -44,6 +44,7 @@ from .show import (
     print_reachable,
     print_verdicts,
 )
+from .sketch import sketch_app
 from .ssp import ssp_app
 
 _FAILED, _BAD_INPUT, _BROKEN = 1, 2, 3
@@ -57,6 +58,7 @@ app = typer.Typer(
 app.add_typer(fmu_app, name="fmu", help="List, build, check and describe FMUs.")
 app.add_typer(profile_app, name="profile", help="Check and describe profiles of electronics.")
 app.add_typer(decode_app, name="decode", help="Show recorded streams as text.")
+app.add_typer(sketch_app, name="sketch", help="Check, build and run Arduino sketches.")
 app.add_typer(ssp_app, name="ssp", help="Export and check SSP packages.")
 
 

@@ -22,8 +22,8 @@ _EVENT = struct.Struct("<BBHQ")
 _INPUT = struct.Struct("<BBHd")
 _HEAD = struct.Struct("<IQI")
 _ADDRESS = re.compile(r" \[at (0x[0-9a-f]+)\]")
-UART, EDGE = ord("T"), ord("P")
-"""Kinds of events: a byte has left a UART; a pin has another level."""
+UART, EDGE, DUTY = ord("T"), ord("P"), ord("D")
+"""Kinds of events: a byte has left a UART; a pin has another level, or is modulated."""
 
 _ANSWER_S = 20.0
 """Wall clock: a program that takes this long for one step hangs where it cannot say so."""
@@ -77,7 +77,7 @@ class Board:
         """
         request = struct.pack("<IQ", 8 + len(inputs.data), target) + inputs.data
         try:
-            os.write(self._requests, request) if len(request) <= 4096 else self._write(request)
+            self._write(request)
             size = int.from_bytes(self._read(4), "little")
             answer = self._read(size)
         except (OSError, EOFError):
@@ -87,7 +87,9 @@ class Board:
         if size > end:
             said = answer[end:].decode(errors="replace")
             seconds = reached / 16e6
-            raise SimulationError(f"{self.name}: at {seconds:.6f} s of its time {self._placed(said)}")
+            raise SimulationError(
+                f"{self.name}: at {seconds:.6f} s of its time {self._placed(said)}"
+            )
         return list(_EVENT.iter_unpack(answer[12:end]))
 
     def close(self) -> None:
@@ -115,7 +117,7 @@ class Board:
                 if left <= 0:
                     self._process.kill()
                     raise SimulationError(
-                        f"{self.name}: the sketch did not go on for {_ANSWER_S:g} s: an endless loop"
+                        f"{self.name}: its program did not answer for {_ANSWER_S:g} s"
                     )
                 if self._poll.poll(left * 1000.0):
                     data = os.read(self._answers, 1 << 16)

@@ -9,7 +9,7 @@ from ...component import NS, Component
 from ...craft.kinematics import to_body
 from ...errors import InputError
 from ..text import Inbox, Outbox
-from .board import EDGE, UART, Board, Event, Inputs
+from .board import DUTY, EDGE, UART, Board, Event, Inputs
 from .build import build_host
 from .emulator import build_emulator, firmware_file
 from .mcus import CLOCK, MCUS
@@ -30,7 +30,8 @@ class Arduino(ArduinoPorts):
     **Back ends.** ``host``: the unmodified sketch, compiled by the system's C++ compiler with an
     Arduino API in simulated time; int has 16 bits. ``simavr``: the firmware, compiled by
     avr-gcc with the Arduino core, or ``firmware`` as it is, on an emulated microcontroller.
-    ``board``: a real board at serial ports, on the wall clock: nothing but its UARTs.
+    ``board``: a real board at serial ports, on the wall clock: nothing but its UARTs. Without a
+    sketch or firmware the board is there and does nothing.
 
     **Wires**: what is connected where. ``PIN servo N`` gives pulse N, ``pwm`` duty, ``output`` and
     ``input`` levels, ``voltage`` an ADC channel (5 V full scale), ``receiver`` a channel of an RC
@@ -92,8 +93,8 @@ class Arduino(ArduinoPorts):
         self._put_signals(inputs)
         end_ns = round((t + h) * NS) - self._begun_ns
         self._cycle = end_ns * (CLOCK // 1_000_000) // 1000
-        assert self._board is not None
-        self._take(self._board.run(self._cycle, inputs))
+        if self._board is not None:
+            self._take(self._board.run(self._cycle, inputs))
 
     def outputs(self, t: float) -> None:
         """Publish pulses, levels and bytes."""
@@ -121,6 +122,8 @@ class Arduino(ArduinoPorts):
         mcu = MCUS[self.mcu]
         if self.backend == "board":
             self._board = RealBoard(self.name, self.links, self.farewell, self._wires)
+            return
+        if not self.sketch and not self.firmware:
             return
         if self.backend == "host":
             if self.firmware:
@@ -193,6 +196,8 @@ class Arduino(ArduinoPorts):
             kind, index, value, cycle = event
             if kind == EDGE:
                 self._pulses[index].edge(value, cycle)
+            elif kind == DUTY:
+                self._pulses[index].modulated(value / 255.0)
             elif kind == UART:
                 said[index].append(event)
         for memory, bytes_of_it in zip(self._tx, said, strict=True):

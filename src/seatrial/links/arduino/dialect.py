@@ -36,8 +36,7 @@ def narrowed(source: str) -> str:
             continue
         run = _run(found, at)
         out[run[0]] = _integer([found[i].text for i in run])
-        for i in run[1:]:
-            out[i] = ""
+        out[run[0] + 1 : run[-1] + 1] = [""] * (run[-1] - run[0])
         at = run[-1] + 1
     return "".join(out)
 

@@ -8,14 +8,12 @@ from __future__ import annotations
 from pathlib import Path
 
 from ...errors import InputError
-from . import avr, shared
-from .build import cached, contents, run
+from .build import run
 from .mcus import Mcu
+from .resources import TEXTS, cached, contents, laid_out
 from .sketch import SOURCES, Sketch, find_sketch
 from .toolchain import arduino_core, need, version
 
-_AVR = Path(str(avr.__file__)).parent
-_SHARED = Path(str(shared.__file__)).parent
 _FLAGS = ("-Os", "-g", "-w", "-ffunction-sections", "-fdata-sections", "-DF_CPU=16000000L")
 _CXX = ("-std=gnu++11", "-fpermissive", "-fno-exceptions", "-fno-threadsafe-statics")
 
@@ -23,12 +21,12 @@ _CXX = ("-std=gnu++11", "-fpermissive", "-fno-exceptions", "-fno-threadsafe-stat
 def build_emulator(mcu: Mcu) -> Path:
     """Return the program that emulates a board. Raises InputError if its tools are missing."""
     need("simavr")
-    files = [_AVR / "emulated_board.c", *(_SHARED / name for name in shared.DATA_FILES)]
-    key = [version("g++"), contents(files), contents([Path("/usr/include/simavr/sim_avr.h")])]
+    key = [version("g++"), TEXTS, contents([Path("/usr/include/simavr/sim_avr.h")])]
 
     def make(file: Path, scratch: Path) -> None:
-        includes = ["-I/usr/include/simavr", f"-I{_SHARED}"]
-        source = str(_AVR / "emulated_board.c")
+        place = laid_out()
+        includes = ["-I/usr/include/simavr", f"-I{place / 'shared'}"]
+        source = str(place / "avr" / "emulated_board.c")
         run(["gcc", "-O2", *includes, source, "-lsimavr", "-lm", "-o", str(file)], "simavr's board")
 
     return cached("emulator", key, "", make)
@@ -52,17 +50,17 @@ def build_firmware(sketch: Sketch, mcu: Mcu) -> Path:
     Raises InputError for what the compiler finds, with the sketch's files and lines.
     """
     need("simavr")
-    files = [*sketch.files(), _AVR / "Servo.cpp", _AVR / "Servo.h", Path(__file__)]
-    key = [mcu, version("avr-g++"), contents(files)]
+    key = [mcu, version("avr-g++"), TEXTS, sketch.merged(), _FLAGS, contents(sketch.files())]
+    servo = laid_out() / "avr"
 
     def make(file: Path, scratch: Path) -> None:
         main = scratch / f"{sketch.name}.ino.cpp"
         main.write_text(sketch.merged())
         libraries = _bundled_libraries()
-        sources = [main, *sketch.others, *sketch.library_sources(), _AVR / "Servo.cpp"]
+        sources = [main, *sketch.others, *sketch.library_sources(), servo / "Servo.cpp"]
         for library in libraries:
             sources += [f for f in sorted(library.rglob("*")) if f.suffix in SOURCES]
-        includes = [sketch.folder, *sketch.libraries, _AVR, *libraries]
+        includes = [sketch.folder, *sketch.libraries, servo, *libraries]
         includes += [library / "utility" for library in libraries]
         objects = [_object(f, mcu, includes, scratch, i) for i, f in enumerate(sources)]
         link = ["avr-gcc", "-Os", "-Wl,--gc-sections", f"-mmcu={mcu.name}", "-o", str(file)]

@@ -41,7 +41,8 @@ class Mcu:
             number = int(upper.removeprefix("D"))
         if not 0 <= number < self.pins:
             raise InputError(
-                f"pin {text!r}: the {self.board} has 0 to {self.pins - 1} and A0 to A{self.analog - 1}"
+                f"pin {text!r}: the {self.board} has 0 to {self.pins - 1} and "
+                f"A0 to A{self.analog - 1}"
             )
         return number
 

@@ -21,11 +21,12 @@ class ArduinoPorts(Component):
     mcu = Parameter("atmega2560", "1", "microcontroller", choices=tuple(MCUS))
     sketch = Parameter("", "1", "folder of the sketch, or its .ino")
     firmware = Parameter("", "1", "simavr: a .hex or .elf file in the place of a sketch")
-    uarts = Parameter(
-        "0 115200", "1", "UART BAUD of each line; with ;", check=read_uarts
-    )
+    uarts = Parameter("0 115200", "1", "UART BAUD of each line; with ;", check=read_uarts)
     wires = Parameter(
-        "", "1", "PIN KIND NUMBER or ADDRESS DEVICE of all that is connected; with ;", check=read_wires
+        "",
+        "1",
+        "PIN KIND NUMBER or ADDRESS DEVICE of all that is connected; with ;",
+        check=read_wires,
     )
     links = Parameter(
         "", "1", "board: UART=URL of each, separated by spaces, as 0=serial:/dev/ttyACM0:115200"
@@ -35,7 +36,10 @@ class ArduinoPorts(Component):
         5.0, "s", "host: time for which a sketch may run without calling anything", min=1e-3
     )
     magnetic_field = Parameter(
-        (2.3e-5, 0.0, 0.0), "T", "field of the earth, north-east-down", axes=("north", "east", "down")
+        (2.3e-5, 0.0, 0.0),
+        "T",
+        "field of the earth, north-east-down",
+        axes=("north", "east", "down"),
     )
     water_density = Parameter(1000.0, "kg/m3", "of the water over the pressure sensor", min=0.0)
     gravity = Parameter(9.80665, "m/s2", "acceleration of gravity", min=0.0)
@@ -54,7 +58,10 @@ class ArduinoPorts(Component):
         optional=True,
     )
     attitude = Input(
-        "rad", "Euler angles, ZYX, for the magnetometer", axes=("phi", "theta", "psi"), optional=True
+        "rad",
+        "Euler angles, ZYX, for the magnetometer",
+        axes=("phi", "theta", "psi"),
+        optional=True,
     )
     depth = Input("m", "depth of the pressure sensor", optional=True)
     water_temperature = Input("K", "temperature of the water", start=293.15, optional=True)

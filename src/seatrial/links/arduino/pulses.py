@@ -16,12 +16,18 @@ class Pulses:
         self._rise = self._fall = -1
         self._width = 0
         self._share = 0.0
+        self._given: float | None = None
+
+    def modulated(self, share: float) -> None:
+        """Take in that hardware keeps the pin high for a share of the time, without edges."""
+        self._given = share
 
     def edge(self, level: int, cycle: int) -> None:
         """Take in that the pin has another level."""
         if level == self.level:
             return
         self.level = level
+        self._given = None
         if not level:
             if self._rise >= 0:
                 self._width = cycle - self._rise
@@ -33,10 +39,12 @@ class Pulses:
 
     def width(self, now: int) -> float:
         """Return the last whole pulse's width, s; 0 if none came for 0.1 s."""
-        return self._width / CLOCK if 0 <= self._fall and now - self._fall < _LOST else 0.0
+        return self._width / CLOCK if self._fall >= 0 and now - self._fall < _LOST else 0.0
 
     def share(self, now: int) -> float:
         """Return the share of time that the pin is high, over the last whole period."""
+        if self._given is not None:
+            return self._given
         if now - max(self._rise, self._fall, 0) >= _LOST // 5 or self._rise < 0:
             return float(self.level)
         return self._share

@@ -37,7 +37,9 @@ class RealBoard:
             for link in links.split():
                 uart, _, url = link.partition("=")
                 if not (uart.isdecimal() and int(uart) < UARTS and url):
-                    raise InputError(f"links: {link!r} is not UART=URL, as 0=serial:/dev/ttyACM0:115200")
+                    raise InputError(
+                        f"links: {link!r} is not UART=URL, as 0=serial:/dev/ttyACM0:115200"
+                    )
                 self._ports[int(uart)] = open_endpoint(url)
         except InputError:
             self.close()

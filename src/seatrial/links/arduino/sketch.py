@@ -30,9 +30,7 @@ class Sketch:
 
     def merged(self) -> str:
         """Return the C++ file of all tabs, with prototypes; errors name the tabs' lines."""
-        text = "".join(
-            f"#line 1 {json.dumps(str(tab))}\n{read_source(tab)}\n" for tab in self.tabs
-        )
+        text = "".join(f"#line 1 {json.dumps(str(tab))}\n{read_source(tab)}\n" for tab in self.tabs)
         return f"#include <Arduino.h>\n{with_prototypes(text)}"
 
     def library_sources(self) -> list[Path]:

@@ -5,15 +5,24 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from .resources import TEXTS
 from .sketch import Sketch, included, read_source
 from .tokens import tokens
 
-_HERE = Path(__file__).parent
 _ELSE = "use the back end simavr, or"
 
 _STANDARD = (
     *("assert.h", "ctype.h", "errno.h", "float.h", "inttypes.h", "limits.h", "math.h", "stdarg.h"),
-    *("stdbool.h", "stddef.h", "stdint.h", "stdio.h", "stdlib.h", "string.h", "new.h", "WProgram.h"),
+    *(
+        "stdbool.h",
+        "stddef.h",
+        "stdint.h",
+        "stdio.h",
+        "stdlib.h",
+        "string.h",
+        "new.h",
+        "WProgram.h",
+    ),
 )
 _REGISTERS = re.compile(
     r"(?:PORT|DDR|PIN)[A-L]\d?|TCCR\d[ABC]|TCNT\d[HL]?|OCR\d[ABC]?[HL]?|ICR\d[HL]?|TIMSK\d|TIFR\d"
@@ -63,8 +72,10 @@ def unsupported(sketch: Sketch) -> list[str]:
 
 
 def _has(sketch: Sketch, file: Path, header: str) -> bool:
-    places = (file.parent, sketch.folder, *sketch.libraries, _HERE / "core")
-    return header in _STANDARD or any((place / header).is_file() for place in places)
+    if header in _STANDARD or f"core/{header}" in TEXTS:
+        return True
+    places = (file.parent, sketch.folder, *sketch.libraries)
+    return any((place / header).is_file() for place in places)
 
 
 def _missing(header: str) -> str:

@@ -52,7 +52,9 @@ def read_wires(text: str, mcu: Mcu = MCUS["atmega2560"]) -> list[Wire]:
 def _wire(part: str, mcu: Mcu) -> Wire:
     place, kind, *more = part.split() if " " in part else (part, "")
     if kind not in (*_NUMBERED, *_FACTORS, *PARTS):
-        raise InputError(f"wires: {part!r}: {unknown('kind', kind, [*_NUMBERED, *_FACTORS, *PARTS])}")
+        raise InputError(
+            f"wires: {part!r}: {unknown('kind', kind, [*_NUMBERED, *_FACTORS, *PARTS])}"
+        )
     if len(more) > 1:
         raise InputError(f"wires: {part!r} has too many words: PLACE KIND NUMBER is needed")
     try:

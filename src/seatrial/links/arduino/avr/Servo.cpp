@@ -26,7 +26,9 @@
 
 #define SERVOS 12
 #define TICKS(us) ((uint16_t)((us) * 2)) /* prescaler 8 at 16 MHz */
-#define LATE 5 /* ticks by which the interrupt raises a pin later than it lowers one */
+/* Ticks by which the interrupt raises a pin later than it lowers one: the first, and the others. */
+#define LATE_FIRST 7
+#define LATE 12
 
 static struct {
     volatile uint8_t *port;
@@ -48,7 +50,7 @@ ISR(VECTOR)
         uint16_t ticks = servos[turn].ticks;
         if (turn == 0)
             since = 0;
-        ticks += LATE;
+        ticks += turn == 0 ? LATE_FIRST : LATE;
         COMPARE += ticks;
         since += ticks;
         if (servos[turn].active)

@@ -112,6 +112,37 @@ static void turned(avr_irq_t *irq, uint32_t value, void *which)
     link_put(OUT_EDGE, *(uint8_t *)which, value ? 1 : 0, avr->cycle);
 }
 
+/* simavr does not turn pins that a timer modulates: its registers tell, at the end of a step. */
+static const struct output { uint8_t pin, timer, compare; } mega[] = {
+    {2, 3, 1}, {3, 3, 2}, {4, 0, 1}, {5, 3, 0}, {6, 4, 0}, {7, 4, 1}, {8, 4, 2}, {9, 2, 1},
+    {10, 2, 0}, {11, 1, 0}, {12, 1, 1}, {13, 0, 0}, {44, 5, 2}, {45, 5, 1}, {46, 5, 0}, {0, 0, 0},
+}, uno[] = {{3, 2, 1}, {5, 0, 1}, {6, 0, 0}, {9, 1, 0}, {10, 1, 1}, {11, 2, 0}, {0, 0, 0}};
+static const uint16_t control[] = {0x44, 0x80, 0xB0, 0x90, 0xA0, 0x120};
+static const uint16_t compares[] = {0x47, 0x88, 0xB3, 0x98, 0xA8, 0x128};
+static int watched[PINS], shares[PINS];
+
+static void tell_modulated(void)
+{
+    for (const struct output *each = ports[0] == 'E' ? mega : uno; each->pin; each++) {
+        if (!watched[each->pin])
+            continue;
+        int wide = each->timer != 0 && each->timer != 2;
+        uint16_t at = (uint16_t)(compares[each->timer] + each->compare * (wide ? 2 : 1));
+        int on = avr->data[control[each->timer]] & 0x80 >> 2 * each->compare;
+        int share = on ? avr->data[at] : -1;
+        if (share >= 0 && share != shares[each->pin])
+            link_put(OUT_DUTY, each->pin, (uint16_t)share, avr->cycle);
+        shares[each->pin] = share;
+    }
+}
+
+static void watch(uint8_t pin)
+{
+    watched[pin] = 1;
+    shares[pin] = -1;
+    avr_irq_register_notify(pin_irq(pin), turned, &numbers[pin]);
+}
+
 static avr_cycle_count_t wave_due(avr_t *of, avr_cycle_count_t when, void *unused)
 {
     (void)of, (void)unused;
@@ -174,7 +205,7 @@ static void take_input(const link_input *input)
         break;
     case IN_QUANTITY: part_quantities[index % QUANTITIES] = input->number; break;
     case IN_PART: part_add((uint8_t)input->value, index); break;
-    case IN_WATCH: avr_irq_register_notify(pin_irq(index), turned, &numbers[index]); break;
+    case IN_WATCH: watch(index); break;
     }
 }
 
@@ -248,6 +279,7 @@ int main(int count, char **arguments)
             if (state == cpu_Done)
                 end("the microcontroller sleeps with interrupts off: it will never wake");
         }
+        tell_modulated();
         link_answer(target, "");
     }
 }

@@ -185,7 +185,11 @@ int sketch_vsnprintf(char *to, size_t size, const char *format, va_list values)
             out += whole.c_str();
         } else if (strchr("feEgG", *format)) {
             (void)va_arg(values, double);
-            strcpy(piece, "?"); /* avr-libc's printf has no floating point unless it is linked in */
+            /* avr-libc's printf has no floating point unless it is linked in */
+            conversion = conversion.substr(0, conversion.find('.'));
+            if (isalpha(conversion.back()))
+                conversion.pop_back();
+            snprintf(piece, sizeof piece, (conversion + "s").c_str(), "?");
         } else if (*format == '%') {
             strcpy(piece, "%");
         }

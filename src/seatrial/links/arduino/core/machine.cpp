@@ -4,6 +4,7 @@
 #include <signal.h>
 #include <stdarg.h>
 #include <sys/mman.h>
+#include <sys/time.h>
 #include <ucontext.h>
 
 #include <deque>
@@ -268,6 +269,15 @@ void crashed(int number, siginfo_t *info, void *context)
     end("it crashed: %s [at 0x%llx]", strsignal(number), (unsigned long long)place);
 }
 
+/* Twice in a second of CPU time: a loop without any code in it is not instrumented. */
+void watch_for_hang(int)
+{
+    static uint64_t before = NEVER;
+    if (now == before)
+        end("it does not go on and calls nothing: an endless loop");
+    before = now;
+}
+
 void catch_crashes()
 {
     static char alternative[64 << 10];
@@ -278,6 +288,12 @@ void catch_crashes()
     action.sa_flags = SA_SIGINFO | SA_ONSTACK | SA_NODEFER;
     for (int number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT})
         sigaction(number, &action, nullptr);
+    struct sigaction ticking = {};
+    ticking.sa_handler = watch_for_hang;
+    ticking.sa_flags = SA_RESTART | SA_ONSTACK;
+    sigaction(SIGVTALRM, &ticking, nullptr);
+    itimerval twice = {{0, 500000}, {0, 500000}};
+    setitimer(ITIMER_VIRTUAL, &twice, nullptr);
 }
 
 void *run(void *)

@@ -40,6 +40,7 @@ enum {
     IN_PART = 'I',      /* I2C device of type `value` at address `index` */
     IN_WATCH = 'W',     /* pin `index` is to be reported */
     OUT_UART = 'T',     /* byte `value` left UART `index` */
+    OUT_DUTY = 'D',     /* pin `index` is modulated by hardware: high for `value` of 255 */
     OUT_EDGE = 'P',     /* pin `index` is now at level `value` */
 };
 

@@ -1,0 +1,172 @@
+"""``seatrial sketch``: check, build and run Arduino sketches."""
+
+from __future__ import annotations
+
+import re
+import time
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from ..cosim.profile import load_profile
+from ..errors import InputError
+from ..links.arduino.build import build_host
+from ..links.arduino.component import Arduino
+from ..links.arduino.dialect import LIMITS
+from ..links.arduino.emulator import build_emulator, build_firmware
+from ..links.arduino.mcus import MCUS
+from ..links.arduino.sketch import Sketch, find_sketch, read_source
+from ..links.arduino.unsupported import unsupported
+from ..links.arduino.wiring import PARTS, read_uarts, read_wires
+from ..links.endpoints.pseudo_terminal import PseudoTerminal
+from ..links.text import Inbox, Outbox
+
+sketch_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
+
+_STEP = 0.02
+_SERIAL = re.compile(r"\bSerial([123]?)\s*\.\s*begin\s*\(\s*(\d*)")
+_FOLDER = Annotated[str, typer.Argument(metavar="SKETCH", help="A sketch's folder or .ino.")]
+_BACKEND = Annotated[str, typer.Option(help="'host' or 'simavr'.")]
+_MCU = Annotated[str, typer.Option(help="atmega2560 or atmega328p.")]
+_PROFILE = Annotated[str, typer.Option(help="PROFILE:LINK whose wires to use: gloria:mega.")]
+
+
+@sketch_app.callback()
+def _options() -> None:
+    """Check, build and run Arduino sketches."""
+
+
+@sketch_app.command()
+def check(sketch: _FOLDER, profile: _PROFILE = "", mcu: _MCU = "") -> None:
+    """Say what a sketch is made of, what of it is unsupported, and if its lines fit a profile."""
+    found = find_sketch(sketch)
+    values = _values(profile, mcu)
+    board = MCUS[values["mcu"]]
+    print(f"{found.name} on the {board.board} ({board.name})")
+    for kind, files in (
+        ("tab", found.tabs),
+        ("source", found.others),
+        ("library", found.libraries),
+    ):
+        for file in files:
+            print(f"  {kind} {file}")
+    for wire in read_wires(values.get("wires", ""), board):
+        place = f"0x{wire.place:02x}" if wire.kind in PARTS else f"pin {wire.place}"
+        print(f"  {place}: {wire.kind} {wire.number or ''}".rstrip())
+    print("what the back end 'host' does not show:")
+    for limit in LIMITS:
+        print(f"  {limit}")
+    problems = [*unsupported(found), *_lines(found, values)]
+    if problems:
+        raise InputError("\n".join(problems))
+    print("nothing is unsupported")
+
+
+@sketch_app.command()
+def build(sketch: _FOLDER, backend: _BACKEND = "host", mcu: _MCU = "") -> None:
+    """Build a sketch, and say where the program or the firmware is."""
+    board = MCUS[_values("", mcu)["mcu"]]
+    found = find_sketch(sketch)
+    if backend == "host":
+        print(build_host(found, board))
+    elif backend == "simavr":
+        build_emulator(board)
+        print(build_firmware(found, board))
+    else:
+        raise InputError(f"back end {backend!r}: 'host' or 'simavr' is needed")
+
+
+@sketch_app.command()
+def run(
+    sketch: _FOLDER,
+    profile: _PROFILE = "",
+    backend: _BACKEND = "host",
+    mcu: _MCU = "",
+    seconds: Annotated[float, typer.Option(help="How long.")] = float("inf"),
+) -> None:
+    """Run a sketch in real time, each UART at a pseudo-terminal that any terminal program opens.
+
+    Its sensors rest: for a boat around it, run a rig. Ends with Ctrl-C.
+    """
+    board = Arduino(Path(sketch).stem)
+    values = {**_values(profile, mcu), "backend": backend, "sketch": sketch}
+    if not profile and (opened := _opened(find_sketch(sketch))):
+        values["uarts"] = opened
+    for name, value in values.items():
+        board.set(name, value)
+    board.initialise()
+    board.begin()
+    terminals = {uart: PseudoTerminal() for uart in read_uarts(board.uarts)}
+    try:
+        for uart, terminal in terminals.items():
+            print(f"UART {uart}: {terminal.url}", flush=True)
+        _pace(board, terminals, seconds)
+    except KeyboardInterrupt:
+        print("ended")
+    finally:
+        board.close()
+        for terminal in terminals.values():
+            terminal.close()
+
+
+def _pace(board: Arduino, terminals: dict[int, PseudoTerminal], seconds: float) -> None:
+    heard: dict[int, dict[str, Any]] = {uart: {} for uart in terminals}
+    said: dict[int, dict[str, Any]] = {uart: {} for uart in terminals}
+    begun, steps = time.monotonic(), 0
+    while steps * _STEP < seconds:
+        for uart, terminal in terminals.items():
+            box = Outbox(said[uart])
+            for _, data in terminal.poll():
+                box.put(board.now_ns, data)
+            board.set(f"rx.uart{uart}", box.flush())
+        board.advance(steps * _STEP, _STEP)
+        steps += 1
+        for uart, text in enumerate(board.get("tx")):
+            for _, data in Inbox(heard[uart]).take(text) if uart in terminals else ():
+                for channel in terminals[uart].channels():
+                    channel.send(data)
+        time.sleep(max(0.0, begun + steps * _STEP - time.monotonic()))
+
+
+def _opened(sketch: Sketch) -> str:
+    """Return the UARTs that a sketch opens at rates written as numbers, as `uarts` has it."""
+    found = {
+        int(match[1] or 0): match[2]
+        for tab in sketch.tabs
+        for match in _SERIAL.finditer(read_source(tab))
+        if match[2]
+    }
+    return "; ".join(f"{uart} {rate}" for uart, rate in sorted(found.items()))
+
+
+def _values(profile: str, mcu: str) -> dict[str, Any]:
+    """Return the parameters of a profile's board, as PROFILE:LINK says."""
+    values: dict[str, Any] = {}
+    if profile:
+        name, _, link = profile.rpartition(":")
+        if not name:
+            raise InputError(f"--profile {profile!r} is not PROFILE:LINK, as gloria:mega")
+        values = load_profile(name).parameters(f"links.{link}")
+        if not values.keys() <= Arduino.ports.keys():
+            raise InputError(f"{profile} is not a link of the kind 'arduino'")
+    if mcu and mcu not in MCUS:
+        raise InputError(f"mcu {mcu!r}: {' or '.join(MCUS)} is needed")
+    values["mcu"] = mcu or values.get("mcu", "atmega2560")
+    return values
+
+
+def _lines(sketch: Sketch, values: dict[str, Any]) -> list[str]:
+    """Return the UARTs that the sketch opens and the board or the profile has not."""
+    rates = read_uarts(values["uarts"]) if "uarts" in values else None
+    most = MCUS[values["mcu"]].uarts
+    problems = []
+    for file in sketch.tabs:
+        for number, line in enumerate(read_source(file).splitlines(), 1):
+            for match in _SERIAL.finditer(line.split("//")[0]):
+                uart = int(match[1] or 0)
+                if uart >= most:
+                    problems.append(f"{file}:{number}: this board has no UART {uart}")
+                elif rates is not None and uart not in rates:
+                    problems.append(f"{file}:{number}: the profile has no line at UART {uart}")
+    return problems

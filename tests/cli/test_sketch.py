@@ -1,0 +1,45 @@
+"""seatrial sketch."""
+
+import os
+
+import pytest
+
+from seatrial.shipped import shipped_folder
+from tests.command import seatrial
+from tests.links.arduino.bench import need, write_sketch
+
+GLORIA = shipped_folder("harness") / "firmware" / "gloria_autopilot"
+
+
+def test_check_says_what_it_is_made_of(tmp_path):
+    done = seatrial("sketch", "check", str(GLORIA), "--profile", "gloria:mega", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    for text in ("Mega (atmega2560)", "pin 9: servo 1", "0x68: mpu6050", "an overflow of 16 bits"):
+        assert text in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("source", "said"),
+    [
+        ("void setup() {\n  DDRB = 1;\n}\nvoid loop() {}\n", "one.ino:2: DDRB is a register"),
+        (
+            "void setup() {\n  Serial3.begin(9600);\n}\nvoid loop() {}\n",
+            "one.ino:2: this board has no",
+        ),
+    ],
+)
+def test_check_refuses(tmp_path, source, said):
+    sketch = write_sketch(tmp_path, source)
+    done = seatrial("sketch", "check", str(sketch), "--mcu", "atmega328p", cwd=tmp_path)
+    assert done.returncode == 2
+    assert said in done.stderr
+
+
+def test_build_and_run(tmp_path):
+    need("host")
+    sketch = write_sketch(tmp_path, "void setup() { Serial.begin(9600); }\nvoid loop() {}\n")
+    built = seatrial("sketch", "build", str(sketch), cwd=tmp_path)
+    assert os.access(built.stdout.strip(), os.X_OK)
+    run = seatrial("sketch", "run", str(sketch), "--seconds", "0.1", cwd=tmp_path)
+    assert run.returncode == 0, run.stderr
+    assert "UART 0: /dev/pts/" in run.stdout

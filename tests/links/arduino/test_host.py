@@ -1,0 +1,189 @@
+"""The host back end: what a sketch may do, what is refused, and how it ends."""
+
+import itertools
+import os
+import time
+
+import pytest
+
+from seatrial.errors import InputError, SimulationError
+from seatrial.links.arduino.dialect import narrowed
+from seatrial.links.arduino.sketch import with_prototypes
+
+from .bench import Bench, write_sketch
+
+NOTHING = "void setup() {}\nvoid loop() {}\n"
+
+
+def running(tmp_path, source, **values):
+    return Bench(**{"sketch": write_sketch(tmp_path, source), **values})
+
+
+def test_tabs_libraries_and_prototypes(tmp_path):
+    main = """
+#include <Twice.h>
+void setup() { Serial.begin(115200); }
+void loop() { say(twice(second(4))); delay(1000); }  // they come later
+"""
+    sketch = write_sketch(
+        tmp_path,
+        main,
+        b_tab_dot_ino="int second(int x) { return x + 1; }\nvoid say(int n) { Serial.println(n); }\n",
+        libraries__Twice__src__Twice_dot_h="int twice(int x);\n",
+        libraries__Twice__src__Twice_dot_cpp='#include "Twice.h"\nint twice(int x) { return 2 * x; }\n',
+    )
+    with Bench(sketch) as bench:
+        assert bench.run(0.1) == b"10\r\n"
+
+
+def test_time_passes_by_the_board_and_by_busy_waits(tmp_path):
+    source = """
+volatile bool ticked = false;
+void tick() { ticked = true; }
+void setup() { Serial.begin(115200); attachInterrupt(digitalPinToInterrupt(3), tick, RISING); }
+void loop() {
+  unsigned long begin = millis();
+  while (millis() - begin < 250) {}
+  ticked = false;
+  while (!ticked) {}               // nothing is called: only an interrupt ends it
+  Serial.println(millis());
+}
+"""
+    with running(tmp_path, source, wires="3 anemometer 1") as bench:
+        bench.one.set("wind_speed", 2.0)  # 2 Hz
+        times = [int(each) for each in bench.run(2.1).split()]
+    assert [b - a for a, b in itertools.pairwise(times)] == pytest.approx([500] * 3, abs=2)
+
+
+def test_the_clock_is_the_trials(tmp_path):
+    source = "void setup() { Serial.begin(115200); }\nvoid loop() { Serial.println(micros()); delay(1); }"
+    with running(tmp_path, source) as bench:
+        bench.run(5.0)
+        last = int(bench.said[0].split()[-2])
+    assert last / 1e6 == pytest.approx(5.0, abs=0.01)
+
+
+def test_a_line_of_nmea_arrives_whole_and_an_overrun_loses(tmp_path):
+    source = """
+void setup() { Serial.begin(115200); Serial1.begin(38400); }
+void loop() { delay(20); while (Serial1.available()) Serial.write(Serial1.read()); }
+"""
+    with running(tmp_path, source, uarts="0 115200; 1 38400") as bench:
+        bench.hear(1, b"x" * 60)
+        bench.run(0.1)
+        assert bench.said[0] == b"x" * 60
+        bench.hear(1, b"y" * 300)  # 78 ms; 76 bytes come in 20 ms, and 63 wait
+        assert 200 < len(bench.run(0.2)) < 300
+
+
+@pytest.mark.parametrize(
+    ("source", "said"),
+    [
+        (
+            "void setup() {\n  TCCR1A = 0;\n}\nvoid loop() {}\n",
+            r"one\.ino:2: TCCR1A is a register.*simavr",
+        ),
+        (
+            "#include <Ethernet.h>\n" + NOTHING,
+            r"one\.ino:1: the library of <Ethernet\.h>.*libraries",
+        ),
+        ("#include <avr/sleep.h>\n" + NOTHING, r"one\.ino:1: <avr/sleep\.h>.*simavr"),
+        (NOTHING + "ISR(TIMER1_OVF_vect) {}\n", r"one\.ino:3: ISR: .*attachInterrupt"),
+        ("void setup() {\n  int x = y;\n}\nvoid loop() {}\n", r"one\.ino:2:.*'y' was not declared"),
+    ],
+)
+def test_what_cannot_be_is_refused_with_its_line(tmp_path, source, said):
+    with pytest.raises(InputError, match=said):
+        running(tmp_path, source)
+
+
+@pytest.mark.parametrize(
+    ("source", "said"),
+    [
+        ("void setup() {}\nvoid loop() { for (;;) {} }\n", "endless loop"),
+        (
+            "volatile int n;\nint deep(int x) { volatile char a[200]; a[0] = n; return deep(x + 1) + a[0]; }\n"
+            "void setup() {}\nvoid loop() { n = deep(0); }\n",
+            "overran its stack",
+        ),
+        (
+            "volatile byte *nowhere = 0;\nvoid setup() {}\nvoid loop() {\n  delay(50);\n  *nowhere = 1;\n}\n",
+            r"crashed: Segmentation fault \(.*one\.ino:5\)",
+        ),
+        ("void setup() { Serial.begin(9600); }\nvoid loop() {}\n", "UART 0 at 9600 baud.*115200"),
+        (
+            "#include <avr/wdt.h>\nvoid setup() { wdt_enable(WDTO_1S); }\nvoid loop() {}\n",
+            "watchdog",
+        ),
+    ],
+)
+def test_a_sketch_that_goes_wrong_ends_its_component_only(tmp_path, source, said):
+    with (
+        running(tmp_path, source, patience=0.5) as bench,
+        pytest.raises(SimulationError, match=f"(?s)mega: at .* s of its time .*{said}"),
+    ):
+        bench.run(2.0)
+
+
+def test_two_of_one_sketch_have_nothing_in_common(tmp_path):
+    source = "int n = 0;\nvoid setup() { Serial.begin(115200); }\nvoid loop() { Serial.println(n++); delay(100); }"
+    sketch = write_sketch(tmp_path, source)
+    with Bench(sketch) as one, Bench(sketch) as other:
+        one.run(1.0)
+        assert other.run(0.15) == b"0\r\n1\r\n"
+
+
+def test_its_state_cannot_be_saved(tmp_path):
+    with running(tmp_path, NOTHING) as bench, pytest.raises(SimulationError, match="no state"):
+        bench.one.get_state()
+
+
+@pytest.mark.parametrize(
+    ("values", "said"),
+    [
+        ({"wires": "9 serbo 1"}, "did you mean 'servo'"),
+        ({"wires": "99 servo 1"}, "pin '99': the Mega has 0 to 69"),
+        ({"wires": "9 servo 1; 9 pwm 1"}, "used twice"),
+        ({"wires": "9 servo 13"}, "13 is not in 1 to 12"),
+        ({"uarts": "1 fast"}, "'1 fast' is not 'UART BAUD'"),
+        ({"sketch": "/nowhere"}, "no sketch there"),
+        ({"backend": "board", "links": ""}, "UART=URL"),
+    ],
+)
+def test_wrong_parameters_are_named(tmp_path, values, said):
+    with pytest.raises(InputError, match=said):
+        running(tmp_path, NOTHING, **values)
+
+
+def test_boards_come_and_go_without_a_trace(tmp_path):
+    sketch = write_sketch(tmp_path, NOTHING)
+    with Bench(sketch) as bench:
+        bench.run(0.02)
+    before = len(os.listdir("/proc/self/fd"))
+    for _ in range(200):
+        with Bench(sketch) as bench:
+            bench.run(0.02)
+    assert len(os.listdir("/proc/self/fd")) == before
+    with pytest.raises(ChildProcessError):
+        os.waitpid(-1, os.WNOHANG)  # none is left
+
+
+def test_it_is_much_faster_than_the_clock(tmp_path):
+    source = "void setup() { Serial.begin(115200); }\nvoid loop() { if (millis() % 100 == 0) digitalWrite(13, HIGH); }"
+    with running(tmp_path, source) as bench:
+        bench.run(0.1)
+        begin = time.process_time(), time.monotonic()
+        bench.run(10.0)
+        assert time.monotonic() - begin[1] < 10.0
+
+
+def test_prototypes_and_widths():
+    source = "int a = 1;\nint f(int x) {\n  return g(x);\n}\nlong g(long y = 2) { return y; }\nvoid h() {}\n"
+    text = with_prototypes(f'#line 1 "x.ino"\n{source}')
+    assert "int f ( int x ) ;" in text.replace(");", ") ;")
+    assert "h ( )" in text
+    assert "long g (" not in text  # it has a default argument
+    given = 'unsigned long a = 5UL; int b; long long c; double d; char e[] = "int long"; // int'
+    assert narrowed(given) == (
+        'unsigned int a = 5u; short b; long long c; float d; char e[] = "int long"; // int'
+    )

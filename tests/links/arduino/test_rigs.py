@@ -1,0 +1,113 @@
+"""Sketches that sail, dive and hold a station: the boats by their own electronics."""
+
+import csv
+import math
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from seatrial.links.text import decode
+from seatrial.trials.run import run_trial
+from seatrial.trials.trial import load_trial
+
+from .bench import need, write_sketch
+
+
+def sailed(name: str, folder: Path, backend: str = "host", **changes: object):
+    need(backend)
+    trial = load_trial(name).changed({"mega.backend": backend, **changes}, "test")
+    result = run_trial(trial, folder, engine="direct")
+    assert result.status == "complete", result.error
+    return result
+
+
+def rows(result) -> list[dict[str, str]]:
+    with (result.folder / "signals.csv").open(encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def apart(one, other) -> float:
+    """Return the greatest difference of the headings, deg."""
+    return max(
+        abs(math.degrees(float(a["boat.eta.psi"]) - float(b["boat.eta.psi"])))
+        for a, b in zip(rows(one), rows(other), strict=True)
+    )
+
+
+def passes(result) -> None:
+    assert [name for name, _, verdict in result.verdicts if not verdict.passed] == []
+
+
+def test_both_back_ends_steer_alike(tmp_path):
+    host, simavr = (
+        sailed("gloria-sketch", tmp_path / each, each, stop="4 s") for each in ("host", "simavr")
+    )
+    assert apart(host, simavr) < 1.0
+    ends = [[float(rows(each)[-1][f"mega.pulse.s{n}"]) for n in (1, 3)] for each in (host, simavr)]
+    assert ends[1] == pytest.approx(ends[0], abs=15e-6)
+
+
+@pytest.mark.long
+def test_both_back_ends_turn_alike_by_90_degrees(tmp_path):
+    host, simavr, again = (
+        sailed("gloria-sketch-step", tmp_path / str(i), each)
+        for i, each in enumerate(("host", "simavr", "simavr"))
+    )
+    assert apart(host, simavr) < 1.0
+    passes(host)
+    passes(simavr)
+    signals = [(each.folder / "signals.csv").read_bytes() for each in (simavr, again)]
+    assert signals[0] == signals[1]
+
+
+def test_a_second_run_is_the_same_to_the_bit(tmp_path):
+    runs = [sailed("gloria-sketch", tmp_path / str(i), stop="6 s") for i in range(2)]
+    signals = [(each.folder / "signals.csv").read_bytes() for each in runs]
+    assert signals[0] == signals[1]
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", ["gloria-sketch", "hydrone-sketch"])
+def test_the_shipped_trials_hold(tmp_path, name):
+    passes(sailed(name, tmp_path / "run"))
+
+
+def test_the_rov_obeys_its_serial_port_and_stops_without(tmp_path):
+    passes(sailed("videoray-sketch", tmp_path / "run"))
+
+
+def test_the_station_keeper_drives(tmp_path):
+    result = sailed("hydrone-sketch", tmp_path / "run", stop="3 s")
+    assert rows(result)[-1]["mega.pulse.s1"] != rows(result)[0]["mega.pulse.s1"]
+
+
+def test_a_sketch_that_crashes_leaves_the_record_whole(tmp_path):
+    need("host")
+    source = "void setup() {}\nvoid loop() { delay(1005); *(volatile byte *)0 = 1; }\n"
+    sketch = write_sketch(tmp_path, source)
+    trial = load_trial("gloria-sketch")
+    trial = trial.changed({"mega.sketch": str(sketch), "stop": "5 s"}, "test")
+    result = run_trial(trial, tmp_path / "run", engine="direct")
+    assert result.status != "complete"
+    assert "Segmentation fault" in str(result.error)
+    assert float(rows(result)[-1]["time"]) == pytest.approx(1.0, abs=0.21)
+
+
+@pytest.mark.long
+def test_two_hours_of_gusts_and_no_drift(tmp_path):
+    """The sketch's clock, in its telemetry, and the trial's."""
+    need("host")
+    trial = load_trial("gloria-sketch").changed({"stop": "7200 s"}, "test")
+    record = trial.file.record.model_copy(update={"signals": ["mega.tx.uart3"], "every": "1 s"})
+    trial = replace(trial, file=trial.file.model_copy(update={"record": record}))
+    result = run_trial(trial, tmp_path / "run", engine="direct")
+    assert result.status == "complete", result.error
+    found = []
+    for row in rows(result):
+        for when, data in decode(row["mega.tx.uart3"])[1]:
+            found += [(when, match) for match in re.findall(rb"\$GLO,(\d+),", data)]
+    when, clock = found[-1]
+    assert when / 1e9 > 7000
+    assert int(clock) / 1e3 == pytest.approx(when / 1e9, abs=0.05)
