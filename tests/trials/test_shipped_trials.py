@@ -11,6 +11,7 @@ from seatrial.cosim.files import available
 from seatrial.shipped import shipped_folder
 from seatrial.trials.run import Hooks, run_trial
 from seatrial.trials.trial import load_trial
+from tests.links.arduino.bench import need
 
 NAMES = sorted(path.stem for path in (shipped_folder("harness") / "trials").glob("*.toml"))
 PACED = [name for name in NAMES if load_trial(name).file.real_time]
@@ -34,6 +35,8 @@ def test_no_campaign_hides_behind_a_trial() -> None:
 def begun(name: str, engine: str, folder: Path) -> list[bytes]:
     """Return the rows of a trial's record until it ends or `COMPARED_S` have passed."""
     trial, polls = load_trial(name), itertools.count()
+    if any(entry.fmu == "arduino" for entry in trial.rig.file.components.values()):
+        need("host")  # a compiler makes a program of the sketch
     enough = COMPARED_S * NS // trial.rig.step_ns
     hooks = Hooks(stop_requested=lambda: next(polls) > enough)
     result = run_trial(trial, folder, engine=engine, hooks=hooks)
