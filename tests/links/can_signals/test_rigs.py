@@ -61,16 +61,24 @@ def test_servos_on_a_disturbed_bus(tmp_path):
     assert [name for name, _, verdict in result.verdicts if not verdict.passed] == []
 
 
-def test_a_profile_names_the_file_beside_it(tmp_path):
+@pytest.fixture
+def profiles(tmp_path):
+    """Return a folder that lies as the shipped profiles do, beside the harness."""
+    (tmp_path / "harness").symlink_to(PROFILES.parent / "harness")
+    (tmp_path / "profiles").mkdir()
+    return tmp_path / "profiles"
+
+
+def test_a_profile_names_the_file_beside_it(profiles):
     text = (PROFILES / "hydrone.toml").read_text("utf-8")
-    (tmp_path / "boat.toml").write_text(text, "utf-8")
+    (profiles / "boat.toml").write_text(text, "utf-8")
     with pytest.raises(InputError) as caught:
-        load_profile(tmp_path / "boat.toml")
-    for part in ("boat.toml", "links.port_node.database", str(tmp_path / "hydrone.dbc")):
+        load_profile(profiles / "boat.toml")
+    for part in ("boat.toml", "links.port_node.database", str(profiles / "hydrone.dbc")):
         assert part in str(caught.value)
-    (tmp_path / "hydrone.dbc").write_bytes((PROFILES / "hydrone.dbc").read_bytes())
-    found = load_profile(tmp_path / "boat.toml").parameters("links.port_node")
-    assert found["database"] == str(tmp_path / "hydrone.dbc")
+    (profiles / "hydrone.dbc").write_bytes((PROFILES / "hydrone.dbc").read_bytes())
+    found = load_profile(profiles / "boat.toml").parameters("links.port_node")
+    assert found["database"] == str(profiles / "hydrone.dbc")
 
 
 @pytest.mark.parametrize(
@@ -81,13 +89,13 @@ def test_a_profile_names_the_file_beside_it(tmp_path):
         (("", ""), ("BO_ 386 ", "BO_ 385 "), "PortStatus and StarboardStatus"),
     ],
 )  # fmt: skip
-def test_a_profile_with_a_mistake_is_refused_with_file_and_key(tmp_path, change, dbc, said):
+def test_a_profile_with_a_mistake_is_refused_with_file_and_key(profiles, change, dbc, said):
     text = (PROFILES / "hydrone.toml").read_text("utf-8")
-    (tmp_path / "boat.toml").write_text(text.replace(*change, 1), "utf-8")
+    (profiles / "boat.toml").write_text(text.replace(*change, 1), "utf-8")
     text = (PROFILES / "hydrone.dbc").read_text("utf-8")
-    (tmp_path / "hydrone.dbc").write_text(text.replace(*dbc), "utf-8")
+    (profiles / "hydrone.dbc").write_text(text.replace(*dbc), "utf-8")
     with pytest.raises(InputError) as caught:
-        load_profile(tmp_path / "boat.toml")
+        load_profile(profiles / "boat.toml")
     assert said in str(caught.value)
     key = "sends" if change[0] else "database"
     assert f"boat.toml: links.autopilot_node: {key}: " in str(caught.value)
