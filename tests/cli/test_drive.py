@@ -3,10 +3,10 @@
 import os
 import pty
 import re
-import select
 import struct
 import subprocess
 import sys
+import threading
 import time
 from fcntl import ioctl
 from termios import TIOCSWINSZ
@@ -41,18 +41,29 @@ class Terminal:
             start_new_session=True,
         )
         os.close(other)
+        # Always read, as terminals are: a command stops that nobody reads.
+        self._lock = threading.Lock()
+        self._reader = threading.Thread(target=self._read)
+        self._reader.start()
+
+    def _read(self):
+        try:
+            while data := os.read(self.own, 65536):
+                with self._lock:
+                    self._stream.feed(data)
+        except OSError:
+            pass  # the other end is closed
 
     def until(self, pattern):
-        """Read until the screen shows a pattern; return the screen."""
+        """Wait until the screen shows a pattern; return the screen."""
         deadline = time.monotonic() + WAIT_S
-        while not re.search(pattern, text := "\n".join(self.screen.display)):
+        while True:
+            with self._lock:
+                text = "\n".join(self.screen.display)
+            if re.search(pattern, text):
+                return text
             assert time.monotonic() < deadline, text
-            if select.select([self.own], [], [], 0.1)[0]:
-                try:
-                    self._stream.feed(os.read(self.own, 65536))
-                except OSError:  # the other end is closed
-                    assert re.search(pattern, "\n".join(self.screen.display)), text
-        return text
+            time.sleep(0.02)
 
     def press(self, keys):
         os.write(self.own, keys.encode())
@@ -64,6 +75,7 @@ class Terminal:
         if self.process.poll() is None:
             self.process.kill()
         self.process.wait(WAIT_S)
+        self._reader.join(WAIT_S)
         os.close(self.own)
 
 
