@@ -49,6 +49,7 @@ benchmark: $(INSTALLED)
 	$(BIN)/python -m benchmarks.tether --write
 	$(BIN)/python -m benchmarks.can --write
 	$(BIN)/python -m benchmarks.can_latency --write
+	$(BIN)/python -m benchmarks.arduino --write
 
 fmus: $(INSTALLED)
 	$(BIN)/seatrial fmu build --out build/fmus

@@ -13,13 +13,28 @@ from seatrial.links.text import decode, encode
 WAIT_S = 30.0
 
 
-@pytest.fixture
-def line():
-    """What the sketch would have, and the device."""
+def opened():
+    """Return what the sketch would have, the other end, and the device."""
     own, other = os.openpty()
     tty.setraw(other)
     os.set_blocking(own, False)
-    yield own, os.ttyname(other)
+    return own, other, os.ttyname(other)
+
+
+@pytest.fixture
+def line():
+    """What the sketch would have, and the device."""
+    own, other, device = opened()
+    yield own, device
+    os.close(own)
+    os.close(other)
+
+
+@pytest.fixture
+def lines(line):
+    """Two of them."""
+    own, other, device = opened()
+    yield line, (own, device)
     os.close(own)
     os.close(other)
 
@@ -60,6 +75,60 @@ def test_bytes_go_both_ways_and_a_farewell(line):
     while not (last := read(own)):
         assert time.monotonic() < deadline
     assert last == b"X\n"
+
+
+def step(board, start, count, descriptor):
+    """Step by 20 ms from a step on; return what the descriptor got of each, and the next step."""
+    heard = []
+    for k in range(start, start + count):
+        board.advance(k * 0.02, 0.02)
+        time.sleep(0.005)  # of a pseudo-terminal
+        heard.append(read(descriptor))
+    return heard, start + count
+
+
+def test_a_stale_input_is_told_farewell_once_and_may_come_again(line):
+    own, device = line
+    board = started(links=f"1=serial:{device}:38400", farewell="580A", timeout=0.2)
+    heard, now = step(board, 0, 20, own)
+    assert b"".join(heard) == b""  # nothing was there that could be stale
+    for number in (1, 2):
+        board.set("rx.uart1", encode(number, [(0, b"go")]))
+        heard, now = step(board, now, 20, own)
+        assert b"".join(heard) == b"goX\n"
+        assert b"".join(heard[:11]) == b"go"  # for 0.2 s
+    board.close()
+
+
+def test_a_lost_link_stops_the_others_until_it_is_back(lines):
+    (told, device), (telling, second) = lines
+    links = f"0=serial:{device}:38400 1=serial:{second}:38400"
+    board = started(links=links, farewell="580A", timeout=0.2)
+    now, number = 0, 0
+
+    def feed(count):
+        nonlocal now, number
+        heard = []
+        for _ in range(count):
+            number += 1
+            board.set("rx.uart0", encode(number, [(0, b"go ")]))
+            more, now = step(board, now, 1, told)
+            heard += more
+        return heard
+
+    def feed_until(connected):
+        heard, deadline = [], time.monotonic() + WAIT_S
+        while board.get("connected") != connected:
+            assert time.monotonic() < deadline
+            heard += feed(1)
+        return b"".join(heard + feed(5))
+
+    assert b"X" not in b"".join(feed(15))  # one that never spoke is not missed
+    os.write(telling, b"alive")
+    assert feed_until(False).endswith(b"go X\n")
+    os.write(telling, b"again")
+    assert feed_until(True).endswith(b"go go ")
+    board.close()
 
 
 def test_a_real_port_needs_leave_and_pins_are_out_of_reach(monkeypatch):

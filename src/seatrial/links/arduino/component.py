@@ -45,7 +45,7 @@ class Arduino(ArduinoPorts):
     stamped with its cycle; an output at t has what happened before t. Bytes that arrive on
     ``rx`` are put on the line one after the other at the baud rate of ``uarts``, not before
     their time and not before the step that has them; those that a UART sends are on ``tx`` when
-    their stop bit is over.
+    their stop bit is over. Bytes that come or go while a line is ``cut`` are lost.
 
     The sketch runs in a program of its own. If it crashes, overruns its stack, runs for
     ``patience`` without returning or calling anything, or opens a UART at another rate than
@@ -99,6 +99,7 @@ class Arduino(ArduinoPorts):
     def outputs(self, t: float) -> None:
         """Publish pulses, levels and bytes."""
         self.tx = [Outbox(memory).text for memory in self._tx]
+        self.connected = not isinstance(self._board, RealBoard) or self._board.connected
         self.bytes_sent, self.bytes_received = self._sent, self._received
         widths, shares, levels = [0.0] * 12, [0.0] * 8, [False] * 8
         for wire in self._wires:
@@ -121,7 +122,7 @@ class Arduino(ArduinoPorts):
     def _begin(self) -> None:
         mcu = MCUS[self.mcu]
         if self.backend == "board":
-            self._board = RealBoard(self.name, self.links, self.farewell, self._wires)
+            self._board = RealBoard(self.name, self.links, self.farewell, self.timeout, self._wires)
             return
         if not self.sketch and not self.firmware:
             return
@@ -146,6 +147,8 @@ class Arduino(ArduinoPorts):
     def _put_bytes(self, inputs: Inputs) -> None:
         for uart, text in enumerate(self.rx):
             for time_ns, data in Inbox(self._rx[uart]).take(text):
+                if self.cut[uart]:
+                    continue
                 cycle = max(0, time_ns - self._begun_ns) * (CLOCK // 1_000_000) // 1000
                 self._received += len(data)
                 for byte in data:
@@ -198,7 +201,7 @@ class Arduino(ArduinoPorts):
                 self._pulses[index].edge(value, cycle)
             elif kind == DUTY:
                 self._pulses[index].modulated(value / 255.0)
-            elif kind == UART:
+            elif kind == UART and not self.cut[index]:
                 said[index].append(event)
         for memory, bytes_of_it in zip(self._tx, said, strict=True):
             if bytes_of_it:

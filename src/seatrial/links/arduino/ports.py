@@ -31,7 +31,13 @@ class ArduinoPorts(Component):
     links = Parameter(
         "", "1", "board: UART=URL of each, separated by spaces, as 0=serial:/dev/ttyACM0:115200"
     )
-    farewell = Parameter("", "1", "board: bytes sent to each UART at the end, hexadecimal")
+    farewell = Parameter("", "1", "board: bytes that make the sketch let go, hexadecimal")
+    timeout = Parameter(
+        2.0,
+        "s",
+        "board: silence after which an input is stale, or a link lost; farewell is sent then",
+        min=1e-3,
+    )
     patience = Parameter(
         5.0, "s", "host: time for which a sketch may run without calling anything", min=1e-3
     )
@@ -45,6 +51,13 @@ class ArduinoPorts(Component):
     gravity = Parameter(9.80665, "m/s2", "acceleration of gravity", min=0.0)
 
     rx = Input("1", "bytes that arrive at each UART, as text", type=str, axes=_UARTS, optional=True)
+    cut = Input(
+        "1",
+        "whether each UART's line is cut, both ways",
+        type=bool,
+        axes=_UARTS,
+        optional=True,
+    )
     wind_speed = Input("m/s", "speed of the wind at cups", optional=True)
     wind_angle = Input(
         "rad", "where it blows to from the bow, to starboard, at the vane", optional=True
@@ -75,5 +88,6 @@ class ArduinoPorts(Component):
     pulse = Output("s", "width of the last servo pulse, 0 for none", axes=_axes("s", SERVOS))
     duty = Output("1", "share of time that PWM outputs are high", axes=_axes("p"))
     output = Output("1", "levels of digital outputs", type=bool, axes=_axes("o"))
+    connected = Output("1", "board: whether all UARTs that have spoken still do", type=bool)
     bytes_sent = Output("1", "bytes that left the UARTs", type=int)
     bytes_received = Output("1", "bytes that were put on the lines to the UARTs", type=int)

@@ -8,6 +8,7 @@ from ...errors import InputError
 from ..endpoints.endpoint import Endpoint
 from ..endpoints.url import open_endpoint
 from .board import UART, Event, Inputs
+from .mcus import CLOCK
 from .wiring import UARTS, Wire
 
 _INPUT = struct.Struct("<BBHd")
@@ -16,13 +17,22 @@ _INPUT = struct.Struct("<BBHd")
 class RealBoard:
     """Serial ports in the place of a simulated board's UARTs; ``links`` are ``UART=URL``.
 
-    ``farewell`` (hexadecimal) is sent to each at the end, however the run ends. Raises
-    InputError for links that cannot be, for real ports that nobody allowed, and for wires:
+    ``farewell`` (hexadecimal) is what makes the sketch let go. It is sent to each at the end,
+    however the run ends; to one whose input has become stale, that is silent for ``timeout``
+    seconds after it was not; and to the others when one that spoke has been silent for as long:
+    its link is lost, and until it speaks again nothing is sent to the others.
+
+    Raises InputError for links that cannot be, for real ports that nobody allowed, and for wires:
     pins of a real board are out of reach.
     """
 
-    def __init__(self, name: str, links: str, farewell: str, wires: list[Wire]) -> None:
-        self.name = name
+    def __init__(
+        self, name: str, links: str, farewell: str, timeout: float, wires: list[Wire]
+    ) -> None:
+        self.name, self._timeout = name, round(timeout * CLOCK)
+        self._fed: dict[int, int] = {}
+        self._heard: dict[int, int] = {}
+        self._lost: set[int] = set()
         if wires:
             raise InputError(
                 f"wires: a real board has only its UARTs here, not {wires[0].kind}: leave it out, "
@@ -47,23 +57,45 @@ class RealBoard:
         if not self._ports:
             raise InputError("links: the back end 'board' needs UART=URL of a serial port")
 
+    @property
+    def connected(self) -> bool:
+        """Whether all that have spoken still do."""
+        return not self._lost
+
     def run(self, target: int, inputs: Inputs) -> list[Event]:
         """Send what waits and return what has come, with the time of the end of the step."""
         for kind, index, value, _ in _INPUT.iter_unpack(inputs.data):
-            if kind == ord("U") and index in self._ports:
-                for channel in self._ports[index].channels():
-                    channel.send(bytes([value]))
+            if kind == ord("U") and index in self._ports and not self._lost - {index}:
+                self._send(index, bytes([value]))
+                self._fed[index] = target
         events: list[Event] = []
         for uart, port in self._ports.items():
             for _, data in port.poll():
+                self._heard[uart] = target
+                self._lost.discard(uart)
                 events += [(UART, uart, byte, target) for byte in data]
+        self._watch(target)
         return events
+
+    def _watch(self, now: int) -> None:
+        """Say farewell where an input is stale or a link is lost."""
+        for uart, when in list(self._fed.items()):
+            if now - when > self._timeout:
+                del self._fed[uart]
+                self._send(uart, self._farewell)
+        for uart, when in self._heard.items():
+            if uart not in self._lost and now - when > self._timeout:
+                self._lost.add(uart)
+                for other in self._ports.keys() - {uart}:
+                    self._send(other, self._farewell)
+
+    def _send(self, uart: int, data: bytes) -> None:
+        for channel in self._ports[uart].channels():
+            channel.send(data)
 
     def close(self) -> None:
         """Say farewell and close the ports. Harmless when repeated."""
-        for port in self._ports.values():
-            if self._farewell:
-                for channel in port.channels():
-                    channel.send(self._farewell)
+        for uart, port in self._ports.items():
+            self._send(uart, self._farewell)
             port.close()
         self._ports = {}

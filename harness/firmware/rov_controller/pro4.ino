@@ -1,0 +1,163 @@
+// The VideoRay Pro 4's serial protocol, as far as its topside asks: detection, configuration, a read
+// of the memory, the command block, the replies 1 to 5.
+//
+// request:  FA AF id flags address length, XOR of these, payload, XOR of all
+// answer:   FD DF, then alike; its payload begins with the type of device
+// a length of 255: two bytes of length and their XOR follow the first XOR
+
+const byte NODE = 1, EVERYBODY = 0xFF, DEVICE = 1, LONGEST = 32;
+const byte READ = 0x80, CONFIGURATION = 0xF7, COMMANDS = 15;
+const unsigned long GAP_MS = 50;
+const byte HUMIDITY = 0x84, POWER = 0x5F, MAGNETOMETER = 0xC4;
+const byte BOARDS = 8, NAME_LENGTH = 32;
+const char SERIAL_NUMBER[] PROGMEM = "ARDUINO-ROV";
+
+byte request[LONGEST + 8];
+byte got = 0;
+byte sum = 0;
+
+void readRequests() {
+  static unsigned long last = 0;
+  if (got && millis() - last > GAP_MS) got = 0;  // broken off
+  while (Serial.available()) {
+    last = millis();
+    request[got++] = Serial.read();
+    while (got && !fits()) forget(1);
+    while (got >= 8 && got >= request[5] + 8) {
+      serve();
+      forget(request[5] + 8);
+      while (got && !fits()) forget(1);
+    }
+  }
+}
+
+void forget(byte count) {
+  got -= count;
+  memmove(request, request + count, got);
+}
+
+byte xorOf(byte count) {
+  byte result = 0;
+  for (byte i = 0; i < count; i++) result ^= request[i];
+  return result;
+}
+
+// Whether what has come so far may be a request.
+bool fits() {
+  if (request[0] != 0xFA || (got > 1 && request[1] != 0xAF)) return false;
+  if (got < 7) return true;
+  if (request[5] > LONGEST || xorOf(6) != request[6]) return false;
+  byte end = request[5] + 7;
+  return got <= end || xorOf(end) == request[end];
+}
+
+void serve() {
+  byte id = request[2], flags = request[3], address = request[4], length = request[5];
+  if (id != NODE && id != EVERYBODY) return;
+  if (address == 0 && length >= COMMANDS) {
+    memcpy(registers, request + 7, COMMANDS);
+    obey();
+  }
+  if (id == EVERYBODY || flags == 0) return;
+  if (flags & READ) {
+    answerRead(address, flags & 0x7F);
+  } else if (flags <= 5) {
+    answer(flags);
+  }
+}
+
+// ---------------------------------------------------------------- answers
+
+void say(byte value) {
+  Serial.write(value);
+  sum ^= value;
+}
+
+void begin(byte flags, byte address, byte length) {
+  sum = 0;
+  say(0xFD);
+  say(0xDF);
+  say(NODE);
+  say(flags);
+  say(address);
+  say(length);
+  say(sum);  // and it is 0 again
+}
+
+void sayRegisters(byte address, byte count) {
+  for (byte i = 0; i < count; i++) say(registers[address + i]);
+}
+
+// What all answers have: heading, pitch, roll, pressure.
+void sayAttitude() {
+  sayRegisters(HEADING, 6);
+  sayRegisters(PRESSURE_MBAR, 2);
+}
+
+void answer(byte number) {
+  static const byte LENGTHS[] = {0, 9, 9, 11, 13, 34};
+  begin(number, 0, LENGTHS[number]);
+  say(DEVICE);
+  sayAttitude();
+  if (number == 3 || number == 4) sayRegisters(WATER, 2);
+  if (number == 4) sayRegisters(HUMIDITY, 2);
+  if (number == 5) {
+    sayRegisters(TURN, 12);
+    sayRegisters(MAGNETOMETER, 6);
+    say(0);  // status of the attitude
+    say(0);
+    sayRegisters(HUMIDITY, 2);
+    sayRegisters(WATER, 2);
+    sayRegisters(POWER, 1);
+  }
+  say(sum);
+}
+
+// Without a count: all from the address on.
+void answerRead(byte address, byte count) {
+  if (address == CONFIGURATION) {
+    answerConfiguration();
+    return;
+  }
+  if (address >= sizeof(registers)) return;
+  byte most = sizeof(registers) - address;
+  if (count == 0 || count > most) count = most;
+  begin(READ, address, count + 1);
+  say(DEVICE);
+  sayRegisters(address, count);
+  say(sum);
+}
+
+void sayText(const char *text, byte length) {
+  bool ended = false;
+  for (byte i = 0; i < length; i++) {
+    byte c = ended ? 0 : pgm_read_byte(text + i);
+    ended = ended || c == 0;
+    say(c);
+  }
+}
+
+void sayInt(unsigned int value) {
+  say(value & 0xFF);
+  say(value >> 8);
+}
+
+// Of the bootloader, 32 bytes, and of the hardware: a version and the boards' names.
+void answerConfiguration() {
+  begin(READ, CONFIGURATION, 0xFF);
+  sayInt(1 + 32 + 4 + BOARDS * NAME_LENGTH);
+  say(sum);
+  say(DEVICE);
+  sayInt(1);
+  sayInt(DEVICE);
+  sayText(SERIAL_NUMBER, 16);
+  for (byte i = 0; i < 8; i++) say(0);
+  say(0x60);  // the firmware is valid
+  say(0x0D);
+  say(0xF0);
+  say(0x0D);
+  sayInt(1);
+  sayInt(0);
+  for (byte i = 0; i < BOARDS; i++) sayText(PSTR("Arduino Mega"), NAME_LENGTH);
+  say(sum);
+}
