@@ -1,13 +1,18 @@
 """seatrial sketch."""
 
 import os
+import signal
+import subprocess
+import sys
 
 import pytest
+import serial
 
 from seatrial.shipped import shipped_folder
 from tests.command import seatrial
 from tests.links.arduino.bench import need, write_sketch
 
+MAIN = "from seatrial.cli import main; main()"
 GLORIA = shipped_folder("harness") / "firmware" / "gloria_autopilot"
 
 
@@ -43,3 +48,23 @@ def test_build_and_run(tmp_path):
     run = seatrial("sketch", "run", str(sketch), "--seconds", "0.1", cwd=tmp_path)
     assert run.returncode == 0, run.stderr
     assert "UART 0: /dev/pts/" in run.stdout
+
+
+def test_whoever_opens_the_terminal_of_a_uart_talks_with_the_sketch(tmp_path):
+    need("host")
+    source = """
+      void setup() { Serial1.begin(38400); }
+      void loop() { if (Serial1.available()) Serial1.write(Serial1.read() + 1); }
+    """
+    command = [sys.executable, "-c", MAIN, "sketch", "run", str(write_sketch(tmp_path, source))]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as run:
+        try:
+            line = run.stdout.readline()
+            assert line.startswith("UART 1: /dev/pts/")
+            with serial.Serial(line.split()[-1], 38400, timeout=30) as port:
+                port.write(b"GKKN")
+                assert port.read(4) == b"HLLO"
+            run.send_signal(signal.SIGINT)
+            assert run.wait(30) == 0
+        finally:
+            run.kill()

@@ -68,6 +68,14 @@ class Station:
         (first, begun), (last, ended) = clock[0], clock[-1]
         return (last - first) / 1e3 / (ended - begun)
 
+    def comes_to(self, pace: float) -> None:
+        """Wait for a pace; it is never faster. A busy machine does not keep up at once."""
+        end, found = time.monotonic() + WAIT_S, 0.0
+        while found < 0.7 * pace:
+            assert time.monotonic() < end, found
+            found = self.pace(2.0)
+            assert found < 1.3 * pace
+
     def inject(self, unit: int, failure: int) -> int:
         number = mavlink.MAV_CMD_INJECT_FAILURE
         self.link.mav.command_long_send(1, 1, number, 0, unit, failure, 0, 0, 0, 0, 0)
@@ -86,7 +94,7 @@ def controlled(trial: RunningTrial, station: Station) -> None:
     wait_for(lambda: trial.is_running, "the trial runs")
     station.hear("HEARTBEAT")
     station.hear("GPS_RAW_INT", lambda m: m.fix_type == mavlink.GPS_FIX_TYPE_3D_FIX)
-    assert 0.7 < station.pace(2.0) < 1.3
+    station.comes_to(1.0)
     station.speed_up(4.0)
     # A busy machine may not keep up with it.
     assert 1.5 < station.pace(3.0) < 4.8
@@ -101,7 +109,7 @@ def controlled(trial: RunningTrial, station: Station) -> None:
     station.speed_up(1.0)
     # It goes on from there, and does not catch up.
     assert station.hear("ATTITUDE").time_boot_ms <= stands_at / 1e6 + 2000
-    assert 0.7 < station.pace(2.0) < 1.3
+    station.comes_to(1.0)
     gps, mag = mavlink.FAILURE_UNIT_SENSOR_GPS, mavlink.FAILURE_UNIT_SENSOR_MAG
     for failure, health, fix in (
         (mavlink.FAILURE_TYPE_OFF, 0, mavlink.GPS_FIX_TYPE_NO_FIX),

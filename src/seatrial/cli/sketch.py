@@ -19,8 +19,6 @@ from ..links.arduino.mcus import MCUS
 from ..links.arduino.sketch import Sketch, find_sketch, read_source
 from ..links.arduino.unsupported import unsupported
 from ..links.arduino.wiring import PARTS, read_uarts, read_wires
-from ..links.endpoints.pseudo_terminal import PseudoTerminal
-from ..links.text import Inbox, Outbox
 
 sketch_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
 
@@ -95,38 +93,22 @@ def run(
         values["uarts"] = opened
     for name, value in values.items():
         board.set(name, value)
+    listened = read_uarts(board.uarts)
+    board.set("monitors", " ".join(f"{uart}=pty" for uart in listened))
     board.initialise()
     board.begin()
-    terminals = {uart: PseudoTerminal() for uart in read_uarts(board.uarts)}
     try:
-        for uart, terminal in terminals.items():
-            print(f"UART {uart}: {terminal.url}", flush=True)
-        _pace(board, terminals, seconds)
+        for uart, place in zip(listened, board.get("reached_at").split(), strict=True):
+            print(f"UART {uart}: {place}", flush=True)
+        begun, steps = time.monotonic(), 0
+        while steps * _STEP < seconds:
+            board.advance(steps * _STEP, _STEP)
+            steps += 1
+            time.sleep(max(0.0, begun + steps * _STEP - time.monotonic()))
     except KeyboardInterrupt:
         print("ended")
     finally:
         board.close()
-        for terminal in terminals.values():
-            terminal.close()
-
-
-def _pace(board: Arduino, terminals: dict[int, PseudoTerminal], seconds: float) -> None:
-    heard: dict[int, dict[str, Any]] = {uart: {} for uart in terminals}
-    said: dict[int, dict[str, Any]] = {uart: {} for uart in terminals}
-    begun, steps = time.monotonic(), 0
-    while steps * _STEP < seconds:
-        for uart, terminal in terminals.items():
-            box = Outbox(said[uart])
-            for _, data in terminal.poll():
-                box.put(board.now_ns, data)
-            board.set(f"rx.uart{uart}", box.flush())
-        board.advance(steps * _STEP, _STEP)
-        steps += 1
-        for uart, text in enumerate(board.get("tx")):
-            for _, data in Inbox(heard[uart]).take(text) if uart in terminals else ():
-                for channel in terminals[uart].channels():
-                    channel.send(data)
-        time.sleep(max(0.0, begun + steps * _STEP - time.monotonic()))
 
 
 def _opened(sketch: Sketch) -> str:

@@ -128,7 +128,8 @@ def _tell_reachable(master: Master, hooks: Hooks) -> None:
         port = part.instance.variables.get("reached_at")
         if port is not None and port.description == Reachable.reached_at.description:
             (where,) = part.instance.reader(["reached_at"])()
-            hooks.reachable(name, str(where))
+            if where:
+                hooks.reachable(name, str(where))
 
 
 def _loose_inputs(trial: Trial, system: System) -> list[str]:

@@ -5,13 +5,16 @@ import os
 import time
 
 import pytest
+import serial
 
 from seatrial.errors import InputError, SimulationError
+from seatrial.links.arduino.component import Arduino
 from seatrial.links.arduino.dialect import narrowed
 from seatrial.links.arduino.sketch import with_prototypes
 
 from .bench import Bench, write_sketch
 
+WAIT_S = 30.0
 NOTHING = "void setup() {}\nvoid loop() {}\n"
 
 
@@ -187,3 +190,40 @@ def test_prototypes_and_widths():
     assert narrowed(given) == (
         'unsigned int a = 5u; short b; long long c; float d; char e[] = "int long"; // int'
     )
+
+
+def test_a_monitor_hears_and_types_beside_what_is_wired(tmp_path):
+    source = """
+      void setup() { Serial.begin(115200); }
+      void loop() { if (Serial.available()) Serial.write(toupper(Serial.read())); }
+    """
+    place = tmp_path / "uart0"
+    with Bench(write_sketch(tmp_path, source), monitors=f"0=pty:{place}") as bench:
+        assert bench.one.get("reached_at") == str(place)
+        with serial.Serial(str(place), 115200, timeout=WAIT_S) as port:
+            bench.hear(0, b"wire ")
+            assert bench.run(0.1) == b"WIRE "
+            assert port.read(5) == b"WIRE "
+            port.write(b"typed")
+            deadline = time.monotonic() + WAIT_S
+            while bench.said[0] != b"WIRE TYPED":
+                assert time.monotonic() < deadline
+                bench.run(0.02)
+            assert port.read(5) == b"TYPED"
+    assert not place.exists()
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("pty:/tmp/a", "not UART=URL"),
+        ("4=pty:/tmp/a", "not UART=URL"),
+        ("0=pty:/tmp/a 0=pty:/tmp/b", "UART 0 has a link already"),
+        ("0=tty:/tmp/a", "unknown kind of link 'tty'"),
+    ],
+)
+def test_a_monitor_that_cannot_be(text, said):
+    one = Arduino("mega")
+    one.set("monitors", text)
+    with pytest.raises(InputError, match=rf"monitors.*{said}"):
+        one.initialise()

@@ -10,7 +10,7 @@ import pytest
 from seatrial.errors import InputError
 from seatrial.links.endpoints import tcp
 from seatrial.links.endpoints.udp import MOST_PEERS
-from seatrial.links.endpoints.url import open_endpoint
+from seatrial.links.endpoints.url import open_endpoint, other_end
 from seatrial.links.hardware import ALLOWED
 
 WAIT_S = 5.0
@@ -212,6 +212,13 @@ def test_a_pseudo_terminal_is_a_serial_port_at_its_place(opened, tmp_path):
     assert [data for _, data in polled(other)] == [b"pong"]
 
 
+def test_without_a_place_the_system_finds_one(opened):
+    endpoint = opened("pty")
+    other = opened(f"serial:{other_end(endpoint.url)}:115200")
+    other.channels()[0].send(b"ping")
+    assert [data for _, data in polled(endpoint)] == [b"ping"]
+
+
 def test_a_pseudo_terminals_place_is_free_again_afterwards(tmp_path):
     place = tmp_path / "vehicle"
     open_endpoint(f"pty:{place}").close()
@@ -250,7 +257,7 @@ def test_a_real_port_needs_permission(monkeypatch):
         ("udpin:127.0.0.1:65536", "the port is 65536, allowed 0 to 65535"),
         ("udpout:127.0.0.1:0", "the port is 0, allowed 1 to 65535"),
         ("serial:/dev/ttyS0:0", "the baud rate is 0"),
-        ("pty", "is not of the form 'pty:/tmp/vehicle'"),
+        ("pty:", "is not of the form 'pty:/tmp/vehicle'"),
         (f"udpout:{'x' * 64}:14550", f"host '{'x' * 64}'"),  # refused without asking anybody
         ("udpin:192.0.2.1:0", "cannot open the link 'udpin:192.0.2.1:0': "),
     ],

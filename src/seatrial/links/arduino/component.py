@@ -8,6 +8,8 @@ from typing import Any, ClassVar
 from ...component import NS, Component
 from ...craft.kinematics import to_body
 from ...errors import InputError
+from ..endpoints.endpoint import Endpoint
+from ..endpoints.url import other_end
 from ..text import Inbox, Outbox
 from .board import DUTY, EDGE, UART, Board, Event, Inputs
 from .build import build_host
@@ -17,6 +19,7 @@ from .ports import ArduinoPorts
 from .pulses import Pulses
 from .real_board import RealBoard
 from .sketch import find_sketch
+from .uart_links import open_links
 from .wiring import PARTS, UARTS, Wire, read_uarts, read_wires
 
 _GYRO, _FORCE, _FIELD, _PRESSURE, _TEMPERATURE = 0, 3, 6, 9, 10
@@ -45,7 +48,9 @@ class Arduino(ArduinoPorts):
     stamped with its cycle; an output at t has what happened before t. Bytes that arrive on
     ``rx`` are put on the line one after the other at the baud rate of ``uarts``, not before
     their time and not before the step that has them; those that a UART sends are on ``tx`` when
-    their stop bit is over. Bytes that come or go while a line is ``cut`` are lost.
+    their stop bit is over. A monitor hears what its UART says, and what it types the UART hears
+    with the next step, besides what is on ``rx``. Bytes that come or go while a line is ``cut``
+    are lost.
 
     The sketch runs in a program of its own. If it crashes, overruns its stack, runs for
     ``patience`` without returning or calling anything, or opens a UART at another rate than
@@ -58,11 +63,12 @@ class Arduino(ArduinoPorts):
     feedthrough: ClassVar = {}
     discrete = True
     rolls_back = False
-    transient = Component.transient | {"_board", "_program", "_pulses", "_told", "_wires"}
+    transient = Component.transient | {"_board", "_monitors", "_pulses", "_told", "_wires"}
 
     def __init__(self, name: str = "component") -> None:
         super().__init__(name)
         self._board: Board | RealBoard | None = None
+        self._monitors: dict[int, Endpoint] = {}
 
     # ------------------------------------------------------------------ running
 
@@ -74,7 +80,9 @@ class Arduino(ArduinoPorts):
             self._wires = read_wires(self.wires, mcu)
             self._rates = {k: v for k, v in read_uarts(self.uarts).items() if k < mcu.uarts}
             self._begin()
+            self._monitors = open_links(self.monitors)
         except InputError as error:
+            self.close()
             raise InputError(f"{self.name}: {error}") from None
         self._begun_ns = self.now_ns
         self._told: dict[tuple[str, int], float] = {}
@@ -99,6 +107,7 @@ class Arduino(ArduinoPorts):
     def outputs(self, t: float) -> None:
         """Publish pulses, levels and bytes."""
         self.tx = [Outbox(memory).text for memory in self._tx]
+        self.reached_at = " ".join(other_end(each.url) for each in self._monitors.values())
         self.connected = not isinstance(self._board, RealBoard) or self._board.connected
         self.bytes_sent, self.bytes_received = self._sent, self._received
         widths, shares, levels = [0.0] * 12, [0.0] * 8, [False] * 8
@@ -116,6 +125,9 @@ class Arduino(ArduinoPorts):
         if self._board is not None:
             self._board.close()
             self._board = None
+        for monitor in self._monitors.values():
+            monitor.close()
+        self._monitors = {}
 
     # ------------------------------------------------------------------ inside
 
@@ -153,6 +165,10 @@ class Arduino(ArduinoPorts):
                 self._received += len(data)
                 for byte in data:
                     inputs.put("U", uart, cycle, byte)
+        for uart, monitor in self._monitors.items():
+            for _, data in monitor.poll():
+                for byte in data:
+                    inputs.put("U", uart, self._cycle, byte)
 
     def _put_signals(self, inputs: Inputs) -> None:
         for wire in self._wires:
@@ -203,10 +219,13 @@ class Arduino(ArduinoPorts):
                 self._pulses[index].modulated(value / 255.0)
             elif kind == UART and not self.cut[index]:
                 said[index].append(event)
-        for memory, bytes_of_it in zip(self._tx, said, strict=True):
-            if bytes_of_it:
-                box = Outbox(memory)
-                time_ns = self._begun_ns + bytes_of_it[0][3] * 1000 // (CLOCK // 1_000_000)
-                box.put(time_ns, bytes(event[2] for event in bytes_of_it))
+        for uart, events_of_it in enumerate(said):
+            if events_of_it:
+                data = bytes(event[2] for event in events_of_it)
+                box = Outbox(self._tx[uart])
+                time_ns = self._begun_ns + events_of_it[0][3] * 1000 // (CLOCK // 1_000_000)
+                box.put(time_ns, data)
                 box.flush()
-                self._sent += len(bytes_of_it)
+                self._sent += len(data)
+                for channel in self._monitors[uart].channels() if uart in self._monitors else ():
+                    channel.send(data)

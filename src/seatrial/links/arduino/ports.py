@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from ...component import Component, Input, Output, Parameter
+from ...component import Component, Input, Output, Parameter, Reachable
 from .mcus import MCUS
+from .uart_links import read_links, read_monitors
 from .wiring import OTHERS, SERVOS, UARTS, read_uarts, read_wires
 
 BACKENDS = ("host", "simavr", "board")
@@ -14,7 +15,7 @@ def _axes(letter: str, count: int = OTHERS) -> tuple[str, ...]:
     return tuple(f"{letter}{i}" for i in range(1, count + 1))
 
 
-class ArduinoPorts(Component):
+class ArduinoPorts(Reachable, Component):
     """What an `Arduino` is told and says."""
 
     backend = Parameter("host", "1", "what runs the sketch", choices=BACKENDS)
@@ -29,7 +30,16 @@ class ArduinoPorts(Component):
         check=read_wires,
     )
     links = Parameter(
-        "", "1", "board: UART=URL of each, separated by spaces, as 0=serial:/dev/ttyACM0:115200"
+        "",
+        "1",
+        "board: UART=URL of each, separated by spaces, as 0=serial:/dev/ttyACM0:115200",
+        check=read_links,
+    )
+    monitors = Parameter(
+        "",
+        "1",
+        "UART=URL where programs listen in and type, as 0=pty:/tmp/uart0",
+        check=read_monitors,
     )
     farewell = Parameter("", "1", "board: bytes that make the sketch let go, hexadecimal")
     timeout = Parameter(

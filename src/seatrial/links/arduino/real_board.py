@@ -5,11 +5,10 @@ from __future__ import annotations
 import struct
 
 from ...errors import InputError
-from ..endpoints.endpoint import Endpoint
-from ..endpoints.url import open_endpoint
 from .board import UART, Event, Inputs
 from .mcus import CLOCK
-from .wiring import UARTS, Wire
+from .uart_links import open_links
+from .wiring import Wire
 
 _INPUT = struct.Struct("<BBHd")
 
@@ -42,18 +41,7 @@ class RealBoard:
             self._farewell = bytes.fromhex(farewell)
         except ValueError:
             raise InputError(f"farewell: {farewell!r} is not hexadecimal") from None
-        self._ports: dict[int, Endpoint] = {}
-        try:
-            for link in links.split():
-                uart, _, url = link.partition("=")
-                if not (uart.isdecimal() and int(uart) < UARTS and url):
-                    raise InputError(
-                        f"links: {link!r} is not UART=URL, as 0=serial:/dev/ttyACM0:115200"
-                    )
-                self._ports[int(uart)] = open_endpoint(url)
-        except InputError:
-            self.close()
-            raise
+        self._ports = open_links(links)
         if not self._ports:
             raise InputError("links: the back end 'board' needs UART=URL of a serial port")
 

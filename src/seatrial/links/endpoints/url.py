@@ -7,6 +7,7 @@
 ``tcpout:HOST:PORT``        a client, which connects again when the connection is lost
 ``serial:DEVICE:BAUD``      a serial port; a real one only if hardware is allowed
 ``pty:PATH``                a new pseudo-terminal, which others open as a serial port at PATH
+``pty``                     the same at a device of the system's choice
 =========================== =================================================================
 
 HOST is a name or an IPv4 address, PORT 0 at ``udpin`` and ``tcpin`` any free one. PATH becomes a
@@ -81,9 +82,9 @@ def _parts(url: str) -> tuple[str, str, int]:
     if kind not in _FORMS:
         raise InputError(f"link {url!r}: {unknown('kind of link', kind, _FORMS)}")
     if kind == "pty":
-        if url == "pty" or url == "pty:":
+        if url == "pty:":
             raise InputError(f"link {url!r} is not of the form {_FORMS[kind]!r}")
-        return kind, url.removeprefix("pty:"), 0
+        return kind, url.removeprefix("pty").removeprefix(":"), 0
     match = _URL.fullmatch(url)
     plain = match is not None and (kind == "serial" or not set(match["place"]) & set(":/"))
     if match is None or not plain:
