@@ -166,7 +166,7 @@ import hashlib, sys
 from pathlib import Path
 from seatrial.trials.run import run_trial
 from seatrial.trials.trial import load_trial
-trial = load_trial(sys.argv[2]).changed({"stop": "40 s"}, "test")
+trial = load_trial(sys.argv[2]).changed({"stop": "10 s"}, "test")
 folder = run_trial(trial, Path(sys.argv[1]), engine="direct").folder
 print(hashlib.sha256((folder / "signals.csv").read_bytes()).hexdigest())
 """

@@ -83,6 +83,7 @@ def test_a_run_tells_of_links_that_there_are(tmp_path):
     place, told = f"{tmp_path}/radio", []
     trial = load_trial("gloria-sketch")
     trial = trial.changed({"mega.monitors": f"2=pty:{place}", "stop": "0.2 s"}, "test")
+    trial = trial.in_real_time({}, "test")
     hooks = Hooks(reachable=lambda name, where: told.append((name, where)))
     assert run_trial(trial, tmp_path / "run", engine="direct", hooks=hooks).status == "complete"
     assert told == [("mega", place)]  # and not of instruments that nothing outside reads

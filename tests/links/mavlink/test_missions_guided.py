@@ -79,10 +79,10 @@ def test_times_are_those_of_the_way():
     assert bench.node.missions.leg.number == guided.get("reached")
 
 
-@pytest.mark.parametrize(("radius", "turns"), [(8.0, 2.0), (-8.0, 1.0)])
-def test_turns_take_the_time_of_their_length(radius, turns):
+@pytest.mark.parametrize(("radius", "turns", "seconds"), [(6.0, 2.0, 120.0), (-8.0, 1.0, 90.0)])
+def test_turns_take_the_time_of_their_length(radius, turns, seconds):
     bench = mission(one(at=north_of(10)), one(TURNS, turns, p3=radius, at=north_of(40)))
-    reached, _ = sail(bench, 250.0, lookahead=3.0)
+    reached, _ = sail(bench, seconds, lookahead=3.0)
     # From the acceptance (1 m outside the circle); the way onto the circle turns it too.
     way = math.tau * abs(radius) * turns
     assert reached[2] - reached[1] == pytest.approx(20.0 + way, rel=0.08)
