@@ -163,9 +163,9 @@ def run_commands(block: Block) -> None:
         *VEHICLES,
         DESIGN,
         SSP,
-        IDENTIFICATION,
+        pytest.param(IDENTIFICATION, marks=pytest.mark.long, id=IDENTIFICATION.stem),
         TETHER,
-        GUIDANCE,
+        pytest.param(GUIDANCE, marks=pytest.mark.long, id=GUIDANCE.stem),
         LOGS,
         MAVLINK,
         CAN,
@@ -395,14 +395,19 @@ VERDICTS = "-trials"
 """How the tables end that need minutes of whole trials."""
 
 
+SLOW = {"hydrone-stated", *(f"videoray-rejection{part}" for part in ("", "-table75", "-table81"))}
+
+
 def made_parts(*, verdicts: bool | None = None) -> list[Any]:
-    """Return page and name of the tables; those of trials' verdicts are compared in the long run."""
+    """Return page and name of the tables; those that take long are compared in the long run."""
     return [
         pytest.param(
             page,
             name,
             id=name,
-            marks=pytest.mark.long if name.endswith(VERDICTS) and verdicts is None else (),
+            marks=pytest.mark.long
+            if verdicts is None and (name.endswith(VERDICTS) or name in SLOW)
+            else (),
         )
         for page, names in TABLES.pages().items()
         for name in names

@@ -41,7 +41,18 @@ def test_the_component_of_twenty_lines(tmp_path: Path) -> None:
     assert (tmp_path / "Boat.fmu").is_file()
 
 
-@pytest.mark.parametrize("line", block("## Run trials", "console").splitlines()[1:7])
+TRIALS = block("## Run trials", "console").splitlines()[1:7]
+LONG = ("seatrial run gloria-triangle", "seatrial run hydrone-pads")
+"""Minutes of sailing, and seven cases."""
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        pytest.param(line, marks=pytest.mark.long if any(each in line for each in LONG) else ())
+        for line in TRIALS
+    ],
+)
 def test_commands_that_run_trials(line: str, tmp_path: Path) -> None:
     done = run(line, tmp_path)
     assert done.returncode in (0, 1), done.stderr

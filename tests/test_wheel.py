@@ -5,13 +5,18 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import sysconfig
 import zipfile
 from pathlib import Path
+
+import pytest
 
 ROOT = Path(__file__).parents[1]
 
 
-def test_the_wheel_alone_runs_a_trial(tmp_path: Path) -> None:
+@pytest.mark.parametrize("downloads", [False, pytest.param(True, marks=pytest.mark.long)])
+def test_the_wheel_alone_runs_a_trial(downloads: bool, tmp_path: Path) -> None:
+    """Its requirements are those of this environment, or as a user's pip finds them."""
     build = [sys.executable, "-m", "pip", "wheel", "--no-deps", "--quiet"]
     subprocess.run([*build, "--wheel-dir", str(tmp_path), str(ROOT)], check=True)
     (wheel,) = tmp_path.glob("*.whl")
@@ -28,7 +33,16 @@ def test_the_wheel_alone_runs_a_trial(tmp_path: Path) -> None:
     environment = tmp_path / "environment"
     subprocess.run([sys.executable, "-m", "venv", str(environment)], check=True)
     pip = [str(environment / "bin" / "python"), "-m", "pip", "install", "--quiet"]
-    subprocess.run([*pip, str(wheel)], check=True)
+    if downloads:
+        subprocess.run([*pip, str(wheel)], check=True)
+    else:
+        subprocess.run([*pip, "--no-deps", str(wheel)], check=True)
+        (packages,) = environment.glob("lib/python*/site-packages")
+        # By this line alone: the .pth file there that names this source is not read.
+        (packages / "requirements.pth").write_text(sysconfig.get_path("purelib") + "\n", "utf-8")
+    where = [str(environment / "bin" / "python"), "-c", "import seatrial; print(seatrial.__file__)"]
+    imported = subprocess.run(where, check=True, capture_output=True, text=True).stdout
+    assert imported.startswith(str(environment))
     empty = tmp_path / "empty"
     empty.mkdir()
     done = subprocess.run(

@@ -35,7 +35,10 @@ def test_holds_with_the_profiles_sensors():
     assert (mode[late] == HOLD).all()
 
 
-@pytest.mark.parametrize("heading", [0.0, 143.0, -90.0])
+@pytest.mark.parametrize(
+    "heading",
+    [pytest.param(0.0, marks=pytest.mark.long), 143.0, pytest.param(-90.0, marks=pytest.mark.long)],
+)
 def test_comes_back_from_far(heading):
     rows = held(90, position=(-20, 15), heading=heading * DEG, ideal=False)
     t, north, east, psi, _ = rows.T

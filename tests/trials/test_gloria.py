@@ -122,7 +122,7 @@ def assert_gusts(run: Any, course: int, seed: int, engine: str) -> None:
     assert found.signals["wind.speed"].max() > 6.0
 
 
-@pytest.mark.parametrize("course", [55, 60])
+@pytest.mark.parametrize("course", [pytest.param(55, marks=pytest.mark.long), 60])
 def test_in_gusts_the_limit_keeps_the_boat_upright(run: Any, course: int) -> None:
     assert_gusts(run, course, 15, "direct")
 

@@ -38,7 +38,13 @@ CRAFTS = {
     "gloria": Craft("gloria", "boat", ROVER, ((0, 50, 0), (35, 80, 0)), 8.0, 150, 25.0),
     "mariner": Craft("mariner", "ship", ROVER, ((2500, 0, 0), (4500, 2000, 0)), 1e3, 1200, 400.0),
 }
-every = pytest.mark.parametrize("craft", CRAFTS.values(), ids=CRAFTS)
+every = pytest.mark.parametrize(
+    "craft",
+    [
+        pytest.param(craft, id=name, marks=pytest.mark.long if name == "mariner" else ())
+        for name, craft in CRAFTS.items()
+    ],
+)
 
 
 def waypoints(places):

@@ -17,7 +17,7 @@ NAMES = sorted(path.stem for path in (shipped_folder("harness") / "trials").glob
 PACED = [name for name in NAMES if load_trial(name).file.real_time]
 """Trials in real time, for whoever connects."""
 TRIALS = [name for name in NAMES if name not in PACED]
-COMPARED_S = 20
+COMPARED_S = 5
 """How a trial begins tells how it goes on; to the end they run in their vehicles' tests, or here."""
 
 
