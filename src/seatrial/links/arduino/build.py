@@ -44,7 +44,7 @@ def build_host(sketch: Sketch, mcu: Mcu) -> Path:
 def _host(sketch: Sketch, mcu: Mcu, file: Path, scratch: Path) -> None:
     place = laid_out()
     common = ["g++", *_BASE, *mcu.defines, f"-I{place / 'core'}", f"-I{place / 'shared'}"]
-    objects = [_core_object(name, mcu, common) for name in ("machine", "api")]
+    objects = [_core_object(name, mcu, common) for name in ("machine", "api", "texts", "devices")]
     sources, places = _narrowed_copy(sketch, scratch)
     includes = [f"-I{place}" for place in places]
     for number, source in enumerate(sources):

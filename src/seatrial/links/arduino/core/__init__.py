@@ -11,6 +11,8 @@ DATA_FILES = (
     "WString.h",
     "Wire.h",
     "api.cpp",
+    "devices.cpp",
     "machine.cpp",
     "machine.h",
+    "texts.cpp",
 )

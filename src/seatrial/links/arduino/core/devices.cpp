@@ -1,0 +1,119 @@
+/* What hangs on the board: Serial, Wire, SPI, Servo, EEPROM. Costs in cycles as in api.cpp. */
+#include "Arduino.h"
+#include "EEPROM.h"
+#include "SPI.h"
+#include "Servo.h"
+#include "Wire.h"
+#include "machine.h"
+
+extern "C" int part_link_begin(uint8_t address, int reading);
+extern "C" int part_link_write(uint8_t data);
+extern "C" uint8_t part_link_read();
+
+using machine::charge;
+
+/* ------------------------------------------------------------------ Serial, Wire, SPI */
+
+HardwareSerial Serial(0);
+#ifdef BOARD_MEGA
+HardwareSerial Serial1(1), Serial2(2), Serial3(3);
+#endif
+
+void HardwareSerial::begin(uint32_t baud, uint8_t) { charge(100); machine::open_uart(number_, baud); }
+void HardwareSerial::end() { flush(); machine::open_uart(number_, 0); }
+int16_t HardwareSerial::available() { charge(24); return (int16_t)machine::received(number_); }
+int16_t HardwareSerial::read() { charge(30); return (int16_t)machine::take(number_, false); }
+int16_t HardwareSerial::peek() { charge(24); return (int16_t)machine::take(number_, true); }
+int HardwareSerial::availableForWrite() { charge(24); return machine::room(number_); }
+void HardwareSerial::flush() { charge(16); machine::drain(number_); }
+size_t HardwareSerial::write(uint8_t data) { charge(60); machine::send(number_, data); return 1; }
+
+TwoWire Wire;
+
+void TwoWire::pass(unsigned bytes) { machine::pass_until(machine::now + 16ull + (uint64_t)(9e0 * bytes * machine::CLOCK / clock_)); }
+void TwoWire::beginTransmission(uint8_t address) { charge(20); address_ = address; written_ = 0; }
+int16_t TwoWire::available() { charge(12); return (int16_t)(got_ - next_); }
+int16_t TwoWire::read() { charge(20); return next_ < got_ ? in_[next_++] : (int16_t)-1; }
+int16_t TwoWire::peek() { charge(12); return next_ < got_ ? in_[next_] : (int16_t)-1; }
+
+size_t TwoWire::write(uint8_t data)
+{
+    charge(20);
+    if (written_ >= BUFFER_LENGTH)
+        return 0;
+    out_[written_++] = data;
+    return 1;
+}
+
+uint8_t TwoWire::endTransmission(bool)
+{
+    pass(1);
+    if (!part_link_begin(address_, 0))
+        return 2;
+    for (uint8_t i = 0; i < written_; i++) {
+        pass(1);
+        part_link_write(out_[i]);
+    }
+    return 0;
+}
+
+uint8_t TwoWire::requestFrom(uint8_t address, uint8_t count, uint8_t)
+{
+    next_ = got_ = 0;
+    pass(1);
+    if (!part_link_begin(address, 1))
+        return 0;
+    for (; got_ < count && got_ < BUFFER_LENGTH; got_++) {
+        pass(1);
+        in_[got_] = part_link_read();
+    }
+    return got_;
+}
+
+SPIClass SPI;
+uint8_t SPIClass::transfer(uint8_t) { charge((uint32_t)(8.0 * machine::CLOCK / clock_) + 4); return 0xFF; }
+
+/* ------------------------------------------------------------------ Servo and EEPROM */
+
+static struct { int pin = -1, least = MIN_PULSE_WIDTH, most = MAX_PULSE_WIDTH, us = DEFAULT_PULSE_WIDTH; } servos[12];
+
+Servo::Servo() { int found = machine::new_servo(); index_ = found < 0 ? INVALID_SERVO : (uint8_t)found; }
+
+uint8_t Servo::attach(int pin, int least, int most)
+{
+    charge(200);
+    if (index_ == INVALID_SERVO)
+        return INVALID_SERVO;
+    servos[index_] = {pin, least, most, servos[index_].us};
+    machine::set_servo(index_, pin, servos[index_].us);
+    return index_;
+}
+
+void Servo::detach() { charge(50); if (attached()) { servos[index_].pin = -1; machine::set_servo(index_, -1, servos[index_].us); } }
+bool Servo::attached() { return index_ != INVALID_SERVO && servos[index_].pin >= 0; }
+int16_t Servo::readMicroseconds() { return (int16_t)(index_ == INVALID_SERVO ? 0 : servos[index_].us); }
+int16_t Servo::read() { return (int16_t)map(readMicroseconds() + 1, servos[index_].least, servos[index_].most, 0, 180); }
+
+void Servo::write(int value)
+{
+    if (index_ == INVALID_SERVO)
+        return;
+    if (value < MIN_PULSE_WIDTH)
+        value = (int)map(constrain(value, 0, 180), 0, 180, servos[index_].least, servos[index_].most);
+    writeMicroseconds(value);
+}
+
+void Servo::writeMicroseconds(int us)
+{
+    charge(120);
+    if (index_ == INVALID_SERVO)
+        return;
+    servos[index_].us = constrain(us, servos[index_].least, servos[index_].most);
+    machine::set_servo(index_, servos[index_].pin, servos[index_].us);
+}
+
+static uint8_t eeprom[EEPROM_SIZE];
+static bool eeprom_erased = (memset(eeprom, 0xFF, sizeof eeprom), true);
+EEPROMClass EEPROM;
+uint8_t EEPROMClass::read(int at) { charge(12); return eeprom_erased && at >= 0 && at < EEPROM_SIZE ? eeprom[at] : 0xFF; }
+void EEPROMClass::write(int at, uint8_t value) { machine::pass_until(machine::now + 54400); if (at >= 0 && at < EEPROM_SIZE) eeprom[at] = value; }
