@@ -71,6 +71,9 @@ def main(arguments: Sequence[str]) -> int:
     """Write parts anew, or with ``--check`` only compare; return the exit status."""
     stale = []
     named = {(DOCS / name).resolve() for name in arguments if name != "--check"}
+    if unknown := named - pages().keys():
+        print(f"no page with tables: {', '.join(sorted(map(str, unknown)))}", file=sys.stderr)
+        return 2
     for page, names in pages().items():
         if named and page not in named:
             continue
