@@ -395,7 +395,12 @@ VERDICTS = "-trials"
 """How the tables end that need minutes of whole trials."""
 
 
-SLOW = {"hydrone-stated", *(f"videoray-rejection{part}" for part in ("", "-table75", "-table81"))}
+SLOW = {
+    "hydrone-stated",
+    "hydrone-sensitivity",
+    "hydrone-three-variants",
+    *(f"videoray-rejection{part}" for part in ("", "-table75", "-table81")),
+}
 
 
 def made_parts(*, verdicts: bool | None = None) -> list[Any]:

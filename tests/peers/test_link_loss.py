@@ -136,6 +136,7 @@ def test_mavproxy_gets_and_gives_all(vehicle: int, tmp_path: Path) -> None:
     ]
 
 
+@pytest.mark.long
 def test_mavsdk_gets_and_gives_all(vehicle: int) -> None:
     places = [[m.x, m.y] for m in mission()]
     with bad_link(vehicle, 4) as link:

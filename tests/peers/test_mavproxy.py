@@ -191,6 +191,7 @@ every   = "1 s"
 DEEP = "QGC WPL 110\n0\t1\t0\t16\t0\t0\t0\t0\t{0:.8f}\t{1:.8f}\t0\t1\n1\t0\t3\t16\t0\t0\t0\t0\t{2:.8f}\t{1:.8f}\t-3\t1\n"
 
 
+@pytest.mark.long
 def test_a_session_with_a_submarine(tmp_path: Path) -> None:
     port, folder = free_port(), tmp_path
     trial_file = folder / "dive.toml"

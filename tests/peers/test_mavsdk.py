@@ -215,7 +215,10 @@ def judge(flavour: str, folder: Path, subtests: pytest.Subtests) -> None:
             holds(flight)
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
+# As PX4 a vehicle is flown in every run too: it dives, in test_mavsdk_submarine.py.
+@pytest.mark.parametrize(
+    "flavour", [FLAVOURS[0], pytest.param(FLAVOURS[1], marks=pytest.mark.long)]
+)
 def test_a_flight(flavour: str, tmp_path: Path, subtests: pytest.Subtests) -> None:
     judge(flavour, tmp_path, subtests)
 

@@ -13,6 +13,8 @@ from seatrial.trials.trial import load_trial
 
 TRIALS = sorted(path.stem for path in (shipped_folder("harness") / "trials").glob("*-course-*"))
 TRIALS = [name for name in TRIALS if name.startswith(("hydrone", "videoray"))]
+TRACKED = {"hydrone-course-square", "videoray-course-box", "hydrone-course-current"}
+"""Those whose tracks are looked at here, and their criteria with them."""
 
 
 def run(name, folder, **settings):
@@ -20,11 +22,24 @@ def run(name, folder, **settings):
     return load_run(run_trial(trial, folder, engine="direct").folder)
 
 
-@pytest.mark.parametrize("name", TRIALS)
-def test_every_criterion_holds(name, tmp_path):
-    found = run(name, tmp_path / "run")
+def marked(name):
+    """Return a trial for the tests; one takes half a minute, in the long run only."""
+    slow = name == "hydrone-course-modes"
+    return pytest.param(name, marks=pytest.mark.long if slow else ())
+
+
+def passes(found):
     assert found.verdicts
     assert [v["name"] for v in found.verdicts if not v["passed"]] == []
+
+
+def test_all_that_are_tracked_are_there():
+    assert set(TRIALS) > TRACKED
+
+
+@pytest.mark.parametrize("name", [marked(name) for name in TRIALS if name not in TRACKED])
+def test_every_criterion_holds(name, tmp_path):
+    passes(run(name, tmp_path / "run"))
 
 
 def beside(found, craft):
@@ -51,10 +66,14 @@ def beside(found, craft):
 
 @pytest.mark.parametrize(
     ("name", "craft", "radius"),
-    [("hydrone-course-square", "hull", 3.0), ("videoray-course-box", "vehicle", 1.0)],
+    [
+        ("hydrone-course-square", "hull", 3.0),
+        pytest.param("videoray-course-box", "vehicle", 1.0, marks=pytest.mark.long),
+    ],
 )
 def test_the_true_track_passes_the_waypoints_and_keeps_to_the_legs(name, craft, radius, tmp_path):
     found = run(name, tmp_path / "run")
+    passes(found)
     legs = list(beside(found, craft))
     for waypoint, track, _ in legs:
         # 0.1 m for what it does between two fixes, and for their errors and age.
@@ -68,6 +87,7 @@ def test_the_true_track_passes_the_waypoints_and_keeps_to_the_legs(name, craft, 
 
 def test_across_a_current_it_heads_up_by_the_crab_angle(tmp_path):
     found = run("hydrone-course-current", tmp_path / "run")
+    passes(found)
     late = (found.time > 150) & (found.time < 190)
     u, v, psi = (
         found.signals[f"hull.{name}"][late] for name in ("velocity.u", "velocity.v", "attitude.psi")
@@ -80,6 +100,7 @@ def test_across_a_current_it_heads_up_by_the_crab_angle(tmp_path):
     )
 
 
+@pytest.mark.long
 def test_without_the_integral_the_current_leaves_its_error(tmp_path):
     found = run("hydrone-course-current", tmp_path / "run", **{"guidance.integral_gain": 0.0})
     late = (found.time > 150) & (found.time < 190)

@@ -78,6 +78,7 @@ def test_what_the_source_states_holds(run: Any, trial: str) -> None:
     assert [v["name"] for v in found.verdicts if not v["passed"]] == []
 
 
+@pytest.mark.long
 def test_a_slower_sail_servo_deviates_more(run: Any) -> None:
     """Published: less than 1 degree. Computed: 3.03, 1.53, 0.79 at 30, 60 and 120 deg/s."""
     for rate, deviation in ((30, 3.03), (60, 1.53), (120, 0.79)):
@@ -122,7 +123,8 @@ def assert_gusts(run: Any, course: int, seed: int, engine: str) -> None:
     assert found.signals["wind.speed"].max() > 6.0
 
 
-@pytest.mark.parametrize("course", [pytest.param(55, marks=pytest.mark.long), 60])
+@pytest.mark.long
+@pytest.mark.parametrize("course", [55, 60])
 def test_in_gusts_the_limit_keeps_the_boat_upright(run: Any, course: int) -> None:
     assert_gusts(run, course, 15, "direct")
 

@@ -73,6 +73,7 @@ def reference(name: str) -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
+@pytest.mark.long
 def test_in_process_gives_the_same_bytes_for_all_ten(pads: Cases, tmp_path: Path) -> None:
     run_campaign(load_campaign("hydrone-open-pads"), tmp_path / "direct", engine="direct")
     for case in pads.index:

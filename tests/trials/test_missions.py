@@ -188,6 +188,7 @@ def test_gloria_holds_in_a_current_and_loiters(tmp_path):
         assert bearings[-1] - bearings[0] > 2 * np.pi
 
 
+@pytest.mark.long
 def test_the_mariner_keeps_her_heading_in_hold_and_turns_by_her_rudder(tmp_path):
     craft = CRAFTS["mariner"]
     with at_sea(craft, tmp_path) as v:

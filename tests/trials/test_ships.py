@@ -27,7 +27,13 @@ def run(name, folder, **settings):
     return load_run(run_trial(load_trial(name).changed(settings, "test"), folder).folder)
 
 
-@pytest.mark.parametrize("name", SHIPS)
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=pytest.mark.long if name == "mariner-chart-plotter" else ())
+        for name in SHIPS
+    ],
+)
 def test_every_criterion_holds(name, tmp_path):
     found = run(name, tmp_path / "run")
     assert found.verdicts

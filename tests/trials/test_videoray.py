@@ -53,9 +53,8 @@ def test_faster_than_the_limit_it_porpoises(share, least, most, tmp_path):
     assert least <= pitch.max() <= most
 
 
-@pytest.mark.parametrize(
-    "seed", [1, *(pytest.param(seed, marks=pytest.mark.long) for seed in range(2, 21))]
-)
+@pytest.mark.long
+@pytest.mark.parametrize("seed", range(1, 21))
 def test_on_its_tether_it_holds_depth_and_heading(seed, tmp_path):
     found = run("videoray-tethered-taut", tmp_path / "run", engine="fmu", seed=seed)
     assert [v["passed"] for v in found.verdicts] == [True, True]

@@ -63,19 +63,19 @@ def test_the_component_gives_what_guidance_takes(name):
 
 def test_times_are_those_of_the_way():
     bench = mission(
-        one(at=north_of(40)),
+        one(at=north_of(20)),
         one(SPEED, 1.0, 2.0, frame=MISSION_FRAME, at=(0, 0)),
-        one(16, 10.0, at=north_of(100)),
+        one(16, 10.0, at=north_of(50)),
         one(DELAY, 5.0, frame=MISSION_FRAME, at=(0, 0)),
         one(RETURN, frame=MISSION_FRAME, at=(0, 0)),
     )
-    reached, guided = sail(bench, 200.0)
+    reached, guided = sail(bench, 85.0)
     # Distances less the radius of acceptance; 0.5 s for the instants that everything takes.
-    assert reached[1] == pytest.approx(39.0, abs=0.5)
-    assert reached[3] == pytest.approx(reached[1] + 60.0 / 2.0 + 10.0, abs=0.5)
+    assert reached[1] == pytest.approx(19.0, abs=0.5)
+    assert reached[3] == pytest.approx(reached[1] + 30.0 / 2.0 + 10.0, abs=0.5)
     assert reached[4] == pytest.approx(reached[3] + 5.0, abs=0.5)
     # Back at 2 m/s, after a turn by 180 degrees: from 1 m before the waypoint to 1 m before home.
-    assert reached[5] == pytest.approx(reached[4] + 98.0 / 2.0, abs=1.5)
+    assert reached[5] == pytest.approx(reached[4] + 48.0 / 2.0, abs=1.5)
     assert bench.node.missions.leg.number == guided.get("reached")
 
 
