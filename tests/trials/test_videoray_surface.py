@@ -52,7 +52,11 @@ def test_the_coupled_rig_follows_the_reference(case, variant, tmp_path):
 
 @pytest.mark.parametrize(
     ("campaign", "passing"),
-    [("rejection", 3), ("rejection-table75", 3), ("rejection-table81", 4)],
+    [
+        ("rejection", 3),
+        pytest.param("rejection-table75", 3, marks=pytest.mark.long),
+        pytest.param("rejection-table81", 4, marks=pytest.mark.long),
+    ],
 )
 def test_campaigns_cover_the_table_of_rejections(campaign, passing, tmp_path):
     run_campaign(load_campaign(f"videoray-surface-{campaign}"), tmp_path / "out", engine="direct")
@@ -62,6 +66,7 @@ def test_campaigns_cover_the_table_of_rejections(campaign, passing, tmp_path):
     assert sum(all(v["passed"] for v in found.verdicts) for found in runs) == passing
 
 
+@pytest.mark.long
 def test_heading_is_held_up_to_the_munk_limit(tmp_path):
     """What docs/vehicles/videoray-control.md says of it."""
     found = run("videoray-hold-pull", tmp_path / "run")
