@@ -82,8 +82,8 @@ def test_the_record_is_the_same_whoever_is_isolated(engine, counts, tmp_path: Pa
         ('set = { how = "segfault" }', "boat: its process was ended by SIGSEGV in step(t = 0.3 s"),
         ('set = { how = "exit" }', "boat: its process exited with status 3 in step(t = 0.3 s"),
         (
-            'timeout = "1 s", set = { how = "spin" }',
-            "boat: its process was ended for not answering within 1 s (the component's key "
+            'timeout = "4 s", set = { how = "spin" }',
+            "boat: its process was ended for not answering within 4 s (the component's key "
             "'timeout') in step(t = 0.3 s",
         ),
     ],

@@ -258,9 +258,8 @@ void report(Print &to) {
 // ---------------------------------------------------------------- control
 
 void navigate() {
-  if (mode == MARKED && haveFix) {
-    const float *next = MARKS[mark % MARK_COUNT];  // round and round
-    float n = next[0] - north, e = next[1] - east;
+  if (mode == MARKED && haveFix && mark < MARK_COUNT) {  // after the last one she sails on
+    float n = MARKS[mark][0] - north, e = MARKS[mark][1] - east;
     if (n * n + e * e < MARK_RADIUS * MARK_RADIUS) {
       mark++;
     } else {

@@ -1,12 +1,14 @@
 """The same sketch in both back ends: the firmware on an emulated AVR is the judge of the host's."""
 
 import re
+from pathlib import Path
 
 import pytest
 
 from .bench import Bench, write_sketch
 
 BACKENDS = ("host", "simavr")
+SKETCHES = Path(__file__).parent / "sketches"
 
 SKETCH = r"""
 #include <EEPROM.h>
@@ -159,3 +161,17 @@ def test_bytes_leave_at_the_baud_rate(tmp_path, backend):
         assert re.match(rb"(0123456789)+", bench.said[0])
         bits = 10 if backend == "host" else 11  # simavr counts a parity bit
         assert len(bench.said[0]) == pytest.approx(9600 / bits, rel=0.02)
+
+
+@pytest.mark.parametrize("name", ["library", "language"])
+def test_they_print_the_same(name):
+    """Firmware of Debian's core and avr-libc is the judge of what the host's API says."""
+    printed = []
+    for backend in ("host", "simavr"):
+        with Bench(SKETCHES / name, backend, uarts="0 57600", wires="0x68 mpu6050") as bench:
+            bench.run(0.4)
+            bench.hear(0, b"noise$-12.75,42,abc*xyz rest\nq")
+            bench.run(2.0)
+            printed.append(bench.said[0].decode().splitlines())
+    assert printed[0] == printed[1]
+    assert len(printed[0]) > 70

@@ -19,13 +19,22 @@ LIMITS = (
 
 _BINARY = re.compile(r"B[01]{1,8}")
 _SUFFIX = re.compile(r"(?P<number>(?:0[xX][0-9a-fA-F']+|0[bB][01']+|[0-9']+))(?P<suffix>[uUlL]+)")
+_NAMES = {
+    "double": "float",
+    **{f"{u}INT_{end}": f"{u}SHRT_{end}" for u in ("", "U") for end in ("MAX", "MIN")},
+    **{f"{u}LONG_{end}": f"{u}INT_{end}" for u in ("", "U") for end in ("MAX", "MIN")},
+    **{f"DBL_{what}": f"FLT_{what}" for what in ("MAX", "MIN", "EPSILON", "DIG", "MANT_DIG")},
+    **{f"PRI{each}32": f'"l{each}"' for each in "diuoxX"},
+}
+"""Types, limits and formats by what they are here."""
 _INTEGERS = {"int", "long", "short", "unsigned", "signed"}
 
 
 def narrowed(source: str) -> str:
     """Return C++ in which int has 16 bits, long 32, and double is float; lines stay as they are.
 
-    int becomes short, long int, long long stays; suffixes of numbers, and B1010, likewise.
+    int becomes short, long int, long long stays; suffixes of numbers, B1010, limits and formats
+    likewise.
     """
     found = list(tokens(source))
     out = [_single(token) for token in found]
@@ -64,9 +73,9 @@ def _integer(words: list[str]) -> str:
 
 def _single(token: Token) -> str:
     if token.kind == "word":
-        if token.text == "double":
-            return "float"
-        return f"0b{token.text[1:]}" if _BINARY.fullmatch(token.text) else token.text
+        if _BINARY.fullmatch(token.text):
+            return f"0b{token.text[1:]}"
+        return _NAMES.get(token.text, token.text)
     if token.kind == "number" and (match := _SUFFIX.fullmatch(token.text)):
         suffix = match["suffix"].lower()
         long = "" if suffix.count("l") < 2 else "ll"

@@ -10,8 +10,31 @@
 #define EEPROM_SIZE 1024
 #endif
 
+/* One byte of it, as EEPROM[at] gives. */
+class EERef {
+public:
+    explicit EERef(int at) : at_(at) {}
+    operator uint8_t() const;
+    EERef &operator=(uint8_t value);
+    EERef &operator=(const EERef &other) { return *this = (uint8_t)other; }
+    EERef &operator+=(uint8_t value) { return *this = (uint8_t)(*this + value); }
+    EERef &operator-=(uint8_t value) { return *this = (uint8_t)(*this - value); }
+    EERef &operator|=(uint8_t value) { return *this = (uint8_t)(*this | value); }
+    EERef &operator&=(uint8_t value) { return *this = (uint8_t)(*this & value); }
+    EERef &operator^=(uint8_t value) { return *this = (uint8_t)(*this ^ value); }
+    EERef &operator++() { return *this += 1; }
+    EERef &operator--() { return *this -= 1; }
+    uint8_t operator++(int) { uint8_t before = *this; ++*this; return before; }
+    uint8_t operator--(int) { uint8_t before = *this; --*this; return before; }
+    EERef &update(uint8_t value) { return *this = value; }
+
+private:
+    int at_;
+};
+
 class EEPROMClass {
 public:
+    EERef operator[](int at) { return EERef(at); }
     uint8_t read(int at);
     void write(int at, uint8_t value);
     void update(int at, uint8_t value) { if (read(at) != value) write(at, value); }
@@ -21,5 +44,8 @@ public:
 };
 
 extern EEPROMClass EEPROM;
+
+inline EERef::operator uint8_t() const { return EEPROM.read(at_); }
+inline EERef &EERef::operator=(uint8_t value) { EEPROM.update(at_, value); return *this; }
 
 #endif

@@ -14,7 +14,7 @@ public:
     String(const std::string &text) : text_(text) {}
     String(char c) : text_(1, c) {}
     String(unsigned char v, unsigned char base = 10) : String((unsigned long)v, base) {}
-    String(short v, unsigned char base = 10) : String((long)v, base) {}
+    String(short v, unsigned char base = 10) : String(base == 10 ? (long)v : (long)(unsigned short)v, base) {}
     String(unsigned short v, unsigned char base = 10) : String((unsigned long)v, base) {}
     String(int v, unsigned char base = 10) : String((long)v, base) {}
     String(unsigned v, unsigned char base = 10) : String((unsigned long)v, base) {}
@@ -26,6 +26,10 @@ public:
     bool reserve(unsigned size) { text_.reserve(size); return true; }
     unsigned length() const { return (unsigned)text_.size(); }
     const char *c_str() const { return text_.c_str(); }
+    char *begin() { return &text_[0]; }
+    char *end() { return begin() + length(); }
+    const char *begin() const { return c_str(); }
+    const char *end() const { return c_str() + length(); }
     char charAt(unsigned at) const { return at < text_.size() ? text_[at] : 0; }
     void setCharAt(unsigned at, char c) { if (at < text_.size()) text_[at] = c; }
     char operator[](unsigned at) const { return charAt(at); }
@@ -67,6 +71,7 @@ public:
     void trim();
     int32_t toInt() const { return (int32_t)atol(c_str()); }
     float toFloat() const { return (float)atof(c_str()); }
+    float toDouble() const { return toFloat(); }
     void toCharArray(char *to, unsigned size, unsigned from = 0) const;
     void getBytes(unsigned char *to, unsigned size, unsigned from = 0) const { toCharArray((char *)to, size, from); }
 

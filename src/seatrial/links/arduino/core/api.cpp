@@ -9,7 +9,15 @@ using machine::charge;
 /* ------------------------------------------------------------------ time */
 
 uint32_t micros() { charge(50); return (uint32_t)(machine::now / 64 * 4); }
-uint32_t millis() { charge(30); return (uint32_t)(machine::now / 16000); }
+
+/* The board's timer overflows every 1.024 ms; every 42 times or so it counts two. */
+uint32_t millis()
+{
+    charge(30);
+    uint64_t overflows = machine::now / 16384;
+    return (uint32_t)(overflows + overflows * 3 / 125);
+}
+
 void delay(uint32_t ms) { machine::pass_until(machine::now + ms * 16000ull); }
 void delayMicroseconds(unsigned us) { machine::pass_until(machine::now + us * 16ull); }
 void yield() { charge(8); }

@@ -4,6 +4,7 @@
 
 using machine::charge;
 
+#undef sprintf
 #undef snprintf
 #undef vsnprintf
 
@@ -86,7 +87,7 @@ int sketch_sprintf(char *to, const char *format, ...)
 char *dtostrf(double value, signed char width, unsigned char precision, char *to)
 {
     charge(1500);
-    ::sprintf(to, "%*.*f", width, precision, (double)(float)value);
+    sprintf(to, "%*.*f", width, precision, (double)(float)value);
     return to;
 }
 

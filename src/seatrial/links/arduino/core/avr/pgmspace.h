@@ -25,4 +25,10 @@
 #define strcasecmp_P strcasecmp
 #define strlen_P strlen
 #define strstr_P strstr
+#define strchr_P strchr
+#define strrchr_P strrchr
+#define strncasecmp_P strncasecmp
+#define strncat_P strncat
+#define strnlen_P strnlen
+#define memchr_P memchr
 #endif

@@ -1,0 +1,4 @@
+#pragma once
+#include <Arduino.h>
+#define HELP 11
+long helped(int x);
