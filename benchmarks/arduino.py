@@ -12,7 +12,6 @@ import argparse
 import platform
 import resource
 import statistics
-import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -22,13 +21,13 @@ from seatrial.cosim.system import assemble
 from seatrial.links.arduino.component import Arduino
 from seatrial.links.text import encode
 
-PAGE = Path(__file__).parents[1] / "docs" / "arduino.md"
+from .pages import addition, write_measured
+
 SKETCH = Path(__file__).parents[1] / "harness" / "firmware" / "gloria_autopilot"
 STEP_NS = 20_000_000
 HEADING = b"$HEHDT,100.0,T*2E\r\n"
 FIX = b"$GPRMC,120000.00,A,2251.7200,S,04313.3800,W,3.00,100.0,010126,,,A*6B\r\n"
 WIRES = "9 servo 1; 10 servo 2; 11 servo 3; A0 vane 5; 2 anemometer 1; 0x68 mpu6050"
-ADDITIONS = 1_000_000
 
 
 def spent() -> float:
@@ -77,14 +76,6 @@ def sailing(backend: str, seconds: float) -> float:
     return spent() - begin
 
 
-def addition() -> float:
-    """Return the time of one addition in a loop, s."""
-    begin, total = time.process_time(), 0
-    for k in range(ADDITIONS):
-        total += k
-    return (time.process_time() - begin) / ADDITIONS
-
-
 ROWS: dict[str, tuple[Callable[[str, float], float], str, float]] = {
     "`host`, the board alone": (alone, "host", 60.0),
     "`simavr`, the board alone": (alone, "simavr", 10.0),
@@ -124,9 +115,7 @@ def main() -> None:
     )
     print(text)
     if options.write:
-        begin, end = "<!-- measured -->\n", "<!-- end of measured -->"
-        before, _, rest = PAGE.read_text("utf-8").partition(begin)
-        PAGE.write_text(f"{before}{begin}\n{text}\n\n{end}{rest.partition(end)[2]}", "utf-8")
+        write_measured("arduino.md", text)
 
 
 if __name__ == "__main__":

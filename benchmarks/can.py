@@ -26,12 +26,12 @@ from seatrial.links.can.frame import Frame
 from seatrial.links.can.node import CanNode
 from seatrial.links.can.simulated_bus import SimulatedBus
 
-PAGE = Path(__file__).parents[1] / "docs" / "can.md"
+from .pages import addition, write_measured
+
 SENDERS = 10
 BETWEEN_NS = 550_000
 """Between requests; frames last 524 to 576 us."""
 STEP_NS = 10_000_000
-ADDITIONS = 1_000_000
 RIG = """
 step = "10 ms"
 
@@ -126,14 +126,6 @@ def rig(count: int, engine: str) -> float:
     return spent * count / float(sent)
 
 
-def addition() -> float:
-    """Return the time of one addition in a loop, s."""
-    begin, total = time.process_time(), 0
-    for k in range(ADDITIONS):
-        total += k
-    return (time.process_time() - begin) / ADDITIONS
-
-
 def logged(count: int) -> float:
     """Return the time of the component with its logs, s."""
     with tempfile.TemporaryDirectory() as folder:
@@ -184,9 +176,7 @@ def main() -> None:
     text += table(options.rounds, options.frames)
     print(text)
     if options.write:
-        begin, end = "<!-- measured -->\n", "<!-- end of measured -->"
-        before, _, rest = PAGE.read_text("utf-8").partition(begin)
-        PAGE.write_text(f"{before}{begin}\n{text}\n\n{end}{rest.partition(end)[2]}", "utf-8")
+        write_measured("can.md", text)
 
 
 if __name__ == "__main__":

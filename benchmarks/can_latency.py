@@ -18,8 +18,9 @@ from typing import Any
 from seatrial.trials.run import run_trial
 from seatrial.trials.trial import load_trial
 
-DOCS = Path(__file__).parents[1] / "docs"
-PAGE, IMAGE = DOCS / "can.md", DOCS / "images" / "can-latency.svg"
+from .pages import DOCS, write_measured
+
+IMAGE = DOCS / "images" / "can-latency.svg"
 OWN = 0.1
 """Load of the rig's own messages."""
 LOADS = [k / 10 for k in range(1, 13)]
@@ -138,9 +139,7 @@ def main() -> None:
     text = table(runs)
     print(text)
     if options.write:
-        begin, end = "<!-- latencies -->\n", "<!-- end of latencies -->"
-        before, _, rest = PAGE.read_text("utf-8").partition(begin)
-        PAGE.write_text(f"{before}{begin}\n{text}\n\n{end}{rest.partition(end)[2]}", "utf-8")
+        write_measured("can.md", text, "latencies")
         IMAGE.write_text(figure(runs), "utf-8")
 
 

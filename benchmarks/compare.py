@@ -27,8 +27,9 @@ from seatrial.cosim.rig import load_rig
 from seatrial.cosim.ssp.writing import Experiment, write_ssp
 from seatrial.cosim.system import assemble
 
+from .pages import write_measured
+
 HERE = Path(__file__).parent
-PAGE = HERE.parent / "docs" / "performance.md"
 US = "seatrial"
 ENGINES = (
     US,
@@ -197,9 +198,7 @@ def main() -> None:
     text = "\n\n".join([f"Python {platform.python_version()}, {options.rounds} rounds.", *tables])
     print(text)
     if options.write:
-        begin, end = "<!-- measured -->\n", "<!-- end -->"
-        before, _, rest = PAGE.read_text("utf-8").partition(begin)
-        PAGE.write_text(f"{before}{begin}\n{text}\n\n{end}{rest.partition(end)[2]}", "utf-8")
+        write_measured("performance.md", text)
 
 
 if __name__ == "__main__":

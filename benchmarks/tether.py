@@ -12,7 +12,6 @@ import platform
 import statistics
 import time
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 
@@ -22,7 +21,8 @@ from seatrial.craft.cable_shape import static_shape
 from seatrial.craft.cable_solver import Chain, implicit_step
 from seatrial.craft.tether import Tether
 
-PAGE = Path(__file__).parents[1] / "docs" / "tether.md"
+from .pages import write_measured
+
 SEGMENTS = (10, 20, 50, 100, 200)
 STEP = 0.01
 
@@ -100,9 +100,7 @@ def main() -> None:
     text += table(options.rounds, options.steps)
     print(text)
     if options.write:
-        begin, end = "<!-- measured -->\n", "<!-- end of measured -->"
-        before, _, rest = PAGE.read_text("utf-8").partition(begin)
-        PAGE.write_text(f"{before}{begin}\n{text}\n\n{end}{rest.partition(end)[2]}", "utf-8")
+        write_measured("tether.md", text)
 
 
 if __name__ == "__main__":
