@@ -17,7 +17,7 @@ const unsigned long CONTROL_MS = 50, TELEMETRY_MS = 500;
 
 // Where the marks are counted from, 1e-7 degrees, and the marks, m north and east of it.
 const long HOME_LAT = -228620000L, HOME_LON = -432230000L;
-const float MARKS[][2] = {{-34.7, 197.0}, {-69.5, 0.0}, {0.0, 0.0}};
+const float MARKS[][2] = {{-34.7, 197.0}, {-20.0, 0.0}, {60.0, 60.0}};
 const int MARK_COUNT = sizeof(MARKS) / sizeof(MARKS[0]);
 const float MARK_RADIUS = 8.0;
 
@@ -35,7 +35,7 @@ float heading = 0, headingWanted = 0, headingTarget = 0, integral = 0;
 float speedOver = 0, courseOver = 0, north = 0, east = 0;
 float windSpeed = 0, windAngle = PI;      // apparent; where it blows to from the bow
 float windNorth = 0, windEast = 0;        // true; where it blows to
-float yawRate = 0, heel = 0, rudder = 0, sail = 0;
+float yawRate = 0, rollRate = 0, heel = 0, rudder = 0, sail = 0;
 bool haveHeading = false, haveFix = false, haveWind = false, saturated = false;
 int mark = 0, nmeaBad = 0;
 volatile unsigned int cupPulses = 0;
@@ -111,11 +111,11 @@ void readMotion() {
   readInt();
   int ay = readInt(), az = readInt();
   readInt();
+  rollRate = readInt() / 131.0 * DEG_TO_RAD;
   readInt();
-  readInt();
-  int gz = readInt();
-  yawRate = gz / 131.0 * DEG_TO_RAD;
-  heel += 0.05 * (atan2(-(float)ay, -(float)az) - heel);
+  yawRate = readInt() / 131.0 * DEG_TO_RAD;
+  heel += rollRate * CONTROL_MS / 1000.0;  // what the accelerometer says is right only slowly
+  heel += 0.02 * (atan2(-(float)ay, -(float)az) - heel);
 }
 
 void readWind() {
@@ -312,7 +312,7 @@ void trim() {
     float away = wrapped(heading - atan2(windEast, windNorth));  // from dead downwind
     if (abs(away) > 5.0 * DEG_TO_RAD) side = away > 0 ? 1 : -1;
     sail = sailFor(abs(away));
-    float lee = abs(heel) - 20.0 * DEG_TO_RAD;
+    float lee = abs(heel + rollRate) - 28.0 * DEG_TO_RAD;  // a second ahead
     if (lee > 0) sail = constrain(sail + lee, 0.0, HALF_PI);
   }
   sailServo.writeMicroseconds(1500 + (int)round(side * sail * (500.0 / PI)));
