@@ -15,6 +15,7 @@ from seatrial.links.videoray.topside import Pro4Topside
 from seatrial.trials.run import Hooks, run_trial
 from seatrial.trials.run_folder import load_run
 from seatrial.trials.trial import load_trial
+from tests.peers.running import running, wait_for
 
 WAIT_S = 120.0
 REPLAY = """
@@ -106,35 +107,21 @@ def test_the_loop_is_twenty_times_faster_than_real_time(tmp_path):
 @pytest.mark.parametrize("seconds", [20, pytest.param(600, marks=pytest.mark.long)])
 def test_a_topside_over_a_terminal_in_real_time(seconds, tmp_path):
     """No cycle is missed, the vehicle holds, and stops when the topside dies; then recovers."""
-    trial = load_trial("videoray-stream-live").changed(
-        {"gateway.links": f"pty:{tmp_path}/rov", "stop": f"{3 * seconds + 120} s"}, "test"
-    )
-    stop = threading.Event()
-    hooks = Hooks(stop_requested=stop.is_set)
-    done = []
-    thread = threading.Thread(
-        target=lambda: done.append(run_trial(trial, tmp_path / "run", engine="direct", hooks=hooks))
-    )
-    thread.start()
-    try:
-        deadline = time.monotonic() + WAIT_S
-        while not (tmp_path / "rov").exists():
-            assert time.monotonic() < deadline
-            assert thread.is_alive()
-            time.sleep(0.05)
+    place, stop = tmp_path / "rov", f"{3 * seconds + 120} s"
+    with running(
+        "videoray-stream-live", tmp_path, gateway__links=f"pty:{place}", stop=stop
+    ) as live:
+        wait_for(lambda: live.is_running and place.exists(), "the trial runs", WAIT_S)
         # Three times at most: another program on a busy machine may take a cycle, but not each time.
         for _ in range(3):
-            trips, missed = drive(f"serial:{tmp_path}/rov:115200", seconds)
+            trips, missed = drive(f"serial:{place}:115200", seconds)
             if not missed:
                 break
         time.sleep(3.0)  # dead: the watchdog acts
-        drive(f"serial:{tmp_path}/rov:115200", 3.0)
-    finally:
-        stop.set()
-        thread.join(WAIT_S)
+        drive(f"serial:{place}:115200", 3.0)
+        found = live.stop()
     print(f"round trips: {np.percentile(trips, [50, 90, 99, 100]) * 1e3} ms, missed {missed}")
     assert missed == 0
-    found = load_run(done[0].folder)
     commanded = found.signals["stream.commanded"]
     changes = np.flatnonzero(np.diff(commanded.astype(int)))
     assert len(changes) >= 3  # on, off, on again
