@@ -111,14 +111,14 @@ def test_two_hours_of_gusts_and_no_drift(tmp_path):
     """The sketch's clock, in its telemetry, and the trial's."""
     need("host")
     trial = load_trial("gloria-sketch").changed({"stop": "7200 s"}, "test")
-    record = trial.file.record.model_copy(update={"signals": ["mega.tx.uart3"], "every": "1 s"})
+    # The radio's line: a report takes 8 ms there, so a step of 20 ms has it whole.
+    record = trial.file.record.model_copy(update={"signals": ["mega.tx.uart2"], "every": "1 s"})
     trial = replace(trial, file=trial.file.model_copy(update={"record": record}))
     result = run_trial(trial, tmp_path / "run", engine="direct")
     assert result.status == "complete", result.error
     found = []
     for row in rows(result):
-        for when, data in decode(row["mega.tx.uart3"])[1]:
+        for when, data in decode(row["mega.tx.uart2"])[1]:
             found += [(when, match) for match in re.findall(rb"\$GLO,(\d+),", data)]
-    when, clock = found[-1]
-    assert when / 1e9 > 7000
-    assert int(clock) / 1e3 == pytest.approx(when / 1e9, abs=0.05)
+    assert len(found) > 7000
+    assert max(abs(int(clock) / 1e3 - when / 1e9) for when, clock in found) < 0.05
