@@ -74,6 +74,7 @@ def test_what_is_no_firmware_is_refused(tmp_path):
     board.set("firmware", str(tmp_path / "one.hex"))
     board.initialise()
     board.begin()
+    os.waitid(os.P_ALL, 0, os.WEXITED | os.WNOWAIT)  # what it says must outlive its program
     with pytest.raises(SimulationError, match="cannot load the firmware"):
         board.advance(0.0, 0.02)
     board.close()

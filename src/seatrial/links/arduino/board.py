@@ -77,7 +77,9 @@ class Board:
         """
         request = struct.pack("<IQ", 8 + len(inputs.data), target) + inputs.data
         try:
-            self._write(request)
+            # A program that could not begin has said why and is gone before it is asked.
+            with contextlib.suppress(BrokenPipeError):
+                self._write(request)
             size = int.from_bytes(self._read(4), "little")
             answer = self._read(size)
         except (OSError, EOFError):
