@@ -19,6 +19,8 @@ NOISE = Frame(0, bytes(8))
 """What a babbling node sends."""
 _BEFORE_ALL = -1
 """Its priority: nothing goes before it."""
+NEVER = 1 << 62
+"""Later than any simulated time, ps."""
 
 
 @dataclass(slots=True, order=True)
@@ -67,7 +69,7 @@ class Controller:
     sequences: int = 0
     """Off the bus: sequences of 11 recessive bits seen since."""
     back_ps: int = 0
-    """When it last came onto the bus."""
+    """When it last came onto the bus: it hears what began since. `NEVER` while it is off it."""
     suspended_until_ps: int = 0
     """Error passive: no start before this, after a frame of its own."""
     queue: deque[Request] = field(default_factory=deque)
@@ -115,7 +117,7 @@ class Controller:
     def ask(self, request: Request) -> None:
         """Take a request in, or drop it."""
         self.asked += 1
-        if not self.takes_part or request.asked_ps < self.back_ps:
+        if self.listens_only or request.asked_ps < self.back_ps:
             self.dropped += 1
         elif self._occupied < self.mailboxes:
             heapq.heappush(self.ready, request)
@@ -161,6 +163,7 @@ class Controller:
         self.tec += more
         if self.tec > BUS_OFF_ABOVE:
             self.tec, self.off, self.sequences = BUS_OFF_ABOVE + 1, True, 0
+            self.back_ps = NEVER
             self.forget()
 
     def failed_to_receive(self, more: int = 1) -> None:
@@ -169,7 +172,7 @@ class Controller:
 
     def unplug(self) -> None:
         """Leave the bus; what waited is dropped."""
-        self.plugged = False
+        self.plugged, self.back_ps = False, NEVER
         self.forget()
 
     def restart(self, now_ps: int) -> None:

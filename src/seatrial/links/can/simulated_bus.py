@@ -303,7 +303,7 @@ class SimulatedBus:
         """Say if anybody acknowledges the frame."""
         silent = (*attempt.senders, *attempt.gave_way, attempt.deaf)
         for node, each in enumerate(self.controllers):
-            if each.takes_part and node not in silent and each.back_ps <= attempt.start_ps:
+            if each.back_ps <= attempt.start_ps and not each.listens_only and node not in silent:
                 return True
         return False
 
@@ -377,7 +377,7 @@ class SimulatedBus:
             self._suspend(each)
         apart = (*senders, *attempt.gave_way)
         for node, each in enumerate(self.controllers):
-            if not each.plugged or each.off or each.back_ps > start or node in apart:
+            if each.back_ps > start or node in apart:
                 continue
             if node == deaf:
                 each.lost += 1
@@ -395,7 +395,7 @@ class SimulatedBus:
             if node in attempt.senders:
                 alone = error is Error.ACK and each.passive
                 self._failed(node, 0 if alone else 8)
-            elif each.takes_part and node not in apart and each.back_ps <= attempt.start_ps:
+            elif each.back_ps <= attempt.start_ps and not each.listens_only and node not in apart:
                 each.failed_to_receive(9 if node == attempt.first else 1)
         self.on_broken(Broken(attempt.end_ps, attempt.frame, attempt.senders, error, attempt.first))
 
