@@ -39,6 +39,24 @@ void loop() { say(twice(second(4))); delay(1000); }  // they come later
         assert bench.run(0.1) == b"10\r\n"
 
 
+def test_what_is_meant_for_another_board_does_not_matter(tmp_path):
+    source = """
+#if defined(ESP32)
+#include <WiFi.h>
+#endif
+void setup() { Serial.begin(115200); tell(2, 30, 4); }
+void loop() {}
+void tell(int count, ...) {
+  va_list values;
+  va_start(values, count);
+  for (int i = 0; i < count; i++) Serial.println(va_arg(values, int));
+  va_end(values);
+}
+"""
+    with running(tmp_path, source) as bench:
+        assert bench.run(0.1) == b"30\r\n4\r\n"
+
+
 def test_time_passes_by_the_board_and_by_busy_waits(tmp_path):
     source = """
 volatile bool ticked = false;
@@ -92,6 +110,18 @@ void loop() { delay(20); while (Serial1.available()) Serial.write(Serial1.read()
         ),
         ("#include <avr/sleep.h>\n" + NOTHING, r"one\.ino:1: <avr/sleep\.h>.*simavr"),
         (NOTHING + "ISR(TIMER1_OVF_vect) {}\n", r"one\.ino:3: ISR: .*attachInterrupt"),
+        (
+            "#include <SoftwareSerial.h>\n" + NOTHING,
+            r"one\.ino:1: <SoftwareSerial\.h>.*Serial1 to Serial3",
+        ),
+        (
+            "#ifdef __AVR__\n#include <Ethernet.h>\n#endif\n" + NOTHING,
+            r"one\.ino:2:10: fatal error: (?s:.)*the library of <Ethernet\.h>.*libraries",
+        ),
+        (
+            "#include <Wire.h>\nvoid setup() {\n  Wire.begin(8);\n}\nvoid loop() {}\n",
+            r"one\.ino:3:.*master of its I2C bus",
+        ),
         ("void setup() {\n  int x = y;\n}\nvoid loop() {}\n", r"one\.ino:2:.*'y' was not declared"),
     ],
 )

@@ -12,8 +12,9 @@ from .mcus import Mcu
 from .resources import TEXTS, cached, contents, laid_out
 from .sketch import HEADERS, SOURCES, Sketch, read_source
 from .toolchain import need, version
-from .unsupported import unsupported
+from .unsupported import advice, unsupported
 
+_CORE = ("machine", "api", "avr_libc", "texts", "devices")
 _BASE = ("-std=gnu++17", "-gdwarf-4", "-w", "-fpermissive", "-fno-pie", "-ffp-contract=off")
 _SKETCH = (
     "-O1",
@@ -44,7 +45,7 @@ def build_host(sketch: Sketch, mcu: Mcu) -> Path:
 def _host(sketch: Sketch, mcu: Mcu, file: Path, scratch: Path) -> None:
     place = laid_out()
     common = ["g++", *_BASE, *mcu.defines, f"-I{place / 'core'}", f"-I{place / 'shared'}"]
-    objects = [_core_object(name, mcu, common) for name in ("machine", "api", "texts", "devices")]
+    objects = [_core_object(name, mcu, common) for name in _CORE]
     sources, places = _narrowed_copy(sketch, scratch)
     includes = [f"-I{place}" for place in places]
     for number, source in enumerate(sources):
@@ -95,4 +96,5 @@ def run(command: list[str], name: str) -> None:
     )
     if done.returncode:
         said = "\n".join(done.stderr.splitlines()[:30])
+        said = "\n".join([said, *advice(said)])
         raise InputError(f"{name} does not compile:\n{said}")

@@ -20,14 +20,14 @@ LIMITS = (
 _BINARY = re.compile(r"B[01]{1,8}")
 _SUFFIX = re.compile(r"(?P<number>(?:0[xX][0-9a-fA-F']+|0[bB][01']+|[0-9']+))(?P<suffix>[uUlL]+)")
 _NAMES = {
-    "double": "float",
     **{f"{u}INT_{end}": f"{u}SHRT_{end}" for u in ("", "U") for end in ("MAX", "MIN")},
     **{f"{u}LONG_{end}": f"{u}INT_{end}" for u in ("", "U") for end in ("MAX", "MIN")},
     **{f"DBL_{what}": f"FLT_{what}" for what in ("MAX", "MIN", "EPSILON", "DIG", "MANT_DIG")},
     **{f"PRI{each}32": f'"l{each}"' for each in "diuoxX"},
 }
 """Types, limits and formats by what they are here."""
-_INTEGERS = {"int", "long", "short", "unsigned", "signed"}
+_TYPES = {"int", "long", "short", "unsigned", "signed", "char", "double"}
+_QUALIFIERS = {"const", "volatile"}
 
 
 def narrowed(source: str) -> str:
@@ -40,24 +40,24 @@ def narrowed(source: str) -> str:
     out = [_single(token) for token in found]
     at = 0
     while at < len(found):
-        if found[at].text not in _INTEGERS:
+        if found[at].text not in _TYPES:
             at += 1
             continue
         run = _run(found, at)
-        out[run[0]] = _integer([found[i].text for i in run])
+        out[run[0]] = _narrow([found[i].text for i in run])
         out[run[0] + 1 : run[-1] + 1] = [""] * (run[-1] - run[0])
         at = run[-1] + 1
     return "".join(out)
 
 
 def _run(found: list[Token], at: int) -> list[int]:
-    """Return the places of the words of one integer type that begins at ``at``."""
+    """Return the places of the words of one type that begins at ``at``."""
     run = [at]
     while True:
         following = at + 1
         while following < len(found) and found[following].kind == "space":
             following += 1
-        if following >= len(found) or found[following].text not in _INTEGERS:
+        if following >= len(found) or found[following].text not in _TYPES | _QUALIFIERS:
             return run
         if "\n" in "".join(t.text for t in found[at + 1 : following]):
             return run  # a directive ends with its line
@@ -65,10 +65,16 @@ def _run(found: list[Token], at: int) -> list[int]:
         at = following
 
 
-def _integer(words: list[str]) -> str:
-    sign = "unsigned " if "unsigned" in words else "signed " if "signed" in words else ""
+def _narrow(words: list[str]) -> str:
+    """Return a type of the board as one of the computer: ``const unsigned`` ... ``int``."""
+    kept = [word for word in words if word in _QUALIFIERS]
     longs = words.count("long")
-    return sign + ("long long" if longs > 1 else "int" if longs else "short")
+    if "double" in words:
+        return " ".join([*kept, "float"])
+    kept += [word for word in ("unsigned", "signed") if word in words]
+    if "char" in words:
+        return " ".join([*kept, "char"])
+    return " ".join([*kept, "long long" if longs > 1 else "int" if longs else "short"])
 
 
 def _single(token: Token) -> str:

@@ -80,7 +80,7 @@ def _compiler(file: Path, mcu: Mcu, includes: list[Path]) -> list[str]:
     defines = [d for d in mcu.defines if not d.startswith("-D__")]
     compiler = ["avr-gcc"] if file.suffix in (".c", ".S") else ["avr-g++", *_CXX]
     # Debian's core lacks a constant that avr-gcc 5 does not define in C++.
-    more = ["-DARDUINO=10819", "-DARDUINO_ARCH_AVR", "-DDECIMAL_DIG=__DECIMAL_DIG__"]
+    more = ["-DDECIMAL_DIG=__DECIMAL_DIG__"]
     return [*compiler, f"-mmcu={mcu.name}", *_FLAGS, *more, *defines, *(f"-I{p}" for p in places)]
 
 

@@ -27,9 +27,11 @@ class Mcu:
     @property
     def defines(self) -> tuple[str, ...]:
         """Macros for the compiler."""
-        if self.uarts == 1:
-            return ("-DBOARD_UNO", "-DARDUINO_AVR_UNO", "-D__AVR_ATmega328P__")
-        return ("-DBOARD_MEGA", "-DARDUINO_AVR_MEGA2560", "-D__AVR_ATmega2560__")
+        board = "UNO" if self.uarts == 1 else "MEGA"
+        name = "UNO" if self.uarts == 1 else "MEGA2560"
+        chip = "ATmega328P" if self.uarts == 1 else "ATmega2560"
+        arduino = ("-DARDUINO=10819", "-DARDUINO_ARCH_AVR", f"-DARDUINO_AVR_{name}")
+        return (f"-DBOARD_{board}", *arduino, "-D__AVR__", f"-D__AVR_{chip}__")
 
     def pin(self, text: str) -> int:
         """Return a pin's number from its name: ``9``, ``D9``, ``A0``. Raises InputError."""

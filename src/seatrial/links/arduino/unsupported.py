@@ -41,34 +41,58 @@ _WORDS = {
     "portOutputRegister": "ports as registers: digitalWrite drives a pin",
     "digitalPinToPort": "ports as registers: digitalWrite drives a pin",
     "digitalPinToBitMask": "ports as registers: digitalWrite drives a pin",
-    "serialEvent": "calls between loops: read Serial in loop()",
     "__heap_start": "the board's memory",
     "__brkval": "the board's memory",
 }
 
+_ABSENT = re.compile(r"fatal error: (\S+): No such file")
+_UNDECLARED = re.compile(r"error: '(\w+)' was not declared")
+
 
 def unsupported(sketch: Sketch) -> list[str]:
-    """Return what is unsupported, a line each: ``FILE:LINE: WHAT: what to do``."""
-    files = [*sketch.tabs, *sketch.others, *sketch.library_sources()]
+    """Return what is unsupported, a line each: ``FILE:LINE: WHAT: what to do``.
+
+    What lies between #if and #endif is left to the compiler: it may be for another board.
+    """
     problems = []
-    for file in files:
-        source = read_source(file)
+    for file in [*sketch.tabs, *sketch.others, *sketch.library_sources()]:
+        source = _unconditional(read_source(file))
         for header, line in included(source):
             if not _has(sketch, file, header):
                 problems.append(f"{file}:{line}: {_missing(header)}")
         for token in tokens(source):
-            if token.kind != "word":
-                continue
-            if _REGISTERS.fullmatch(token.text):
-                problems.append(
-                    f"{file}:{token.line}: {token.text} is a register of the AVR: {_ELSE} the "
-                    "Arduino API (digitalWrite, analogWrite, attachInterrupt, ...)"
-                )
-            elif token.text in _WORDS:
-                problems.append(
-                    f"{file}:{token.line}: {token.text}: {_WORDS[token.text]}; {_ELSE} leave it out"
-                )
+            if token.kind == "word" and (what := _unknown(token.text)):
+                problems.append(f"{file}:{token.line}: {what}")
     return problems
+
+
+def advice(said: str) -> list[str]:
+    """Return what to do about a compiler's errors, a line each, as far as that is known."""
+    found = [_missing(header) for header in _ABSENT.findall(said)]
+    found += [what for word in _UNDECLARED.findall(said) if (what := _unknown(word))]
+    return list(dict.fromkeys(found))
+
+
+def _unknown(word: str) -> str:
+    """Return what to do about a word of the AVR's that the host does not know; '' for others."""
+    if _REGISTERS.fullmatch(word):
+        return (
+            f"{word} is a register of the AVR: {_ELSE} the Arduino API (digitalWrite, "
+            "analogWrite, attachInterrupt, ...)"
+        )
+    return f"{word}: {_WORDS[word]}; {_ELSE} leave it out" if word in _WORDS else ""
+
+
+def _unconditional(source: str) -> str:
+    """Return a source without what lies between #if and #endif; lines stay as they are."""
+    lines, depth = source.split("\n"), 0
+    for number, line in enumerate(lines):
+        directive = line.lstrip().lstrip("#").lstrip() if line.lstrip().startswith("#") else ""
+        depth -= directive.startswith("endif")
+        if depth > 0:
+            lines[number] = ""
+        depth += directive.startswith("if")
+    return "\n".join(lines)
 
 
 def _has(sketch: Sketch, file: Path, header: str) -> bool:
@@ -79,6 +103,12 @@ def _has(sketch: Sketch, file: Path, header: str) -> bool:
 
 
 def _missing(header: str) -> str:
+    """Return what to do if there is no such header."""
+    if header == "SoftwareSerial.h":
+        return (
+            "<SoftwareSerial.h>: lines are at the board's UARTs only: use Serial1 to Serial3 of a "
+            "Mega, or leave it out"
+        )
     if header.startswith(("avr/", "util/")):
         return f"<{header}> is of the AVR's hardware: {_ELSE} the Arduino API"
     return (

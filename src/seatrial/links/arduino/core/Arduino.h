@@ -15,13 +15,12 @@
 
 #include "avr/interrupt.h"
 #include "avr/pgmspace.h"
+#include "avr_libc.h"
 
 typedef uint8_t byte;
 typedef bool boolean;
 typedef uint16_t word;
 
-#define ARDUINO 10819
-#define ARDUINO_ARCH_AVR 1
 #ifndef F_CPU
 #define F_CPU 16000000UL
 #endif
@@ -74,6 +73,8 @@ typedef uint16_t word;
 #define bitToggle(value, b) ((value) ^= ((uint32_t)1 << (b)))
 #define bitWrite(value, b, to) ((to) ? bitSet(value, b) : bitClear(value, b))
 #define clockCyclesPerMicrosecond() (F_CPU / 1000000L)
+#define clockCyclesToMicroseconds(cycles) ((cycles) / clockCyclesPerMicrosecond())
+#define microsecondsToClockCycles(us) ((us) * clockCyclesPerMicrosecond())
 
 #ifdef BOARD_MEGA
 enum { A0 = 54, A1, A2, A3, A4, A5, A6, A7, A8, A9, A10, A11, A12, A13, A14, A15 };
@@ -109,24 +110,11 @@ void attachInterrupt(uint8_t interrupt, void (*handler)(), int mode);
 void detachInterrupt(uint8_t interrupt);
 
 int32_t map(int32_t x, int32_t in_min, int32_t in_max, int32_t out_min, int32_t out_max);
+#define random sketch_random
+int32_t random();
 int32_t random(int32_t most);
 int32_t random(int32_t least, int32_t most);
 void randomSeed(uint32_t seed);
-
-/* avr-libc's: an int is 16 bits, l 32, and %f is not there. */
-int sketch_snprintf(char *to, size_t size, const char *format, ...);
-int sketch_sprintf(char *to, const char *format, ...);
-int sketch_vsnprintf(char *to, size_t size, const char *format, va_list values);
-#define snprintf sketch_snprintf
-#define sprintf sketch_sprintf
-#define vsnprintf sketch_vsnprintf
-#define snprintf_P sketch_snprintf
-#define sprintf_P sketch_sprintf
-char *dtostrf(double value, signed char width, unsigned char precision, char *to);
-char *itoa(int value, char *to, int base);
-char *ltoa(long value, char *to, int base);
-char *utoa(unsigned value, char *to, int base);
-char *ultoa(unsigned long value, char *to, int base);
 
 inline bool isDigit(int c) { return isdigit(c); }
 inline bool isAlpha(int c) { return isalpha(c); }
@@ -139,13 +127,22 @@ inline bool isHexadecimalDigit(int c) { return isxdigit(c); }
 inline bool isPunct(int c) { return ispunct(c); }
 inline bool isPrintable(int c) { return isprint(c); }
 inline bool isControl(int c) { return iscntrl(c); }
+inline bool isGraph(int c) { return isgraph(c); }
 inline bool isAscii(int c) { return c >= 0 && c < 128; }
+inline int16_t toAscii(int c) { return (int16_t)(c & 0x7F); }
+inline int16_t toLowerCase(int c) { return (int16_t)tolower(c); }
+inline int16_t toUpperCase(int c) { return (int16_t)toupper(c); }
 inline uint16_t makeWord(uint16_t w) { return w; }
 inline uint16_t makeWord(uint8_t high, uint8_t low) { return (uint16_t)(high << 8 | low); }
 #define word(...) makeWord(__VA_ARGS__)
 
 void setup();
 void loop();
+/* Called after loop() while their UART has received something. */
+void serialEvent() __attribute__((weak));
+void serialEvent1() __attribute__((weak));
+void serialEvent2() __attribute__((weak));
+void serialEvent3() __attribute__((weak));
 
 #include "WString.h"
 

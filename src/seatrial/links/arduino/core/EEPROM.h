@@ -32,8 +32,18 @@ private:
     int at_;
 };
 
+/* The place of a byte of it, for loops over all. */
+struct EEPtr {
+    int at;
+    bool operator!=(const EEPtr &other) const { return at != other.at; }
+    EERef operator*() const { return EERef(at); }
+    EEPtr &operator++() { at++; return *this; }
+};
+
 class EEPROMClass {
 public:
+    EEPtr begin() { return {0}; }
+    EEPtr end() { return {EEPROM_SIZE}; }
     EERef operator[](int at) { return EERef(at); }
     uint8_t read(int at);
     void write(int at, uint8_t value);

@@ -31,6 +31,8 @@ private:
     uint8_t number_;
 };
 
+#define SERIAL_RX_BUFFER_SIZE 64
+#define SERIAL_TX_BUFFER_SIZE 64
 extern HardwareSerial Serial;
 #ifdef BOARD_MEGA
 extern HardwareSerial Serial1, Serial2, Serial3;

@@ -38,8 +38,14 @@ public:
     size_t println() { return write("\r\n"); }
     template <typename T> size_t println(const T &what) { size_t n = print(what); return n + println(); }
     template <typename T> size_t println(const T &what, int how) { size_t n = print(what, how); return n + println(); }
-    int getWriteError() { return 0; }
-    void clearWriteError() {}
+    int16_t getWriteError() { return write_error_; }
+    void clearWriteError() { write_error_ = 0; }
+
+protected:
+    void setWriteError(int error = 1) { write_error_ = (int16_t)error; }
+
+private:
+    int16_t write_error_ = 0;
 };
 
 #endif

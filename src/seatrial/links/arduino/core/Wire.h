@@ -5,13 +5,22 @@
 #include "Arduino.h"
 
 #define BUFFER_LENGTH 32
+#define WIRE_HAS_END 1
+#define WIRE_HAS_TIMEOUT 1
+
+#define AS_SLAVE __attribute__((error("the board is the master of its I2C bus, and nothing there talks to it as a slave: leave it out")))
 
 class TwoWire : public Stream {
 public:
     void begin() {}
+    void begin(int address) AS_SLAVE;
+    void onReceive(void (*handler)(int16_t)) AS_SLAVE;
+    void onRequest(void (*handler)()) AS_SLAVE;
     void end() {}
     void setClock(uint32_t hertz) { clock_ = hertz; }
     void setWireTimeout(uint32_t = 25000, bool = false) {}
+    bool getWireTimeoutFlag() { return false; }
+    void clearWireTimeoutFlag() {}
     void beginTransmission(uint8_t address);
     void beginTransmission(int address) { beginTransmission((uint8_t)address); }
     uint8_t endTransmission(bool stop = true);

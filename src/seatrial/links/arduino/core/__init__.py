@@ -11,6 +11,8 @@ DATA_FILES = (
     "WString.h",
     "Wire.h",
     "api.cpp",
+    "avr_libc.cpp",
+    "avr_libc.h",
     "devices.cpp",
     "machine.cpp",
     "machine.h",

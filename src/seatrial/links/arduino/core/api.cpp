@@ -125,20 +125,3 @@ int32_t map(int32_t x, int32_t in_min, int32_t in_max, int32_t out_min, int32_t 
     int32_t product = (int32_t)((uint32_t)(x - in_min) * (uint32_t)(out_max - out_min));
     return span ? product / span + out_min : -1;
 }
-
-/* Park and Miller's minimal standard, as avr-libc's. */
-static uint32_t random_state = 1;
-
-static int32_t next_random()
-{
-    int32_t x = (int32_t)(random_state ? random_state : 123459876);
-    x = 16807 * (x % 127773) - 2836 * (x / 127773);
-    if (x < 0)
-        x += 0x7fffffff;
-    random_state = (uint32_t)x;
-    return (int32_t)((uint32_t)x % 0x80000000u);
-}
-
-int32_t random(int32_t most) { return most ? next_random() % most : 0; }
-int32_t random(int32_t least, int32_t most) { return least >= most ? least : least + random(most - least); }
-void randomSeed(uint32_t seed) { if (seed) random_state = seed; }

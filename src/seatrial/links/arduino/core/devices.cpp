@@ -73,6 +73,21 @@ uint8_t TwoWire::requestFrom(uint8_t address, uint8_t count, uint8_t)
 SPIClass SPI;
 uint8_t SPIClass::transfer(uint8_t) { charge((uint32_t)(8.0 * machine::CLOCK / clock_) + 4); return 0xFF; }
 
+/* What the core does after each loop(). */
+void serve_serial_events()
+{
+    if (serialEvent && Serial.available())
+        serialEvent();
+#ifdef BOARD_MEGA
+    if (serialEvent1 && Serial1.available())
+        serialEvent1();
+    if (serialEvent2 && Serial2.available())
+        serialEvent2();
+    if (serialEvent3 && Serial3.available())
+        serialEvent3();
+#endif
+}
+
 /* ------------------------------------------------------------------ Servo and EEPROM */
 
 static struct { int pin = -1, least = MIN_PULSE_WIDTH, most = MAX_PULSE_WIDTH, us = DEFAULT_PULSE_WIDTH; } servos[12];

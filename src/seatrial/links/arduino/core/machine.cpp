@@ -15,6 +15,7 @@
 
 void setup();
 void loop();
+void serve_serial_events();
 
 namespace machine {
 
@@ -306,6 +307,7 @@ void *run(void *)
         last_call = now;
         loop();
         charge(16);
+        serve_serial_events();
     }
 }
 

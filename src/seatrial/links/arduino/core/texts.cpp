@@ -1,124 +1,8 @@
-/* Texts: printf, numbers as digits, String, Print and Stream. Costs in cycles as in api.cpp. */
+/* Texts: String, Print and Stream. Costs in cycles as in api.cpp. */
 #include "Arduino.h"
 #include "machine.h"
 
 using machine::charge;
-
-#undef sprintf
-#undef snprintf
-#undef vsnprintf
-
-int sketch_vsnprintf(char *to, size_t size, const char *format, va_list values)
-{
-    std::string out;
-    char piece[128];
-    for (; *format; format++) {
-        if (*format != '%') {
-            out += *format;
-            continue;
-        }
-        std::string conversion = "%";
-        int length = 0;
-        for (format++; *format && strchr("-+ #0123456789.*lh", *format); format++) {
-            if (*format == 'l' || *format == 'h')
-                length += *format == 'l';
-            else if (*format == '*')
-                conversion += std::to_string(va_arg(values, int));
-            else
-                conversion += *format;
-        }
-        if (!*format)
-            break;
-        conversion += *format == 'S' ? 's' : *format;
-        const char *form = conversion.c_str();
-        *piece = 0;
-        if (*format == 'd' || *format == 'i') {
-            int v = va_arg(values, int);
-            snprintf(piece, sizeof piece, form, length ? v : (int16_t)v);
-        } else if (strchr("uxXo", *format)) {
-            unsigned v = va_arg(values, unsigned);
-            snprintf(piece, sizeof piece, form, length ? v : (uint16_t)v);
-        } else if (*format == 'c') {
-            snprintf(piece, sizeof piece, form, va_arg(values, int));
-        } else if (*format == 's' || *format == 'S') {
-            const char *text = va_arg(values, const char *);
-            std::string whole(strlen(text) + 512, 0);
-            snprintf(&whole[0], whole.size(), form, text);
-            out += whole.c_str();
-        } else if (strchr("feEgG", *format)) {
-            (void)va_arg(values, double);
-            /* avr-libc's printf has no floating point unless it is linked in */
-            conversion = conversion.substr(0, conversion.find('.'));
-            if (isalpha(conversion.back()))
-                conversion.pop_back();
-            snprintf(piece, sizeof piece, (conversion + "s").c_str(), "?");
-        } else if (*format == '%') {
-            strcpy(piece, "%");
-        }
-        out += piece;
-    }
-    charge((uint32_t)(200 + 20 * out.size()));
-    if (size) {
-        size_t n = out.size() < size - 1 ? out.size() : size - 1;
-        memcpy(to, out.data(), n);
-        to[n] = 0;
-    }
-    return (int)out.size();
-}
-
-int sketch_snprintf(char *to, size_t size, const char *format, ...)
-{
-    va_list values;
-    va_start(values, format);
-    int n = sketch_vsnprintf(to, size, format, values);
-    va_end(values);
-    return n;
-}
-
-int sketch_sprintf(char *to, const char *format, ...)
-{
-    va_list values;
-    va_start(values, format);
-    int n = sketch_vsnprintf(to, 4096, format, values);
-    va_end(values);
-    return n;
-}
-
-char *dtostrf(double value, signed char width, unsigned char precision, char *to)
-{
-    charge(1500);
-    sprintf(to, "%*.*f", width, precision, (double)(float)value);
-    return to;
-}
-
-static char *based(uint64_t value, bool negative, char *to, int base)
-{
-    char digits[68], *at = digits + sizeof digits;
-    *--at = 0;
-    do
-        *--at = "0123456789abcdefghijklmnopqrstuvwxyz"[value % (unsigned)base];
-    while (value /= (unsigned)base);
-    if (negative)
-        *--at = '-';
-    return strcpy(to, at);
-}
-
-char *ultoa(unsigned long value, char *to, int base) { charge(300); return based((uint32_t)value, false, to, base); }
-char *utoa(unsigned value, char *to, int base) { charge(200); return based((uint16_t)value, false, to, base); }
-
-char *ltoa(long value, char *to, int base)
-{
-    bool negative = base == 10 && value < 0;
-    charge(300);
-    return based(negative ? (uint32_t)-value : (uint32_t)value, negative, to, base);
-}
-
-char *itoa(int value, char *to, int base)
-{
-    bool negative = base == 10 && value < 0;
-    charge(200);
-    return based(negative ? (uint16_t)-value : (uint16_t)value, negative, to, base);
-}
 
 /* ------------------------------------------------------------------ texts */
 
@@ -180,11 +64,7 @@ size_t Print::print(unsigned long v, int base)
     if (base == 0)
         return write((uint8_t)v);
     char digits[68];
-    based((uint32_t)v, false, digits, base < 2 ? 10 : base);
-    for (char *c = digits; *c; c++)
-        *c = (char)toupper(*c);
-    charge(300);
-    return write(digits);
+    return write(strupr(ultoa(v, digits, base < 2 ? 10 : base)));
 }
 
 /* In single precision, as the board does it. */
@@ -254,7 +134,7 @@ size_t Stream::readBytes(char *to, size_t size)
 size_t Stream::readBytesUntil(char end, char *to, size_t size)
 {
     size_t n = 0;
-    for (int c; n < size && (c = timedRead()) >= 0 && (char)c != end;)
+    for (int c; n < size && (c = timedRead()) >= 0 && c != end;)
         to[n++] = (char)c;
     return n;
 }
@@ -270,44 +150,77 @@ String Stream::readString()
 String Stream::readStringUntil(char end)
 {
     String text;
-    for (int c; (c = timedRead()) >= 0 && (char)c != end;)
+    for (int c; (c = timedRead()) >= 0 && c != end;)
         text += (char)c;
     return text;
 }
 
-int Stream::peekNumber(bool dot)
+/* The first character of a number, unless what must not be skipped comes before it: then -1. */
+int Stream::peekNextDigit(LookaheadMode skip, bool dot)
 {
     for (;;) {
         int c = timedPeek();
         if (c < 0 || c == '-' || isdigit(c) || (dot && c == '.'))
             return c;
+        if (skip == SKIP_NONE || (skip == SKIP_WHITESPACE && !(c && strchr(" \t\r\n", c))))
+            return -1;
         read();
     }
 }
 
-int32_t Stream::parseInt() { return (int32_t)parseFloat(); }
-
-float Stream::parseFloat()
+/* Digits as an integer, and the power of ten that they are to be divided by. */
+int32_t Stream::number(LookaheadMode skip, char ignore, bool dot, int &places)
 {
-    std::string digits;
-    int c = peekNumber(true);
+    uint32_t value = 0;
+    bool negative = false, point = false;
+    places = 0;
+    int c = peekNextDigit(skip, dot);
     if (c < 0)
-        return 0.0f;
+        return 0;
     do {
-        digits += (char)read();
+        if (c == '-') {
+            negative = true;
+        } else if (c == '.') {
+            point = true;
+        } else if (c != ignore) {
+            value = value * 10 + (uint32_t)(c - '0');
+            places += point;
+        }
+        read();
         c = timedPeek();
-    } while (isdigit(c) || c == '.');
-    return (float)atof(digits.c_str());
+    } while ((c >= 0 && isdigit(c)) || (dot && !point && c == '.') || c == ignore);
+    return (int32_t)(negative ? -value : value);
 }
 
-bool Stream::find(const char *what)
+int32_t Stream::parseInt(LookaheadMode skip, char ignore)
 {
-    size_t matched = 0;
-    while (what[matched]) {
-        int c = timedRead();
-        if (c < 0)
+    int places;
+    return number(skip, ignore, false, places);
+}
+
+float Stream::parseFloat(LookaheadMode skip, char ignore)
+{
+    int places;
+    float value = (float)number(skip, ignore, true, places), scale = 1.0f;
+    for (; places; places--)
+        scale *= 0.1f;
+    return value * scale;
+}
+
+bool Stream::findUntil(const char *what, size_t size, const char *end, size_t end_size)
+{
+    std::string target(what, size), terminator(end ? end : "", end ? end_size : 0), seen;
+    auto ends_with = [&](const std::string &t) { return seen.size() >= t.size() && !seen.compare(seen.size() - t.size(), t.size(), t); };
+    if (target.empty())
+        return true;
+    if (end && terminator.empty())
+        return false;
+    for (int c; (c = timedRead()) >= 0;) {
+        seen += (char)c;
+        if (ends_with(target))
+            return true;
+        if (end && ends_with(terminator))
             return false;
-        matched = c == what[matched] ? matched + 1 : (c == what[0]);
     }
-    return true;
+    return false;
 }
