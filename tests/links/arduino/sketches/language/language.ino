@@ -78,7 +78,7 @@ void setup() {
   int volatile n16 = -7; n16 += 16;
   unsigned char uc = 250; uc += 10; TRACE(uc);
   signed char sc = -100; TRACE(sc); Serial.println((char unsigned)300); Serial.println((unsigned /* eight bits */ char)-1);
-  long double ld = 1.5; TRACE((float)ld); TRACE(sizeof(ld)); long const lc = 70000; Serial.println(lc); const unsigned us = 65535; TRACE((unsigned)(us + 1)); unsigned const int uci = 65535; Serial.println(uci); int const volatile *const at = &n16; int seen = *at; TRACE(seen);
+  long double ld = 1.5; TRACE((float)ld); TRACE(sizeof(ld)); long const lc = 70000; Serial.println(lc); const unsigned us = 65535; Serial.println((unsigned)(us + 1)); unsigned const int uci = 65535; Serial.println(uci); int const volatile *const at = &n16; int seen = *at; TRACE(seen);
   int8_t n = -128;
   n--;
   TRACE(n);
