@@ -39,6 +39,16 @@ def test_check_refuses(tmp_path, source, said):
     assert said in done.stderr
 
 
+def test_check_names_pins_that_have_no_line(tmp_path):
+    source = "#include <SoftwareSerial.h>\nSoftwareSerial gps(4, 3);\nvoid setup() { gps.begin(9600); }\nvoid loop() {}\n"
+    sketch = write_sketch(tmp_path, source)
+    done = seatrial("sketch", "check", str(sketch), "--profile", "gloria:mega", cwd=tmp_path)
+    assert done.returncode == 2
+    assert (
+        "one.ino:2: the profile has no line at pins 4 and 3: wires of '4 soft_rx 1" in done.stderr
+    )
+
+
 def test_build_and_run(tmp_path):
     need("host")
     sketch = write_sketch(tmp_path, "void setup() { Serial.begin(9600); }\nvoid loop() {}\n")

@@ -23,6 +23,7 @@ from ..links.arduino.wiring import PARTS, read_uarts, read_wires
 sketch_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
 
 _STEP = 0.02
+_SOFT_SERIAL = re.compile(r"\bSoftwareSerial\s+\w+\s*[({]\s*(\d+)\s*,\s*(\d+)")
 _SERIAL = re.compile(r"\bSerial([123]?)\s*\.\s*begin\s*\(\s*(\d*)")
 _FOLDER = Annotated[str, typer.Argument(metavar="SKETCH", help="A sketch's folder or .ino.")]
 _BACKEND = Annotated[str, typer.Option(help="'host' or 'simavr'.")]
@@ -139,16 +140,28 @@ def _values(profile: str, mcu: str) -> dict[str, Any]:
 
 
 def _lines(sketch: Sketch, values: dict[str, Any]) -> list[str]:
-    """Return the UARTs that the sketch opens and the board or the profile has not."""
-    rates = read_uarts(values["uarts"]) if "uarts" in values else None
-    most = MCUS[values["mcu"]].uarts
+    """Return the lines that the sketch opens and the board or the profile has not."""
+    wires = read_wires(values.get("wires", ""), MCUS[values["mcu"]])
+    pins = {wire.place for wire in wires if wire.kind in ("soft_rx", "soft_tx")}
     problems = []
     for file in sketch.tabs:
         for number, line in enumerate(read_source(file).splitlines(), 1):
-            for match in _SERIAL.finditer(line.split("//")[0]):
-                uart = int(match[1] or 0)
-                if uart >= most:
-                    problems.append(f"{file}:{number}: this board has no UART {uart}")
-                elif rates is not None and uart not in rates:
-                    problems.append(f"{file}:{number}: the profile has no line at UART {uart}")
+            code, place = line.split("//")[0], f"{file}:{number}"
+            for match in _SERIAL.finditer(code):
+                problems += [f"{place}: {each}" for each in _no_uart(int(match[1] or 0), values)]
+            for match in _SOFT_SERIAL.finditer(code) if "uarts" in values else ():
+                rx, tx = int(match[1]), int(match[2])
+                if not pins & {rx, tx}:
+                    problems.append(
+                        f"{place}: the profile has no line at pins {rx} and {tx}: "
+                        f"wires of '{rx} soft_rx 1; {tx} soft_tx 1' bring that of UART 1 there"
+                    )
     return problems
+
+
+def _no_uart(uart: int, values: dict[str, Any]) -> list[str]:
+    if uart >= MCUS[values["mcu"]].uarts:
+        return [f"this board has no UART {uart}"]
+    if "uarts" in values and uart not in read_uarts(values["uarts"]):
+        return [f"the profile has no line at UART {uart}"]
+    return []

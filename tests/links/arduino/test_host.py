@@ -111,10 +111,6 @@ void loop() { delay(20); while (Serial1.available()) Serial.write(Serial1.read()
         ("#include <avr/sleep.h>\n" + NOTHING, r"one\.ino:1: <avr/sleep\.h>.*simavr"),
         (NOTHING + "ISR(TIMER1_OVF_vect) {}\n", r"one\.ino:3: ISR: .*attachInterrupt"),
         (
-            "#include <SoftwareSerial.h>\n" + NOTHING,
-            r"one\.ino:1: <SoftwareSerial\.h>.*Serial1 to Serial3",
-        ),
-        (
             "#ifdef __AVR__\n#include <Ethernet.h>\n#endif\n" + NOTHING,
             r"one\.ino:2:10: fatal error: (?s:.)*the library of <Ethernet\.h>.*libraries",
         ),

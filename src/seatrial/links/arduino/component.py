@@ -25,6 +25,7 @@ from .wiring import PARTS, UARTS, Wire, read_uarts, read_wires
 _GYRO, _FORCE, _FIELD, _PRESSURE, _TEMPERATURE = 0, 3, 6, 9, 10
 _ATMOSPHERE = 101325.0
 _WATCHED = ("servo", "pwm", "output")
+_SOFT = {"soft_rx": "r", "soft_tx": "t"}
 
 
 class Arduino(ArduinoPorts):
@@ -42,7 +43,8 @@ class Arduino(ArduinoPorts):
     ``wind_speed``. ``PIN vane V``: a potentiometer, V volts a full turn, that points to where the
     wind comes from, clockwise from the bow: V (wind_angle + pi) / 2 pi. ``ADDRESS mpu6050`` has
     ``gyro`` and ``accelerometer``, ``hmc5883l`` the ``magnetic_field`` in body axes by
-    ``attitude``, ``ms5837`` (30BA) the pressure at ``depth`` under one atmosphere.
+    ``attitude``, ``ms5837`` (30BA) the pressure at ``depth`` under one atmosphere. ``PIN soft_rx
+    N`` and ``PIN soft_tx N``: the line of UART N is at these pins, for SoftwareSerial.
 
     **Time.** Inputs count from the beginning of the step on. What happens on pins and lines is
     stamped with its cycle; an output at t has what happened before t. Bytes that arrive on
@@ -78,7 +80,8 @@ class Arduino(ArduinoPorts):
         mcu = MCUS[self.mcu]
         try:
             self._wires = read_wires(self.wires, mcu)
-            self._rates = {k: v for k, v in read_uarts(self.uarts).items() if k < mcu.uarts}
+            there = {*range(mcu.uarts), *(w.number for w in self._wires if w.kind in _SOFT)}
+            self._rates = {k: v for k, v in read_uarts(self.uarts).items() if k in there}
             self._begin()
             self._monitors = open_links(self.monitors)
         except InputError as error:
@@ -155,6 +158,8 @@ class Arduino(ArduinoPorts):
                 inputs.put("I", wire.place, value=PARTS[wire.kind])
             elif wire.kind in _WATCHED:
                 inputs.put("W", wire.place)
+            elif wire.kind in _SOFT:
+                inputs.put(_SOFT[wire.kind], wire.number, value=wire.place)
 
     def _put_bytes(self, inputs: Inputs) -> None:
         for uart, text in enumerate(self.rx):

@@ -11,7 +11,7 @@ from ...errors import InputError
 from .build import run
 from .mcus import Mcu
 from .resources import TEXTS, cached, contents, laid_out
-from .sketch import SOURCES, Sketch, find_sketch
+from .sketch import SOURCES, Sketch, find_sketch, included, read_source
 from .toolchain import arduino_core, need, version
 
 _FLAGS = ("-Os", "-g", "-w", "-ffunction-sections", "-fdata-sections", "-DF_CPU=16000000L")
@@ -56,7 +56,7 @@ def build_firmware(sketch: Sketch, mcu: Mcu) -> Path:
     def make(file: Path, scratch: Path) -> None:
         main = scratch / f"{sketch.name}.ino.cpp"
         main.write_text(sketch.merged())
-        libraries = _bundled_libraries()
+        libraries = _bundled_libraries(sketch)
         sources = [main, *sketch.others, *sketch.library_sources(), servo / "Servo.cpp"]
         for library in libraries:
             sources += [f for f in sorted(library.rglob("*")) if f.suffix in SOURCES]
@@ -69,9 +69,14 @@ def build_firmware(sketch: Sketch, mcu: Mcu) -> Path:
     return cached(f"firmware-{sketch.name}", key, ".elf", make)
 
 
-def _bundled_libraries() -> list[Path]:
+def _bundled_libraries(sketch: Sketch) -> list[Path]:
+    names = ["Wire", "SPI", "EEPROM"]
+    # It claims the pins' interrupts, which a sketch may have routines of its own for.
+    headers = {header for file in sketch.files() for header, _ in included(read_source(file))}
+    if "SoftwareSerial.h" in headers:
+        names.append("SoftwareSerial")
     shelf = arduino_core() / "libraries"
-    return [shelf / name / "src" for name in ("Wire", "SPI", "EEPROM") if (shelf / name).is_dir()]
+    return [shelf / name / "src" for name in names if (shelf / name).is_dir()]
 
 
 def _compiler(file: Path, mcu: Mcu, includes: list[Path]) -> list[str]:

@@ -104,11 +104,6 @@ def _has(sketch: Sketch, file: Path, header: str) -> bool:
 
 def _missing(header: str) -> str:
     """Return what to do if there is no such header."""
-    if header == "SoftwareSerial.h":
-        return (
-            "<SoftwareSerial.h>: lines are at the board's UARTs only: use Serial1 to Serial3 of a "
-            "Mega, or leave it out"
-        )
     if header.startswith(("avr/", "util/")):
         return f"<{header}> is of the AVR's hardware: {_ELSE} the Arduino API"
     return (

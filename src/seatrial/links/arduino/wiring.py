@@ -18,6 +18,8 @@ _NUMBERED = {
     "input": OTHERS,
     "voltage": OTHERS,
     "receiver": OTHERS,
+    "soft_rx": UARTS - 1,
+    "soft_tx": UARTS - 1,
 }
 _FACTORS = {"anemometer": 1.0, "vane": 5.0}
 """Kinds with a factor, and its default: Hz per m/s; volts of a full circle."""

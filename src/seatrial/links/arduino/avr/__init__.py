@@ -4,4 +4,5 @@ DATA_FILES = (
     "Servo.cpp",
     "Servo.h",
     "emulated_board.c",
+    "lines.h",
 )

@@ -18,20 +18,7 @@
 #define CLOCK 16e6
 #define UARTS 4
 #define PINS 70
-/* simavr takes 11 bits for a byte, always: a line at full rate would overrun it. */
-#define LINE_BITS 11.0
-
-typedef struct {
-    uint8_t *bytes;
-    double *earliest;
-    uint32_t first, count, room;
-    double baud, free;
-    avr_irq_t *input;
-    int waiting;
-} line;
-
 static avr_t *avr;
-static line lines[UARTS];
 static char ports[PINS], bits[PINS];
 static uint8_t numbers[PINS];
 static uint64_t target;
@@ -45,66 +32,14 @@ static void said(avr_t *from, const int level, const char *format, va_list value
 
 static void slept(avr_t *of, avr_cycle_count_t cycles) { (void)of, (void)cycles; }
 
-/* ------------------------------------------------------------------ lines */
-
-static avr_cycle_count_t arrive(avr_t *of, avr_cycle_count_t when, void *which)
-{
-    line *one = (line *)which;
-    (void)of;
-    uint8_t data = one->bytes[one->first++];
-    one->free = (double)when;
-    if (one->input)
-        avr_raise_irq(one->input, data);
-    if (one->first == one->count) {
-        one->first = one->count = 0;
-        one->waiting = 0;
-        return 0;
-    }
-    double begin = fmax(one->earliest[one->first], one->free);
-    return (avr_cycle_count_t)(begin + LINE_BITS * CLOCK / one->baud);
-}
-
-static void queue(line *one, uint8_t data, double earliest)
-{
-    if (one->count == one->room) {
-        one->room = one->room ? 2 * one->room : 256;
-        one->bytes = (uint8_t *)realloc(one->bytes, one->room);
-        one->earliest = (double *)realloc(one->earliest, one->room * sizeof(double));
-    }
-    one->bytes[one->count] = data;
-    one->earliest[one->count++] = earliest;
-    if (!one->waiting && one->baud > 0.0) {
-        double begin = fmax(fmax(earliest, one->free), (double)avr->cycle);
-        one->waiting = 1;
-        avr_cycle_timer_register(avr, (avr_cycle_count_t)(begin + LINE_BITS * CLOCK / one->baud) - avr->cycle, arrive, one);
-    }
-}
-
-static void transmitted(avr_irq_t *irq, uint32_t value, void *which)
-{
-    (void)irq;
-    link_put(OUT_UART, (uint8_t)(intptr_t)which, (uint16_t)(value & 0xFF), avr->cycle);
-}
-
-static void connect_uart(int index)
-{
-    uint32_t flags = 0;
-    char name = (char)('0' + index);
-    if (avr_ioctl(avr, AVR_IOCTL_UART_GET_FLAGS(name), &flags) < 0)
-        return;
-    flags &= ~(uint32_t)(AVR_UART_FLAG_STDIO | AVR_UART_FLAG_POLL_SLEEP);
-    avr_ioctl(avr, AVR_IOCTL_UART_SET_FLAGS(name), &flags);
-    avr_irq_t *out = avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ(name), UART_IRQ_OUTPUT);
-    avr_irq_register_notify(out, transmitted, (void *)(intptr_t)index);
-    lines[index].input = avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ(name), UART_IRQ_INPUT);
-}
-
 /* ------------------------------------------------------------------ pins */
 
 static avr_irq_t *pin_irq(uint8_t pin)
 {
     return avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ(ports[pin]), bits[pin] - '0');
 }
+
+#include "lines.h"
 
 static void turned(avr_irq_t *irq, uint32_t value, void *which)
 {
@@ -194,6 +129,8 @@ static void take_input(const link_input *input)
     switch (input->kind) {
     case IN_UART: queue(&lines[index % UARTS], (uint8_t)input->value, input->number); break;
     case IN_BAUD: lines[index % UARTS].baud = input->number; break;
+    case IN_RX_PIN: line_to_pin(&lines[index % UARTS], (uint8_t)input->value); break;
+    case IN_TX_PIN: line_from_pin(&lines[index % UARTS], (uint8_t)input->value); break;
     case IN_VOLTS:
         avr_raise_irq(avr_io_getirq(avr, AVR_IOCTL_ADC_GETIRQ, ADC_IRQ_ADC0 + index), (uint32_t)(input->number * 1000.0 + 0.5));
         break;

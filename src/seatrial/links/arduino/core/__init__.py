@@ -7,6 +7,7 @@ DATA_FILES = (
     "Print.h",
     "SPI.h",
     "Servo.h",
+    "SoftwareSerial.h",
     "Stream.h",
     "WString.h",
     "Wire.h",

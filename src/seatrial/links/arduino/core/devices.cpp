@@ -1,10 +1,12 @@
-/* What hangs on the board: Serial, Wire, SPI, Servo, EEPROM. Costs in cycles as in api.cpp. */
+/* What hangs on the board: Serial, SoftwareSerial, Wire, SPI, Servo, EEPROM. Costs in cycles as in api.cpp. */
 #include "Arduino.h"
 #include "EEPROM.h"
 #include "SPI.h"
 #include "Servo.h"
+#include "SoftwareSerial.h"
 #include "Wire.h"
 #include "machine.h"
+#include "util/atomic.h"
 
 extern "C" int part_link_begin(uint8_t address, int reading);
 extern "C" int part_link_write(uint8_t data);
@@ -12,7 +14,7 @@ extern "C" uint8_t part_link_read();
 
 using machine::charge;
 
-/* ------------------------------------------------------------------ Serial, Wire, SPI */
+/* ------------------------------------------------------------------ Serial */
 
 HardwareSerial Serial(0);
 #ifdef BOARD_MEGA
@@ -27,6 +29,65 @@ int16_t HardwareSerial::peek() { charge(24); return (int16_t)machine::take(numbe
 int HardwareSerial::availableForWrite() { charge(24); return machine::room(number_); }
 void HardwareSerial::flush() { charge(16); machine::drain(number_); }
 size_t HardwareSerial::write(uint8_t data) { charge(60); machine::send(number_, data); return 1; }
+
+SoftwareSerial *SoftwareSerial::listener_;
+
+void SoftwareSerial::begin(long baud)
+{
+    charge(400);
+    line_ = machine::line_at(rx_, tx_);
+    byte_us_ = baud > 0 ? (uint32_t)(10000000 / baud) : 0;
+    if (line_ >= 0)
+        machine::open_uart((uint8_t)line_, (uint32_t)baud);
+    listen();
+}
+
+bool SoftwareSerial::listen()
+{
+    if (listener_ == this || !byte_us_)
+        return false;
+    if (listener_)
+        listener_->stopListening();
+    listener_ = this;
+    if (line_ >= 0)
+        machine::hear((uint8_t)line_, true);
+    return true;
+}
+
+bool SoftwareSerial::stopListening()
+{
+    if (listener_ != this)
+        return false;
+    listener_ = nullptr;
+    if (line_ >= 0)
+        machine::hear((uint8_t)line_, false);
+    return true;
+}
+
+bool SoftwareSerial::overflow() { return line_ >= 0 && machine::overflowed((uint8_t)line_); }
+int16_t SoftwareSerial::available() { charge(24); return isListening() && line_ >= 0 ? (int16_t)machine::received((uint8_t)line_) : (int16_t)0; }
+int16_t SoftwareSerial::read() { charge(30); return isListening() && line_ >= 0 ? (int16_t)machine::take((uint8_t)line_, false) : (int16_t)-1; }
+int16_t SoftwareSerial::peek() { charge(24); return isListening() && line_ >= 0 ? (int16_t)machine::take((uint8_t)line_, true) : (int16_t)-1; }
+
+/* Bit by bit, with interrupts off: what comes meanwhile is not heard. */
+size_t SoftwareSerial::write(uint8_t data)
+{
+    if (!byte_us_)
+        return 0;
+    bool was = interrupts_enabled();
+    noInterrupts();
+    if (line_ >= 0) {
+        machine::hear((uint8_t)line_, false);
+        machine::send((uint8_t)line_, data);
+        machine::drain((uint8_t)line_);
+        machine::hear((uint8_t)line_, isListening());
+    } else {
+        delayMicroseconds(byte_us_);
+    }
+    if (was)
+        interrupts();
+    return 1;
+}
 
 TwoWire Wire;
 

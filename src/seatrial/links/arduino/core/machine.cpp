@@ -43,6 +43,8 @@ struct Incoming {
 
 struct Uart {
     double line_baud = 0.0, bit = 0.0; /* baud; cycles of a bit, 0 while closed */
+    int rx_pin = -1, tx_pin = -1;      /* of a line at pins */
+    bool deaf = false, overflowed = false;
     std::deque<Incoming> line;
     double line_free = 0.0, arrival = 1e18;
     std::deque<uint8_t> in, out;
@@ -115,6 +117,8 @@ void take_input(const link_input *input)
             schedule(uart);
         break;
     case IN_BAUD: uart.line_baud = input->number; break;
+    case IN_RX_PIN: uart.rx_pin = input->value; break;
+    case IN_TX_PIN: uart.tx_pin = input->value; break;
     case IN_VOLTS: adc[index % 16] = input->number; break;
     case IN_LEVEL: put_level(index % PINS, input->number != 0.0); break;
     case IN_FREQUENCY: wave_set(index, 0, input->number, now); break;
@@ -203,8 +207,12 @@ uint64_t first(bool do_it)
         uart.line.pop_front();
         uart.line_free = uart.arrival;
         schedule(uart);
-        if (uart.bit > 0.0 && uart.in.size() < RING - 1)
-            uart.in.push_back(data);
+        if (uart.bit > 0.0 && !uart.deaf) {
+            if (uart.in.size() < RING - 1)
+                uart.in.push_back(data);
+            else
+                uart.overflowed = true;
+        }
     } else if (all == due && what == SENT) {
         link_put(OUT_UART, (uint8_t)which, uarts[which].shifting, now);
         shift_next(uarts[which], uarts[which].sent);
@@ -405,6 +413,25 @@ void drain(uint8_t uart)
     while (uarts[uart].sent < 1e18)
         pass_until((uint64_t)uarts[uart].sent + 1, true);
 }
+
+int line_at(int rx_pin, int tx_pin)
+{
+    for (int each = 0; each < UARTS; each++) {
+        const Uart &one = uarts[each];
+        if ((one.rx_pin >= 0 && one.rx_pin == rx_pin) || (one.tx_pin >= 0 && one.tx_pin == tx_pin))
+            return each;
+    }
+    return -1;
+}
+
+bool overflowed(uint8_t uart)
+{
+    bool was = uarts[uart].overflowed;
+    uarts[uart].overflowed = false;
+    return was;
+}
+
+void hear(uint8_t uart, bool on) { uarts[uart].deaf = !on; }
 
 int new_servo() { return servo_count < SERVOS ? servo_count++ : -1; }
 

@@ -32,6 +32,8 @@ typedef struct {
 enum {
     IN_UART = 'U',      /* byte `value` on UART `index`, not before cycle `number` */
     IN_BAUD = 'S',      /* baud rate of the line at UART `index` */
+    IN_RX_PIN = 'r',    /* the line of UART `index` ends at pin `value`, not at the UART */
+    IN_TX_PIN = 't',    /* and begins at pin `value` */
     IN_VOLTS = 'A',     /* at ADC channel `index` */
     IN_LEVEL = 'L',     /* at pin `index` */
     IN_FREQUENCY = 'F', /* of a square wave at pin `index`, Hz */

@@ -1,0 +1,144 @@
+/* Lines to and from UARTs, and to and from pins that software reads and drives bit by bit. */
+#ifndef LINES_H
+#define LINES_H
+
+/* simavr takes 11 bits for a byte, always: a line at full rate would overrun it. */
+#define LINE_BITS 11.0
+
+typedef struct {
+    uint8_t *bytes;
+    double *earliest;
+    uint32_t first, count, room;
+    double baud, free;
+    avr_irq_t *input;
+    int waiting;
+    int rx_pin, tx_pin; /* of the board; 0: the UART's */
+    int bit;            /* that arrives next at a pin */
+    double begun;       /* when its byte did */
+    int level, sampled; /* of the pin that sends; which bit comes next, 0 between bytes */
+    double began;       /* when its byte did */
+    uint8_t sending;
+} line;
+
+static line lines[UARTS];
+
+/* When the next byte that waits begins. */
+static double begins(const line *one) { return fmax(one->earliest[one->first], one->free); }
+
+/* Drop the byte that has arrived; say if another waits. */
+static int another(line *one, double when)
+{
+    one->free = when;
+    one->first++;
+    if (one->first < one->count)
+        return 1;
+    one->first = one->count = 0;
+    return one->waiting = 0;
+}
+
+static avr_cycle_count_t arrive(avr_t *of, avr_cycle_count_t when, void *which)
+{
+    line *one = (line *)which;
+    (void)of;
+    if (one->input)
+        avr_raise_irq(one->input, one->bytes[one->first]);
+    return another(one, (double)when) ? (avr_cycle_count_t)(begins(one) + LINE_BITS * CLOCK / one->baud) : 0;
+}
+
+/* Start bit, data from the lowest on, stop bit, each for as long as the line has it. */
+static avr_cycle_count_t arrive_bit(avr_t *of, avr_cycle_count_t when, void *which)
+{
+    line *one = (line *)which;
+    (void)of;
+    if (one->bit == 0)
+        one->begun = (double)when;
+    int frame = one->bytes[one->first] << 1 | 0x200, at = one->bit++;
+    if (at < 10) {
+        avr_raise_irq(pin_irq((uint8_t)one->rx_pin), frame >> at & 1);
+        return (avr_cycle_count_t)(one->begun + (at + 1) * CLOCK / one->baud);
+    }
+    one->bit = 0;
+    return another(one, (double)when) ? (avr_cycle_count_t)fmax(begins(one), (double)when + 1) : 0;
+}
+
+static void queue(line *one, uint8_t data, double earliest)
+{
+    if (one->count == one->room) {
+        one->room = one->room ? 2 * one->room : 256;
+        one->bytes = (uint8_t *)realloc(one->bytes, one->room);
+        one->earliest = (double *)realloc(one->earliest, one->room * sizeof(double));
+    }
+    one->bytes[one->count] = data;
+    one->earliest[one->count++] = earliest;
+    if (!one->waiting && one->baud > 0.0) {
+        double begin = fmax(begins(one), (double)avr->cycle);
+        one->waiting = 1;
+        if (one->rx_pin)
+            avr_cycle_timer_register(avr, (avr_cycle_count_t)begin + 1 - avr->cycle, arrive_bit, one);
+        else
+            avr_cycle_timer_register(avr, (avr_cycle_count_t)(begin + LINE_BITS * CLOCK / one->baud) - avr->cycle, arrive, one);
+    }
+}
+
+static void transmitted(avr_irq_t *irq, uint32_t value, void *which)
+{
+    (void)irq;
+    if (!lines[(intptr_t)which].tx_pin)
+        link_put(OUT_UART, (uint8_t)(intptr_t)which, (uint16_t)(value & 0xFF), avr->cycle);
+}
+
+static void connect_uart(int index)
+{
+    uint32_t flags = 0;
+    char name = (char)('0' + index);
+    if (avr_ioctl(avr, AVR_IOCTL_UART_GET_FLAGS(name), &flags) < 0)
+        return;
+    flags &= ~(uint32_t)(AVR_UART_FLAG_STDIO | AVR_UART_FLAG_POLL_SLEEP);
+    avr_ioctl(avr, AVR_IOCTL_UART_SET_FLAGS(name), &flags);
+    avr_irq_t *out = avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ(name), UART_IRQ_OUTPUT);
+    avr_irq_register_notify(out, transmitted, (void *)(intptr_t)index);
+    lines[index].input = avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ(name), UART_IRQ_INPUT);
+}
+
+/* ------------------------------------------------------------------ at pins */
+
+/* In the middle of each bit of a byte that a pin sends, the stop bit the last. */
+static avr_cycle_count_t sample(avr_t *of, avr_cycle_count_t when, void *which)
+{
+    line *one = (line *)which;
+    (void)of;
+    if (one->sampled++ <= 8) {
+        one->sending = (uint8_t)(one->sending >> 1 | (one->level ? 0x80 : 0));
+        return (avr_cycle_count_t)(one->began + (one->sampled + 0.5) * CLOCK / one->baud);
+    }
+    one->sampled = 0;
+    link_put(OUT_UART, (uint8_t)(one - lines), one->sending, when);
+    return 0;
+}
+
+static void driven(avr_irq_t *irq, uint32_t value, void *which)
+{
+    line *one = (line *)which;
+    int fell = one->level && !value;
+    (void)irq;
+    one->level = value != 0;
+    if (!fell || one->sampled || one->baud <= 0.0)
+        return;
+    one->began = (double)avr->cycle;
+    one->sampled = 1;
+    avr_cycle_timer_register(avr, (avr_cycle_count_t)(1.5 * CLOCK / one->baud), sample, one);
+}
+
+static void line_to_pin(line *one, uint8_t pin)
+{
+    one->rx_pin = pin;
+    avr_raise_irq(pin_irq(pin), 1);
+}
+
+static void line_from_pin(line *one, uint8_t pin)
+{
+    one->tx_pin = pin;
+    avr_irq_register_notify(pin_irq(pin), driven, one);
+}
+
+#endif

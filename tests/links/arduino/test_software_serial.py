@@ -1,0 +1,70 @@
+"""SoftwareSerial: the sketch's own UART at two pins, in the real library and in the host's."""
+
+import pytest
+
+from seatrial.errors import SimulationError
+
+from .bench import Bench, write_sketch
+
+SKETCH = """
+#include <SoftwareSerial.h>
+SoftwareSerial gps(4, 3), other(7, 8);
+void setup() {
+  Serial.begin(57600);
+  other.begin(9600);
+  gps.begin(9600);
+  gps.print("hello "); gps.println(42);
+  Serial.print(gps.isListening()); Serial.println(other.isListening());
+}
+void loop() {
+  while (gps.available()) {
+    char c = gps.read();
+    Serial.write(c);
+    if (c == '*') gps.write("got");   // and is deaf meanwhile
+    if (c == '!') delay(200);         // and its buffer runs over
+  }
+  if (gps.overflow()) Serial.print(F("<over>"));
+}
+"""
+WIRES = "4 soft_rx 1; 3 soft_tx 1"
+NMEA = b"$GPRMC,123519,A,4807.038,N,01131.000,E,022.4,084.4,230394,003.1,W*6A\r\n"
+
+
+def heard(backend, sketch, **values):
+    """What the sketch says at its UART and at its pins, and when the latter."""
+    with Bench(sketch, backend, **values) as bench:
+        bench.run(0.1)
+        bench.hear(1, 2 * NMEA)
+        bench.run(0.3)
+        bench.hear(1, b"!" + bytes(range(40, 127)) * 2)
+        bench.run(0.6)
+        return bench.said[0], bench.said[1], [when for uart, when, _ in bench.stamps if uart == 1]
+
+
+def test_both_back_ends_hear_and_say_the_same_at_two_pins(tmp_path):
+    sketch = write_sketch(tmp_path, SKETCH)
+    uno = {"mcu": "atmega328p", "uarts": "0 57600; 1 9600", "wires": WIRES}
+    host, simavr = (heard(each, sketch, **uno) for each in ("host", "simavr"))
+    lines = simavr[0].split(b"\n")
+    assert lines[0] == b"10\r"
+    assert lines[1] == NMEA[: NMEA.index(b"*") + 1]  # what came while it said "got" is lost
+    assert b"<over>" in simavr[0]
+    assert host[:2] == simavr[:2]
+    assert host[2] == pytest.approx(simavr[2], abs=1_500_000)  # ns; a byte lasts 1.04 ms
+
+
+def test_pins_of_a_mega_take_the_line_of_its_uart(tmp_path):
+    sketch = write_sketch(tmp_path, SKETCH.replace("gps(4, 3)", "gps(10, 11)"))
+    mega = {"uarts": "0 57600; 1 9600", "wires": "10 soft_rx 1; 11 soft_tx 1"}
+    host, simavr = (heard(each, sketch, **mega) for each in ("host", "simavr"))
+    assert simavr[1].startswith(b"hello 42\r\n")
+    assert host[:2] == simavr[:2]
+
+
+def test_another_rate_than_the_lines_ends_it(tmp_path):
+    sketch = write_sketch(tmp_path, SKETCH)
+    with (
+        Bench(sketch, mcu="atmega328p", uarts="0 57600; 1 4800", wires=WIRES) as bench,
+        pytest.raises(SimulationError, match=r"UART 1 at 9600 baud.*4800"),
+    ):
+        bench.run(0.1)
