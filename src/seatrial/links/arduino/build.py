@@ -14,7 +14,7 @@ from .sketch import HEADERS, SOURCES, Sketch, read_source
 from .toolchain import need, version
 from .unsupported import advice, unsupported
 
-_CORE = ("machine", "api", "avr_libc", "texts", "devices")
+_CORE = ("machine", "uarts", "api", "avr_libc", "texts", "devices")
 _BASE = ("-std=gnu++17", "-gdwarf-4", "-w", "-fpermissive", "-fno-pie", "-ffp-contract=off")
 _SKETCH = (
     "-O1",

@@ -18,4 +18,5 @@ DATA_FILES = (
     "machine.cpp",
     "machine.h",
     "texts.cpp",
+    "uarts.cpp",
 )

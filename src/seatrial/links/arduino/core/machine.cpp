@@ -7,7 +7,7 @@
 #include <sys/time.h>
 #include <ucontext.h>
 
-#include <deque>
+#include <initializer_list>
 
 #include "link.h"
 #include "parts.h"
@@ -23,7 +23,7 @@ uint64_t now;
 
 namespace {
 
-constexpr int INTERRUPTS = 6, SERVOS = 12, RING = 64;
+constexpr int INTERRUPTS = 6, SERVOS = 12;
 constexpr size_t STACK = 64 << 10, GUARD = 64 << 10;
 constexpr uint64_t FRAME = (uint64_t)(0.02 * CLOCK);
 #ifdef BOARD_MEGA
@@ -35,22 +35,6 @@ constexpr int INTERRUPT_PIN[INTERRUPTS] = {2, 3, -1, -1, -1, -1};
 uint64_t target, next_due = NEVER; /* nothing happens before main(): constructors only */
 uint64_t last_call, patience;
 char *stack;
-
-struct Incoming {
-    uint8_t data;
-    uint64_t earliest;
-};
-
-struct Uart {
-    double line_baud = 0.0, bit = 0.0; /* baud; cycles of a bit, 0 while closed */
-    int rx_pin = -1, tx_pin = -1;      /* of a line at pins */
-    bool deaf = false, overflowed = false;
-    std::deque<Incoming> line;
-    double line_free = 0.0, arrival = 1e18;
-    std::deque<uint8_t> in, out;
-    uint8_t shifting = 0;
-    double sent = 1e18; /* when the byte being shifted out is through */
-} uarts[UARTS];
 
 struct Pin {
     bool level, input, watched;
@@ -95,30 +79,14 @@ void put_level(uint8_t pin, bool to)
     }
 }
 
-void schedule(Uart &uart)
-{
-    if (uart.line.empty()) {
-        uart.arrival = 1e18;
-        return;
-    }
-    double begin = fmax((double)uart.line.front().earliest, uart.line_free);
-    double bit = uart.line_baud > 0.0 ? CLOCK / uart.line_baud : uart.bit;
-    uart.arrival = begin + 10.0 * bit;
-}
-
 void take_input(const link_input *input)
 {
     uint8_t index = input->index;
-    Uart &uart = uarts[index % UARTS];
     switch (input->kind) {
-    case IN_UART:
-        uart.line.push_back({(uint8_t)input->value, (uint64_t)fmax(input->number, (double)now)});
-        if (uart.line.size() == 1)
-            schedule(uart);
-        break;
-    case IN_BAUD: uart.line_baud = input->number; break;
-    case IN_RX_PIN: uart.rx_pin = input->value; break;
-    case IN_TX_PIN: uart.tx_pin = input->value; break;
+    case IN_UART: put_on_line(index % UARTS, (uint8_t)input->value, input->number); break;
+    case IN_BAUD: set_line(index % UARTS, input->number); break;
+    case IN_RX_PIN: put_line_at(index % UARTS, input->value, -1); break;
+    case IN_TX_PIN: put_line_at(index % UARTS, -1, input->value); break;
     case IN_VOLTS: adc[index % 16] = input->number; break;
     case IN_LEVEL: put_level(index % PINS, input->number != 0.0); break;
     case IN_FREQUENCY: wave_set(index, 0, input->number, now); break;
@@ -127,17 +95,6 @@ void take_input(const link_input *input)
     case IN_PART: part_add((uint8_t)input->value, index); break;
     case IN_WATCH: pins[index % PINS].watched = true; break;
     }
-}
-
-void shift_next(Uart &uart, double from)
-{
-    if (uart.out.empty()) {
-        uart.sent = 1e18;
-        return;
-    }
-    uart.shifting = uart.out.front();
-    uart.out.pop_front();
-    uart.sent = from + 10.0 * uart.bit;
 }
 
 void turn_servos()
@@ -178,18 +135,11 @@ void turn_modulated(uint8_t pin)
 /* When the first thing falls due, and, in `do_it`, let it happen at its time. */
 uint64_t first(bool do_it)
 {
-    double soonest = 1e18;
-    enum { NOTHING, ARRIVAL, SENT, MODULATED } what = NOTHING;
-    int which = 0;
-    for (int each = 0; each < UARTS; each++) {
-        if (uarts[each].arrival < soonest)
-            soonest = uarts[each].arrival, what = ARRIVAL, which = each;
-        if (uarts[each].sent < soonest)
-            soonest = uarts[each].sent, what = SENT, which = each;
-    }
+    int which = -1; /* no pin: a line */
+    double soonest = next_on_lines();
     for (int pin = 0; modulated && pin < PINS; pin++)
         if (pins[pin].share >= 0 && pins[pin].edge < soonest)
-            soonest = pins[pin].edge, what = MODULATED, which = pin;
+            soonest = pins[pin].edge, which = pin;
     uint64_t due = soonest < 1e18 ? (uint64_t)soonest : NEVER;
     uint64_t wave_due = wave_next();
     uint64_t all = due;
@@ -201,22 +151,9 @@ uint64_t first(bool do_it)
         return all;
     uint64_t late = now;
     now = all; /* what happens is stamped with its own time */
-    if (all == due && what == ARRIVAL) {
-        Uart &uart = uarts[which];
-        uint8_t data = uart.line.front().data;
-        uart.line.pop_front();
-        uart.line_free = uart.arrival;
-        schedule(uart);
-        if (uart.bit > 0.0 && !uart.deaf) {
-            if (uart.in.size() < RING - 1)
-                uart.in.push_back(data);
-            else
-                uart.overflowed = true;
-        }
-    } else if (all == due && what == SENT) {
-        link_put(OUT_UART, (uint8_t)which, uarts[which].shifting, now);
-        shift_next(uarts[which], uarts[which].sent);
-    } else if (all == due && what == MODULATED) {
+    if (all == due && which < 0) {
+        serve_lines();
+    } else if (all == due) {
         turn_modulated((uint8_t)which);
     } else if (all == wave_due) {
         wave *one = wave_turn(now, CLOCK);
@@ -342,6 +279,9 @@ void pass_until(uint64_t when, bool event)
     }
 }
 
+void reschedule() { next_due = first(false); }
+void report_byte(uint8_t uart, uint8_t data) { link_put(OUT_UART, uart, data, now); }
+
 void drive(uint8_t pin, bool to)
 {
     if (pin >= PINS)
@@ -368,70 +308,6 @@ void modulate(uint8_t pin, int share)
     pins[pin].share = share;
     next_due = first(false);
 }
-
-void open_uart(uint8_t uart, uint32_t baud)
-{
-    Uart &one = uarts[uart];
-    if (baud && one.line_baud > 0.0 && fabs(baud / one.line_baud - 1.0) > 0.03)
-        end("it opens UART %d at %u baud, and the line there has %.0f", uart, baud, one.line_baud);
-    one.bit = baud ? CLOCK / baud : 0.0;
-    one.in.clear();
-    schedule(one);
-    next_due = first(false);
-}
-
-int received(uint8_t uart) { return (int)uarts[uart].in.size(); }
-
-int take(uint8_t uart, bool keep)
-{
-    Uart &one = uarts[uart];
-    if (one.in.empty())
-        return -1;
-    int data = one.in.front();
-    if (!keep)
-        one.in.pop_front();
-    return data;
-}
-
-int room(uint8_t uart) { return RING - 1 - (int)uarts[uart].out.size(); }
-
-void send(uint8_t uart, uint8_t data)
-{
-    Uart &one = uarts[uart];
-    if (one.bit <= 0.0)
-        return;
-    while (room(uart) <= 0)
-        pass_until(now + (uint64_t)(10.0 * one.bit) + 1, true);
-    one.out.push_back(data);
-    if (one.sent >= 1e18)
-        shift_next(one, (double)now);
-    next_due = first(false);
-}
-
-void drain(uint8_t uart)
-{
-    while (uarts[uart].sent < 1e18)
-        pass_until((uint64_t)uarts[uart].sent + 1, true);
-}
-
-int line_at(int rx_pin, int tx_pin)
-{
-    for (int each = 0; each < UARTS; each++) {
-        const Uart &one = uarts[each];
-        if ((one.rx_pin >= 0 && one.rx_pin == rx_pin) || (one.tx_pin >= 0 && one.tx_pin == tx_pin))
-            return each;
-    }
-    return -1;
-}
-
-bool overflowed(uint8_t uart)
-{
-    bool was = uarts[uart].overflowed;
-    uarts[uart].overflowed = false;
-    return was;
-}
-
-void hear(uint8_t uart, bool on) { uarts[uart].deaf = !on; }
 
 int new_servo() { return servo_count < SERVOS ? servo_count++ : -1; }
 

@@ -40,6 +40,15 @@ bool enabled();
 void watchdog(uint64_t cycles); /* 0: off */
 void feed();
 
+/* For the machine's own parts: lines, and what they need of it. */
+void put_on_line(uint8_t uart, uint8_t data, double earliest);
+void set_line(uint8_t uart, double baud);
+void put_line_at(uint8_t uart, int rx_pin, int tx_pin); /* -1: as before */
+double next_on_lines();                                 /* when a byte has arrived or left, in cycles */
+void serve_lines();
+void report_byte(uint8_t uart, uint8_t data);
+void reschedule();
+
 [[noreturn]] void end(const char *format, ...);
 
 } // namespace machine
