@@ -47,7 +47,7 @@ def _host(sketch: Sketch, mcu: Mcu, file: Path, scratch: Path) -> None:
     common = ["g++", *_BASE, *mcu.defines, f"-I{place / 'core'}", f"-I{place / 'shared'}"]
     objects = [_core_object(name, mcu, common) for name in _CORE]
     sources, places = _narrowed_copy(sketch, scratch)
-    includes = [f"-I{place}" for place in places]
+    includes = [f"-I{each}" for each in places] + ["-include", str(place / "core" / "sketch.h")]
     for number, source in enumerate(sources):
         compiled = scratch / f"{number}.o"
         run([*common, *_SKETCH, *includes, "-c", str(source), "-o", str(compiled)], sketch.name)

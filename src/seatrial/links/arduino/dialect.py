@@ -10,6 +10,7 @@ LIMITS = (
     "products and sums of int are computed with 32 bits: an overflow of 16 bits stays hidden "
     "until the value is stored",
     "pointers, size_t and enums have the computer's widths, and structures its padding",
+    "double is another word for float, and int for short: what is defined for both, is twice",
     "code takes about 12 cycles from one jump to the next, whatever it computes: timing of the "
     "code itself is a guess (simavr counts cycles)",
     "interrupts come between stretches of code, never within one",
@@ -31,10 +32,10 @@ _QUALIFIERS = {"const", "volatile"}
 
 
 def narrowed(source: str) -> str:
-    """Return C++ in which int has 16 bits, long 32, and double is float; lines stay as they are.
+    """Return C++ in which int has 16 bits and long 32; lines stay as they are.
 
     int becomes short, long int, long long stays; suffixes of numbers, B1010, limits and formats
-    likewise.
+    likewise. That double is float is for ``core/sketch.h``: macros may put its name into others.
     """
     found = list(tokens(source))
     out = [_single(token) for token in found]
@@ -69,8 +70,8 @@ def _narrow(words: list[str]) -> str:
     """Return a type of the board as one of the computer: ``const unsigned`` ... ``int``."""
     kept = [word for word in words if word in _QUALIFIERS]
     longs = words.count("long")
-    if "double" in words:
-        return " ".join([*kept, "float"])
+    if "double" in words:  # long double, too: an AVR does not have it
+        return " ".join([*kept, "double"])
     kept += [word for word in ("unsigned", "signed") if word in words]
     if "char" in words:
         return " ".join([*kept, "char"])

@@ -18,6 +18,9 @@ Point shifted(Point p, int dx);
 int *pointer_to(int &v) { return &v; }
 template <typename T, int M> int countOf(T (&)[M]) { return M; }
 volatile unsigned long edges = 0;
+#define HALVED(TYPE) TYPE halved_##TYPE(TYPE x) { return x / 2; }
+HALVED(float)
+HALVED(double)
 void setup() {
   Serial.begin(57600);
   Point p = shifted({1, 2}, 5); TRACE(p.x);
@@ -76,6 +79,7 @@ void setup() {
   shift = ~shift;
   TRACE(shift);
   int volatile n16 = -7; n16 += 16;
+  Serial.println(halved_float(1.5) + halved_double(3), 3);
   unsigned char uc = 250; uc += 10; TRACE(uc);
   signed char sc = -100; TRACE(sc); Serial.println((char unsigned)300); Serial.println((unsigned /* eight bits */ char)-1);
   long double ld = 1.5; TRACE((float)ld); TRACE(sizeof(ld)); long const lc = 70000; Serial.println(lc); const unsigned us = 65535; Serial.println((unsigned)(us + 1)); unsigned const int uci = 65535; Serial.println(uci); int const volatile *const at = &n16; int seen = *at; TRACE(seen);
