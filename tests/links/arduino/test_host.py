@@ -214,7 +214,7 @@ def test_prototypes_and_widths():
     assert "long g (" not in text  # it has a default argument
     given = 'unsigned long a = 5UL; int b; long long c; double d; char e[] = "int long"; // int'
     assert narrowed(given) == (
-        'unsigned int a = 5u; short b; long long c; float d; char e[] = "int long"; // int'
+        'unsigned int a = 5u; short b; long long c; double d; char e[] = "int long"; // int'
     )
 
 
