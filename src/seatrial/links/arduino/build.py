@@ -20,7 +20,6 @@ _SKETCH = (
     "-O1",
     "-fsingle-precision-constant",
     "-fsanitize-coverage=trace-pc",
-    "-funsigned-bitfields",
 )
 
 

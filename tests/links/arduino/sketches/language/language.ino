@@ -7,6 +7,7 @@
 struct Point { int x, y; };
 union Bits { float f; byte b[4]; uint32_t u; };
 struct Flags { uint8_t a : 3; uint8_t b : 5; };
+struct Fields { int a : 3; unsigned b : 3; signed int c : 4; char d : 2; long e : 20; };
 class Shape { public: virtual float area() = 0; virtual ~Shape() {} };
 class Square : public Shape { public: Square(float s) : s_(s) {} float area() override { return s_ * s_; } private: float s_; };
 class Upper : public Print { public: size_t write(uint8_t c) override { return Serial.write(toupper(c)); } using Print::write; };
@@ -31,6 +32,8 @@ void setup() {
   TRACE(bits.b[3]);
   Serial.println(bits.u, HEX);
   Flags flags = {5, 17}; TRACE(flags.a + flags.b); TRACE(sizeof(flags));
+  Fields fields = {-1, 7, -3, -1, -5};
+  TRACE(fields.a); TRACE(fields.b); TRACE(fields.c); Serial.println((int)fields.d); Serial.println((long)fields.e);
   Square sq2(1.5);
   Shape *shape = &sq2;
   TRACE(shape->area());
