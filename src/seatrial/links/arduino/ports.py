@@ -45,7 +45,7 @@ class ArduinoPorts(Reachable, Component):
     timeout = Parameter(
         2.0,
         "s",
-        "board: silence after which an input is stale, or a link lost; safe-state bytes is sent then",
+        "board: silence after which an input is stale, or a link lost: the safe state is sent",
         min=1e-3,
     )
     patience = Parameter(

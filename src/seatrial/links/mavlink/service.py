@@ -37,7 +37,8 @@ class Service:
 
     A service sees every message that is meant for this vehicle (`handle`) and every instant
     (`tick`), offers ``commands`` by MAV_CMD and ``messages`` by number to whoever asks for them
-    or streams them, and speaks through ``transport``. Times are simulated, s, and never run backwards.
+    or streams them, and sends through ``transport``. Times are simulated, s, and never run
+    backwards.
     """
 
     capabilities: ClassVar[int] = 0

@@ -51,13 +51,13 @@ class ManualControlService(Service):
         """Take the sticks."""
         match message.get_type():
             case "MANUAL_CONTROL":
-                self.vehicle.sticks = self._axes(message)
+                self.vehicle.manual = self._axes(message)
             case "RC_CHANNELS_OVERRIDE":
                 self._override(message)
                 if not any(self.vehicle.channels):
                     self._release()
                     return
-                self.vehicle.sticks = self._from_channels()
+                self.vehicle.manual = self._from_channels()
             case _:
                 return
         self._held_until = now + self._settings.manual_timeout
@@ -77,7 +77,7 @@ class ManualControlService(Service):
 
     def _release(self) -> None:
         self._held_until = math.inf
-        self.vehicle.sticks = MANUAL_RELEASED
+        self.vehicle.manual = MANUAL_RELEASED
         self.vehicle.channels = [0] * len(self.vehicle.channels)
 
     def _axes(self, m: Message) -> tuple[float, float, float, float]:
