@@ -8,9 +8,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
 
-from ..component import Noise, seconds
+from ..component import seconds
 from ..errors import InputError, unknown
-from ..fmi.bundle import bundle
+from ..fmi.bundle import bundled
 from ..fmi.direct import DirectInstance
 from ..fmi.export import cached_fmu
 from ..fmi.instance import Instance, Variable, Variables
@@ -251,7 +251,7 @@ def _instance(
             )
         loaded, code = load_fmu(source), ""
     else:
-        code = bundle(source.stem, source.script, source.folder).script
+        code = bundled(source).script
         if in_process:
             return DirectInstance(source.component_class()(name)), "", code
         loaded = load_fmu(cached_fmu(source, code))
@@ -270,11 +270,10 @@ def _instance(
 def _give_parameters(system: System, part: Part, entry: ComponentEntry, profiles: Profiles) -> None:
     path, variables = system.rig.read_from.path, part.instance.variables
     where = f"{path}: components.{part.name}"
-    seed_port = variables.get("seed")
-    if seed_port is not None and seed_port.description == Noise.seed.description:
+    for name in variables.of_role("seed"):
         # Each instance has noise of its own, yet the same in every tool and run.
         seed = zlib.crc32(f"{system.seed}/{part.name}".encode())
-        part.given["seed"] = Given(float(seed), f"derived from seed {system.seed}")
+        part.given[name] = Given(float(seed), f"derived from seed {system.seed}")
     if entry.parameters is not None:
         values = _parameter_set(system, entry, where)
         part.presets = values.presets

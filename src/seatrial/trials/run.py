@@ -13,7 +13,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from ..component import Logging, Reachable, seconds
+from ..component import seconds
 from ..cosim.master import Master
 from ..cosim.recorder import Recorder
 from ..cosim.system import Engine, System, assemble
@@ -118,18 +118,16 @@ def run_trial(
 def _tell_folder(master: Master, out: Path) -> None:
     """Say where the run's folder is to the components that keep logs and were told nothing."""
     for name, part in master.system.parts.items():
-        port = part.instance.variables.get("run_folder")
-        keeps_logs = port is not None and port.description == Logging.run_folder.description
-        if keeps_logs and "run_folder" not in part.given:
-            master.set(name, ["run_folder"], [str(out.resolve())])
+        for port in part.instance.variables.of_role("run-folder"):
+            if port not in part.given:
+                master.set(name, [port], [str(out.resolve())])
 
 
 def _tell_reachable(master: Master, hooks: Hooks) -> None:
     """Say which components programs outside connect to, and where."""
     for name, part in master.system.parts.items():
-        port = part.instance.variables.get("reached_at")
-        if port is not None and port.description == Reachable.reached_at.description:
-            (where,) = part.instance.reader(["reached_at"])()
+        for port in part.instance.variables.of_role("address"):
+            (where,) = part.instance.reader([port])()
             if where:
                 hooks.reachable(name, str(where))
 
