@@ -135,7 +135,7 @@ def logged(count: int) -> float:
 ROWS: dict[str, Callable[[int], float]] = {
     "arbitration alone": arbitration,
     "the component; nodes ask": lambda count: component(count, heard=False),
-    "the component; nodes ask, and hear all": lambda count: component(count, heard=True),
+    "the component; nodes request, and receive all": lambda count: component(count, heard=True),
     "the same, with logs": logged,
     "a rig of ten `can-traffic`, in process": lambda count: rig(count, "direct"),
     "the same as FMUs": lambda count: rig(count, "fmu"),

@@ -94,7 +94,7 @@ def main() -> None:
     )
     parser.add_argument("--rounds", type=int, default=7)
     parser.add_argument("--steps", type=int, default=1000)
-    parser.add_argument("--write", action="store_true", help="put the table into docs/vehicles/tether.md")
+    parser.add_argument("--write", action="store_true", help="put the table into its page")
     options = parser.parse_args()
     text = f"Python {platform.python_version()}, {options.rounds} rounds.\n\n"
     text += table(options.rounds, options.steps)

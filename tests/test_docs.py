@@ -50,7 +50,12 @@ DINGHY = [
         "write-a-profile",
     )
 ]
-"""The pages that share one example: each has some of its files."""
+"""The pages of one dinghy: each has some of its files."""
+COMPONENT = [
+    HOW_TO / f"{name}.md"
+    for name in ("write-a-component", "write-a-sensor", "write-a-plant", "build-an-fmu")
+]
+"""The pages of a user's own components."""
 LONG = {HOW_TO / "identification.md", DOCS / "vehicles/guidance.md"}
 """Pages whose examples take minutes."""
 ELSEWHERE = {
@@ -115,15 +120,16 @@ def run_page(page: Path, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(folder)
     monkeypatch.syspath_prepend(str(folder))
     found, port = blocks(page), str(free_port())
-    if page in DINGHY:
-        write_files([block for each in DINGHY for block in blocks(each)], folder)
+    for shared in (DINGHY, COMPONENT):
+        if page in shared:
+            write_files([block for each in shared for block in blocks(each)], folder)
     if any(LIVE.match(block.text) for block in found):
         found = [block._replace(text=block.text.replace(STATION_PORT, port)) for block in found]
     write_files(found, folder)
     with ExitStack() as background:
         run_blocks(page, [live(block, folder, port, background) for block in found])
-    for block in found:
-        sys.modules.pop(block.file.removesuffix(".py"), None)
+    for file in folder.glob("*.py"):
+        sys.modules.pop(file.stem, None)
 
 
 def write_files(found: list[Block], folder: Path) -> None:

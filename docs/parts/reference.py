@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -38,4 +39,12 @@ def cli() -> str:
             [*typer, "--name", "seatrial", "--output", page], check=True, capture_output=True
         )
         text = page.read_text("utf-8").replace("&#x27;", "'")
-    return "\n" + text.partition("\n")[2].lstrip().replace("\n# ", "\n## ").rstrip() + "\n"
+    titles = dict(re.findall(r"^#+ `([\w ]+)`\n\n(.*?)\n\n", text, re.DOTALL | re.MULTILINE))
+    lines, command = [], ""
+    for line in text.splitlines():
+        if heading := re.match(r"#+ `([\w ]+)`", line):
+            command = heading[1]
+        if listed := re.match(r"\* `(\w+)`: ", line):  # cut short by Typer
+            line = listed[0] + titles.get(f"{command} {listed[1]}", line[listed.end() :])
+        lines.append(line)
+    return "\n" + "\n".join(lines[1:]).strip() + "\n"
