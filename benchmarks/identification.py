@@ -1,8 +1,8 @@
 """Errors of identification on synthetic logs: output error, source 000's method, and a bound.
 
 ``python -m benchmarks.identification`` prints the table of docs/how-to/identification.md,
-``--write`` puts it there. The logs are made by SciPy's DOP853 from the equations of motion; nothing of the
-package simulates them.
+``--write`` puts it there. The logs are made by SciPy's DOP853 from the equations of motion;
+nothing of the package simulates them.
 """
 
 from __future__ import annotations
