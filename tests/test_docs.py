@@ -31,7 +31,7 @@ from seatrial.trials.run_folder import load_run
 from seatrial.trials.trial import load_trial
 from seatrial.units import quantity
 from tests.command import seatrial
-from tests.peers.running import HOST, free_port, running, wait_for
+from tests.interop.running import HOST, free_port, running, wait_for
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
@@ -60,7 +60,7 @@ LONG = {HOW_TO / "identification.md", DOCS / "vehicles/guidance.md"}
 """Pages whose examples take minutes."""
 ELSEWHERE = {
     LINKS / "arduino.md",  # a fixture of the sketch's own tests
-    LINKS / "ground-stations.md",  # sessions of MAVSDK and MAVProxy, in tests/peers
+    LINKS / "ground-stations.md",  # sessions of MAVSDK and MAVProxy, in tests/interop
     REFERENCE / "cli.md",  # made from the commands' own help
     DOCS / "performance.md",  # a benchmark
 }
