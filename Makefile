@@ -2,9 +2,10 @@
 PYTHON ?= python3
 BIN := .venv/bin
 INSTALLED := .venv/.installed
+DOCS := .venv/.docs-installed
 REFERENCE_TOOLS := tests/interop/node/node_modules/.installed
 
-.PHONY: demo test test-long lint fmus benchmark clean
+.PHONY: demo test test-long lint docs fmus benchmark clean
 
 $(INSTALLED): pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
@@ -43,6 +44,14 @@ lint: $(INSTALLED)
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+# Warnings and broken links are errors; the site in build/site opens without a network.
+docs: $(DOCS)
+	$(BIN)/mkdocs build --strict --clean
+
+$(DOCS): $(INSTALLED)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'
+	@touch $@
 
 benchmark: $(INSTALLED)
 	$(BIN)/python -m benchmarks.compare --write

@@ -3,7 +3,7 @@
 Seconds of the sketch's time per second of processor time, the board's program included: Gloria's
 autopilot on a board alone that hears HDT and RMC, and in the rig that sails; the median over
 rounds and its range. Each round also adds up numbers in a loop, since machines and hours differ.
-``--write`` puts the table into docs/arduino.md.
+``--write`` puts the table into docs/links/arduino.md.
 """
 
 from __future__ import annotations
@@ -107,7 +107,7 @@ def main() -> None:
         description=__doc__, formatter_class=argparse.RawTextHelpFormatter
     )
     parser.add_argument("--rounds", type=int, default=5)
-    parser.add_argument("--write", action="store_true", help="put the table into docs/arduino.md")
+    parser.add_argument("--write", action="store_true", help="put the table into its page")
     options = parser.parse_args()
     text = (
         f"Python {platform.python_version()}, {options.rounds} rounds; "
@@ -115,7 +115,7 @@ def main() -> None:
     )
     print(text)
     if options.write:
-        write_measured("arduino.md", text)
+        write_measured("links/arduino.md", text)
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@
 Random data frames of 8 bytes from ten nodes on a bus of 250 kbit/s that is full, in steps of 10 ms:
 frames per second of processor time, the median over rounds and its range. Machines differ and so do
 the hours of one machine; so each round also adds up numbers in a loop, and the table has how many
-such additions a frame costs. ``--write`` puts the table into docs/can.md.
+such additions a frame costs. ``--write`` puts the table into docs/links/can.md.
 """
 
 from __future__ import annotations
@@ -135,7 +135,7 @@ def logged(count: int) -> float:
 ROWS: dict[str, Callable[[int], float]] = {
     "arbitration alone": arbitration,
     "the component; nodes ask": lambda count: component(count, reads=False),
-    "the component; nodes ask, and read all": lambda count: component(count, reads=True),
+    "the component; nodes request, and receive all": lambda count: component(count, reads=True),
     "the same, with logs": logged,
     "a rig of ten `can-traffic`, in process": lambda count: rig(count, "direct"),
     "the same as FMUs": lambda count: rig(count, "fmu"),
@@ -166,7 +166,7 @@ def main() -> None:
     )
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--frames", type=int, default=10_000)
-    parser.add_argument("--write", action="store_true", help="put the table into docs/can.md")
+    parser.add_argument("--write", action="store_true", help="put the table into docs/links/can.md")
     options = parser.parse_args()
     unit = addition() * 1e9
     text = (
@@ -176,7 +176,7 @@ def main() -> None:
     text += table(options.rounds, options.frames)
     print(text)
     if options.write:
-        write_measured("can.md", text)
+        write_measured("links/can.md", text)
 
 
 if __name__ == "__main__":

@@ -1,8 +1,8 @@
 """Errors of identification on synthetic logs: output error, source 000's method, and a bound.
 
-``python -m benchmarks.identification`` prints the table of docs/identification.md, ``--write``
-puts it there. The logs are made by SciPy's DOP853 from the equations of motion; nothing of the
-package simulates them.
+``python -m benchmarks.identification`` prints the table of docs/how-to/identification.md,
+``--write`` puts it there. The logs are made by SciPy's DOP853 from the equations of motion;
+nothing of the package simulates them.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from seatrial.identification.source_method import (
     source_method,
 )
 
-PAGE = Path(__file__).parents[1] / "docs" / "identification.md"
+PAGE = Path(__file__).parents[1] / "docs" / "how-to" / "identification.md"
 MARK = re.compile(r"(<!-- made by benchmarks/identification\.py -->\n).*?(<!-- end -->)", re.DOTALL)
 PERIOD, DURATION, HOLD, AMPLITUDE = 0.1, 120.0, 10, 0.3
 LONGEST_DELAY = 7

@@ -2,7 +2,7 @@
 
 An implicit step is measured beside one evaluation of the right-hand side that an explicit method
 would need, in turn, for some rounds. Ratios are those of one round; the median over the rounds and
-their range are shown. ``--write`` puts the table into docs/tether.md.
+their range are shown. ``--write`` puts the table into docs/vehicles/tether.md.
 """
 
 from __future__ import annotations
@@ -94,13 +94,13 @@ def main() -> None:
     )
     parser.add_argument("--rounds", type=int, default=7)
     parser.add_argument("--steps", type=int, default=1000)
-    parser.add_argument("--write", action="store_true", help="put the table into docs/tether.md")
+    parser.add_argument("--write", action="store_true", help="put the table into its page")
     options = parser.parse_args()
     text = f"Python {platform.python_version()}, {options.rounds} rounds.\n\n"
     text += table(options.rounds, options.steps)
     print(text)
     if options.write:
-        write_measured("tether.md", text)
+        write_measured("vehicles/tether.md", text)
 
 
 if __name__ == "__main__":

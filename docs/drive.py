@@ -1,11 +1,11 @@
-"""The picture of `seatrial drive` in videoray-stream.md: ``python docs/drive.py`` draws it anew."""
+"""The picture of `seatrial drive` in its page: ``python docs/drive.py`` draws it anew."""
 
 from __future__ import annotations
 
 import io
 import math
-from pathlib import Path
 
+from drawing import draw
 from rich.console import Console
 
 from seatrial.cli.drive_pilot import Pilot
@@ -14,13 +14,12 @@ from seatrial.component import Component
 from seatrial.links.videoray.rov import Pro4Rov
 from seatrial.links.videoray.topside import Pro4Topside
 
-PICTURE = Path(__file__).resolve().parent / "images" / "drive.svg"
 STEP = 0.01
 MANUAL_AXES = (0.3, -0.2, 0.0)
 
 
 def main() -> None:
-    """Let both ends talk for two seconds of simulated time, and draw what the pilot sees."""
+    """Run both ends for two seconds of simulated time, and draw what the pilot sees."""
     rov, topside = Pro4Rov("rov"), Pro4Topside("topside")
     ends: tuple[Component, ...] = (rov, topside)
     for end in ends:
@@ -40,7 +39,7 @@ def main() -> None:
     pilot.hold_depth, pilot.depth_wanted = True, 12.5
     console = Console(width=80, record=True, force_terminal=True, file=io.StringIO())
     console.print(picture(topside, pilot, MANUAL_AXES))
-    console.save_svg(str(PICTURE), title="seatrial drive")
+    draw(console, "drive", "seatrial drive")
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+from drawing import draw
 from rich.console import Console
 from rich.text import Text
 
@@ -19,7 +20,6 @@ from tests.interop.mavproxy_page import follow, session  # noqa: E402
 WIDTH = 84
 _NOISE = re.compile(r"^(?:[A-Z]+> )+| t=.*$")
 """Prompts, which stand before what is said next, and wall times."""
-_FONTS = re.compile(r"@font-face \{.*?\}\s*", re.S)
 
 
 def lines(prompt: str, typed: str, said: str) -> list[Text]:
@@ -38,9 +38,7 @@ def main() -> None:
     for step in held:
         for line in lines(*step):
             console.print(line)
-    # Without the fonts that it would fetch from elsewhere.
-    svg = _FONTS.sub("", console.export_svg(title="MAVProxy", unique_id="mavproxy"))
-    (DOCS / "images" / "mavproxy.svg").write_text(svg, "utf-8")
+    draw(console, "mavproxy", "MAVProxy")
 
 
 if __name__ == "__main__":

@@ -26,6 +26,7 @@ from parts import (  # noqa: E402, F401  each registers its parts
     nmea0183,
     nmea2000,
     profile,
+    reference,
     settings,
     ships,
     tether,

@@ -35,12 +35,36 @@ from tests.interop.running import HOST, free_port, running, wait_for
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
-FILES, COMPONENTS = DOCS / "files.md", DOCS / "components.md"
-DESIGN, SSP = DOCS / "design.md", DOCS / "ssp.md"
-IDENTIFICATION, TETHER = DOCS / "identification.md", DOCS / "tether.md"
-GUIDANCE = DOCS / "guidance.md"
-CAN, LOGS, MAVLINK = DOCS / "can.md", DOCS / "logs.md", DOCS / "mavlink.md"
-VEHICLES = sorted((DOCS / "vehicles").glob("*.md"))
+DESIGN = DOCS / "design.md"
+HOW_TO, LINKS, REFERENCE = DOCS / "how-to", DOCS / "links", DOCS / "reference"
+FILES, RESULTS = REFERENCE / "files.md", REFERENCE / "results.md"
+CRITERIA, PROFILE = HOW_TO / "state-criteria.md", HOW_TO / "write-a-profile.md"
+DINGHY = [
+    HOW_TO / f"{name}.md"
+    for name in (
+        "write-a-rig",
+        "run-a-trial",
+        "inject-faults",
+        "run-a-campaign",
+        "write-a-vehicle-file",
+        "write-a-profile",
+    )
+]
+"""The pages of one dinghy: each has some of its files."""
+COMPONENT = [
+    HOW_TO / f"{name}.md"
+    for name in ("write-a-component", "write-a-sensor", "write-a-plant", "build-an-fmu")
+]
+"""The pages of a user's own components."""
+LONG = {HOW_TO / "identification.md", DOCS / "vehicles/guidance.md"}
+"""Pages whose examples take minutes."""
+ELSEWHERE = {
+    LINKS / "arduino.md",  # a fixture of the sketch's own tests
+    LINKS / "ground-stations.md",  # sessions of MAVSDK and MAVProxy, in tests/interop
+    REFERENCE / "cli.md",  # made from the commands' own help
+    DOCS / "performance.md",  # a benchmark
+}
+"""Pages whose examples other tests run, or none."""
 LIVE = re.compile(r"^\$ seatrial run (\S+-mission)\n", re.M)
 """A trial for ground stations: it goes on while the rest of the page is run."""
 STATION_PORT = "14550"
@@ -96,17 +120,24 @@ def run_page(page: Path, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(folder)
     monkeypatch.syspath_prepend(str(folder))
     found, port = blocks(page), str(free_port())
+    for shared in (DINGHY, COMPONENT):
+        if page in shared:
+            write_files([block for each in shared for block in blocks(each)], folder)
     if any(LIVE.match(block.text) for block in found):
         found = [block._replace(text=block.text.replace(STATION_PORT, port)) for block in found]
+    write_files(found, folder)
+    with ExitStack() as background:
+        run_blocks(page, [live(block, folder, port, background) for block in found])
+    for file in folder.glob("*.py"):
+        sys.modules.pop(file.stem, None)
+
+
+def write_files(found: list[Block], folder: Path) -> None:
     for block in found:
         if block.file:
             path = folder / block.file
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(block.text, "utf-8")
-    with ExitStack() as background:
-        run_blocks(page, [live(block, folder, port, background) for block in found])
-    for block in found:
-        sys.modules.pop(block.file.removesuffix(".py"), None)
 
 
 def live(block: Block, folder: Path, port: str, background: ExitStack) -> Block:
@@ -155,33 +186,20 @@ def run_commands(block: Block) -> None:
         assert matches or (not shown and done.returncode == 0), f"{line}\n{got}"
 
 
-@pytest.mark.parametrize(
-    "page",
-    [
-        FILES,
-        COMPONENTS,
-        *VEHICLES,
-        DESIGN,
-        SSP,
-        pytest.param(IDENTIFICATION, marks=pytest.mark.long, id=IDENTIFICATION.stem),
-        TETHER,
-        pytest.param(GUIDANCE, marks=pytest.mark.long, id=GUIDANCE.stem),
-        LOGS,
-        MAVLINK,
-        CAN,
-        DOCS / "can-signals.md",
-        DOCS / "dronecan.md",
-        DOCS / "nmea0183.md",
-        DOCS / "nmea2000.md",
-        DOCS / "videoray-stream.md",
-    ],
-    ids=lambda page: page.stem,
-)
+def pages_with_examples() -> list[Any]:
+    return [
+        pytest.param(page, marks=pytest.mark.long if page in LONG else (), id=page.stem)
+        for page in sorted(DOCS.rglob("*.md"))
+        if page not in ELSEWHERE and blocks(page)
+    ]
+
+
+@pytest.mark.parametrize("page", pages_with_examples())
 def test_examples_run(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     run_page(page, tmp_path, monkeypatch)
 
 
-# ---------------------------------------------------------------------- files.md: keys
+# ---------------------------------------------------------------------- keys of files
 
 
 def file_models() -> set[type[BaseModel]]:
@@ -204,13 +222,15 @@ def file_models() -> set[type[BaseModel]]:
 
 
 def key_tables() -> dict[type[BaseModel], dict[str, str]]:
-    """Return, per model that the page names, the default that it says for each key."""
+    """Return, per model that a page names, the default that it says for each key."""
     tables = {}
-    for name in re.findall(r"<!-- keys of (\S+) -->", FILES.read_text("utf-8")):
-        module, _, model = name.rpartition(".")
-        cls = getattr(importlib.import_module(module), model)
-        rows = rows_after(FILES, f"<!-- keys of {name} -->")
-        tables[cls] = {row[0].strip("`"): row[2] for row in rows}
+    for page in [*HOW_TO.glob("*.md"), *REFERENCE.glob("*.md")]:
+        for name in re.findall(r"<!-- keys of (\S+) -->", page.read_text("utf-8")):
+            module, _, model = name.rpartition(".")
+            cls = getattr(importlib.import_module(module), model)
+            assert cls not in tables, f"two tables of {name}"
+            rows = rows_after(page, f"<!-- keys of {name} -->")
+            tables[cls] = {row[0].strip("`"): row[2] for row in rows}
     return tables
 
 
@@ -240,26 +260,31 @@ def test_keys_and_defaults_are_those_of_the_model(model: type[BaseModel]) -> Non
         assert shown[key] == expected, key
 
 
-def test_every_top_level_key_of_the_shipped_files_is_in_the_page() -> None:
-    text = FILES.read_text("utf-8")
-    for folder in ("harness/rigs", "harness/trials", "harness/campaigns", "hil_profiles"):
+def test_every_top_level_key_of_the_shipped_files_is_in_its_page() -> None:
+    pages = {
+        "harness/rigs": "write-a-rig",
+        "harness/trials": "run-a-trial",
+        "harness/campaigns": "run-a-campaign",
+    }
+    for folder, name in pages.items():
+        text = (HOW_TO / f"{name}.md").read_text("utf-8")
         for path in (ROOT / folder).glob("*.toml"):
             for key in tomllib.loads(path.read_text("utf-8")):
                 assert f"`{key}`" in text, f"{path}: {key}"
+    text = (REFERENCE / "profile-keys.md").read_text("utf-8")
+    for path in (ROOT / "hil_profiles").glob("*.toml"):
+        for key in tomllib.loads(path.read_text("utf-8")):
+            assert f"`{key}`" in text, f"{path}: {key}"
 
 
-# ---------------------------------------------------------------------- files.md: the rest
+# ---------------------------------------------------------------------- what the pages on files say
 
 
 @pytest.fixture(scope="module")
 def dash(tmp_path_factory: pytest.TempPathFactory) -> Any:
-    """Return the record of the page's trial."""
+    """Return the record of the pages' trial."""
     folder = tmp_path_factory.mktemp("dash")
-    for block in blocks(FILES):
-        if block.file:
-            path = folder / block.file
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(block.text, "utf-8")
+    write_files([block for page in DINGHY for block in blocks(page)], folder)
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
         return load_run(
@@ -268,9 +293,8 @@ def dash(tmp_path_factory: pytest.TempPathFactory) -> Any:
 
 
 def criteria_of_the_page() -> list[str]:
-    text = FILES.read_text("utf-8")
-    section = text[text.index("### Criteria") : text.index("## Campaigns")]
-    cells = [row for row in section.splitlines() if row.startswith("| ")]
+    text = CRITERIA.read_text("utf-8")
+    cells = [row for row in text.splitlines() if row.startswith("| ")]
     texts = [t for row in cells for t in re.findall(r"`([^`]+)`", row) if re.search(r"\w\.\w", t)]
     assert len(texts) > 15
     return texts
@@ -283,8 +307,8 @@ def test_criteria_of_the_page_can_be_judged_and_hold(text: str, dash: Any) -> No
 
 
 def test_bands_of_settling(dash: Any) -> None:
-    rows = list(rows_after(FILES, "| example | band |\n"))
-    (section,) = [FILES.read_text("utf-8").partition("| example | band |\n")[2]]
+    rows = list(rows_after(CRITERIA, "| example | band |\n"))
+    (section,) = [CRITERIA.read_text("utf-8").partition("| example | band |\n")[2]]
     bands = re.findall(r"^\| `([^`]+)` \| (\d+) % \|$", section, re.M)
     assert len(bands) == 3, rows
     for text, band in bands:
@@ -307,7 +331,7 @@ def test_quantities_of_the_page(text: str, unit: str) -> None:
 
 
 def test_units_of_the_page() -> None:
-    section = re.search(r"customary units are known\s+\((.*?)\)", FILES.read_text("utf-8"), re.S)
+    section = re.search(r"customary units are\s+known\s+\((.*?)\)", FILES.read_text("utf-8"), re.S)
     assert section is not None
     for name in re.findall(r"`([^`]+)`", section[1]):
         importlib.import_module("seatrial.units").unit(name)
@@ -336,7 +360,7 @@ def test_values_come_from_where_the_page_says(write: Any, tmp_path: Path) -> Non
         'title = "v"\nsource = "x"\ndefault = "a"\n'
         f"[compass]\n{entries(names[2:], 0.1)}[variants.a.compass]\n{entries(names[3:], 0.2)}",
     )
-    profile = next(block.text for block in blocks(FILES) if block.file.startswith("hil_profiles"))
+    profile = next(b.text for b in blocks(PROFILE) if b.file.startswith("hil_profiles"))
     profile = profile[: profile.index("[sensors")]
     write(
         "p.toml",
@@ -383,7 +407,7 @@ def test_values_come_from_where_the_page_says(write: Any, tmp_path: Path) -> Non
 def test_exit_statuses_of_the_page(write: Any) -> None:
     """0 and 1 by the page's own commands; 2 and 3 here."""
     main = importlib.import_module("seatrial.cli.main")
-    shown = {row[0]: row[1] for row in rows_after(FILES, "## Exit status")}
+    shown = {row[0]: row[1] for row in rows_after(RESULTS, "## Exit status")}
     assert list(shown) == ["0", "1", "2", "3"]
     assert (main._FAILED, main._BAD_INPUT, main._BROKEN) == (1, 2, 3)
 
@@ -511,10 +535,28 @@ def test_images_are_small_and_links_lead_somewhere(page: Path) -> None:
             assert file.suffix != ".png" or file.stat().st_size < 150_000, target
 
 
+# ---------------------------------------------------------------------- decisions
+
+RECORDS = sorted(set((DOCS / "decisions").glob("*.md")) - {DOCS / "decisions/index.md"})
+
+
+@pytest.mark.parametrize("record", RECORDS, ids=lambda record: record.stem)
+def test_a_decision_is_whole_and_names_tests_that_exist(record: Path) -> None:
+    text = record.read_text("utf-8")
+    assert re.findall(r"^## (.*)$", text, re.M) == ["Context", "Decision", "Consequence", "Test"]
+    held = text[text.index("## Test") :]
+    for file, names in re.findall(r"^- `([\w/]+\.py)`: (.*(?:\n  .*)*)", held, re.M):
+        tests = (ROOT / file).read_text("utf-8")
+        for name in re.findall(r"`(\w+)`", names):
+            assert f"def {name}(" in tests, f"{file}: {name}"
+    index = (DOCS / "decisions/index.md").read_text("utf-8")
+    assert f"[{text.splitlines()[0].removeprefix('# ')}]({record.name})" in index
+
+
 # ---------------------------------------------------------------------- design.md
 
 
-def test_rooms_of_the_page_are_those_of_the_contract() -> None:
+def test_layers_of_the_page_are_those_of_the_contract() -> None:
     config = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["tool"]["importlinter"]
     layers, forbidden = config["contracts"]
     text = DESIGN.read_text("utf-8")
@@ -523,11 +565,11 @@ def test_rooms_of_the_page_are_those_of_the_contract() -> None:
     shown = [set(re.findall(r"\w+", line.partition("  ")[0])) for line in diagram[1].splitlines()]
     contract = []
     for layer in layers["layers"]:
-        rooms = [room.strip(" ()") for room in layer.split("|")]
+        modules = [module.strip(" ()") for module in layer.split("|")]
         exists = [
-            r for r in rooms if (ROOT / "src" / r.replace(".", "/")).exists() or "(" not in layer
+            m for m in modules if (ROOT / "src" / m.replace(".", "/")).exists() or "(" not in layer
         ]
-        contract.append({room.removeprefix("seatrial.") for room in exists})
+        contract.append({module.removeprefix("seatrial.") for module in exists})
     assert shown == contract
     second = text[text.index("The second contract") :].partition("\n\n")[0]
     named = set(re.findall(r"`(\w+)`", second))

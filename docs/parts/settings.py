@@ -33,14 +33,17 @@ def sensor_keys() -> str:
 
 @part("link-keys")
 def link_keys() -> str:
-    """Keys of a profile's links."""
-    return table(
-        ("kind", "key", "unit", "default", "meaning"),
-        [
-            (f"`{kind}`", f"`{name}`", shown_unit(port.unit), _start(port), _meaning(port))
-            for kind in KINDS["links"]
-            for name, port in keys("links", kind).items()
-        ],
+    """Keys of a profile's links, one table a kind."""
+    return "\n".join(
+        f"\n## {kind}\n\n"
+        + table(
+            ("key", "unit", "default", "meaning"),
+            [
+                (f"`{name}`", shown_unit(port.unit), _start(port), _meaning(port))
+                for name, port in keys("links", kind).items()
+            ],
+        )
+        for kind in KINDS["links"]
     )
 
 
