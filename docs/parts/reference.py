@@ -10,7 +10,6 @@ from tempfile import TemporaryDirectory
 
 from parts import part
 from parts.markdown import table
-from seatrial.fmi.description import summary
 from seatrial.fmi.source import shipped_sources
 
 
@@ -19,9 +18,8 @@ def component_list() -> str:
     """Shipped components, one table for each package."""
     packages: dict[str, list[tuple[str, str, str]]] = {}
     for name, source in shipped_sources().items():
-        component = source.component_class()
-        package = component.__module__.split(".")[1]
-        row = (f"`{name}`", summary(component), f"`{component.__module__}.{component.__name__}`")
+        package = source.module.split(".")[1]
+        row = (f"`{name}`", source.title, f"`{source.module}.{source.class_name}`")
         packages.setdefault(package, []).append(row)
     return "".join(
         f"\n## {package}\n\n" + table(("name", "what it is", "class"), packages[package])

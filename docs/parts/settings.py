@@ -8,24 +8,29 @@ from functools import partial
 from parts import part
 from parts.markdown import shown_unit, shown_value, table
 from seatrial.cosim.parameters import Entry, load_vehicle
-from seatrial.cosim.profile_kinds import KINDS, keys
+from seatrial.cosim.profile_kinds import keys
+from seatrial.fmi.source import shipped_sources
 from seatrial.ports import Parameter
 from seatrial.shipped import shipped_folder
+
+
+_SENSORS = ("ahrs", "anemometer", "compass", "depth", "gnss", "imu")
+_LINKS = [n for n, s in shipped_sources().items() if s.module.startswith("seatrial.links.")]
 
 
 @part("sensor-keys")
 def sensor_keys() -> str:
     """Keys of a profile's sensors, one column a kind."""
     rows: dict[tuple[str, str, str], dict[str, str]] = {}
-    for kind in KINDS["sensors"]:
+    for kind in _SENSORS:
         for name, port in keys("sensors", kind).items():
             row = rows.setdefault((name, shown_unit(port.unit), _meaning(port)), {})
             row[kind] = _start(port)
     common_first = sorted(rows.items(), key=lambda item: len(item[1]) == 1)
     return table(
-        ("key", "meaning", "unit", *KINDS["sensors"]),
+        ("key", "meaning", "unit", *_SENSORS),
         [
-            (f"`{name}`", meaning, unit, *(starts.get(kind, "") for kind in KINDS["sensors"]))
+            (f"`{name}`", meaning, unit, *(starts.get(kind, "") for kind in _SENSORS))
             for (name, unit, meaning), starts in common_first
         ],
     )
@@ -43,7 +48,7 @@ def link_keys() -> str:
                 for name, port in keys("links", kind).items()
             ],
         )
-        for kind in KINDS["links"]
+        for kind in _LINKS
     )
 
 
