@@ -13,7 +13,6 @@ from seatrial.fmi.source import shipped_sources
 from seatrial.ports import Parameter
 from seatrial.shipped import shipped_folder
 
-
 _SENSORS = ("ahrs", "anemometer", "compass", "depth", "gnss", "imu")
 _LINKS = [n for n, s in shipped_sources().items() if s.module.startswith("seatrial.links.")]
 
