@@ -156,7 +156,8 @@ def test_delayed_follows_what_was_wanted_half_a_second_ago(cls):
     failed = failing(cls, "delayed", wanted=turning)
     # What a healthy one does with the command held for so long, and then late.
     healthy = failing(
-        *(cls, "none"),
+        cls,
+        "none",
         wanted=lambda t: turning(
             t if not BROKEN_MS <= t < MENDED_MS else max(BROKEN_MS - 10, t - late_ms)
         ),

@@ -120,8 +120,19 @@ def item(
     """Return an item of a Mission: latitude and longitude; m above home; m/s, s, m."""
     none, nothing = MissionItem.CameraAction.NONE, MissionItem.VehicleAction.NONE
     return MissionItem(
-        *(*place, altitude, speed, math.isnan(wait), NAN, NAN, none),
-        *(wait, NAN, radius, NAN, NAN, nothing),
+        *place,
+        altitude,
+        speed,
+        math.isnan(wait),
+        NAN,
+        NAN,
+        none,
+        wait,
+        NAN,
+        radius,
+        NAN,
+        NAN,
+        nothing,
     )
 
 

@@ -47,7 +47,7 @@ def hear(boat: Any, kind: str, wanted: Callable[[Any], bool] = lambda m: True) -
 
 
 def command(boat: Any, number: int, *parameters: float) -> int:
-    boat.mav.command_long_send(1, 1, number, 0, *[*parameters, *[0.0] * (7 - len(parameters))])
+    boat.mav.command_long_send(1, 1, number, 0, *parameters, *[0.0] * (7 - len(parameters)))
     return int(hear(boat, "COMMAND_ACK", lambda m: m.command == number).result)
 
 

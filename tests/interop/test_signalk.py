@@ -72,7 +72,9 @@ def test_the_server_shows_the_ship(tmp_path):
         wait_for(lambda: trial.is_running, "the trial runs", 180.0)
         server = subprocess.Popen(
             ["node", str(SERVER / "bin/signalk-server"), "-c", str(config)],
-            *(None, None, None),
+            None,
+            None,
+            None,
             log,
             subprocess.STDOUT,
             env=environment,

@@ -267,7 +267,7 @@ def test_an_empty_record_does_not_pass(text):
     ("text", "reason"),
     [
         ("a.x < 2 m from 4 s to 30 s", "the record ends at 20 s, before 30 s"),
-        ("a.x < 2 m after 30 s", "no row to judge: the record runs from 0 s to 20 s"),
+        ("a.x < 2 m after 30 s", "no row to evaluate: the record runs from 0 s to 20 s"),
         ("a.x settles within 5 s after 18 s", "the record ends at 20 s, before 23 s"),
         ("1 / a.on < 2", "the expression is inf at 0 s"),
         ("sqrt(a.on - 1) < 2", "the expression is nan at 0 s"),

@@ -116,8 +116,18 @@ class Voyage:
         latitude, longitude, altitude = self.origin.geodetic((north, east, down))
         self.received.pop("COMMAND_ACK", None)
         self.link.mav.command_int_send(
-            *(self._system_id, 1, _RELATIVE, mavutil.mavlink.MAV_CMD_DO_REPOSITION, 0, 0),
-            *(-1, 1, 0, math.nan, round(latitude * 1e7), round(longitude * 1e7)),
+            self._system_id,
+            1,
+            _RELATIVE,
+            mavutil.mavlink.MAV_CMD_DO_REPOSITION,
+            0,
+            0,
+            -1,
+            1,
+            0,
+            math.nan,
+            round(latitude * 1e7),
+            round(longitude * 1e7),
             altitude - self.origin.altitude,
         )
         self.until(lambda: "COMMAND_ACK" in self.received, "answer to DO_REPOSITION", 5)

@@ -1,10 +1,10 @@
-"""When an estimate counts as lost."""
+"""Timeout of estimates."""
 
 from __future__ import annotations
 
 
 def is_lost(valid: bool, missed: float, period: float, timeout: float) -> bool:
-    """Say if a signal, not valid at ``missed`` instants before this one, counts as lost.
+    """Return whether a signal, not valid at ``missed`` instants before this one, is lost.
 
     ``missed`` is infinite before the first valid one; ``period`` and ``timeout`` in s.
     """

@@ -142,7 +142,9 @@ def test_a_breach_holds_and_is_told(where):
     assert told.breach_time == round(boat.now * 1e3)
     assert boat.vehicle.mode.name == "hold"
     assert boat.vehicle.failsafe
-    assert "Failsafe: outside the fence, hold" in [m.text for m in boat.transport.take("STATUSTEXT")]
+    assert "Failsafe: outside the fence, hold" in [
+        m.text for m in boat.transport.take("STATUSTEXT")
+    ]
     assert not boat.is_healthy()
 
 

@@ -303,7 +303,9 @@ def test_a_download_is_of_one_list_whatever_is_uploaded_meanwhile(bench):
     other = listed(one(at=north_of(99)), one(at=north_of(98)))
     assert upload(bench, other) == ACCEPTED
     bench.hear(ask(7, 1, 3, MISSION), OTHER_STATION)
-    assert same([*first, *bench.transport.take("MISSION_ITEM_INT")], [MISSION_ITEMS[1], MISSION_ITEMS[3]])
+    assert same(
+        [*first, *bench.transport.take("MISSION_ITEM_INT")], [MISSION_ITEMS[1], MISSION_ITEMS[3]]
+    )
     bench.hear(mavlink.MAVLink_mission_ack_message(7, 1, ACCEPTED, MISSION), OTHER_STATION)
     bench.hear(ask(7, 1, 1, MISSION), OTHER_STATION)
     assert same(bench.transport.take("MISSION_ITEM_INT"), other[1:2])
