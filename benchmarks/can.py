@@ -1,4 +1,4 @@
-"""What a frame on the simulated CAN bus costs: ``python -m benchmarks.can``.
+"""Cost of a frame on the simulated CAN bus: ``python -m benchmarks.can``.
 
 Random data frames of 8 bytes from ten nodes on a bus of 250 kbit/s that is full, in steps of 10 ms:
 frames per second of processor time, the median over rounds and its range. Machines differ and so do

@@ -131,9 +131,9 @@ def run_blocks(page: Path, found: list[Block]) -> None:
             test = doctest.DocTestParser().get_doctest(
                 block.text, names, page.name, str(page), block.line
             )
-            said: list[str] = []
-            runner.run(test, out=said.append, clear_globs=False)
-            assert not said, "".join(said)
+            output: list[str] = []
+            runner.run(test, out=output.append, clear_globs=False)
+            assert not output, "".join(output)
             names = test.globs
         elif block.text:
             assert block.file, f"{page.name}, line {block.line}: a block that nothing runs"
@@ -523,11 +523,11 @@ def test_rooms_of_the_page_are_those_of_the_contract() -> None:
     shown = [set(re.findall(r"\w+", line.partition("  ")[0])) for line in diagram[1].splitlines()]
     contract = []
     for layer in layers["layers"]:
-        rooms = [room.strip(" ()") for room in layer.split("|")]
+        names = [name.strip(" ()") for name in layer.split("|")]
         exists = [
-            r for r in rooms if (ROOT / "src" / r.replace(".", "/")).exists() or "(" not in layer
+            r for r in names if (ROOT / "src" / r.replace(".", "/")).exists() or "(" not in layer
         ]
-        contract.append({room.removeprefix("seatrial.") for room in exists})
+        contract.append({name.removeprefix("seatrial.") for name in exists})
     assert shown == contract
     second = text[text.index("The second contract") :].partition("\n\n")[0]
     named = set(re.findall(r"`(\w+)`", second))

@@ -329,7 +329,7 @@ def test_outputs_may_be_large() -> None:
 
 
 class Watch(Component):
-    """Remembers the times it is told."""
+    """Remembers the times it is given."""
 
     y = Output("s", "time")
 

@@ -313,7 +313,7 @@ def test_the_sticks_act_where_no_autopilot_does(mode, engaged, direct):
     for k in range(10):
         found.advance(0.1 * k, 0.1)
     assert (found.get("engaged"), found.get("direct")) == (engaged, direct)
-    # Sticks of the axes that are held turn and dive: 0.4 rad/s and 0.2 m/s of a full one.
+    # Manual control of the axes that are held: 0.4 rad/s and 0.2 m/s at full deflection.
     turned, sunk = 0.25 * 0.4 * (mode in ("stabilize", "depth-hold")), -0.2 * (mode == "depth-hold")
     assert found.get("heading_wanted") == pytest.approx(1.0 + turned)
     assert found.get("depth_wanted") == pytest.approx(5.0 + sunk)
@@ -412,7 +412,7 @@ def test_speed_is_what_is_made_good_along_the_bow():
 
 
 @pytest.mark.parametrize(
-    ("settings", "said"),
+    ("settings", "expected"),
     [
         ({"mode": "atuo"}, "Guidance: unknown mode 'atuo'; did you mean 'auto'"),
         ({"mode": "guided", "target_kind": "speed"}, "unknown target 'speed'"),
@@ -421,6 +421,6 @@ def test_speed_is_what_is_made_good_along_the_bow():
         ({"staying": "float"}, "unknown value of staying 'float'"),
     ],
 )
-def test_refuses(settings, said):
-    with pytest.raises(InputError, match=said):
+def test_refuses(settings, expected):
+    with pytest.raises(InputError, match=expected):
         guidance(**settings).get("state")

@@ -13,7 +13,7 @@ NEUTRAL, PILOTED, STAYS, FOLLOWS, STEERS, BEATS = range(6)
 
 
 def guidance(position=(0.0, 0.0), heading=90.0, speed=2.0, **changes):
-    """Return an armed boat under way, whose heading wanted does not lag unless it is told to."""
+    """Return an armed boat under way, whose heading wanted does not lag by default."""
     along = [speed * math.cos(heading * DEG), speed * math.sin(heading * DEG), 0.0]
     values = {"armed": True, "wind": NORTHERLY, "turn_rate": 1e3, "lead": math.pi}
     placed = {"position_n": [*position, 0.0], "velocity_n": along, "heading": heading * DEG}
@@ -34,7 +34,7 @@ def wrapped(angle):
 
 
 def steer(boat, seconds, speed=2.0, current=(0.0, 0.0), each=None):
-    """Move a boat that turns as it is told, without leeway; it has way while its sail is trimmed."""
+    """Move a boat that turns as commanded, without leeway; it has way while its sail is trimmed."""
     period = boat.period
     north, east, _ = boat.position_n
     for _ in range(round(seconds / period)):

@@ -1,4 +1,4 @@
-"""How actuators fail, against closed forms."""
+"""Failures of actuators, against closed forms."""
 
 import math
 
@@ -61,7 +61,7 @@ def test_it_acts_while_it_lasts(cls, fault):
     first = BROKEN_MS // 10
     assert (failed[:first] == healthy[:first]).all()
     assert not np.allclose(failed[first:], healthy[first:])
-    # Mended it comes back: lags are at most 1 s.
+    # Repaired it comes back: lags are at most 1 s.
     assert at(failed, 20_000) == pytest.approx(at(healthy, 20_000), abs=0.06 * np.ptp(healthy))
 
 

@@ -1,4 +1,4 @@
-"""How sensors fail. Statistical bounds are 3.9 sigma, as in test_sensor."""
+"""Failures of sensors. Statistical bounds are 3.9 sigma, as in test_sensor."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""A Signal K server reads a running trial through the gateway, and says so over HTTP.
+"""A Signal K server reads a running trial through the gateway, and serves it over HTTP.
 
 It is not installed with the other reference tools: 600 packages. Where it is, SIGNALK_SERVER names the folder
 whose node_modules have it (npm install --ignore-scripts signalk-server).

@@ -27,7 +27,7 @@ def check_events(trial: Trial, system: System) -> None:
         if event.action == "set":
             scalars = settable(part.instance.variables, port, f"{where}: {component}")
             if any(connected):
-                raise InputError(f"{where}: {event.key} is fed by a connection; use override")
+                raise InputError(f"{where}: {event.key} is fed by a wire; use override")
             if scalars[0].causality == "parameter" and scalars[0].variability != "tunable":
                 raise InputError(f"{where}: {event.key} is fixed and cannot change during a run")
         elif not scalars or not (all(connected) or scalars[0].causality == "output"):

@@ -59,12 +59,11 @@ def manifest(trial: Trial, system: System, engine: Engine) -> dict[str, Any]:
 
 
 def _connections(trial: Trial) -> list[list[Any]]:
-    """Return [from, to], and [factor, offset] behind where a connection has them."""
+    """Return [from, to], and [factor, offset] behind where a wire has them."""
     rows: list[list[Any]] = []
-    for source, connection in trial.rig.connections():
-        transformed = (connection.factor, connection.offset) != (1.0, 0.0)
-        linear = [connection.factor, connection.offset] if transformed else []
-        rows.append([source, connection.to, *linear])
+    for source, wire in trial.rig.connections():
+        transformed = (wire.factor, wire.offset) != (1.0, 0.0)
+        rows.append([source, wire.to, *([wire.factor, wire.offset] if transformed else [])])
     return rows
 
 
