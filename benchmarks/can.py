@@ -71,7 +71,7 @@ def arbitration(count: int) -> float:
 
 
 def component(count: int, *, reads: bool, folder: str = "") -> float:
-    """Return the time of the component, its nodes asking, and all hearing if wanted; s."""
+    """Return the time of the component, its nodes asking, and all receiving if wanted; s."""
     bus = CanBus("can")
     bus.set("nodes", " ".join(f"n{n}" for n in range(SENDERS)))
     bus.set("queue_length", 1000.0)

@@ -277,7 +277,7 @@ def criteria_of_the_page() -> list[str]:
 
 
 @pytest.mark.parametrize("text", criteria_of_the_page())
-def test_criteria_of_the_page_can_be_judged_and_hold(text: str, dash: Any) -> None:
+def test_criteria_of_the_page_can_be_evaluated_and_hold(text: str, dash: Any) -> None:
     verdict = parse(text).evaluate(dash.time, dash.signals, dash.units)
     assert verdict.passed, verdict.detail
 
@@ -514,7 +514,7 @@ def test_images_are_small_and_links_lead_somewhere(page: Path) -> None:
 # ---------------------------------------------------------------------- design.md
 
 
-def test_rooms_of_the_page_are_those_of_the_contract() -> None:
+def test_modules_of_the_page_are_those_of_the_contract() -> None:
     config = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["tool"]["importlinter"]
     layers, forbidden = config["contracts"]
     text = DESIGN.read_text("utf-8")

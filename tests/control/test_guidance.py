@@ -120,7 +120,7 @@ def test_a_reached_leg_stays_reached_until_another_begins():
 def test_root_mean_square_of_the_cross_track_error():
     found = guidance((0.0, 3.0), **FAR)
     errors = [row[5] for row in drive(found, 20.0)]
-    found.set("mode", "hold")  # what comes now does not count
+    found.set("mode", "hold")  # what comes now is ignored
     drive(found, 5.0)
     assert found.get("cross_track_rms") == pytest.approx(math.sqrt(np.mean(np.square(errors))))
 
@@ -286,7 +286,7 @@ def test_comes_home_and_stays():
 # ---------------------------------------------------------------------- modes
 
 
-def test_the_sticks_are_for_manual_alone():
+def test_manual_control_is_for_manual_alone():
     found = guidance(manual=[0.5, -2.0, 2.0, -0.25], mode="manual")
     assert found.get("direct") == [0.5, -1.0, 1.0, -0.25]
     assert (found.get("state"), found.get("engaged")) == (MANUAL, [False] * 3)
@@ -308,7 +308,7 @@ MANUAL_AXES = [0.5, -0.5, 0.25, -1.0]
         ("hold", [True, True, True], [0.0, 0.0, 0.0, 0.0]),
     ],
 )
-def test_the_sticks_act_where_no_autopilot_does(mode, engaged, direct):
+def test_manual_control_acts_where_no_autopilot_does(mode, engaged, direct):
     found = guidance(depth=5.0, mode=mode, heading=1.0, manual=MANUAL_AXES, depth_control="on")
     for k in range(10):
         found.advance(0.1 * k, 0.1)

@@ -213,7 +213,7 @@ def test_disarmed_the_rudder_is_amidships_and_the_sail_streams():
     assert found.get("state") == NEUTRAL
 
 
-def test_sticks_go_through_in_manual_only():
+def test_manual_control_goes_through_in_manual_only():
     found = guidance(mode="manual", manual=[0.5, 0.0, -2.0, 0.0], position_valid=False)
     assert (found.get("direct"), found.get("state")) == ([-1.0, 0.5], PILOTED)
     found.set("manual", [-1.0, 0.0, 0.0, 0.0])
@@ -240,7 +240,7 @@ def test_without_a_position_for_longer_than_the_timeout_it_is_neutral():
         ("position", {"target_position": [0.0, 100.0, 0.0]}),
     ],
 )
-def test_guided_sails_where_it_is_told(kind, wanted):
+def test_guided_sails_where_it_is_sent(kind, wanted):
     found = guidance(heading=120, mode="guided", target_kind=kind, **wanted)
     assert wrapped(found.get("course")) == pytest.approx(90.0)
     assert found.get("engaged") == [True, True]

@@ -77,7 +77,7 @@ def test_modes_are_those_that_pymavlink_knows(boat: Any) -> None:
     assert found.items() <= boat.mode_mapping().items()
 
 
-def test_rates_are_told_as_they_are_set(boat: Any) -> None:
+def test_rates_are_reported_as_they_are_set(boat: Any) -> None:
     number = mavlink.MAVLINK_MSG_ID_VFR_HUD
     boat.mav.request_data_stream_send(1, 1, mavlink.MAV_DATA_STREAM_ALL, 2, 1)
     boat.mav.command_long_send(1, 1, mavlink.MAV_CMD_GET_MESSAGE_INTERVAL, 0, number, *[0] * 6)

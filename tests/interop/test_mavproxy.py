@@ -210,7 +210,7 @@ def test_a_session_with_a_submarine(tmp_path: Path) -> None:
             assert name in modes
             proxy.ask(f"mode {name}", rf"Mode {name}$")
         proxy.ask("arm throttle", r"\bARMED$")
-        proxy.type("rc 3 1300")  # downwards; the depth is held when the stick is released
+        proxy.type("rc 3 1300")  # downwards; the depth is held when the control is released
         wait_for(lambda: moved(trial, "vehicle", "z") > 1.0, "1 m down by overridden channels")
         proxy.type("rc 3 1500")
         station = mavutil.mavlink_connection(f"udpout:{HOST}:{port}", source_system=250)

@@ -74,7 +74,7 @@ def test_forms(text, passed):
     assert evaluate(text).passed is passed
 
 
-def test_worst_is_told_in_the_unit_of_the_criterion():
+def test_worst_is_reported_in_the_unit_of_the_criterion():
     verdict = evaluate("abs(a.phi) < 9.5 deg")
     crossing = -2.0 * math.log(1 - 0.95)
     assert not verdict.passed
@@ -88,7 +88,7 @@ def test_worst_is_told_in_the_unit_of_the_criterion():
     )
 
 
-def test_close_values_are_told_apart():
+def test_close_values_are_distinguished():
     detail = evaluate("a.phi < 9.9999 deg").detail
     assert detail.startswith("worst 9.9995 deg at 20 s, limit 9.9999 deg")
 
@@ -100,7 +100,7 @@ def test_worst_of_a_passed_criterion_is_nearest_to_its_limit():
     assert verdict.time == pytest.approx(math.pi / 2, abs=0.01)
 
 
-def test_the_deciding_part_is_told():
+def test_the_deciding_part_is_reported():
     assert "10 m at 20 s, limit 9 m" in evaluate("a.x < 2 m and a.y < 9 m").detail
     assert "10 m at 20 s, limit 8 m" in evaluate("a.x > 2 m or a.y < 8 m").detail
     assert evaluate("a.y < 9 m and a.phi < 11 deg").unit == "m"
