@@ -64,11 +64,10 @@ BY_RIGHT = (
     Right("room", "src/seatrial/links/arduino/*", "", "free space of a buffer"),
     Right("wire", "harness/firmware/*", r"\bWire\b", "Arduino's library"),
     Right("pin, pins", "harness/firmware/*", "", "of a board"),
-    Right("pin, pins, wire, wires, wiring", "*sketch.py", "", "of a board"),
+    Right("pin, pins, wire, wires, wiring", "*sketch*", "", "of a board"),
+    Right("pin, wires", "docs/reference/*", r"PIN KIND|PROFILE:LINK", "of a board"),
     Right("wires, pin, pins", "hil_profiles/*", "", "of a board"),
-    Right(
-        "stick", "src/seatrial/cli/drive_keys.py", r"[Ll]eft stick|[Rr]ight stick", "a gamepad's"
-    ),
+    Right("stick", "*", r"[Ll]eft stick|[Rr]ight stick|stick down and up", "of a gamepad"),
     Right("counts as", "*/videoray/registers.py", r"measures or counts", "a count of things"),
 )
 
