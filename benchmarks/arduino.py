@@ -1,7 +1,7 @@
-"""How fast sketches run on simulated boards: ``python -m benchmarks.arduino``.
+"""Speed of sketches on simulated boards: ``python -m benchmarks.arduino``.
 
 Seconds of the sketch's time per second of processor time, the board's program included: Gloria's
-autopilot on a board alone that hears HDT and RMC, and in the rig that sails; the median over
+autopilot on a board alone that receives HDT and RMC, and in the rig that sails; the median over
 rounds and its range. Each round also adds up numbers in a loop, since machines and hours differ.
 ``--write`` puts the table into docs/links/arduino.md.
 """

@@ -1,4 +1,4 @@
-"""What a frame on the simulated CAN bus costs: ``python -m benchmarks.can``.
+"""Cost of a frame on the simulated CAN bus: ``python -m benchmarks.can``.
 
 Random data frames of 8 bytes from ten nodes on a bus of 250 kbit/s that is full, in steps of 10 ms:
 frames per second of processor time, the median over rounds and its range. Machines differ and so do
@@ -71,7 +71,7 @@ def arbitration(count: int) -> float:
 
 
 def component(count: int, *, reads: bool, folder: str = "") -> float:
-    """Return the time of the component, its nodes asking, and all hearing if wanted; s."""
+    """Return the time of the component, its nodes asking, and all receiving if wanted; s."""
     bus = CanBus("can")
     bus.set("nodes", " ".join(f"n{n}" for n in range(SENDERS)))
     bus.set("queue_length", 1000.0)

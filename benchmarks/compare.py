@@ -1,7 +1,7 @@
 """Our master beside other people's, on one rig, in one run: ``python -m benchmarks.compare``.
 
 Each engine runs in a process of its own, in turn, for some rounds; what is compared is the time
-of the steps without set-up. FMPy's simulate_ssp does not tell them apart: for it a run of one
+of the steps without set-up. FMPy's simulate_ssp does not separate them: for it a run of one
 step is taken off. Ratios are those of one round; the median over the rounds and their range are
 shown. ``--write`` puts the tables into docs/performance.md.
 """

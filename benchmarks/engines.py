@@ -1,8 +1,8 @@
 """One co-simulation of an SSP package in one engine, in a process of its own.
 
 Run as ``python -m benchmarks.engines '[engine, ssp, steps, step, [outputs]]'``; prints JSON: wall
-time of the steps in s, of that in the components' own steps where the engine lets it be told
-apart, and the final values of the outputs. `compare` runs it.
+time of the steps in s, of that in the components' own steps where the engine
+separates it, and the final values of the outputs. `compare` runs it.
 """
 
 from __future__ import annotations
@@ -104,7 +104,7 @@ def fmpy_lists(ssp: Path, steps: int, step: float, watch: list[str]) -> Result:
 
 
 def fmpy_ssp(ssp: Path, steps: int, step: float, watch: list[str]) -> Result:
-    """FMPy's own; its set-up cannot be told apart here: see `compare`."""
+    """FMPy's own; its set-up cannot be separated here: see `compare`."""
     from fmpy.ssp.simulation import simulate_ssp
 
     begun = perf_counter()

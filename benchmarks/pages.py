@@ -1,4 +1,4 @@
-"""What benchmarks share: the yardstick of a loop, and a place in a page."""
+"""Shared by benchmarks: the yardstick of a loop, and a place in a page."""
 
 from __future__ import annotations
 

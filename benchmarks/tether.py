@@ -1,4 +1,4 @@
-"""What a step of the tether costs: ``python -m benchmarks.tether``.
+"""Cost of a step of the tether: ``python -m benchmarks.tether``.
 
 An implicit step is measured beside one evaluation of the right-hand side that an explicit method
 would need, in turn, for some rounds. Ratios are those of one round; the median over the rounds and

@@ -162,9 +162,9 @@ def run_blocks(page: Path, found: list[Block]) -> None:
             test = doctest.DocTestParser().get_doctest(
                 block.text, names, page.name, str(page), block.line
             )
-            said: list[str] = []
-            runner.run(test, out=said.append, clear_globs=False)
-            assert not said, "".join(said)
+            output: list[str] = []
+            runner.run(test, out=output.append, clear_globs=False)
+            assert not output, "".join(output)
             names = test.globs
         elif block.text:
             assert block.file, f"{page.name}, line {block.line}: a block that nothing runs"
@@ -301,7 +301,7 @@ def criteria_of_the_page() -> list[str]:
 
 
 @pytest.mark.parametrize("text", criteria_of_the_page())
-def test_criteria_of_the_page_can_be_judged_and_hold(text: str, dash: Any) -> None:
+def test_criteria_of_the_page_can_be_evaluated_and_hold(text: str, dash: Any) -> None:
     verdict = parse(text).evaluate(dash.time, dash.signals, dash.units)
     assert verdict.passed, verdict.detail
 

@@ -133,7 +133,7 @@ class Component:
         """Set the outputs from inputs and state at ``t``; must not change the state."""
 
     def close(self) -> None:
-        """Let go of what is outside (sockets, ports); called at the end, maybe more than once."""
+        """Release what is outside (sockets, ports); called at the end, maybe more than once."""
 
     # ------------------------------------------------------------------ called by whoever runs it
 
@@ -204,7 +204,7 @@ class Component:
             self._stale = False
 
     def setup(self, start_time: float) -> None:
-        """Say when the run starts, before `initialise`. Raises InputError if that is too late."""
+        """Set the start time, before `initialise`. Raises InputError if that is too late."""
         if not abs(start_time) < _LATEST:
             raise InputError(
                 f"{self.name}: start time is {start_time!r} s; times are exact to the nanosecond "
@@ -287,7 +287,7 @@ class Component:
         if not self._inputs.issuperset(references):
             if running:  # a tunable parameter; before, all are checked at the start
                 for reference, value in zip(references, values, strict=True):
-                    if value != self.values[reference]:  # a wire writes the same again and again
+                    if value != self.values[reference]:  # written again and again, often the same
                         self._check_parameter(self.scalars[reference], value)
             elif self._phase == _INITIALISING:
                 self._restart = True
@@ -375,7 +375,7 @@ class Noise:
 class Logging:
     """Mix-in for a component that keeps a log of its own, in a format of its own.
 
-    Whoever runs it says where, once there is a folder: that is after the start.
+    The master sets where, once there is a folder: that is after the start.
     """
 
     run_folder = Parameter(

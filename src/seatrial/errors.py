@@ -1,4 +1,4 @@
-"""The errors that a user of seatrial meets."""
+"""Errors for the user of seatrial."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import difflib
 from collections.abc import Iterable
 
 INTERRUPTED = "interrupted by the user"
-"""What a component says that a signal interrupted; a message crosses the FMI, an exception not."""
+"""Message of a component that a signal interrupted; a message crosses the FMI, an exception not."""
 
 
 class SeatrialError(Exception):
@@ -26,7 +26,7 @@ class FatalError(SimulationError):
 
 
 class ExcessError(SimulationError):
-    """An output is not finite, or beyond what its wire may carry."""
+    """An output is not finite, or beyond what its connection may carry."""
 
 
 class DiscardError(SimulationError):

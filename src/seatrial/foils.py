@@ -1,4 +1,4 @@
-"""Lift and drag of foils over angle of attack and flap: the tables of source 001, looked up.
+"""Lift and drag of foils over angle of attack and flap, from the tables of source 001.
 
 They stand here because equations of motion (as expressions) and sail controllers (as numbers)
 read the same tables.
@@ -30,7 +30,7 @@ class FoilTable:
 
     |alpha| goes from 0 to 180 deg in steps of 5. Between the points both coefficients are
     linear in |alpha| and in the flap. C_L is odd in alpha and C_D even: the flap is given by
-    its size, and lies towards the side of the lift. A flap beyond the rows counts as the
+    its size, and lies towards the side of the lift. A flap beyond the rows is taken as the
     nearest one.
     """
 

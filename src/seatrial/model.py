@@ -1,4 +1,4 @@
-"""From a plant's equations, written once as CasADi expressions, to compiled functions."""
+"""Compiled functions of a plant's equations, which are CasADi expressions."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Plants: components with continuous states, written as CasADi expressions.
 
-A plant says its equations once. From them come the fixed-step integrator that runs inside a
+A plant states its equations once. From them come the fixed-step integrator that runs inside a
 communication step, a variable-step reference, exact Jacobians, linearisation and trim.
 """
 
@@ -123,7 +123,7 @@ class Plant(Component):
         text parameter is a plain string. ``self`` carries no values: the result is compiled
         once per class and choice of text parameters.
         """
-        raise TypeError(f"{type(self).__name__} does not say its equations")
+        raise TypeError(f"{type(self).__name__} defines no equations")
 
     # ------------------------------------------------------------------ running
 

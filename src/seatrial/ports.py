@@ -1,4 +1,4 @@
-"""Ports: what a component says of each of its signals and parameters, once."""
+"""Ports: the declaration of a component's signals and parameters."""
 
 from __future__ import annotations
 
@@ -190,7 +190,7 @@ class Parameter(Port):
 
 
 class Input(Port):
-    """A value that arrives over at most one wire; ``start`` holds while nothing is connected.
+    """A value that arrives over at most one connection; ``start`` holds while nothing is connected.
 
     An ``optional`` input is normally not connected: a run does not mention it.
     """

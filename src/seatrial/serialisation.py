@@ -1,4 +1,4 @@
-"""Plain data: what a component's state is made of, and what FMI can carry."""
+"""Serialisation: plain data for a component's state, and text that FMI can carry."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 
 def is_c_text(text: str) -> bool:
-    """Say if FMI can carry ``text``: no NUL, no lone surrogate."""
+    """Return whether FMI can carry ``text``: no NUL, no lone surrogate."""
     return "\0" not in text and (text.isascii() or not any("\ud800" <= c <= "\udfff" for c in text))
 
 

@@ -1,4 +1,4 @@
-"""Folders that travel with the library: fmus, harness, hil_profiles, vehicles."""
+"""Folders shipped with the library: fmus, harness, hil_profiles, vehicles."""
 
 from __future__ import annotations
 

@@ -40,7 +40,7 @@ class Unit:
     exact_factor: Fraction
     exact_offset: Fraction
     exponents: dict[str, int]
-    """Exponent of each base unit that occurs; radian counts as one."""
+    """Exponent of each base unit that occurs; radian is one."""
     by_name: bool = True
     """False for a unit that an FMU defines; it may have left the radian out."""
 
@@ -60,7 +60,7 @@ def _registry() -> Any:
     import pint
 
     # In pint a radian has no dimension, but it is a base unit, as in FMI: its exponent is what
-    # tells an angle from a count on a wire.
+    # tells an angle from a count on a connection.
     registry: Any = pint.UnitRegistry(cache_folder=None, non_int_type=Fraction)
     registry.define("@alias degree = °")
     registry.define("@alias revolution = rev")
@@ -96,7 +96,7 @@ def unit(text: str) -> Unit:
 def defined_unit(text: str, exponents: Mapping[str, int], factor: float, offset: float) -> Unit:
     """Return the unit that an FMU calls ``text`` and defines: SI = factor * value + offset.
 
-    Where the name says the same it is `unit` of that name, with exact factors; the definition
+    Where the name means the same it is `unit` of that name, with exact factors; the definition
     may have left the radian out. Raises InputError for a factor that converts nothing.
     """
     if not (math.isfinite(factor) and math.isfinite(offset) and factor > 0.0):
@@ -145,7 +145,7 @@ def _exact_conversion(source: str | Unit, target: str | Unit) -> tuple[Fraction,
 
 
 def _alike(a: Unit, b: Unit) -> bool:
-    """Say if two units measure the same; radians count only where names alone decide."""
+    """Return whether two units measure the same; radians matter only where names alone decide."""
     if a.by_name and b.by_name:
         return a.exponents == b.exponents
     names = (a.exponents.keys() | b.exponents.keys()) - {"rad"}
@@ -157,7 +157,7 @@ def _name(measure: str | Unit) -> str:
 
 
 def quantity(text: str | float | int, target: str | Unit) -> float:
-    """Return what ``text`` says (``"10 deg"``, or a bare number already in ``target``).
+    """Return the value of ``text`` (``"10 deg"``, or a bare number already in ``target``).
 
     The result is the double nearest to what is written. Raises InputError if it is not a
     finite number with a unit that converts to ``target``.
@@ -193,7 +193,7 @@ def _written(text: str, target: str | Unit) -> float:
 
 
 def _has_dimension(measure: str | Unit) -> bool:
-    """Say if a number needs this unit written; one that is not known is no pure number."""
+    """Return whether a number needs this unit written; one that is not known is no pure number."""
     try:
         return bool((measure if isinstance(measure, Unit) else unit(measure)).exponents)
     except InputError:

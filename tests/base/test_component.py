@@ -195,7 +195,7 @@ def test_a_parameter_set_before_begin_starts_again_and_an_input_does_not() -> No
     assert component.get("y") == [21.0] * 3
 
 
-def test_what_initialise_refused_begin_refuses_until_it_is_mended() -> None:
+def test_what_initialise_refused_begin_refuses_until_it_is_repaired() -> None:
     component = Lag("it")
     component.set("gain", -1.0)
     for _ in range(2):
@@ -329,7 +329,7 @@ def test_outputs_may_be_large() -> None:
 
 
 class Watch(Component):
-    """Remembers the times it is told."""
+    """Remembers the times it is given."""
 
     y = Output("s", "time")
 

@@ -385,7 +385,7 @@ def test_a_plant_without_equations_says_so() -> None:
     class Empty(Plant):
         x = State("m", "x")
 
-    with pytest.raises(TypeError, match="Empty does not say its equations"):
+    with pytest.raises(TypeError, match="Empty defines no equations"):
         Empty("it").initialise()
 
 

@@ -119,11 +119,11 @@ def test_broken_toml_names_file_and_line(boat: Path, write) -> None:
     assert "line 2" in done.stderr
 
 
-@pytest.mark.parametrize(("how", "said"), [("raise", "flooded"), ("nan", "output y is nan")])
-def test_a_component_that_fails_is_status_three(how: str, said: str, boat: Path) -> None:
+@pytest.mark.parametrize(("how", "expected"), [("raise", "flooded"), ("nan", "output y is nan")])
+def test_a_component_that_fails_is_status_three(how: str, expected: str, boat: Path) -> None:
     done = seatrial("run", "trial.toml", "--set", f"boat.how={how}", "--out", "run", cwd=boat)
     assert done.returncode == 3
-    assert said in done.stderr
+    assert expected in done.stderr
     assert "FAILED" in done.stdout
     rows = (boat / "run" / "signals.csv").read_text().splitlines()
     assert 21 <= len(rows) - 1 <= 22
@@ -139,17 +139,17 @@ def test_two_runs_compare_equal_and_different(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("trial", "status", "said"),
+    ("trial", "status", "expected"),
     [
         ("hydrone-open-landing", 0, "hull.position.y"),
         ("hydrone-landing", 1, "outputs do not converge"),
     ],
 )
-def test_convergence_of_a_trial(trial: str, status: int, said: str, tmp_path: Path) -> None:
+def test_convergence_of_a_trial(trial: str, status: int, expected: str, tmp_path: Path) -> None:
     short = ("--set", "stop=5 s", "--engine", "direct", "--halvings", "3")
     done = seatrial("convergence", trial, *short, "--out", "c", cwd=tmp_path)
     assert (done.returncode, done.stderr) == (status, "")
-    assert said in done.stdout
+    assert expected in done.stdout
     assert {p.name for p in (tmp_path / "c").glob("step-*")} == {
         "step-5ms", "step-2.5ms", "step-1.25ms"
     }  # fmt: skip

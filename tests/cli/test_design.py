@@ -21,7 +21,7 @@ def test_it_prints_gains_and_leaves_a_page(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "expected"),
     [
         (("hydrone",), "hydrone.toml: a vehicle with a table 'manoeuvring-ship' is needed"),
         (("marinr",), "mariner"),
@@ -31,10 +31,10 @@ def test_it_prints_gains_and_leaves_a_page(tmp_path: Path) -> None:
     ],
 )
 def test_mistakes_are_named_and_leave_nothing(
-    tmp_path: Path, arguments: tuple[str, ...], said: str
+    tmp_path: Path, arguments: tuple[str, ...], expected: str
 ) -> None:
     done = seatrial("design", *arguments, cwd=tmp_path)
     assert done.returncode == 2
-    assert said in done.stderr
+    assert expected in done.stderr
     assert "Traceback" not in done.stderr
     assert not list(tmp_path.iterdir())

@@ -110,7 +110,7 @@ def test_a_pilot_sees_the_vehicle_and_drives_it(tmp_path):
             assert terminal.process.wait(WAIT_S) == 0
 
 
-def test_a_key_expires_and_sticks_keep_within_their_ends():
+def test_a_key_expires_and_deflections_keep_within_their_ends():
     pilot = Pilot(share=1.0)
     pilot.press("w", 10.0)
     pilot.press("right", 10.0)
@@ -143,7 +143,7 @@ def test_every_key_of_the_help_does_something():
             assert pilot != other, key
 
 
-def test_arrows_and_letters_are_told_apart():
+def test_arrows_and_letters_are_distinguished():
     keys = split_keys(b"w\x1b[A\x1bOB\x1b[5~\x1b[Dq\x1b")
     assert keys == ["w", "up", "down", "page up", "left", "q", "\x1b"]
 

@@ -37,7 +37,7 @@ def test_a_record_as_mcap_and_as_parquet(run: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "expected"),
     [
         (("run",), "export needs one of --mcap and --parquet"),
         (("run", "--mcap", "--parquet"), "export needs one of --mcap and --parquet"),
@@ -45,7 +45,7 @@ def test_a_record_as_mcap_and_as_parquet(run: Path, tmp_path: Path) -> None:
         (("run", "--mcap", "--out", "no/x.mcap"), "cannot write no/x.mcap: No such file"),
     ],
 )
-def test_mistakes_are_named(run: Path, tmp_path: Path, arguments, said: str) -> None:
+def test_mistakes_are_named(run: Path, tmp_path: Path, arguments, expected: str) -> None:
     done = seatrial("export", *arguments, cwd=tmp_path)
     assert done.returncode == 2
-    assert said in done.stderr
+    assert expected in done.stderr

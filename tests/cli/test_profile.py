@@ -20,7 +20,7 @@ def test_shipped_profiles_have_no_problem(name: str, tmp_path: Path) -> None:
     assert done.stdout.endswith(f"{name}.toml: no problem found\n")
 
 
-def test_mistakes_are_told_with_file_and_key(write, tmp_path: Path) -> None:
+def test_mistakes_are_reported_with_file_and_key(write, tmp_path: Path) -> None:
     text = GOOD.replace("system_id = 7", "system_id = 256").replace('"2 cm"', '"-2 cm"')
     write("boat.toml", text)
     done = seatrial("profile", "check", "boat.toml", cwd=tmp_path)

@@ -23,7 +23,7 @@ def test_check_says_what_it_is_made_of(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("source", "said"),
+    ("source", "expected"),
     [
         ("void setup() {\n  DDRB = 1;\n}\nvoid loop() {}\n", "one.ino:2: DDRB is a register"),
         (
@@ -32,11 +32,11 @@ def test_check_says_what_it_is_made_of(tmp_path):
         ),
     ],
 )
-def test_check_refuses(tmp_path, source, said):
+def test_check_refuses(tmp_path, source, expected):
     sketch = write_sketch(tmp_path, source)
     done = seatrial("sketch", "check", str(sketch), "--mcu", "atmega328p", cwd=tmp_path)
     assert done.returncode == 2
-    assert said in done.stderr
+    assert expected in done.stderr
 
 
 def test_check_names_pins_that_have_no_line(tmp_path):

@@ -87,12 +87,12 @@ def has_status(folder: Path, status: str = "running") -> bool:
 
 
 def stopped(process: subprocess.Popen[str]) -> str:
-    """Return what was said by a process that must end stopped."""
-    _, said = process.communicate(timeout=60)
-    assert process.returncode == 3, said
-    assert "stopped" in said
-    assert "Traceback" not in said
-    return said
+    """Return what was output by a process that must end stopped."""
+    _, output = process.communicate(timeout=60)
+    assert process.returncode == 3, output
+    assert "stopped" in output
+    assert "Traceback" not in output
+    return output
 
 
 def assert_whole(folder: Path, rows: int) -> None:

@@ -120,7 +120,7 @@ def test_a_reached_leg_stays_reached_until_another_begins():
 def test_root_mean_square_of_the_cross_track_error():
     found = guidance((0.0, 3.0), **FAR)
     errors = [row[5] for row in drive(found, 20.0)]
-    found.set("mode", "hold")  # what comes now does not count
+    found.set("mode", "hold")  # what comes now is ignored
     drive(found, 5.0)
     assert found.get("cross_track_rms") == pytest.approx(math.sqrt(np.mean(np.square(errors))))
 
@@ -286,7 +286,7 @@ def test_comes_home_and_stays():
 # ---------------------------------------------------------------------- modes
 
 
-def test_the_sticks_are_for_manual_alone():
+def test_manual_control_is_for_manual_alone():
     found = guidance(manual=[0.5, -2.0, 2.0, -0.25], mode="manual")
     assert found.get("direct") == [0.5, -1.0, 1.0, -0.25]
     assert (found.get("state"), found.get("engaged")) == (MANUAL, [False] * 3)
@@ -308,12 +308,12 @@ MANUAL_AXES = [0.5, -0.5, 0.25, -1.0]
         ("hold", [True, True, True], [0.0, 0.0, 0.0, 0.0]),
     ],
 )
-def test_the_sticks_act_where_no_autopilot_does(mode, engaged, direct):
+def test_manual_control_acts_where_no_autopilot_does(mode, engaged, direct):
     found = guidance(depth=5.0, mode=mode, heading=1.0, manual=MANUAL_AXES, depth_control="on")
     for k in range(10):
         found.advance(0.1 * k, 0.1)
     assert (found.get("engaged"), found.get("direct")) == (engaged, direct)
-    # Sticks of the axes that are held turn and dive: 0.4 rad/s and 0.2 m/s of a full one.
+    # Manual control of the axes that are held: 0.4 rad/s and 0.2 m/s at full deflection.
     turned, sunk = 0.25 * 0.4 * (mode in ("stabilize", "depth-hold")), -0.2 * (mode == "depth-hold")
     assert found.get("heading_wanted") == pytest.approx(1.0 + turned)
     assert found.get("depth_wanted") == pytest.approx(5.0 + sunk)
@@ -412,7 +412,7 @@ def test_speed_is_what_is_made_good_along_the_bow():
 
 
 @pytest.mark.parametrize(
-    ("settings", "said"),
+    ("settings", "expected"),
     [
         ({"mode": "atuo"}, "Guidance: unknown mode 'atuo'; did you mean 'auto'"),
         ({"mode": "guided", "target_kind": "speed"}, "unknown target 'speed'"),
@@ -421,6 +421,6 @@ def test_speed_is_what_is_made_good_along_the_bow():
         ({"staying": "float"}, "unknown value of staying 'float'"),
     ],
 )
-def test_refuses(settings, said):
-    with pytest.raises(InputError, match=said):
+def test_refuses(settings, expected):
+    with pytest.raises(InputError, match=expected):
         guidance(**settings).get("state")

@@ -11,10 +11,10 @@ HELD = {"surge_held": 3.0, "yaw_moment_held": 4.0, "heave_held": -5.0}
 
 
 @pytest.mark.parametrize("engaged", list(itertools.product([False, True], repeat=3)))
-def test_each_axis_is_the_autopilots_or_the_sticks(engaged):
+def test_each_axis_is_the_autopilots_or_manual(engaged):
     found = started(Helm, **MANUAL_AXES, **LIMITS, **HELD, engaged=list(engaged))
-    autopilots, sticks = (3.0, 4.0, -5.0), (15.0, -12.0, 10.0)
-    expected = [a if on else s for on, a, s in zip(engaged, autopilots, sticks, strict=True)]
+    autopilots, deflections = (3.0, 4.0, -5.0), (15.0, -12.0, 10.0)
+    expected = [a if on else s for on, a, s in zip(engaged, autopilots, deflections, strict=True)]
     assert [found.get(name) for name in ("surge", "yaw_moment", "heave")] == expected
     assert found.get("sway") == -2.0
 

@@ -36,7 +36,7 @@ def test_greatest_drive_of_the_table(beta):
     offered = brute_force(beta, np.radians(np.arange(0, 181, 5)))
     offered = offered[(offered[:, 0] >= 0.0) & (offered[:, 0] <= math.pi / 2)]
     best = offered[np.argmax(offered[:, 2])]
-    if found.angle == math.pi / 2:  # the end of the range counts too
+    if found.angle == math.pi / 2:  # the end of the range is in it
         assert found.drive >= best[2]
     else:
         assert found == pytest.approx(best, rel=1e-12)

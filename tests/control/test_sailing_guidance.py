@@ -13,7 +13,7 @@ NEUTRAL, PILOTED, STAYS, FOLLOWS, STEERS, BEATS = range(6)
 
 
 def guidance(position=(0.0, 0.0), heading=90.0, speed=2.0, **changes):
-    """Return an armed boat under way, whose heading wanted does not lag unless it is told to."""
+    """Return an armed boat under way, whose heading wanted does not lag by default."""
     along = [speed * math.cos(heading * DEG), speed * math.sin(heading * DEG), 0.0]
     values = {"armed": True, "wind": NORTHERLY, "turn_rate": 1e3, "lead": math.pi}
     placed = {"position_n": [*position, 0.0], "velocity_n": along, "heading": heading * DEG}
@@ -34,7 +34,7 @@ def wrapped(angle):
 
 
 def steer(boat, seconds, speed=2.0, current=(0.0, 0.0), each=None):
-    """Move a boat that turns as it is told, without leeway; it has way while its sail is trimmed."""
+    """Move a boat that turns as commanded, without leeway; it has way while its sail is trimmed."""
     period = boat.period
     north, east, _ = boat.position_n
     for _ in range(round(seconds / period)):
@@ -213,7 +213,7 @@ def test_disarmed_the_rudder_is_amidships_and_the_sail_streams():
     assert found.get("state") == NEUTRAL
 
 
-def test_sticks_go_through_in_manual_only():
+def test_manual_control_goes_through_in_manual_only():
     found = guidance(mode="manual", manual=[0.5, 0.0, -2.0, 0.0], position_valid=False)
     assert (found.get("direct"), found.get("state")) == ([-1.0, 0.5], PILOTED)
     found.set("manual", [-1.0, 0.0, 0.0, 0.0])
@@ -240,7 +240,7 @@ def test_without_a_position_for_longer_than_the_timeout_it_is_neutral():
         ("position", {"target_position": [0.0, 100.0, 0.0]}),
     ],
 )
-def test_guided_sails_where_it_is_told(kind, wanted):
+def test_guided_sails_where_it_is_sent(kind, wanted):
     found = guidance(heading=120, mode="guided", target_kind=kind, **wanted)
     assert wrapped(found.get("course")) == pytest.approx(90.0)
     assert found.get("engaged") == [True, True]

@@ -68,7 +68,7 @@ def test_rudder_to_port_turns_to_port():
 
 
 def test_at_rest_the_inversion_stays_finite():
-    """The flow counts as from ahead, and V^2 cos(beta) as -0.01 m2/s2."""
+    """The flow is taken as from ahead, and V^2 cos(beta) as -0.01 m2/s2."""
     controller = pid(K_p=1.0, K_i=0.0, heading_wanted=1e-3, **UNLIMITED)
     expected = -1e-3 / (0.562 * 1000.0 * 0.00792 * math.pi * 0.01)
     assert controller.get("rudder") == pytest.approx(expected, rel=1e-12)

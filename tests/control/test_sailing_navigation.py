@@ -13,7 +13,7 @@ IDEAL = {
 
 
 def seen(psi, phi, velocity, wind):
-    """Return what ideal sensors tell the navigation of a boat's motion and the wind."""
+    """Return what ideal sensors give the navigation of a boat's motion and the wind."""
     u, v = velocity
     c, s = math.cos(psi), math.sin(psi)
     over_ground = [c * u - s * v * math.cos(phi), s * u + c * v * math.cos(phi), 0.0]

@@ -10,7 +10,7 @@ CRAFT = {"mass": 20.0, "linear_drag": 3.0, "quadratic_drag": 10.0, "period": 2e-
 
 
 def run(hold, wanted, seconds, push=0.0, speed=0.0):
-    """Return times, speeds and forces of a craft with the drag and mass that are told."""
+    """Return times, speeds and forces of a craft with the drag and mass that are given."""
     rows, begin = [], hold.now
     for k in range(round(seconds / 2e-3)):
         hold.set("speed_wanted", wanted)

@@ -19,7 +19,7 @@ DEG = math.radians(1.0)
 
 
 def pilot(**values):
-    """Return an autopilot that is armed, on its station and heading unless told otherwise."""
+    """Return an autopilot that is armed, on its station and heading by default."""
     return started(StationKeeping, **{"enabled": True, **values})
 
 

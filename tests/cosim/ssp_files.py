@@ -132,8 +132,8 @@ def nested(
 
 def linear(factor: float | None = None, offset: float | None = None) -> str:
     """Return a linear transformation."""
-    said = [f'{k}="{v}"' for k, v in (("factor", factor), ("offset", offset)) if v is not None]
-    return f"<ssc:LinearTransformation {' '.join(said)}/>"
+    pieces = [f'{k}="{v}"' for k, v in (("factor", factor), ("offset", offset)) if v is not None]
+    return f"<ssc:LinearTransformation {' '.join(pieces)}/>"
 
 
 def bound(parameters: str, attributes: str = "", after: str = "") -> str:
@@ -154,8 +154,8 @@ def parameter_set(parameters: str, *, version: str = "1.0", after: str = "") -> 
 
 def real(name: str, value: float | str, unit: str = "") -> str:
     """Return a Real parameter."""
-    said = f' unit="{unit}"' if unit else ""
-    return f'<ssv:Parameter name="{name}"><ssv:Real value="{value}"{said}/></ssv:Parameter>'
+    pieces = f' unit="{unit}"' if unit else ""
+    return f'<ssv:Parameter name="{name}"><ssv:Real value="{value}"{pieces}/></ssv:Parameter>'
 
 
 EIGHT = parameter_set(real("mass", 8.0))

@@ -65,7 +65,7 @@ def test_slipping_loses_the_hiccup() -> None:
     assert (pacer.overruns.count, pacer.lost_ns, pacer.drift_ns) == (1, 25 * MS, 25 * MS)
 
 
-def test_lateness_is_told_to_whom_it_must_end_the_run() -> None:
+def test_lateness_is_reported_to_whom_it_must_end_the_run() -> None:
     wall = Wall()
     pacer = wall.pacer(1.0, "abort")
     wall.ns += 9 * MS

@@ -1,4 +1,4 @@
-"""Reading what a person wrote: which file is meant, and what is said of a mistake in it."""
+"""Reading what a person wrote: which file is meant, and the message for a mistake in it."""
 
 from __future__ import annotations
 

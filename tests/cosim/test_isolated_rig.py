@@ -77,7 +77,7 @@ def test_the_record_is_the_same_whoever_is_isolated(engine, counts, tmp_path: Pa
 
 
 @pytest.mark.parametrize(
-    ("keys", "said"),
+    ("keys", "expected"),
     [
         ('set = { how = "segfault" }', "boat: its process was ended by SIGSEGV in step(t = 0.3 s"),
         ('set = { how = "exit" }', "boat: its process exited with status 3 in step(t = 0.3 s"),
@@ -88,12 +88,12 @@ def test_the_record_is_the_same_whoever_is_isolated(engine, counts, tmp_path: Pa
         ),
     ],
 )
-def test_an_end_in_the_middle_leaves_a_whole_record(keys, said, trial, tmp_path: Path) -> None:
+def test_an_end_in_the_middle_leaves_a_whole_record(keys, expected, trial, tmp_path: Path) -> None:
     out = tmp_path / "run"
     result = run_trial(load_trial(str(trial(keys))), out)
     assert (result.status, result.error) == ("failed", manifest(out)["error"])
     assert manifest(out)["status"] == "failed"
-    assert said in result.error
+    assert expected in result.error
     assert rows(out) == [
         ["time", "boat.steps", "twin.steps"],
         *[[t, str(k), str(k)] for k, t in enumerate(("0.0", "0.1", "0.2", "0.3"))],

@@ -163,7 +163,7 @@ def test_a_failure_while_outputs_are_read_again_is_no_value(bench: Bench, as_nan
 
 
 @pytest.mark.parametrize(
-    ("how", "said"),
+    ("how", "reason"),
     [
         ("big", "2147483648"),
         ("nul", "no C text"),
@@ -171,11 +171,11 @@ def test_a_failure_while_outputs_are_read_again_is_no_value(bench: Bench, as_nan
         ("exit", "SystemExit"),
     ],
 )
-def test_what_fmi_cannot_carry_fails_alike(bench: Bench, how: str, said: str) -> None:
+def test_what_fmi_cannot_carry_fails_alike(bench: Bench, how: str, reason: str) -> None:
     master = bench.master(f'odd = {{ fmu = "users.py:Odd", set = {{ how = "{how}" }} }}')
     with pytest.raises(SimulationError, match="odd") as error:
         master.step()
-    assert said in str(error.value)
+    assert reason in str(error.value)
 
 
 def test_an_override_is_in_the_unit_of_its_input(bench: Bench) -> None:

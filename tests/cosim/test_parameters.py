@@ -1,4 +1,4 @@
-"""Vehicle files: what a component gets from them, and what is said of a mistake."""
+"""Vehicle files: what a component gets from them, and the message for a mistake."""
 
 from __future__ import annotations
 

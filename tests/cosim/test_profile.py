@@ -241,11 +241,11 @@ MISTAKES = {
 
 @pytest.mark.parametrize("mistake", MISTAKES)
 def test_mistake_names_file_key_and_remedy(mistake, load):
-    (old, new), said = MISTAKES[mistake]
+    (old, new), expected = MISTAKES[mistake]
     with pytest.raises(InputError) as caught:
         load(old, new)
     message = str(caught.value)
-    for text in ["boat.toml", *said]:
+    for text in ["boat.toml", *expected]:
         assert text in message
 
 

@@ -96,17 +96,19 @@ WRONG = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("old", "new", "said"), WRONG)
-def test_what_is_wrong_is_named(old: str, new: str, said: str, yard: Yard, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("old", "new", "reason"), WRONG)
+def test_what_is_wrong_is_named(
+    old: str, new: str, reason: str, yard: Yard, tmp_path: Path
+) -> None:
     assert old in MINIMAL
     message = refused(yard.package(tmp_path / "x.ssp", MINIMAL.replace(old, new)))
     assert message.startswith("x.ssp: SystemStructure.ssd: ")
     assert "line " in message
-    assert said in message
+    assert reason in message
 
 
 @pytest.mark.parametrize(
-    ("values", "said"),
+    ("values", "reason"),
     [
         (real("mass", "heavy"), "line 5: Element 'ssv:Real', attribute 'value': 'heavy'"),
         (real("mass", "NaN"), "a finite number is needed, found 'NaN'"),
@@ -118,11 +120,11 @@ def test_what_is_wrong_is_named(old: str, new: str, said: str, yard: Yard, tmp_p
         ('<ssv:Parameter name="on"><ssv:Boolean value="yes"/></ssv:Parameter>', "yes"),
     ],
 )
-def test_wrong_values_are_named(values: str, said: str, yard: Yard, tmp_path: Path) -> None:
+def test_wrong_values_are_named(values: str, reason: str, yard: Yard, tmp_path: Path) -> None:
     members = {"resources/hull.ssv": parameter_set(values)}
     message = refused(yard.package(tmp_path / "x.ssp", members=members))
     assert message.startswith("x.ssp: resources/hull.ssv: line ")
-    assert said in message
+    assert reason in message
 
 
 @pytest.mark.parametrize("value", ["1_0", "9" * 400])
@@ -177,7 +179,7 @@ def test_version_2_has_no_schema_here_but_nothing_unknown_passes(
     elements = f"<ssd:Elements>{DAMPER.replace('damper', 'second')}</ssd:Elements>"
     connections = f"<ssd:Connections>{THERE}</ssd:Connections>"
     doubled = THERE[:-2] + f">{linear(2.0)}{linear(3.0)}</ssd:Connection>"
-    for index, (ssd, said) in enumerate(
+    for index, (ssd, reason) in enumerate(
         [
             (second.replace("</ssd:System>", f"{elements}</ssd:System>"), "a second ssd:Elements"),
             (second.replace("</ssd:System>", f"{connections}</ssd:System>"), "a second ssd:Conn"),
@@ -188,7 +190,7 @@ def test_version_2_has_no_schema_here_but_nothing_unknown_passes(
             (nameless, "attribute 'name' is missing"),
         ]
     ):
-        assert said in refused(yard.package(tmp_path / f"{index}.ssp", ssd))
+        assert reason in refused(yard.package(tmp_path / f"{index}.ssp", ssd))
 
 
 def test_connections_of_parameters_are_not_supported(yard: Yard, tmp_path: Path) -> None:

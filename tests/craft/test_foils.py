@@ -138,8 +138,8 @@ def test_physical_lift_changes_sign_beyond_a_right_angle(make):
 
 
 def test_other_words_are_refused():
-    with pytest.raises(InputError, match=r"unknown entry 'mended'.*patched, verbatim"):
-        sail_naca0015("mended")
+    with pytest.raises(InputError, match=r"unknown entry 'corrected'.*patched, verbatim"):
+        sail_naca0015("corrected")
     with pytest.raises(InputError, match=r"unknown high_alpha 'flat'.*physical, table"):
         foil_naca63010("flat")
 

@@ -69,7 +69,7 @@ def test_rotation_and_rates_are_those_of_the_source():
     for phi, theta, psi in rng.uniform((-3, -1.2, -3), (3, 1.2, 3), (200, 3)):
         (sp, cp), (st, ct), (sy, cy) = ((math.sin(a), math.cos(a)) for a in (phi, theta, psi))
         C_x = np.array([[1, 0, 0], [0, cp, sp], [0, -sp, cp]])
-        C_y = np.array([[ct, 0, -st], [0, 1, 0], [st, 0, ct]])  # 3.8 with the sign mended
+        C_y = np.array([[ct, 0, -st], [0, 1, 0], [st, 0, ct]])  # 3.8 with the sign corrected
         C_z = np.array([[cy, sy, 0], [-sy, cy, 0], [0, 0, 1]])
         R = np.array(rotation_matrix(ca.DM([phi, theta, psi])))
         close(R, (C_x @ C_y @ C_z).T, atol=1e-15)

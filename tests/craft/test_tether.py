@@ -151,8 +151,8 @@ def test_an_end_goes_on_between_new_positions():
     speed = np.array([0.3, 0.0, 0.1])
 
     def held(t):
-        told = 0.05 * math.floor(t / 0.05 + 1e-9)
-        return {"bottom_position": np.array([25, 0, 20]) + told * speed, "bottom_velocity": speed}
+        known = 0.05 * math.floor(t / 0.05 + 1e-9)
+        return {"bottom_position": np.array([25, 0, 20]) + known * speed, "bottom_velocity": speed}
 
     rows = run(tether(), 100, inputs=held)
     place = OUTPUTS.index("north")
@@ -237,7 +237,7 @@ def test_every_port_has_a_unit_and_says_what_it_is():
 
 
 @pytest.mark.parametrize(
-    ("settings", "said"),
+    ("settings", "expected"),
     [
         ({"segments": 7.5}, "segments is 7.5, a whole number"),
         ({"segments": 4.0}, "segments is 4.0 1, allowed 5.0 to 200.0"),
@@ -246,8 +246,8 @@ def test_every_port_has_a_unit_and_says_what_it_is():
         ({"axial_stiffness": 0.0}, "axial_stiffness is 0.0 N, allowed at least"),
     ],
 )
-def test_bad_parameters_are_named(settings, said):
-    with pytest.raises(InputError, match=said):
+def test_bad_parameters_are_named(settings, expected):
+    with pytest.raises(InputError, match=expected):
         tether(**settings)
 
 

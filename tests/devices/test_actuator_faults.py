@@ -1,4 +1,4 @@
-"""How actuators fail, against closed forms."""
+"""Failures of actuators, against closed forms."""
 
 import math
 
@@ -26,7 +26,7 @@ ALL = {
     RudderMachine: ("command", lambda x: 0.5 * x, "angle"),
 }
 THRUSTERS, SHAFTS = (Thruster, LinearThruster, ForceActuator), (Servo, AngleServo, RudderMachine)
-BROKEN_MS, MENDED_MS = 6_000, 12_000
+BROKEN_MS, REPAIRED_MS = 6_000, 12_000
 
 
 def failing(cls, fault, stop_ms=20_000, wanted=lambda t_ms: 0.5, step_ms=10, **values):
@@ -34,7 +34,7 @@ def failing(cls, fault, stop_ms=20_000, wanted=lambda t_ms: 0.5, step_ms=10, **v
     port, command, output = ALL[cls]
 
     def inputs(t_ms):
-        fails = BROKEN_MS <= t_ms < MENDED_MS
+        fails = BROKEN_MS <= t_ms < REPAIRED_MS
         return {port: command(wanted(t_ms)), "fault": fault if fails else "none"}
 
     return np.array(run(started(cls, **values), [output], stop_ms, step_ms, inputs))[:, 0]
@@ -61,7 +61,7 @@ def test_it_acts_while_it_lasts(cls, fault):
     first = BROKEN_MS // 10
     assert (failed[:first] == healthy[:first]).all()
     assert not np.allclose(failed[first:], healthy[first:])
-    # Mended it comes back: lags are at most 1 s.
+    # Repaired it comes back: lags are at most 1 s.
     assert at(failed, 20_000) == pytest.approx(at(healthy, 20_000), abs=0.06 * np.ptp(healthy))
 
 
@@ -71,14 +71,14 @@ def test_off_is_no_thrust(cls):
     before = at(failed, BROKEN_MS)
     assert before != 0.0
     assert at(failed, BROKEN_MS + 300) == pytest.approx(before * math.exp(-2.0), rel=1e-9)
-    assert at(failed, MENDED_MS - 10) == pytest.approx(0.0, abs=abs(before) * 1e-8)
+    assert at(failed, REPAIRED_MS - 10) == pytest.approx(0.0, abs=abs(before) * 1e-8)
 
 
 @shaft
 @pytest.mark.parametrize("fault", ["off", "stuck"])
 def test_a_shaft_stays_where_it_is(cls, fault):
     failed = failing(cls, fault, wanted=turning)
-    held = failed[BROKEN_MS // 10 + 2 : MENDED_MS // 10]
+    held = failed[BROKEN_MS // 10 + 2 : REPAIRED_MS // 10]
     assert np.ptp(held) == 0.0
     assert held[0] == pytest.approx(at(failed, BROKEN_MS), abs=0.12)  # within a frame of its rate
 
@@ -86,14 +86,14 @@ def test_a_shaft_stays_where_it_is(cls, fault):
 @thruster
 def test_stuck_keeps_the_command(cls):
     failed = failing(cls, "stuck", wanted=lambda t: 0.5 if t < BROKEN_MS else -0.5)
-    assert at(failed, MENDED_MS - 10) == pytest.approx(at(failed, BROKEN_MS), rel=1e-6)
+    assert at(failed, REPAIRED_MS - 10) == pytest.approx(at(failed, BROKEN_MS), rel=1e-6)
     assert at(failed, 20_000) < 0.0
 
 
 @thruster
 def test_wrong_is_half_of_the_thrust(cls):
     failed = failing(cls, "wrong")
-    assert at(failed, MENDED_MS - 10) == pytest.approx(0.5 * at(failed, BROKEN_MS - 10), rel=1e-6)
+    assert at(failed, REPAIRED_MS - 10) == pytest.approx(0.5 * at(failed, BROKEN_MS - 10), rel=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -108,7 +108,7 @@ def test_wrong_is_half_of_the_thrust(cls):
 )
 def test_a_wrong_shaft_is_a_tenth_of_its_range_off(cls, expected):
     failed = failing(cls, "wrong")
-    moved = at(failed, MENDED_MS - 10) - at(failed, BROKEN_MS - 10)
+    moved = at(failed, REPAIRED_MS - 10) - at(failed, BROKEN_MS - 10)
     assert moved == pytest.approx(expected, abs=5e-3)
 
 
@@ -156,9 +156,10 @@ def test_delayed_follows_what_was_wanted_half_a_second_ago(cls):
     failed = failing(cls, "delayed", wanted=turning)
     # What a healthy one does with the command held for so long, and then late.
     healthy = failing(
-        *(cls, "none"),
+        cls,
+        "none",
         wanted=lambda t: turning(
-            t if not BROKEN_MS <= t < MENDED_MS else max(BROKEN_MS - 10, t - late_ms)
+            t if not BROKEN_MS <= t < REPAIRED_MS else max(BROKEN_MS - 10, t - late_ms)
         ),
     )
     # A frame may have begun with the command just before, so that a shaft is a frame behind.

@@ -1,4 +1,4 @@
-"""What holds of every device and controller."""
+"""Properties of every device and controller."""
 
 import random
 

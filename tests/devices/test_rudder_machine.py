@@ -48,7 +48,7 @@ def test_a_command_to_starboard_is_turned_round_in_one_place():
     assert port[-1] > 0.1
 
 
-def test_starts_where_it_is_told():
+def test_starts_at_its_start_value():
     assert angles(0.0, 100, angle_start=0.3)[0] == 0.3
     with pytest.raises(InputError, match=r"angle_start is 0\.7 rad, allowed"):
         started(RudderMachine, angle_start=0.7)

@@ -1,4 +1,4 @@
-"""What all sensors share.
+"""Base of all sensors.
 
 Statistical bounds are 3.9 sigma: with other seeds a right sensor fails each once in 10 000.
 """

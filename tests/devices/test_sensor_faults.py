@@ -1,4 +1,4 @@
-"""How sensors fail. Statistical bounds are 3.9 sigma, as in test_sensor."""
+"""Failures of sensors. Statistical bounds are 3.9 sigma, as in test_sensor."""
 
 import math
 
@@ -12,7 +12,7 @@ from seatrial.errors import InputError
 from .running import run, started
 from .test_sensor import ROUGH, SIGMAS, Probe
 
-BROKEN_MS, MENDED_MS = 500, 1000
+BROKEN_MS, REPAIRED_MS = 500, 1000
 OUTPUTS = ["y", "valid", "count"]
 
 
@@ -20,7 +20,7 @@ def failing(fault, step_ms=10, stop_ms=1500, cls=Probe, outputs=OUTPUTS, **value
     """Return the outputs at each point of a run in which it fails for half a second."""
 
     def inputs(t_ms):
-        fails = BROKEN_MS <= t_ms < MENDED_MS
+        fails = BROKEN_MS <= t_ms < REPAIRED_MS
         return {"truth": [t_ms, -t_ms], "fault": fault if fails else "none"}
 
     probe = started(cls, period=0.01, **values)
@@ -29,7 +29,7 @@ def failing(fault, step_ms=10, stop_ms=1500, cls=Probe, outputs=OUTPUTS, **value
 
 def broken(rows):
     """Return (t_ms, row) of the points at which it was broken, of rows every 10 ms."""
-    return [(10 * k, row) for k, row in enumerate(rows)][BROKEN_MS // 10 : MENDED_MS // 10]
+    return [(10 * k, row) for k, row in enumerate(rows)][BROKEN_MS // 10 : REPAIRED_MS // 10]
 
 
 @pytest.mark.parametrize("fault", FAULTS)
@@ -40,11 +40,11 @@ def test_until_it_fails_nothing_is_different(fault):
 
 
 @pytest.mark.parametrize("fault", FAULTS)
-def test_mended_it_shows_the_same_values_again(fault):
+def test_repaired_it_shows_the_same_values_again(fault):
     # Noise belongs to a measurement, not to how many arrived before.
     healthy, failed = failing("none", **ROUGH), failing(fault, **ROUGH)
-    assert [row[:2] for row in failed[MENDED_MS // 10 :]] == [
-        row[:2] for row in healthy[MENDED_MS // 10 :]
+    assert [row[:2] for row in failed[REPAIRED_MS // 10 :]] == [
+        row[:2] for row in healthy[REPAIRED_MS // 10 :]
     ]
 
 
@@ -103,10 +103,10 @@ def test_delayed_is_ten_periods_later(delay_ms):
         made = min(t - delay_ms, BROKEN_MS - 10)
         made = max(made, t - delay_ms - 100)
         assert row == [[float(made), -float(made)], True, made // 10 + 1]
-    for k, row in enumerate(rows[MENDED_MS // 10 :]):
-        t = MENDED_MS + 10 * k
+    for k, row in enumerate(rows[REPAIRED_MS // 10 :]):
+        t = REPAIRED_MS + 10 * k
         made = t - delay_ms
-        if made < MENDED_MS:  # still those that are late, until a fresh one overtakes them
+        if made < REPAIRED_MS:  # still those that are late, until a fresh one overtakes them
             made = t - delay_ms - 100
         assert row == [[float(made), -float(made)], True, made // 10 + 1]
 
@@ -131,7 +131,7 @@ def test_it_does_not_depend_on_the_communication_step(fault, delay_ms):
 
     def at_50_ms(step_ms):
         def inputs(t_ms):
-            fails = BROKEN_MS <= t_ms < MENDED_MS
+            fails = BROKEN_MS <= t_ms < REPAIRED_MS
             return {"truth": [t_ms // 50, 1.0], "fault": fault if fails else "none"}
 
         probe = started(Probe, period=0.007, **values)

@@ -1,4 +1,4 @@
-"""What each sensor measures: IMU, compass, GNSS, depth."""
+"""Measurement of each sensor: IMU, compass, GNSS, depth."""
 
 import math
 

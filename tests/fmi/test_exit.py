@@ -1,4 +1,4 @@
-"""How a process ends that had an FMU in it."""
+"""End of a process that had an FMU in it."""
 
 from __future__ import annotations
 

@@ -131,7 +131,7 @@ def test_too_large_a_step_is_tried_again_in_smaller_ones(fmi2) -> None:
 
 
 @pytest.mark.parametrize("can", ["true", "false"])
-def test_the_fmu_is_told_if_it_may_be_rolled_back(can: str, native_fmu, tmp_path: Path) -> None:
+def test_the_fmu_is_notified_if_it_may_be_rolled_back(can: str, native_fmu, tmp_path: Path) -> None:
     path = changed(
         native_fmu("fmi2"), tmp_path / "x.fmu", ('FMUstate="true"', f'FMUstate="{can}"'),
         ('StepSize="true"', f'StepSize="{can}"'),

@@ -231,7 +231,7 @@ def test_an_error_of_a_write_is_raised_by_the_next_call(opened: Opener, crash_fm
     assert instance.reader(["real"])() == [2.0]
 
 
-def test_a_reading_that_fails_ahead_is_told_by_the_reading(opened: Opener, crash_fmu) -> None:
+def test_a_reading_that_fails_ahead_is_reported_by_the_reading(opened: Opener, crash_fmu) -> None:
     instance, plain = opened(crash_fmu), open_instance(crash_fmu, "boat")
     texts = []
     for one in (instance, plain):

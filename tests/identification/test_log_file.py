@@ -53,7 +53,7 @@ def test_a_mark_of_windows_and_blank_lines_do_not_matter(pool):
 
 
 @pytest.mark.parametrize(
-    ("column", "row", "cell", "said"),
+    ("column", "row", "cell", "expected"),
     [
         ("ax", 3, "nan", "line 5, column 'ax': a finite number is needed, found 'nan'"),
         ("ax", 3, "", "line 5, column 'ax': a finite number is needed, found ''"),
@@ -63,8 +63,8 @@ def test_a_mark_of_windows_and_blank_lines_do_not_matter(pool):
         ("t", 9, "0.8", "line 11: the time goes from 0.8 s to 0.8 s"),
     ],
 )
-def test_a_cell_that_is_wrong(pool, surge, column, row, cell, said):
-    with pytest.raises(InputError, match=f"pool.csv.*{said}"):
+def test_a_cell_that_is_wrong(pool, surge, column, row, cell, expected):
+    with pytest.raises(InputError, match=f"pool.csv.*{expected}"):
         log_of(pool(changed(surge, column, row, cell)))
 
 
@@ -81,7 +81,7 @@ def test_a_heading_that_turns_too_fast(pool, surge):
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "said"),
+    ("old", "new", "expected"),
     [
         (
             '"pitch", unit',
@@ -94,13 +94,13 @@ def test_a_heading_that_turns_too_fast(pool, surge):
         ('"pool.csv"', '"pond.csv"', "there is no log .*pond.csv"),
     ],
 )
-def test_columns_that_do_not_fit(pool, old, new, said):
-    with pytest.raises(InputError, match=said):
+def test_columns_that_do_not_fit(pool, old, new, expected):
+    with pytest.raises(InputError, match=expected):
         log_of(pool(text=EXPERIMENT.replace(old, new, 1)))
 
 
 @pytest.mark.parametrize(
-    ("content", "said"),
+    ("content", "expected"),
     [
         ("", "unknown column"),
         ("t,beta,ax,roll,pitch\n0,1,2\n", "line 2: 3 values, the header has 5"),
@@ -109,10 +109,10 @@ def test_columns_that_do_not_fit(pool, old, new, said):
         ("t,beta,ax,roll,pitch\n" + "0,0,0,0,0\n" * 3, "3 rows, at least 50 are needed"),
     ],
 )
-def test_files_that_are_no_log(pool, content, said):
+def test_files_that_are_no_log(pool, content, expected):
     path = pool()
     path.with_name("pool.csv").write_text(content)
-    with pytest.raises(InputError, match=said):
+    with pytest.raises(InputError, match=expected):
         log_of(path)
 
 
@@ -122,7 +122,7 @@ def test_a_command_that_never_changes(pool, surge):
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "said"),
+    ("old", "new", "expected"),
     [
         ('"surge"', '"surf"', "axis: Input should be 'surge', 'sway', 'heave' or 'yaw'"),
         ('"surge"', '"yaw"', "yaw is identified from the column heading, found acceleration"),
@@ -136,8 +136,8 @@ def test_a_command_that_never_changes(pool, surge):
         ("title", "tilte", "did you mean 'title'"),
     ],
 )
-def test_experiments_that_are_refused(pool, old, new, said):
-    with pytest.raises(InputError, match=said):
+def test_experiments_that_are_refused(pool, old, new, expected):
+    with pytest.raises(InputError, match=expected):
         load_experiment(str(pool(text=EXPERIMENT.replace(old, new, 1))))
 
 

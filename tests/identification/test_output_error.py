@@ -62,11 +62,11 @@ def test_twenty_logs(case):
     median = np.median([each.by_method["output error"] for each in found], axis=0)
     assert (median <= LIMITS[case.name]).all()
     assert [each.estimate.delay for each in found] == 20 * [case.delay]
-    # Deviations that are said are those that are met: their ratio, of 20, to within 40 %.
+    # Deviations that are stated are those that are met: their ratio, of 20, to within 40 %.
     names = ("linear", "quadratic", "thrust")
-    said = np.array([[e.estimate.deviation(name) for name in names] for e in found])
+    stated = np.array([[e.estimate.deviation(name) for name in names] for e in found])
     off = np.array([[e.estimate.values[name] for name in names] for e in found]) - case.truth
-    ratio = np.sqrt(np.mean((off / said) ** 2, axis=0))
+    ratio = np.sqrt(np.mean((off / stated) ** 2, axis=0))
     assert (ratio > 0.6).all()
     assert (ratio < 1.6).all()
 

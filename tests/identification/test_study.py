@@ -25,7 +25,7 @@ def found_in(path):
 
 
 def test_parameters_of_the_vehicle(pool):
-    """8.44 kg, 0.95 N.s/m, 20 N.s2/m2: within three of the deviations that are said."""
+    """8.44 kg, 0.95 N.s/m, 20 N.s2/m2: within three of the deviations that are stated."""
     found = found_in(pool())
     physical = found.physical()
     truth = {"total mass": 8.44, "added mass": 1.94, "linear": 0.95, "quadratic": 20.0}
@@ -106,15 +106,15 @@ def test_without_a_vehicle_the_file_has_what_was_identified(pool, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "said"),
+    ("old", "new", "expected"),
     [
         ('"videoray"', '"videoary"', "did you mean 'videoray'"),
         ('"horizontal-thruster"', '"horizontal"', "result.thruster: unknown component table"),
         ('vehicle = "videoray"', 'vehicle = "videoray"\nvariant = "x"', "result.variant: unknown"),
     ],
 )
-def test_a_base_that_is_not_there(pool, old, new, said):
-    with pytest.raises(InputError, match=said):
+def test_a_base_that_is_not_there(pool, old, new, expected):
+    with pytest.raises(InputError, match=expected):
         base_vehicle(found_in(pool(text=BASE.replace(old, new))))
 
 
@@ -126,12 +126,12 @@ def test_page(pool, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("rows", "held_out", "said"),
+    ("rows", "held_out", "expected"),
     [(60, 0.3, "18 rows held out"), (60, 0.6, "24 rows to fit")],
 )
-def test_parts_that_are_too_short(pool, rows, held_out, said):
+def test_parts_that_are_too_short(pool, rows, held_out, expected):
     text = EXPERIMENT.replace("axis =", f"held_out = {held_out}\naxis =")
-    with pytest.raises(InputError, match=f"{said}, at least 40 are needed"):
+    with pytest.raises(InputError, match=f"{expected}, at least 40 are needed"):
         found_in(pool(text=text, rows=rows))
 
 
@@ -162,15 +162,15 @@ def test_a_rejected_model_leaves_no_vehicle(pool, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "expected"),
     [
         (["videoray-surg"], "did you mean 'videoray-surge'"),
         (["videoray-surge"], "no log is named; name one with --log"),
         (["videoray-surge", "--log", "nothing"], "there is no log nothing"),
     ],
 )
-def test_bad_input_leaves_nothing(arguments, said, tmp_path):
+def test_bad_input_leaves_nothing(arguments, expected, tmp_path):
     done = identify(*arguments, cwd=tmp_path)
     assert done.returncode == 2
-    assert said in done.stderr
+    assert expected in done.stderr
     assert not list(tmp_path.iterdir())

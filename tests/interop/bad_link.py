@@ -1,4 +1,4 @@
-"""A radio that loses, doubles and reorders, between a ground station and a vehicle over UDP."""
+"""Link that loses, doubles and reorders, between a ground station and a vehicle over UDP."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Run in a network of its own: our node behind a gateway, the dronecan package's at mcast:0."""
+"""Program in a network of its own: our node behind a gateway, the dronecan package's at mcast:0."""
 
 import json
 import threading

@@ -1,4 +1,4 @@
-"""Let libcosim pace a system of FMUs in real time; prints what it reads, until it is told to stop.
+"""Let libcosim pace a system of FMUs in real time; prints what it reads, until "stop" comes.
 
 The first line of standard input is a job as `libcosim_run` has it, but with "watch": {type:
 [[slave, vr]]}. A line of JSON is printed every 0.1 s of simulated time. At any further line the

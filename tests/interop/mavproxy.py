@@ -1,4 +1,4 @@
-"""MAVProxy as its user has it: a process that is typed to, and that says what it sees."""
+"""MAVProxy as its user has it: a process that is typed to, and what it prints."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ MODULES = (
     *("log", "signing", "wp", "rally", "fence", "ftp", "param", "relay", "tuneopt", "arm", "mode"),
     *("calibration", "rc", "auxopt", "misc", "cmdlong", "battery", "terrain", "output", "layout"),
 )
-"""All that it loads unless it is told otherwise, but for air traffic, which wants a picture."""
+"""All that it loads by default, but for air traffic, which wants a picture."""
 
 COMPLAINTS = re.compile(
     r"fence breach|checks disabled|\b[Ee]rror(?!s: 0)|Traceback|Exception|link \d+ down|no link"
@@ -36,7 +36,7 @@ class MavProxy:
     def __init__(self, process: subprocess.Popen[str]) -> None:
         self._process = process
         self._lines = threading.Condition()
-        self.said = ""
+        self.transcript = ""
         """All that it has printed."""
         self._at = 0
         threading.Thread(target=self._read, daemon=True).start()
@@ -51,11 +51,13 @@ class MavProxy:
         """Return the next match of ``pattern`` in whole lines, and go on behind it."""
         wanted, end = re.compile(pattern, re.MULTILINE), time.monotonic() + deadline_s
         with self._lines:
-            while (found := wanted.search(self.said, self._at, self.said.rfind("\n") + 1)) is None:
+            while (
+                found := wanted.search(self.transcript, self._at, self.transcript.rfind("\n") + 1)
+            ) is None:
                 left = end - time.monotonic()
                 if left <= 0.0 or self._process.poll() is not None:
-                    new = self.said[self._at :]
-                    raise AssertionError(f"MAVProxy never said {pattern!r}, but:\n{new}")
+                    new = self.transcript[self._at :]
+                    raise AssertionError(f"MAVProxy never printed {pattern!r}, but:\n{new}")
                 self._lines.wait(min(left, 0.5))
             self._at = found.end()
         return found
@@ -63,7 +65,7 @@ class MavProxy:
     def ask(self, line: str, pattern: str, deadline_s: float = ANSWER_S) -> re.Match[str]:
         """Type a line, and return what it says then."""
         with self._lines:
-            self._at = len(self.said)
+            self._at = len(self.transcript)
         self.type(line)
         return self.expect(pattern, deadline_s)
 
@@ -90,7 +92,7 @@ class MavProxy:
 
         Lines that show a message, as ``status`` does, have fields with such names.
         """
-        lines = self.said[self.said.index(since) :].splitlines()
+        lines = self.transcript[self.transcript.index(since) :].splitlines()
         return [
             line for line in lines if COMPLAINTS.search(line) and not _SHOWS_MESSAGE.search(line)
         ]
@@ -99,7 +101,7 @@ class MavProxy:
         assert self._process.stdout is not None
         while text := os.read(self._process.stdout.fileno(), 1 << 16).decode("utf-8", "replace"):
             with self._lines:
-                self.said += text.replace("\r", "")
+                self.transcript += text.replace("\r", "")
                 self._lines.notify_all()
 
 
@@ -107,7 +109,7 @@ class MavProxy:
 def mavproxy(folder: Path, master: str, *options: str) -> Iterator[MavProxy]:
     """Start MAVProxy in an empty home, connected to ``master``, and end it in any case.
 
-    An error in the block gets all that it has said as a note.
+    An error in the block gets all that it printed as a note.
     """
     folder.mkdir(parents=True, exist_ok=True)
     command = [sys.executable, str(Path(sys.executable).with_name("mavproxy.py"))]
@@ -122,7 +124,7 @@ def mavproxy(folder: Path, master: str, *options: str) -> Iterator[MavProxy]:
     try:
         yield session
     except BaseException as error:
-        error.add_note(f"MAVProxy (status {process.poll()}) said:\n{session.said}")
+        error.add_note(f"MAVProxy (status {process.poll()}) printed:\n{session.transcript}")
         raise
     finally:
         process.kill()

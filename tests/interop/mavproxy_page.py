@@ -54,14 +54,17 @@ def session(folder: Path) -> Iterator[MavProxy]:
 def follow(proxy: MavProxy) -> list[tuple[str, str, str]]:
     """Type what the page shows, and see that MAVProxy says what it shows.
 
-    Return each prompt, line, and all that was said before the next.
+    Return each prompt, line, and all that was printed before the next.
     """
     begun = []
-    for prompt, typed, said in steps():
-        begun.append((prompt, typed, proxy.said.rfind("\n") + 1))
-        patterns = [rf"(^|> ){re.escape(line)}" for line in said] or [""]
+    for prompt, typed, transcript in steps():
+        begun.append((prompt, typed, proxy.transcript.rfind("\n") + 1))
+        patterns = [rf"(^|> ){re.escape(line)}" for line in transcript] or [""]
         proxy.ask(typed, patterns[0], MISSION_S)
         for pattern in patterns[1:]:
             proxy.expect(pattern, MISSION_S)
-    ends = [*(at for _, _, at in begun[1:]), len(proxy.said)]
-    return [(p, typed, proxy.said[at:end]) for (p, typed, at), end in zip(begun, ends, strict=True)]
+    ends = [*(at for _, _, at in begun[1:]), len(proxy.transcript)]
+    return [
+        (p, typed, proxy.transcript[at:end])
+        for (p, typed, at), end in zip(begun, ends, strict=True)
+    ]

@@ -29,7 +29,7 @@ NAN = math.nan
 
 
 class Places:
-    """Latitude and longitude, by the origin that the vehicle tells; ``surface`` is its altitude."""
+    """Latitude and longitude, by the origin that the vehicle reports; ``surface`` is its altitude."""
 
     def __init__(self, latitude: float, longitude: float, surface: float) -> None:
         self._origin, self.surface = (latitude, longitude), surface
@@ -52,7 +52,7 @@ async def dive_ardupilot(station: Station, places: Places) -> None:
     assert await station.command(DO_SET_MODE, 1, AUTO) == 0
     await _finish(station, missions)
     assert await station.command(DO_SET_MODE, 1, POSHOLD) == 0
-    await station.hears("flight_mode", "it holds", value=int(FlightMode.POSCTL))
+    await station.receives("flight_mode", "it holds", value=int(FlightMode.POSCTL))
 
 
 async def dive_px4(station: Station, places: Places) -> None:
@@ -88,10 +88,10 @@ def _down(station: Station) -> float:
 async def fly(dialect: str, url: str, log: Path) -> None:
     async with connected(url) as station:
         assert await station.system.vehicle_type() == Vehicle.SUBMARINE
-        await station.hears("health_all_ok", "the vehicle is well", value=True)
+        await station.receives("health_all_ok", "the vehicle is well", value=True)
         origin = await answered(station.telemetry.get_gps_global_origin())
         places = Places(origin.latitude_deg, origin.longitude_deg, origin.altitude_m)
-        await station.hears("armed", "it starts disarmed", value=False)
+        await station.receives("armed", "it starts disarmed", value=False)
         await stages.arm(station)
         await {"ardupilotmega": dive_ardupilot, "px4": dive_px4}[dialect](station, places)
         async with station.stage("surface"):

@@ -1,4 +1,4 @@
-"""MAVSDK's failure plugin at a vehicle: ``python -m tests.interop.mavsdk_failures URL FLAVOUR``."""
+"""MAVSDK's failure plugin at a vehicle: ``python -m tests.interop.mavsdk_failures URL DIALECT``."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ NO_FIX, FIX_3D = 1, 3
 
 
 async def main(url: str, dialect: str) -> None:
-    """Break and mend, see it, and be refused what there is not."""
+    """Break and repair, see it, and be refused what there is not."""
     async with connected(url) as station:
         failure, parameters = FailureAsync(station.system), ParamAsync(station.system)
-        await station.hears("gps_info", "healthy", fix_type=FIX_3D)
+        await station.receives("gps_info", "healthy", fix_type=FIX_3D)
         for kind, fix in ((FailureType.OFF, NO_FIX), (FailureType.OK, FIX_3D)):
             await answered(failure.inject(FailureUnit.SENSOR_GPS, kind, 0))
-            await station.hears("gps_info", kind.name, fix_type=fix)
+            await station.receives("gps_info", kind.name, fix_type=fix)
         await answered(failure.inject(FailureUnit.SYSTEM_MOTOR, FailureType.STUCK, 2))
         await station.reads("Failure: motor2 stuck")
         vio = failure.inject(FailureUnit.SENSOR_VIO, FailureType.OFF, 0)

@@ -1,6 +1,6 @@
 """One flight of a boat by the real MAVSDK; a program of its own, for a hang must not hang us.
 
-``python -m tests.interop.mavsdk_flight FLAVOUR URL LOG`` flies and writes what the reference tool needs to
+``python -m tests.interop.mavsdk_flight DIALECT URL LOG`` flies and writes what the reference tool needs to
 the file LOG. What MAVSDK answers is checked here, what the boat really did by the reference tool.
 """
 

@@ -21,10 +21,10 @@ FLIGHT_S = 900.0
 def flown(module: str, trial: str, dialect: str, folder: Path) -> tuple[Run, dict[str, Any]]:
     """Return the record, and what the program ``module`` wrote into its log.
 
-    The times for which sticks and set-points count are simulated, ``FACTOR`` times shorter to
+    The times for which manual control and set-points are valid are simulated, ``FACTOR`` times shorter to
     their peers: they are longer here.
     """
-    port, log, said = free_port(), folder / "log.json", folder / "flight.txt"
+    port, log, transcript = free_port(), folder / "log.json", folder / "flight.txt"
     given = {
         "links": f"udpout:{HOST}:{port}",
         "autopilot_type": dialect,
@@ -37,7 +37,7 @@ def flown(module: str, trial: str, dialect: str, folder: Path) -> tuple[Run, dic
         wait_for(lambda: started.is_running, "the trial runs")
         name = f"tests.interop.{module}"
         command = [sys.executable, "-m", name, dialect, f"udpin://{HOST}:{port}", str(log)]
-        with said.open("wb") as output:
+        with transcript.open("wb") as output:
             flight = subprocess.Popen(command, cwd=ROOT, stdout=output, stderr=subprocess.STDOUT)
             try:
                 status = flight.wait(FLIGHT_S)
@@ -46,6 +46,6 @@ def flown(module: str, trial: str, dialect: str, folder: Path) -> tuple[Run, dic
             finally:
                 flight.kill()
                 flight.wait()
-        assert status == 0, f"status {status}\n{said.read_text('utf-8', 'replace')}"
+        assert status == 0, f"status {status}\n{transcript.read_text('utf-8', 'replace')}"
         run = started.stop()
     return run, json.loads(log.read_text("utf-8"))

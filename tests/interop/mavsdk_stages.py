@@ -40,7 +40,7 @@ ESSENTIAL = (
     *("attitude_euler", "position_velocity_ned", "flight_mode", "armed", "health", "home"),
     "status_text",
 )
-"""Streams that the stages after the mission need. To hear all is much work for a slow machine."""
+"""Streams that the stages after the mission need. To receive all is much work for a slow machine."""
 PINGS = 50
 
 
@@ -59,10 +59,10 @@ async def identity(station: Station) -> None:
 
 async def health(station: Station) -> None:
     """Wait until every field of health is true: sensors, positions, home, armable."""
-    await station.hears("health_all_ok", "the vehicle is well", value=True)
-    await station.hears("health", "every field", **dict.fromkeys(flat(Health()), True))
-    await station.hears("flight_mode", "it starts in hold", value=int(FlightMode.HOLD))
-    await station.hears("armed", "it starts disarmed", value=False)
+    await station.receives("health_all_ok", "the vehicle is well", value=True)
+    await station.receives("health", "every field", **dict.fromkeys(flat(Health()), True))
+    await station.receives("flight_mode", "it starts in hold", value=int(FlightMode.HOLD))
+    await station.receives("armed", "it starts disarmed", value=False)
 
 
 async def rates(station: Station) -> None:
@@ -101,12 +101,12 @@ async def refused_arming(station: Station) -> None:
 
 async def arm(station: Station) -> None:
     await answered(station.action.arm())
-    await station.hears("armed", "armed", value=True)
+    await station.receives("armed", "armed", value=True)
 
 
 async def disarm(station: Station) -> None:
     await answered(station.action.disarm())
-    await station.hears("armed", "disarmed", value=False)
+    await station.receives("armed", "disarmed", value=False)
 
 
 def item(
@@ -120,8 +120,19 @@ def item(
     """Return an item of a Mission: latitude and longitude; m above home; m/s, s, m."""
     none, nothing = MissionItem.CameraAction.NONE, MissionItem.VehicleAction.NONE
     return MissionItem(
-        *(*place, altitude, speed, math.isnan(wait), NAN, NAN, none),
-        *(wait, NAN, radius, NAN, NAN, nothing),
+        *place,
+        altitude,
+        speed,
+        math.isnan(wait),
+        NAN,
+        NAN,
+        none,
+        wait,
+        NAN,
+        radius,
+        NAN,
+        NAN,
+        nothing,
     )
 
 
@@ -136,13 +147,13 @@ async def mission(station: Station, missions: Any, pause_at: int) -> None:
     follower = asyncio.create_task(follow())
     async with station.stage("mission"):
         await answered(missions.start_mission())
-        await station.hears("flight_mode", "mission", value=int(FlightMode.MISSION))
+        await station.receives("flight_mode", "mission", value=int(FlightMode.MISSION))
         await station.until(
             lambda: any(current >= pause_at for current, _ in progress), "progress", MANOEUVRE_S
         )
         await station.passes(6.0)
         await answered(missions.pause_mission())
-        await station.hears("flight_mode", "holds", value=int(FlightMode.HOLD))
+        await station.receives("flight_mode", "holds", value=int(FlightMode.HOLD))
         async with station.stage("pause"):
             await station.passes(12.0)
         assert not await answered(missions.is_mission_finished())
@@ -160,7 +171,7 @@ async def goto(station: Station, mode: FlightMode) -> None:
     async with station.stage("goto"):
         latitude, longitude = north_of(12.0, 9.0)
         await answered(station.action.goto_location(latitude, longitude, 0.0, NAN))
-        await station.hears("flight_mode", "goes", value=int(mode))
+        await station.receives("flight_mode", "goes", value=int(mode))
         await station.passes(8.0)
         await answered(station.action.set_current_speed(0.4))
         async with station.stage("slower"):
@@ -168,7 +179,7 @@ async def goto(station: Station, mode: FlightMode) -> None:
         await answered(station.action.set_current_speed(1.2))
         await station.arrives(12.0, 9.0, within=2.0)
     await answered(station.action.hold())
-    await station.hears("flight_mode", "holds", value=int(FlightMode.HOLD))
+    await station.receives("flight_mode", "holds", value=int(FlightMode.HOLD))
     async with station.stage("hold"):
         await station.passes(10.0)
 
@@ -184,7 +195,7 @@ async def home_again(station: Station) -> None:
     )
     async with station.stage("return"):
         await answered(station.action.return_to_launch())
-        await station.hears("flight_mode", "returns", value=int(FlightMode.RETURN_TO_LAUNCH))
+        await station.receives("flight_mode", "returns", value=int(FlightMode.RETURN_TO_LAUNCH))
         await station.arrives(north, east, within=2.0)
     station.notes["return"] = [north, east]
 
@@ -195,7 +206,7 @@ async def offboard(station: Station, mode: FlightMode) -> None:
     assert await refused(pilot.start()) == "NO_SETPOINT_SET"
     await answered(pilot.set_velocity_ned(VelocityNedYaw(0.4, 0.4, 0.0, 45.0)))
     await answered(pilot.start())
-    await station.hears("flight_mode", "offboard", value=int(mode))
+    await station.receives("flight_mode", "offboard", value=int(mode))
     assert await answered(pilot.is_active())
     await _for_a_while(station, "velocity north-east")
     await answered(pilot.set_velocity_body(VelocityBodyYawspeed(0.6, 0.0, 0.0, 0.0)))
@@ -212,7 +223,7 @@ async def offboard(station: Station, mode: FlightMode) -> None:
     station.notes["position"] = [north, east]
     await answered(pilot.stop())
     assert not await answered(pilot.is_active())
-    await station.hears("flight_mode", "holds", value=int(FlightMode.HOLD))
+    await station.receives("flight_mode", "holds", value=int(FlightMode.HOLD))
 
 
 async def _for_a_while(station: Station, name: str) -> None:
@@ -225,13 +236,13 @@ async def manual(station: Station, mode: int, y: float, z: float) -> None:
     """Take the helm: ahead and to starboard; then let go, which is a failsafe."""
     manual = ManualControlAsync(station.system)
     assert await station.command(DO_SET_MODE, CUSTOM_MODE, mode) == 0
-    await station.hears("flight_mode", "manual", value=int(FlightMode.MANUAL))
+    await station.receives("flight_mode", "manual", value=int(FlightMode.MANUAL))
     helm = asyncio.create_task(_hold(manual, y, z))
     async with station.stage("manual"):
         await station.passes(8.0)
     helm.cancel()
     await station.reads("Failsafe: sticks lost, hold")
-    await station.hears("flight_mode", "holds", value=int(FlightMode.HOLD))
+    await station.receives("flight_mode", "holds", value=int(FlightMode.HOLD))
 
 
 async def _hold(manual: ManualControlAsync, y: float, z: float) -> None:

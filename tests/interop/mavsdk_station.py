@@ -1,4 +1,4 @@
-"""A ground station made of the real MAVSDK, that writes down all that it hears."""
+"""Ground station made of the real MAVSDK, with a record of all that it receives."""
 
 from __future__ import annotations
 
@@ -106,18 +106,18 @@ class Station:
             assert time.monotonic() < end, f"{what}: not within {deadline:g} s"
             await asyncio.sleep(0.02)
 
-    async def hears(self, stream: str, what: str, **wanted: Any) -> None:
+    async def receives(self, stream: str, what: str, **wanted: Any) -> None:
         """Wait until the newest value of a stream has these fields."""
 
-        def said() -> bool:
+        def matches() -> bool:
             received = self.samples[stream]
             return bool(received) and wanted.items() <= received[-1][1].items()
 
-        await self.until(said, f"{what}: {stream} {wanted}")
+        await self.until(matches, f"{what}: {stream} {wanted}")
 
     async def reads(self, text: str) -> None:
         """Wait for a status text that contains ``text``."""
-        await self.until(lambda: any(text in each for each in self.texts), f"{text!r} is said")
+        await self.until(lambda: any(text in each for each in self.texts), f"{text!r} is received")
 
     async def passes(self, seconds: float) -> None:
         """Let simulated time pass."""

@@ -43,11 +43,11 @@ class RunningTrial:
     folder: Path
     process: subprocess.Popen[bytes]
     output: Path
-    """File with all that it says."""
+    """File with all that it prints."""
 
     @property
-    def said(self) -> str:
-        """What it has said so far."""
+    def transcript(self) -> str:
+        """What it has printed so far."""
         return self.output.read_text("utf-8", "replace")
 
     @property
@@ -80,7 +80,7 @@ def running(
     factor the trial's own pace is kept.
 
     ``given`` goes to ``--set``, with two underscores for the point: ``mavlink__links="..."``.
-    An error in the block gets what the trial has said as a note.
+    An error in the block gets what the trial printed as a note.
     """
     sets = [f"--set={name.replace('__', '.')}={value}" for name, value in given.items()]
     command = [SEATRIAL, "run", trial, "--engine", engine, "--out", str(folder / "run")]
@@ -94,7 +94,7 @@ def running(
     try:
         yield started
     except BaseException as error:
-        error.add_note(f"the trial (status {process.poll()}) said:\n{started.said}")
+        error.add_note(f"the trial (status {process.poll()}) printed:\n{started.transcript}")
         raise
     finally:
         process.kill()

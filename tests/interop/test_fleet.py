@@ -109,7 +109,7 @@ def test_two_stations_see_three_vehicles_and_each_obeys_its_own_orders(tmp_path,
         f"{name}_mavlink__links": f"udpout:{HOST}:{port} tcpin:{HOST}:{server}"
         for name, server in servers.items()
     }
-    # One station hears all vehicles at its port, the other is a client of each.
+    # One station receives all vehicles at its port, the other is a client of each.
     by_udp = Station(255, f"udpin:{HOST}:{port}")
     with running("fleet", tmp_path, stop="6000 s", **links) as trial:
         wait_for(lambda: trial.is_running, "the trial", 180.0)
@@ -172,16 +172,16 @@ def wrapped(degrees):
 
 
 def report(record_property, stations, timing):
-    """Tell latency and overruns: figures of the machine, which no test may judge."""
+    """Report latency and overruns: figures of the machine, which no test may assert."""
     for station, name in zip(stations, ("udp", "tcp"), strict=True):
         trips = np.array(station.trips) * 1e3
         assert trips.size
-        told = ", ".join(f"p{p} {np.percentile(trips, p):.1f} ms" for p in (50, 90, 99))
-        record_property(f"ping_{name}", told)
-        print(f"PING over {name}: {told} ({trips.size})")
+        summary = ", ".join(f"p{p} {np.percentile(trips, p):.1f} ms" for p in (50, 90, 99))
+        record_property(f"ping_{name}", summary)
+        print(f"PING over {name}: {summary} ({trips.size})")
     pacing = timing["pacing"]
     late = pacing["overruns"]["steps"]
     cost = sum(times["mean_s"] for times in timing["step_times"].values())
-    told = f"{late} of {timing['steps']} steps late, {cost * 1e3:.1f} ms per step"
-    record_property("overruns", told)
-    print(f"fleet: {told}")
+    summary = f"{late} of {timing['steps']} steps late, {cost * 1e3:.1f} ms per step"
+    record_property("overruns", summary)
+    print(f"fleet: {summary}")

@@ -49,9 +49,9 @@ class Libcosim:
             [sys.executable, "-m", "tests.interop.libcosim_live"],
             cwd=ROOT, text=True, bufsize=1, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
         )  # fmt: skip
-        self.tell(json.dumps(job))
+        self.send_line(json.dumps(job))
 
-    def tell(self, line: str) -> None:
+    def send_line(self, line: str) -> None:
         assert self.process.stdin is not None
         self.process.stdin.write(line + "\n")
         self.process.stdin.flush()
@@ -103,17 +103,17 @@ def test_a_station_commands_it_and_libcosim_sees_it() -> None:
         ack = station.recv_match(type="COMMAND_ACK", blocking=True, timeout=WAIT_S)
         assert (ack.command, ack.result) == (400, mavlink.MAV_RESULT_ACCEPTED)
         until(libcosim, lambda: station.set_mode("MANUAL"), lambda v: v["mode"] == "manual")
-        stick = lambda: station.mav.manual_control_send(1, 0, 0, 500, 0, 0)  # noqa: E731
-        until(libcosim, stick, lambda v: v["manual.surge"] == 0.5)
+        deflect = lambda: station.mav.manual_control_send(1, 0, 0, 500, 0, 0)  # noqa: E731
+        until(libcosim, deflect, lambda v: v["manual.surge"] == 0.5)
         station.mav.set_home_position_send(
             1, round(1e-3 * 1e7), 0, 0, 0.0, 0.0, 0.0, [1.0, 0.0, 0.0, 0.0], 0.0, 0.0, 0.0
         )
         until(libcosim, beat, lambda v: abs(v["home.north"] - 110.57) < 0.01)  # 0.001 degree
 
-        libcosim.tell("stop")
-        while (said := libcosim.line()).startswith("{"):
+        libcosim.send_line("stop")
+        while (last := libcosim.line()).startswith("{"):
             pass
-        assert said == "free"
+        assert last == "free"
         station.close()
     finally:
         libcosim.process.kill()

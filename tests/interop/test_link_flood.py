@@ -64,8 +64,8 @@ def flood(port: int, frames: Frames) -> None:
     near = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     near.connect((HOST, port))
     near.settimeout(0.001)
-    hear = mavlink.MAVLink(None)
-    hear.robust_parsing = True
+    parser = mavlink.MAVLink(None)
+    parser.robust_parsing = True
     began, sent, answered = time.monotonic(), 0, 0
     while answered < len(frames):
         due = min(len(frames), int((time.monotonic() - began) * RATE), answered + OUTSTANDING)
@@ -75,7 +75,7 @@ def flood(port: int, frames: Frames) -> None:
         assert time.monotonic() - began < PATIENCE_S, f"{answered} of {len(frames)} were answered"
         try:
             while True:
-                for m in hear.parse_buffer(near.recv(1 << 16)) or ():
+                for m in parser.parse_buffer(near.recv(1 << 16)) or ():
                     if m.get_type() == "PING":
                         answered = m.seq + 1
         except OSError:
@@ -98,7 +98,7 @@ def share(trial: RunningTrial, clock: Clock, what: Callable[[], object]) -> tupl
 
 
 class Clock:
-    """Simulated time, as a link of its own tells it."""
+    """Simulated time, as a link of its own reports it."""
 
     def __init__(self, port: int) -> None:
         self._link = mavutil.mavlink_connection(f"udpout:{HOST}:{port}", source_system=251)

@@ -82,7 +82,7 @@ def north_east(latitude: float, longitude: float, origin: tuple[float, float, fl
     return np.array([north, east])
 
 
-def judge(run: Run, m: dict[str, float], now: float, origin: tuple[float, float, float]) -> None:
+def compare(run: Run, m: dict[str, float], now: float, origin: tuple[float, float, float]) -> None:
     """Compare a SIM_STATE, the truth, with the record."""
     position = [at(run, f"hull.position.{axis}", now) for axis in "xyz"]
     found = north_east(m["lat_int"] * 1e-7, m["lon_int"] * 1e-7, origin)
@@ -108,7 +108,7 @@ def test_pymavlink_reads_the_trajectory(run: Run, origin: tuple[float, float, fl
         begun = m._timestamp if begun is None else begun
         now = m._timestamp - begun
         if m.get_type() == "SIM_STATE":
-            judge(run, m.to_dict(), round(now, 3), origin)
+            compare(run, m.to_dict(), round(now, 3), origin)
             truths += 1
         elif m.get_type() == "LOCAL_POSITION_NED":
             assert m.time_boot_ms == round(now * 1e3)
@@ -123,14 +123,14 @@ def test_pymavlink_reads_the_trajectory(run: Run, origin: tuple[float, float, fl
 
 def test_mavlogdump_reads_the_trajectory(run: Run, origin: tuple[float, float, float]) -> None:
     log = str(run.folder / "mavlink.tlog")
-    said = tool("mavlogdump.py", "--types", "SIM_STATE", "--format", "csv", log)
-    rows = list(csv.DictReader(io.StringIO(said)))
+    table = tool("mavlogdump.py", "--types", "SIM_STATE", "--format", "csv", log)
+    rows = list(csv.DictReader(io.StringIO(table)))
     begun = float(rows[0]["timestamp"])
     assert len(rows) == 40
     for row in rows:
         values = {name.removeprefix("SIM_STATE."): float(cell) for name, cell in row.items()}
         # It writes the numbers of 32 bits with as many digits as they have.
-        judge(run, values, round(values["timestamp"] - begun, 3), origin)
+        compare(run, values, round(values["timestamp"] - begun, 3), origin)
 
 
 def test_mavtogpx_draws_the_track(run: Run, origin: tuple[float, float, float]) -> None:

@@ -93,7 +93,7 @@ class Station:
 
 
 def offered(port: int) -> dict[str, float]:
-    """Return the parameters as they are told over a link that loses nothing."""
+    """Return the parameters as they are sent over a link that loses nothing."""
     station = Station(port)
     station.run("has_parameters")
     station.link.close()

@@ -30,12 +30,12 @@ def boat(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
         wait_for(lambda: trial.is_running, "the trial's first step")
         connection = mavutil.mavlink_connection(f"tcp:{HOST}:{port}", dialect="all", retries=10)
         connection.wait_heartbeat(timeout=WAIT_S)
-        hear(connection, "GPS_RAW_INT", lambda m: m.fix_type == 3)
+        receive(connection, "GPS_RAW_INT", lambda m: m.fix_type == 3)
         yield connection
         connection.close()
 
 
-def hear(boat: Any, kind: str, wanted: Callable[[Any], bool] = lambda m: True) -> Any:
+def receive(boat: Any, kind: str, wanted: Callable[[Any], bool] = lambda m: True) -> Any:
     """Return the next message of a kind that is as wanted, or fail; say meanwhile that we are."""
     end = time.monotonic() + WAIT_S
     while time.monotonic() < end:
@@ -47,44 +47,44 @@ def hear(boat: Any, kind: str, wanted: Callable[[Any], bool] = lambda m: True) -
 
 
 def command(boat: Any, number: int, *parameters: float) -> int:
-    boat.mav.command_long_send(1, 1, number, 0, *[*parameters, *[0.0] * (7 - len(parameters))])
-    return int(hear(boat, "COMMAND_ACK", lambda m: m.command == number).result)
+    boat.mav.command_long_send(1, 1, number, 0, *parameters, *[0.0] * (7 - len(parameters)))
+    return int(receive(boat, "COMMAND_ACK", lambda m: m.command == number).result)
 
 
-def says(boat: Any, text: str) -> None:
-    hear(boat, "STATUSTEXT", lambda m: text in m.text)
+def reports(boat: Any, text: str) -> None:
+    receive(boat, "STATUSTEXT", lambda m: text in m.text)
 
 
 def is_at(boat: Any, north: float, east: float) -> None:
-    hear(boat, "LOCAL_POSITION_NED", lambda m: math.hypot(m.x - north, m.y - east) < 3.0)
+    receive(boat, "LOCAL_POSITION_NED", lambda m: math.hypot(m.x - north, m.y - east) < 3.0)
 
 
 def test_parameters_by_pymavlinks_own_means(boat: Any) -> None:
     parameters = mavparm.MAVParmDict()
     assert parameters.mavset(boat, "WP_RADIUS", 2.5, retries=10)
     boat.param_fetch_one("WP_RADIUS")
-    assert hear(boat, "PARAM_VALUE", lambda m: m.param_id == "WP_RADIUS").param_value == 2.5
+    assert receive(boat, "PARAM_VALUE", lambda m: m.param_id == "WP_RADIUS").param_value == 2.5
     boat.mav.param_set_send(1, 1, b"WP_RADIUS", -1.0, 9)
-    says(boat, "WP_RADIUS stays 2.5")
+    reports(boat, "WP_RADIUS stays 2.5")
 
 
 def test_modes_are_those_that_pymavlink_knows(boat: Any) -> None:
     number, found, count = mavlink.MAVLINK_MSG_ID_AVAILABLE_MODES, {}, 1
     boat.mav.command_long_send(1, 1, mavlink.MAV_CMD_REQUEST_MESSAGE, 0, number, *[0] * 6)
     while len(found) < count:
-        told = hear(boat, "AVAILABLE_MODES")
-        found[told.mode_name], count = told.custom_mode, told.number_modes
+        answer = receive(boat, "AVAILABLE_MODES")
+        found[answer.mode_name], count = answer.custom_mode, answer.number_modes
     assert found.items() <= boat.mode_mapping().items()
 
 
-def test_rates_are_told_as_they_are_set(boat: Any) -> None:
+def test_rates_are_reported_as_they_are_set(boat: Any) -> None:
     number = mavlink.MAVLINK_MSG_ID_VFR_HUD
     boat.mav.request_data_stream_send(1, 1, mavlink.MAV_DATA_STREAM_ALL, 2, 1)
     boat.mav.command_long_send(1, 1, mavlink.MAV_CMD_GET_MESSAGE_INTERVAL, 0, number, *[0] * 6)
-    told = hear(boat, "MESSAGE_INTERVAL")
-    assert (told.message_id, told.interval_us) == (number, 500_000)
+    answer = receive(boat, "MESSAGE_INTERVAL")
+    assert (answer.message_id, answer.interval_us) == (number, 500_000)
     assert command(boat, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, number, 100_000) == OK
-    times = [hear(boat, "VFR_HUD") and hear(boat, "ATTITUDE").time_boot_ms for _ in range(3)]
+    times = [receive(boat, "VFR_HUD") and receive(boat, "ATTITUDE").time_boot_ms for _ in range(3)]
     assert times == sorted(times)
 
 
@@ -94,22 +94,22 @@ def test_there_are_no_files(boat: Any) -> None:
     result = client.cmd_list(["/"])
     assert result.error_code != mavftp.FtpError.Success
     assert result.error_code != mavftp.FtpError.RemoteReplyTimeout
-    assert hear(boat, "SYSTEM_TIME").time_boot_ms >= begun
+    assert receive(boat, "SYSTEM_TIME").time_boot_ms >= begun
 
 
 def test_origin_and_home(boat: Any) -> None:
     boat.mav.set_gps_global_origin_send(1, 0, 0, 0)
-    origin = hear(boat, "GPS_GLOBAL_ORIGIN")
+    origin = receive(boat, "GPS_GLOBAL_ORIGIN")
     assert (origin.latitude, origin.longitude) == (-317800000, -522600000)  # it stays
     assert command(boat, mavlink.MAV_CMD_DO_SET_HOME, 0, 0, 0, 0, -31.7801, -52.2601, 0.0) == OK
-    home = hear(boat, "HOME_POSITION", lambda m: m.latitude != origin.latitude)
+    home = receive(boat, "HOME_POSITION", lambda m: m.latitude != origin.latitude)
     assert (home.latitude, home.longitude) == pytest.approx((-317801000, -522601000), abs=20)
     assert command(boat, mavlink.MAV_CMD_DO_SET_HOME, 0, 0, 0, 0, -31.78, -52.26, 0.0) == OK
 
 
 def test_what_there_is_not_is_refused(boat: Any) -> None:
     assert command(boat, mavlink.MAV_CMD_DO_SET_SERVO, 1, 1900) == DENIED
-    says(boat, "No servo is set")
+    reports(boat, "No servo is set")
     assert command(boat, mavlink.MAV_CMD_IMAGE_START_CAPTURE) == mavlink.MAV_RESULT_UNSUPPORTED
     for number in (395, 397):  # COMPONENT_INFORMATION, COMPONENT_METADATA
         asked = command(boat, mavlink.MAV_CMD_REQUEST_MESSAGE, number)
@@ -118,16 +118,16 @@ def test_what_there_is_not_is_refused(boat: Any) -> None:
 
 def test_guided_by_three_kinds_of_messages(boat: Any) -> None:
     assert command(boat, mavlink.MAV_CMD_RUN_PREARM_CHECKS) == OK
-    says(boat, "Ready to arm")
+    reports(boat, "Ready to arm")
     boat.set_mode("GUIDED")
-    hear(boat, "HEARTBEAT", lambda m: m.custom_mode == 15)
+    receive(boat, "HEARTBEAT", lambda m: m.custom_mode == 15)
     assert command(boat, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1) == OK
 
     latitude, longitude = north_of(12.0)
     x, y = round(latitude * 1e7), round(longitude * 1e7)
     item = mavlink.MAVLink_mission_item_int_message(1, 1, 0, 3, 16, 2, 1, 0, 0, 0, 0, x, y, 0.0, 0)
     boat.mav.send(item)
-    assert hear(boat, "MISSION_ACK").type == mavlink.MAV_MISSION_ACCEPTED
+    assert receive(boat, "MISSION_ACK").type == mavlink.MAV_MISSION_ACCEPTED
     is_at(boat, 12.0, 0.0)
 
     east = round(north_of(12.0, 12.0)[1] * 1e7)
@@ -137,7 +137,7 @@ def test_guided_by_three_kinds_of_messages(boat: Any) -> None:
         boat.mav.set_position_target_global_int_send(0, 1, 1, 6, POSITION_ONLY, x, east, *fields)
         return math.hypot(m.x - 12.0, m.y - 12.0) < 3.0
 
-    hear(boat, "LOCAL_POSITION_NED", further)
+    receive(boat, "LOCAL_POSITION_NED", further)
 
     def southwards(m: Any) -> bool:
         boat.mav.set_attitude_target_send(
@@ -145,6 +145,6 @@ def test_guided_by_three_kinds_of_messages(boat: Any) -> None:
         )
         return abs(math.remainder(m.yaw - math.pi, math.tau)) < 0.1
 
-    hear(boat, "ATTITUDE", southwards)
-    says(boat, "Set-points have stopped")
+    receive(boat, "ATTITUDE", southwards)
+    reports(boat, "Set-points have stopped")
     assert command(boat, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0) == OK

@@ -36,7 +36,7 @@ class Station:
             self._beat_at = time.monotonic()
         return self.link.recv_match(blocking=True, timeout=0.1)
 
-    def hear(self, kind: str, accept: Callable[[Any], bool] = lambda m: True) -> Any:
+    def receive(self, kind: str, accept: Callable[[Any], bool] = lambda m: True) -> Any:
         """Return the next message of a kind that is accepted."""
         end = time.monotonic() + WAIT_S
         while time.monotonic() < end:
@@ -56,7 +56,7 @@ class Station:
 
     def speed_up(self, factor: float) -> None:
         self.link.mav.param_set_send(1, 1, SPEEDUP.encode(), factor, mavlink.MAV_PARAM_TYPE_REAL32)
-        self.hear("PARAM_VALUE", lambda m: m.param_id == SPEEDUP and m.param_value == factor)
+        self.receive("PARAM_VALUE", lambda m: m.param_id == SPEEDUP and m.param_value == factor)
 
     def pace(self, seconds: float) -> float:
         """Return simulated seconds per second of wall time."""
@@ -79,7 +79,7 @@ class Station:
     def inject(self, unit: int, failure: int) -> int:
         number = mavlink.MAV_CMD_INJECT_FAILURE
         self.link.mav.command_long_send(1, 1, number, 0, unit, failure, 0, 0, 0, 0, 0)
-        return self.hear("COMMAND_ACK", lambda m: m.command == number).result
+        return self.receive("COMMAND_ACK", lambda m: m.command == number).result
 
 
 @pytest.fixture
@@ -92,8 +92,8 @@ def station() -> Iterator[Station]:
 def controlled(trial: RunningTrial, station: Station) -> None:
     """Do all that live control offers, one after the other."""
     wait_for(lambda: trial.is_running, "the trial runs")
-    station.hear("HEARTBEAT")
-    station.hear("GPS_RAW_INT", lambda m: m.fix_type == mavlink.GPS_FIX_TYPE_3D_FIX)
+    station.receive("HEARTBEAT")
+    station.receive("GPS_RAW_INT", lambda m: m.fix_type == mavlink.GPS_FIX_TYPE_3D_FIX)
     station.comes_to(1.0)
     station.speed_up(4.0)
     # A busy machine may not keep up with it.
@@ -103,12 +103,12 @@ def controlled(trial: RunningTrial, station: Station) -> None:
     assert sum(m.get_type() == "HEARTBEAT" for m in still) >= 2
     assert not any(m.get_type() == "ATTITUDE" for m in still)
     station.link.mav.timesync_send(0, 99)
-    stands_at = station.hear("TIMESYNC", lambda m: m.ts1 == 99).tc1
+    stands_at = station.receive("TIMESYNC", lambda m: m.ts1 == 99).tc1
     station.link.mav.timesync_send(0, 100)
-    assert station.hear("TIMESYNC", lambda m: m.ts1 == 100).tc1 == stands_at
+    assert station.receive("TIMESYNC", lambda m: m.ts1 == 100).tc1 == stands_at
     station.speed_up(1.0)
     # It goes on from there, and does not catch up.
-    assert station.hear("ATTITUDE").time_boot_ms <= stands_at / 1e6 + 2000
+    assert station.receive("ATTITUDE").time_boot_ms <= stands_at / 1e6 + 2000
     station.comes_to(1.0)
     gps, mag = mavlink.FAILURE_UNIT_SENSOR_GPS, mavlink.FAILURE_UNIT_SENSOR_MAG
     for failure, health, fix in (
@@ -116,13 +116,13 @@ def controlled(trial: RunningTrial, station: Station) -> None:
         (mavlink.FAILURE_TYPE_OK, GPS_BIT, mavlink.GPS_FIX_TYPE_3D_FIX),
     ):
         assert station.inject(gps, failure) == mavlink.MAV_RESULT_ACCEPTED
-        station.hear("GPS_RAW_INT", lambda m, fix=fix: m.fix_type == fix)
-        station.hear(
+        station.receive("GPS_RAW_INT", lambda m, fix=fix: m.fix_type == fix)
+        station.receive(
             "SYS_STATUS",
             lambda m, health=health: m.onboard_control_sensors_health & GPS_BIT == health,
         )
     assert station.inject(mag, mavlink.FAILURE_TYPE_OFF) == mavlink.MAV_RESULT_ACCEPTED
-    station.hear("SYS_STATUS", lambda m: not m.onboard_control_sensors_health & MAG_BIT)
+    station.receive("SYS_STATUS", lambda m: not m.onboard_control_sensors_health & MAG_BIT)
     assert station.inject(103, mavlink.FAILURE_TYPE_OFF) == mavlink.MAV_RESULT_UNSUPPORTED
 
 
@@ -151,7 +151,7 @@ def test_a_pause_that_nobody_can_end_is_over(station: Station, tmp_path: Path) -
     sets = {"mavlink__links": links, "mavlink__station_timeout": "2 s"}
     with running("hydrone-mission", tmp_path, factor=None, stop="10 s", **sets) as trial:
         wait_for(lambda: trial.is_running, "the trial runs")
-        station.hear("HEARTBEAT")
+        station.receive("HEARTBEAT")
         station.speed_up(0.0)
         assert trial.process.wait(WAIT_S * 2) in (0, 1)
         run = trial.signals()

@@ -145,7 +145,7 @@ def test_a_session_with_a_boat(tmp_path: Path, factor: float) -> None:
         proxy.ask("ping", r"ping response: .* from=1/1")
         proxy.ask("status", r"MAV Errors: 0$")
         assert proxy.complaints("online system 1") == []
-        assert "stopped" not in trial.said
+        assert "stopped" not in trial.transcript
         trial.stop()
 
 
@@ -168,11 +168,11 @@ def test_a_session_with_signatures(tmp_path: Path) -> None:
         proxy.type("mode MANUAL")
         later = lambda: proxy.newest("SYSTEM_TIME", "time_boot_ms") > asked + 5000.0  # noqa: E731
         wait_for(later, "5 s in which nobody obeys")
-        assert "ACK" not in proxy.said
+        assert "ACK" not in proxy.transcript
         proxy.ask("signing setup battery-horse", r"Setup signing key$")
         proxy.type("arm throttle")
         proxy.ask("signing disable", r"Disabled signing$")
-        assert "ACK" not in proxy.said
+        assert "ACK" not in proxy.transcript
         proxy.ask('signing setup "battery staple"', r"Setup signing key$")
         assert int(proxy.ask("param fetch", r"Received (\d+) parameters$")[1]) > 100
         proxy.ask("mode MANUAL", r"Mode MANUAL$")
@@ -210,7 +210,7 @@ def test_a_session_with_a_submarine(tmp_path: Path) -> None:
             assert name in modes
             proxy.ask(f"mode {name}", rf"Mode {name}$")
         proxy.ask("arm throttle", r"\bARMED$")
-        proxy.type("rc 3 1300")  # downwards; the depth is held when the stick is let go
+        proxy.type("rc 3 1300")  # downwards; the depth is held when the control is released
         wait_for(lambda: moved(trial, "vehicle", "z") > 1.0, "1 m down by overridden channels")
         proxy.type("rc 3 1500")
         station = mavutil.mavlink_connection(f"udpout:{HOST}:{port}", source_system=250)

@@ -14,7 +14,7 @@ from .mavsdk_process import flown
 from .mavsdk_stages import CLOCK_HZ, RATE_HZ
 from .mavsdk_truth import ALWAYS, ANGLES, SILENT, STREAMS, Truth
 
-FLAVOURS = ("ardupilotmega", "px4")
+DIALECTS = ("ardupilotmega", "px4")
 RADIUS = 3.0
 """Of acceptance of a waypoint, m."""
 DRIFT = 2.0
@@ -143,7 +143,7 @@ def progress_counts_up(flight: Flight) -> None:
 
 
 def it_stays(flight: Flight, stage: str) -> None:
-    """Within the drift limit of where it was told to, in the mode hold."""
+    """Within the drift limit of where it was sent, in the mode hold."""
     assert set(modes(flight, stage)) == {"hold"}
     x, y = flight.during(stage, "x"), flight.during(stage, "y")
     away = np.hypot(x - x[0], y - y[0])
@@ -191,7 +191,7 @@ def it_goes_slower(flight: Flight) -> None:
     assert np.median(flight.during("slower", "speed", 4.0)) == pytest.approx(0.4, abs=0.05)
 
 
-JUDGEMENTS = {
+CHECKS = {
     "streams": streams_are_true,
     "constants": the_rest_is_constant_or_silent,
     "rates": rates_are_obeyed,
@@ -208,26 +208,26 @@ JUDGEMENTS = {
 }
 
 
-def judge(dialect: str, folder: Path, subtests: pytest.Subtests) -> None:
+def check(dialect: str, folder: Path, subtests: pytest.Subtests) -> None:
     flight = fly(dialect, folder)
-    for name, holds in JUDGEMENTS.items():
+    for name, holds in CHECKS.items():
         with subtests.test(name):
             holds(flight)
 
 
 # As PX4 a vehicle is flown in every run too: it dives, in test_mavsdk_submarine.py.
 @pytest.mark.parametrize(
-    "dialect", [FLAVOURS[0], pytest.param(FLAVOURS[1], marks=pytest.mark.long)]
+    "dialect", [DIALECTS[0], pytest.param(DIALECTS[1], marks=pytest.mark.long)]
 )
 def test_a_flight(dialect: str, tmp_path: Path, subtests: pytest.Subtests) -> None:
-    judge(dialect, tmp_path, subtests)
+    check(dialect, tmp_path, subtests)
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("again", range(1, 20))
-@pytest.mark.parametrize("dialect", FLAVOURS)
+@pytest.mark.parametrize("dialect", DIALECTS)
 def test_the_same_flight_again(
     dialect: str, again: int, tmp_path: Path, subtests: pytest.Subtests
 ) -> None:
     """With `test_a_flight`, twenty in a row."""
-    judge(dialect, tmp_path, subtests)
+    check(dialect, tmp_path, subtests)

@@ -1,4 +1,4 @@
-"""gpsd reads the feed over TCP and says what it understood."""
+"""gpsd reads the feed over TCP and reports what it understood."""
 
 import contextlib
 import json
@@ -79,7 +79,7 @@ def test_gpsd_understands_it(feed):
             assert time.monotonic() < deadline, found
             feed.advance(step * 0.05, 0.05)
             step += 1
-            time.sleep(0.05)  # gpsd tells sentences of one instant by the pause after them
+            time.sleep(0.05)  # gpsd recognises sentences of one instant by the pause after them
             with contextlib.suppress(BlockingIOError):
                 waiting += client.recv(65536)
             *lines, waiting = waiting.split(b"\n")

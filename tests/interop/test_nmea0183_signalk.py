@@ -1,4 +1,4 @@
-"""Signal K's parser reads what is said, into SI units of its own."""
+"""Signal K's parser reads the sentences, into SI units of its own."""
 
 import json
 import math
@@ -20,17 +20,17 @@ pytestmark = pytest.mark.skipif(
 )
 
 
-def understood(said: list[bytes]) -> dict[str, dict]:
+def understood(sentences: list[bytes]) -> dict[str, dict]:
     """Return what Signal K makes of each sentence: values by path, by talker and formatter."""
     done = subprocess.run(
         ["node", str(NODE / "nmea0183.js")],
-        input=b"".join(said),
+        input=b"".join(sentences),
         capture_output=True,
         timeout=WAIT_S,
         check=True,
     )
     found: dict[str, dict] = {}
-    for sentence, line in zip(said, done.stdout.splitlines(), strict=True):
+    for sentence, line in zip(sentences, done.stdout.splitlines(), strict=True):
         found.setdefault(sentence[1:6].decode(), {}).update(json.loads(line))
     return found
 
@@ -73,7 +73,7 @@ def test_signal_k_agrees():
 
 def test_what_is_not_valid_has_no_value():
     found = understood(Bench().run(0.1))
-    told = {"magneticVariation", "magneticVariationAgeOfService", "datetime"}
+    expected = {"magneticVariation", "magneticVariationAgeOfService", "datetime"}
     for name, values in found.items():
         for path, value in values.items():
-            assert value is None or path.rpartition(".")[2] in told, (name, path, value)
+            assert value is None or path.rpartition(".")[2] in expected, (name, path, value)

@@ -1,4 +1,4 @@
-"""A Signal K server reads a running trial through the gateway, and says so over HTTP.
+"""A Signal K server reads a running trial through the gateway, and serves it over HTTP.
 
 It is not installed with the other reference tools: 600 packages. Where it is, SIGNALK_SERVER names the folder
 whose node_modules have it (npm install --ignore-scripts signalk-server).
@@ -72,7 +72,9 @@ def test_the_server_shows_the_ship(tmp_path):
         wait_for(lambda: trial.is_running, "the trial runs", 180.0)
         server = subprocess.Popen(
             ["node", str(SERVER / "bin/signalk-server"), "-c", str(config)],
-            *(None, None, None),
+            None,
+            None,
+            None,
             log,
             subprocess.STDOUT,
             env=environment,

@@ -1,4 +1,4 @@
-"""What `ssp check` says of other tools, against the tools."""
+"""Findings of `ssp check` on other tools, against the tools."""
 
 from __future__ import annotations
 

@@ -38,11 +38,11 @@ from seatrial.sampled import Sampled
 
 
 class Extras(Component):
-    """Counts its steps; says when it has taken ten; forgets nothing."""
+    """Counts its steps; reports when it has taken ten; forgets nothing."""
 
     count = Output("1", "steps taken", type=int)
     late = Output("1", "after ten steps", type=bool)
-    told = Output("1", "as text", type=str)
+    label = Output("1", "as text", type=str)
     same = Output("1", "always three", type=int)
     wrong = Output("m", "depends on the step in no orderly way")
 
@@ -54,7 +54,7 @@ class Extras(Component):
 
     def outputs(self, t):
         self.count, self.late, self.same = self.taken, self.taken >= 10, 3
-        self.told = f"{self.taken} steps"
+        self.label = f"{self.taken} steps"
         self.wrong = (self.taken * 0.618) % 1.0
 
 
@@ -155,7 +155,7 @@ def test_what_does_not_converge_and_what_differs_is_listed(bench, tmp_path: Path
     assert {one.signal: one.differs_at for one in found.discrete} == {
         "extra.count": [0.01, 0.01],
         "extra.late": [0.05, 0.03],
-        "extra.told": [0.01, 0.01],
+        "extra.label": [0.01, 0.01],
     }
 
 
@@ -175,8 +175,8 @@ def test_the_report_has_the_errors_and_can_be_made_again(bench, tmp_path: Path) 
     assert "Accuracy of the coupling" in page
     worst = next(output for output in found.outputs if output.behaviour == "converges")
     assert f"<code>{worst.signal}</code>" in page
-    for said in ("1 outputs do not converge", "does not converge", "extra.told", "slope 2"):
-        assert said in page
+    for shown in ("1 outputs do not converge", "does not converge", "extra.label", "slope 2"):
+        assert shown in page
     assert write_report(tmp_path / "run").read_text("utf-8") == page
     assert "Accuracy of the coupling" not in write_report(tmp_path / "run/step-5ms").read_text()
 

@@ -25,7 +25,7 @@ SIGNALS = {
 }
 
 
-def judge(text: str, signals=SIGNALS, time=TIME, units=UNITS):
+def evaluate(text: str, signals=SIGNALS, time=TIME, units=UNITS):
     return parse(text).evaluate(time, signals, units)
 
 
@@ -71,11 +71,11 @@ def judge(text: str, signals=SIGNALS, time=TIME, units=UNITS):
     ],
 )
 def test_forms(text, passed):
-    assert judge(text).passed is passed
+    assert evaluate(text).passed is passed
 
 
-def test_worst_is_told_in_the_unit_of_the_criterion():
-    verdict = judge("abs(a.phi) < 9.5 deg")
+def test_worst_is_reported_in_the_unit_of_the_criterion():
+    verdict = evaluate("abs(a.phi) < 9.5 deg")
     crossing = -2.0 * math.log(1 - 0.95)
     assert not verdict.passed
     assert verdict.worst == pytest.approx(10 * (1 - math.exp(-10.0)))
@@ -88,27 +88,27 @@ def test_worst_is_told_in_the_unit_of_the_criterion():
     )
 
 
-def test_close_values_are_told_apart():
-    detail = judge("a.phi < 9.9999 deg").detail
+def test_close_values_are_distinguished():
+    detail = evaluate("a.phi < 9.9999 deg").detail
     assert detail.startswith("worst 9.9995 deg at 20 s, limit 9.9999 deg")
 
 
 def test_worst_of_a_passed_criterion_is_nearest_to_its_limit():
-    verdict = judge("a.x < 1.5 m")
+    verdict = evaluate("a.x < 1.5 m")
     assert verdict.passed
     assert verdict.worst == pytest.approx(1.0, abs=1e-4)
     assert verdict.time == pytest.approx(math.pi / 2, abs=0.01)
 
 
-def test_the_deciding_part_is_told():
-    assert "10 m at 20 s, limit 9 m" in judge("a.x < 2 m and a.y < 9 m").detail
-    assert "10 m at 20 s, limit 8 m" in judge("a.x > 2 m or a.y < 8 m").detail
-    assert judge("a.y < 9 m and a.phi < 11 deg").unit == "m"
-    assert judge("a.y < 90 m and a.phi < 9 deg").unit == "deg"
+def test_the_deciding_part_is_reported():
+    assert "10 m at 20 s, limit 9 m" in evaluate("a.x < 2 m and a.y < 9 m").detail
+    assert "10 m at 20 s, limit 8 m" in evaluate("a.x > 2 m or a.y < 8 m").detail
+    assert evaluate("a.y < 9 m and a.phi < 11 deg").unit == "m"
+    assert evaluate("a.y < 90 m and a.phi < 9 deg").unit == "deg"
 
 
 def test_both_sides_may_vary():
-    verdict = judge("a.x < a.y + 10 cm after 1 s")
+    verdict = evaluate("a.x < a.y + 10 cm after 1 s")
     gap = np.where(TIME >= 1, 0.5 * TIME + 0.1 - np.sin(TIME), np.inf)
     row = int(np.argmin(gap))
     assert verdict.time == pytest.approx(TIME[row])
@@ -117,10 +117,10 @@ def test_both_sides_may_vary():
 
 
 def test_within_tells_when_or_how_near():
-    reached = judge("within 12 s a.y >= 5 m after 4 s")
+    reached = evaluate("within 12 s a.y >= 5 m after 4 s")
     assert (reached.time, reached.worst) == (10.0, 5.0)
     assert "allowed until 16 s" in reached.detail
-    missed = judge("within 3 s a.y >= 5 m after 4 s")
+    missed = evaluate("within 3 s a.y >= 5 m after 4 s")
     assert (missed.time, missed.worst) == (7.0, 3.5)
     assert missed.detail.startswith("never in time: closest 3.5 m at 7 s")
 
@@ -147,7 +147,7 @@ def test_within_tells_when_or_how_near():
     ],
 )
 def test_limits_for_plots(text, limits):
-    assert [tuple(limit) for limit in judge(text).limits] == limits
+    assert [tuple(limit) for limit in evaluate(text).limits] == limits
 
 
 # ---------------------------------------------------------------------- settling
@@ -157,7 +157,7 @@ def test_limits_for_plots(text, limits):
 @pytest.mark.parametrize(("band", "share"), [("", 0.05), ("to 2 %", 0.02), ("to 0.1", 0.1)])
 def test_settling_of_a_first_order_lag(tau, band, share):
     step = np.where(TIME < 5, 0.0, 1 - np.exp(-(TIME - 5) / tau))
-    verdict = judge(f"a.x settles within 6 s {band} after 5 s", {"a.x": step})
+    verdict = evaluate(f"a.x settles within 6 s {band} after 5 s", {"a.x": step})
     assert verdict.passed
     assert verdict.worst == pytest.approx(-tau * math.log(share), abs=2e-4)
     assert verdict.time == pytest.approx(5 + verdict.worst)
@@ -166,7 +166,7 @@ def test_settling_of_a_first_order_lag(tau, band, share):
 
 def test_settling_of_an_oscillation_is_its_last_departure():
     course = 1 - np.exp(-0.3 * TIME) * np.cos(2 * TIME)
-    verdict = judge("a.x settles within 5 s", {"a.x": course})
+    verdict = evaluate("a.x settles within 5 s", {"a.x": course})
     outside = TIME[np.abs(course - course[-1]) > 0.05 * np.abs(course - course[-1]).max()]
     assert not verdict.passed
     assert outside[-1] <= verdict.worst <= outside[-1] + 0.01
@@ -174,12 +174,12 @@ def test_settling_of_an_oscillation_is_its_last_departure():
 
 def test_settling_does_not_depend_on_where_zero_is():
     course = np.exp(-TIME)
-    times = [judge("a.x settles within 5 s", {"a.x": course + c}).worst for c in (0.0, 100.0)]
+    times = [evaluate("a.x settles within 5 s", {"a.x": course + c}).worst for c in (0.0, 100.0)]
     assert times[0] == pytest.approx(times[1], abs=1e-9)
 
 
 def test_a_constant_has_settled():
-    verdict = judge("a.x settles within 1 s after 2 s", {"a.x": np.full(len(TIME), 3.0)})
+    verdict = evaluate("a.x settles within 1 s after 2 s", {"a.x": np.full(len(TIME), 3.0)})
     assert (verdict.passed, verdict.worst, verdict.time) == (True, 0.0, 2.0)
 
 
@@ -204,7 +204,7 @@ def settled(row, phase, start):
     signals = reference(phase, row["scenario"], row["variant"])
     units = {name: unit for name, (_, unit) in COLUMNS.items()}
     text = f"hull.position.z settles within 5 s after {start}"
-    return judge(text, signals, signals["time"], units)
+    return evaluate(text, signals, signals["time"], units)
 
 
 @pytest.mark.parametrize("row", list(rows("landing")))
@@ -238,7 +238,7 @@ def test_verdicts_of_table_7(phase, scenario, roll, pitch):
     signals = reference(phase, scenario)
     units = {name: unit for name, (_, unit) in COLUMNS.items()}
     found = [
-        judge(text, signals, signals["time"], units).passed
+        evaluate(text, signals, signals["time"], units).passed
         for text in ("abs(hull.attitude.phi) < 10 deg", "abs(hull.attitude.theta) < 5 deg")
     ]
     assert found == [roll, pitch]
@@ -252,14 +252,14 @@ def test_verdicts_of_table_7(phase, scenario, roll, pitch):
 def test_what_is_not_a_number_does_not_pass(form, bad):
     course = np.zeros(len(TIME))
     course[123] = bad
-    verdict = judge(f"{form}a.x < 1 m", {"a.x": course})
+    verdict = evaluate(f"{form}a.x < 1 m", {"a.x": course})
     assert not verdict.passed
     assert (verdict.worst, verdict.detail) == (None, f"a.x is {bad} at 1.23 s")
 
 
 @pytest.mark.parametrize("text", ["a.x < 1 m", "finally a.x < 1 m", "a.x settles within 1 s"])
 def test_an_empty_record_does_not_pass(text):
-    verdict = judge(text, {"a.x": np.empty(0)}, np.empty(0))
+    verdict = evaluate(text, {"a.x": np.empty(0)}, np.empty(0))
     assert (verdict.passed, verdict.detail) == (False, "the record is empty")
 
 
@@ -267,7 +267,7 @@ def test_an_empty_record_does_not_pass(text):
     ("text", "reason"),
     [
         ("a.x < 2 m from 4 s to 30 s", "the record ends at 20 s, before 30 s"),
-        ("a.x < 2 m after 30 s", "no row to judge: the record runs from 0 s to 20 s"),
+        ("a.x < 2 m after 30 s", "no row to evaluate: the record runs from 0 s to 20 s"),
         ("a.x settles within 5 s after 18 s", "the record ends at 20 s, before 23 s"),
         ("1 / a.on < 2", "the expression is inf at 0 s"),
         ("sqrt(a.on - 1) < 2", "the expression is nan at 0 s"),
@@ -275,12 +275,12 @@ def test_an_empty_record_does_not_pass(text):
     ],
 )
 def test_a_record_that_says_nothing_does_not_pass(text, reason):
-    verdict = judge(text)
+    verdict = evaluate(text)
     assert (verdict.passed, verdict.detail) == (False, reason)
 
 
 def test_an_undefined_value_outside_the_window_does_no_harm():
-    assert judge("1 / a.on < 2 after 4 s").passed
+    assert evaluate("1 / a.on < 2 after 4 s").passed
 
 
 # ---------------------------------------------------------------------- users' mistakes
@@ -362,11 +362,11 @@ def test_temperatures_have_an_offset():
 
 def test_columns_are_checked():
     with pytest.raises(InputError, match="text"):
-        judge("a.x < 1 m", {"a.x": ["text"] * len(TIME)})
+        evaluate("a.x < 1 m", {"a.x": ["text"] * len(TIME)})
     with pytest.raises(InputError, match="3 rows"):
-        judge("a.x < 1 m", {"a.x": np.zeros(3)})
+        evaluate("a.x < 1 m", {"a.x": np.zeros(3)})
     with pytest.raises(InputError, match="unknown signal"):
-        judge("a.x < 1 m", {"a.y": np.zeros(3)})
+        evaluate("a.x < 1 m", {"a.y": np.zeros(3)})
 
 
 def test_signals_and_names_with_hyphens():

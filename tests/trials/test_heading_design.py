@@ -111,18 +111,18 @@ def test_least_damping_with_positive_derivative_time(loci):
 
 
 def test_no_eigenvalue_tends_to_the_origin_with_a_negative_derivative_time():
-    """The source says so of its figure 7; they leave the origin, where they are at K = 0."""
+    """The source states it of its figure 7; they leave the origin, where they are at K = 0."""
     poles = np.sort(np.linalg.eigvals(closed_loop(A, B, 1e6, -1.3427)).real)
     np.testing.assert_allclose(poles[:2], [-1.1249, 1 / 1.3427], atol=1e-4)
     assert poles[2] > 1e6
 
 
 def test_gains_scale_with_the_rudder_s_effect():
-    printed, mended = (
+    printed, corrected = (
         design_heading("mariner", variant, [1.25379]).loci[0].wanted
         for variant in ("source", "linear")
     )
-    for a, b in zip(printed, mended, strict=True):
+    for a, b in zip(printed, corrected, strict=True):
         assert pytest.approx(25.3171479, rel=1e-9) == b.K / a.K
 
 
@@ -135,13 +135,13 @@ def test_page(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("name", "options", "said"),
+    ("name", "options", "reason"),
     [
         ("hydrone", {}, "a vehicle with a table 'manoeuvring-ship' is needed"),
         ("mariner", {"variant": "cubed"}, "cubic"),
         ("mariner", {"damping_ratio": 1.0}, "between 0 and 1"),
     ],
 )
-def test_bad_input(name, options, said):
-    with pytest.raises(InputError, match=said):
+def test_bad_input(name, options, reason):
+    with pytest.raises(InputError, match=reason):
         design_heading(name, **options)

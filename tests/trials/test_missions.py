@@ -135,7 +135,7 @@ def test_the_hydrone_goes_returns_and_is_held_when_the_station_is_lost(tmp_path)
         assert v.away(north, east) < 3.0
 
 
-def test_the_videoray_dives_by_its_sticks_and_goes_to_a_depth(tmp_path):
+def test_the_videoray_dives_by_manual_control_and_goes_to_a_depth(tmp_path):
     craft = CRAFTS["videoray"]
     with at_sea(craft, tmp_path) as v:
         v.arm()

@@ -1,4 +1,4 @@
-"""Runs in real time, and what timing.json and the report say of wall time."""
+"""Runs in real time, and the wall time in timing.json and the report."""
 
 from __future__ import annotations
 

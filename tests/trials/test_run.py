@@ -117,17 +117,17 @@ def test_seeds_give_each_instance_its_own_noise(bench, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("engine", ["fmu", "direct"])
 @pytest.mark.parametrize(
-    ("how", "said"),
+    ("how", "expected"),
     [("raise", "the radio is on fire"), ("nan", "output x is nan"), ("exit", "SystemExit")],
 )
-def test_a_failure_keeps_what_was_recorded(engine, how, said, bench, tmp_path: Path) -> None:
+def test_a_failure_keeps_what_was_recorded(engine, how, expected, bench, tmp_path: Path) -> None:
     settings = {"boat.fail_at": 0.5, "boat.how": how}
     result = run_trial(
         load_trial(bench()).changed(settings, "test"), tmp_path / "run", engine=engine
     )
     assert result.status == "failed"
     assert "boat" in result.error
-    assert said in result.error
+    assert expected in result.error
     assert not result.passed
     rows = (tmp_path / "run" / "signals.csv").read_text().splitlines()
     assert len(rows) - 1 == 51  # times 0 to 0.5 s

@@ -1,4 +1,4 @@
-"""What reports show of sailing."""
+"""Sailing in reports."""
 
 from __future__ import annotations
 

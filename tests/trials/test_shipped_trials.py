@@ -18,7 +18,7 @@ PACED = [name for name in NAMES if load_trial(name).file.real_time]
 """Trials in real time, for whoever connects."""
 TRIALS = [name for name in NAMES if name not in PACED]
 COMPARED_S = 5
-"""How a trial begins tells how it goes on; to the end they run in their vehicles' tests, or here."""
+"""How a trial begins shows how it goes on; to the end they run in their vehicles' tests, or here."""
 
 
 def test_every_shipped_trial_can_be_named() -> None:

@@ -1,4 +1,4 @@
-"""What reports show of tethers."""
+"""Tethers in reports."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The shipped trials of the VideoRay Pro 4: verdicts, and what its page says of them."""
+"""The shipped trials of the VideoRay Pro 4: verdicts, and the figures of its page."""
 
 import math
 

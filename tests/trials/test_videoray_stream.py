@@ -70,12 +70,12 @@ def test_a_recorded_stream_drives_the_vehicle_the_same_way_again(tmp_path):
     again = run_trial(trial, tmp_path / "again", engine="direct").folder
     assert (first / "signals.csv").read_bytes() == (again / "signals.csv").read_bytes()
     assert (first / "topside.stream").read_bytes() == (again / "topside.stream").read_bytes()
-    # What one end says, is what the other hears: but for the last step's, at the same times.
-    received, said = (
+    # What one end sends, the other receives: but for the last step's, at the same times.
+    received, sent = (
         [line for line in (first / f"{name}.stream").read_text().splitlines() if " > " in line]
         for name in ("stream", "topside")
     )
-    assert received == said
+    assert received == sent
     (tmp_path / "replay.toml").write_text(
         REPLAY.format(stop="30 s", file=(first / "topside.stream").as_posix())
     )
@@ -152,9 +152,9 @@ def drive(links, seconds):
     begun, steps, trips = time.monotonic(), 0, []
     asked, answered = 0.0, 0
     while time.monotonic() < begun + seconds:
-        said, received = topside.get("tx"), gateway.get("tx")
+        sent, received = topside.get("tx"), gateway.get("tx")
         topside.set("rx", received)
-        gateway.set("rx", said)
+        gateway.set("rx", sent)
         if topside.get("cycles") > answered:
             asked, answered = time.monotonic(), topside.get("cycles")
         before = gateway.get("received")
@@ -199,7 +199,7 @@ def test_a_mavlink_pilot_drives_the_vehicle_through_the_stream(tmp_path):
 
 
 def pilot(place):
-    """Arm in MANUAL and push the sticks, ahead and to starboard, until the vehicle reports it."""
+    """Arm in MANUAL and deflect the controls, ahead and to starboard, until the vehicle reports it."""
     link = mavutil.mavlink_connection(place, source_system=255)
     try:
         assert link.wait_heartbeat(timeout=WAIT_S)

@@ -1,4 +1,4 @@
-"""The shipped trials of the VideoRay's control: verdicts, campaigns, what its page says."""
+"""The shipped trials of the VideoRay's control: verdicts, campaigns, figures of its page."""
 
 import json
 

@@ -1,7 +1,7 @@
 """A rig in process and a pymavlink station over TCP, in lockstep: minutes at sea in seconds.
 
-The station hears and answers between the steps, so nothing depends on the wall clock. What is
-asserted comes from the plant, not from what the vehicle says of itself.
+The station receives and answers between the steps, so nothing depends on the wall clock. What is
+asserted comes from the plant, not from the vehicle's telemetry.
 """
 
 from __future__ import annotations
@@ -116,8 +116,18 @@ class Voyage:
         latitude, longitude, altitude = self.origin.geodetic((north, east, down))
         self.received.pop("COMMAND_ACK", None)
         self.link.mav.command_int_send(
-            *(self._system_id, 1, _RELATIVE, mavutil.mavlink.MAV_CMD_DO_REPOSITION, 0, 0),
-            *(-1, 1, 0, math.nan, round(latitude * 1e7), round(longitude * 1e7)),
+            self._system_id,
+            1,
+            _RELATIVE,
+            mavutil.mavlink.MAV_CMD_DO_REPOSITION,
+            0,
+            0,
+            -1,
+            1,
+            0,
+            math.nan,
+            round(latitude * 1e7),
+            round(longitude * 1e7),
             altitude - self.origin.altitude,
         )
         self.until(lambda: "COMMAND_ACK" in self.received, "answer to DO_REPOSITION", 5)
@@ -134,7 +144,7 @@ class Voyage:
         return min(math.dist(at, place[:2]) for t, *at, _ in self.track if t >= since)
 
     def passed(self, places, radius):
-        """Say if the true track comes within ``radius`` of all places in their order."""
+        """Return whether the true track comes within ``radius`` of all places in their order."""
         left = list(places)
         for _, north, east, _ in self.track:
             if left and math.dist((north, east), left[0][:2]) <= radius:

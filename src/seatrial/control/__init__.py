@@ -1,1 +1,1 @@
-"""Autopilots and what they are made of."""
+"""Autopilots: guidance, control laws and control allocation."""

@@ -1,4 +1,4 @@
-"""What controllers share that hold one axis of a vehicle: PID with limits."""
+"""Base of PID control of one axis of a vehicle, with limits."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class AxisHold(Sampled):
 
     Gains may change at any step: I is kept as a demand, so that what it holds stays.
 
-    A subclass declares mass, capacity, inputs and the demand, and says in `_axis` and `_places`
+    A subclass declares mass, capacity, inputs and the demand, and defines in `_axis` and `_places`
     what they are.
     """
 
@@ -42,11 +42,11 @@ class AxisHold(Sampled):
 
     def _axis(self) -> tuple[float, float, float]:
         """Return mass, capacity and the limit of the target's rate."""
-        raise TypeError(f"{type(self).__name__} does not say which axis it holds")
+        raise TypeError(f"{type(self).__name__} does not define which axis it holds")
 
     def _places(self) -> tuple[float, float]:
         """Return the position wanted and the one measured."""
-        raise TypeError(f"{type(self).__name__} does not say what it holds")
+        raise TypeError(f"{type(self).__name__} does not define what it holds")
 
     def _apart(self, a: float, b: float) -> float:
         """Return position a less position b."""

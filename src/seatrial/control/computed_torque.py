@@ -1,4 +1,4 @@
-"""Velocities of a vessel held by computed torque with integral action."""
+"""Computed-torque control of a vessel's velocities, with integral action."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from .vessel_tracking import VesselTracking
 
 
 class ComputedTorque(VesselTracking):
-    """Computed torque in surge and yaw: each error decays as s^2 + kp s + ki says.
+    """Computed torque in surge and yaw: each error decays with the poles of s^2 + kp s + ki.
 
     With e_u = u - U and e_r = r - R, and I_u, I_r their integrals:
 

@@ -1,4 +1,4 @@
-"""A course over waypoints, leg by leg."""
+"""Course over waypoints, leg by leg."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ _NED = ("north", "east", "down")
 
 
 class Course(Sampled):
-    """Gives `Guidance` one leg after the other: a mission without a mission service.
+    """Sequence of legs for `Guidance`: a mission without a mission service.
 
-    Leg n leads from waypoint n - 1 (``start`` for the first) to waypoint n. When guidance says
-    that it has ``reached`` leg n, leg n + 1 begins at the next instant. After the last one
+    Leg n leads from waypoint n - 1 (``start`` for the first) to waypoint n. When guidance
+    reports ``reached`` = n, leg n + 1 begins at the next instant. After the last one
     ``leg`` stays, and guidance at its end; ``passed`` is the number of legs done.
 
     Nothing depends on an input at the same instant, so that the loop with guidance is none.

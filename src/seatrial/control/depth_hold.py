@@ -1,4 +1,4 @@
-"""Depth of an underwater vehicle held by its vertical thruster."""
+"""Depth hold of an underwater vehicle by its vertical thruster."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ class DynamicPositioning(Sampled):
     with clip(x) = x held within +-``capacity``, as tau itself is; back-calculation at the rate
     Ki / Kp removes from I what that cuts off. On a long way to a new station the ship thus goes
     at no more than capacity / Kd, from which its thrusters can stop it. I of surge and sway is
-    kept in north and east, so that what was learnt of wind and current stays true when the
+    kept in north and east, so that the integral of wind and current stays valid when the
     ship turns.
 
     **Gains.** An axis of mass m has, with these gains and forces without lag, the poles of

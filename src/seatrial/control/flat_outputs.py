@@ -1,4 +1,4 @@
-"""Flat outputs of linear systems x' = A(t) x + B(t) tau, and the law that tracks with them.
+"""Flat outputs of linear systems x' = A(t) x + B(t) tau, and tracking control by them.
 
 Source 000, chapter 4. A flat output F is as many functions of the state as there are inputs,
 from which state and inputs follow by differentiation alone. n states, m inputs; matrices are

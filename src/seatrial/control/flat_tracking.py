@@ -1,4 +1,4 @@
-"""Velocities of a vessel held by the flat outputs of its linearisation."""
+"""Flatness-based control of a vessel's velocities."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class FlatTracking(VesselTracking):
     transient = VesselTracking.transient | {"_gains"}
 
     gain = Parameter((2.0, 4.0, 4.0), ("1/s", "1/s2", "1/s"), "gains", axes=("K01", "K02", "K12"))
-    design = Parameter("LTV", "1", "whether A counts as varying or constant", choices=_DESIGNS)
+    design = Parameter("LTV", "1", "whether A is taken as varying or constant", choices=_DESIGNS)
     scaling = Parameter("constant", "1", "alpha of the flat outputs", choices=_SCALINGS)
 
     def demand(self, k: int) -> tuple[float, float]:

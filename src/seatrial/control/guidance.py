@@ -1,4 +1,4 @@
-"""Guidance of surface craft and underwater vehicles: where to head, how fast, how deep."""
+"""Guidance of surface craft and underwater vehicles: heading, speed and depth wanted."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .guidance_orders import MANUAL_AXES, Decision, GuidanceOrders, Task
 from .guidance_path import Point
 
 PILOTED = {"manual": (False, False), "stabilize": (True, False), "depth-hold": (True, True)}
-"""Modes of a person at the sticks, and whether heading and depth are held in them."""
+"""Modes under manual control, and whether heading and depth are held in them."""
 MODES = (*PILOTED, "hold", "guided", "auto", "return", "loiter", "surface")
 """Values of the input ``mode``."""
 
@@ -30,9 +30,9 @@ class Guidance(GuidanceOrders):
     """Guidance in nine modes, above autopilots for heading, speed and depth.
 
     ========== ============================================================================
-    manual     the sticks ``manual`` go to ``direct``; no autopilot acts
-    stabilize  as manual, with the heading held: the yaw stick turns it at ``turn_rate``
-    depth-hold as stabilize, with the depth held: the heave stick changes it at ``dive_rate``
+    manual     the manual control ``manual`` goes to ``direct``; no autopilot acts
+    stabilize  as manual, with the heading held: manual yaw turns it at ``turn_rate``
+    depth-hold as stabilize, with the depth held: manual heave changes it at ``dive_rate``
     hold       stay where the mode was set
     guided     position: go there at ``target_speed`` (0: ``cruise_speed``) and stay; velocity:
                steer its direction at its size, depth changing at its down; heading: steer
@@ -45,12 +45,12 @@ class Guidance(GuidanceOrders):
     surface    as hold, at ``surface_depth``
     ========== ============================================================================
 
-    ``engaged`` says of each autopilot whether it acts; ``direct`` has the sticks where none does.
+    ``engaged`` has, per autopilot, whether it acts; ``direct`` the manual control where none does.
 
     **Neutral.** Not ``armed``, or with an estimate that the mode needs not valid for longer than
     ``timeout`` or never yet, no autopilot acts, ``direct`` is 0, and what is wanted is what is
     measured, at speed 0. Manual needs none, stabilize a heading, depth-hold a heading and a
-    depth, the others a position too; depth counts with ``depth_control`` only.
+    depth, the others a position too; depth is needed with ``depth_control`` only.
 
     **Legs** (and the straight lines to a position or home, which begin where the craft was
     when they were ordered) are followed by line of sight (Fossen 2011, section 10.3), e the
@@ -78,10 +78,10 @@ class Guidance(GuidanceOrders):
     **Speed.** What is wanted times max(turning_speed, cos(heading error)): a craft that turns on
     the spot slows down to turn (turning_speed = 0), one that needs steerage does not (1).
     ``speed_wanted`` changes at ``acceleration``, from the measured speed when the autopilots
-    are engaged. ``speed`` is what GNSS tells along the bow, V_n cos(psi) + V_e sin(psi).
+    are engaged. ``speed`` is GNSS's along the bow, V_n cos(psi) + V_e sin(psi).
 
     Positions in {n}, m, down positive; headings clockwise from north, rad, ``heading_wanted``
-    in [-pi, pi]; speeds over ground along the bow. Depths do not count in distances, and
+    in [-pi, pi]; speeds over ground along the bow. Distances are horizontal; depths
     are 0 without ``depth_control``.
 
     Not modelled: the curvature of turns (legs meet at a corner), obstacles, fences, wind: a
@@ -104,8 +104,8 @@ class Guidance(GuidanceOrders):
     staying = Parameter(
         "rest", "1", "how it stays at a point", choices=("rest", "circle", "proceed")
     )
-    turn_rate = Parameter(0.4, "rad/s", "turn of a heading held at full stick", tunable=True)
-    dive_rate = Parameter(0.2, "m/s", "change of a depth held at full stick", tunable=True)
+    turn_rate = Parameter(0.4, "rad/s", "turn of a heading held at full deflection", tunable=True)
+    dive_rate = Parameter(0.2, "m/s", "change of a depth held at full deflection", tunable=True)
     depth_control = Parameter("off", "1", "whether it dives", choices=("off", "on"))
     surface_depth = Parameter(
         0.0, "m", "depth at the surface, the least one wanted", min=0.0, tunable=True
@@ -119,7 +119,7 @@ class Guidance(GuidanceOrders):
     depth_valid = Input("1", "whether the depth is valid", type=bool, start=True)
 
     engaged = Output("1", "which autopilots act", type=bool, axes=("speed", "heading", "depth"))
-    direct = Output("1", "sticks where none acts, -1 to 1", axes=MANUAL_AXES)
+    direct = Output("1", "manual control where none acts, -1 to 1", axes=MANUAL_AXES)
     speed_wanted = Output("m/s", "speed wanted over ground along the bow")
     depth_wanted = Output("m", "depth wanted, positive down")
     speed = Output("m/s", "measured speed over ground along the bow")
@@ -156,7 +156,7 @@ class Guidance(GuidanceOrders):
         self._before: list[float] = []
 
     def sample(self, t: float, k: int) -> None:
-        """Say where to head, how fast and how deep."""
+        """Publish heading, speed and depth wanted."""
         guided = self._decide()
         wanted = guided.decision.command
         self._publish(guided.decision)
@@ -194,7 +194,7 @@ class Guidance(GuidanceOrders):
         return _Guided(decision, self._ramped(speed, decision.command), (True, True, True))
 
     def _able(self) -> bool:
-        """Say if the craft is armed and has the estimates that the mode needs."""
+        """Return whether the craft is armed and has the estimates that the mode needs."""
         heading, depth = PILOTED.get(self.mode, (True, True))
         diving = depth and self.depth_control == "on"
         return self.armed and self._known(self.mode not in PILOTED, heading, diving)
@@ -215,19 +215,19 @@ class Guidance(GuidanceOrders):
         return ramped
 
     def _direct(self, guided: _Guided) -> list[float]:
-        """Return the sticks where no autopilot acts."""
+        """Return the manual control where no autopilot acts."""
         speed, heading, depth = guided.held
         piloted = guided.decision.command.motion == MANUAL
         return [
-            min(max(stick, -1.0), 1.0) if piloted and not held else 0.0
-            for stick, held in zip(self.manual, (speed, speed, heading, depth), strict=True)
+            min(max(deflection, -1.0), 1.0) if piloted and not held else 0.0
+            for deflection, held in zip(self.manual, (speed, speed, heading, depth), strict=True)
         ]
 
     def _rates(self, guided: _Guided) -> tuple[float, float]:
         """Return the rates at which heading and depth wanted go on, rad/s and m/s."""
         if guided.decision.command.motion == MANUAL:
             _, heading, depth = guided.held
-            yaw, heave = (min(max(stick, -1.0), 1.0) for stick in self.manual[2:])
+            yaw, heave = (min(max(deflection, -1.0), 1.0) for deflection in self.manual[2:])
             return self.turn_rate * yaw * heading, self.dive_rate * heave * depth
         return 0.0, self.target_velocity[2] if guided.decision.task == ("velocity",) else 0.0
 

@@ -1,4 +1,4 @@
-"""Following a leg, staying at a point, steering: from a goal to heading, speed and depth."""
+"""Guidance laws: path following, station keeping, steering, for one goal."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .guidance_path import (
 )
 
 NEUTRAL, MANUAL, STAY, FOLLOW, STEER, BEAT = range(6)
-"""What a craft does: nothing, what a person says, stay, follow a leg, steer a heading, beat."""
+"""What a craft does: nothing, manual control, stay, follow a leg, steer a heading, beat."""
 
 
 class Goal(NamedTuple):

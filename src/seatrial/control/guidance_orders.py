@@ -1,4 +1,4 @@
-"""What is ordered of a craft, and what guidance remembers of it."""
+"""Base of guidance: orders to a craft, and the memory of their execution."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ TARGETS = ("position", "velocity", "heading")
 """Values of the input ``target_kind``."""
 
 MANUAL_AXES = ("surge", "sway", "yaw", "heave")
-"""Axes of a person's sticks."""
+"""Axes of manual control."""
 
 NED = ("north", "east", "down")
 
 Task = tuple[str | float, ...]
-"""What tells one task from the next: a new one begins anew, where the craft is."""
+"""Identity of a task: a new one begins anew, where the craft is."""
 
 _SLOWEST = 1e-3  # m/s; a velocity below has no direction
 
@@ -42,8 +42,8 @@ class Decision(NamedTuple):
 class GuidanceOrders(Sampled):
     """Base of guidance: from orders to a goal, and the course that leads there.
 
-    A subclass says in ``modes`` which modes it has, and in `sample` and `update` what comes of
-    the `Decision` of `_ordered`; in `_here`, `_placed` and `_cruise` how deep and how fast.
+    A subclass defines in ``modes`` which modes it has, and in `sample` and `update` what comes
+    of the `Decision` of `_ordered`; in `_here`, `_placed` and `_cruise` how deep and how fast.
     """
 
     modes: ClassVar[tuple[str, ...]] = ()
@@ -68,7 +68,9 @@ class GuidanceOrders(Sampled):
     mode = Input("1", "what to do: one of its modes", type=str, start="hold")
     armed = Input("1", "whether to act", type=bool)
     manual = Input(
-        "1", "sticks, -1 to 1: ahead, to starboard, turn to starboard, down", axes=MANUAL_AXES
+        "1",
+        "manual control, -1 to 1: ahead, to starboard, turn to starboard, down",
+        axes=MANUAL_AXES,
     )
     target_kind = Input("1", f"guided: one of {', '.join(TARGETS)}", type=str, start="position")
     target_valid = Input("1", "guided: whether there is a set-point", type=bool, start=True)
@@ -129,7 +131,7 @@ class GuidanceOrders(Sampled):
         ]
 
     def _publish(self, decision: Decision) -> None:
-        """Set the outputs that tell how the task goes on."""
+        """Set the outputs that report the progress of the task."""
         wanted, instants = decision.command, self._instants
         self.state = wanted.motion
         self.cross_track, self.distance = wanted.across, wanted.distance
@@ -139,7 +141,7 @@ class GuidanceOrders(Sampled):
     # ------------------------------------------------------------------ deciding
 
     def _known(self, *needed: bool) -> bool:
-        """Say if no estimate that is needed is lost, in the order of `_valid`."""
+        """Return whether no estimate that is needed is lost, in the order of `_valid`."""
         return not any(
             need and is_lost(valid, missed, self.period, self.timeout)
             for need, valid, missed in zip(needed, self._valid(), self._missed, strict=True)
@@ -218,7 +220,7 @@ class GuidanceOrders(Sampled):
 
     def _cruise(self) -> float:
         """Return the speed of tasks that name none, m/s."""
-        raise TypeError(f"{type(self).__name__} does not say how fast it goes")
+        raise TypeError(f"{type(self).__name__} does not define how fast it goes")
 
     def _placed(self, place: Point) -> Point:
         """Return a place as the craft can be there, or just there."""

@@ -1,4 +1,4 @@
-"""Straight legs and circles, and the line of sight that leads onto them."""
+"""Line-of-sight guidance onto straight legs and circles."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def from_leg(start: Point, end: Point, here: Point) -> Offset:
         course = atan2(E, N),   along = N' cos(course) + E' sin(course)
         across = -N' sin(course) + E' cos(course)
 
-    (N, E) from start to end, (N', E') from start to here. Depths do not count. A leg without a
+    (N, E) from start to end, (N', E') from start to here. Horizontal. A leg without a
     length leads north.
     """
     course = math.atan2(end[1] - start[1], end[0] - start[0])

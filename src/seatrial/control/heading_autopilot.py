@@ -1,4 +1,4 @@
-"""Heading control of a ship by its rudder."""
+"""Heading autopilot of a ship with a rudder."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Heading of an underwater vehicle held by its horizontal thrusters."""
+"""Heading hold of an underwater vehicle by its horizontal thrusters."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Who has the helm: the autopilots, a person, or nobody."""
+"""Helm: switch between autopilots and manual control."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from ..component import Component, Input, Output, Parameter
 
 
 class Helm(Component):
-    """Passes on the forces of the autopilots that are engaged, and of the sticks elsewhere.
+    """Switch, axis by axis, between the engaged autopilots' forces and manual control.
 
         X = surge_held        engaged.speed      else direct.surge surge_limit
         N = yaw_moment_held   engaged.heading    else direct.yaw moment_limit
@@ -16,20 +16,20 @@ class Helm(Component):
         Y = direct.sway sway_limit
 
     ``engaged`` and ``direct`` are those of `Guidance`: of a craft that is not armed nothing is
-    engaged and ``direct`` is 0, so that nothing is asked of the thrusters. Sticks beyond +-1
-    count as +-1. Body axes; X ahead, Y to starboard, Z down, N; N to starboard positive, N.m.
+    engaged and ``direct`` is 0, so that nothing is asked of the thrusters. ``direct`` is limited
+    to +-1. Body axes; X ahead, Y to starboard, Z down, N; N to starboard positive, N.m.
     Static.
 
     Defaults: the Hydrone catamaran, which has no sway and no heave.
     """
 
-    surge_limit = Parameter(30.0, "N", "surge force of a full stick", min=0.0, tunable=True)
-    sway_limit = Parameter(0.0, "N", "sway force of a full stick", min=0.0, tunable=True)
-    moment_limit = Parameter(12.0, "N.m", "yaw moment of a full stick", min=0.0, tunable=True)
-    heave_limit = Parameter(0.0, "N", "heave force of a full stick", min=0.0, tunable=True)
+    surge_limit = Parameter(30.0, "N", "surge force of full deflection", min=0.0, tunable=True)
+    sway_limit = Parameter(0.0, "N", "sway force of full deflection", min=0.0, tunable=True)
+    moment_limit = Parameter(12.0, "N.m", "yaw moment of full deflection", min=0.0, tunable=True)
+    heave_limit = Parameter(0.0, "N", "heave force of full deflection", min=0.0, tunable=True)
 
     engaged = Input("1", "which autopilots act", type=bool, axes=("speed", "heading", "depth"))
-    direct = Input("1", "sticks, -1 to 1", axes=("surge", "sway", "yaw", "heave"))
+    direct = Input("1", "manual control, -1 to 1", axes=("surge", "sway", "yaw", "heave"))
     surge_held = Input("N", "surge force of the autopilot, positive ahead")
     yaw_moment_held = Input("N.m", "yaw moment of the autopilot, positive to starboard")
     heave_held = Input("N", "heave force of the autopilot, positive down")
@@ -50,8 +50,8 @@ class Helm(Component):
         """Choose."""
         limits = self.surge_limit, self.sway_limit, self.moment_limit, self.heave_limit
         surge, self.sway, moment, heave = (
-            min(max(stick, -1.0), 1.0) * most
-            for stick, most in zip(self.direct, limits, strict=True)
+            min(max(deflection, -1.0), 1.0) * most
+            for deflection, most in zip(self.direct, limits, strict=True)
         )
         speed, heading, depth = self.engaged
         self.surge = self.surge_held if speed else surge

@@ -1,4 +1,4 @@
-"""The trajectory that a vessel without sway force is to follow, and the commands that give it."""
+"""Nominal trajectory of a vessel without sway force, and its feedforward commands."""
 
 from __future__ import annotations
 

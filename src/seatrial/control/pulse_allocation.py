@@ -1,4 +1,4 @@
-"""From forces wanted to the pulses of two fixed thrusters."""
+"""Control allocation of two fixed thrusters: force and moment to pulses."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From a step of the course wanted to a heading that a ship can follow."""
+"""Reference model of the heading: from a step of the course to a heading that can be followed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Who has the helm of a craft with a rudder: the autopilot, a person, or nobody."""
+"""Helm of a craft with a rudder: switch between autopilot and manual control."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from ..component import Component, Input, Output, Parameter
 
 
 class RudderHelm(Component):
-    """Passes on the autopilot's rudder while it is ``engaged``, else the stick's.
+    """Switch between the autopilot's rudder, while it is ``engaged``, and manual control.
 
         rudder = rudder_held   if engaged,   else -stick rudder_limit
 
-    ``stick`` is positive to turn to starboard, and counts up to +-1; a positive rudder turns to
+    ``stick`` is positive to turn to starboard, and limited to +-1; a positive rudder turns to
     port. ``engaged`` and ``stick`` are those of `Guidance` or `SailingGuidance`: of a craft that
-    is not armed nothing is engaged and the stick is 0, so that the rudder is amidships. rad.
+    is not armed nothing is engaged and ``stick`` is 0, so that the rudder is amidships. rad.
     Static.
     """
 
     rudder_limit = Parameter(
-        math.radians(35.0), "rad", "rudder angle of a full stick", min=0.0, tunable=True
+        math.radians(35.0), "rad", "rudder angle of full deflection", min=0.0, tunable=True
     )
 
     engaged = Input("1", "whether the autopilot steers", type=bool)

@@ -15,7 +15,7 @@ _DEG = math.radians(1.0)
 
 
 class SailControl(Sampled):
-    """Sets sail and flap for the greatest drive, on the right side, with a limit on heel.
+    """Controller of sail and flap: greatest drive, on the right side, with a limit on heel.
 
     **Side** (source 001, eqs 3.36 and 3.37). With d = heading - direction the wind blows to, in
     [0, 360) deg: boom to port for 0 < d < 180, else to starboard. Within ``hysteresis`` of dead
@@ -185,8 +185,8 @@ class SailControl(Sampled):
         # With the boom to port the wind comes from starboard: leeward is port.
         lee = -side * (self.heel + self.lead * self.roll_rate)
         # A design heel that was tuned beyond the spill heel is all there is.
-        room = max(self.spill_heel - self.design_heel, 1e-9)
-        share = (self.spill_heel - lee) / room
+        margin = max(self.spill_heel - self.design_heel, 1e-9)
+        share = (self.spill_heel - lee) / margin
         most = self.righting_moment * math.sin(self.design_heel) * math.cos(self.design_heel)
         allowed: float = most * min(max(share, 0.0), 1.0) / per_side
         return allowed

@@ -1,4 +1,4 @@
-"""The search for the best sail angle and flap in the sail's table."""
+"""Search for the best sail angle and flap in the sail's table."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import NamedTuple
 from ..foils import STEP, FoilTable
 
 _ROUNDING = 1e-12
-"""rad: an angle at the edge of the range counts as inside."""
+"""rad: an angle at the edge of the range is inside."""
 
 _BROADSIDE = 18
 """The table's column of 90 deg."""
@@ -57,7 +57,7 @@ def best_setting(
     ``most``, rad, 0 or more (boom to port), and ``most`` itself with every flap. Of equals, that
     of the smallest flap, then of the smallest alpha.
 
-    With ``most_side``, only settings with at most that side force count, among them those
+    With ``most_side``, only settings with at most that side force are taken, among them those
     between two rows of alpha at which it is just reached; if there is none, the one with the
     least side force is taken. Then alpha is at most 90 deg, apart from ``most`` itself: on the
     way to settings beyond, the sail would pass those with the greatest drag.

@@ -14,7 +14,7 @@ from .sailing_course import Laid, laid, side, turn, turned
 MODES = ("manual", "hold", "guided", "auto", "return", "loiter")
 """Values of the input ``mode``."""
 
-_ANY_SPEED = 1.0  # m/s; the wind says how fast it goes, 0 is to stop
+_ANY_SPEED = 1.0  # m/s; the wind decides how fast it goes, 0 is to stop
 
 
 class _Sailed(NamedTuple):
@@ -35,7 +35,7 @@ class SailingGuidance(GuidanceOrders):
     """Guidance in six modes of a boat that wears round where others tack.
 
     ======= ===============================================================================
-    manual  ``direct`` has the sticks: yaw for the rudder, surge for the sheet
+    manual  ``direct`` is manual control: yaw for the rudder, surge for the sheet
     hold    stay where the mode was set
     guided  position: go there and stay; velocity: sail its direction; heading: sail
             ``target_heading``. Without ``target_valid`` as hold
@@ -45,7 +45,7 @@ class SailingGuidance(GuidanceOrders):
     loiter  circle, with ``loiter_radius``, about where the mode was set
     ======= ===============================================================================
 
-    The wind says how fast it goes: of speeds only 0 and less are obeyed, which is to lie to.
+    The wind decides how fast it goes: of speeds only 0 and less are obeyed, which is to lie to.
 
     **Neutral.** Not ``armed``, or without a heading or (but in manual) a position for longer than
     ``timeout``, no autopilot acts and ``direct`` is 0: rudder amidships, sail streaming.
@@ -180,7 +180,7 @@ class SailingGuidance(GuidanceOrders):
         self._before: float | None = None
 
     def sample(self, t: float, k: int) -> None:
-        """Say which way to go, and who steers."""
+        """Publish the heading wanted, and which autopilots act."""
         sailed = self._decide()
         self._publish(sailed.decision)
         self.engaged = sailed.held

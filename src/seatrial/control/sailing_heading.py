@@ -1,4 +1,4 @@
-"""What heading controllers of a sailing boat share: ports, and the rudder for a yaw moment."""
+"""Base of a sailing boat's heading controllers: ports, and the rudder for a yaw moment."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ class SailingHeading(Sampled):
         rudder = wrap(beta - pi) + yaw_moment / (l density area pi V^2 cos(beta))
 
     where l is the rudder's distance aft of the origin. Ahead V^2 cos(beta) is negative, not
-    positive as the source has it, and at rest 0: below 0.1 m/s beta counts as pi, and a divisor
+    positive as the source has it, and at rest 0: below 0.1 m/s beta is taken as pi, and a divisor
     smaller than 0.01 m2/s2 as -0.01. The result is limited to +-``rudder_limit``, without which
-    it winds up to thousands of degrees; a foil stalls at 10 deg. `saturated` says that this was
-    so at the instant before: then the integral is frozen.
+    it winds up to thousands of degrees; a foil stalls at 10 deg. `saturated`: this was so
+    at the instant before: then the integral is frozen.
 
     A positive ``rudder`` (trailing edge to port) turns to port, a positive ``yaw_moment`` to
     starboard. ``nu`` is the velocity through the water and the rates (u, v, p, r) in body axes.
@@ -56,7 +56,7 @@ class SailingHeading(Sampled):
 
     def moment(self) -> float:
         """Return the yaw moment wanted at this instant, N.m."""
-        raise TypeError(f"{type(self).__name__} does not say what moment it wants")
+        raise TypeError(f"{type(self).__name__} does not define what moment it wants")
 
     def reset(self, t: float) -> None:
         """Start unsaturated."""

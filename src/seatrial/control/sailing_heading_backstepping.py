@@ -1,4 +1,4 @@
-"""Heading of a sailing boat by integral backstepping."""
+"""Heading control of a sailing boat by integral backstepping."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Heading of a sailing boat by a PID law."""
+"""Heading control of a sailing boat by a PID law."""
 
 from __future__ import annotations
 

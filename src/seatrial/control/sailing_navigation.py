@@ -1,4 +1,4 @@
-"""What a sailing boat's controllers need to know, from its sensors."""
+"""Velocity and true wind of a sailing boat, from its sensors."""
 
 from __future__ import annotations
 

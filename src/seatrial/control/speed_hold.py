@@ -1,4 +1,4 @@
-"""Speed of a craft ahead held by its propulsion."""
+"""Speed hold of a craft by its propulsion."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class SpeedHold(Sampled):
 
     U is ``speed_wanted``, u ``speed``; clip(x) = x held within +-capacity; back-calculation at
     the rate w / (2 zeta) removes from I what that cuts off. Where m, d1 and d2 are the craft's,
-    a small error about a steady U decays as s^2 + (2 zeta w + (d1 + 2 d2 |U|) / m) s + w^2 says.
+    the poles about a steady U are those of s^2 + (2 zeta w + (d1 + 2 d2 |U|) / m) s + w^2.
     A steady force (a current, wind) ends up in I. Not ``enabled``: X = 0 and I = 0.
 
     Speeds m/s over ground, so that a current is taken for a drag that is wrong; X N, positive

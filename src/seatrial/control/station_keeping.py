@@ -1,4 +1,4 @@
-"""Station keeping of a craft that can push ahead and turn, but not sideways."""
+"""Station keeping of a craft with surge force and yaw moment, but no sway force."""
 
 from __future__ import annotations
 
@@ -55,14 +55,14 @@ class StationKeeping(Sampled, TwinThrusters):
     limited to ``surge_limit`` and ``moment_limit`` and to what the thrusters can give, moment
     first. The integral terms grow at surge_integral e_x a (within ``hold_radius`` only) and
     yaw_integral e_psi, and back-calculation at the rate integral / gain removes what was cut
-    off. X_I is kept in north and east, so that what was learnt of wind and current stays true
+    off. X_I is kept in north and east, so that the integral of wind and current stays valid
     when the craft turns.
 
     Allocation and thrust to pulse as in `TwinThrusters`.
 
     **Safety**: starts idle; ``enabled`` false gives neutral pulses and clears the integrals, as
     does a heading not valid for longer than ``timeout``. A position not valid for that long
-    leaves the heading held and the surge at 0 (mode 3). Both count as lost until first valid.
+    leaves the heading held and the surge at 0 (mode 3). Both are lost until first valid.
 
     Frames: positions and velocities north-east-down, m and m/s; headings rad clockwise from
     north, any number of turns; ``yaw_rate`` rad/s positive to starboard; pulses s. Gains are

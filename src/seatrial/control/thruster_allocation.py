@@ -1,4 +1,4 @@
-"""From forces wanted to the commands of two horizontal thrusters and a vertical one."""
+"""Control allocation of two horizontal thrusters and a vertical one."""
 
 from __future__ import annotations
 

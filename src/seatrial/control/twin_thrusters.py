@@ -9,7 +9,7 @@ from ..errors import InputError
 
 
 class TwinThrusters(Component):
-    """Base of what drives a pair of thrusters: surge force X and yaw moment N to pulses.
+    """Base of the allocation to a pair of thrusters: surge force X and yaw moment N to pulses.
 
     What the thrusters cannot give is cut off, moment first. **Allocation**: T_port = X / 2 +
     N / (2 d), T_starboard = X / 2 - N / (2 d), d = ``half_beam``; port ahead turns to starboard

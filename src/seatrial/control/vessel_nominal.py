@@ -1,4 +1,4 @@
-"""Motion and commands that a vessel without sway force has if nothing disturbs it."""
+"""Nominal motion and commands of a vessel without sway force."""
 
 from __future__ import annotations
 

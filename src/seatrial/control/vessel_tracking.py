@@ -1,4 +1,4 @@
-"""What laws share that hold a vessel on its nominal trajectory."""
+"""Base of control laws that hold a vessel on its nominal trajectory."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _UVR = ("m/s", "m/s", "rad/s")
 class VesselTracking(NominalTrajectory):
     """Base of laws that hold the velocities of a `SurfaceVessel` on a `NominalTrajectory`.
 
-    A subclass says in `demand` which commands it wants; ``command`` is that, each thruster's
+    A subclass returns from `demand` which commands it wants; ``command`` is that, each thruster's
     held to +-``command_limit``.
 
     ``nu_bias`` is added to ``nu`` before the law sees it: an error of the sensors, set by a
@@ -32,7 +32,7 @@ class VesselTracking(NominalTrajectory):
 
     def demand(self, k: int) -> tuple[float, float]:
         """Return the commands (t1, t2) wanted at instant ``k``, without limits."""
-        raise TypeError(f"{type(self).__name__} does not say what it demands")
+        raise TypeError(f"{type(self).__name__} does not define what it demands")
 
     def sample(self, t: float, k: int) -> None:
         """Command the thrusters."""
@@ -45,5 +45,5 @@ class VesselTracking(NominalTrajectory):
         return u + bias_u, v + bias_v, r + bias_r
 
     def _saturated(self, k: int) -> bool:
-        """Say if a thruster is at its limit at instant ``k``."""
+        """Return whether a thruster is at its limit at instant ``k``."""
         return any(abs(share) > self.command_limit for share in self.demand(k))

@@ -1,4 +1,4 @@
-"""Forces in a cable of lumped masses, and how they change with its motion.
+"""Forces in a cable of lumped masses, and their Jacobians.
 
 Arrays have one column per node or per segment: (3, N + 1) or (3, N), north-east-down rows. Node 0
 is the end at the surface, node N the end at the vehicle; segment i (from 1) joins nodes i - 1 and

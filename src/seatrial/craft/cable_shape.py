@@ -1,4 +1,4 @@
-"""Shapes in which a cable rests: where a run begins."""
+"""Static shapes of a cable: where a run begins."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def static_shape(
     which the nodes' forces are to vanish: a cable towed at one speed rests in its own frame.
 
     Where that shape is not found (a loose cable along the flow, or over and under itself), or no
-    load says which it is (a neutral cable in still water), it is the arc of a circle from which
+    load decides (a neutral cable in still water), it is the arc of a circle from which
     the search begins: unstretched, and bulging to where most of the load would push it.
     """
     x = np.linspace(surface, vehicle, cable.segments + 1).T

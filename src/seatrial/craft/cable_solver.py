@@ -101,7 +101,7 @@ def linearised(
     """Return A of d(dx, dv)/dt = A (dx, dv) about a state without net forces, (6 n, 6 n).
 
     n = N - 1 nodes between fixed ends, or N with the end at the vehicle free; all directions of a
-    node, then those of the next; positions, then velocities. At rest dM/dx counts for nothing.
+    node, then those of the next; positions, then velocities. At rest dM/dx has no effect.
     """
     s = cable.forces(x, v, current)
     slopes = cable.slopes(s, s.axial)

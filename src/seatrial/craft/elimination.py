@@ -1,4 +1,4 @@
-"""A direct solver for chains of nodes: one elimination, written out for each number of nodes."""
+"""Direct solver of block-tridiagonal systems, written out for each number of blocks."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _DIRECTIONS = range(_SIZE)
 
 
 class Elimination:
-    """Solves block-tridiagonal systems of n nodes and three directions, without pivoting.
+    """Solver of block-tridiagonal systems of n nodes and three directions, without pivoting.
 
     The matrix is in ``diagonal`` (3, 3, n), ``upper`` and ``lower`` (3, 3, n - 1): row, column,
     node; upper[..., i] couples node i to i + 1, lower[..., i] node i + 1 to i.

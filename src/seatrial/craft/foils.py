@@ -25,7 +25,7 @@ def foil_load(
         K = -z Y,  N = x Y - y X
 
     ``place`` (x, y, z) is the centre of effort, m; ``angle`` turns the trailing edge from aft
-    to port, rad. For keel and rudder the source counts alpha the other way round and lift to
+    to port, rad. For keel and rudder the source measures alpha the other way round and lift to
     the other side, which is the same as C_L is odd.
     """
     a, b = ca.vertsplit(flow)

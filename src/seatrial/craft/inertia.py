@@ -1,4 +1,4 @@
-"""What every plant asks of its mass matrix."""
+"""Check of a plant's mass matrix."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From the derivatives of a ship's hull and rudder to its linear equations of manoeuvring."""
+"""Linear manoeuvring equations of a ship, from the derivatives of hull and rudder."""
 
 from __future__ import annotations
 

@@ -66,7 +66,7 @@ class MarineCraft(SixDofCraft):
         choices=("surface-linear", "surface-conservative", "submerged"),
     )
     density = Parameter(1025.0, "kg/m3", "density of the water", min=0.0)
-    waterplane_area = Parameter(0.0, "m2", "area of the water plane (surface)", min=0.0)
+    waterplane_area = Parameter(0.0, "m2", "waterplane area (surface)", min=0.0)
     GM_T = Parameter(0.0, "m", "transverse metacentric height (surface)")
     GM_L = Parameter(0.0, "m", "longitudinal metacentric height (surface)")
     buoyancy = Parameter(9.81, "N", "buoyancy force (submerged)", min=0.0)

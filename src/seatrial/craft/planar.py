@@ -1,4 +1,4 @@
-"""What craft that move in the horizontal plane have in common: kinematics, motion outputs.
+"""Base of craft in the horizontal plane: kinematics and motion outputs.
 
 Frames: {n} x north, y east, z down; {b} x bow, y starboard, z down. eta = (x, y, psi) and
 nu = (u, v, r), or eta = (x, y, phi, psi) and nu = (u, v, p, r) for craft that heel too:

@@ -1,4 +1,4 @@
-"""What craft in six degrees of freedom have in common: inertia, damping, the water's motion.
+"""Base of craft in six degrees of freedom: inertia, damping, motion of the water.
 
 Frames: {n} x north, y east, z down; {b} x bow, y starboard, z down. nu = (u, v, w, p, q, r):
 velocity of the body origin over ground, m/s, and angular rate, rad/s, in body axes. Loads are

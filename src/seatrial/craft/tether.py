@@ -28,7 +28,7 @@ class Tether(Component):
     Source 000, eqs 3.46 to 3.53, corrected; the equations are those of `Cable`. Node 0 is the
     top (at the surface), node N the bottom (at the vehicle). All vectors are in {n}.
 
-    **Ends.** An end is where its position input says, and goes on with its velocity input until
+    **Ends.** An end is at its position input, and goes on with its velocity input until
     the next communication point, so that lengths and rates are smooth; what a prediction missed
     is made up within the next step. A position that has not changed since the last step is taken
     for one that nobody has measured since, and the end moves on from where it is: so an end with
@@ -42,7 +42,7 @@ class Tether(Component):
 
     **Forces on the ends.** ``force`` (on the vehicle) and ``surface_force`` are what the cable
     pulls with on the mean over the coming step, of the length of the last one, if the ends move
-    on as their inputs say. They depend on the inputs at once, and with them the coupling is
+    on as their inputs have it. They depend on the inputs at once, and with them the coupling is
     implicit in time: a force held from the end of the last step lets the longest axial wave of
     vehicle and cable grow at a rate of omega^2 h / 4. Without numbers of this instant (a master
     that reads nothing again) the ends are predicted from the step before. Half a segment at each

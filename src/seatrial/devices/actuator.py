@@ -1,4 +1,4 @@
-"""What all actuators share: the ways in which they fail."""
+"""Base of actuators: failures."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ SHARE_LEFT = 0.5
 
 
 class Actuator(Noise, Fallible):
-    """Base of the actuators, which fail as ``fault`` says.
+    """Base of the actuators, with the failures of ``fault``.
 
     ============ ===================================================================
     off          no command arrives: a thruster stops, a shaft stays where it is
@@ -38,7 +38,7 @@ class Actuator(Noise, Fallible):
     """
 
     def begin_at(self, *command: float) -> None:
-        """Start with a command that counts as the one before the first."""
+        """Start with a command that is taken for the one before the first."""
         self._begun_ns = self.now_ns
         self._taken: list[float] | None = list(command)
         self._late: list[list[Any]] = []

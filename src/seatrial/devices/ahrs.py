@@ -20,7 +20,7 @@ class Ahrs(Sensor):
         accelerometer = R^T (0, 0, gravity) + acc_sign acceleration   m/s2
 
     in body axes x bow, y starboard, z down, with the errors of `Sensor` on each; phi is in
-    (-pi, pi], psi in [0, 2 pi) as a compass card counts. ``acceleration`` is the inertial
+    (-pi, pi], psi in [0, 2 pi) as on a compass card. ``acceleration`` is the inertial
     acceleration of the body origin in body axes, dv/dt + omega x v. At rest and level the
     accelerometer reads (0, 0, +gravity), and tilted a share of gravity on every axis: who wants
     the acceleration of the vehicle must take R^T (0, 0, gravity) off with the attitude.

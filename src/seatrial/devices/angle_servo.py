@@ -1,4 +1,4 @@
-"""A servo that is commanded by an angle."""
+"""Servo commanded by an angle."""
 
 from __future__ import annotations
 

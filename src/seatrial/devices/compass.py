@@ -12,7 +12,7 @@ _DEG = math.radians(1.0)
 
 
 class Compass(Sensor):
-    """Tilt-compensated magnetic compass: heading in [0, 2 pi), as a compass card counts.
+    """Tilt-compensated magnetic compass: heading in [0, 2 pi), as on a compass card.
 
         magnetic = psi - variation
         heading  = magnetic - deviation(magnetic),

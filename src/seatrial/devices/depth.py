@@ -15,7 +15,7 @@ class Depth(Sensor):
         depth = (density / assumed_density) max(0, z + (R place)_z)
 
     with the errors of `Sensor` on top: the pressure is density g d, and the instrument turns it
-    into depth with the density it was told. Out of the water it reads 0. ``place`` is the
+    into depth with the density it is set to. Out of the water it reads 0. ``place`` is the
     lever arm of the sensor from the body origin, body axes (x bow, y starboard, z down), m;
     z the depth of the body origin below the surface at rest.
 
@@ -28,7 +28,7 @@ class Depth(Sensor):
     period = Parameter(0.05, "s", "sample period", min=1e-6)
     delay = Parameter(0.02, "s", "time from measurement to output", min=0.0)
     density = Parameter(1025.0, "kg/m3", "density of the water", min=0.0)
-    assumed_density = Parameter(1025.0, "kg/m3", "density the instrument was told", min=1e-6)
+    assumed_density = Parameter(1025.0, "kg/m3", "density the instrument is set to", min=1e-6)
     place = Parameter(0.0, "m", "sensor from the body origin, body axes", axes="xyz")
 
     position = Input("m", "body origin in north-east-down", axes="xyz")

@@ -1,4 +1,4 @@
-"""Failures of devices: what an input says is broken."""
+"""Failures of devices, by an input."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ SHARE_WRONG = 0.1
 class Fallible(Component):
     """Base of the devices that fail on demand: the input ``fault`` is ``none`` or one of `FAULTS`.
 
-    What each of them does is what `Sensor` and `Actuator` say; with ``none`` it is as if there
+    What each of them does is in `Sensor` and `Actuator`; with ``none`` it is as if there
     were no such input. It acts from the device's next measurement, or step, on.
     """
 

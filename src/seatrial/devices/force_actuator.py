@@ -1,4 +1,4 @@
-"""Thrusters of a ship as seen from outside: one force and one moment that follow demands."""
+"""Lumped thrusters of a ship: a force and a moment that follow demands."""
 
 from __future__ import annotations
 

@@ -19,8 +19,8 @@ class Gnss(Sensor):
 
     with the errors of `Sensor` on each; ``antenna`` is the lever arm from the body origin in
     body axes (x bow, y starboard, z down), R the rotation body to NED. The receiver does not
-    correct for the lever arm. Position on a flat earth: whoever speaks in latitude and
-    longitude converts.
+    correct for the lever arm. Position on a flat earth: latitude and
+    longitude are for links to convert.
 
     Defaults: a single-frequency receiver as the u-blox NEO-M8 data sheet gives it: position
     accuracy 2.5 m CEP, that is 2.1 m per horizontal axis, nearly all of it slow (correlation

@@ -1,4 +1,4 @@
-"""An electric thruster that takes a command between full astern and full ahead."""
+"""Electric thruster with thrust linear in its command."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class LinearThruster(Actuator):
     one worse; the delay is that of its eq. 5.15.
 
     Failures are those of `Actuator`. Where no command arrives it is the motor that stands still:
-    commands go on their way and act again when it is mended.
+    commands go on their way and act again when it is repaired.
 
     Not modelled: loss of thrust with the speed of the water through the propeller, thrust that
     differs between ahead and astern, supply voltage, a limit on how fast the command may change.

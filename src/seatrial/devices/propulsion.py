@@ -1,4 +1,4 @@
-"""From thrusters to the force and moment on their craft."""
+"""Force and moment of fixed thrusters on their craft."""
 
 from __future__ import annotations
 

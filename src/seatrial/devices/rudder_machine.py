@@ -1,4 +1,4 @@
-"""Steering gear: from a rudder command to the angle of the blade."""
+"""Rudder machine with lag and rate limit."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class RudderMachine(Actuator, Plant):
         d(angle)/dt = clip((clip(command, limit) - angle) / time_constant, rate)
 
     with clip(x, a) = x held between -a and a. ``angle`` is the blade's, trailing edge to port
-    positive, rad: a positive angle turns the ship to port. ``positive`` says which way a
+    positive, rad: a positive angle turns the ship to port. ``positive`` is the way a
     positive *command* asks the ship to turn; "starboard" is the sense of most autopilots and of
     the MSS toolbox, and this is the one place where it is turned round.
 
@@ -45,7 +45,7 @@ class RudderMachine(Actuator, Plant):
         "port", "1", "the way a positive command turns the ship", choices=("port", "starboard")
     )
 
-    command = Input("rad", "angle asked for, in the sense that positive says")
+    command = Input("rad", "angle asked for, in the sense of positive")
     angle = State("rad", "angle of the rudder, trailing edge to port positive: turns to port")
 
     def start(self, t: float) -> None:

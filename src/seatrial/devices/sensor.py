@@ -1,4 +1,4 @@
-"""What all sensors share: sample rate, errors of a data sheet, delay, dropout."""
+"""Base of sensors: sample rate, errors of a data sheet, delay, dropout, failures."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ class Sensor(Noise, Fallible, Sampled):
     nanoseconds, so that what is published does not depend on the communication step.
 
     With probability ``dropout`` a measurement is lost: outputs keep the one before.
-    ``count`` is the number of measurements published so far and tells old from new; ``valid``
+    ``count`` is the number of measurements published so far: new data has a new one; ``valid``
     is false before the first and while the last one due was lost.
 
     ``fault`` makes it fail, measurement by measurement:
@@ -112,7 +112,7 @@ class Sensor(Noise, Fallible, Sampled):
 
     def measure(self) -> list[float]:
         """Return the true values of the measured outputs, one after the other, from the inputs."""
-        raise TypeError(f"{type(self).__name__} does not say what it measures")
+        raise TypeError(f"{type(self).__name__} does not define what it measures")
 
     def finish(self, values: list[float]) -> list[float]:
         """Return the values with errors as the sensor reports them (an angle wrapped)."""
@@ -206,7 +206,7 @@ class Sensor(Noise, Fallible, Sampled):
         return self.finish([_quantised(y, step) for y, step in steps]), self._count + 1, True
 
     def _fails(self, fault: str, k: int) -> bool:
-        """Say if a failure loses measurement ``k``."""
+        """Return whether a failure loses measurement ``k``."""
         if fault == "intermittent":
             return bool(self.generator(k, 1).random() < 0.5)
         return fault == "off" or (fault == "stuck" and not self._count)
@@ -236,7 +236,7 @@ def _quantised(value: float, step: float) -> float:
 
 
 def full_circle(angle: float) -> float:
-    """Return ``angle``, rad, in [0, 2 pi), as a compass card counts."""
+    """Return ``angle``, rad, in [0, 2 pi), as on a compass card."""
     wrapped = angle % math.tau
     # Python's % gives tau itself for a tiny negative angle.
     return wrapped if wrapped < math.tau else 0.0

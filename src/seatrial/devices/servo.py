@@ -1,4 +1,4 @@
-"""A hobby servo: pulse width in, shaft angle out."""
+"""Hobby servo: pulse width in, shaft angle out."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""An electric thruster behind a speed controller, driven by a servo pulse."""
+"""Electric thruster behind a speed controller, driven by a servo pulse."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""What surrounds a craft: rotor wakes, wind, waves, current."""
+"""Environment of a craft: rotor wakes, wind, step disturbances."""

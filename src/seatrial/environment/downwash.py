@@ -1,4 +1,4 @@
-"""Load of a multirotor that lands on a craft's deck, or takes off from it."""
+"""Load of a multirotor (HUAUV) that lands on a craft's deck, or takes off from it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ..errors import InputError
 
 
 class Downwash(Component):
-    """Load of a HUAUV on the deck: rotor wake with ground effect, then weight.
+    """Load of a hybrid aerial and underwater vehicle (HUAUV): rotor wake, then weight on deck.
 
     The load's magnitude Fz(t) (N, downwards) is a function of time alone. With mass m,
     gravity g, height of the rotors z_h, upward acceleration a_z:
@@ -94,7 +94,7 @@ class Downwash(Component):
         return sorted({self.spool_up_start, full_thrust, self.lift_off_time})
 
     def is_on_deck(self, t: float) -> bool:
-        """Say whether the HUAUV stands on the deck at ``t`` (s)."""
+        """Return whether the HUAUV stands on the deck at ``t`` (s)."""
         return bool(t >= self.contact_time if self.phase == "landing" else t < self.lift_off_time)
 
     def height_at(self, t: float) -> float:

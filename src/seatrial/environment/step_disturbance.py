@@ -1,4 +1,4 @@
-"""A disturbance that comes suddenly and goes again."""
+"""Step disturbance between two times."""
 
 from __future__ import annotations
 

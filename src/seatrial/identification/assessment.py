@@ -1,4 +1,4 @@
-"""Is an identified model to be believed? Fit, whiteness, and the rules of rejection."""
+"""Assessment of an identified model: fit, whiteness, rules of rejection."""
 
 from __future__ import annotations
 

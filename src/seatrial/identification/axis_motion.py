@@ -1,4 +1,4 @@
-"""Motion along, or about, one axis of a vehicle: what identification fits to a log."""
+"""Motion along, or about, one axis of a vehicle: the model that is fitted to a log."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ class AxisMotion(Plant):
         place' = nu
         nu'    = (B/A) nu + (C/A) |nu| nu + D/A + (E/A) tau
 
-    Source 000, eqs 5.9 and 5.10, with the beta^2 of the latter, which cannot reverse, mended to
+    Source 000, eqs 5.9 and 5.10, with the beta^2 of the latter, which cannot reverse, corrected to
     beta |beta|: ``thrust_law`` "linear" is f = beta, "quadratic" f = beta |beta|. ``linear``,
     ``quadratic``, ``offset`` and ``thrust`` are B/A, C/A (drag: not positive), D/A and E/A: a log
-    of commands and motion tells no more than these four ratios. beta is the command, -1 to 1; nu
+    of commands and motion determines these four ratios alone. beta is the command, -1 to 1; nu
     the velocity along the body axis, m/s, or about it, rad/s; place its integral.
 
     tau is the share of full thrust: f(beta) with ``lag`` "none", as in source 000; with "thruster"

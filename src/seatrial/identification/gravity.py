@@ -1,4 +1,4 @@
-"""What an accelerometer reads, without gravity."""
+"""Gravity compensation of accelerometer readings."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Identification by output error: the whole run is simulated, and what is simulated is compared."""
+"""Output-error identification: the whole run is simulated and compared with the log."""
 
 from __future__ import annotations
 

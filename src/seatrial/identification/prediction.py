@@ -1,4 +1,4 @@
-"""What the motion along one axis would have read, with exact derivatives by its parameters."""
+"""Predicted readings of the motion along one axis, with exact derivatives by its parameters."""
 
 from __future__ import annotations
 

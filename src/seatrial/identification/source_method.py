@@ -1,4 +1,4 @@
-"""Identification as source 000 does it: discrete integration, correlation, least squares.
+"""Identification method of source 000: discrete integration, correlation, least squares.
 
 It is here to be compared with. With noise its drag is of the wrong size, because the regressors
 carry the integrated noise of the sensor; `seatrial.identification.output_error` is what works.
@@ -79,7 +79,7 @@ def least_squares_axis(
     """Return B/A, C/A, D/A, E/A from series (n,): source 000, eq. 5.12.
 
     Regressors nu, |nu| nu, 1 (with ``offset``, else D = 0) and the command, shifted by the delay
-    already; for quadratic thrust (eq. 5.10, mended) give beta |beta|. A drag of the wrong sign,
+    already; for quadratic thrust (eq. 5.10, corrected) give beta |beta|. A drag of the wrong sign,
     positive, is forced to 0 and the rest fitted again.
     """
     columns = {
@@ -160,7 +160,7 @@ def planar_least_squares(
         m22 v' + d22 v + m11 u r = 0
         m33 r' + d33 r - (m11 - m22) u v = arm (E1 t1 - E2 t2)
 
-    Mended in eq. 5.20: d11 u in the first row (printed d22 u), and + m11 u v in the third
+    Corrected in eq. 5.20: d11 u in the first row (printed d22 u), and + m11 u v in the third
     (printed -). Drag is linear.
     """
     (u, v, r), (u_dot, v_dot, r_dot), (t1, t2) = nu.T, nu_dot.T, commands.T

@@ -1,1 +1,1 @@
-"""Trials: a rig, what happens to it, what must hold, and the report."""
+"""Trials: a rig, its events, its criteria, and the report."""

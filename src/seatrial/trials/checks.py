@@ -1,4 +1,4 @@
-"""What a trial says of its rig's signals, checked against the assembled rig before it runs."""
+"""Checks of a trial's signals against the assembled rig, before it runs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Two runs held against each other: signal by signal, and parameter by parameter."""
+"""Comparison of two runs: signal by signal, and parameter by parameter."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Difference:
     """How far one signal is apart in two runs, on their common times.
 
     For text: ``absolute`` is None, ``relative`` the share of rows that differ. For a signal
-    that one run lacks, or that has no common rows, both are None and ``note`` says why.
+    that one run lacks, or that has no common rows, both are None and ``note`` has the reason.
     """
 
     signal: str

@@ -65,7 +65,7 @@ def run_convergence(
     ``out``, which must not hold anything yet, becomes the run folder of the trial's own step,
     with ``convergence.json`` in it and the other runs in folders below; None makes a new
     ``runs/NAME-DATE-TIME``. ``done`` is called after each run. Rows are those of the trial's own
-    step, whatever the step. All runs are free, whatever the trial says of real time.
+    step, whatever the step. All runs are free, whatever the trial has under ``real_time``.
 
     Raises InputError for bad input, SimulationError if a run fails or is stopped.
     """

@@ -16,7 +16,7 @@ Conditions have ``< <= > >=``, ``and``, ``or``, ``not`` and parentheses; express
 without spaces (``0.5 m/s``, ``5 %``).
 
 The band of ``settles`` is a share of the greatest distance that the signal has from its final
-value anywhere in the record, whichever row the time counts from: so the band is the same for
+value anywhere in the record, whichever row the time is measured from: so the band is the same for
 a step to a new value and for a push after which the signal comes back to where it was. The
 final value is the last row's, so let the trial run until the signal rests.
 """
@@ -121,7 +121,7 @@ class Criterion:
     """A parsed criterion; make one with `parse`.
 
     ``subject`` is the condition, or the expression that must settle; ``band`` the share that
-    counts as settled.
+    is regarded as settled.
     """
 
     text: str
@@ -153,7 +153,7 @@ class Criterion:
             raise InputError(f"criterion {self.text!r}: {error}") from None
 
     def evaluate(self, time: FloatArray, signals: Mapping[str, Any], units: Units) -> Verdict:
-        """Judge a record: ``time`` in s, ``signals`` in the units of ``units``.
+        """Evaluate a record: ``time`` in s, ``signals`` in the units of ``units``.
 
         A record that is empty, too short or not all numbers does not pass, and the verdict says
         why. Raises InputError as `check_units` does, for a signal whose values are no numbers,

@@ -20,7 +20,7 @@ class Pad:
     forward: float
     starboard: float
     phase: str
-    """What happens there, if the component says so."""
+    """Manoeuvre there, if the component has one."""
 
 
 def pads(manifest: dict[str, Any]) -> list[Pad]:

@@ -237,7 +237,7 @@ class Comparison:
 
     @property
     def bound(self) -> Expression:
-        """The side that the measured one is held against."""
+        """The side that the measured one is compared with."""
         return self.right if signal_names(self.left) else self.left
 
     @property

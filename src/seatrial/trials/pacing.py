@@ -16,10 +16,10 @@ _LEAST_FACTOR = 1e-9
 
 
 class Pace:
-    """Takes the steps of a master at the pace that a trial asks for.
+    """Steps of a master at the pace that a trial asks for.
 
     Where the factor is a signal, its value at a communication point is that of the step from
-    there on. Wall time by which the signal ``paused`` grows in a step does not count.
+    there on. Wall time by which the signal ``paused`` grows in a step is excluded.
     """
 
     def __init__(self, entry: RealTimeEntry, master: Master) -> None:

@@ -51,7 +51,7 @@ def quantity_text(value: float, unit_text: str, digits: int = 4) -> str:
 
 
 def distinct(value: float, other: float, unit_text: str) -> tuple[str, str]:
-    """Return both values as text with the fewest digits, at least 3, that tell them apart."""
+    """Return both values as text with the fewest digits, at least 3, that distinguish them."""
     for digits in range(3, 13):
         a = quantity_text(value, unit_text, digits)
         b = quantity_text(other, unit_text, digits)

@@ -210,7 +210,7 @@ class _Rows:
             except csv.Error as error:
                 if file.read(1):
                     raise InputError(f"{self.path}, line {reader.line_num}: {error}") from None
-                # A text that the end of the file cuts; it counts as a row without values.
+                # A text that the end of the file cuts; it is taken for a row without values.
                 self.cut = True
                 yield reader.line_num, []
 

@@ -1,4 +1,4 @@
-"""What reports show of sailing: wind and marks on the track, and a polar diagram of a campaign."""
+"""Sailing in reports: wind and marks on the track, and a polar diagram of a campaign."""
 
 from __future__ import annotations
 

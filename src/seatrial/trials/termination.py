@@ -1,4 +1,4 @@
-"""Criteria that end a run: after a capsize there is nothing left to try."""
+"""Termination conditions: criteria that end a run, as after a capsize."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .trial import Trial
 
 
 class TerminationConditions:
-    """Looks at every communication point whether a criterion with ``ends`` is broken."""
+    """Criteria with ``ends``, evaluated at every communication point."""
 
     def __init__(self, trial: Trial, master: Master, units: Mapping[str, str]) -> None:
         self._master = master
@@ -28,7 +28,7 @@ class TerminationConditions:
         self._scales = {name: (places[name], unit(units[name])) for name in needed}
 
     def broken(self) -> bool:
-        """Say if one of them is broken now."""
+        """Return whether one of them is broken now."""
         if not self._conditions:
             return False
         values: dict[str, FloatArray] = {

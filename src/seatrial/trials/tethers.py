@@ -1,4 +1,4 @@
-"""What reports show of tethers: their shape in the water, from the side and from above."""
+"""Tethers in reports: their shape in the water, from the side and from above."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where a run's wall time went, for its report: tables and histograms from ``timing.json``."""
+"""Wall time of a run, for its report: tables and histograms from ``timing.json``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Trials: which rig, how long, what happens, what must hold (``harness/trials/*.toml``)."""
+"""Trials: rig, duration, events, criteria (``harness/trials/*.toml``)."""
 
 from __future__ import annotations
 
@@ -63,9 +63,9 @@ class RealTimeEntry(FileModel):
     """How a run keeps to wall time."""
 
     factor: Annotated[float, Field(ge=1e-9, allow_inf_nan=False)] | _Signal = 1.0
-    """Simulated seconds per second of wall time, or the signal that says so."""
+    """Simulated seconds per second of wall time, or the signal that gives it."""
     paused: _Signal | None = None
-    """Signal with the seconds of wall time that do not count."""
+    """Signal with the seconds of wall time that are excluded."""
     overrun: OverrunPolicy = "catch-up"
 
 

@@ -1,4 +1,4 @@
-"""Verdicts: a record held against a condition, or evaluated for when it settles."""
+"""Verdicts: evaluation of a record by a condition, or of its settling time."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ ConditionForm = Literal["always", "finally", "within"]
 
 @dataclass(frozen=True)
 class Span:
-    """The part of a record that counts: from ``start`` (default: the first row) to ``end``.
+    """The part of a record that is evaluated: from ``start`` (default: the first row) to ``end``.
 
     ``within`` is the time allowed from its start. All in s.
     """
@@ -40,7 +40,7 @@ class Span:
     within: float | None = None
 
     def begin(self, time: FloatArray) -> float:
-        """Return the time from which the span counts."""
+        """Return the time at which the span starts."""
         return float(time[0]) if self.start is None else self.start
 
     def rows(self, time: FloatArray) -> BoolArray:
@@ -62,7 +62,7 @@ WHOLE = Span()
 
 @dataclass(frozen=True)
 class Verdict:
-    """What became of a criterion in a run."""
+    """Result of a criterion in a run."""
 
     passed: bool
     detail: str
@@ -85,7 +85,7 @@ def evaluate_condition(
     values: Values,
     units: Units,
 ) -> Verdict:
-    """Judge a condition that must hold always, finally or within a time."""
+    """Evaluate a condition that must hold always, finally or within a time."""
     flaw = _flaw(time, values) or (form == "always" and _too_short(time, span.end))
     if flaw:
         return Verdict(False, flaw)
@@ -93,7 +93,7 @@ def evaluate_condition(
     if form == "finally":
         rows = np.arange(len(time)) == len(time) - 1
     if not rows.any():
-        return Verdict(False, f"no row to judge: the record runs {_range(time)}")
+        return Verdict(False, f"no row to evaluate: the record runs {_range(time)}")
     inside = {name: column[rows] for name, column in values.items()}
     time = time[rows]
     flaw = _undefined(condition, time, inside)
@@ -117,7 +117,7 @@ def evaluate_settling(
     values: Values,
     units: Units,
 ) -> Verdict:
-    """Judge when ``subject`` enters for good the band about its final value.
+    """Evaluate when ``subject`` enters for good the band about its final value.
 
     The instant lies between rows, where the line through them crosses the edge of the band.
     """
@@ -185,7 +185,7 @@ def _no_number(time: FloatArray, course: FloatArray) -> str:
     return f"the expression is {course[row]} at {number(time[row], 9)} s"
 
 
-# ---------------------------------------------------------------------- what tells the story
+# ---------------------------------------------------------------------- what is reported
 
 
 def _telling_row(form: ConditionForm, holds: BoolArray, margin: FloatArray) -> int:

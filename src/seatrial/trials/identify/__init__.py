@@ -1,1 +1,1 @@
-"""From a log to parameters: the files, what is done with them, and the page that shows it."""
+"""Identification of a vehicle's parameters from a log: files, study and page."""

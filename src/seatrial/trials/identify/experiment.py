@@ -1,4 +1,4 @@
-"""The file that says what a log holds and what is to be identified from it."""
+"""Experiment files: the columns of a log, and what is to be identified from it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Axis = Literal["surge", "sway", "heave", "yaw"]
 
 
 class ColumnEntry(FileModel):
-    """A column of the log; the unit may be left out where a run folder says it."""
+    """A column of the log; the unit may be left out where a run folder has it."""
 
     name: str
     unit: str | None = None
@@ -42,7 +42,7 @@ class ColumnsEntry(FileModel):
 
 
 class KnownEntry(FileModel):
-    """What a log cannot tell: it gives ratios to the mass alone."""
+    """Known values that a log lacks: it determines ratios to the mass alone."""
 
     mass: str
     thrust: str
@@ -75,7 +75,7 @@ class ExperimentFile(FileModel):
 
     @model_validator(mode="after")
     def _columns_fit_the_axis(self) -> ExperimentFile:
-        """Say which columns are missing, or are one sensor too many."""
+        """Raise for columns that are missing, or one sensor too many."""
         c, axis = self.columns, self.axis
         sensors = {"acceleration": c.acceleration, "depth": c.depth, "heading": c.heading}
         given = [name for name, column in sensors.items() if column is not None]

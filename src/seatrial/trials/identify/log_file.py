@@ -88,7 +88,7 @@ def _unwrapped(columns: Columns, name: str) -> FloatArray:
         turned = math.degrees(angle[row + 1] - angle[row])
         raise InputError(
             f"{_place(columns, row + 1, name)}: the heading turns by {turned:.4g} deg from one row "
-            "to the next; up to 90 deg can be told from a turn the other way"
+            "to the next; up to 90 deg can be distinguished from a turn the other way"
         )
     return angle
 
@@ -119,7 +119,7 @@ def _read_columns(path: Path, named: Mapping[str, ColumnEntry]) -> Columns:
     folder_units: dict[str, str] = {}
     if path.is_dir():
         signals = read_manifest(path)["signals"]
-        folder_units = {"time": "s", **{name: said["unit"] for name, said in signals.items()}}
+        folder_units = {"time": "s", **{name: signal["unit"] for name, signal in signals.items()}}
         path = path / SIGNALS
     if not path.is_file():
         raise InputError(f"there is no log {path}")
@@ -140,9 +140,9 @@ def _conversion(
     unit = entry.unit or folder_units.get(entry.name)
     where = f"{path}: column {entry.name!r}"
     if unit is None:
-        if folder_units:  # the column itself is missing: the reader of the header says so
+        if folder_units:  # the column itself is missing: the reader of the header reports it
             return 1.0
-        raise InputError(f"{where}: a unit is needed: only a folder with a {MANIFEST} says units")
+        raise InputError(f"{where}: a unit is needed: only a folder with a {MANIFEST} has units")
     if entry.unit and entry.name in folder_units and entry.unit != folder_units[entry.name]:
         raise InputError(f"{where}: the run has it in {folder_units[entry.name]}, not {unit}")
     try:

@@ -1,4 +1,4 @@
-"""What is done with an experiment: fitted by output error, evaluated on data held out."""
+"""Study of an experiment: fitted by output error, evaluated on data held out."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Writing what was identified as a vehicle file: what a rig's ``parameters`` names."""
+"""Vehicle files with identified parameters, for a rig's ``parameters``."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def _of_the_craft(study: Study) -> dict[str, Entry]:
     units = _UNITS[study.experiment.rotation]
     values = (found["added mass"], found["linear"], found["quadratic"])
     return {
-        name: _entry(study, value, unit)
+        name: _physical(study, value, unit)
         for name, value, unit in zip(names, values, units, strict=True)
     }
 
@@ -54,23 +54,23 @@ def _of_the_thruster(study: Study) -> dict[str, Entry]:
     period, estimate = study.fitted.period, study.estimate
     if estimate.structure.lag == "thruster":
         lag = estimate.values["time_constant"]
-        said = f"standard deviation {number(estimate.deviation('time_constant'), 3)}"
+        remark = f"standard deviation {number(estimate.deviation('time_constant'), 3)}"
     else:
-        lag, said = _NO_LAG, "no lag was found"
+        lag, remark = _NO_LAG, "no lag was found"
     return {
-        "delay": _said(study, study.delay, "s", f"in whole samples of {number(period, 6)} s"),
-        "time_constant": _said(study, lag, "s", said),
+        "delay": _entry(study, study.delay, "s", f"in whole samples of {number(period, 6)} s"),
+        "time_constant": _entry(study, lag, "s", remark),
     }
 
 
-def _entry(study: Study, value: Physical, unit: str) -> Entry:
+def _physical(study: Study, value: Physical, unit: str) -> Entry:
     known = study.experiment.file.known.source
-    said = f"standard deviation {number(value.deviation, 3)}; thrust and mass: {known}"
-    return _said(study, value.value, unit, said)
+    remark = f"standard deviation {number(value.deviation, 3)}; thrust and mass: {known}"
+    return _entry(study, value.value, unit, remark)
 
 
-def _said(study: Study, value: float, unit: str, said: str) -> Entry:
-    source = f"identified from {study.log_path.name}, {study.experiment.file.axis}: {said}"
+def _entry(study: Study, value: float, unit: str, remark: str) -> Entry:
+    source = f"identified from {study.log_path.name}, {study.experiment.file.axis}: {remark}"
     return Entry(value=value, unit=unit, source=source, mark="identified")
 
 
@@ -134,8 +134,8 @@ def _table(head: str, entries: Mapping[str, Entry]) -> Iterator[str]:
             f"[{', '.join(map(_scalar, v))}]" if isinstance(v, list) else _scalar(v)
             for v in (entry.value, entry.unit)
         )
-        said = f"source = {_text(entry.source)}, mark = {_text(entry.mark)}"
-        yield f"{_key(name)} = {{ value = {value}, unit = {unit}, {said} }}"
+        origin = f"source = {_text(entry.source)}, mark = {_text(entry.mark)}"
+        yield f"{_key(name)} = {{ value = {value}, unit = {unit}, {origin} }}"
 
 
 def _scalar(value: str | float | int) -> str:

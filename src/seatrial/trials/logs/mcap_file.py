@@ -1,4 +1,4 @@
-"""MCAP: what Foxglove, Lichtblick and PlotJuggler read."""
+"""MCAP export, for Foxglove, Lichtblick and PlotJuggler."""
 
 from __future__ import annotations
 

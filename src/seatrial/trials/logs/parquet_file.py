@@ -1,4 +1,4 @@
-"""Parquet: what pandas, Polars, DuckDB, MATLAB and PlotJuggler read."""
+"""Parquet export, for pandas, Polars, DuckDB, MATLAB and PlotJuggler."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The record of a run as typed columns."""
+"""Record of a run as typed columns."""
 
 from __future__ import annotations
 
