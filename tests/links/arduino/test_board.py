@@ -60,16 +60,16 @@ def test_bytes_go_both_ways_and_a_safe_state(line):
     board = started(links=f"1=serial:{device}:38400", safe_state="580A")
     os.write(own, b"from the board")
     board.set("rx.uart1", encode(1, [(0, b"to the board")]))
-    received, said, seen, now = b"", b"", 0, 0.0
+    received, sent, seen, now = b"", b"", 0, 0.0
     deadline = time.monotonic() + WAIT_S
-    while (received, said) != (b"to the board", b"from the board"):
+    while (received, sent) != (b"to the board", b"from the board"):
         assert time.monotonic() < deadline
         board.advance(now, 0.02)
         now += 0.02
         number, chunks = decode(board.get("tx.uart1"))
         if number != seen:
             seen = number
-            said += b"".join(data for _, data in chunks)
+            sent += b"".join(data for _, data in chunks)
         received += read(own)
     board.close()
     while not (last := read(own)):

@@ -34,11 +34,11 @@ def received(backend, sketch, **values):
     """What the sketch says at its UART and at its pins, and when the latter."""
     with Bench(sketch, backend, **values) as bench:
         bench.run(0.1)
-        bench.hear(1, 2 * NMEA)
+        bench.receive(1, 2 * NMEA)
         bench.run(0.3)
-        bench.hear(1, b"!" + bytes(range(40, 127)) * 2)
+        bench.receive(1, b"!" + bytes(range(40, 127)) * 2)
         bench.run(0.6)
-        return bench.said[0], bench.said[1], [when for uart, when, _ in bench.stamps if uart == 1]
+        return bench.sent[0], bench.sent[1], [when for uart, when, _ in bench.stamps if uart == 1]
 
 
 def test_both_back_ends_hear_and_say_the_same_at_two_pins(tmp_path):

@@ -227,7 +227,9 @@ def test_an_adapter_answers_every_command():
             assert answer("N") == "NSIMU\r"
             assert answer("F") == "F00\r"
             assert [answer(each) for each in ("Z1", "O", "t12321122", "T1234567800")] == [
-                *("\r", "\r", "\r"),
+                "\r",
+                "\r",
+                "\r",
                 "\a",
             ]
             for wrong in (
@@ -318,12 +320,12 @@ def test_a_real_adapters_program_is_a_gateway_too(monkeypatch):
         assert adapter.received[0][1] == Frame(0x111, b"there")
 
 
-class Deaf(Channel):
+class Blocked(Channel):
     def __init__(self):
-        self.said = b""
+        self.sent = b""
 
     def send(self, data):
-        self.said += data
+        self.sent += data
 
 
 class Fed(Endpoint):
@@ -332,7 +334,7 @@ class Fed(Endpoint):
     url = "tcpin:127.0.0.1:1"
 
     def __init__(self):
-        self.peer, self.next = Deaf(), []
+        self.peer, self.next = Blocked(), []
 
     def channels(self):
         return [self.peer]

@@ -93,8 +93,8 @@ def run(folder, seed=1.0):
     folder.mkdir()
     made = bus(bit_error_rate=1e-3, seed=seed, watched="0x100")
     made.set("run_folder", str(folder))
-    asked = [(n * 700_000, n % 3, Frame(0x100 + n % 2, bytes([n % 256]))) for n in range(400)]
-    scripted = Scripted(made, asked)
+    requested = [(n * 700_000, n % 3, Frame(0x100 + n % 2, bytes([n % 256]))) for n in range(400)]
+    scripted = Scripted(made, requested)
     scripted.run(300 * MS, 10 * MS)
     made.close()
     made.close()  # harmless
@@ -129,8 +129,8 @@ def test_statistics_are_those_of_the_log(tmp_path):
     for row in found["identifiers"]:
         number = int(row["identifier"], 16)
         ended = [each.timestamp for each in entries if each.arbitration_id == number]
-        asked = [n * 0.7e-3 for n in range(400) if 0x100 + n % 2 == number]
-        late = sorted(end - begin for end, begin in zip(ended, asked, strict=True))
+        requested = [n * 0.7e-3 for n in range(400) if 0x100 + n % 2 == number]
+        late = sorted(end - begin for end, begin in zip(ended, requested, strict=True))
         assert row["frames"] == len(late)
         assert row["rate_hz"] == pytest.approx(len(late) / 0.29, rel=1e-6)
         latency = row["latency_s"]

@@ -75,8 +75,8 @@ def test_several_operations_in_a_row():
 
 
 def test_a_remote_frame_keeps_the_length_it_asks_for():
-    asked = Transmit(Frame(0x321, remote=True, requested=5))
-    assert decode(encode(asked)) == [asked]
+    requested = Transmit(Frame(0x321, remote=True, requested=5))
+    assert decode(encode(requested)) == [requested]
 
 
 @pytest.mark.parametrize(

@@ -30,7 +30,7 @@ class Listener(Component):
         self._can, self._late = {}, []
 
     def step(self, t, h):
-        for when, operation in CanNode(self._can).hear(self.rx):
+        for when, operation in CanNode(self._can).receive(self.rx):
             if isinstance(operation, Transmit):
                 self._late.append(t - when / 1e9)
 

@@ -21,7 +21,7 @@ class Peer(Component):
 
     def exchange(self, rx: str, now_ns: int, frames: Sequence[Frame]) -> str:
         node = CanNode(self.memory)
-        for when, operation in node.hear(rx):
+        for when, operation in node.receive(rx):
             if isinstance(operation, Transmit):
                 self.received.append((when, operation.frame))
         for frame in frames:
@@ -53,16 +53,16 @@ class Bench:
 
     def run(self, seconds: float, frames: Sequence[Frame] = ()) -> None:
         """Run on; the peer asks for ``frames`` at the beginning."""
-        peer_says = self.bus.get("tx.n2")
+        peer_tx = self.bus.get("tx.n2")
         for _ in range(round(seconds * 1e9) // self.step_ns):
-            told = self.bus.get("rx")
-            said = self.node.get("tx")
-            self.node.set("rx", told[0])
-            self.bus.set("tx.n1", said)
-            self.bus.set("tx.n2", peer_says)
-            peer_says = self.peer.exchange(told[1], self.now, frames)
+            rx = self.bus.get("rx")
+            tx = self.node.get("tx")
+            self.node.set("rx", rx[0])
+            self.bus.set("tx.n1", tx)
+            self.bus.set("tx.n2", peer_tx)
+            peer_tx = self.peer.exchange(rx[1], self.now, frames)
             frames = ()
             for each in (self.node, self.bus):
                 each.advance(self.now / 1e9, self.step_ns / 1e9)
             self.now += self.step_ns
-        self.bus.set("tx.n2", peer_says)
+        self.bus.set("tx.n2", peer_tx)

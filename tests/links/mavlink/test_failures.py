@@ -134,6 +134,6 @@ def test_they_come_out_at_ports_and_back_in_telemetry(started, connect):  # noqa
     boat.set("imu_valid", False)
     bits = mavlink.MAV_SYS_STATUS_SENSOR_3D_GYRO | mavlink.MAV_SYS_STATUS_SENSOR_3D_ACCEL
     status = received(
-        *(boat, station, "SYS_STATUS"), lambda m: not m.onboard_control_sensors_health & bits
+        boat, station, "SYS_STATUS", lambda m: not m.onboard_control_sensors_health & bits
     )
     assert status.onboard_control_sensors_present & bits == bits

@@ -137,12 +137,14 @@ def test_a_breach_holds_and_is_told(where):
     boat.wait(0.5)
     boat.transport.take()
     boat.be(*where)
-    (told,) = boat.transport.take("FENCE_STATUS", None)
-    assert (told.breach_status, told.breach_type, told.breach_count) == (1, BOUNDARY, 1)
-    assert told.breach_time == round(boat.now * 1e3)
+    (reported,) = boat.transport.take("FENCE_STATUS", None)
+    assert (reported.breach_status, reported.breach_type, reported.breach_count) == (1, BOUNDARY, 1)
+    assert reported.breach_time == round(boat.now * 1e3)
     assert boat.vehicle.mode.name == "hold"
     assert boat.vehicle.failsafe
-    assert "Failsafe: outside the fence, hold" in [m.text for m in boat.transport.take("STATUSTEXT")]
+    assert "Failsafe: outside the fence, hold" in [
+        m.text for m in boat.transport.take("STATUSTEXT")
+    ]
     assert not boat.is_healthy()
 
 

@@ -453,8 +453,10 @@ def interrupt_by_pause_and_start(boat):
 interruptions = pytest.mark.parametrize(
     "interruption",
     [
-        *(interrupt_by_mode, interrupt_by_disarming),
-        *(interrupt_by_pause, interrupt_by_pause_and_start),
+        interrupt_by_mode,
+        interrupt_by_disarming,
+        interrupt_by_pause,
+        interrupt_by_pause_and_start,
     ],
 )
 
@@ -504,7 +506,7 @@ def set_by_command(boat, sequence):
 
 
 def set_by_message(boat, sequence):
-    boat.hear(mavlink.MAVLink_mission_set_current_message(7, 1, sequence))
+    boat.receive(mavlink.MAVLink_mission_set_current_message(7, 1, sequence))
     return "There is no mission item" not in "".join(boat.texts())
 
 
@@ -539,7 +541,7 @@ def test_set_current_out_of_range():
 
 def test_set_current_is_always_answered():
     boat = Mission(square())
-    boat.hear(mavlink.MAVLink_mission_set_current_message(7, 1, 1))
+    boat.receive(mavlink.MAVLink_mission_set_current_message(7, 1, 1))
     boat.tick()
     assert [m.seq for m in boat.transport.take("MISSION_CURRENT", None)] == [1]
 
@@ -607,7 +609,7 @@ def test_what_is_done_is_said():
 
 def guide(boat, **more):
     boat.transport.take()
-    boat.hear(item(0, current=2, at=north_of(15), **more))
+    boat.receive(item(0, current=2, at=north_of(15), **more))
     (answer,) = boat.transport.take("MISSION_ACK", STATION.link)
     return answer.type
 
@@ -624,7 +626,7 @@ def test_an_item_in_guided_mode_is_a_place_to_go_to():
 def test_an_item_in_guided_mode_is_no_part_of_an_upload():
     boat = Bench()
     boat.enter("guided")
-    boat.hear(mavlink.MAVLink_mission_count_message(7, 1, 2, 0))
+    boat.receive(mavlink.MAVLink_mission_count_message(7, 1, 2, 0))
     guide(boat)
     boat.wait(1.0)
     (request,) = boat.transport.take("MISSION_REQUEST_INT")

@@ -160,21 +160,21 @@ def test_the_key_is_that_of_the_pass_phrase(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("content", "said"), [(None, "No such file"), (b"\nx", "is empty"), (b"\xff\xfe", "not UTF-8")]
+    ("content", "sent"), [(None, "No such file"), (b"\nx", "is empty"), (b"\xff\xfe", "not UTF-8")]
 )
-def test_a_bad_key_file_is_refused(tmp_path, content, said):
+def test_a_bad_key_file_is_refused(tmp_path, content, sent):
     path = tmp_path / "key"
     if content is not None:
         path.write_bytes(content)
-    with pytest.raises(InputError, match=f"signing key file {path}.*{said}"):
+    with pytest.raises(InputError, match=f"signing key file {path}.*{sent}"):
         read_key(path)
 
 
-@pytest.mark.parametrize(("content", "said"), [("{", "not JSON"), ("[]", "a JSON object")])
-def test_a_bad_state_file_is_refused(tmp_path, content, said):
+@pytest.mark.parametrize(("content", "sent"), [("{", "not JSON"), ("[]", "a JSON object")])
+def test_a_bad_state_file_is_refused(tmp_path, content, sent):
     path = tmp_path / "state.json"
     path.write_text(content)
-    with pytest.raises(InputError, match=f"state file {path}: {said}"):
+    with pytest.raises(InputError, match=f"state file {path}: {sent}"):
         StateFile(path)
 
 

@@ -106,8 +106,8 @@ def test_every_action(action, submerged, mode, armed):
     bench.heartbeat()
     bench.wait(6.0)
     assert (bench.vehicle.mode.name, bench.vehicle.armed) == (mode, armed)
-    said = [m.text for m in bench.transport.take("STATUSTEXT")]
-    assert any("all ground stations lost" in text for text in said)
+    sent = [m.text for m in bench.transport.take("STATUSTEXT")]
+    assert any("all ground stations lost" in text for text in sent)
 
 
 def test_a_mode_that_cannot_be_entered_becomes_disarmed():
@@ -117,8 +117,8 @@ def test_a_mode_that_cannot_be_entered_becomes_disarmed():
     bench.heartbeat()
     bench.wait(6.0)
     assert (bench.vehicle.mode.name, bench.vehicle.armed) == ("hold", False)
-    said = [m.text for m in bench.transport.take("STATUSTEXT")]
-    assert "Failsafe: return impossible, no position" in said
+    sent = [m.text for m in bench.transport.take("STATUSTEXT")]
+    assert "Failsafe: return impossible, no position" in sent
 
 
 def test_it_is_told_in_the_heartbeat_until_somebody_is_back():
@@ -139,9 +139,9 @@ def test_one_failsafe_lasts_while_another_ends():
     bench.enter("manual")
     bench.arm()
     bench.heartbeat()
-    bench.hear(mavlink.MAVLink_manual_control_message(7, 0, 0, 1000, 0, 0))
+    bench.receive(mavlink.MAVLink_manual_control_message(7, 0, 0, 1000, 0, 0))
     bench.wait(6.0)  # neither is there any more
-    bench.hear(mavlink.MAVLink_manual_control_message(7, 0, 0, 1000, 0, 0))
+    bench.receive(mavlink.MAVLink_manual_control_message(7, 0, 0, 1000, 0, 0))
     assert bench.vehicle.failsafe
     bench.heartbeat()
     assert not bench.vehicle.failsafe

@@ -17,9 +17,9 @@ def count(bench, seconds, kind="ATTITUDE", link=STATION.link):
 
 def interval_of(bench, number):
     assert bench.command(GET, number) == OK
-    (told,) = bench.transport.take("MESSAGE_INTERVAL", STATION.link)
-    assert told.message_id == number
-    return told.interval_us
+    (reported,) = bench.transport.take("MESSAGE_INTERVAL", STATION.link)
+    assert reported.message_id == number
+    return reported.interval_us
 
 
 def test_what_a_ground_station_needs_comes_unasked():
@@ -28,10 +28,26 @@ def test_what_a_ground_station_needs_comes_unasked():
     bench.wait(4.0)
     received = {m.get_type() for m in bench.transport.take(link=0)}
     assert received >= {
-        *("HEARTBEAT", "SYS_STATUS", "SYSTEM_TIME", "GLOBAL_POSITION_INT", "LOCAL_POSITION_NED"),
-        *("ATTITUDE", "ATTITUDE_QUATERNION", "GPS_RAW_INT", "VFR_HUD", "RC_CHANNELS", "ALTITUDE"),
-        *("SERVO_OUTPUT_RAW", "BATTERY_STATUS", "HOME_POSITION", "EXTENDED_SYS_STATE"),
-        *("EKF_STATUS_REPORT", "SCALED_IMU", "HIGHRES_IMU", "SCALED_PRESSURE", "CURRENT_MODE"),
+        "HEARTBEAT",
+        "SYS_STATUS",
+        "SYSTEM_TIME",
+        "GLOBAL_POSITION_INT",
+        "LOCAL_POSITION_NED",
+        "ATTITUDE",
+        "ATTITUDE_QUATERNION",
+        "GPS_RAW_INT",
+        "VFR_HUD",
+        "RC_CHANNELS",
+        "ALTITUDE",
+        "SERVO_OUTPUT_RAW",
+        "BATTERY_STATUS",
+        "HOME_POSITION",
+        "EXTENDED_SYS_STATE",
+        "EKF_STATUS_REPORT",
+        "SCALED_IMU",
+        "HIGHRES_IMU",
+        "SCALED_PRESSURE",
+        "CURRENT_MODE",
     }
 
 
@@ -95,9 +111,9 @@ def test_an_interval_below_the_period_is_one_per_instant():
 )
 def test_groups_of_streams(group, kind):
     bench = Bench()
-    bench.hear(mavlink.MAVLink_request_data_stream_message(7, 1, group, 25, 1))
+    bench.receive(mavlink.MAVLink_request_data_stream_message(7, 1, group, 25, 1))
     assert count(bench, 4.0, kind) == pytest.approx(100, abs=1)
-    bench.hear(mavlink.MAVLink_request_data_stream_message(7, 1, group, 25, 0))
+    bench.receive(mavlink.MAVLink_request_data_stream_message(7, 1, group, 25, 0))
     assert count(bench, 4.0, kind) == 0
 
 
@@ -105,7 +121,7 @@ def test_a_group_leaves_the_others_alone():
     bench = Bench()
     usual = count(bench, 4.0, "VFR_HUD")
     group = mavlink.MAV_DATA_STREAM_EXTRA1
-    bench.hear(mavlink.MAVLink_request_data_stream_message(7, 1, group, 25, 1))
+    bench.receive(mavlink.MAVLink_request_data_stream_message(7, 1, group, 25, 1))
     assert count(bench, 4.0, "VFR_HUD") == usual
 
 

@@ -8,7 +8,7 @@ from seatrial.links.videoray.frame import Frame, encode
 from seatrial.links.videoray.player import StreamPlayer
 from seatrial.links.videoray.stream_file import HEAD, Piece, StreamLog, read_stream
 
-from .bench import PACKETS, Wired
+from .bench import PACKETS, Line
 
 PIECES = [Piece(n * 50_000_000, "<" if n % 2 else ">", data) for n, data in enumerate(PACKETS)]
 
@@ -95,7 +95,7 @@ def test_binary_data_and_missing_files_are_refused(tmp_path):
 
 @pytest.mark.parametrize(("direction", "first"), [("to-device", 0), ("from-device", 1)])
 def test_the_player_says_it_at_the_same_times(recorded, direction, first):
-    class Playing(Wired):
+    class Playing(Line):
         def step(self, count=1):
             from seatrial.links.text import Inbox
 
@@ -112,6 +112,6 @@ def test_the_player_says_it_at_the_same_times(recorded, direction, first):
 
 
 def test_a_player_without_a_file_says_nothing():
-    player = Wired(StreamPlayer).component
+    player = Line(StreamPlayer).component
     player.advance(0.0, 0.01)
     assert (player.get("tx"), player.get("played")) == ("", 0)

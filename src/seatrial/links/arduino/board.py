@@ -87,10 +87,10 @@ class Board:
         reached, count = struct.unpack_from("<QI", answer)
         end = 12 + count * _EVENT.size
         if size > end:
-            said = answer[end:].decode(errors="replace")
+            output = answer[end:].decode(errors="replace")
             seconds = reached / 16e6
             raise SimulationError(
-                f"{self.name}: at {seconds:.6f} s of its time {self._placed(said)}"
+                f"{self.name}: at {seconds:.6f} s of its time {self._placed(output)}"
             )
         return list(_EVENT.iter_unpack(answer[12:end]))
 
@@ -136,14 +136,14 @@ class Board:
         code = self._process.returncode
         return f"ended by signal {-code}" if code is not None and code < 0 else f"ended ({code})"
 
-    def _placed(self, said: str) -> str:
+    def _placed(self, output: str) -> str:
         """Return a message with the line of the sketch in the place of an address."""
-        match = _ADDRESS.search(said)
+        match = _ADDRESS.search(output)
         if match is None:
-            return said
+            return output
         command = ["addr2line", "-e", str(self._program), match[1]]
         with contextlib.suppress(OSError):
             found = subprocess.run(command, capture_output=True, text=True, check=False)
             if (line := found.stdout.strip().split(" (")[0]) and not line.startswith("?"):
-                return said.replace(match[0], f" ({line})")
-        return said
+                return output.replace(match[0], f" ({line})")
+        return output

@@ -94,6 +94,6 @@ def run(command: list[str], name: str) -> None:
         command, capture_output=True, text=True, check=False, env={**os.environ, "LC_ALL": "C"}
     )
     if done.returncode:
-        said = "\n".join(done.stderr.splitlines()[:30])
-        said = "\n".join([said, *advice(said)])
-        raise InputError(f"{name} does not compile:\n{said}")
+        output = "\n".join(done.stderr.splitlines()[:30])
+        output = "\n".join([output, *advice(output)])
+        raise InputError(f"{name} does not compile:\n{output}")

@@ -88,7 +88,7 @@ class Arduino(ArduinoPorts):
             self.close()
             raise InputError(f"{self.name}: {error}") from None
         self._begun_ns = self.now_ns
-        self._told: dict[tuple[str, int], float] = {}
+        self._last: dict[tuple[str, int], float] = {}
         self._pulses = {w.place: Pulses() for w in self._wires if w.kind in _WATCHED}
         self._rx: list[dict[str, Any]] = [{} for _ in range(UARTS)]
         self._tx: list[dict[str, Any]] = [{} for _ in range(UARTS)]
@@ -98,7 +98,7 @@ class Arduino(ArduinoPorts):
     def step(self, t: float, h: float) -> None:
         """Let the board run from ``t`` to ``t + h``."""
         inputs = Inputs()
-        if not self._told:
+        if not self._last:
             self._connect(inputs)
         self._put_bytes(inputs)
         self._put_signals(inputs)
@@ -180,10 +180,10 @@ class Arduino(ArduinoPorts):
     def _put_signals(self, inputs: Inputs) -> None:
         for wire in self._wires:
             for key, value in self._signals(wire):
-                if self._told.get(key) != value:
-                    self._told[key] = value
+                if self._last.get(key) != value:
+                    self._last[key] = value
                     inputs.put(*key, value)
-        self._told[("", 0)] = 0.0  # connected
+        self._last[("", 0)] = 0.0  # connected
 
     def _signals(self, wire: Wire) -> list[tuple[tuple[str, int], float]]:
         """Return what a wire has to tell the board: kind and index, value."""
@@ -217,7 +217,7 @@ class Arduino(ArduinoPorts):
         return wire.place - MCUS[self.mcu].first_analog
 
     def _take(self, events: list[Event]) -> None:
-        said: list[list[Event]] = [[] for _ in range(UARTS)]
+        received: list[list[Event]] = [[] for _ in range(UARTS)]
         for event in events:
             kind, index, value, cycle = event
             if kind == EDGE:
@@ -225,8 +225,8 @@ class Arduino(ArduinoPorts):
             elif kind == DUTY:
                 self._pulses[index].modulated(value / 255.0)
             elif kind == UART and not self.cut[index]:
-                said[index].append(event)
-        for uart, events_of_it in enumerate(said):
+                received[index].append(event)
+        for uart, events_of_it in enumerate(received):
             if events_of_it:
                 data = bytes(event[2] for event in events_of_it)
                 box = Outbox(self._tx[uart])

@@ -164,7 +164,7 @@ class CanBus(Logging, Noise, Component):
             self._run_log.open(self.run_folder)
         for node, (inbox, text) in enumerate(zip(self._inboxes, self.tx, strict=False)):
             for when, data in Inbox(inbox).take(text):
-                self._hear(node, when, data)
+                self._receive(node, when, data)
         self._longest = [0.0] * WATCHED
         self._bus.run(self.now_ns * _PS_PER_NS)
         self._latencies = [
@@ -239,16 +239,16 @@ class CanBus(Logging, Noise, Component):
 
     # ------------------------------------------------------------------ nodes
 
-    def _hear(self, node: int, when: int, data: bytes) -> None:
+    def _receive(self, node: int, when: int, data: bytes) -> None:
         try:
             operations = decode(data)
         except InputError:
-            self._say(node, when, FormatError(data))
+            self._send(node, when, FormatError(data))
             return
         for operation in operations:
             match operation:
                 case Transmit(frame):
-                    self._bus.ask(when * _PS_PER_NS, node, frame)
+                    self._bus.request(when * _PS_PER_NS, node, frame)
                 case BitRate(rate, fd):
                     self._agree(node, rate, fd)
                 case Buffering(waits):
@@ -256,11 +256,11 @@ class CanBus(Logging, Noise, Component):
                 case Wakeup():
                     for other in range(len(self._ports)):
                         if other != node:
-                            self._say(other, when, operation)
+                            self._send(other, when, operation)
                 case Status():
                     pass  # this bus counts its nodes' errors itself
                 case _:
-                    self._say(node, when, FormatError(data))
+                    self._send(node, when, FormatError(data))
 
     def _agree(self, node: int, rate: int, fd: bool) -> None:
         own = self.data_bit_rate if fd else self.bit_rate
@@ -271,7 +271,7 @@ class CanBus(Logging, Noise, Component):
                 f"{self.name}: node {name!r} has {rate} bit/s, the bus's {what} is {own:g}"
             )
 
-    def _say(self, node: int, when_ns: int, operation: Operation) -> None:
+    def _send(self, node: int, when_ns: int, operation: Operation) -> None:
         self._ports[node].put(when_ns, encode(operation))
 
     # ------------------------------------------------------------------ what happens
@@ -279,7 +279,7 @@ class CanBus(Logging, Noise, Component):
     def _was_sent(self, sent: Sent) -> None:
         self._frames += 1
         attempt, frame = self._bus.attempts, sent.frame
-        latency = sent.end_ps - sent.asked_ps
+        latency = sent.end_ps - sent.requested_ps
         key = [frame.identifier, frame.extended]
         if key in self._keys:
             place = self._keys.index(key)
@@ -288,7 +288,7 @@ class CanBus(Logging, Noise, Component):
             self._run_log.sent(attempt, sent, latency)
         when = _rounded_up(sent.end_ps)
         for node in sent.senders:
-            self._say(node, when, Confirm(frame.identifier))
+            self._send(node, when, Confirm(frame.identifier))
         gone = self._losers(attempt)
         received = chunk(when, encode(Transmit(frame)))
         for node in sent.receivers:
@@ -315,11 +315,11 @@ class CanBus(Logging, Noise, Component):
             if each.plugged and not each.listens_only:
                 first, sender = node == broken.first, node in broken.senders
                 error = BusError(broken.frame.identifier, broken.error, first, sender)
-                self._say(node, _rounded_up(broken.end_ps), error)
+                self._send(node, _rounded_up(broken.end_ps), error)
 
     def _was_given_up(self, lost: GivenUp) -> None:
         when = _rounded_up(lost.when_ps)
-        self._say(lost.node, when, ArbitrationLost(lost.frame.identifier))
+        self._send(lost.node, when, ArbitrationLost(lost.frame.identifier))
 
     def _apply_faults(self) -> None:
         bus, faults = self._bus, self.fault

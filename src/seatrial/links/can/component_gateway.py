@@ -13,7 +13,7 @@ from .gateway_url import check_link, open_gateway
 from .node import CanNode
 from .operations import BusError, Confirm, Transmit
 
-MOST_ASKED = 64
+MOST_REQUESTED = 64
 """Frames asked for and not yet confirmed: fewer than a controller's queue holds."""
 MOST_WAITING = 1000
 """Frames from outside in store; while there are more, nothing is read there."""
@@ -80,14 +80,14 @@ class CanGateway(Reachable, Component):
             raise InputError(f"{self.name}: {error}") from None
         self._can: dict[str, Any] = {}
         self._waiting: deque[tuple[int, Frame]] = deque()
-        self._asked: list[tuple[int, int, Frame]] = []
+        self._requested: list[tuple[int, int, Frame]] = []
         self._in = self._out = self._forgotten = 0
 
     def step(self, t: float, h: float) -> None:
         """Carry frames out and in."""
         assert self._gateway is not None
         node = CanNode(self._can)
-        for when, operation in node.hear(self.rx):
+        for when, operation in node.receive(self.rx):
             if isinstance(operation, Transmit):
                 self._gateway.send(when, operation.frame)
                 self._out += 1
@@ -100,9 +100,9 @@ class CanGateway(Reachable, Component):
             self._waiting.extend(arrived)
             self._in += len(arrived)
         self._forget()
-        while self._waiting and len(self._asked) < MOST_ASKED:
+        while self._waiting and len(self._requested) < MOST_REQUESTED:
             sender, frame = self._waiting.popleft()
-            self._asked.append((self.now_ns, sender, frame))
+            self._requested.append((self.now_ns, sender, frame))
             node.send(self.now_ns, frame)
         node.flush()
 
@@ -125,14 +125,14 @@ class CanGateway(Reachable, Component):
     def _confirmed(self, when: int, identifier: int) -> None:
         """Tell the other clients of a frame of one of them."""
         assert self._gateway is not None
-        for place, (_, sender, frame) in enumerate(self._asked):
+        for place, (_, sender, frame) in enumerate(self._requested):
             if frame.identifier == identifier:
-                del self._asked[place]
+                del self._requested[place]
                 self._gateway.send(when, frame, sender)
                 return
 
     def _forget(self) -> None:
         late = self.now_ns - FORGOTTEN_NS
-        kept = [entry for entry in self._asked if entry[0] >= late]
-        self._forgotten += len(self._asked) - len(kept)
-        self._asked = kept
+        kept = [entry for entry in self._requested if entry[0] >= late]
+        self._forgotten += len(self._requested) - len(kept)
+        self._requested = kept

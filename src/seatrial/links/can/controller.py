@@ -30,7 +30,7 @@ class Request:
     priority: int
     number: int
     """Counts all requests of the bus: equal identifiers are sent in order; 0 for noise."""
-    asked_ps: int = field(compare=False)
+    requested_ps: int = field(compare=False)
     """When it was asked for."""
     frame: Frame = field(compare=False)
 
@@ -114,10 +114,10 @@ class Controller:
         """Of what it would send next; it must have something."""
         return _BEFORE_ALL if self.babbles else self.ready[0].priority
 
-    def ask(self, request: Request) -> None:
+    def request(self, request: Request) -> None:
         """Take a request in, or drop it."""
         self.asked += 1
-        if self.listens_only or request.asked_ps < self.back_ps:
+        if self.listens_only or request.requested_ps < self.back_ps:
             self.dropped += 1
         elif self._occupied < self.mailboxes:
             heapq.heappush(self.ready, request)

@@ -69,17 +69,17 @@ class DroneCanMulticastGateway(Gateway):
         self._group = GROUP.format(bus)
         self.reached_at = f"mcast:{bus}"
         self._senders: dict[tuple[str, int], int] = {}
-        self._received, self._said = _socket(), _socket()
+        self._receiving, self._sending = _socket(), _socket()
         try:
-            self._received.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            self._receiving.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             # Bound to the group, a socket hears nothing else; Windows cannot.
-            self._received.bind((LOOPBACK if sys.platform == "win32" else self._group, PORT))
+            self._receiving.bind((LOOPBACK if sys.platform == "win32" else self._group, PORT))
             member = socket.inet_aton(self._group) + socket.inet_aton(LOOPBACK)
-            self._received.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, member)
+            self._receiving.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, member)
             interface = socket.inet_aton(LOOPBACK)
-            self._said.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, interface)
-            self._said.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 0)
-            self._said.bind((LOOPBACK, 0))
+            self._sending.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, interface)
+            self._sending.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 0)
+            self._sending.bind((LOOPBACK, 0))
         except OSError:
             self.close()
             raise
@@ -92,10 +92,10 @@ class DroneCanMulticastGateway(Gateway):
     def poll(self) -> list[tuple[int, Frame]]:
         """Return frames that have arrived, and who sent each; others' datagrams are passed over."""
         found: list[tuple[int, Frame]] = []
-        own = self._said.getsockname()
+        own = self._sending.getsockname()
         while len(found) < MOST_FRAMES:
             try:
-                datagram, sender = self._received.recvfrom(_LONGEST)
+                datagram, sender = self._receiving.recvfrom(_LONGEST)
             except OSError:
                 break
             frame = unpacked(datagram) if sender != own else None
@@ -108,12 +108,12 @@ class DroneCanMulticastGateway(Gateway):
         datagram = packed(frame)
         if sender is None and datagram is not None:
             with contextlib.suppress(OSError):  # a datagram may be lost
-                self._said.sendto(datagram, (self._group, PORT))
+                self._sending.sendto(datagram, (self._group, PORT))
 
     def close(self) -> None:
         """Leave the bus."""
-        self._received.close()
-        self._said.close()
+        self._receiving.close()
+        self._sending.close()
 
 
 def _socket() -> socket.socket:

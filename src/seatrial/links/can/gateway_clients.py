@@ -38,7 +38,7 @@ class Client(ABC):
                 found.append(frame)
         return found
 
-    def say(self, text: str) -> None:
+    def write(self, text: str) -> None:
         """Send a text."""
         self._channel.send(text.encode("ascii"))
 

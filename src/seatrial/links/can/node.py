@@ -20,7 +20,7 @@ class CanNode:
 
         def step(self, t, h):
             node = CanNode(self._can)
-            for time_ns, operation in node.hear(self.rx):
+            for time_ns, operation in node.receive(self.rx):
                 if isinstance(operation, Transmit):
                     ...                                  # operation.frame was received
             node.send(self.now_ns, Frame(0x123, bytes(8)))
@@ -42,7 +42,7 @@ class CanNode:
         """What ``tx`` holds: as of the last `flush`."""
         return self._outbox.text
 
-    def hear(self, rx: str) -> list[tuple[int, Operation]]:
+    def receive(self, rx: str) -> list[tuple[int, Operation]]:
         """Return what is new on ``rx``, once: simulated time (ns) and operation.
 
         Raises InputError for a text that no bus has written, SimulationError if one was missed.
@@ -51,9 +51,9 @@ class CanNode:
 
     def send(self, time_ns: int, frame: Frame) -> None:
         """Ask the bus at ``time_ns`` to send a frame."""
-        self.tell(time_ns, Transmit(frame))
+        self.send_operation(time_ns, Transmit(frame))
 
-    def tell(self, time_ns: int, operation: Operation) -> None:
+    def send_operation(self, time_ns: int, operation: Operation) -> None:
         """Tell the bus something else at ``time_ns``: `BitRate`, `Buffering`, `Status`."""
         self._outbox.put(time_ns, encode(operation))
 

@@ -36,7 +36,7 @@ class Sent(NamedTuple):
     frame: Frame
     senders: list[int]
     """More than one if several sent the very same frame at once."""
-    asked_ps: int
+    requested_ps: int
     """When the first of them asked for it."""
     receivers: list[int]
 
@@ -87,7 +87,7 @@ class Attempt:
     error: Error | None = None
     first: int = -1
     """Who notices the error first."""
-    deaf: int = -1
+    missed_by: int = -1
     """A receiver that alone gets it wrong, and cannot stop it."""
 
 
@@ -155,7 +155,7 @@ class SimulatedBus:
         """Time that frames, error frames and intermissions have taken until now."""
         return self.taken_ps - max(0, self.free_ps - self.now_ps)
 
-    def ask(self, when_ps: int, node: int, frame: Frame) -> None:
+    def request(self, when_ps: int, node: int, frame: Frame) -> None:
         """Ask for a frame to be sent, not before ``when_ps`` nor in the past."""
         self.requests += 1
         when = max(when_ps, self.now_ps)
@@ -225,7 +225,7 @@ class SimulatedBus:
         arriving = self.arriving
         while arriving and arriving[0][0] <= until_ps:
             _, _, node, request = heapq.heappop(arriving)
-            self.controllers[node].ask(request)
+            self.controllers[node].request(request)
 
     def _idle(self, until_ps: int) -> None:
         """Let the bus be idle until then: nodes off the bus count recessive bits."""
@@ -296,12 +296,12 @@ class SimulatedBus:
         if receiver.takes_part and not receiver.passive:
             self._fail(attempt, wrong, Error.CRC, LONGEST_FLAG)
             return True
-        attempt.deaf = wrong.receiver
+        attempt.missed_by = wrong.receiver
         return False
 
     def _is_received(self, attempt: Attempt) -> bool:
         """Say if anybody acknowledges the frame."""
-        silent = (*attempt.senders, *attempt.gave_way, attempt.deaf)
+        silent = (*attempt.senders, *attempt.gave_way, attempt.missed_by)
         for node, each in enumerate(self.controllers):
             if each.back_ps <= attempt.start_ps and not each.listens_only and node not in silent:
                 return True
@@ -369,17 +369,17 @@ class SimulatedBus:
                 self.on_given_up(GivenUp(attempt.end_ps, node, request.frame))
 
     def _succeed(self, attempt: Attempt) -> None:
-        start, senders, deaf = attempt.start_ps, attempt.senders, attempt.deaf
-        asked, receivers = start, []
+        start, senders, missed_by = attempt.start_ps, attempt.senders, attempt.missed_by
+        requested, receivers = start, []
         for node in senders:
             each = self.controllers[node]
-            asked = min(asked, each.sent_one().asked_ps)
+            requested = min(requested, each.sent_one().requested_ps)
             self._suspend(each)
         apart = (*senders, *attempt.gave_way)
         for node, each in enumerate(self.controllers):
             if each.back_ps > start or node in apart:
                 continue
-            if node == deaf:
+            if node == missed_by:
                 each.lost += 1
                 each.failed_to_receive(0 if each.listens_only else 1)
                 continue
@@ -387,7 +387,7 @@ class SimulatedBus:
             if each.rec:
                 each.recover()
             receivers.append(node)
-        self.on_sent(Sent(start, attempt.end_ps, attempt.frame, senders, asked, receivers))
+        self.on_sent(Sent(start, attempt.end_ps, attempt.frame, senders, requested, receivers))
 
     def _break(self, attempt: Attempt, error: Error) -> None:
         apart = {*attempt.senders, *attempt.gave_way}

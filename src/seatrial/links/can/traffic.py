@@ -97,14 +97,14 @@ class CanTraffic(Noise, Component):
         self._counts = [0] * len(self._messages)
         self._background_count = 0
         self._background_ns = float(self.now_ns)
-        self._asked = self._confirmed = self._received = 0
+        self._requested = self._confirmed = self._received = 0
         self._can: dict[str, Any] = {}
         self._drawn: dict[int, tuple[int, Any]] = {}
 
     def step(self, t: float, h: float) -> None:
         """Ask for what is due from ``t`` to before ``t + h``."""
         node, end_ns = CanNode(self._can), self.now_ns + round(h * NS)
-        for _, operation in node.hear(self.rx):
+        for _, operation in node.receive(self.rx):
             if isinstance(operation, Confirm):
                 self._confirmed += 1
             elif isinstance(operation, Transmit):
@@ -116,13 +116,13 @@ class CanTraffic(Noise, Component):
         if not self.silent:
             for when, _, frame in sorted(due, key=lambda entry: entry[:2]):
                 node.send(when, frame)
-            self._asked += len(due)
+            self._requested += len(due)
         node.flush()
 
     def outputs(self, t: float) -> None:
         """Publish."""
         self.tx = CanNode(self._can).text
-        self.asked, self.confirmed, self.received = self._asked, self._confirmed, self._received
+        self.asked, self.confirmed, self.received = self._requested, self._confirmed, self._received
 
     def set_state(self, state: Any) -> None:
         """Restore what `get_state` returned."""

@@ -97,9 +97,9 @@ class CanSignals(Component):
     def step(self, t: float, h: float) -> None:
         """Read what was received, and send what is due from ``t`` to before ``t + h``."""
         node = CanNode(self._can)
-        for when, operation in node.hear(self.rx):
+        for when, operation in node.receive(self.rx):
             if isinstance(operation, Transmit):
-                self._hear(when, operation.frame)
+                self._receive(when, operation.frame)
         self._lose(self.now_ns + round(h * NS))
         due: list[tuple[int, int, Frame]] = []
         for number in range(len(self._sent)):
@@ -195,7 +195,7 @@ class CanSignals(Component):
 
     # ------------------------------------------------------------------ receiving
 
-    def _hear(self, when: int, frame: Frame) -> None:
+    def _receive(self, when: int, frame: Frame) -> None:
         message = self._known.get((frame.identifier, frame.extended))
         if message is None:
             return

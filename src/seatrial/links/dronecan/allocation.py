@@ -44,7 +44,7 @@ class Allocatee:
         due: int = self._memory["due"]
         return due
 
-    def hear(self, now_ns: int, transfer: Transfer) -> int:
+    def receive(self, now_ns: int, transfer: Transfer) -> int:
         """Take in an Allocation message; return the node ID that it grants, or 0."""
         message = transfer.payload
         known = bytes(message.unique_id)
@@ -57,7 +57,7 @@ class Allocatee:
             return 0
         return int(message.node_id)
 
-    def ask(self) -> tuple[Any, int]:
+    def request(self) -> tuple[Any, int]:
         """Return the message that is due, and its discriminator; wait for an answer."""
         offset = self._memory["offset"]
         message = Allocation(first_part_of_unique_id=offset == 0)

@@ -85,10 +85,10 @@ class DroneCanAutopilot(DroneCanNode):
         """Publish what counts still, and what it says."""
         super().outputs(t)
         missing = MOST_CHANNELS - len(self._channels)
-        fresh = [self._counts(at) for at in self._reported_ns]
+        fresh = [self._valid(at) for at in self._reported_ns]
         self.publish("status_valid", (*fresh, *(False,) * missing))
-        self.publish("position_valid", self._counts(self._fix_ns))
-        self.publish("attitude_valid", self._counts(self._motion_ns))
+        self.publish("position_valid", self._valid(self._fix_ns))
+        self.publish("attitude_valid", self._valid(self._motion_ns))
         self.publish("others", sum(self.now_ns - at < OFFLINE_NS for at in self._nodes.values()))
 
     def settings(self) -> Sequence[Setting]:
@@ -100,7 +100,7 @@ class DroneCanAutopilot(DroneCanNode):
 
     def tasks(self) -> Sequence[Task]:
         """Return what it says again and again."""
-        return (Task("commands", self.setting("COMMAND_PERIOD"), self._say_commands, False),)
+        return (Task("commands", self.setting("COMMAND_PERIOD"), self._send_commands, False),)
 
     def received(self, time_ns: int, transfer: Transfer) -> None:
         """Take in what another node says."""
@@ -143,11 +143,11 @@ class DroneCanAutopilot(DroneCanNode):
             values[place] = found.get(name, 0.0)
             setattr(self, name, values)
 
-    def _counts(self, at: int | None) -> bool:
+    def _valid(self, at: int | None) -> bool:
         return at is not None and self.now_ns - at < round(self.timeout * NS)
 
-    def _say_commands(self, time_ns: int) -> None:
+    def _send_commands(self, time_ns: int) -> None:
         if self.enabled:
             values = self.command[: len(self._channels)]
             for message in messages(self._channels, values):
-                self.say(time_ns, message, HIGH)
+                self.send(time_ns, message, HIGH)

@@ -142,7 +142,7 @@ class DroneCanNode(Noise, Component):
         self._can: dict[str, Any] = {}
         self._link: dict[str, Any] = {}
         self._stored: dict[str, Any] = {}
-        self._asking: dict[str, Any] = {}
+        self._allocating: dict[str, Any] = {}
         self._boots = -1
         self._view()
         self._boot()
@@ -151,9 +151,9 @@ class DroneCanNode(Noise, Component):
         """Take in what was received, and say what is due from ``t`` to before ``t + h``."""
         wanted = self._wanted if self._id else _ALLOCATION
         restarts = False
-        for when, transfer in self._transfers.hear(self.rx, wanted, self._id):
+        for when, transfer in self._transfers.receive(self.rx, wanted, self._id):
             if not self._id:
-                self._hear_of_id(transfer)
+                self._receive_allocation(transfer)
             elif transfer.service_not_message:
                 restarts |= self._serve(transfer)
             else:
@@ -175,7 +175,7 @@ class DroneCanNode(Noise, Component):
         if "_link" in state:
             self._view()
 
-    def say(self, time_ns: int, message: Any, priority: int) -> None:
+    def send(self, time_ns: int, message: Any, priority: int) -> None:
         """Send a message at ``time_ns``."""
         self._transfers.broadcast(time_ns, self._id, message, priority)
 
@@ -200,7 +200,7 @@ class DroneCanNode(Noise, Component):
         self._node = CanNode(self._can)
         self._transfers = Transfers(self._link, self._node)
         self._parameters = ParameterServer(self._stored, self.visible)
-        self._allocatee = Allocatee(self._asking, self._unique_id, self._draw)
+        self._allocatee = Allocatee(self._allocating, self._unique_id, self._draw)
         messages = ((message.default_dtid, False) for message in self.messages)
         self._wanted: frozenset[Kind] = _SERVICES.union(messages)
 
@@ -228,20 +228,20 @@ class DroneCanNode(Noise, Component):
         number = (self._boots << 32) + _FIRST_DRAW + k
         return float(self.generator(number, zlib.crc32(self._unique_id)).random())
 
-    def _hear_of_id(self, transfer: Transfer) -> None:
-        self._id = self._allocatee.hear(self.now_ns, transfer)
+    def _receive_allocation(self, transfer: Transfer) -> None:
+        self._id = self._allocatee.receive(self.now_ns, transfer)
 
     def _do_what_is_due(self, end_ns: int) -> None:
         while not self._id and self._allocatee.due_ns < end_ns:
             when = self._allocatee.due_ns
-            message, discriminator = self._allocatee.ask()
+            message, discriminator = self._allocatee.request()
             self._transfers.broadcast_anonymously(when, message, discriminator)
         if self._id and (self._periods_may_differ or min(self._due.values()) < end_ns):
             self._periods_may_differ = False
             self._do_tasks(end_ns)
 
     def _do_tasks(self, end_ns: int) -> None:
-        tasks = [Task("status", STATUS_NS / NS, self._say_status), *self.tasks()]
+        tasks = [Task("status", STATUS_NS / NS, self._send_status), *self.tasks()]
         self._schedule(tasks)
         while True:
             task = min((each for each in tasks if _ns(each.period)), key=self._due_ns)
@@ -270,22 +270,22 @@ class DroneCanNode(Noise, Component):
 
     def _serve(self, request: Transfer) -> bool:
         """Answer a request; say if the node restarts."""
-        asked, restarts = request.payload, False
+        requested, restarts = request.payload, False
         if not request.request_not_response:
             return False
-        if asked._type is GetNodeInfo:
+        if requested._type is GetNodeInfo:
             response = self._info()
-        elif asked._type is RestartNode:
-            restarts = asked.magic_number == asked.MAGIC_NUMBER
+        elif requested._type is RestartNode:
+            restarts = requested.magic_number == requested.MAGIC_NUMBER
             response = RestartNode.Response(ok=restarts)
         else:
-            response = self._parameters.answer(asked)
+            response = self._parameters.answer(requested)
             self._periods_may_differ = True
         self._transfers.respond(self.now_ns, self._id, request, response)
         return restarts
 
-    def _say_status(self, time_ns: int) -> None:
-        self.say(time_ns, self._status(time_ns), LOW)
+    def _send_status(self, time_ns: int) -> None:
+        self.send(time_ns, self._status(time_ns), LOW)
 
     def _status(self, time_ns: int) -> Any:
         status = NodeStatus(uptime_sec=(time_ns - self._begun_ns) // NS)

@@ -141,9 +141,9 @@ class DroneCanPeripheral(DroneCanNode):
     def tasks(self) -> Sequence[Task]:
         """Return what it says again and again."""
         return (
-            Task("channels", self.setting("STATUS_PERIOD"), self._say_channels),
-            Task("gnss", self.setting("GNSS_PERIOD"), self._say_fix, False),
-            Task("ahrs", self.setting("AHRS_PERIOD"), self._say_attitude, False),
+            Task("channels", self.setting("STATUS_PERIOD"), self._send_channels),
+            Task("gnss", self.setting("GNSS_PERIOD"), self._send_fix, False),
+            Task("ahrs", self.setting("AHRS_PERIOD"), self._send_attitude, False),
         )
 
     def received(self, time_ns: int, transfer: Transfer) -> None:
@@ -190,22 +190,22 @@ class DroneCanPeripheral(DroneCanNode):
         end = self.pulse_max if command > 0.0 else self.pulse_min
         return float(neutral + min(abs(command), 1.0) * (end - neutral))
 
-    def _say_channels(self, time_ns: int) -> None:
+    def _send_channels(self, time_ns: int) -> None:
         known = {name: getattr(self, name) for name in self.measured.split()}
         for place, channel in enumerate(self._channels):
             measured = {name: values[place] for name, values in known.items()}
             demand = abs(self.command[place]) if channel.kind == "esc" else 0.0
-            self.say(time_ns, status(channel, measured, demand), LOW)
+            self.send(time_ns, status(channel, measured, demand), LOW)
 
-    def _say_fix(self, time_ns: int) -> None:
+    def _send_fix(self, time_ns: int) -> None:
         north, east, down = self.position_n
         utc_us = self._midnight_us + time_ns // 1000
         message = fix(
             self._origin, (north, east, down), self.velocity_n, self.position_valid, utc_us
         )
-        self.say(time_ns, message, MEDIUM)
+        self.send(time_ns, message, MEDIUM)
 
-    def _say_attitude(self, time_ns: int) -> None:
+    def _send_attitude(self, time_ns: int) -> None:
         if self.attitude_valid:
             motion = Motion(tuple(self.attitude), tuple(self.rates), tuple(self.acceleration))
-            self.say(time_ns, solution(motion), MEDIUM)
+            self.send(time_ns, solution(motion), MEDIUM)

@@ -49,12 +49,14 @@ class Transfers:
         count: int = self._memory["malformed"]
         return count
 
-    def hear(self, rx: str, wanted: frozenset[Kind], node: int) -> Iterator[tuple[int, Transfer]]:
+    def receive(
+        self, rx: str, wanted: frozenset[Kind], node: int
+    ) -> Iterator[tuple[int, Transfer]]:
         """Give what is new on ``rx`` of the kinds wanted: simulated time (ns) and transfer.
 
         Of services, what goes to ``node``.
         """
-        for when, operation in self._can.hear(rx):
+        for when, operation in self._can.receive(rx):
             if isinstance(operation, Transmit) and _is_for(node, operation.frame, wanted):
                 found = self._take(when, operation.frame)
                 if found is not None:

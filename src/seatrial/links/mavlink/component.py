@@ -123,7 +123,11 @@ class Mavlink(MavlinkPorts):
             self._settings = settings
             self._failing: dict[str, str] = {}
             self._node = Node(
-                *(vehicle, self._transport, settings, self._parameters, plans),
+                vehicle,
+                self._transport,
+                settings,
+                self._parameters,
+                plans,
                 failures=failing_units(self.failures),
             )
         except InputError as error:

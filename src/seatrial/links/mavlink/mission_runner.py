@@ -249,9 +249,12 @@ class MissionRunner:
         self._legs += 1
         self.leg = Leg(
             self._legs,
-            *(start, end, self._leg_speed()),
+            start,
+            end,
+            self._leg_speed(),
             radius + abs(circle),  # who is on the circle has come to its centre
-            *(max(wait, 0.0), circle),
+            max(wait, 0.0),
+            circle,
         )
 
     def _skip(self, item: Item, why: str) -> None:

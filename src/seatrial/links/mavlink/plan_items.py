@@ -77,7 +77,9 @@ def from_message(message: Message) -> Item:
         message.command,
         message.frame,
         (message.param1, message.param2, message.param3, message.param4),
-        *(x, y, message.z),
+        x,
+        y,
+        message.z,
         message.autocontinue,
     )
 
@@ -110,5 +112,7 @@ def home_item(vehicle: Vehicle) -> Item:
         mavlink.MAV_CMD_NAV_WAYPOINT,
         mavlink.MAV_FRAME_GLOBAL,
         (0.0, 0.0, 0.0, 0.0),
-        *(deg_e7(latitude), deg_e7(longitude), altitude),
+        deg_e7(latitude),
+        deg_e7(longitude),
+        altitude,
     )

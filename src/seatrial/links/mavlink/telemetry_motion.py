@@ -139,13 +139,19 @@ class MotionTelemetry(Service):
         return [
             mavlink.MAVLink_sim_state_message(
                 *quaternion(truth.attitude),
-                *(phi, theta, math.remainder(psi, math.tau)),
+                phi,
+                theta,
+                math.remainder(psi, math.tau),
                 *truth.specific_force,
                 *truth.rates,
-                *(latitude, longitude, altitude),
-                *(0.0, 0.0),
+                latitude,
+                longitude,
+                altitude,
+                0.0,
+                0.0,
                 *truth.velocity_n,
-                *(deg_e7(latitude), deg_e7(longitude)),
+                deg_e7(latitude),
+                deg_e7(longitude),
             )
         ]
 

@@ -48,7 +48,8 @@ class NavigationTelemetry(Service):
         ahead = math.cos(psi) * e.velocity_n[0] + math.sin(psi) * e.velocity_n[1]
         return [
             mavlink.MAVLink_nav_controller_output_message(
-                *(0.0, 0.0),
+                0.0,
+                0.0,
                 _bearing(way.heading),
                 _bearing(bearing),
                 uint16(way.distance),

@@ -74,12 +74,19 @@ class SystemTelemetry(Service):
             present, healthy = (present | bit, healthy | bit) if there else (present, healthy)
         return [
             mavlink.MAVLink_sys_status_message(
-                *(present, present, healthy),
+                present,
+                present,
+                healthy,
                 0,
                 UNKNOWN_U16 if e.voltage is None else uint16(e.voltage * 1e3),
                 -1 if e.current is None else int16(e.current * 100),
                 -1 if e.charge is None else clamped(e.charge * 100, 0, 100),
-                *(0, 0, 0, 0, 0, 0),
+                0,
+                0,
+                0,
+                0,
+                0,
+                0,
             )
         ]
 

@@ -21,9 +21,16 @@ from pynmeagps.nmeatypes_get import NMEA_PAYLOADS_GET
 
 _HEMISPHERES = ("NS", "EW")
 _REFUSALS = (
-    *(NMEAMessageError, NMEAParseError, NMEAStreamError, NMEATypeError),
+    NMEAMessageError,
+    NMEAParseError,
+    NMEAStreamError,
+    NMEATypeError,
     # It lets these through for some malformed sentences.
-    *(ArithmeticError, AttributeError, LookupError, TypeError, ValueError),
+    ArithmeticError,
+    AttributeError,
+    LookupError,
+    TypeError,
+    ValueError,
 )
 
 

@@ -16,7 +16,7 @@ from ..geodesy import Origin
 from ..text import Inbox, Outbox
 from .codec import decode, encode
 from .lines import Lines
-from .orders import Order, heading_ordered, last_told, read_order
+from .orders import Order, heading_ordered, last_reported, read_order
 from .ports import Nmea0183Ports
 from .readings import Readings
 from .schedule import schedule
@@ -100,10 +100,10 @@ class Nmea0183(Nmea0183Ports):
         self.target_heading = 0.0 if heading is None else heading
         self.target_position = (0.0, 0.0, 0.0) if place is None else self._position(*place)
         self.target_speed = self.cruise_speed if self.target_valid else 0.0
-        told = last_told(orders)
-        self.cross_track_valid = told.cross_track is not None
-        self.cross_track = told.cross_track or 0.0
-        self.waypoint, self.arrived = told.waypoint or "", bool(told.arrived)
+        reported = last_reported(orders)
+        self.cross_track_valid = reported.cross_track is not None
+        self.cross_track = reported.cross_track or 0.0
+        self.waypoint, self.arrived = reported.waypoint or "", bool(reported.arrived)
         self.reached_at = " ".join(other_end(each.url) for each in self._endpoints)
 
     def update(self, t: float, k: int) -> None:

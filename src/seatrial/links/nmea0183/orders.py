@@ -51,10 +51,10 @@ def heading_ordered(orders: Mapping[str, Order]) -> float | None:
     return next((heading for heading in headings if heading is not None), None)
 
 
-def last_told(orders: Mapping[str, Order]) -> Order:
+def last_reported(orders: Mapping[str, Order]) -> Order:
     """Return the last order with a cross-track error; ``orders`` stand the oldest first."""
-    told = (order for order in reversed(list(orders.values())) if order.cross_track is not None)
-    return next(told, Order())
+    reported = (order for order in reversed(list(orders.values())) if order.cross_track is not None)
+    return next(reported, Order())
 
 
 def _hsc(message: Any, variation: float) -> Order | None:

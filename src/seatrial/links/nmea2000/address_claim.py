@@ -89,12 +89,12 @@ class AddressClaim:
         """Begin, as at power-up."""
         self._wait("delay", now_ns + self._random_ns())
 
-    def hear_claim(self, now_ns: int, source: int, name: int) -> None:
+    def receive_claim(self, now_ns: int, source: int, name: int) -> None:
         """Take in another node's claim of ``source`` (254: it cannot claim)."""
         if name == self._name:
             self._memory["twins"] += 1
             return
-        self.hear_source(source)
+        self.receive_source(source)
         if source != self._memory["held"] or self.state in ("off", "refusing", "without"):
             return
         if self.state == "delay":  # not said yet, so nobody can be told to go
@@ -111,12 +111,12 @@ class AddressClaim:
         else:
             self._wait("refusing", now_ns + self._random_ns())
 
-    def hear_source(self, source: int) -> None:
+    def receive_source(self, source: int) -> None:
         """Take in that somebody sends from an address."""
         if source <= HIGHEST and source not in self._memory["taken"]:
             self._memory["taken"].append(source)
 
-    def hear_request(self, now_ns: int) -> None:
+    def receive_request(self, now_ns: int) -> None:
         """Take in a request for claims."""
         if self.state in ("claiming", "claimed"):
             self._claim(now_ns)

@@ -10,7 +10,7 @@ from typing import Any
 from ...component import NS, seconds
 from ..geodesy import Origin
 from .codec import Fields, Message
-from .ports import ENGINES, NOT_WIRED, Nmea2000Ports
+from .ports import ENGINES, NOT_CONNECTED, Nmea2000Ports
 
 _DAY_S = 86400
 _ANGLE_DIGITS = 4
@@ -39,17 +39,17 @@ class _Measured:
     def one(self, name: str, valid: bool = True) -> float | None:
         """Return an input, None if it is not wired or not valid."""
         value: float = getattr(self.node, name)
-        return value if valid and value < NOT_WIRED else None
+        return value if valid and value < NOT_CONNECTED else None
 
     def each(self, name: str, valid: bool = True) -> Sequence[float | None]:
         """Return the values of an input with axes."""
         values: Sequence[float] = getattr(self.node, name)
-        return [value if valid and value < NOT_WIRED else None for value in values]
+        return [value if valid and value < NOT_CONNECTED else None for value in values]
 
     def whole(self, name: str, valid: bool = True) -> Sequence[float] | None:
         """Return the values of an input with axes, None if one of them is not there."""
         values: Sequence[float] = getattr(self.node, name)
-        return values if valid and all(value < NOT_WIRED for value in values) else None
+        return values if valid and all(value < NOT_CONNECTED for value in values) else None
 
     def geodetic(self) -> Sequence[float | None]:
         """Return latitude and longitude (deg) and altitude (m)."""

@@ -8,7 +8,7 @@ from ...component import Component, Input, Noise, Output, Parameter
 from .address_claim import HIGHEST
 from .catalogue import check_intervals, check_sends
 
-NOT_WIRED = 1e30
+NOT_CONNECTED = 1e30
 """Start value of the inputs: nothing measures this, and it goes out as not available."""
 ENGINES = 4
 """Most engines of a node."""
@@ -20,7 +20,7 @@ _PI, _HALF_PI = 3.1415927, 1.5707964
 
 
 def _measured(unit: str, description: str, **options: Any) -> Input:
-    return Input(unit, description, start=NOT_WIRED, optional=True, **options)
+    return Input(unit, description, start=NOT_CONNECTED, optional=True, **options)
 
 
 def _valid(what: str) -> Input:
@@ -99,10 +99,8 @@ class Nmea2000Ports(Noise, Component):
     engine_temperature = _measured("K", "temperatures of the engines", axes=_ENGINES)
     engine_load = _measured("1", "loads of the engines, as shares of the largest", axes=_ENGINES)
     steering_mode = Input(
-        *(
-            "1",
-            "0 main steering, 1 non-follow-up, 2 follow-up, 3 heading alone, 4 heading, 5 track",
-        ),
+        "1",
+        "0 main steering, 1 non-follow-up, 2 follow-up, 3 heading alone, 4 heading, 5 track",
         type=int,
         start=-1,
         optional=True,

@@ -32,8 +32,8 @@ class HalfDuplex:
         self.free_ns = max(self.free_ns, end)
         return end
 
-    def speak(self, asked_ns: int, count: int) -> int:
-        """Return when the first of ``count`` bytes begins that are ready at ``asked_ns``."""
-        begin = max(asked_ns, self.free_ns) + self._turnaround_ns
+    def transmit(self, requested_ns: int, count: int) -> int:
+        """Return when the first of ``count`` bytes begins that are ready at ``requested_ns``."""
+        begin = max(requested_ns, self.free_ns) + self._turnaround_ns
         self.free_ns = begin + count * self.byte_ns
         return begin

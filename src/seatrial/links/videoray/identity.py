@@ -15,8 +15,14 @@ PRO4_ROV = 1
 SERIAL_LENGTH = 16
 BOARD_LENGTH = 32
 BOARDS = (
-    *("cpu", "power", "pressure", "camera_io", "camera", "lights"),
-    *("horizontal_thruster", "vertical_thruster"),
+    "cpu",
+    "power",
+    "pressure",
+    "camera_io",
+    "camera",
+    "lights",
+    "horizontal_thruster",
+    "vertical_thruster",
 )
 """What the configuration names the revision of, in its order."""
 

@@ -104,7 +104,7 @@ class M5Thrusters(Logging, Component):
         ]
         while self._waiting and self._waiting[0][0] < end:
             when, is_response, node, flags, address, payload = self._waiting.pop(0)
-            self._hear(when, Frame(is_response, node, flags, address, bytes.fromhex(payload)))
+            self._receive(when, Frame(is_response, node, flags, address, bytes.fromhex(payload)))
         self._turn(h, end)
         Outbox(self._tx).flush()
 
@@ -161,7 +161,7 @@ class M5Thrusters(Logging, Component):
         self._parser = Parser(round(self.byte_timeout * NS), (VRCSR,))
         self._line = HalfDuplex(self.baud, 0)
 
-    def _hear(self, when: int, request: Frame) -> None:
+    def _receive(self, when: int, request: Frame) -> None:
         for number, node in enumerate(self._nodes):
             self._report(number, node)
             answer = node.handle(request)
@@ -170,7 +170,7 @@ class M5Thrusters(Logging, Component):
                 self._received_ns[number] = when
             if answer is not None:
                 data = encode(answer, VRCSR)
-                begin = self._line.speak(when, len(data))
+                begin = self._line.transmit(when, len(data))
                 self._log.write(begin, FROM_DEVICE, data)
                 Outbox(self._tx).put(begin, data)
 

@@ -68,14 +68,14 @@ class Parser:
 
     def saved(self) -> dict[str, Any]:
         """Return what it knows, as plain data."""
-        counts = {name: getattr(self, name) for name in _COUNTS}
-        return {"buffer": self._buffer.hex(), "last_ns": self._last_ns, **counts}
+        counters = {name: getattr(self, name) for name in _COUNTERS}
+        return {"buffer": self._buffer.hex(), "last_ns": self._last_ns, **counters}
 
     def restore(self, saved: dict[str, Any]) -> None:
         """Restore what `saved` returned."""
         self._buffer = bytearray.fromhex(saved["buffer"])
         self._last_ns = saved["last_ns"]
-        for name in _COUNTS:
+        for name in _COUNTERS:
             setattr(self, name, saved[name])
 
     def _next(self) -> tuple[Frame | None, int] | None:
@@ -136,4 +136,4 @@ class Parser:
         return count
 
 
-_COUNTS = ("frames", "checksum_errors", "broken_off", "skipped")
+_COUNTERS = ("frames", "checksum_errors", "broken_off", "skipped")

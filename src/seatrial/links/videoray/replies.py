@@ -32,8 +32,14 @@ FIELDS: dict[int, tuple[str, ...]] = {
     ATTITUDE_TEMPERATURE: _ATTITUDE + _TEMPERATURE,
     ATTITUDE_HEALTH: _ATTITUDE + _TEMPERATURE + _HUMIDITY,
     NAVIGATION: (
-        *(*_ATTITUDE, *_ROTATION, *_LINEAR, *_MAGNETOMETER, "attitude_status"),
-        *(*_HUMIDITY, *_TEMPERATURE, "total_power"),
+        *_ATTITUDE,
+        *_ROTATION,
+        *_LINEAR,
+        *_MAGNETOMETER,
+        "attitude_status",
+        *_HUMIDITY,
+        *_TEMPERATURE,
+        "total_power",
     ),
 }
 """Registers of each reply, in its order: of 2 bytes each, but for the power at the end."""

@@ -100,7 +100,7 @@ class Pro4Rov(Pro4RovPorts):
         """Hear, control and answer, in the order of time, until ``t + h``."""
         self._log.open(self.run_folder, self.name)
         end, before = self.now_ns + round(h * NS), self._changes
-        self._hear()
+        self._receive()
         while True:
             frame_ns = self._waiting[0][0] if self._waiting else end
             if min(frame_ns, self._next_ns) >= end:
@@ -196,7 +196,7 @@ class Pro4Rov(Pro4RovPorts):
         self._drive = Drive(self.loop_period, self.slew_unit, self.compensation == "on")
         self._period_ns = max(1, round(self.loop_period * NS))
 
-    def _hear(self) -> None:
+    def _receive(self) -> None:
         found = self._parser.expire(self.now_ns)
         text = self.rx
         chunks = Inbox(self._rx).take(text) if text != self._text else []
@@ -229,7 +229,7 @@ class Pro4Rov(Pro4RovPorts):
         node.relayed.clear()
         if answer is not None and not self.cut:
             data = encode(answer)
-            begin = self._line.speak(when, len(data))
+            begin = self._line.transmit(when, len(data))
             self._log.write(begin, FROM_DEVICE, data)
             Outbox(self._tx).put(begin, data)
         if node.wants_reboot:

@@ -30,7 +30,7 @@ def _within(value: float, low: int, high: int) -> int:
 
 
 @dataclass
-class Orders:
+class Commands:
     """What the pilot wants, as the command block has it."""
 
     thrust: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -63,13 +63,13 @@ class Orders:
         )
 
 
-NEUTRAL = Frame(False, ROV, 0, 0, Orders().block())
+NEUTRAL = Frame(False, ROV, 0, 0, Commands().block())
 """The request that stops the thrusters and wants no answer."""
 
 
 @dataclass
 class Station:
-    """Cycle by cycle: `request` is what to send, `hear` what came back.
+    """Cycle by cycle: `request` is what to send, `receive` what came back.
 
     Without an answer for ``timeout_ns`` the vehicle is lost, and looked for again: until it has
     answered, nothing commands it. ``readings`` are the newest, by register in its unit.
@@ -86,7 +86,7 @@ class Station:
     """Cycles whose answer had not come when the next began."""
     round_trip_ns: int = 0
     """From the first byte of the last request that was answered to the end of its answer."""
-    _asked_ns: int = -1
+    _requested_ns: int = -1
     _answered_ns: int = -1
     _waiting: bool = False
 
@@ -95,30 +95,30 @@ class Station:
         """Whether a vehicle answers, and is driven."""
         return self.phase == DRIVE
 
-    def request(self, now_ns: int, orders: Orders) -> Frame:
+    def request(self, now_ns: int, commands: Commands) -> Frame:
         """Return the request of the cycle that begins now."""
         self.cycles += 1
         if self._waiting:
             self.missed += 1
             if self.phase != DETECT and now_ns - self._answered_ns >= self.timeout_ns:
                 self.phase = DETECT
-        self._asked_ns, self._waiting = now_ns, True
+        self._requested_ns, self._waiting = now_ns, True
         if self.phase == DETECT:
             return Frame(False, self.node_id, ACKNOWLEDGE, 0)
         if self.phase == CONFIGURE:
             return Frame(False, self.node_id, READ_BIT, csr.CONFIG)
         if self.phase == READ:
             return Frame(False, self.node_id, READ_BIT, 0)
-        return Frame(False, self.node_id, NAVIGATION, 0, orders.block())
+        return Frame(False, self.node_id, NAVIGATION, 0, commands.block())
 
-    def hear(self, now_ns: int, frame: Frame) -> bool:
+    def receive(self, now_ns: int, frame: Frame) -> bool:
         """Take in an answer; say if it is the one that was waited for."""
         if not frame.is_response or frame.id != self.node_id or frame.payload[:1] != _ROV:
             return False
         if not self._understand(frame.flags, frame.address, frame.payload[1:]):
             return False
         if self._waiting:
-            self.round_trip_ns = now_ns - self._asked_ns
+            self.round_trip_ns = now_ns - self._requested_ns
         self._waiting, self._answered_ns = False, now_ns
         return True
 
