@@ -1,4 +1,4 @@
-"""The command line and real ports: nothing opens one unless somebody allowed it."""
+"""The command line and real ports: nothing opens one unless it is allowed."""
 
 import os
 import subprocess

@@ -61,7 +61,7 @@ class Bench:
         self.one.set(f"rx.uart{uart}", encode(self._number[uart], [(self.now, data)]))
 
     def run(self, seconds: float) -> bytes:
-        """Run on; return what UART 0 said meanwhile."""
+        """Run on; return what UART 0 sent meanwhile."""
         before = len(self.sent[0])
         for _ in range(round(seconds / STEP)):
             self.one.advance(self.now / 1e9, STEP)

@@ -23,7 +23,7 @@ def opened():
 
 @pytest.fixture
 def line():
-    """What the sketch would have, and the device."""
+    """The sketch's end of the line, and the device."""
     own, other, device = opened()
     yield own, device
     os.close(own)

@@ -1,4 +1,4 @@
-"""The same sketch in both back ends: the firmware on an emulated AVR is the reference tool of the host's."""
+"""The same sketch in both back ends: the firmware on an emulated AVR is the reference for the host's."""
 
 import re
 from pathlib import Path
@@ -87,7 +87,7 @@ def parsed(text: bytes) -> dict[str, str]:
 
 @pytest.fixture(scope="module")
 def runs(tmp_path_factory):
-    """What the sketch says and does in both back ends."""
+    """Output and pins of the sketch in both back ends."""
     sketch = write_sketch(tmp_path_factory.mktemp("sketch"), SKETCH)
     found = {}
     for backend in BACKENDS:
@@ -172,7 +172,7 @@ RECEIVED = {
 
 @pytest.mark.parametrize("name", RECEIVED)
 def test_they_print_the_same(name):
-    """Firmware of Debian's core and avr-libc is the reference tool of what the host's API says."""
+    """Firmware of Debian's core and avr-libc is the reference for the output of the host's API."""
     printed = []
     for backend in ("host", "simavr"):
         with Bench(SKETCHES / name, backend, uarts="0 57600", wires="0x68 mpu6050") as bench:

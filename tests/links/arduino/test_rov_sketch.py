@@ -1,4 +1,4 @@
-"""The ROV's sketch as its serial port shows it, asked with packets captured at a real Pro 4."""
+"""The ROV's sketch as its serial port shows it, with packets captured at a real Pro 4."""
 
 import random
 from pathlib import Path
@@ -72,7 +72,7 @@ def test_who_is_not_asked_says_nothing_and_commands_stop_after_two_seconds(rov):
     block = bytes.fromhex("3200ceff") + bytes(7) + b"\xff" * 4  # port 50 %, starboard -50 %
     assert exchange(rov, encode(Frame(False, 2, 1, 0, block))) == []
     assert rov.one.get("pulse.s1") == pytest.approx(1500e-6, abs=15e-6)
-    assert exchange(rov, encode(Frame(False, 0xFF, 1, 0, block))) == []  # everybody: obeyed only
+    assert exchange(rov, encode(Frame(False, 0xFF, 1, 0, block))) == []  # broadcast: obeyed only
     assert rov.one.get("pulse.s1") == pytest.approx(1700e-6, abs=15e-6)
     assert rov.one.get("pulse.s2") == pytest.approx(1300e-6, abs=15e-6)
     rov.run(1.5)

@@ -31,7 +31,7 @@ NMEA = b"$GPRMC,123519,A,4807.038,N,01131.000,E,022.4,084.4,230394,003.1,W*6A\r\
 
 
 def received(backend, sketch, **values):
-    """What the sketch says at its UART and at its pins, and when the latter."""
+    """Output of the sketch at its UART and at its pins, with times of the latter."""
     with Bench(sketch, backend, **values) as bench:
         bench.run(0.1)
         bench.receive(1, 2 * NMEA)
@@ -47,7 +47,7 @@ def test_both_back_ends_hear_and_say_the_same_at_two_pins(tmp_path):
     host, simavr = (received(each, sketch, **uno) for each in ("host", "simavr"))
     lines = simavr[0].split(b"\n")
     assert lines[0] == b"10\r"
-    assert lines[1] == NMEA[: NMEA.index(b"*") + 1]  # what came while it said "got" is lost
+    assert lines[1] == NMEA[: NMEA.index(b"*") + 1]  # what came while it sent "got" is lost
     assert b"<over>" in simavr[0]
     assert host[:2] == simavr[:2]
     assert host[2] == pytest.approx(simavr[2], abs=1_500_000)  # ns; a byte lasts 1.04 ms

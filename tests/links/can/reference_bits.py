@@ -19,7 +19,7 @@ def crc15(bits: list[int]) -> int:
 
 
 def stuffed(bits: list[int]) -> list[int]:
-    """After five equal bits one of the other value, which counts itself."""
+    """After five equal bits one of the other value, which is itself counted."""
     sequence: list[int] = []
     run = 0
     for bit in bits:

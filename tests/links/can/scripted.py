@@ -1,4 +1,4 @@
-"""A `CanBus` between nodes that ask for given frames at given times, stepped by hand."""
+"""A `CanBus` between nodes that request given frames at given times, stepped by hand."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -15,7 +15,7 @@ Requested = Sequence[tuple[int, int, Frame]]
 
 
 class Scripted:
-    """Steps the bus as Jacobi does: what is asked for in a step is on ``tx`` at its end."""
+    """Steps the bus as Jacobi does: what is requested in a step is on ``tx`` at its end."""
 
     def __init__(
         self, bus: Any, requested: Requested, events: Mapping[int, dict] | None = None

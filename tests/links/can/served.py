@@ -17,7 +17,7 @@ STEP_NS = 2_000_000
 class Served:
     """Nodes: ``peer``, scripted; ``gateway``, a gateway. 1 Mbit/s.
 
-    ``peer`` sends what `send` was given, at its times, and keeps what it hears in ``received``.
+    ``peer`` sends what `send` was given, at its times, and keeps what it receives in ``received``.
     """
 
     def __init__(self, gateway: str, **values: object) -> None:

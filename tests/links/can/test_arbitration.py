@@ -1,4 +1,4 @@
-"""Who sends next, and when, worked out bit by bit at 1 bit per us."""
+"""Arbitration and timing of frames, worked out bit by bit at 1 bit per us."""
 
 from itertools import pairwise
 

@@ -16,7 +16,7 @@ from . import reference_bits
 #
 # Base, 0x000, no data: SOF, 11 of identifier, RTR, IDE, r0 and 4 of DLC are 19 zeros; the CRC of
 #   zeros is 0, so 15 more: 34 zeros, a stuff bit after each 5: 6. 19 + 15 + 10 + 6 = 50.
-# Base, 0x000, remote, asks for 0 bytes: 0 x 12, RTR 1, 0 x 6. The register of the CRC becomes
+# Base, 0x000, remote, requests 0 bytes: 0 x 12, RTR 1, 0 x 6. The register of the CRC becomes
 #   4599 with the one, then, a zero each: 4EAB, 58CF, 7407, 2D97, 5B2E, 73C5 = 111 0011 1100 0101.
 #   00000|00000|00 1 00000|0 111 00 1111 000 1 0 1: 3. 44 + 3 = 47.
 # Extended, 0, no data: 0 x 12, SRR 1, IDE 1, then 18 of identifier, RTR, r1, r0, 4 of DLC: 0 x 25.

@@ -42,7 +42,7 @@ def busy(seed=3, count=300):
 
 
 def test_what_ended_by_t_is_told_one_step_later_and_says_when():
-    """Asked for at 0.5 ms, 200 us long: ended at 0.7 ms; on rx from 2 ms on in steps of 1 ms."""
+    """Requested at 0.5 ms, 200 us long: ended at 0.7 ms; on rx from 2 ms on in steps of 1 ms."""
     scripted = Scripted(bus(), [(500_000, 0, ZERO)])
     scripted.run(5 * MS, MS)
     assert scripted.received(1) == scripted.received(2) == [(700_000, ZERO)]
@@ -98,7 +98,7 @@ def test_a_fault_acts_from_its_time_on():
 
 
 def test_losses_are_of_software_and_not_of_the_bus():
-    """Of 2000 frames 10 % reach nobody and 30 % more of the rest not c: within 4 sigma."""
+    """Of 2000 frames 10 % reach no node and 30 % more of the rest not c: within 4 sigma."""
     count = 2000
     requested = [(n * 500_000, 0, Frame(n % 0x7FF)) for n in range(count)]
     made = bus(loss=0.1, receive_loss=[0.0, 0.0, 0.3, *[0.0] * 9], seed=4.0)
@@ -224,7 +224,7 @@ def test_latency_is_the_longest_of_a_step_and_held():
 
 
 def reported(made, *operations, node=0):
-    """Return what node 0 and 1 hear after a node has told the bus something at 1 ms."""
+    """Return what node 0 and 1 receive after a node has sent operations at 1 ms."""
     memory: dict = {}
     for operation in operations:
         data = operation if isinstance(operation, bytes) else encode(operation)

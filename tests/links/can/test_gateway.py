@@ -1,4 +1,4 @@
-"""The gateways of the gateway with the programs that are to come through them."""
+"""Gateways with the programs that they are for."""
 
 import logging
 import socket
@@ -86,7 +86,7 @@ def test_nothing_is_lost_either_way_at_a_thousand_frames_a_second(gateway, reque
 
 @pytest.mark.parametrize("gateway", ["socketcand:127.0.0.1:0", "virtual:gateway-{}"])
 def test_times_are_simulated(gateway, request):
-    """An extended frame of 8 bytes lasts 131 to 143 us, and its peer asked at a whole 2 ms."""
+    """An extended frame of 8 bytes lasts 131 to 143 us, and its peer requested it at a whole 2 ms."""
     with Served(gateway.format(request.node.name)) as served, open_bus(served) as bus:
         served.wait(lambda: served.now > 500_000_000)
         served.send(Frame(0x18FF0000, b"12345678", True))

@@ -64,7 +64,7 @@ def test_the_binary_log_comes_back_whole(written):
 
 
 def test_what_the_text_log_keeps_and_loses(written):
-    """Frames and microseconds; not what remote frames ask for, nor the class of errors."""
+    """Frames and microseconds; not what remote frames request, nor the class of errors."""
     assert (written / "can.log").read_text().splitlines()[:4] == [
         "(0.000000) can 7FF#010203 R",
         "(0.000001) can 1FFFFFFF#0001020304050607 R",
@@ -117,7 +117,7 @@ def test_a_run_leaves_the_same_bytes_for_the_same_seed(tmp_path):
 
 
 def test_statistics_are_those_of_the_log(tmp_path):
-    """Latencies: from the time at which the frame was asked for to the log's time, rounded up to us."""
+    """Latencies: from the request of the frame to the log's time, rounded up to us."""
     made, _ = run(tmp_path / "one")
     found = json.loads((tmp_path / "one" / "can.json").read_text())
     entries = [each for each in read(tmp_path / "one" / "can.blf") if not each.is_error_frame]

@@ -21,7 +21,7 @@ def node(**values):
 
 
 def requested(made, until_ms, step_ms=1, begin_ms=0, memory=None):
-    """Return (time in ns, frame) of what it asks for."""
+    """Return (time in ns, frame) of what it requests."""
     memory, found = memory if memory is not None else {}, []
     for k in range(begin_ms, until_ms, step_ms):
         made.advance(k / 1e3, step_ms / 1e3)

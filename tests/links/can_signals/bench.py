@@ -12,7 +12,7 @@ from seatrial.links.can_signals.component import CanSignals
 
 
 class Peer(Component):
-    """A node that sends the frames it is given and keeps what it hears, with times in ns."""
+    """A node that sends the frames it is given and keeps what it receives, with times in ns."""
 
     def __init__(self) -> None:
         super().__init__("peer")
@@ -40,7 +40,7 @@ def signals(database: Path | str, **values: object) -> CanSignals:
 
 
 class Bench:
-    """``node`` and a `Peer` on a bus of 500 kbit/s; a wire takes a step, as in a rig."""
+    """``node`` and a `Peer` on a bus of 500 kbit/s; a connection takes a step, as in a rig."""
 
     def __init__(self, node: CanSignals, *, step_ns: int = 5_000_000) -> None:
         self.node, self.peer, self.step_ns = node, Peer(), step_ns
@@ -52,7 +52,7 @@ class Bench:
         self.now = 0
 
     def run(self, seconds: float, frames: Sequence[Frame] = ()) -> None:
-        """Run on; the peer asks for ``frames`` at the beginning."""
+        """Run on; the peer requests ``frames`` at the beginning."""
         peer_tx = self.bus.get("tx.n2")
         for _ in range(round(seconds * 1e9) // self.step_ns):
             rx = self.bus.get("rx")

@@ -30,7 +30,7 @@ MODULES = (
 
 
 class Driver(AbstractDriver):
-    """The package's way to the bus."""
+    """Driver of the package for the simulated bus."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -118,7 +118,7 @@ class Bench:
         return self.now()
 
     def collect(self, kind) -> list:
-        """Return a list that what the peer hears of a type comes into, with its transfer."""
+        """Return a list that what the peer receives of a type comes into, with its transfer."""
         found: list = []
 
         def keep(event) -> None:

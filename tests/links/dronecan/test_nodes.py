@@ -72,7 +72,7 @@ def test_quaternions_are_scipys(phi, theta, psi):
 
 
 def sent_text(outbox: dict, time_ns: int, payload, **fields) -> str:
-    """Return what a bus tells when another node has sent a message."""
+    """Return what a bus sends when another node has sent a message."""
     fields = {"source_node_id": 99, **fields}
     box = Outbox(outbox)
     for each in Transfer(payload=payload, **fields).to_frames():

@@ -258,7 +258,7 @@ def test_a_real_port_needs_permission(monkeypatch):
         ("udpout:127.0.0.1:0", "the port is 0, allowed 1 to 65535"),
         ("serial:/dev/ttyS0:0", "the baud rate is 0"),
         ("pty:", "is not of the form 'pty:/tmp/vehicle'"),
-        (f"udpout:{'x' * 64}:14550", f"host '{'x' * 64}'"),  # refused without asking anybody
+        (f"udpout:{'x' * 64}:14550", f"host '{'x' * 64}'"),  # refused without a look-up
         ("udpin:192.0.2.1:0", "cannot open the link 'udpin:192.0.2.1:0': "),
     ],
 )

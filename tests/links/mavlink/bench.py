@@ -1,4 +1,4 @@
-"""A vehicle on the bench: services in simulated time, an air that writes down what is said."""
+"""A vehicle on the bench: services in simulated time, a transport that records what is sent."""
 
 import math
 from dataclasses import replace
@@ -18,7 +18,7 @@ OTHER_STATION = Sender(250, 190, 1)
 
 
 class RecordingTransport:
-    """An air with two links, that keeps what is said: (link, message), None for all links."""
+    """A transport with two links, that keeps what is sent: (link, message), None for all links."""
 
     def __init__(self):
         self.there = [0, 1]
@@ -138,19 +138,19 @@ class Bench:
         self.receive(mavlink.MAVLink_heartbeat_message(kind, 8, 0, 0, 4, 3), sender)
 
     def texts(self):
-        """Return and forget what was said to people, whole sentences."""
+        """Return and forget the status texts, whole sentences."""
         self.tick()
         return [m.text for m in self.transport.take("STATUSTEXT")]
 
     def request(self, number):
-        """Ask for one message, and return the copies that came."""
+        """Request one message, and return the copies that came."""
         self.transport.take()
         result = self.command(mavlink.MAV_CMD_REQUEST_MESSAGE, number)
         kind = mavlink.mavlink_map[number].msgname
         return result, self.transport.take(kind, STATION.link)
 
     def one(self, number):
-        """Ask for one message and return it."""
+        """Request one message and return it."""
         result, (message,) = self.request(number)
         assert result == mavlink.MAV_RESULT_ACCEPTED
         return message

@@ -1,4 +1,4 @@
-"""A ground station that uploads and downloads as they do, and an air that loses what they say."""
+"""A ground station that uploads and downloads as they do, and a transport that loses messages."""
 
 import math
 import random
@@ -64,7 +64,7 @@ def north_of(metres, east=0.0):
 
 
 def content(message):
-    """Return what an item says, without who it is for and whether it is current."""
+    """Return an item's content, without its target and whether it is current."""
     fields = message.to_dict()
     for name in ("target_system", "target_component", "current", "mavpackettype"):
         del fields[name]
@@ -72,7 +72,7 @@ def content(message):
 
 
 def upload(bench, items, kind=MISSION, sender=STATION, sends=None):
-    """Upload a list over an air that loses nothing; return MAV_MISSION_RESULT."""
+    """Upload a list over a transport that loses nothing; return MAV_MISSION_RESULT."""
     bench.transport.take()
     bench.receive(mavlink.MAVLink_mission_count_message(7, 1, len(items), kind), sender)
     for _ in range(len(items)):
@@ -91,7 +91,7 @@ def upload(bench, items, kind=MISSION, sender=STATION, sends=None):
 def download(
     bench, kind=MISSION, sender=STATION, request=mavlink.MAVLink_mission_request_int_message
 ):
-    """Download a list over an air that loses nothing; return its items."""
+    """Download a list over a transport that loses nothing; return its items."""
     bench.transport.take()
     bench.receive(mavlink.MAVLink_mission_request_list_message(7, 1, kind), sender)
     (count,) = bench.transport.take("MISSION_COUNT", sender.link)
@@ -114,7 +114,7 @@ def save(items, path: Path):
 
 
 def as_float(m):
-    """Return a MISSION_ITEM_INT as the MISSION_ITEM that says the same."""
+    """Return a MISSION_ITEM_INT as the MISSION_ITEM with the same content."""
     unit = 1e-7 if m.frame in (GLOBAL, RELATIVE) else 1
     return mavlink.MAVLink_mission_item_message(
         m.target_system,

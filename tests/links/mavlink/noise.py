@@ -89,7 +89,7 @@ def value(random, kind):
 
 
 def message(random, system=None):
-    """Return any message with any content, meant for ``system`` or for anybody."""
+    """Return any message with any content, meant for ``system`` or for all."""
     cls = random.choice(RECEIVED if random.random() < 0.7 else ALL)
     # Lengths are given in the order of the frame.
     lengths = dict(zip(cls.ordered_fieldnames, cls.array_lengths, strict=True))

@@ -178,8 +178,8 @@ def test_descriptions_of_components_are_refused_at_once(number):
     ("options", "parameters", "name"),
     [
         ({}, (1, 0), "manual"),
-        ({}, (1, 15), "guided"),  # as MAVProxy asks
-        ({}, (129, 11, 0), "return"),  # as MAVSDK asks
+        ({}, (1, 15), "guided"),  # as MAVProxy requests it
+        ({}, (129, 11, 0), "return"),  # as MAVSDK requests it
         ({"submerged": True}, (1, 19), "manual"),
         ({"submerged": True}, (1, 2), "depth-hold"),
         ({"submerged": True}, (1, 0), "stabilize"),

@@ -76,7 +76,7 @@ def until(component, wanted):
 
 
 def received(component, station, kind, accept=lambda m: True):
-    """Step until the ground station hears such a message, and return it."""
+    """Step until the ground station receives such a message, and return it."""
 
     def found():
         message = station.recv_match(type=kind)
@@ -125,7 +125,7 @@ def test_two_ground_stations_at_once(started, connect):
     assert received(boat, one, "COMMAND_ACK").command == 519
     assert received(boat, other, "AUTOPILOT_VERSION")
     assert received(boat, other, "COMMAND_ACK").command == 512
-    # No frame is lost on the way to either, whoever gets which.
+    # No frame is lost on the way to either.
     assert (one.mav_loss, other.mav_loss) == (0, 0)
 
 
@@ -196,7 +196,7 @@ def test_signatures(started, connect, tmp_path):
     until(boat, lambda: boat.get("ground_stations") == 2)  # presence needs none
     arm = (1, 1, 400, 0, 1, 0, 0, 0, 0, 0, 0)
     for station in (stranger, owner):
-        # Nobody changes the key over a link, not even who knows it.
+        # The key cannot be changed over a link, not even by a station that knows it.
         station.mav.setup_signing_send(1, 1, list(range(32)), 0)
     stranger.mav.command_long_send(*arm)
     for _ in itertools.islice(steps(boat), 50):

@@ -1,4 +1,4 @@
-"""Failures that a station orders, by pymavlink's own list of units and types."""
+"""Failure injection, by pymavlink's own list of units and types."""
 
 import math
 
@@ -80,7 +80,7 @@ def test_people_are_told_what_fails_and_what_is_mended():
     boat.command(INJECT, MOTOR, STUCK)
     assert boat.texts() == []
     boat.command(INJECT, MOTOR, OK, 1)
-    assert boat.texts() == ["Mended: motor1"]
+    assert boat.texts() == ["Cleared: motor1"]
     boat.command(INJECT, mavlink.FAILURE_UNIT_SENSOR_VIO, OFF)
     assert "".join(boat.texts()) == "No failure injected: this vehicle has no such unit to fail"
 

@@ -180,7 +180,7 @@ def test_it_acts_once_per_breach():
     boat = Fenced()
     boat.arm()
     boat.be(51.0)
-    boat.enter("manual")  # somebody brings it back
+    boat.enter("manual")  # a pilot brings it back
     boat.wait(5.0)
     assert boat.vehicle.mode.name == "manual"
 

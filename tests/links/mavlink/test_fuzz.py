@@ -1,4 +1,4 @@
-"""Whatever comes over a link: no crash, and with signatures no command from a stranger."""
+"""Fuzzing of a link: no crash, and with signatures no command from a stranger."""
 
 import hashlib
 import random
@@ -53,7 +53,7 @@ def deliver(bench, codec, data):
 
 
 def reported_state(bench):
-    """Return all that somebody may change in a vehicle."""
+    """Return all that a station may change in a vehicle."""
     v, table = bench.vehicle, bench.parameters
     plans = [[content(m) for m in download(bench, kind)] for kind in (MISSION, FENCE, RALLY)]
     values = [table[name] for name in table.names]

@@ -134,10 +134,10 @@ def test_velocities_with_global_frames_are_north_and_east(boat):
         local(NED, VELOCITY, velocity=(0, 1e4, 0)),
         local(NED, YAW, yaw=NAN),
         local(NED, 0xFFF),
-        local(4, POSITION, (1, 1, 1)),  # ENU is not spoken here
+        local(4, POSITION, (1, 1, 1)),  # ENU is not supported
         global_(6, POSITION, 91.0, 0.0, 0.0),
         global_(6, POSITION, 31.78, 52.26, 0.0),  # the other side of the Earth
-        global_(11, POSITION, -31.78, -52.26, 0.0),  # above terrain that nobody knows
+        global_(11, POSITION, -31.78, -52.26, 0.0),  # above terrain that is not known
         attitude(1.0, NAN),
         attitude(1.0, 1.0, mask=0x87),
         mavlink.MAVLink_set_attitude_target_message(0, 7, 1, 7, [0, 0, 0, 0], 0, 0, 0, 1),

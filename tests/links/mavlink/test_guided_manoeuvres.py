@@ -105,7 +105,7 @@ def test_a_px4_shows_hold_while_it_goes_elsewhere():
     boat.wait(1.0)
     (heartbeat, *_) = boat.transport.take("HEARTBEAT")
     assert heartbeat.custom_mode == hold.custom_mode
-    boat.receive(ahead(0.6, 0.0))  # counts in Offboard alone
+    boat.receive(ahead(0.6, 0.0))  # applies in Offboard alone
     assert boat.vehicle.target.kind == "position"
     boat.enter("hold")
     assert boat.vehicle.target is None

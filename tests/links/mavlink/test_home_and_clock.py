@@ -100,7 +100,7 @@ def test_time_is_synchronised_to_simulated_time():
     bench.receive(mavlink.MAVLink_timesync_message(0, 123_456_789), OTHER_STATION)
     (answer,) = bench.transport.take("TIMESYNC", OTHER_STATION.link)
     assert (answer.tc1, answer.ts1) == (1_230_000_000, 123_456_789)
-    bench.receive(mavlink.MAVLink_timesync_message(5, 6))  # somebody's answer
+    bench.receive(mavlink.MAVLink_timesync_message(5, 6))  # another station's answer
     assert bench.transport.take("TIMESYNC") == []
 
 

@@ -93,7 +93,7 @@ def test_sticks_that_nobody_holds_let_go_and_the_failsafe_acts(message):
     assert bench.vehicle.failsafe
     bench.receive(message)
     assert not bench.vehicle.failsafe
-    assert bench.vehicle.mode.name == "hold"  # nobody is thrown back into manual
+    assert bench.vehicle.mode.name == "hold"  # it is not put back into manual
 
 
 def test_what_is_said_of_lost_sticks():
@@ -104,7 +104,7 @@ def test_what_is_said_of_lost_sticks():
     bench.texts()
     bench.wait(2.0)
     sent = [m.text for m in bench.transport.take("STATUSTEXT")]
-    assert sent == ["Failsafe: sticks lost, hold", "Mode HOLD"]
+    assert sent == ["Failsafe: manual control lost, hold", "Mode HOLD"]
 
 
 def test_who_releases_all_channels_has_let_go_on_purpose():

@@ -45,7 +45,7 @@ def square():
 
 
 class Mission(Bench):
-    """A bench whose vehicle gets where it is sent when somebody says so."""
+    """A bench whose vehicle gets where it is sent when a test has it."""
 
     def __init__(self, items, **bench):
         super().__init__(**bench)
@@ -66,13 +66,13 @@ class Mission(Bench):
         self.tick()
 
     def arrive(self):
-        """Be at the end of the leg, and hear it from guidance."""
+        """Be at the end of the leg, as guidance reports it."""
         self.measure(position_n=self.leg.end)
         self.node.missions.reached = self.leg.number
         self.tick()
 
     def reached(self):
-        """Return and forget the items that were told to be reached."""
+        """Return and forget the items that were reported as reached."""
         return [m.seq for m in self.transport.take("MISSION_ITEM_REACHED", None)]
 
     def current(self):
@@ -133,7 +133,7 @@ def test_a_leg_of_before_does_not_count():
     boat = Mission(square())
     boat.go()
     boat.arrive()
-    boat.wait(1.0)  # guidance says the old number for a while
+    boat.wait(1.0)  # guidance reports the old number for a while
     assert boat.current() == (2, ACTIVE)
 
 
@@ -196,7 +196,7 @@ def test_the_speed_of_the_leg_changes_by_command():
     assert boat.command(SPEED, 1, 2.0) == OK
     assert (boat.leg.number, boat.leg.end, boat.leg.speed) == (before.number, before.end, 2.0)
     for speed in (math.nan, math.inf, 0.0, -3.0, 1e6):
-        assert boat.command(SPEED, 1, speed) == OK  # nothing asked for
+        assert boat.command(SPEED, 1, speed) == OK  # nothing requested
         assert boat.leg.speed == 2.0
     boat.arrive()
     assert boat.leg.speed == 2.0

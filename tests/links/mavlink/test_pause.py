@@ -144,7 +144,7 @@ def test_commands_are_carried_out_and_time_sync_stands_still():
 
 def test_a_mission_is_uploaded_with_requests_again_where_one_was_lost():
     count = mavlink.MAVLink_mission_count_message(7, 1, 2, 0)
-    # The item that was asked for at 1 s comes after the second and the third time.
+    # The item that was requested at 1 s comes after the second and the third time.
     items = [(3.5, item(0)), (3.8, item(1, WAYPOINT))]
     standing = Standing([(1.0, count), *items, *beats(6), (6.0, put(SPEEDUP, 1.0))])
     standing.run()
@@ -205,7 +205,7 @@ def test_a_signal_ends_it_and_reaches_its_handler(number):
         timer = threading.Timer(0.3, lambda: signal.raise_signal(number))
         begun = time.monotonic()
         timer.start()
-        # Somebody always says something.
+        # A station always sends something.
         stand_still(lambda: True, bench.node, bench.settings, table)
         assert time.monotonic() - begun >= 0.25
         assert asked == [number]

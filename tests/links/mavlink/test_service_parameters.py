@@ -97,7 +97,7 @@ def test_stations_on_two_links_get_a_list_each(bench: ParameterBench) -> None:
 
 
 def test_who_asks_again_and_again_gets_the_list_all_the_same(bench: ParameterBench) -> None:
-    """A list takes 1.2 s; a station that asks each second would never see its end."""
+    """A list takes 1.2 s; a station that requests it each second would never see its end."""
     for _ in range(3):
         bench.request_list()
         bench.wait(1.0)
@@ -106,7 +106,7 @@ def test_who_asks_again_and_again_gets_the_list_all_the_same(bench: ParameterBen
     assert len(indices) == pytest.approx(3.0 * RATE, abs=3)
     bench.wait(2.0)
     last = [m.param_index for m in bench.transport.take("PARAM_VALUE", link=0)]
-    assert set(indices[200:] + last) == set(range(COUNT))  # since it was asked last, after 2 s
+    assert set(indices[200:] + last) == set(range(COUNT))  # since the last request, after 2 s
 
 
 def test_a_slow_vehicle_sends_as_many_a_second(bench: ParameterBench) -> None:
@@ -230,7 +230,7 @@ def test_px4_refuses_another_type(bench: ParameterBench) -> None:
 
 
 class Client:
-    """Asks for the list, then each half second for what it has not got, as ground stations do."""
+    """Requests the list, then each half second for what it has not got, as ground stations do."""
 
     def __init__(self) -> None:
         self.values: dict[int, tuple[str, float]] = {}

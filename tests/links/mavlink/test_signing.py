@@ -104,7 +104,7 @@ def test_presence_with_a_wrong_or_old_signature_is_refused(guarded):
     guarded.decode(frame)
     assert guarded.decode(frame) == []
     assert guarded.decode(HEARTBEAT.pack(station(OTHER_KEY))) == []
-    # And that says nothing against the next unsigned one.
+    # And the next unsigned one is still received.
     assert len(guarded.decode(HEARTBEAT.pack(station(None)))) == 1
 
 
@@ -128,10 +128,10 @@ def test_frames_of_an_earlier_run_are_refused(tmp_path):
     frame = ARM.pack(sender)
     assert len(Codec(7, 1, 0, first).decode(frame)) == 1
     first.save()
-    # The clock has not moved: nothing but the file tells that this frame is old.
+    # The clock has not moved: only by the file is this frame old.
     again = Codec(7, 1, 0, signing(path))
     assert again.decode(frame) == []
-    # The owner hears us, takes our time and is received again.
+    # The owner receives our frames, takes our time and is received again.
     sender.parse_buffer(again.encode(HEARTBEAT))
     assert len(again.decode(ARM.pack(sender))) == 1
 

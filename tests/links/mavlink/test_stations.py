@@ -83,7 +83,7 @@ def test_it_acts_once_and_again_after_somebody_was_back():
         assert not bench.vehicle.failsafe
         bench.wait(3.0)
         assert bench.vehicle.mode.name == "hold"
-        bench.enter("guided")  # somebody without a heartbeat; nobody acts against that
+        bench.enter("guided")  # a sender without a heartbeat; not refused
         bench.wait(10.0)
         assert bench.vehicle.mode.name == "guided"
 

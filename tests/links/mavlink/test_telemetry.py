@@ -1,4 +1,4 @@
-"""What the messages say, against the conversions written out here or made by pymavlink."""
+"""Content of telemetry messages, against conversions written out here or made by pymavlink."""
 
 import math
 from dataclasses import replace
@@ -256,5 +256,5 @@ def test_values_of_any_size_can_be_sent(x, submerged):
         ground_distance=x[0],
         way=Way(*x[:5]),
     )
-    bench.wait(1.0)  # the air of the bench packs every message
+    bench.wait(1.0)  # the transport of the bench packs every message
     assert len(bench.transport.sent) > 20

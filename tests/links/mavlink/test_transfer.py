@@ -58,7 +58,7 @@ def bench():
 
 
 def same(found, sent, first=0):
-    """Say if items are the same; what is not a number is the same as itself."""
+    """Return whether items are the same; what is not a number is the same as itself."""
     return repr([content(m) for m in found[first:]]) == repr([content(m) for m in sent[first:]])
 
 
@@ -71,12 +71,12 @@ def acks(bench, sender=STATION):
 
 
 def sent(bench):
-    """Return what was said to people: pieces of a sentence joined, and all sentences too."""
+    """Return the status texts: pieces of a sentence joined, and all sentences too."""
     return "".join(bench.texts())
 
 
 def requested(bench, sender=STATION):
-    """Return the items that are asked for, and as what."""
+    """Return the items that are requested, and by which message."""
     expected = bench.transport.take(link=sender.link)
     return [(m.get_type(), m.seq) for m in expected if m.get_type().startswith("MISSION_REQUEST")]
 
@@ -205,7 +205,7 @@ def test_duplicates_are_ignored(bench):
     for message in MISSION_ITEMS[:3]:
         bench.receive(message)
         bench.receive(message)
-    # The last one's duplicate is a sender's who missed the answer.
+    # A duplicate of the last one: its sender missed the answer.
     assert requested(bench) == [("MISSION_REQUEST_INT", n) for n in range(3)]
     bench = Bench()
     bench.receive(count(3))

@@ -1,4 +1,4 @@
-"""Whatever is said about missions: no crash, and a list is never half replaced."""
+"""Fuzzing of mission messages: no crash, and a list is never half replaced."""
 
 import math
 import os
@@ -94,8 +94,8 @@ def test_a_list_is_the_old_one_or_the_new_one(order, noise):
     old = [item(n, at=north_of(n)) for n in range(3)]
     new = [item(n, at=north_of(10 + n)) for n in range(5)]
     assert upload(bench, old) == 0
-    # An upload with losses, repetitions and neighbours that change places, and somebody who
-    # says anything in between but has no items.
+    # An upload with losses, repetitions and neighbours that change places, and a station that
+    # sends anything in between but has no items.
     sent = [mavlink.MAVLink_mission_count_message(7, 1, len(new), MISSION), *new]
     sent = [(m, STATION) for m in sent for _ in range(order.choice([0, 1, 1, 1, 1, 2]))]
     for k in range(len(sent) - 1):

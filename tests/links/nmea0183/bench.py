@@ -1,4 +1,4 @@
-"""An NMEA 0183 component that a test feeds and steps, and pynmea2 as who reads it."""
+"""An NMEA 0183 component that a test feeds and steps, and pynmea2 as its reader."""
 
 import math
 import re
@@ -94,7 +94,7 @@ class Bench:
         self.one.set("rx", encode(self.number, [(self.now, each) for each in data]))
 
     def run(self, seconds: float, step_ns: int = 50_000_000) -> list[bytes]:
-        """Run on; return what was said on the port meanwhile."""
+        """Run on; return what was sent on the port meanwhile."""
         before = len(self.sent)
         for _ in range(round(seconds * 1e9) // step_ns):
             self.one.advance(self.now / 1e9, step_ns / 1e9)

@@ -1,4 +1,4 @@
-"""Over sockets and lines, with a peer that pynmea2, sockets and pyserial make."""
+"""NMEA 0183 over sockets and lines, with a peer of pynmea2, sockets and pyserial."""
 
 import contextlib
 import socket
@@ -104,7 +104,7 @@ def test_a_serial_line(tmp_path):
 
 
 def test_two_components_by_their_ports():
-    """A plotter's orders are text to a board or a simulated topside as they are to a socket."""
+    """A plotter's commands are text to a board or a simulated topside as they are to a socket."""
     boat = Bench(sentences="GPRMC 1")
     plotter = Bench(sentences="HEHDT 0.5")
     plotter.set(**VALID)

@@ -1,4 +1,4 @@
-"""What is received: sentences that pynmea2 wrote, sentences as plotters send them, and noise."""
+"""Received sentences: those that pynmea2 wrote, sentences as plotters send them, and noise."""
 
 import random
 

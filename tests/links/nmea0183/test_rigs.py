@@ -1,4 +1,4 @@
-"""Gloria with her feed: what plotters read is where she is, and she goes where one says."""
+"""Gloria with her feed: what plotters read is where she is, and she goes where one commands."""
 
 import csv
 import math

@@ -1,4 +1,4 @@
-"""What is said, read by pynmea2, which did not write it."""
+"""Sent sentences, read by pynmea2, which did not write them."""
 
 import datetime
 import math

@@ -26,7 +26,7 @@ def node(name: str = "node", **settings: Any) -> Nmea2000:
 
 
 class Network:
-    """Nodes by name, and one more on the bus that only listens and says what a test wants.
+    """Nodes by name, and one more on the bus that only listens and sends what a test wants.
 
     ``frames`` has (time in ns, frame) of all that was on the bus, ``messages`` what it means.
     """

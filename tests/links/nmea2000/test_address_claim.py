@@ -1,4 +1,4 @@
-"""Address claiming in simulated time, without a bus; canboat's own claimer as a peer."""
+"""Address claiming in simulated time, without a bus, with canboat's own claimer as another node."""
 
 import copy
 import heapq
@@ -76,7 +76,7 @@ class Canboat:
 
 
 def settle(nodes, until_ms=SETTLED_MS, start_ms=None):
-    """Run nodes on a wire that delivers to all others; return [(time in ns, name, source)]."""
+    """Run nodes on a bus that delivers to all others; return [(time in ns, name, source)]."""
     starts = [((start_ms or {}).get(k, 0)) * MS for k in range(len(nodes))]
     sent, on_the_way, now = [], [], 0
     while now < until_ms * MS:
@@ -127,7 +127,7 @@ def test_the_lower_name_defends_what_it_has():
     low, high = Ours(100, 35), Ours(200, 35)
     sent = settle([low, high], start_ms={1: 1000})
     assert (low.address, high.address) == (35, 36)
-    # The newcomer has received nothing before it claims; it is told, and goes.
+    # The newcomer has received nothing before it claims; it receives the claim, and moves.
     assert [(name, source) for _, name, source in sent] == [
         (100, 35),
         (200, 35),
@@ -138,7 +138,7 @@ def test_the_lower_name_defends_what_it_has():
 
 @pytest.mark.parametrize(("until_ms", "address"), [(2300, None), (2400, 36)])
 def test_a_late_lower_name_takes_an_address_in_use(until_ms, address):
-    """Who had it moves on, and is silent for 250 ms: from 2077 ms on here."""
+    """Its holder moves on, and is silent for 250 ms: from 2077 ms on here."""
     low, high = Ours(100, 35), Ours(200, 35)
     settle([low, high], start_ms={0: 2000}, until_ms=until_ms)
     assert high.address == address
@@ -190,7 +190,7 @@ def test_it_settles_with_canboats_claimer(ours, theirs, arbitrary, late):
     assert one.address is None or one.address != other.address
     if ours < theirs:
         assert one.address == 35
-    elif late > 1250:  # it has its address; before, it gives way to whom it hears in its scan
+    elif late > 1250:  # it has its address; before, it gives way to claims in its scan
         assert other.address == 35
         assert one.address == (36 if arbitrary[0] else None)
 

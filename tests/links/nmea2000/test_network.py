@@ -201,7 +201,7 @@ def test_a_claim_in_the_middle_of_a_fast_packet_ends_it():
         network.run(0.03)  # a claim has a low priority
     reader = network.nodes["reader"]
     assert not reader.get("bus_position_valid")
-    # Without the claim, nobody could tell.
+    # Without the claim, no node could know.
     for frame in (*one[:3], *other[3:]):
         network.send(frame)
     network.run(0.2)
@@ -253,7 +253,7 @@ def test_five_percent_of_loss_gives_no_wrong_value():
 
 
 def test_a_copy_of_the_state_goes_on_to_the_same_bytes():
-    """Also in the middle of a fast packet, for who reads and who sends."""
+    """Also in the middle of a fast packet, for reader and sender."""
     gnss = {"sends": "129029 127250 129025", "position_n": [1.0, 2.0, 3.0]}
     network = Network({"gnss": gnss, "reader": {}}, step_ns=1_000_000)
     network.run(1.0)

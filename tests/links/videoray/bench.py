@@ -69,7 +69,7 @@ class Line:
         Outbox(self._out).put(self.now if at_ns is None else at_ns, data)
 
     def step(self, count=1):
-        """Step and return (time ns, bytes) of what was said."""
+        """Step and return (time ns, bytes) of what was sent."""
         received = []
         for _ in range(count):
             self.component.set("rx", Outbox(self._out).flush())
@@ -79,7 +79,7 @@ class Line:
         return received
 
     def exchange(self, frame, steps=5, dialect=PRO4):
-        """Say a request and return the frames that come back."""
+        """Send a request and return the frames that come back."""
         self.send(encode(frame, dialect))
         return [f for _, data in self.step(steps) for f in frames(data, dialect)]
 

@@ -26,7 +26,7 @@ def memory_behind(number):
     if number < 3:
         return memory_of(PACKETS[5])
     memory = memory_of(PACKETS[5] if number < 4 else PACKETS[9])
-    if number == 3:  # reply 5: what it says itself
+    if number == 3:  # reply 5: its own content
         (frame,) = frames(PACKETS[7])
         for name, value in read(5, frame.payload[1:]).values.items():
             csr.put(memory, name, csr.BY_NAME[name].clipped(value))

@@ -83,7 +83,7 @@ def test_what_outlives_a_reboot(commits):
         other = make_node(commits=True)
         other.handle(request(payload=everything))
         other.reboot()
-        assert other.memory == factory  # nobody said so
+        assert other.memory == factory  # without a commit
         node.handle(request(address=csr.COMMIT, payload=b"\1\0"))
     node.reboot()
     kept = {a for a in range(csr.TOP) if node.memory[a] == changed[a] != factory[a]}

@@ -1,4 +1,4 @@
-"""A simulated board: a program of its own that runs until it is told, over two pipes.
+"""Simulated board: a process that runs up to a given cycle, over two pipes.
 
 A sketch that crashes, hangs or overruns its stack takes nothing else along. What a board says is
 a list of events, each with the CPU cycle at which it happened.
@@ -34,7 +34,7 @@ Event = tuple[int, int, int, int]
 
 @dataclass
 class Inputs:
-    """What a board is told before it runs on: see ``shared/link.h``."""
+    """Records sent to a board before it runs on: see ``shared/link.h``."""
 
     data: bytearray = field(default_factory=bytearray)
 

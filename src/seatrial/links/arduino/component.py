@@ -50,7 +50,7 @@ class Arduino(ArduinoPorts):
     stamped with its cycle; an output at t has what happened before t. Bytes that arrive on
     ``rx`` are put on the line one after the other at the baud rate of ``uarts``, not before
     their time and not before the step that has them; those that a UART sends are on ``tx`` when
-    their stop bit is over. A monitor hears what its UART says, and what it types the UART hears
+    their stop bit is over. A monitor receives what its UART sends, and its input goes to the UART
     with the next step, besides what is on ``rx``. Bytes that come or go while a line is ``cut``
     are lost.
 
@@ -186,7 +186,7 @@ class Arduino(ArduinoPorts):
         self._last[("", 0)] = 0.0  # connected
 
     def _signals(self, wire: Wire) -> list[tuple[tuple[str, int], float]]:
-        """Return what a wire has to tell the board: kind and index, value."""
+        """Return the records that a wire's signals give: kind and index, value."""
         kind, n = wire.kind, wire.number - 1
         if kind == "voltage":
             return [(("A", self._channel(wire)), self.voltage[n])]

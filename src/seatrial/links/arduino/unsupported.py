@@ -1,4 +1,4 @@
-"""What of a sketch the host back end cannot run, with file, line and what to do."""
+"""Sketch features that the host back end cannot run, with file, line and what to do."""
 
 from __future__ import annotations
 

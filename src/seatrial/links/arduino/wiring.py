@@ -1,4 +1,4 @@
-"""What is connected to a board: pins, I2C devices and UARTs, as a profile writes it."""
+"""Wiring of a board: pins, I2C devices and UARTs, as a profile writes it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How many bits a frame has on the bus, to the bit: fields, CRC and stuff bits (ISO 11898-1).
+"""Exact lengths of frames on the bus: fields, CRC and stuff bits (ISO 11898-1).
 
 After five equal bits a transmitter inserts one of the other value: in classic frames from the
 start of frame to the end of the CRC, in CAN FD to the end of the data. CAN FD's CRC field has
@@ -145,7 +145,7 @@ def _fd_begun(identifier: int, extended: bool, switch: bool) -> tuple[int, int, 
 def _fd_stuffed(state: int, frame: Frame) -> int:
     """Return the stuff bits from ESI to the end of the data.
 
-    What the very last bit asks for is the CRC field's first fixed stuff bit, and not counted.
+    What the very last bit requests is the CRC field's first fixed stuff bit, and not counted.
     """
     control = int(frame.error_state) << 4 | frame.dlc
     if not frame.data:

@@ -52,7 +52,7 @@ class CanBus(Logging, Noise, Component):
 
     **Time.** Frames, queues and arbitration are `SimulatedBus`'s: to the bit, however coarse the
     communication step. In the step from t to t + h the bus lives until t, since all that nodes
-    asked for until then is known; so what ended by t is on ``rx`` and on all other outputs at
+    requested until then is known; so what ended by t is on ``rx`` and on all other outputs at
     t + h: one step late, with the time at which it ended, and never wrong.
 
     **Controllers** have ``mailboxes`` and a queue of ``queue_length`` (`Controller`), and come back
@@ -113,15 +113,15 @@ class CanBus(Logging, Noise, Component):
         max=1.0,
         tunable=True,
     )
-    watched = Parameter("", "1", "identifiers whose latency is told, separated by spaces")
+    watched = Parameter("", "1", "identifiers whose latency is reported, separated by spaces")
     load_window = Parameter(1.0, "s", "time over which the load is counted", min=1e-3)
 
-    tx = Input("1", "what nodes tell the bus", type=str, axes=_NODES, optional=True)
+    tx = Input("1", "operations from the nodes", type=str, axes=_NODES, optional=True)
     fault = Input(
         "1", f"{', '.join(FAULTS)}", type=str, axes=_NODES, start=("none",) * NODES, optional=True
     )
 
-    rx = Output("1", "what the bus tells nodes", type=str, axes=_NODES)
+    rx = Output("1", "operations to the nodes", type=str, axes=_NODES)
     load = Output("1", "share of time that the bus is busy")
     frames = Output("1", "frames sent", type=int)
     error_frames = Output("1", "error frames", type=int)
@@ -159,7 +159,7 @@ class CanBus(Logging, Noise, Component):
         self._build(names, silent)
 
     def step(self, t: float, h: float) -> None:
-        """Take in what nodes have asked for, and let the bus live until ``t``."""
+        """Take in what nodes have requested, and let the bus live until ``t``."""
         if self._run_log is not None:
             self._run_log.open(self.run_folder)
         for node, (inbox, text) in enumerate(zip(self._inboxes, self.tx, strict=False)):
@@ -176,7 +176,7 @@ class CanBus(Logging, Noise, Component):
         self._apply_faults()
 
     def outputs(self, t: float) -> None:
-        """Publish what the bus told, and its counts."""
+        """Publish the bus's operations and counters."""
         each = self._bus.controllers
         nothing = (0,) * (NODES - len(each))
         self.rx = [*(port.text for port in self._ports), *("" for _ in nothing)]
@@ -346,7 +346,7 @@ class CanBus(Logging, Noise, Component):
 
 
 def _rounded_up(time_ps: int) -> int:
-    """Return a time in ns: nothing is told before it has happened."""
+    """Return a time in ns: nothing is reported before it has happened."""
     return -(-time_ps // _PS_PER_NS)
 
 

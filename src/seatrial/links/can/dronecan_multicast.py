@@ -28,7 +28,7 @@ _LONGEST = 2 * 64
 
 
 def packed(frame: Frame) -> bytes | None:
-    """Return a frame as a datagram, None for a remote frame: there is no word for it."""
+    """Return a frame as a datagram, None for a remote frame: the protocol has none."""
     if frame.remote:
         return None
     identifier = frame.identifier | (_EXTENDED if frame.extended else 0)
@@ -57,7 +57,7 @@ def unpacked(datagram: bytes) -> Frame | None:
 
 
 class DroneCanMulticastGateway(Gateway):
-    """A bus of this machine's programs; they hear each other without it.
+    """A bus of this machine's programs, which receive each other without it.
 
     It joins and sends on the loopback interface alone. Programs that leave the choice to the
     system are there too if the route of the group leads there.
@@ -72,7 +72,7 @@ class DroneCanMulticastGateway(Gateway):
         self._receiving, self._sending = _socket(), _socket()
         try:
             self._receiving.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-            # Bound to the group, a socket hears nothing else; Windows cannot.
+            # Bound to the group, a socket receives nothing else; Windows cannot.
             self._receiving.bind((LOOPBACK if sys.platform == "win32" else self._group, PORT))
             member = socket.inet_aton(self._group) + socket.inet_aton(LOOPBACK)
             self._receiving.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, member)
@@ -86,11 +86,11 @@ class DroneCanMulticastGateway(Gateway):
 
     @property
     def clients(self) -> int:
-        """Return how many have said something."""
+        """Return how many have sent something."""
         return len(self._senders)
 
     def poll(self) -> list[tuple[int, Frame]]:
-        """Return frames that have arrived, and who sent each; others' datagrams are passed over."""
+        """Return frames that have arrived, with their senders; other datagrams are passed over."""
         found: list[tuple[int, Frame]] = []
         own = self._sending.getsockname()
         while len(found) < MOST_FRAMES:

@@ -62,7 +62,7 @@ class Frame:
 
     @property
     def priority(self) -> int:
-        """What arbitration compares, bit by bit: the lower wins.
+        """Bits that arbitration compares, one by one: the lower value wins.
 
         The arbitration field: 11 bits of identifier, RTR or SRR, IDE, and in extended frames 18
         bits and RTR. A base frame wins against an extended one with the same first 11 bits, a

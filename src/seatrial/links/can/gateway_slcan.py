@@ -1,4 +1,4 @@
-"""An adapter that speaks slcan, as serial CAN adapters do.
+"""slcan gateway: an adapter as serial CAN adapters are.
 
 Commands of LAWICEL's CAN232 and, for CAN FD, of the CANable 2: one letter, then digits, ended by
 a carriage return. Every one is answered, by a carriage return if it was understood and by BEL if

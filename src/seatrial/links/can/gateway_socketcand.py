@@ -1,4 +1,4 @@
-"""A server for clients of socketcand: python-can's ``socketcand``, SavvyCAN, Kayak.
+"""socketcand gateway: a server for python-can's ``socketcand``, SavvyCAN, Kayak.
 
 socketcand's protocol in its raw mode (linux-can/socketcand, doc/protocol.md): texts between
 ``<`` and ``>``. The client is greeted, opens a bus, whose name does not matter here, and asks

@@ -39,7 +39,7 @@ _FIRST_DRAW = 100
 
 
 class Task(NamedTuple):
-    """What a node does every ``period`` (s), at most each millisecond; never if that is 0."""
+    """Task of a node every ``period`` (s), at most each millisecond; never if that is 0."""
 
     name: str
     period: float
@@ -73,12 +73,12 @@ def check_version(text: str) -> None:
 class DroneCanNode(Noise, Component):
     """Base of the nodes of a DroneCAN bus.
 
-    **It says** NodeStatus once a second, and answers GetNodeInfo, RestartNode, param.GetSet and
-    param.ExecuteOpcode. With the ``node_id`` 0 it first asks an allocator for one, by its
-    ``unique_id`` (`Allocatee`), and until then says and takes in nothing else. Without a
+    **It sends** NodeStatus once a second, and answers GetNodeInfo, RestartNode, param.GetSet and
+    param.ExecuteOpcode. With the ``node_id`` 0 it first requests one of an allocator, by its
+    ``unique_id`` (`Allocatee`), and until then sends and takes in nothing else. Without a
     ``unique_id`` it is made of the component's name.
 
-    **Time** is simulated: what is due from t to before t + h is asked for at its very time, with
+    **Time** is simulated: what is due from t to before t + h is requested at its very time, with
     the inputs as of t; requests are answered at the beginning of the step in which they are
     received.
 
@@ -86,8 +86,8 @@ class DroneCanNode(Noise, Component):
     once, but for ``NODE_ID`` and ``CHANNELS``, which wait for a restart. A restart forgets what was
     not saved, counts time and transfers anew, and is over at once.
 
-    Whoever writes one declares ``messages``, the message types that it takes in, and overrides
-    `begin`, `settings`, `tasks`, `received` and `attention`; it sends with `say`.
+    A subclass declares ``messages``, the message types that it takes in, and overrides
+    `begin`, `settings`, `tasks`, `received` and `attention`; it sends with `send`.
     """
 
     feedthrough: ClassVar = {}
@@ -107,9 +107,9 @@ class DroneCanNode(Noise, Component):
     software_version = Parameter("1.0", "1", "version of the software", check=check_version)
     hardware_version = Parameter("1.0", "1", "version of the hardware", check=check_version)
 
-    rx = Input("1", "what the bus tells", type=str)
+    rx = Input("1", "operations from the bus", type=str)
 
-    tx = Output("1", "what it tells the bus", type=str)
+    tx = Output("1", "operations to the bus", type=str)
     own_id = Output("1", "node ID that it has, 0 while it has none", type=int)
     malformed = Output("1", "transfers received that could not be understood", type=int)
 
@@ -130,7 +130,7 @@ class DroneCanNode(Noise, Component):
         """Take in a message of `messages`, which was on the bus at ``time_ns``."""
 
     def attention(self) -> bool:
-        """Say if the node's health is a warning."""
+        """Return whether the node's health is a warning."""
         return False
 
     # ------------------------------------------------------------------ running
@@ -148,7 +148,7 @@ class DroneCanNode(Noise, Component):
         self._boot()
 
     def step(self, t: float, h: float) -> None:
-        """Take in what was received, and say what is due from ``t`` to before ``t + h``."""
+        """Take in what was received, and send what is due from ``t`` to before ``t + h``."""
         wanted = self._wanted if self._id else _ALLOCATION
         restarts = False
         for when, transfer in self._transfers.receive(self.rx, wanted, self._id):
@@ -164,7 +164,7 @@ class DroneCanNode(Noise, Component):
         self._node.flush()
 
     def outputs(self, t: float) -> None:
-        """Publish what is said."""
+        """Publish what is sent."""
         self.publish("tx", self._node.text)
         self.publish("own_id", self._id)
         self.publish("malformed", self._transfers.malformed)
@@ -269,7 +269,7 @@ class DroneCanNode(Noise, Component):
     # ------------------------------------------------------------------ services
 
     def _serve(self, request: Transfer) -> bool:
-        """Answer a request; say if the node restarts."""
+        """Answer a request; return whether the node restarts."""
         requested, restarts = request.payload, False
         if not request.request_not_response:
             return False

@@ -36,7 +36,7 @@ class Setting:
         return {int: "integer_value", float: "real_value", str: "string_value"}[kind]
 
     def accepts(self, value: Value) -> bool:
-        """Say if it may have this value."""
+        """Return whether it may have this value."""
         if isinstance(value, str):
             try:
                 if self.check is not None:

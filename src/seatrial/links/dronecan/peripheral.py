@@ -1,4 +1,4 @@
-"""What hangs on an autopilot's DroneCAN bus: ESCs, servos, a GNSS receiver, an AHRS."""
+"""DroneCAN peripherals of an autopilot: ESCs, servos, a GNSS receiver, an AHRS."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class DroneCanPeripheral(DroneCanNode):
 
     **Failsafe.** A channel that has had no command for ``command_timeout`` is neutral: 0, or the
     neutral pulse. So is one that has not had any yet. 0: it keeps the last one for ever.
-    ``failsafe`` tells that a channel is neutral for want of commands; the node's health is a
+    ``failsafe`` reports that a channel is neutral for want of commands; the node's health is a
     warning once they have stopped.
 
     **Status** of each channel every ``status_period``: those quantities that ``measured`` names
@@ -92,7 +92,7 @@ class DroneCanPeripheral(DroneCanNode):
     attitude = Input("rad", "Euler angles, ZYX", axes=("phi", "theta", "psi"), optional=True)
     rates = Input("rad/s", "angular velocity, body axes", axes="pqr", optional=True)
     acceleration = Input("m/s2", "specific force, body axes", axes="xyz", optional=True)
-    attitude_valid = Input("1", "whether attitude counts", type=bool, start=True, optional=True)
+    attitude_valid = Input("1", "whether attitude is valid", type=bool, start=True, optional=True)
 
     command = Output("1", "command: -1 to 1, or in the channel's unit", axes=AXES)
     pulse = Output("s", "servo pulse", axes=AXES)
@@ -117,7 +117,7 @@ class DroneCanPeripheral(DroneCanNode):
         self._commanded_ns: list[int | None] = [None] * len(self._channels)
 
     def outputs(self, t: float) -> None:
-        """Publish commands, and what is said."""
+        """Publish commands, and what is sent."""
         super().outputs(t)
         channels, timeout = range(len(self._channels)), round(self.setting("COMMAND_TIMEOUT") * NS)
         late = [self._is_late(place, timeout) for place in channels]
@@ -139,7 +139,7 @@ class DroneCanPeripheral(DroneCanNode):
         )
 
     def tasks(self) -> Sequence[Task]:
-        """Return what it says again and again."""
+        """Return its periodic messages."""
         return (
             Task("channels", self.setting("STATUS_PERIOD"), self._send_channels),
             Task("gnss", self.setting("GNSS_PERIOD"), self._send_fix, False),
@@ -152,7 +152,7 @@ class DroneCanPeripheral(DroneCanNode):
             self._commands[place], self._commanded_ns[place] = value, time_ns
 
     def attention(self) -> bool:
-        """Say if commands have stopped."""
+        """Return whether commands have stopped."""
         timeout = round(self.setting("COMMAND_TIMEOUT") * NS)
         return any(
             at is not None and self._is_late(place, timeout)

@@ -22,7 +22,7 @@ class Endpoint(ABC):
     """One URL. What has gone wrong on the way is no error here: protocols repeat themselves."""
 
     url: str
-    """As it is bound: with the port's number where 0 was asked for."""
+    """As it is bound: with the port's number where 0 was given."""
 
     @abstractmethod
     def channels(self) -> Sequence[Channel]:

@@ -28,7 +28,7 @@ class _UdpPeer(Channel):
 
 
 class UdpSender(Endpoint):
-    """Sends to one address from a port of its own; connected, so that it hears that one alone."""
+    """Sends to one address from a port of its own; connected, so it receives that one alone."""
 
     def __init__(self, address: _Address) -> None:
         self.url = f"udpout:{address[0]}:{address[1]}"

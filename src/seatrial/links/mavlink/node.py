@@ -1,4 +1,4 @@
-"""The vehicle's node on the network: its services, and who gets which message."""
+"""MAVLink node of the vehicle: its services, and the routing of messages to them."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ class Node:
             SensorTelemetry(vehicle, transport),
             SystemTelemetry(vehicle, transport),
             NavigationTelemetry(vehicle, transport, lambda: self.goal),
-            # What the others changed is told last.
+            # What the others changed is reported last.
             PresenceService(vehicle, transport),
             StreamService(vehicle, transport, builders, intervals),
         ]
@@ -117,7 +117,7 @@ class Node:
 
     @property
     def goal(self) -> Ned | None:
-        """Where the vehicle goes to, in {n}; None for a heading, a velocity, or nowhere."""
+        """Position the vehicle goes to, in {n}; None for a heading, a velocity, or none."""
         target, leg = self.vehicle.target, self.missions.leg
         match self.vehicle.mode.name:
             case "auto" if leg.number:

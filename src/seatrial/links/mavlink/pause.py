@@ -58,8 +58,8 @@ def stand_still(
     """Serve the links until the pause is over; `Vehicle.paused_s` tells how long it took.
 
     ``exchange`` takes in what has arrived, sends what is due, and says if anything has arrived.
-    It is over when a station sets SIM_SPEEDUP above 0, when nobody is left who could, that is
-    when nothing arrived for ``station_timeout`` of wall time, or when the process is asked to
+    It is over when a station sets SIM_SPEEDUP above 0, when no station is left, that is
+    when nothing arrived for ``station_timeout`` of wall time, or when the process is requested to
     end. Then the run goes on at the speed before.
     """
     vehicle = node.vehicle

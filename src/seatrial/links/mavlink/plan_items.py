@@ -1,4 +1,4 @@
-"""Items of missions, fences and rally points: what one MISSION_ITEM or MISSION_ITEM_INT says."""
+"""Items of missions, fences and rally points: content of MISSION_ITEM and MISSION_ITEM_INT."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ class Item:
 
 
 def from_message(message: Message) -> Item:
-    """Return what MISSION_ITEM or MISSION_ITEM_INT says."""
+    """Return the item of a MISSION_ITEM or MISSION_ITEM_INT."""
     x, y = message.x, message.y
     if message.get_type() == "MISSION_ITEM":
         x, y = (as_integer(value, message.frame) for value in (x, y))

@@ -1,4 +1,4 @@
-"""Failures that a station orders: MAV_CMD_INJECT_FAILURE."""
+"""Failure injection: MAV_CMD_INJECT_FAILURE."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ class FailureService(Service):
 
     ``units`` are those whose failures lead somewhere; ``failing`` has the failure of each,
     ``none`` without. Whatever is not among them is UNSUPPORTED, and everything is DENIED while
-    the settings do not allow it. What fails and what is mended is said in a status text.
+    the settings do not allow it. Failed and cleared units are reported in a status text.
     """
 
     def __init__(
@@ -111,5 +111,5 @@ class FailureService(Service):
         self.failing.update(dict.fromkeys(names, failure))
         if changed:
             listed = ", ".join(changed)
-            news = f"Mended: {listed}" if failure == "none" else f"Failure: {listed} {failure}"
+            news = f"Cleared: {listed}" if failure == "none" else f"Failure: {listed} {failure}"
             self.vehicle.say(INFO if failure == "none" else WARNING, news)

@@ -1,4 +1,4 @@
-"""Fence: where the vehicle must be, and what it does when it is not there."""
+"""Fence: the zones where the vehicle must stay, and the action at a breach."""
 
 from __future__ import annotations
 
@@ -112,7 +112,7 @@ class FenceService(Service):
         return BREACH if outside else None
 
     def _can_tell(self) -> bool:
-        """Say if the breach could be seen if it lasted."""
+        """Return whether the breach could be seen if it lasted."""
         return self._breach != BREACH or self.vehicle.estimates.position_valid
 
     def _enable(self, command: Command, sender: Sender, now: float) -> int:

@@ -28,7 +28,7 @@ class RallyService(Service):
 
     @property
     def refuge(self) -> Ned:
-        """Where the vehicle returns to, in {n}."""
+        """Position the vehicle returns to, in {n}."""
         return self.vehicle.home_n if self._chosen is None else self._chosen
 
     def tick(self, now: float) -> None:

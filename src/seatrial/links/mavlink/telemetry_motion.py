@@ -1,4 +1,4 @@
-"""What the vehicle says of its motion: attitude, position, velocity, home, truth."""
+"""Motion telemetry: attitude, position, velocity, home, truth."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class MotionTelemetry(Service):
     """ATTITUDE, ATTITUDE_QUATERNION, LOCAL_POSITION_NED, GLOBAL_POSITION_INT, VFR_HUD, ALTITUDE,
     and SIM_STATE, the truth beside the estimates, if it is known.
 
-    A boat without a valid position says nothing of it; a submarine gives its depth, as
+    A boat without a valid position sends none; a submarine gives its depth, as
     negative altitude, at latitude and longitude 0, which ground stations take for none.
     """
 

@@ -1,4 +1,4 @@
-"""What the vehicle says of its way: where it heads for, and how far off it is."""
+"""Navigation telemetry: commanded course, distance and errors."""
 
 from __future__ import annotations
 

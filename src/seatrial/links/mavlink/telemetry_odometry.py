@@ -1,4 +1,4 @@
-"""What the vehicle says of its motion when somebody asks for it: odometry, and the whole truth."""
+"""Odometry telemetry, sent on request: odometry, and the true state."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _UNKNOWN = [math.nan] * 21
 
 class OdometryTelemetry(Service):
     """ODOMETRY, the estimates of pose and motion in one, and HIL_STATE_QUATERNION, the truth as a
-    PX4's simulator tells it. No link gets them before it asks.
+    PX4's simulator sends it. No link gets them before it requests them.
 
     ODOMETRY has its pose in {n} from the origin, its velocity and rates along the body axes; its
     covariances are not known. Without a valid position there is none.

@@ -1,4 +1,4 @@
-"""What the vehicle says of its sensors: satellites, inertia, pressure, wind, battery."""
+"""Sensor telemetry: satellites, inertia, pressure, wind, battery."""
 
 from __future__ import annotations
 

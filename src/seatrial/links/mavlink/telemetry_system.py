@@ -1,4 +1,4 @@
-"""What the vehicle says of itself: health, time, servo outputs, radio channels."""
+"""System telemetry: health, time, servo outputs, radio channels."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class SystemTelemetry(Service):
     RC_CHANNELS.
 
     Health comes from the validity of the estimates. Simulated time counts from the Unix time of
-    the vehicle's day, so that two runs say the same.
+    the vehicle's day, so that two runs send the same.
     """
 
     streams: ClassVar = {
@@ -58,7 +58,7 @@ class SystemTelemetry(Service):
         e = self.vehicle.estimates
         present = _IMU | _HEADING | mavlink.MAV_SYS_STATUS_PREARM_CHECK
         healthy = (_IMU if e.imu_valid else 0) | (_HEADING if e.heading_valid else 0)
-        present |= mavlink.MAV_SYS_STATUS_GEOFENCE  # or a ground station tells of a breach
+        present |= mavlink.MAV_SYS_STATUS_GEOFENCE  # or a ground station reports a breach
         if not self.vehicle.fence_breached:
             healthy |= mavlink.MAV_SYS_STATUS_GEOFENCE
         if self.vehicle.healthy:

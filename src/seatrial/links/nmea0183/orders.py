@@ -1,4 +1,4 @@
-"""What chart plotters and remote controls want: the sentences APB, RMB and HSC.
+"""Steering commands of chart plotters and remote controls: the sentences APB, RMB and HSC.
 
 Source: E. S. Raymond, "NMEA Revealed" (gpsd project); pynmeagps has the fields.
 """
@@ -19,7 +19,7 @@ _LARGEST_ERROR = 1e3
 
 @dataclass(frozen=True)
 class Order:
-    """What one sentence says; None for what it does not say."""
+    """Content of one sentence; None for what it does not have."""
 
     heading: float | None = None
     """True, clockwise from north, rad."""
@@ -94,7 +94,7 @@ def _rmb(message: Any, variation: float) -> Order | None:
 
 
 def _cross_track(message: Any, unit: float) -> float | None:
-    """Return the error: whoever is told to steer left, is to starboard of the leg."""
+    """Return the error: a vessel to be steered left is to starboard of the leg."""
     error, side = _field(message, "ctrkerr"), _text(message, "dirs")
     if error is None or side not in ("L", "R") or abs(error) > _LARGEST_ERROR:
         return None

@@ -1,4 +1,4 @@
-"""Which sentences are sent, by whom and how often."""
+"""Schedule of sentences: talkers and periods."""
 
 from __future__ import annotations
 

@@ -111,7 +111,7 @@ DATA = {
                     "heading",
                     "heading",
                     "bus_heading",
-                    _WAYS + "; true or magnetic as `reference` says",
+                    _WAYS + "; true or magnetic by `reference`",
                 ),
                 Field("deviation", "deviation", sense="positive east; read: added if magnetic"),
                 Field("variation", "variation", sense="positive east; read: added if magnetic"),

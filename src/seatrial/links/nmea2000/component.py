@@ -1,4 +1,4 @@
-"""A node of an NMEA 2000 network as a component."""
+"""NMEA 2000 node as a component."""
 
 from __future__ import annotations
 
@@ -39,19 +39,19 @@ class Nmea2000(Nmea2000Ports):
 
     **Sends** the PGNs of ``sends`` at the standard's intervals, or those of ``intervals``, counted
     from the start of the run and exact whatever the communication step; values are those of the
-    beginning of the step. What is not wired or not valid goes out as not available, and so does a
-    value that its field cannot hold. Messages of one instant have one SID. Engines that are not
-    wired send nothing. ``silent`` stops the data.
+    beginning of the step. What is not connected or not valid goes out as not available, and so
+    does a value that its field cannot hold. Messages of one instant have one SID. Engines that are
+    not connected send nothing. ``silent`` stops the data.
 
     **Reads** the PGNs of `catalogue.RECEIVED` from all other nodes: the outputs ``bus_...``, with
-    whether they count (`Received`). A magnetic heading counts if its message has the variation.
+    whether they are valid (`Received`). A magnetic heading is, if its message has the variation.
 
     **Answers** ISO requests (`services.answer`) and group functions (`group_functions.serve`):
     other nodes may change its intervals, and command fields of 127237 and 127245.
 
     **Signs.** All headings, courses and the yaw are clockwise from north; roll is positive to
     starboard, pitch bow up, rate of turn to starboard. Rudders, on ports and bus, are positive to
-    turn to starboard: components that count the other way are wired with ``factor = -1``. Wind is
+    turn to starboard: components with the other sign are connected with ``factor = -1``. Wind is
     on ports where it blows to, as an anemometer here has it, and on the bus where it comes from.
     Position in {n} from the origin (``latitude``, ``longitude``, ``altitude``). UTC is midnight of
     ``date`` plus simulated time.
@@ -118,7 +118,7 @@ class Nmea2000(Nmea2000Ports):
                 node.send(when, frame)
         self._sent += len(queue)
         self.tx = node.flush()
-        # Mostly little is new, and all of it is asked for often.
+        # Mostly little is new, and all of it is requested often.
         expired = self._changes <= end
         names = self._readings.names() if expired else dict.fromkeys(self._news)
         for name in names:
@@ -143,7 +143,7 @@ class Nmea2000(Nmea2000Ports):
         self.sent, self.received = self._sent, self._received
 
     def _publish(self, name: str, now: int) -> None:
-        """Set the outputs of a quantity to what counts at ``now``."""
+        """Set the outputs of a quantity to what is valid at ``now``."""
         values, valid = self._readings.get(name, now)
         assert values is not None
         if name in _PUBLISHED:

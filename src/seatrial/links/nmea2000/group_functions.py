@@ -30,7 +30,7 @@ def serve(
     Returns answers, PGNs to send now, and what was commanded as a message like any other (of the
     same source). A request for a PGN that the node sends sends it, and ``change(pgn, seconds)``
     sets its interval, if it names one: 0 stops it, 'standard' is the standard's. Commands are
-    carried out for the fields of `COMMANDED`. What was asked of all is not answered.
+    carried out for the fields of `COMMANDED`. Requests to all are not answered.
     """
     pgn = message.fields.get("pgn")
     if message.id == _REQUEST and pgn is not None:

@@ -1,4 +1,4 @@
-"""What a node measures, as fields of the messages it sends."""
+"""Measurements of a node as fields of the messages it sends."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _RPM = 60.0 / math.tau
 def messages(node: Nmea2000Ports, pgn: int, sid: int, origin: Origin, day: int) -> list[Message]:
     """Return the messages of a PGN with the inputs as they are; ``day`` is counted from 1970.
 
-    Values that are not wired or not valid are left out, and so not available.
+    Values that are not connected or not valid are left out, and so not available.
     """
     made = _MAKERS[pgn](_Measured(node, sid, origin, day))
     return [Message(pgn, each) for each in made]
@@ -37,7 +37,7 @@ class _Measured:
         self._origin = origin
 
     def one(self, name: str, valid: bool = True) -> float | None:
-        """Return an input, None if it is not wired or not valid."""
+        """Return an input, None if it is not connected or not valid."""
         value: float = getattr(self.node, name)
         return value if valid and value < NOT_CONNECTED else None
 

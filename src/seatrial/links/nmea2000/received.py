@@ -13,7 +13,7 @@ from .codec import Message, numbers
 _TRUE, _MAGNETIC, _APPARENT = 0, 1, 2
 _PER_RPM = math.tau / 60.0
 _INTERVALS = 3
-"""Intervals of a PGN for which a value counts at least."""
+"""Intervals of a PGN for which a value is valid at least."""
 
 _FAR_NS = 1 << 62
 
@@ -68,7 +68,7 @@ class Received:
         return known["values"], self._valid(known, now_ns)
 
     def expires(self, now_ns: int) -> int:
-        """Return when the next value that counts will no longer, ns; far ahead if none does."""
+        """Return when the next valid value expires, ns; far ahead if none does."""
         ends = [known["until"] for known in self._memory.values()]
         return min((until + 1 for until in ends if until >= now_ns), default=_FAR_NS)
 

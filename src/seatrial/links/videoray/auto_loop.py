@@ -6,7 +6,7 @@ The map names P, I, D and an output multiplier K for each, and their terms; the 
 
 once per loop, e = target - measurement in mbar or degrees. The sums are per loop, not per second:
 so the captured gains make sense (I/P is a fiftieth for depth, D/P 13 for heading). The signs of
-the captured gains then say that ahead of the vertical thruster is upwards: its P is negative.
+by the captured gains, ahead of the vertical thruster is upwards: its P is negative.
 """
 
 from __future__ import annotations

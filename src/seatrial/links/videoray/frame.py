@@ -61,7 +61,7 @@ def _crc32(data: bytes) -> bytes:
 
 @dataclass(frozen=True)
 class Dialect:
-    """What differs between the protocols."""
+    """Differences between the protocols."""
 
     name: str
     request: bytes

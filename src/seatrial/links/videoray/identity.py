@@ -1,4 +1,4 @@
-"""Who a Pro 4 is: serial number, firmware, boards; and its configuration data.
+"""Identity of a Pro 4: serial number, firmware, boards; and its configuration data.
 
 Source: VideoRay, PRO4_Hardware_Config.txt and VideoRay_Bootloader_Technical_info.txt.
 """
@@ -28,13 +28,13 @@ BOARDS = (
 
 _BOOTLOADER = struct.Struct("<HH16s8s4s")
 _VALID = bytes.fromhex("600df00d")
-"""Says that the firmware is valid."""
+"""Marks the firmware as valid."""
 CONFIG_LENGTH = _BOOTLOADER.size + 4 + BOARD_LENGTH * len(BOARDS)
 
 
 @dataclass(frozen=True)
 class Identity:
-    """What the configuration registers tell."""
+    """Content of the configuration registers."""
 
     serial_number: str
     boards: tuple[str, ...]

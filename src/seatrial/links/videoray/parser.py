@@ -12,7 +12,7 @@ Timed = tuple[int, Frame]
 
 
 class Parser:
-    """Finds the frames in what a serial port hears, requests and responses of some dialects.
+    """Finds the frames in what a serial port receives, requests and responses of some dialects.
 
     After a wrong check it looks for the next sync from the byte after the last one's first, so
     that a frame inside or behind a broken one is found. A frame that does not go on for
@@ -104,7 +104,7 @@ class Parser:
         return frame, skipped + used
 
     def _checked(self, begin: int, end: int, dialect: Dialect) -> bool | None:
-        """Say if the check after a part is right; None if it is not there yet."""
+        """Return whether the check after a part is right; None if it is not there yet."""
         stop = end + dialect.check_length
         if len(self._buffer) < stop:
             return None

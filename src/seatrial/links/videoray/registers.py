@@ -1,4 +1,4 @@
-"""The Pro 4's CSR memory map: what is where, how it is scaled, who may write it.
+"""CSR memory map of the Pro 4: addresses, scales, access.
 
 Source: VideoRay, PRO4_CSR_memory_map.xls, revision 3; lowest byte first, two's complement. Where
 it does not mark what the device itself measures or counts as read only (power manager, internal
@@ -236,7 +236,7 @@ WRITABLE = bytes(
 STORED = tuple(a for r in REGISTERS if r.stored for a in range(r.address, r.address + r.size))
 """Addresses that outlive a reboot."""
 SELF_STORED = tuple(BY_NAME[name] for name in ("max_depth", "run_time"))
-"""What the device keeps without being told."""
+"""Registers that the device keeps without a commit."""
 
 
 def factory_memory() -> bytearray:

@@ -1,6 +1,6 @@
 """Device specific replies of the Pro 4, 1 to 5.
 
-Source: VideoRay, pro4_specific_response.h and "PRO4 application layer"; on the wire a real vehicle
+Source: VideoRay, pro4_specific_response.h and "PRO4 application layer"; on the line a real vehicle
 answers 1, an acknowledgement, with the four of 2. Reply 5 ends, other than the document's names
 say, with humidity and water temperature: so the captured ones fit the memory read beside them.
 """
@@ -17,7 +17,7 @@ ATTITUDE = 2
 ATTITUDE_TEMPERATURE = 3
 ATTITUDE_HEALTH = 4
 NAVIGATION = 5
-"""What VideoRay's own topside asks for."""
+"""What VideoRay's own topside requests."""
 
 _ATTITUDE = ("heading", "pitch", "roll", "pressure")
 _TEMPERATURE = ("water_temperature",)
@@ -47,7 +47,7 @@ FIELDS: dict[int, tuple[str, ...]] = {
 
 @dataclass(frozen=True)
 class Reading:
-    """What a reply, or a read of the whole memory, says: values by register, in its unit."""
+    """Content of a reply, or of a read of the whole memory: values by register, in its unit."""
 
     values: dict[str, float]
 

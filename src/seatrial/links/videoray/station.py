@@ -1,8 +1,8 @@
-"""The topside of a Pro 4 without its port: what it sends in each cycle, what it has understood.
+"""Protocol of a Pro 4's topside: what it sends in each cycle, what it has understood.
 
 Source: VideoRay, "PRO4 application layer": Cockpit looks for a vehicle with an empty request that
 wants an acknowledgement, reads its configuration, then its whole memory, and then writes the
-command block again and again, asking for reply 5.
+command block again and again, requesting reply 5.
 """
 
 from __future__ import annotations
@@ -31,10 +31,10 @@ def _within(value: float, low: int, high: int) -> int:
 
 @dataclass
 class Commands:
-    """What the pilot wants, as the command block has it."""
+    """The pilot's commands, as the command block has them."""
 
     thrust: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Port, starboard, vertical as on the wire, -1 to 1."""
+    """Port, starboard, vertical as on the line, -1 to 1."""
     lights: float = 0.0
     """0 to 1."""
     camera_tilt: float = 0.0
@@ -112,7 +112,7 @@ class Station:
         return Frame(False, self.node_id, NAVIGATION, 0, commands.block())
 
     def receive(self, now_ns: int, frame: Frame) -> bool:
-        """Take in an answer; say if it is the one that was waited for."""
+        """Take in an answer; return whether it is the one that was waited for."""
         if not frame.is_response or frame.id != self.node_id or frame.payload[:1] != _ROV:
             return False
         if not self._understand(frame.flags, frame.address, frame.payload[1:]):
@@ -154,7 +154,7 @@ class Station:
 
 
 def manipulator_request(direction: int) -> Frame:
-    """Return the request to the manipulator: 1 opens, -1 closes, 0 stops; nobody answers it."""
+    """Return the request to the manipulator: 1 opens, -1 closes, 0 stops; it is not answered."""
     command = {1: 3, -1: 2, 0: 0}[direction]
     payload = b"\x35\x49" + bytes(4) + bytes((command, 0))
     return Frame(False, MANIPULATOR, 0, csr.CUSTOM_COMMAND, payload)

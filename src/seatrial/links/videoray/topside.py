@@ -1,4 +1,4 @@
-"""The topside of a VideoRay Pro 4 as a component: stick axes in, what the vehicle says out."""
+"""Topside of a VideoRay Pro 4 as a component: manual control in, the vehicle's telemetry out."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ class Pro4Topside(Pro4TopsidePorts):
     (`seatrial.links.text`), at ``baud``: join them to `Pro4Rov`, or by `SerialGateway` to a real
     vehicle.
 
-    **Sticks**, -1 to 1, times ``manual_limit``, and 0 unless ``armed``: port = surge + yaw,
+    **Manual control**, -1 to 1, times ``manual_limit``, and 0 unless ``armed``: port = surge + yaw,
     starboard = surge - yaw, held within +-1, vertical = heave, positive downwards, whatever
-    ``vertical_ahead`` is on the wire. They count for the whole cycle. ``hold_depth`` and
-    ``hold_heading`` ask the vehicle to hold ``depth_wanted`` (as its pressure sensor has it,
+    ``vertical_ahead`` is on the line. They apply for the whole cycle. ``hold_depth`` and
+    ``hold_heading`` request the vehicle to hold ``depth_wanted`` (as its pressure sensor has it,
     surface_pressure + density gravity depth) and ``heading_wanted`` (whole degrees), if armed.
 
     **Readings** hold their last value. ``attitude`` has psi from 0 to 2 pi, whether the vehicle
@@ -40,7 +40,7 @@ class Pro4Topside(Pro4TopsidePorts):
     cycles without an answer before the next; after ``timeout`` without one ``connected`` is
     false, and the vehicle is looked for, which commands nothing.
 
-    A change of ``manipulator`` is sent after the command block, which nobody answers. With
+    A change of ``manipulator`` is sent after the command block, which is not answered. With
     ``nmea`` on, ``nmea_tx`` has the sentences of VideoRay's export each second (`nmea`).
 
     It records its stream in ``run_folder``, ``NAME.stream`` (`StreamLog`).
@@ -73,7 +73,7 @@ class Pro4Topside(Pro4TopsidePorts):
         self._changes, self._published = 0, -1
 
     def step(self, t: float, h: float) -> None:
-        """Hear what was answered, and send what is due before ``t + h``, in the order of time."""
+        """Receive answers, and send what is due before ``t + h``, in the order of time."""
         self._log.open(self.run_folder, self.name)
         end, before = self.now_ns + round(h * NS), self._changes
         found = self._parser.expire(self.now_ns)
