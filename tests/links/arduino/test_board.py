@@ -87,7 +87,7 @@ def step(board, start, count, descriptor):
     return received, start + count
 
 
-def test_a_stale_input_is_told_safe_state_once_and_may_come_again(line):
+def test_a_stale_input_is_sent_safe_state_once_and_may_come_again(line):
     own, device = line
     board = started(links=f"1=serial:{device}:38400", safe_state="580A", timeout=0.2)
     received, now = step(board, 0, 20, own)

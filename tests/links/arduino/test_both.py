@@ -109,7 +109,7 @@ def runs(tmp_path_factory):
     return found
 
 
-def test_they_say_the_same(runs):
+def test_they_send_the_same(runs):
     host, simavr = (runs[each][0] for each in BACKENDS)
     # What code takes and when an edge is seen differs by microseconds.
     near = {"pulse": 20, "adc": 1, "edges": 1}

@@ -218,7 +218,7 @@ def test_prototypes_and_widths():
     )
 
 
-def test_a_monitor_hears_and_types_beside_what_is_wired(tmp_path):
+def test_a_monitor_receives_and_types_beside_what_is_connected(tmp_path):
     source = """
       void setup() { Serial.begin(115200); }
       void loop() { if (Serial.available()) Serial.write(toupper(Serial.read())); }

@@ -78,7 +78,7 @@ def test_the_rov_obeys_its_serial_port_and_stops_without(tmp_path):
     passes(sailed("videoray-sketch", tmp_path / "run"))
 
 
-def test_a_run_tells_of_links_that_there_are(tmp_path):
+def test_a_run_lists_links_that_there_are(tmp_path):
     need("host")
     place, told = f"{tmp_path}/radio", []
     trial = load_trial("gloria-sketch")

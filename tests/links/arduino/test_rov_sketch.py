@@ -68,7 +68,7 @@ def test_memory_and_configuration_are_read(rov):
     assert set(boards.values()) == {"Arduino Mega"}
 
 
-def test_who_is_not_asked_says_nothing_and_commands_stop_after_two_seconds(rov):
+def test_without_requests_it_sends_nothing_and_commands_stop_after_two_seconds(rov):
     block = bytes.fromhex("3200ceff") + bytes(7) + b"\xff" * 4  # port 50 %, starboard -50 %
     assert exchange(rov, encode(Frame(False, 2, 1, 0, block))) == []
     assert rov.one.get("pulse.s1") == pytest.approx(1500e-6, abs=15e-6)

@@ -41,7 +41,7 @@ def received(backend, sketch, **values):
         return bench.sent[0], bench.sent[1], [when for uart, when, _ in bench.stamps if uart == 1]
 
 
-def test_both_back_ends_hear_and_say_the_same_at_two_pins(tmp_path):
+def test_both_back_ends_receive_and_send_the_same_at_two_pins(tmp_path):
     sketch = write_sketch(tmp_path, SKETCH)
     uno = {"mcu": "atmega328p", "uarts": "0 57600; 1 9600", "wires": WIRES}
     host, simavr = (received(each, sketch, **uno) for each in ("host", "simavr"))

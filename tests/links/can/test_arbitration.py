@@ -59,7 +59,7 @@ def test_the_lowest_arbitration_field_goes_first():
     assert bench.times[:3] == [(0, 50, 0), (53, 100, 0), (103, 174, 0)]
 
 
-def test_a_frame_asked_for_in_the_last_bit_of_the_intermission_takes_part():
+def test_a_frame_requested_in_the_last_bit_of_the_intermission_takes_part():
     bench = Bench(3)
     bench.request(0, 0, ZERO)
     bench.request(1, 1, Frame(0x400))
@@ -113,7 +113,7 @@ def test_equal_identifiers_of_a_node_stay_in_order():
     assert [s.frame for s in bench.sent] == frames
 
 
-def test_who_does_not_wait_is_told_of_a_lost_arbitration():
+def test_a_node_that_does_not_wait_is_notified_of_a_lost_arbitration():
     """The frame is given up when the one that won has ended; alone, it goes through."""
     bench = Bench(2)
     bench.nodes[1].waits = False
@@ -159,7 +159,7 @@ requests = st.lists(
 
 @settings(max_examples=60, deadline=None)
 @given(requests, st.integers(1, 3), st.integers(0, 4), st.floats(0, 0.02))
-def test_what_is_asked_for_is_sent_dropped_or_waits(requested, mailboxes, queue, rate):
+def test_what_is_requested_is_sent_dropped_or_waits(requested, mailboxes, queue, rate):
     """Conservation, causality and an exclusive bus, with errors at every 1/rate-th bit."""
 
     def error_injector(attempt, node, frame, bits):
@@ -189,7 +189,7 @@ def test_what_is_asked_for_is_sent_dropped_or_waits(requested, mailboxes, queue,
 
 @settings(max_examples=40, deadline=None)
 @given(requests, st.lists(st.integers(1, 40_000), max_size=30))
-def test_how_often_it_is_asked_changes_nothing(requested, stops):
+def test_how_often_it_is_stepped_changes_nothing(requested, stops):
     whole, parts = Bench(4, queue=3), Bench(4, queue=3)
     for bench in (whole, parts):
         for when, node, identifier, extended, data in requested:

@@ -41,7 +41,7 @@ def busy(seed=3, count=300):
     return requested
 
 
-def test_what_ended_by_t_is_told_one_step_later_and_says_when():
+def test_what_ended_by_t_is_reported_one_step_later_with_its_time():
     """Requested at 0.5 ms, 200 us long: ended at 0.7 ms; on rx from 2 ms on in steps of 1 ms."""
     scripted = Scripted(bus(), [(500_000, 0, ZERO)])
     scripted.run(5 * MS, MS)
@@ -250,7 +250,7 @@ def test_a_wake_up_goes_to_the_others():
     assert reported(bus(), Wakeup()) == ([], [Wakeup()])
 
 
-def test_a_node_that_does_not_wait_is_told_of_a_lost_arbitration():
+def test_a_node_that_does_not_wait_is_notified_of_a_lost_arbitration():
     made = bus()
     memory: dict = {}
     Outbox(memory).put(0, encode(Transmit(URGENT)))

@@ -114,7 +114,7 @@ def test_remote_and_fd_frames(gateway, request):
         assert [frame for _, frame in served.received] == frames
 
 
-def test_socketcands_clients_hear_each_other_and_not_themselves():
+def test_socketcands_clients_receive_each_other_and_not_themselves():
     with (
         Served("socketcand:127.0.0.1:0") as served,
         open_bus(served) as one,
@@ -130,7 +130,7 @@ def test_socketcands_clients_hear_each_other_and_not_themselves():
     assert [frame for _, frame in served.received] == [Frame(0x100, b"one"), Frame(0x200, b"two")]
 
 
-def test_what_a_client_says_before_it_goes_arrives():
+def test_what_a_client_sends_before_it_goes_arrives():
     with Served("socketcand:127.0.0.1:0") as served:
         for number in range(10):
             with open_bus(served) as bus:

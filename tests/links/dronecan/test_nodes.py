@@ -132,7 +132,7 @@ def test_an_autopilots_state():
     assert (sent(node, 1), node.get("voltage")) == first
 
 
-def test_what_is_due_is_asked_for_at_its_very_time():
+def test_what_is_due_is_requested_at_its_very_time():
     node = started(
         made(DroneCanPeripheral, "esc", node_id=9.0, status_period=0.0137, gnss_period=0.2)
     )

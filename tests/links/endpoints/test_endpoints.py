@@ -53,7 +53,7 @@ def polled(endpoint, until=lambda arrived: arrived):
     raise AssertionError(f"only {arrived}")
 
 
-def test_udp_out_sends_to_its_address_and_hears_it_alone(opened, udp):
+def test_udp_out_sends_to_its_address_and_receives_it_alone(opened, udp):
     endpoint = opened(f"udpout:127.0.0.1:{udp.getsockname()[1]}")
     (channel,) = endpoint.channels()
     channel.send(b"hello")

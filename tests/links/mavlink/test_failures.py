@@ -43,7 +43,7 @@ def test_units_are_named_as_mavlink_names_them():
 
 @pytest.mark.parametrize("unit", entries("FAILURE_UNIT"))
 @pytest.mark.parametrize("kind", entries("FAILURE_TYPE"))
-def test_only_what_is_wired_fails(unit, kind):
+def test_only_what_is_connected_fails(unit, kind):
     boat = bench()
     wired = {GPS: ["gps"], MAG: ["mag"], MOTOR: ["motor1", "motor2"]}.get(unit)
     assert boat.command(INJECT, unit, kind, 0) == (ACCEPTED if wired else UNSUPPORTED)
@@ -72,7 +72,7 @@ def test_the_only_one_of_its_kind_is_number_one():
     assert boat.command(INJECT, GPS, OFF, 1) == ACCEPTED
 
 
-def test_people_are_told_what_fails_and_what_is_mended():
+def test_status_texts_report_what_fails_and_what_is_cleared():
     boat = bench()
     boat.texts()
     boat.command(INJECT, MOTOR, STUCK)

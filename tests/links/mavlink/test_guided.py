@@ -231,7 +231,7 @@ def test_reposition_to_nowhere_is_denied(boat, place):
     assert boat.vehicle.target is None
 
 
-def test_the_set_point_is_told(boat):
+def test_the_set_point_is_sent(boat):
     number = mavlink.MAVLINK_MSG_ID_POSITION_TARGET_LOCAL_NED
     assert boat.request(number) == (DENIED, [])
     boat.receive(local(NED, POSITION, (3, 4, 0)))

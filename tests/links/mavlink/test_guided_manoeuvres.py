@@ -75,7 +75,7 @@ def test_a_rate_that_is_none_is_not_obeyed():
         assert boat.vehicle.target is None
 
 
-def test_a_speed_counts_for_places_until_the_mode_ends():
+def test_a_speed_applies_to_places_until_the_mode_ends():
     boat = guided()
     assert boat.command_int(REPOSITION, -1.0, 0, **place()) == OK
     assert boat.command(CHANGE_SPEED, 1, 0.4, -1) == OK

@@ -29,7 +29,7 @@ def test_home_is_the_origin_at_first():
     assert place(reported) == place(home)
 
 
-def test_home_where_it_is_now_is_told_to_all():
+def test_home_where_it_is_now_is_sent_to_all():
     bench = Bench()
     bench.measure(position_n=(30.0, 40.0, 1.0))
     bench.tick()
@@ -76,7 +76,7 @@ def test_home_nowhere_is_denied(parameters):
     assert bench.vehicle.home_n == (0.0, 0.0, 0.0)
 
 
-def test_the_origin_is_told_and_stays():
+def test_the_origin_is_sent_and_stays():
     bench = Bench()
     number = mavlink.MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN
     origin = bench.one(number)
@@ -104,7 +104,7 @@ def test_time_is_synchronised_to_simulated_time():
     assert bench.transport.take("TIMESYNC") == []
 
 
-def test_pings_are_answered_to_who_asked():
+def test_pings_are_answered_to_the_sender():
     bench = Bench()
     bench.wait(0.5)
     bench.receive(mavlink.MAVLink_ping_message(99, 42, 0, 0), OTHER_STATION)

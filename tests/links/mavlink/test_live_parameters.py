@@ -51,7 +51,7 @@ def test_fs_gcs_enable_switches_it_off() -> None:
 
 
 @pytest.mark.parametrize(("enabled", "mode"), [(1, "hold"), (0, "manual")])
-def test_fs_timeout_and_fs_thr_enable_are_for_the_sticks(enabled: int, mode: str) -> None:
+def test_fs_timeout_and_fs_thr_enable_are_for_manual_control(enabled: int, mode: str) -> None:
     bench = Bench(manual_timeout=30.0)
     bench.enter("manual")
     bench.arm()
@@ -66,7 +66,7 @@ def test_fs_timeout_and_fs_thr_enable_are_for_the_sticks(enabled: int, mode: str
     assert bench.vehicle.manual == (0.0, 0.0, 0.0, 0.0)
 
 
-def test_guid_timeout_is_how_long_a_set_point_counts() -> None:
+def test_guid_timeout_is_how_long_a_set_point_is_valid() -> None:
     bench = Bench()
     bench.enter("guided")
     put(bench, "GUID_TIMEOUT", 0.5)
@@ -93,7 +93,7 @@ def test_arming_check_says_what_arming_waits_for(mask: int, reasons: set[str]) -
     assert bench.vehicle.armed is not bool(reasons)
 
 
-def test_px4_arms_without_gps_if_told_to() -> None:
+def test_px4_arms_without_gps_if_set_to() -> None:
     bench = Bench(autopilot="px4", valid=False)
     bench.measure(heading_valid=True)
     arm = (mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
@@ -106,7 +106,7 @@ def test_px4_arms_without_gps_if_told_to() -> None:
     assert bench.command(*arm) == mavlink.MAV_RESULT_ACCEPTED
 
 
-def test_a_submarine_surfaces_if_told_to() -> None:
+def test_a_submarine_surfaces_if_set_to() -> None:
     bench = Bench(submerged=True)
     guided_alone(bench)
     put(bench, "FS_GCS_ENABLE", 4)

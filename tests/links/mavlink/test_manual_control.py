@@ -69,7 +69,7 @@ def test_a_channel_is_left_changed_or_released():
     assert bench.one(mavlink.MAVLINK_MSG_ID_RC_CHANNELS).chan9_raw == 65535
 
 
-def test_sticks_for_another_vehicle_are_not_ours():
+def test_manual_control_for_another_vehicle_is_not_ours():
     bench = Bench()
     bench.receive(manual(z=1000, target=8))
     bench.receive(override(8, c3=1900))
@@ -77,7 +77,7 @@ def test_sticks_for_another_vehicle_are_not_ours():
 
 
 @pytest.mark.parametrize("message", [manual(z=1000), override(c3=1900)])
-def test_sticks_that_nobody_holds_let_go_and_the_failsafe_acts(message):
+def test_manual_control_that_stops_is_released_and_the_failsafe_acts(message):
     bench = Bench(manual_timeout=2.0)
     bench.enter("manual")
     bench.arm()
@@ -96,7 +96,7 @@ def test_sticks_that_nobody_holds_let_go_and_the_failsafe_acts(message):
     assert bench.vehicle.mode.name == "hold"  # it is not put back into manual
 
 
-def test_what_is_said_of_lost_sticks():
+def test_what_is_reported_of_lost_manual_control():
     bench = Bench(manual_timeout=1.0)
     bench.enter("manual")
     bench.arm()
@@ -107,7 +107,7 @@ def test_what_is_said_of_lost_sticks():
     assert sent == ["Failsafe: manual control lost, hold", "Mode HOLD"]
 
 
-def test_who_releases_all_channels_has_let_go_on_purpose():
+def test_releasing_all_channels_is_on_purpose():
     bench = Bench()
     bench.enter("manual")
     bench.arm()
@@ -118,7 +118,7 @@ def test_who_releases_all_channels_has_let_go_on_purpose():
     assert (bench.vehicle.mode.name, bench.vehicle.failsafe) == ("manual", False)
 
 
-def test_sticks_lost_in_another_mode_are_nothing():
+def test_manual_control_lost_in_another_mode_is_nothing():
     bench = Bench()
     bench.arm()
     bench.receive(manual(z=1000))

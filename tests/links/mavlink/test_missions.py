@@ -121,7 +121,7 @@ def test_a_px4_begins_with_item_0():
     assert boat.reached() == [0, 1, 2, 3]
 
 
-def test_what_a_waypoint_asks_for():
+def test_what_a_waypoint_requests():
     boat = Mission(listed(one(WAYPOINT, 7.5, 4.0), one(WAYPOINT, math.nan, -1.0, math.nan)))
     boat.go()
     assert (boat.leg.wait, boat.leg.radius) == (7.5, 4.0)
@@ -319,7 +319,7 @@ def test_home_is_moved_by_the_mission():
     assert "home cannot be moved" in "".join(boat.texts())  # to another ocean
 
 
-def test_what_is_not_known_is_skipped_and_said_once():
+def test_what_is_not_known_is_skipped_and_reported_once():
     boat = Mission(listed(one(112, 5.0, **DO), one(at=north_of(9)), one(JUMP, 1.0, 3.0, **DO)))
     boat.go()
     assert len(boat.ends()) == 4
@@ -546,7 +546,7 @@ def test_set_current_is_always_answered():
     assert [m.seq for m in boat.transport.take("MISSION_CURRENT", None)] == [1]
 
 
-def test_jumps_are_counted_anew_if_asked():
+def test_jumps_are_counted_anew_if_requested():
     items = listed(one(at=north_of(1)), one(JUMP, 1.0, 1.0, **DO), one(at=north_of(2)))
     boat = Mission(items)
     boat.go()
@@ -596,7 +596,7 @@ def test_current_is_streamed_and_told_at_every_change():
     assert m.seq == 2
 
 
-def test_what_is_done_is_said():
+def test_what_is_done_is_reported():
     boat = Mission(square())
     boat.go()
     assert "Mission: item 1, NAV_WAYPOINT" in boat.texts()

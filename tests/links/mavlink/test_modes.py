@@ -46,7 +46,7 @@ def test_numbers_and_names_are_unique_and_found(autopilot, submerged):
 
 
 @pytest.mark.parametrize("autopilot", ["ardupilotmega", "px4"])
-def test_modes_are_told_one_by_one_or_all_at_once(autopilot):
+def test_modes_are_reported_one_by_one_or_all_at_once(autopilot):
     bench = Bench(autopilot=autopilot, submerged=True)
     number, modes = mavlink.MAVLINK_MSG_ID_AVAILABLE_MODES, bench.vehicle.dialect.modes
 

@@ -88,7 +88,7 @@ def test_the_last_one_that_could_end_it_is_gone():
     assert standing.bench.settings.speedup == 2.0
     assert standing.table[SPEEDUP] == 2.0
     texts = standing.bench.texts()
-    assert texts == ["Nobody is left who could end the pause", "Goes on at SIM_SPEEDUP 2"]
+    assert texts == ["No station is left to end the pause", "Goes on at SIM_SPEEDUP 2"]
 
 
 def test_two_pauses_add_up():

@@ -96,7 +96,7 @@ def test_stations_on_two_links_get_a_list_each(bench: ParameterBench) -> None:
         assert [m.param_index for m in got] == list(range(COUNT))
 
 
-def test_who_asks_again_and_again_gets_the_list_all_the_same(bench: ParameterBench) -> None:
+def test_repeated_requests_get_the_list_all_the_same(bench: ParameterBench) -> None:
     """A list takes 1.2 s; a station that requests it each second would never see its end."""
     for _ in range(3):
         bench.request_list()
@@ -151,7 +151,7 @@ def test_what_there_is_not_is_an_error_message(
     assert [m.get_type() for m in bench.transport.take()] == ["PARAM_ERROR"]
 
 
-def test_what_is_set_is_told_to_all(bench: ParameterBench) -> None:
+def test_what_is_set_is_sent_to_all(bench: ParameterBench) -> None:
     sent = struct.unpack("<f", struct.pack("<f", 0.1))[0]
     bench.set("REAL", sent)
     ((link, answer),) = bench.transport.sent
@@ -174,7 +174,7 @@ def test_what_is_set_is_told_to_all(bench: ParameterBench) -> None:
         ("STAYS", 2.0, mavlink.MAV_PARAM_ERROR_READ_ONLY, "STAYS stays 1: it belongs to the trial"),
     ],
 )
-def test_what_is_refused_is_told_to_the_sender_alone(
+def test_what_is_refused_is_sent_to_the_sender_alone(
     bench: ParameterBench, name, value, error, sent
 ) -> None:
     before = bench.table[name]

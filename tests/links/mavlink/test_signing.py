@@ -86,7 +86,7 @@ def test_a_frame_is_received_once(guarded):
     assert guarded.refused == 1
 
 
-def test_a_frame_heard_over_one_link_is_not_received_over_another():
+def test_a_frame_received_over_one_link_is_not_received_over_another():
     shared = signing()
     frame = ARM.pack(station())
     assert len(Codec(7, 1, 0, shared).decode(frame)) == 1

@@ -15,7 +15,7 @@ def test_before_the_first_ground_station_nothing_happens():
 
 
 @pytest.mark.parametrize("armed", [False, True])
-def test_losing_the_last_one_is_what_counts(armed):
+def test_losing_the_last_one_is_what_matters(armed):
     bench = Bench(station_timeout=5.0)
     bench.enter("guided")
     if armed:
@@ -121,7 +121,7 @@ def test_a_mode_that_cannot_be_entered_becomes_disarmed():
     assert "Failsafe: return impossible, no position" in sent
 
 
-def test_it_is_told_in_the_heartbeat_until_somebody_is_back():
+def test_it_is_sent_in_the_heartbeat_until_a_station_is_back():
     bench = Bench()
     bench.heartbeat()
     bench.wait(6.0)

@@ -52,13 +52,13 @@ def test_what_a_ground_station_needs_comes_unasked():
 
 
 @pytest.mark.parametrize("rate", [1, 3, 4, 10, 20, 50, 100])
-def test_a_message_comes_at_the_rate_asked_for(rate):
+def test_a_message_comes_at_the_rate_requested(rate):
     bench = Bench()
     assert bench.command(SET, ATTITUDE, round(1e6 / rate)) == OK
     assert count(bench, 10.0) == pytest.approx(10 * rate, abs=1)
 
 
-def test_rates_belong_to_the_link_that_asked():
+def test_rates_belong_to_the_link_that_requested():
     bench = Bench()
     usual = count(bench, 5.0)
     assert bench.command(SET, ATTITUDE, 20_000, sender=OTHER_STATION) == OK
@@ -134,7 +134,7 @@ def test_a_new_link_starts_with_the_usual_streams():
     assert count(bench, 5.0) == 50
 
 
-def test_messages_on_request_go_to_who_asks():
+def test_messages_on_request_go_to_the_requester():
     bench = Bench()
     assert bench.command(mavlink.MAV_CMD_REQUEST_MESSAGE, ATTITUDE, sender=OTHER_STATION) == OK
     assert len(bench.transport.take("ATTITUDE", OTHER_STATION.link)) == 1

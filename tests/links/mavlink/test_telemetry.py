@@ -52,13 +52,13 @@ def test_depth_is_negative_altitude():
     assert altitude.altitude_relative == -12.0
 
 
-def test_a_submarine_without_a_position_tells_its_depth():
+def test_a_submarine_without_a_position_sends_its_depth():
     m = sent("GLOBAL_POSITION_INT", submerged=True, position_valid=False, position_n=(5, 5, 7))
     assert (m.lat, m.lon, m.relative_alt) == (0, 0, -7000)
     assert silent("GPS_RAW_INT", submerged=True, position_valid=False)
 
 
-def test_a_boat_without_a_position_tells_none():
+def test_a_boat_without_a_position_sends_none():
     assert silent("GLOBAL_POSITION_INT", position_valid=False)
     assert silent("LOCAL_POSITION_NED", position_valid=False)
     assert sent("GPS_RAW_INT", position_valid=False).fix_type == mavlink.GPS_FIX_TYPE_NO_FIX

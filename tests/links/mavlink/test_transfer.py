@@ -158,7 +158,7 @@ def test_clear(bench, cleared):
 # ---------------------------------------------------------------------- time and order
 
 
-def test_items_that_do_not_come_are_asked_for_again(bench):
+def test_items_that_do_not_come_are_requested_again(bench):
     bench.receive(count(3))
     bench.receive(MISSION_ITEMS[0])
     bench.transport.take()
@@ -170,7 +170,7 @@ def test_items_that_do_not_come_are_asked_for_again(bench):
         bench.wait(0.99)
 
 
-def test_a_station_that_knows_no_integers_is_asked_for_floats(bench):
+def test_a_station_that_knows_no_integers_is_sent_float_requests(bench):
     bench.receive(count(3))
     bench.wait(3.0)
     assert requested(bench) == [("MISSION_REQUEST_INT", 0)] * 3 + [("MISSION_REQUEST", 0)]
@@ -233,7 +233,7 @@ def test_an_item_too_far_ahead_is_not_taken(bench):
     assert same(download(bench), MISSION_ITEMS[:3], first=1)
 
 
-def test_items_that_nobody_asked_for_are_ignored(bench):
+def test_items_that_nobody_requested_are_ignored(bench):
     for message in MISSION_ITEMS:
         bench.receive(message)
     assert bench.transport.take() == []
@@ -247,7 +247,7 @@ def test_items_of_another_kind_are_ignored(bench):
     assert requested(bench) == [("MISSION_REQUEST_INT", 0), ("MISSION_REQUEST_INT", 1)]
 
 
-def test_who_counts_again_begins_again(bench):
+def test_a_repeated_count_begins_again(bench):
     bench.receive(count(3))
     bench.receive(MISSION_ITEMS[0])
     bench.transport.take()
@@ -418,7 +418,7 @@ def test_frames_of_submarines():
 
 @pytest.mark.parametrize("seed", range(12))
 @kinds
-def test_transfers_survive_bad_air(kind, seed):
+def test_transfers_survive_losses(kind, seed):
     bench = Bench(autopilot="px4")
     up, down = LossyTransport(seed), LossyTransport(seed + 1000)
     client = Client(lambda message: up.put(message, bench.now))

@@ -101,7 +101,7 @@ def test_a_waypoint_is_named():
     assert received(rmb(), apb()).one.get("target_kind") == "heading"
 
 
-def test_orders_count_for_their_time():
+def test_orders_apply_for_their_time():
     bench = received(apb(), order_timeout=2.0)
     bench.run(1.7)
     assert bench.one.get("target_valid")

@@ -89,7 +89,7 @@ def test_a_request_for_claims_to_all_is_answered_by_all(settled):
     assert sorted(claims) == [35, 36]
 
 
-def test_what_it_does_not_have_is_refused_unless_all_were_asked(settled):
+def test_what_it_does_not_have_is_refused_unless_the_request_was_to_all(settled):
     compass = settled.nodes["compass"].get("claimed_address")
     request(settled, 130306, compass)
     (refusal,) = [m for m in after(settled, 0.2) if m.pgn == 59392]
@@ -102,7 +102,7 @@ def test_what_it_does_not_have_is_refused_unless_all_were_asked(settled):
     assert not [m for m in after(settled, 0.2) if m.pgn == 59392]
 
 
-def test_data_can_be_asked_for(settled):
+def test_data_can_be_requested(settled):
     network = Network({"compass": {**COMPASS, "intervals": "127250 0"}})
     network.run(1.0)
     assert not network.sent(127250)

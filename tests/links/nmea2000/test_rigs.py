@@ -87,7 +87,7 @@ def test_shipped_trials_hold(name, tmp_path):
     assert [name for name, _, verdict in result.verdicts if not verdict.passed] == []
 
 
-def test_the_catamaran_goes_by_what_it_hears(tmp_path):
+def test_the_catamaran_goes_by_what_it_receives(tmp_path):
     """As long as its bus works; guidance stops without a heading."""
     trial = load_trial("hydrone-nmea2000-square").changed(
         {"stop": "9 s", "heading_sensor.silent": True}, "test"

@@ -117,6 +117,6 @@ def test_a_real_port_needs_leave(monkeypatch):
         ({"safe_state": "FAA"}, "is not bytes such as"),
     ],
 )
-def test_mistakes_are_told(parameters, message):
+def test_mistakes_are_reported(parameters, message):
     with pytest.raises(InputError, match=message):
         started(SerialGateway, **parameters)

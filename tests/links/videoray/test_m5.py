@@ -51,7 +51,7 @@ def test_speed_current_voltage_and_warmth():
     assert risen == pytest.approx(rest * (1 - math.exp(-63.15 / 120.0)), rel=0.01)
 
 
-def test_too_warm_or_told_to_be_faulty_it_stands_still():
+def test_too_warm_or_set_to_be_faulty_it_stands_still():
     line = Line(M5Thrusters, nodes="1 2", greatest_temperature=288.5, thermal_time=1.0)
     line.component.set("fault", [0, 2, 0, 0, 0, 0])
     health = keep(line, [1.0, 1.0], 3.0)

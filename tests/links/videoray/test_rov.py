@@ -208,7 +208,7 @@ def test_slew_rates(unit, rate, after_a_second):
     assert line["duty"][0] == pytest.approx(duty)
 
 
-def test_the_map_written_by_the_topside_counts():
+def test_the_map_written_by_the_topside_applies():
     line = Line(Pro4Rov, registers=AT_ONCE)
     config = (0).to_bytes(2, "little"), (500).to_bytes(2, "little")
     line.exchange(request(address=0x14, payload=config[0]))
@@ -266,7 +266,7 @@ def test_auto_depth_with_the_captured_gains():
     assert line["auto_depth"] is True
 
 
-def test_sticks_and_auto_heading_add_up():
+def test_manual_control_and_auto_heading_add_up():
     line = Line(Pro4Rov, registers=AT_ONCE)
     line.exchange(drive(thrust=(0.5, 0.5, 0.0), auto_heading=20.0), steps=11)
     assert line["duty"][0] == pytest.approx(0.38 + 0.628 * 0.54)
@@ -315,7 +315,7 @@ def test_a_cut_line_carries_nothing():
     assert len(line.exchange(request(flags=1))) == 1
 
 
-def test_during_a_reboot_it_is_deaf_and_still():
+def test_during_a_reboot_it_receives_and_sends_nothing():
     line = Line(Pro4Rov, registers=AT_ONCE, reboot_time=0.5, watchdog=0.0)
     line.exchange(drive(thrust=(1.0, 1.0, 1.0), lights=1.0), steps=15)
     answers = line.exchange(request(flags=1, address=0xFE, payload=b"\xde\xad"))
@@ -395,6 +395,6 @@ def test_the_record_has_both_ways(tmp_path):
         ({"gains": "held"}, "captured, holding"),
     ],
 )
-def test_mistakes_are_told(parameters, message):
+def test_mistakes_are_reported(parameters, message):
     with pytest.raises(InputError, match=message):
         Line(Pro4Rov, **parameters)

@@ -98,7 +98,7 @@ def test_manual_control(manual, thrust):
     assert found == pytest.approx(thrust)
 
 
-def test_sticks_have_a_limit():
+def test_manual_control_has_a_limit():
     line = driven(manual_limit=0.2, vertical_ahead="down")
     line.component.set("armed", True)
     line.component.set("manual", [1.0, 0.0, 1.0])

@@ -1,6 +1,6 @@
 """Simulated board: a process that runs up to a given cycle, over two pipes.
 
-A sketch that crashes, hangs or overruns its stack takes nothing else along. What a board says is
+A sketch that crashes, hangs or overruns its stack takes nothing else along. What a board sends is
 a list of events, each with the CPU cycle at which it happened.
 """
 
@@ -26,7 +26,7 @@ UART, EDGE, DUTY = ord("T"), ord("P"), ord("D")
 """Kinds of events: a byte has left a UART; a pin has another level, or is modulated."""
 
 _ANSWER_S = 20.0
-"""Wall clock: a program that takes this long for one step hangs where it cannot say so."""
+"""Wall clock: a program that takes this long for one step hangs where it cannot report it."""
 
 Event = tuple[int, int, int, int]
 """Kind, index, value, cycle."""
@@ -77,7 +77,7 @@ class Board:
         """
         request = struct.pack("<IQ", 8 + len(inputs.data), target) + inputs.data
         try:
-            # A program that could not begin has said why and is gone before it is asked.
+            # A program that could not begin has reported why and is gone before the request.
             with contextlib.suppress(BrokenPipeError):
                 self._write(request)
             size = int.from_bytes(self._read(4), "little")

@@ -89,7 +89,7 @@ def _narrowed_copy(sketch: Sketch, scratch: Path) -> tuple[list[Path], list[Path
 
 
 def run(command: list[str], name: str) -> None:
-    """Run a compiler. Raises InputError with what it says, if it refuses."""
+    """Run a compiler. Raises InputError with its output, if it refuses."""
     done = subprocess.run(
         command, capture_output=True, text=True, check=False, env={**os.environ, "LC_ALL": "C"}
     )

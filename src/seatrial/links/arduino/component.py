@@ -46,7 +46,7 @@ class Arduino(ArduinoPorts):
     ``attitude``, ``ms5837`` (30BA) the pressure at ``depth`` under one atmosphere. ``PIN soft_rx
     N`` and ``PIN soft_tx N``: the line of UART N is at these pins, for SoftwareSerial.
 
-    **Time.** Inputs count from the beginning of the step on. What happens on pins and lines is
+    **Time.** Inputs apply from the beginning of the step on. What happens on pins and lines is
     stamped with its cycle; an output at t has what happened before t. Bytes that arrive on
     ``rx`` are put on the line one after the other at the baud rate of ``uarts``, not before
     their time and not before the step that has them; those that a UART sends are on ``tx`` when
@@ -54,7 +54,7 @@ class Arduino(ArduinoPorts):
     with the next step, besides what is on ``rx``. Bytes that come or go while a line is ``cut``
     are lost.
 
-    The sketch runs in a program of its own. If it crashes, overruns its stack, runs for
+    The sketch runs in a process of its own. If it crashes, overruns its stack, runs for
     ``patience`` without returning or calling anything, or opens a UART at another rate than
     its line has, the step raises SimulationError that says where. It cannot be rolled back.
 

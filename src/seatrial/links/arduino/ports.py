@@ -16,7 +16,7 @@ def _axes(letter: str, count: int = OTHERS) -> tuple[str, ...]:
 
 
 class ArduinoPorts(Reachable, Component):
-    """What an `Arduino` is told and says."""
+    """Parameters, inputs and outputs of `Arduino`."""
 
     backend = Parameter("host", "1", "what runs the sketch", choices=BACKENDS)
     mcu = Parameter("atmega2560", "1", "microcontroller", choices=tuple(MCUS))

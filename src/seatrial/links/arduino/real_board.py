@@ -16,7 +16,7 @@ _INPUT = struct.Struct("<BBHd")
 class RealBoard:
     """Serial ports in the place of a simulated board's UARTs; ``links`` are ``UART=URL``.
 
-    ``safe_state`` (hexadecimal) is what makes the sketch let go. It is sent to each at the end,
+    ``safe_state`` (hexadecimal) are the safe-state bytes. They are sent to each at the end,
     however the run ends; to one whose input has become stale, that is silent for ``timeout``
     seconds after it was not; and to the others when one that has sent has been silent for as long:
     its link is lost, and until it sends again nothing is sent to the others.

@@ -145,7 +145,7 @@ def _fd_begun(identifier: int, extended: bool, switch: bool) -> tuple[int, int, 
 def _fd_stuffed(state: int, frame: Frame) -> int:
     """Return the stuff bits from ESI to the end of the data.
 
-    What the very last bit requests is the CRC field's first fixed stuff bit, and not counted.
+    A stuff bit due after the very last bit is the CRC field's first fixed one, and not counted.
     """
     control = int(frame.error_state) << 4 | frame.dlc
     if not frame.data:

@@ -1,4 +1,4 @@
-"""Logs of a bus: what was on it, as others' tools read it."""
+"""Bus logs in the formats of common tools."""
 
 from __future__ import annotations
 

@@ -51,7 +51,7 @@ class CanBus(Logging, Noise, Component):
     another bit rate is refused.
 
     **Time.** Frames, queues and arbitration are `SimulatedBus`'s: to the bit, however coarse the
-    communication step. In the step from t to t + h the bus lives until t, since all that nodes
+    communication step. In the step from t to t + h the bus runs until t, since all that nodes
     requested until then is known; so what ended by t is on ``rx`` and on all other outputs at
     t + h: one step late, with the time at which it ended, and never wrong.
 
@@ -159,7 +159,7 @@ class CanBus(Logging, Noise, Component):
         self._build(names, silent)
 
     def step(self, t: float, h: float) -> None:
-        """Take in what nodes have requested, and let the bus live until ``t``."""
+        """Take in what nodes have requested, and let the bus run until ``t``."""
         if self._run_log is not None:
             self._run_log.open(self.run_folder)
         for node, (inbox, text) in enumerate(zip(self._inboxes, self.tx, strict=False)):

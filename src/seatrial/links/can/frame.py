@@ -24,7 +24,7 @@ class Frame:
     extended: bool = False
     """29 bits of identifier instead of 11."""
     remote: bool = False
-    """A request for data: it has none, and ``dlc`` says how much is wanted."""
+    """A request for data: it has none, and ``dlc`` is how much is wanted."""
     fd: bool = False
     bit_rate_switch: bool = False
     """FD: the data phase has a rate of its own."""

@@ -1,8 +1,8 @@
 """socketcand gateway: a server for python-can's ``socketcand``, SavvyCAN, Kayak.
 
 socketcand's protocol in its raw mode (linux-can/socketcand, doc/protocol.md): texts between
-``<`` and ``>``. The client is greeted, opens a bus, whose name does not matter here, and asks
-for the raw mode.
+``<`` and ``>``. The client is greeted, opens a bus, whose name does not matter here, and requests
+the raw mode.
 """
 
 from __future__ import annotations

@@ -21,7 +21,7 @@ _NED = ("north", "east", "down")
 
 
 class DroneCanAutopilot(DroneCanNode):
-    """The node that commands the others.
+    """DroneCAN node that commands ESCs and servos.
 
     Every ``command_period`` it sends ``command`` to the ``channels``, named as in
     `DroneCanPeripheral`: one RawCommand for all esc, one RPMCommand for all rpm, one

@@ -35,7 +35,7 @@ class DroneCanPeripheral(DroneCanNode):
 
     **Commands.** ``channels`` names what ``command.c1``, ``c2``... are: ``esc0`` takes element 0
     of RawCommand, and has -1 to 1; ``rpm0`` element 0 of RPMCommand, rad/s; ``actuator3`` what
-    ArrayCommand says of actuator 3 in the type named: ``actuator3:unitless`` (the default, -1 to
+    ArrayCommand has for actuator 3 in the type named: ``actuator3:unitless`` (the default, -1 to
     1), ``:position``, ``:force``, ``:speed`` (SI), ``:pwm`` (a pulse, s). ``pulse`` is the servo
     pulse of those with a command from -1 to 1, by ``pulse_min``, ``pulse_neutral``,
     ``pulse_max``, and of pwm; of others it is neutral. Commands act at the end of the step in

@@ -1,4 +1,4 @@
-"""UDP: one known address, or whoever sends."""
+"""UDP endpoints: one known address, or any sender."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class _UdpPeer(Channel):
             else:
                 self._socket.sendto(data, self._address)
         except OSError:
-            pass  # nobody there, or the queue is full: a datagram may be lost
+            pass  # no receiver, or the queue is full: a datagram may be lost
 
 
 class UdpSender(Endpoint):
@@ -54,7 +54,7 @@ class UdpSender(Endpoint):
             except BlockingIOError:
                 break
             except OSError:
-                continue  # the answer to an earlier datagram: nobody listens there
+                continue  # the answer to an earlier datagram: the port is closed
         return arrived
 
     def close(self) -> None:

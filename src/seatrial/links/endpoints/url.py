@@ -2,7 +2,7 @@
 
 =========================== =================================================================
 ``udpout:HOST:PORT``        sends to one address, and receives it alone
-``udpin:HOST:PORT``         bound there; sends to whoever has sent something
+``udpin:HOST:PORT``         bound there; sends to all that have sent something
 ``tcpin:HOST:PORT``         a server with any number of clients
 ``tcpout:HOST:PORT``        a client, which connects again when the connection is lost
 ``serial:DEVICE:BAUD``      a serial port; a real one only if hardware is allowed

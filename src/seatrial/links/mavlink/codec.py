@@ -1,4 +1,4 @@
-"""Bytes to messages and back, for one peer."""
+"""MAVLink codec of one peer: bytes to messages and back."""
 
 from __future__ import annotations
 

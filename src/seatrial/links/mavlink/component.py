@@ -68,7 +68,7 @@ class Mavlink(MavlinkPorts):
 
     **Left alone** it carries out ``failsafe`` if it is armed: when all ground stations were
     silent for ``station_timeout``, and in a manual mode when manual control was for
-    ``manual_timeout``. Set-points count for ``target_timeout``. See `Failsafe`.
+    ``manual_timeout``. Set-points apply for ``target_timeout``. See `Failsafe`.
 
     **Live**: stations set the ``speedup``, which a trial may pace its run by, and inject failures:
     ``failure`` goes to the input ``fault`` of devices, for the units that ``failures`` lists

@@ -47,7 +47,7 @@ class Node:
 
     `receive` takes messages one by one, `tick` lets time pass; answers and streams go to
     ``transport``. Messages of the vehicle itself, and those meant for another system or component,
-    are nobody's business here. Missions, fence and rally points are kept in ``plans``, a folder.
+    are ignored. Missions, fence and rally points are kept in ``plans``, a folder.
     ``clock`` is wall time, s, by which ground stations live. ``failures`` are the units that can
     fail.
     Raises InputError for settings that the vehicle cannot have, and for what is in the folder.

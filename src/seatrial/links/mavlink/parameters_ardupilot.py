@@ -1,4 +1,4 @@
-"""The parameters that ground stations look for in ArduPilot's Rover and Sub."""
+"""Parameters of ArduPilot's Rover and Sub that ground stations look for."""
 
 from __future__ import annotations
 

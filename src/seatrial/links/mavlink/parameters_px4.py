@@ -1,4 +1,4 @@
-"""The parameters that ground stations look for in PX4."""
+"""Parameters of PX4 that ground stations look for."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ _NAVIGATION = (
     mavlink.MAV_CMD_NAV_DELAY,
 )
 _LAST_NAVIGATION = mavlink.MAV_CMD_NAV_LAST
-"""Commands up to this one say where to go: one that is not known cannot be skipped."""
+"""Commands up to this one have a destination: one that is not known cannot be skipped."""
 
 
 class Refusal(NamedTuple):
@@ -47,7 +47,7 @@ def first_item(vehicle: Vehicle) -> int:
 def check_mission(items: Sequence[Item], vehicle: Vehicle) -> Refusal | None:
     """Refuse places that are none, jumps out of the list, and commands that cannot be skipped.
 
-    Commands that do not say where to go are taken: those that are not known are skipped.
+    Commands without a destination are taken: those that are not known are skipped.
     """
     first = first_item(vehicle)
     for sequence, item in enumerate(items[first:], first):

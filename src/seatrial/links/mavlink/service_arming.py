@@ -15,7 +15,7 @@ FORCE = 21196.0
 """Parameter 2 of COMPONENT_ARM_DISARM that arms against all checks."""
 
 Check = Callable[[], str | None]
-"""Returns what speaks against arming, None if nothing does."""
+"""Returns the reason against arming, None if there is none."""
 
 
 class ArmingService(Service):
@@ -46,7 +46,7 @@ class ArmingService(Service):
             self.vehicle.say(INFO, "Disarmed")
 
     def tick(self, now: float) -> None:
-        """Keep what the health bit says."""
+        """Keep the health bit."""
         self.vehicle.healthy = not self._reasons()
 
     def _reasons(self) -> list[str]:

@@ -44,7 +44,7 @@ class GuidedService(Service):
     """SET_POSITION_TARGET_LOCAL_NED, SET_POSITION_TARGET_GLOBAL_INT, SET_ATTITUDE_TARGET, and
     DO_REPOSITION.
 
-    The three messages count in guided mode and until the time-out each; then the vehicle stops.
+    The three messages apply in guided mode and until the time-out each; then the vehicle stops.
     Of what a mask lets through, a position goes before a velocity, a velocity before a yaw;
     an attitude gives the heading, its thrust the share of the full speed. DO_REPOSITION stays,
     and enters guided mode if the command has it (PX4: Hold, which it shows on the way too). A boat

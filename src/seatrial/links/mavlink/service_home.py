@@ -21,7 +21,7 @@ class HomeService(Service):
     GET_HOME_POSITION and SET_GPS_GLOBAL_ORIGIN in.
 
     Home is the origin until it is set; the setting station is answered with the new one, as
-    are all others. The origin belongs to the trial and stays: setting it is answered with it.
+    are all others. The origin belongs to the trial and stays: requests to set it get it.
     """
 
     streams: ClassVar = {mavlink.MAVLINK_MSG_ID_HOME_POSITION: 2.0}

@@ -36,7 +36,7 @@ class ManualControlService(Service):
 
     After the time-out without either the axes are 0, and in an armed vehicle in a manual mode
     the failsafe acts, unless it is set not to watch them. A station that releases all channels has
-    let go on purpose.
+    released them on purpose.
     """
 
     def __init__(

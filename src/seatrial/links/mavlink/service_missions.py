@@ -41,7 +41,7 @@ class MissionService(Service):
     DO_SET_MISSION_CURRENT, MISSION_SET_CURRENT and DO_CHANGE_SPEED in.
 
     MISSION_CURRENT comes every second and at every change. The mode auto is refused without a
-    mission. MISSION_START goes on, or begins again after the end; DO_PAUSE_CONTINUE counts in
+    mission. MISSION_START goes on, or begins again after the end; DO_PAUSE_CONTINUE applies in
     auto only, DO_CHANGE_SPEED in guided mode too.
 
     A MISSION_ITEM whose ``current`` is 2 is not part of a mission, but a place to go to in guided

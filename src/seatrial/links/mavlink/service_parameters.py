@@ -35,8 +35,8 @@ class _Listing:
 class ParameterService(Service):
     """PARAM_REQUEST_LIST, PARAM_REQUEST_READ and PARAM_SET in; PARAM_VALUE, PARAM_ERROR out.
 
-    **Lists** go to the requesting link, `RATE` parameters a second of link time. Whoever
-    asks again meanwhile lets the list go round once more from where it is, so a station that
+    **Lists** go to the requesting link, `RATE` parameters a second of link time. A request
+    meanwhile lets the list go round once more from where it is, so a station that
     repeats itself, or a second one on the same link, gets all of it. What was lost is read by
     index. Links have lists of their own.
 

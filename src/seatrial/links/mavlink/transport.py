@@ -101,7 +101,7 @@ class EndpointTransport:
         link.channel.send(frame)
 
     def _reconcile(self) -> None:
-        """Know the peers that have not sent anything, forget those that are gone."""
+        """Add the peers that have not sent anything, remove those that are gone."""
         there = [channel for endpoint in self.endpoints for channel in endpoint.channels()]
         self._links = {channel: self._link(channel) for channel in there}
 

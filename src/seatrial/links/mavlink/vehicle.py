@@ -103,7 +103,7 @@ class Target:
 
 @dataclass(frozen=True)
 class StatusText:
-    """A sentence for the people at the ground stations."""
+    """STATUSTEXT for the ground stations."""
 
     severity: int
     text: str

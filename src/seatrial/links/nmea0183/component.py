@@ -26,7 +26,7 @@ from .sentences import SENTENCES
 class Nmea0183(Nmea0183Ports):
     """A talker and a listener on NMEA 0183: over UDP, TCP, serial lines, and as text on ports.
 
-    **Talking.** ``sentences`` has talker, sentence and period: ``GPRMC 1; WIMWV-R 0.5``, talker and
+    **Talking.** ``sentences`` are what is sent, as ``GPRMC 1; WIMWV-R 0.5``: talker and
     sentence (`SENTENCES`) and the period in s. Sentence k of one goes out at the first multiple
     of ``period`` that is not before the start of the run + k times its own period, in the order
     of the text, with the readings of that instant; to all ``links`` (`endpoints.url`), and to

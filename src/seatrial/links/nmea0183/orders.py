@@ -34,7 +34,7 @@ class Order:
 
 
 def read_order(message: Any, variation: float) -> Order | None:
-    """Return what a sentence orders; None if nothing, or it says itself that it is not valid.
+    """Return what a sentence orders; None if nothing, or its status is not valid.
 
     HSC: the heading commanded, true if there, else magnetic; not one that is only reported.
     APB: the heading to steer, cross-track error and arrival; RMB: the waypoint and the same.

@@ -1,4 +1,4 @@
-"""The messages that a node sends and reads: names, priorities and intervals of the standard.
+"""Messages that a node sends and reads: names, priorities and intervals of the standard.
 
 Numbers from canboat's table of PGNs (canboat.json 6.2.0). Layouts and resolutions are the package
 nmea2000's, which has the same table.

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from ...errors import InputError
 
 EXTENDED = 0xFF
-"""Length that says that two bytes with the length follow."""
+"""Length that marks that two bytes with the length follow."""
 LONGEST_PAYLOAD = 0xFFFF
 HEADER = 6
 """Bytes before the header's check."""

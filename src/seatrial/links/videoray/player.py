@@ -1,4 +1,4 @@
-"""Plays a recorded stream into a simulation."""
+"""Player of a recorded stream into a simulation."""
 
 from __future__ import annotations
 

@@ -61,7 +61,7 @@ def payload(number: int, memory: bytes | bytearray) -> bytes | None:
 
 
 def read(number: int, data: bytes) -> Reading | None:
-    """Return what a reply's bytes after the type of device say; None if they are none.
+    """Return the content of a reply's bytes after the type of device; None if they are none.
 
     Pressure is taken for signed here, as the reply has it.
     """

@@ -69,7 +69,7 @@ NEUTRAL = Frame(False, ROV, 0, 0, Commands().block())
 
 @dataclass
 class Station:
-    """Cycle by cycle: `request` is what to send, `receive` what came back.
+    """Topside, cycle by cycle: `request` is what to send, `receive` what came back.
 
     Without an answer for ``timeout_ns`` the vehicle is lost, and looked for again: until it has
     answered, nothing commands it. ``readings`` are the newest, by register in its unit.
