@@ -101,7 +101,7 @@ def test_a_stale_input_is_sent_safe_state_once_and_may_come_again(line):
 
 
 def test_a_lost_link_stops_the_others_until_it_is_back(lines):
-    (told, device), (telling, second) = lines
+    (first, device), (telling, second) = lines
     links = f"0=serial:{device}:38400 1=serial:{second}:38400"
     board = started(links=links, safe_state="580A", timeout=0.2)
     now, number = 0, 0
@@ -112,7 +112,7 @@ def test_a_lost_link_stops_the_others_until_it_is_back(lines):
         for _ in range(count):
             number += 1
             board.set("rx.uart0", encode(number, [(0, b"go ")]))
-            more, now = step(board, now, 1, told)
+            more, now = step(board, now, 1, first)
             received += more
         return received
 

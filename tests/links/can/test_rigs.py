@@ -163,7 +163,7 @@ source    = "invented"
 kind = "can-gateway"
 link = "{gateway}"
 """
-DOOR = """
+GATEWAY = """
 step = "1 ms"
 profile = "boat"
 
@@ -183,7 +183,7 @@ gateway = { fmu = "can-gateway", profile = "links.bus" }
 def through(folder, gateway):
     for name, text in (
         ("hil_profiles/boat.toml", PROFILE.format(gateway=gateway)),
-        ("harness/rigs/gateway.toml", DOOR),
+        ("harness/rigs/gateway.toml", GATEWAY),
         ("harness/trials/gateway.toml", 'rig = "gateway"\nstop = "100 ms"\n'),
     ):
         (folder / name).parent.mkdir(parents=True, exist_ok=True)

@@ -205,8 +205,8 @@ def test_mistakes_name_the_file(tmp_path, change, sends, sent):
         signals(file, sends=sends)
     for part in sent:
         assert part in str(caught.value)
-    told = re.match(r"node: (sends|database): ", str(caught.value))
-    assert told, str(caught.value)
+    named = re.match(r"node: (sends|database): ", str(caught.value))
+    assert named, str(caught.value)
     if "named twice" not in sent[0] and "is not MESSAGE" not in sent[0]:
         assert str(file) in str(caught.value)
 

@@ -45,11 +45,11 @@ def test_units_are_named_as_mavlink_names_them():
 @pytest.mark.parametrize("kind", entries("FAILURE_TYPE"))
 def test_only_what_is_connected_fails(unit, kind):
     boat = bench()
-    wired = {GPS: ["gps"], MAG: ["mag"], MOTOR: ["motor1", "motor2"]}.get(unit)
-    assert boat.command(INJECT, unit, kind, 0) == (ACCEPTED if wired else UNSUPPORTED)
+    connected = {GPS: ["gps"], MAG: ["mag"], MOTOR: ["motor1", "motor2"]}.get(unit)
+    assert boat.command(INJECT, unit, kind, 0) == (ACCEPTED if connected else UNSUPPORTED)
     failure = ["none", *FAULTS][kind]
     for name, found in boat.node.failures.failing.items():
-        assert found == (failure if name in (wired or []) else "none")
+        assert found == (failure if name in (connected or []) else "none")
 
 
 def test_an_instance_fails_alone_and_nought_or_none_means_all():

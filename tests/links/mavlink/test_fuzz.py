@@ -63,7 +63,7 @@ def reported_state(bench):
 def is_sane(bench):
     v = bench.vehicle
     assert v.dialect.mode(v.mode.name) is v.mode
-    assert all(-1.0 <= stick <= 1.0 for stick in v.manual)
+    assert all(-1.0 <= axis <= 1.0 for axis in v.manual)
     assert all(abs(x) <= 1e6 for x in v.home_n)
     assert v.target is None or all(abs(x) <= 1e6 for x in v.target.position)
 

@@ -23,7 +23,7 @@ from .transport import Sender, Transport
 from .vehicle import Vehicle
 
 _MOST = 8
-"""Motors, and servos, that are told apart."""
+"""Motors, and servos, with an instance each."""
 _COUNTED = {mavlink.FAILURE_UNIT_SYSTEM_MOTOR: "motor", mavlink.FAILURE_UNIT_SYSTEM_SERVO: "servo"}
 _SINGLE = {
     mavlink.FAILURE_UNIT_SENSOR_GYRO: "gyro",
