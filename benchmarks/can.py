@@ -63,7 +63,7 @@ def arbitration(count: int) -> float:
     asked = frames(count)
     begin = time.process_time()
     for when, node, frame in asked:
-        bus.ask(when * 1000, node, frame)
+        bus.request(when * 1000, node, frame)
     bus.run(10**18)
     spent = time.process_time() - begin
     assert bus.attempts == count
@@ -84,7 +84,7 @@ def component(count: int, *, reads: bool, folder: str = "") -> float:
     while bus.get("frames") < count:
         nodes = [CanNode(memory) for memory in memories]
         if reads:
-            received += sum(len(node.hear(rx)) for node, rx in zip(nodes, bus.rx, strict=False))
+            received += sum(len(node.receive(rx)) for node, rx in zip(nodes, bus.rx, strict=False))
         while place < count and asked[place][0] <= now + STEP_NS:
             when, number, frame = asked[place]
             nodes[number].send(when, frame)

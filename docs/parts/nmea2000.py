@@ -11,7 +11,7 @@ from parts.markdown import shown_number, table
 from seatrial.links.nmea2000.catalogue import DATA, Pgn
 from seatrial.links.nmea2000.codec import is_fast
 from seatrial.links.nmea2000.component import Nmea2000
-from seatrial.links.nmea2000.ports import NOT_WIRED
+from seatrial.links.nmea2000.ports import NOT_CONNECTED
 
 
 def _field(pgn: Pgn, name: str) -> tuple[str, str]:
@@ -50,14 +50,14 @@ def fields() -> str:
             if each.name == "sid":
                 continue
             resolution, unit = _field(pgn, each.name)
-            said = f"`{each.said}`" if each.said else ""
+            sent = f"`{each.sent}`" if each.sent else ""
             received = f"`{each.received}`" if each.received else ""
             name = f"`{each.name}`"
-            rows.append((str(pgn.number), name, said, received, resolution, unit, each.sense))
+            rows.append((str(pgn.number), name, sent, received, resolution, unit, each.sense))
     return table(("PGN", "field", "from", "to", "resolution", "unit", "sense"), rows)
 
 
 @part("nmea2000-ports")
 def node_ports() -> str:
     """Return the node's ports."""
-    return ports(Nmea2000).replace(f"{NOT_WIRED:g}", "not wired")
+    return ports(Nmea2000).replace(f"{NOT_CONNECTED:g}", "not connected")

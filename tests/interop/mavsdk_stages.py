@@ -241,7 +241,7 @@ async def manual(station: Station, mode: int, y: float, z: float) -> None:
     async with station.stage("manual"):
         await station.passes(8.0)
     helm.cancel()
-    await station.reads("Failsafe: sticks lost, hold")
+    await station.reads("Failsafe: manual control lost, hold")
     await station.receives("flight_mode", "holds", value=int(FlightMode.HOLD))
 
 

@@ -246,8 +246,8 @@ def test_canboat_knows_the_identity():
     network = Network({"node": {**NODE, "device_function": 145.0, "device_class": 60.0}})
     network.run(0.5)
     for pgn in (60928, 126996, 126998, 126464, 126993):
-        network.say(Message(59904, {"pgn": pgn}, 200, 35))
-    network.say(Message(59904, {"pgn": 65240}, 200, 35))
+        network.send_message(Message(59904, {"pgn": pgn}, 200, 35))
+    network.send_message(Message(59904, {"pgn": 65240}, 200, 35))
     network.run(0.3)
     found = {m["pgn"]: m for m in canboat.decoded(network.frames) if m["src"] == 35}
     claim = found[60928]["fields"]

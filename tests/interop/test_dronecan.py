@@ -150,24 +150,26 @@ def test_parameters_are_listed_read_and_set():
     with bench(node) as b:
         names = []
         while True:
-            response = b.ask(param(index=len(names)), 10)
+            response = b.request(param(index=len(names)), 10)
             if not response.name.decode():
                 break
             names.append(response.name.decode())
         assert names[:2] == ["NODE_ID", "CHANNELS"]
         assert {"COMMAND_TIMEOUT", "STATUS_PERIOD"} <= set(names)
         # Of each type: integer, real, string.
-        response = b.ask(param(name="NODE_ID"), 10)
+        response = b.request(param(name="NODE_ID"), 10)
         assert (shown(response), response.max_value.integer_value) == (10, 127)
-        assert shown(b.ask(param(name="CHANNELS"), 10)) == "esc0"
-        response = b.ask(param(name="COMMAND_TIMEOUT", value=value(real_value=0.5)), 10)
+        assert shown(b.request(param(name="CHANNELS"), 10)) == "esc0"
+        response = b.request(param(name="COMMAND_TIMEOUT", value=value(real_value=0.5)), 10)
         assert shown(response) == 0.5
         assert response.default_value.real_value == pytest.approx(0.2)
         # What does not fit is not taken, and the answer says what stays.
         for wrong in (value(real_value=-1.0), value(integer_value=1), value(real_value=math.nan)):
-            assert shown(b.ask(param(name="COMMAND_TIMEOUT", value=wrong), 10)) == 0.5
-        assert shown(b.ask(param(name="CHANNELS", value=value(string_value="fin")), 10)) == "esc0"
-        unknown = b.ask(param(name="NO_SUCH", value=value(real_value=1.0)), 10)
+            assert shown(b.request(param(name="COMMAND_TIMEOUT", value=wrong), 10)) == 0.5
+        assert (
+            shown(b.request(param(name="CHANNELS", value=value(string_value="fin")), 10)) == "esc0"
+        )
+        unknown = b.request(param(name="NO_SUCH", value=value(real_value=1.0)), 10)
         assert (unknown.name.decode(), get_active_union_field(unknown.value)) == ("", "empty")
         b.peer.broadcast(uavcan.equipment.esc.RawCommand(cmd=[4096]))
         begun = b.until(lambda: node.get("command.c1"), 0.1)
@@ -175,33 +177,33 @@ def test_parameters_are_listed_read_and_set():
 
 
 def execute(b, opcode):
-    return b.ask(uavcan.protocol.param.ExecuteOpcode.Request(opcode=opcode), 10).ok
+    return b.request(uavcan.protocol.param.ExecuteOpcode.Request(opcode=opcode), 10).ok
 
 
 def restart(b, magic=0xACCE551B1E):
-    return b.ask(uavcan.protocol.RestartNode.Request(magic_number=magic), 10).ok
+    return b.request(uavcan.protocol.RestartNode.Request(magic_number=magic), 10).ok
 
 
 def test_what_is_saved_outlives_a_restart():
     node = peripheral(status_period=0.2)
     with bench(node) as b:
         period = param(name="STATUS_PERIOD")
-        b.ask(param(name="STATUS_PERIOD", value=value(real_value=0.05)), 10)
+        b.request(param(name="STATUS_PERIOD", value=value(real_value=0.05)), 10)
         assert not restart(b, magic=1)
-        assert shown(b.ask(period, 10)) == pytest.approx(0.05)
+        assert shown(b.request(period, 10)) == pytest.approx(0.05)
         assert restart(b)
-        assert shown(b.ask(period, 10)) == pytest.approx(0.2)
-        b.ask(param(name="STATUS_PERIOD", value=value(real_value=0.05)), 10)
-        b.ask(param(name="CHANNELS", value=value(string_value="esc5")), 10)
+        assert shown(b.request(period, 10)) == pytest.approx(0.2)
+        b.request(param(name="STATUS_PERIOD", value=value(real_value=0.05)), 10)
+        b.request(param(name="CHANNELS", value=value(string_value="esc5")), 10)
         assert execute(b, 0)
         assert restart(b)
-        assert shown(b.ask(period, 10)) == pytest.approx(0.05)
+        assert shown(b.request(period, 10)) == pytest.approx(0.05)
         statuses = b.collect(uavcan.equipment.esc.Status)
         b.run(1.0)
         assert 19 <= len(statuses) <= 21
         assert statuses[-1].message.esc_index == 5
         assert execute(b, 1)
-        assert shown(b.ask(period, 10)) == pytest.approx(0.2)
+        assert shown(b.request(period, 10)) == pytest.approx(0.2)
         assert not execute(b, 7)
 
 
@@ -218,7 +220,7 @@ def test_the_packages_allocator_gives_each_node_an_id():
         table = server.get_allocation_table()
         unique = {number: bytes(found) for found, number in table if found is not None}
         for node in nodes:
-            info = b.ask(uavcan.protocol.GetNodeInfo.Request(), node.get("own_id"))
+            info = b.request(uavcan.protocol.GetNodeInfo.Request(), node.get("own_id"))
             assert bytes(info.hardware_version.unique_id) == unique[node.get("own_id")]
         server.close()
 

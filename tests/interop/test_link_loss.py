@@ -65,7 +65,7 @@ class Station:
             if message is not None and message.get_type() == "PARAM_VALUE":
                 self._keep(message)
             elif hasattr(message, "mission_type"):
-                self.client.hear(message, now)
+                self.client.receive(message, now)
             self.client.tick(now)
 
     def has_uploaded(self) -> bool:

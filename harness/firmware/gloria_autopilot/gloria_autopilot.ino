@@ -62,7 +62,7 @@ void setup() {
 }
 
 void loop() {
-  static unsigned long controlled = 0, told = 0;
+  static unsigned long controlled = 0, reported = 0;
   readNmea();
   readRadio();
   if (millis() - controlled >= CONTROL_MS) {
@@ -73,8 +73,8 @@ void loop() {
     steer();
     trim();
   }
-  if (millis() - told >= TELEMETRY_MS) {
-    told += TELEMETRY_MS;
+  if (millis() - reported >= TELEMETRY_MS) {
+    reported += TELEMETRY_MS;
     report(Serial2);
     report(Serial3);
   }

@@ -1,4 +1,4 @@
-// Relay of Gloria's telemetry, for an Arduino Uno: hears the Mega on its only UART, and sends the
+// Relay of Gloria's telemetry, for an Arduino Uno: receives from the Mega on its only UART, and sends the
 // shore a line a second on the same UART's transmitter, where the modem is.
 
 char line[84];

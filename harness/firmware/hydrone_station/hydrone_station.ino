@@ -41,15 +41,15 @@ void setup() {
 }
 
 void loop() {
-  static unsigned long last = 0, told = 0;
+  static unsigned long last = 0, reported = 0;
   readNmea();
   if (millis() - last >= 50) {
     last += 50;
     readGyro();
     keep();
   }
-  if (millis() - told >= 1000) {
-    told += 1000;
+  if (millis() - reported >= 1000) {
+    reported += 1000;
     Serial.print(F("$HYD,"));
     Serial.print(north);
     Serial.print(',');

@@ -1,11 +1,11 @@
-// The VideoRay Pro 4's serial protocol, as far as its topside asks: detection, configuration, a read
+// The VideoRay Pro 4's serial protocol, as far as its topside uses it: detection, configuration, a read
 // of the memory, the command block, the replies 1 to 5.
 //
 // request:  FA AF id flags address length, XOR of these, payload, XOR of all
 // answer:   FD DF, then alike; its payload begins with the type of device
 // a length of 255: two bytes of length and their XOR follow the first XOR
 
-const byte NODE = 1, EVERYBODY = 0xFF, DEVICE = 1, LONGEST = 32;
+const byte NODE = 1, BROADCAST = 0xFF, DEVICE = 1, LONGEST = 32;
 const byte READ = 0x80, CONFIGURATION = 0xF7, COMMANDS = 15;
 const unsigned long GAP_MS = 50;
 const byte HUMIDITY = 0x84, POWER = 0x5F, MAGNETOMETER = 0xC4;
@@ -53,12 +53,12 @@ bool fits() {
 
 void serve() {
   byte id = request[2], flags = request[3], address = request[4], length = request[5];
-  if (id != NODE && id != EVERYBODY) return;
+  if (id != NODE && id != BROADCAST) return;
   if (address == 0 && length >= COMMANDS) {
     memcpy(registers, request + 7, COMMANDS);
     obey();
   }
-  if (id == EVERYBODY || flags == 0) return;
+  if (id == BROADCAST || flags == 0) return;
   if (flags & READ) {
     answerRead(address, flags & 0x7F);
   } else if (flags <= 5) {
@@ -68,24 +68,24 @@ void serve() {
 
 // ---------------------------------------------------------------- answers
 
-void say(byte value) {
+void send(byte value) {
   Serial.write(value);
   sum ^= value;
 }
 
 void begin(byte flags, byte address, byte length) {
   sum = 0;
-  say(0xFD);
-  say(0xDF);
-  say(NODE);
-  say(flags);
-  say(address);
-  say(length);
-  say(sum);  // and it is 0 again
+  send(0xFD);
+  send(0xDF);
+  send(NODE);
+  send(flags);
+  send(address);
+  send(length);
+  send(sum);  // and it is 0 again
 }
 
 void sayRegisters(byte address, byte count) {
-  for (byte i = 0; i < count; i++) say(registers[address + i]);
+  for (byte i = 0; i < count; i++) send(registers[address + i]);
 }
 
 // What all answers have: heading, pitch, roll, pressure.
@@ -97,20 +97,20 @@ void sayAttitude() {
 void answer(byte number) {
   static const byte LENGTHS[] = {0, 9, 9, 11, 13, 34};
   begin(number, 0, LENGTHS[number]);
-  say(DEVICE);
+  send(DEVICE);
   sayAttitude();
   if (number == 3 || number == 4) sayRegisters(WATER, 2);
   if (number == 4) sayRegisters(HUMIDITY, 2);
   if (number == 5) {
     sayRegisters(TURN, 12);
     sayRegisters(MAGNETOMETER, 6);
-    say(0);  // status of the attitude
-    say(0);
+    send(0);  // status of the attitude
+    send(0);
     sayRegisters(HUMIDITY, 2);
     sayRegisters(WATER, 2);
     sayRegisters(POWER, 1);
   }
-  say(sum);
+  send(sum);
 }
 
 // Without a count: all from the address on.
@@ -123,9 +123,9 @@ void answerRead(byte address, byte count) {
   byte most = sizeof(registers) - address;
   if (count == 0 || count > most) count = most;
   begin(READ, address, count + 1);
-  say(DEVICE);
+  send(DEVICE);
   sayRegisters(address, count);
-  say(sum);
+  send(sum);
 }
 
 void sayText(const char *text, byte length) {
@@ -133,31 +133,31 @@ void sayText(const char *text, byte length) {
   for (byte i = 0; i < length; i++) {
     byte c = ended ? 0 : pgm_read_byte(text + i);
     ended = ended || c == 0;
-    say(c);
+    send(c);
   }
 }
 
 void sayInt(unsigned int value) {
-  say(value & 0xFF);
-  say(value >> 8);
+  send(value & 0xFF);
+  send(value >> 8);
 }
 
 // Of the bootloader, 32 bytes, and of the hardware: a version and the boards' names.
 void answerConfiguration() {
   begin(READ, CONFIGURATION, 0xFF);
   sayInt(1 + 32 + 4 + BOARDS * NAME_LENGTH);
-  say(sum);
-  say(DEVICE);
+  send(sum);
+  send(DEVICE);
   sayInt(1);
   sayInt(DEVICE);
   sayText(SERIAL_NUMBER, 16);
-  for (byte i = 0; i < 8; i++) say(0);
-  say(0x60);  // the firmware is valid
-  say(0x0D);
-  say(0xF0);
-  say(0x0D);
+  for (byte i = 0; i < 8; i++) send(0);
+  send(0x60);  // the firmware is valid
+  send(0x0D);
+  send(0xF0);
+  send(0x0D);
   sayInt(1);
   sayInt(0);
   for (byte i = 0; i < BOARDS; i++) sayText(PSTR("Arduino Mega"), NAME_LENGTH);
-  say(sum);
+  send(sum);
 }

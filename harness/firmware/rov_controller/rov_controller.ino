@@ -26,7 +26,7 @@ Servo port, starboard, vertical;
 unsigned int calibration[7];
 float depth = 0, sinking = 0, heading = 0, yawRate = 0, depthIntegral = 0;
 bool armed = false, measured = false;
-unsigned long heard = 0;
+unsigned long received = 0;
 unsigned long temperatureCount = 0;
 
 void setup() {
@@ -154,7 +154,7 @@ int get(byte address) {
 
 // A command block has come.
 void obey() {
-  heard = millis();
+  received = millis();
   if (!armed) depthIntegral = 0;
   armed = true;
 }
@@ -169,7 +169,7 @@ void stopAll() {
 }
 
 void control() {
-  if (!armed || millis() - heard > LOST_MS) {
+  if (!armed || millis() - received > LOST_MS) {
     stopAll();
     return;
   }

@@ -1,4 +1,4 @@
-"""Whether real ports and buses may be opened."""
+"""Permission to open real ports and buses."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ def allow() -> None:
 
 
 def is_allowed() -> bool:
-    """Say if the person who started this run allowed real ports."""
+    """Return whether the person who started this run allowed real ports."""
     return os.environ.get(ALLOWED) == "1"
 
 
 def is_simulated_port(device: str) -> bool:
-    """Say if ``device`` is a pseudo-terminal: a port with a program, not a board, behind it."""
+    """Return whether ``device`` is a pseudo-terminal: a program, not a board, is behind it."""
     return Path(device).resolve().is_relative_to("/dev/pts")

@@ -1,4 +1,4 @@
-"""What a person gives the component as texts and numbers, checked."""
+"""Validation of parameters given as texts and numbers."""
 
 from __future__ import annotations
 

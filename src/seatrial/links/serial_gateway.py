@@ -24,15 +24,15 @@ class SerialGateway(Logging, Reachable, Component):
 
     ``links`` are URLs of `endpoints.url`, separated by spaces: a pseudo-terminal or a TCP port for
     programs, a serial port for a device. Every step it sends what ``rx`` has, and puts what has
-    arrived on ``tx`` with the time of the beginning of that step: outside, the wall clock counts.
-    Whoever is there gets all. Bytes leave in the step that has them, at whatever baud rate the
+    arrived on ``tx`` with the time of the beginning of that step: outside, the wall clock applies.
+    All clients get all. Bytes leave in the step that has them, at whatever baud rate the
     other end reckons with.
 
     ``safe_state`` is sent when it closes, however the run ends: for a real vehicle the request
     that stops its thrusters.
 
     It cannot be rolled back. Raises InputError at the start for a link that is malformed or
-    cannot be opened, or is hardware that nobody allowed.
+    cannot be opened, or is hardware that is not allowed.
     """
 
     feedthrough: ClassVar = {}
@@ -81,7 +81,7 @@ class SerialGateway(Logging, Reachable, Component):
             self._send(data)
 
     def outputs(self, t: float) -> None:
-        """Publish what came, and counts."""
+        """Publish what was received, and the counters."""
         self.tx = Outbox(self._tx).text
         self.sent, self.received = self._sent, self._received
         self.reached_at = " ".join(other_end(endpoint.url) for endpoint in self._endpoints)

@@ -60,7 +60,7 @@ def decode(text: str) -> tuple[int, list[Chunk]]:
     return int(head), [_chunk(part) for part in parts]
 
 
-@lru_cache(4096)  # what a bus says is read by many
+@lru_cache(4096)  # what a bus sends is read by many
 def _chunk(part: str) -> Chunk:
     match = _PART.fullmatch(part)
     if match is None:
@@ -93,7 +93,7 @@ class Outbox:
 
     @property
     def text(self) -> str:
-        """What the port holds: as of the last `flush`."""
+        """Text of the port: as of the last `flush`."""
         text: str = self._memory["text"]
         return text
 

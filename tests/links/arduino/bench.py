@@ -44,7 +44,7 @@ class Bench:
         self.one.initialise()
         self.one.begin()
         self.now = 0
-        self.said = [b""] * 4
+        self.sent = [b""] * 4
         self.stamps: list[tuple[int, int, bytes]] = []
         self._seen = [0] * 4
         self._number = [0] * 4
@@ -55,14 +55,14 @@ class Bench:
     def __exit__(self, *_: object) -> None:
         self.one.close()
 
-    def hear(self, uart: int, data: bytes) -> None:
+    def receive(self, uart: int, data: bytes) -> None:
         """Let bytes arrive at a UART with the next step."""
         self._number[uart] += 1
         self.one.set(f"rx.uart{uart}", encode(self._number[uart], [(self.now, data)]))
 
     def run(self, seconds: float) -> bytes:
-        """Run on; return what UART 0 said meanwhile."""
-        before = len(self.said[0])
+        """Run on; return what UART 0 sent meanwhile."""
+        before = len(self.sent[0])
         for _ in range(round(seconds / STEP)):
             self.one.advance(self.now / 1e9, STEP)
             self.now += round(STEP * 1e9)
@@ -70,6 +70,6 @@ class Bench:
                 number, chunks = decode(text)
                 if number != self._seen[uart]:
                     self._seen[uart] = number
-                    self.said[uart] += b"".join(data for _, data in chunks)
+                    self.sent[uart] += b"".join(data for _, data in chunks)
                     self.stamps += [(uart, when, data) for when, data in chunks]
-        return self.said[0][before:]
+        return self.sent[0][before:]

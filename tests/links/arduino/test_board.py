@@ -23,7 +23,7 @@ def opened():
 
 @pytest.fixture
 def line():
-    """What the sketch would have, and the device."""
+    """The sketch's end of the line, and the device."""
     own, other, device = opened()
     yield own, device
     os.close(own)
@@ -60,16 +60,16 @@ def test_bytes_go_both_ways_and_a_safe_state(line):
     board = started(links=f"1=serial:{device}:38400", safe_state="580A")
     os.write(own, b"from the board")
     board.set("rx.uart1", encode(1, [(0, b"to the board")]))
-    received, said, seen, now = b"", b"", 0, 0.0
+    received, sent, seen, now = b"", b"", 0, 0.0
     deadline = time.monotonic() + WAIT_S
-    while (received, said) != (b"to the board", b"from the board"):
+    while (received, sent) != (b"to the board", b"from the board"):
         assert time.monotonic() < deadline
         board.advance(now, 0.02)
         now += 0.02
         number, chunks = decode(board.get("tx.uart1"))
         if number != seen:
             seen = number
-            said += b"".join(data for _, data in chunks)
+            sent += b"".join(data for _, data in chunks)
         received += read(own)
     board.close()
     while not (last := read(own)):
@@ -87,7 +87,7 @@ def step(board, start, count, descriptor):
     return received, start + count
 
 
-def test_a_stale_input_is_told_safe_state_once_and_may_come_again(line):
+def test_a_stale_input_is_sent_safe_state_once_and_may_come_again(line):
     own, device = line
     board = started(links=f"1=serial:{device}:38400", safe_state="580A", timeout=0.2)
     received, now = step(board, 0, 20, own)
@@ -101,7 +101,7 @@ def test_a_stale_input_is_told_safe_state_once_and_may_come_again(line):
 
 
 def test_a_lost_link_stops_the_others_until_it_is_back(lines):
-    (told, device), (telling, second) = lines
+    (first, device), (telling, second) = lines
     links = f"0=serial:{device}:38400 1=serial:{second}:38400"
     board = started(links=links, safe_state="580A", timeout=0.2)
     now, number = 0, 0
@@ -112,7 +112,7 @@ def test_a_lost_link_stops_the_others_until_it_is_back(lines):
         for _ in range(count):
             number += 1
             board.set("rx.uart0", encode(number, [(0, b"go ")]))
-            more, now = step(board, now, 1, told)
+            more, now = step(board, now, 1, first)
             received += more
         return received
 

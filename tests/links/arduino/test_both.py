@@ -1,4 +1,4 @@
-"""The same sketch in both back ends: the firmware on an emulated AVR is the reference tool of the host's."""
+"""The same sketch in both back ends: the firmware on an emulated AVR is the reference for the host's."""
 
 import re
 from pathlib import Path
@@ -87,7 +87,7 @@ def parsed(text: bytes) -> dict[str, str]:
 
 @pytest.fixture(scope="module")
 def runs(tmp_path_factory):
-    """What the sketch says and does in both back ends."""
+    """Output and pins of the sketch in both back ends."""
     sketch = write_sketch(tmp_path_factory.mktemp("sketch"), SKETCH)
     found = {}
     for backend in BACKENDS:
@@ -98,10 +98,10 @@ def runs(tmp_path_factory):
             bench.one.set("receiver.c1", 0.0016)
             bench.one.set("level.i1", True)
             bench.run(0.2)
-            bench.hear(1, b"abc")
+            bench.receive(1, b"abc")
             bench.run(1.2)
             found[backend] = (
-                parsed(bench.said[0]),
+                parsed(bench.sent[0]),
                 bench.one.get("pulse"),
                 bench.one.get("duty"),
                 bench.stamps,
@@ -109,7 +109,7 @@ def runs(tmp_path_factory):
     return found
 
 
-def test_they_say_the_same(runs):
+def test_they_send_the_same(runs):
     host, simavr = (runs[each][0] for each in BACKENDS)
     # What code takes and when an edge is seen differs by microseconds.
     near = {"pulse": 20, "adc": 1, "edges": 1}
@@ -123,13 +123,13 @@ def test_they_say_the_same(runs):
 
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_what_it_reads_is_what_is_there(runs, backend):
-    said = runs[backend][0]
-    assert int(said["gyro"]) == round(-0.3 * 57.29577951 * 131)
-    assert int(said["adc"]) == pytest.approx(3.3 / 5 * 1024, abs=1.5)
-    assert int(said["edges"]) == pytest.approx(5, abs=1)  # 10 Hz for half a second
-    assert int(said["pulse"]) == pytest.approx(1600, abs=20)  # pulseIn counts loops
-    assert (said["level"], said["absent"], said["sizes"]) == ("1", "1", "2448")
-    assert said["over"] == "-32768"
+    sent = runs[backend][0]
+    assert int(sent["gyro"]) == round(-0.3 * 57.29577951 * 131)
+    assert int(sent["adc"]) == pytest.approx(3.3 / 5 * 1024, abs=1.5)
+    assert int(sent["edges"]) == pytest.approx(5, abs=1)  # 10 Hz for half a second
+    assert int(sent["pulse"]) == pytest.approx(1600, abs=20)  # pulseIn counts loops
+    assert (sent["level"], sent["absent"], sent["sizes"]) == ("1", "1", "2448")
+    assert sent["over"] == "-32768"
 
 
 @pytest.mark.parametrize("backend", BACKENDS)
@@ -147,7 +147,7 @@ def test_a_second_run_is_the_same(tmp_path, backend):
         with Bench(sketch, backend, wires=WIRES, uarts="0 115200; 1 38400") as bench:
             bench.one.set("wind_speed", 3.0)
             bench.run(0.1)
-            bench.hear(1, b"x")
+            bench.receive(1, b"x")
             bench.run(0.7)
             stamps.append((bench.stamps, bench.one.get("pulse")))
     assert stamps[0] == stamps[1]
@@ -158,9 +158,9 @@ def test_bytes_leave_at_the_baud_rate(tmp_path, backend):
     source = 'void setup() { Serial.begin(9600); } void loop() { Serial.print(F("0123456789")); }'
     with Bench(write_sketch(tmp_path, source), backend, uarts="0 9600") as bench:
         bench.run(1.0)
-        assert re.match(rb"(0123456789)+", bench.said[0])
+        assert re.match(rb"(0123456789)+", bench.sent[0])
         bits = 10 if backend == "host" else 11  # simavr counts a parity bit
-        assert len(bench.said[0]) == pytest.approx(9600 / bits, rel=0.02)
+        assert len(bench.sent[0]) == pytest.approx(9600 / bits, rel=0.02)
 
 
 RECEIVED = {
@@ -172,13 +172,13 @@ RECEIVED = {
 
 @pytest.mark.parametrize("name", RECEIVED)
 def test_they_print_the_same(name):
-    """Firmware of Debian's core and avr-libc is the reference tool of what the host's API says."""
+    """Firmware of Debian's core and avr-libc is the reference for the output of the host's API."""
     printed = []
     for backend in ("host", "simavr"):
         with Bench(SKETCHES / name, backend, uarts="0 57600", wires="0x68 mpu6050") as bench:
             bench.run(0.8)
-            bench.hear(0, RECEIVED[name])
+            bench.receive(0, RECEIVED[name])
             bench.run(2.6)
-            printed.append(bench.said[0].decode().splitlines())
+            printed.append(bench.sent[0].decode().splitlines())
     assert printed[0] == printed[1]
     assert len(printed[0]) > 70

@@ -25,13 +25,13 @@ def test_a_hex_file_runs_as_its_elf(tmp_path, mcu):
     elf = build_firmware(find_sketch(sketch), MCUS[mcu])
     hexadecimal = tmp_path / "one.hex"
     subprocess.run(["avr-objcopy", "-O", "ihex", elf, hexadecimal], check=True)
-    said = []
+    sent = []
     for values in ({}, {"firmware": str(elf)}, {"firmware": str(hexadecimal)}):
         with Bench(sketch, "simavr", mcu=mcu, uarts="0 9600", **values) as bench:
             bench.run(0.3)
-            said.append(bench.stamps)
-    assert said[0] == said[1] == said[2]
-    assert said[0][0][2].startswith(b"0\r\n")
+            sent.append(bench.stamps)
+    assert sent[0] == sent[1] == sent[2]
+    assert sent[0][0][2].startswith(b"0\r\n")
 
 
 def test_registers_and_interrupts_of_the_hardware_work(tmp_path):
@@ -46,8 +46,8 @@ void setup() {
 void loop() { delay(500); Serial.println(ticks); }
 """
     with Bench(write_sketch(tmp_path, source), "simavr", uarts="0 9600") as bench:
-        said = bench.run(1.1).split()
-    assert [int(each) for each in said] == pytest.approx([50, 100], abs=1)
+        sent = bench.run(1.1).split()
+    assert [int(each) for each in sent] == pytest.approx([50, 100], abs=1)
 
 
 def test_boards_come_and_go_without_a_trace(tmp_path):

@@ -80,7 +80,7 @@ def test_the_clock_is_the_trials(tmp_path):
     source = "void setup() { Serial.begin(115200); }\nvoid loop() { Serial.println(micros()); delay(1); }"
     with running(tmp_path, source) as bench:
         bench.run(5.0)
-        last = int(bench.said[0].split()[-2])
+        last = int(bench.sent[0].split()[-2])
     assert last / 1e6 == pytest.approx(5.0, abs=0.01)
 
 
@@ -90,15 +90,15 @@ void setup() { Serial.begin(115200); Serial1.begin(38400); }
 void loop() { delay(20); while (Serial1.available()) Serial.write(Serial1.read()); }
 """
     with running(tmp_path, source, uarts="0 115200; 1 38400") as bench:
-        bench.hear(1, b"x" * 60)
+        bench.receive(1, b"x" * 60)
         bench.run(0.1)
-        assert bench.said[0] == b"x" * 60
-        bench.hear(1, b"y" * 300)  # 78 ms; 76 bytes come in 20 ms, and 63 wait
+        assert bench.sent[0] == b"x" * 60
+        bench.receive(1, b"y" * 300)  # 78 ms; 76 bytes come in 20 ms, and 63 wait
         assert 200 < len(bench.run(0.2)) < 300
 
 
 @pytest.mark.parametrize(
-    ("source", "said"),
+    ("source", "sent"),
     [
         (
             "void setup() {\n  TCCR1A = 0;\n}\nvoid loop() {}\n",
@@ -121,13 +121,13 @@ void loop() { delay(20); while (Serial1.available()) Serial.write(Serial1.read()
         ("void setup() {\n  int x = y;\n}\nvoid loop() {}\n", r"one\.ino:2:.*'y' was not declared"),
     ],
 )
-def test_what_cannot_be_is_refused_with_its_line(tmp_path, source, said):
-    with pytest.raises(InputError, match=said):
+def test_what_cannot_be_is_refused_with_its_line(tmp_path, source, sent):
+    with pytest.raises(InputError, match=sent):
         running(tmp_path, source)
 
 
 @pytest.mark.parametrize(
-    ("source", "said"),
+    ("source", "sent"),
     [
         ("void setup() {}\nvoid loop() { for (;;) {} }\n", "endless loop"),
         (
@@ -146,10 +146,10 @@ def test_what_cannot_be_is_refused_with_its_line(tmp_path, source, said):
         ),
     ],
 )
-def test_a_sketch_that_goes_wrong_ends_its_component_only(tmp_path, source, said):
+def test_a_sketch_that_goes_wrong_ends_its_component_only(tmp_path, source, sent):
     with (
         running(tmp_path, source, patience=0.5) as bench,
-        pytest.raises(SimulationError, match=f"(?s)mega: at .* s of its time .*{said}"),
+        pytest.raises(SimulationError, match=f"(?s)mega: at .* s of its time .*{sent}"),
     ):
         bench.run(2.0)
 
@@ -168,7 +168,7 @@ def test_its_state_cannot_be_saved(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("values", "said"),
+    ("values", "sent"),
     [
         ({"wires": "9 serbo 1"}, "did you mean 'servo'"),
         ({"wires": "99 servo 1"}, "pin '99': the Mega has 0 to 69"),
@@ -179,8 +179,8 @@ def test_its_state_cannot_be_saved(tmp_path):
         ({"backend": "board", "links": ""}, "UART=URL"),
     ],
 )
-def test_wrong_parameters_are_named(tmp_path, values, said):
-    with pytest.raises(InputError, match=said):
+def test_wrong_parameters_are_named(tmp_path, values, sent):
+    with pytest.raises(InputError, match=sent):
         running(tmp_path, NOTHING, **values)
 
 
@@ -218,7 +218,7 @@ def test_prototypes_and_widths():
     )
 
 
-def test_a_monitor_hears_and_types_beside_what_is_wired(tmp_path):
+def test_a_monitor_receives_and_types_beside_what_is_connected(tmp_path):
     source = """
       void setup() { Serial.begin(115200); }
       void loop() { if (Serial.available()) Serial.write(toupper(Serial.read())); }
@@ -227,12 +227,12 @@ def test_a_monitor_hears_and_types_beside_what_is_wired(tmp_path):
     with Bench(write_sketch(tmp_path, source), monitors=f"0=pty:{place}") as bench:
         assert bench.one.get("reached_at") == str(place)
         with serial.Serial(str(place), 115200, timeout=WAIT_S) as port:
-            bench.hear(0, b"wire ")
+            bench.receive(0, b"wire ")
             assert bench.run(0.1) == b"WIRE "
             assert port.read(5) == b"WIRE "
             port.write(b"typed")
             deadline = time.monotonic() + WAIT_S
-            while bench.said[0] != b"WIRE TYPED":
+            while bench.sent[0] != b"WIRE TYPED":
                 assert time.monotonic() < deadline
                 bench.run(0.02)
             assert port.read(5) == b"TYPED"
@@ -240,7 +240,7 @@ def test_a_monitor_hears_and_types_beside_what_is_wired(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "sent"),
     [
         ("pty:/tmp/a", "not UART=URL"),
         ("4=pty:/tmp/a", "not UART=URL"),
@@ -248,8 +248,8 @@ def test_a_monitor_hears_and_types_beside_what_is_wired(tmp_path):
         ("0=tty:/tmp/a", "unknown kind of link 'tty'"),
     ],
 )
-def test_a_monitor_that_cannot_be(text, said):
+def test_a_monitor_that_cannot_be(text, sent):
     one = Arduino("mega")
     one.set("monitors", text)
-    with pytest.raises(InputError, match=rf"monitors.*{said}"):
+    with pytest.raises(InputError, match=rf"monitors.*{sent}"):
         one.initialise()

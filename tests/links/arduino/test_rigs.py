@@ -78,15 +78,15 @@ def test_the_rov_obeys_its_serial_port_and_stops_without(tmp_path):
     passes(sailed("videoray-sketch", tmp_path / "run"))
 
 
-def test_a_run_tells_of_links_that_there_are(tmp_path):
+def test_a_run_lists_links_that_there_are(tmp_path):
     need("host")
-    place, told = f"{tmp_path}/radio", []
+    place, reported = f"{tmp_path}/radio", []
     trial = load_trial("gloria-sketch")
     trial = trial.changed({"mega.monitors": f"2=pty:{place}", "stop": "0.2 s"}, "test")
     trial = trial.in_real_time({}, "test")
-    hooks = Hooks(reachable=lambda name, where: told.append((name, where)))
+    hooks = Hooks(reachable=lambda name, where: reported.append((name, where)))
     assert run_trial(trial, tmp_path / "run", engine="direct", hooks=hooks).status == "complete"
-    assert told == [("mega", place)]  # and not of instruments that nothing outside reads
+    assert reported == [("mega", place)]  # and not of instruments that nothing outside reads
 
 
 def test_the_station_keeper_drives(tmp_path):

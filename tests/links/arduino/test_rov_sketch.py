@@ -1,4 +1,4 @@
-"""The ROV's sketch as its serial port shows it, asked with packets captured at a real Pro 4."""
+"""The ROV's sketch as its serial port shows it, with packets captured at a real Pro 4."""
 
 import random
 from pathlib import Path
@@ -30,16 +30,16 @@ def rov(request):
         yield bench
 
 
-def ask(bench: Bench, data: bytes, seconds: float = 0.2) -> list[Frame]:
-    bench.hear(0, data)
+def exchange(bench: Bench, data: bytes, seconds: float = 0.2) -> list[Frame]:
+    bench.receive(0, data)
     return [frame for _, frame in Parser(10**9).feed(bench.run(seconds), 0)]
 
 
 def test_it_answers_the_captured_detection_and_command_block(rov):
-    (found,) = ask(rov, PACKETS[0])
+    (found,) = exchange(rov, PACKETS[0])
     assert (found.is_response, found.id, found.flags, found.address) == (True, ROV, 1, 0)
     assert (found.payload[0], len(found.payload)) == (PRO4_ROV, 9)
-    (found,) = ask(rov, PRIMARY)
+    (found,) = exchange(rov, PRIMARY)
     assert len(found.payload) == 34
     values = read(5, found.payload[1:]).values
     assert values["pressure"] == pytest.approx(1013.25 + 2 * 98.0665, abs=1.0)
@@ -51,28 +51,28 @@ def test_it_answers_the_captured_detection_and_command_block(rov):
 
 @pytest.mark.parametrize("number", FIELDS)
 def test_every_reply_has_its_fields(rov, number):
-    (found,) = ask(rov, encode(Frame(False, ROV, number, 0)))
+    (found,) = exchange(rov, encode(Frame(False, ROV, number, 0)))
     assert read(number, found.payload[1:]).values["pressure"] == pytest.approx(1209, abs=1.0)
 
 
 def test_memory_and_configuration_are_read(rov):
-    (found,) = ask(rov, encode(Frame(False, ROV, READ_BIT, 0)))
+    (found,) = exchange(rov, encode(Frame(False, ROV, READ_BIT, 0)))
     assert len(found.payload) == 1 + csr.TOP
     assert read_memory(0, found.payload[1:]).values["pressure"] == pytest.approx(1209, abs=1.0)
-    (found,) = ask(rov, encode(Frame(False, ROV, READ_BIT | 2, 0x66)))
+    (found,) = exchange(rov, encode(Frame(False, ROV, READ_BIT | 2, 0x66)))
     assert (found.address, len(found.payload)) == (0x66, 3)
-    (found,) = ask(rov, encode(Frame(False, ROV, READ_BIT, csr.CONFIG)))
+    (found,) = exchange(rov, encode(Frame(False, ROV, READ_BIT, csr.CONFIG)))
     assert len(found.payload) == 1 + CONFIG_LENGTH
     serial, boards = read_config(found.payload[1:])
     assert serial == "ARDUINO-ROV"
     assert set(boards.values()) == {"Arduino Mega"}
 
 
-def test_who_is_not_asked_says_nothing_and_commands_stop_after_two_seconds(rov):
+def test_without_requests_it_sends_nothing_and_commands_stop_after_two_seconds(rov):
     block = bytes.fromhex("3200ceff") + bytes(7) + b"\xff" * 4  # port 50 %, starboard -50 %
-    assert ask(rov, encode(Frame(False, 2, 1, 0, block))) == []
+    assert exchange(rov, encode(Frame(False, 2, 1, 0, block))) == []
     assert rov.one.get("pulse.s1") == pytest.approx(1500e-6, abs=15e-6)
-    assert ask(rov, encode(Frame(False, 0xFF, 1, 0, block))) == []  # everybody: obeyed only
+    assert exchange(rov, encode(Frame(False, 0xFF, 1, 0, block))) == []  # broadcast: obeyed only
     assert rov.one.get("pulse.s1") == pytest.approx(1700e-6, abs=15e-6)
     assert rov.one.get("pulse.s2") == pytest.approx(1300e-6, abs=15e-6)
     rov.run(1.5)
@@ -85,7 +85,7 @@ def test_it_finds_requests_in_noise(rov):
     """A frame inside or behind a broken one is found; after a gap, whatever came before."""
     good, rng = encode(Frame(False, ROV, 2, 0)), random.Random(5)
     for junk in (b"\xfa", b"\xfa\xaf", good[:-1] + b"\x01", b"\xfa\xaf\x01\x01\x00\x05", good[:5]):
-        assert len(ask(rov, junk + good)) == 1, junk
+        assert len(exchange(rov, junk + good)) == 1, junk
     for _ in range(20):
-        ask(rov, rng.randbytes(rng.randrange(1, 60)), 0.1)
-        assert len(ask(rov, good, 0.1)) == 1
+        exchange(rov, rng.randbytes(rng.randrange(1, 60)), 0.1)
+        assert len(exchange(rov, good, 0.1)) == 1

@@ -31,23 +31,23 @@ NMEA = b"$GPRMC,123519,A,4807.038,N,01131.000,E,022.4,084.4,230394,003.1,W*6A\r\
 
 
 def received(backend, sketch, **values):
-    """What the sketch says at its UART and at its pins, and when the latter."""
+    """Output of the sketch at its UART and at its pins, with times of the latter."""
     with Bench(sketch, backend, **values) as bench:
         bench.run(0.1)
-        bench.hear(1, 2 * NMEA)
+        bench.receive(1, 2 * NMEA)
         bench.run(0.3)
-        bench.hear(1, b"!" + bytes(range(40, 127)) * 2)
+        bench.receive(1, b"!" + bytes(range(40, 127)) * 2)
         bench.run(0.6)
-        return bench.said[0], bench.said[1], [when for uart, when, _ in bench.stamps if uart == 1]
+        return bench.sent[0], bench.sent[1], [when for uart, when, _ in bench.stamps if uart == 1]
 
 
-def test_both_back_ends_hear_and_say_the_same_at_two_pins(tmp_path):
+def test_both_back_ends_receive_and_send_the_same_at_two_pins(tmp_path):
     sketch = write_sketch(tmp_path, SKETCH)
     uno = {"mcu": "atmega328p", "uarts": "0 57600; 1 9600", "wires": WIRES}
     host, simavr = (received(each, sketch, **uno) for each in ("host", "simavr"))
     lines = simavr[0].split(b"\n")
     assert lines[0] == b"10\r"
-    assert lines[1] == NMEA[: NMEA.index(b"*") + 1]  # what came while it said "got" is lost
+    assert lines[1] == NMEA[: NMEA.index(b"*") + 1]  # what came while it sent "got" is lost
     assert b"<over>" in simavr[0]
     assert host[:2] == simavr[:2]
     assert host[2] == pytest.approx(simavr[2], abs=1_500_000)  # ns; a byte lasts 1.04 ms

@@ -39,8 +39,8 @@ class Bench:
             self.given_up.append,
         )
 
-    def ask(self, when_us: float, node: int, frame: Frame) -> None:
-        self.bus.ask(round(when_us * US), node, frame)
+    def request(self, when_us: float, node: int, frame: Frame) -> None:
+        self.bus.request(round(when_us * US), node, frame)
 
     def run(self, until_us: float) -> None:
         self.bus.run(round(until_us * US))

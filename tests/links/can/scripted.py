@@ -1,4 +1,4 @@
-"""A `CanBus` between nodes that ask for given frames at given times, stepped by hand."""
+"""A `CanBus` between nodes that request given frames at given times, stepped by hand."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -10,19 +10,25 @@ from seatrial.links.can.operations import Confirm, Operation, Transmit
 
 MS = 10**6
 """Nanoseconds in a millisecond."""
-Asked = Sequence[tuple[int, int, Frame]]
+Requested = Sequence[tuple[int, int, Frame]]
 """Time (ns), node and frame of each request, in order."""
 
 
 class Scripted:
-    """Steps the bus as Jacobi does: what is asked for in a step is on ``tx`` at its end."""
+    """Steps the bus as Jacobi does: what is requested in a step is on ``tx`` at its end."""
 
-    def __init__(self, bus: Any, asked: Asked, events: Mapping[int, dict] | None = None) -> None:
-        self.bus, self.asked, self.events = bus, sorted(asked, key=lambda a: a[0]), events or {}
+    def __init__(
+        self, bus: Any, requested: Requested, events: Mapping[int, dict] | None = None
+    ) -> None:
+        self.bus, self.requested, self.events = (
+            bus,
+            sorted(requested, key=lambda a: a[0]),
+            events or {},
+        )
         self.now, self.next = 0, 0
         self.memories: list[dict] = [{} for _ in range(NODES)]
         self.operations: list[list[tuple[int, Operation]]] = [[] for _ in range(NODES)]
-        self.told_at: list[list[int]] = [[] for _ in range(NODES)]
+        self.received_at: list[list[int]] = [[] for _ in range(NODES)]
 
     def run(self, until_ns: int, step_ns: int) -> None:
         while self.now < until_ns:
@@ -30,11 +36,14 @@ class Scripted:
                 self.bus.set(name, value)
             nodes = [CanNode(memory) for memory in self.memories]
             for number, text in enumerate(self.bus.get("rx")):
-                new = nodes[number].hear(text)
+                new = nodes[number].receive(text)
                 self.operations[number] += new
-                self.told_at[number] += [self.now] * len(new)
-            while self.next < len(self.asked) and self.asked[self.next][0] <= self.now + step_ns:
-                when, number, frame = self.asked[self.next]
+                self.received_at[number] += [self.now] * len(new)
+            while (
+                self.next < len(self.requested)
+                and self.requested[self.next][0] <= self.now + step_ns
+            ):
+                when, number, frame = self.requested[self.next]
                 nodes[number].send(when, frame)
                 self.next += 1
             self.bus.advance(self.now / 1e9, step_ns / 1e9)

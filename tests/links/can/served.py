@@ -17,7 +17,7 @@ STEP_NS = 2_000_000
 class Served:
     """Nodes: ``peer``, scripted; ``gateway``, a gateway. 1 Mbit/s.
 
-    ``peer`` sends what `send` was given, at its times, and keeps what it hears in ``received``.
+    ``peer`` sends what `send` was given, at its times, and keeps what it receives in ``received``.
     """
 
     def __init__(self, gateway: str, **values: object) -> None:
@@ -80,8 +80,8 @@ class Served:
 
     def _step(self) -> None:
         peer = CanNode(self._can)
-        rx, gateway_says = self.bus.get("rx"), self.gateway.get("tx")
-        for when, operation in peer.hear(rx[0]):
+        rx, gateway_tx = self.bus.get("rx"), self.gateway.get("tx")
+        for when, operation in peer.receive(rx[0]):
             if isinstance(operation, Transmit):
                 self.received.append((when, operation.frame))
         for frame in self._to_send[:2]:
@@ -89,7 +89,7 @@ class Served:
         del self._to_send[:2]
         self.gateway.set("rx", rx[1])
         self.bus.set("tx.n1", peer.flush())
-        self.bus.set("tx.n2", gateway_says)
+        self.bus.set("tx.n2", gateway_tx)
         for each in (self.bus, self.gateway):
             each.advance(self.now / 1e9, STEP_NS / 1e9)
         self.now += STEP_NS

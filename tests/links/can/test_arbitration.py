@@ -1,4 +1,4 @@
-"""Who sends next, and when, worked out bit by bit at 1 bit per us."""
+"""Arbitration and timing of frames, worked out bit by bit at 1 bit per us."""
 
 from itertools import pairwise
 
@@ -19,12 +19,12 @@ ZERO_EXTENDED = Frame(0, extended=True)  # 71
 
 def test_an_idle_bus_is_taken_at_once_and_kept_for_the_intermission():
     bench = Bench(2)
-    bench.ask(10, 0, ZERO)
-    bench.ask(20, 0, ZERO)
-    bench.ask(200, 0, ZERO)
+    bench.request(10, 0, ZERO)
+    bench.request(20, 0, ZERO)
+    bench.request(200, 0, ZERO)
     bench.run(300)
     assert bench.times == [(10, 60, 0), (63, 113, 0), (200, 250, 0)]
-    assert [s.asked_ps // US for s in bench.sent] == [10, 20, 200]
+    assert [s.requested_ps // US for s in bench.sent] == [10, 20, 200]
     assert bench.bus.busy_ps == 3 * 53 * US
     assert [(n.sent, n.received, n.tec, n.rec) for n in bench.nodes] == [(3, 0, 0, 0), (0, 3, 0, 0)]
 
@@ -32,8 +32,8 @@ def test_an_idle_bus_is_taken_at_once_and_kept_for_the_intermission():
 def test_fractions_of_a_bit_are_kept():
     """At 800 kbit/s a bit lasts 1.25 us: 50 of them 62.5."""
     bench = Bench(2, rate=800_000)
-    bench.ask(0.25, 0, ZERO)
-    bench.ask(1, 0, ZERO)
+    bench.request(0.25, 0, ZERO)
+    bench.request(1, 0, ZERO)
     bench.run(300)
     assert bench.times == [(0.25, 62.75, 0), (66.5, 129, 0)]
 
@@ -41,8 +41,8 @@ def test_fractions_of_a_bit_are_kept():
 def test_the_data_phase_of_fd_has_its_own_rate():
     """28 bits at 1 Mbit/s and 33 at 2 Mbit/s: 44.5 us."""
     bench = Bench(2)
-    bench.ask(0, 0, Frame(0, fd=True, bit_rate_switch=True))
-    bench.ask(0, 0, ZERO)
+    bench.request(0, 0, Frame(0, fd=True, bit_rate_switch=True))
+    bench.request(0, 0, ZERO)
     bench.run(200)
     assert bench.times == [(0, 44.5, 0), (47.5, 97.5, 0)]
 
@@ -50,20 +50,20 @@ def test_the_data_phase_of_fd_has_its_own_rate():
 def test_the_lowest_arbitration_field_goes_first():
     """Data before remote, base before extended with the same first 11 bits: 50 + 3, 47 + 3, 71."""
     bench = Bench(4)
-    bench.ask(0, 0, Frame(0x001))
-    bench.ask(0, 1, ZERO_EXTENDED)
-    bench.ask(0, 2, ZERO_REMOTE)
-    bench.ask(0, 3, ZERO)
+    bench.request(0, 0, Frame(0x001))
+    bench.request(0, 1, ZERO_EXTENDED)
+    bench.request(0, 2, ZERO_REMOTE)
+    bench.request(0, 3, ZERO)
     bench.run(1000)
     assert [s.senders for s in bench.sent] == [[3], [2], [1], [0]]
     assert bench.times[:3] == [(0, 50, 0), (53, 100, 0), (103, 174, 0)]
 
 
-def test_a_frame_asked_for_in_the_last_bit_of_the_intermission_takes_part():
+def test_a_frame_requested_in_the_last_bit_of_the_intermission_takes_part():
     bench = Bench(3)
-    bench.ask(0, 0, ZERO)
-    bench.ask(1, 1, Frame(0x400))
-    bench.ask(53, 2, ZERO)
+    bench.request(0, 0, ZERO)
+    bench.request(1, 1, Frame(0x400))
+    bench.request(53, 2, ZERO)
     bench.run(110)
     assert bench.times == [(0, 50, 0), (53, 103, 0)]
     assert bench.sent[1].senders == [2]
@@ -77,11 +77,11 @@ def test_with_one_mailbox_an_urgent_frame_waits_behind_others():
     waited = {}
     for mailboxes in (1, 2):
         bench = Bench(2, mailboxes=mailboxes)
-        bench.ask(0, 1, Frame(0x100))
-        bench.ask(1, 0, Frame(0x700))
-        bench.ask(2, 0, Frame(0x010))
-        bench.ask(3, 1, Frame(0x100))
-        bench.ask(4, 1, Frame(0x100))
+        bench.request(0, 1, Frame(0x100))
+        bench.request(1, 0, Frame(0x700))
+        bench.request(2, 0, Frame(0x010))
+        bench.request(3, 1, Frame(0x100))
+        bench.request(4, 1, Frame(0x100))
         bench.run(1000)
         waited[mailboxes] = [identifier for _, _, identifier in bench.times]
     assert waited == {
@@ -94,11 +94,11 @@ def test_a_full_queue_drops_and_a_mailbox_is_free_when_its_frame_has_ended():
     """One mailbox, a queue of two: three have a place. The first ends at 50 and makes room."""
     bench = Bench(2, mailboxes=1, queue=2)
     for _ in range(5):
-        bench.ask(0, 0, ZERO)
+        bench.request(0, 0, ZERO)
     bench.run(49)
     assert (bench.nodes[0].waiting, bench.nodes[0].dropped) == (3, 2)
-    bench.ask(49.5, 0, ZERO)
-    bench.ask(50.5, 0, ZERO)
+    bench.request(49.5, 0, ZERO)
+    bench.request(50.5, 0, ZERO)
     bench.run(1000)
     assert bench.nodes[0].dropped == 3
     assert [start for start, _, _ in bench.times] == [0, 53, 106, 159]
@@ -108,25 +108,25 @@ def test_equal_identifiers_of_a_node_stay_in_order():
     bench = Bench(2)
     frames = [Frame(0x321, bytes([number])) for number in range(20)]
     for number, frame in enumerate(frames):
-        bench.ask(number, 0, frame)
+        bench.request(number, 0, frame)
     bench.run(10_000)
     assert [s.frame for s in bench.sent] == frames
 
 
-def test_who_does_not_wait_is_told_of_a_lost_arbitration():
+def test_a_node_that_does_not_wait_is_notified_of_a_lost_arbitration():
     """The frame is given up when the one that won has ended; alone, it goes through."""
     bench = Bench(2)
     bench.nodes[1].waits = False
-    bench.ask(0, 0, ZERO)
-    bench.ask(0, 1, Frame(0x100))
-    bench.ask(100, 1, Frame(0x200))
+    bench.request(0, 0, ZERO)
+    bench.request(0, 1, Frame(0x100))
+    bench.request(100, 1, Frame(0x200))
     bench.run(1000)
     assert [(g.when_ps / US, g.node, g.frame.identifier) for g in bench.given_up] == [
         (50, 1, 0x100)
     ]
     assert [identifier for _, _, identifier in bench.times] == [0, 0x200]
     node = bench.nodes[1]
-    assert (node.asked, node.sent, node.dropped) == (2, 1, 1)
+    assert (node.requested, node.sent, node.dropped) == (2, 1, 1)
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -134,7 +134,7 @@ def test_a_saturated_bus_carries_its_bit_rate(seed):
     """Bits of frames and intermissions over time: all of it, to 0.1 %."""
     bench, frames = Bench(3), 400
     for number in range(frames):
-        bench.ask(0, number % 3, Frame(0x100 + (37 * number + seed) % 512, bytes([seed]) * 8))
+        bench.request(0, number % 3, Frame(0x100 + (37 * number + seed) % 512, bytes([seed]) * 8))
     bench.run(60_000)
     bits = sum(sum(length(s.frame)) + INTERMISSION for s in bench.sent)
     assert bench.sent[-1].end_ps / US + INTERMISSION == pytest.approx(bits, rel=1e-3)
@@ -159,7 +159,7 @@ requests = st.lists(
 
 @settings(max_examples=60, deadline=None)
 @given(requests, st.integers(1, 3), st.integers(0, 4), st.floats(0, 0.02))
-def test_what_is_asked_for_is_sent_dropped_or_waits(asked, mailboxes, queue, rate):
+def test_what_is_requested_is_sent_dropped_or_waits(requested, mailboxes, queue, rate):
     """Conservation, causality and an exclusive bus, with errors at every 1/rate-th bit."""
 
     def error_injector(attempt, node, frame, bits):
@@ -169,18 +169,18 @@ def test_what_is_asked_for_is_sent_dropped_or_waits(asked, mailboxes, queue, rat
         return Disturbance(attempt * 7919 % bits) if hit else None
 
     bench = Bench(4, mailboxes=mailboxes, queue=queue, error_injector=error_injector)
-    for when, node, identifier, extended, data in asked:
-        bench.ask(when, node, Frame(identifier, data, extended))
+    for when, node, identifier, extended, data in requested:
+        bench.request(when, node, Frame(identifier, data, extended))
     for until in (5_000, 12_000, 15_000, 40_000):
         bench.run(until)
         busy = sum(s.end_ps - s.start_ps for s in bench.sent) / US
         assert busy <= bench.bus.busy_ps / US <= until
         for node, controller in enumerate(bench.nodes):
-            due = sum(1 for when, n, *_ in asked if n == node and when < until)
-            assert controller.asked == due
-            assert controller.asked == controller.sent + controller.dropped + controller.waiting
+            due = sum(1 for when, n, *_ in requested if n == node and when < until)
+            assert controller.requested == due
+            assert controller.requested == controller.sent + controller.dropped + controller.waiting
     for sent in bench.sent:
-        assert sent.asked_ps <= sent.start_ps
+        assert sent.requested_ps <= sent.start_ps
         bits = length(sent.frame)
         assert sent.end_ps - sent.start_ps == bits.nominal * US
     for one, next_one in pairwise(bench.sent):
@@ -189,11 +189,11 @@ def test_what_is_asked_for_is_sent_dropped_or_waits(asked, mailboxes, queue, rat
 
 @settings(max_examples=40, deadline=None)
 @given(requests, st.lists(st.integers(1, 40_000), max_size=30))
-def test_how_often_it_is_asked_changes_nothing(asked, stops):
+def test_how_often_it_is_stepped_changes_nothing(requested, stops):
     whole, parts = Bench(4, queue=3), Bench(4, queue=3)
     for bench in (whole, parts):
-        for when, node, identifier, extended, data in asked:
-            bench.ask(when, node, Frame(identifier, data, extended))
+        for when, node, identifier, extended, data in requested:
+            bench.request(when, node, Frame(identifier, data, extended))
     for stop in sorted(stops):
         parts.run(stop)
     for bench in (whole, parts):

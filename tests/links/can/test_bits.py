@@ -1,4 +1,4 @@
-"""Lengths of frames on the wire: by hand, by an independent construction, by published bounds."""
+"""Lengths of frames on the bus: by hand, by an independent construction, by published bounds."""
 
 import random
 from statistics import fmean
@@ -10,13 +10,13 @@ from hypothesis import strategies as st
 from seatrial.links.can.bits import INTERMISSION, crc15, first_difference, length, stuffed
 from seatrial.links.can.frame import FD_LENGTHS, Frame
 
-from . import wire
+from . import reference_bits
 
 # Worked out by hand. "0 x 12" are twelve zeros; | is where a stuff bit goes in.
 #
 # Base, 0x000, no data: SOF, 11 of identifier, RTR, IDE, r0 and 4 of DLC are 19 zeros; the CRC of
 #   zeros is 0, so 15 more: 34 zeros, a stuff bit after each 5: 6. 19 + 15 + 10 + 6 = 50.
-# Base, 0x000, remote, asks for 0 bytes: 0 x 12, RTR 1, 0 x 6. The register of the CRC becomes
+# Base, 0x000, remote, requests 0 bytes: 0 x 12, RTR 1, 0 x 6. The register of the CRC becomes
 #   4599 with the one, then, a zero each: 4EAB, 58CF, 7407, 2D97, 5B2E, 73C5 = 111 0011 1100 0101.
 #   00000|00000|00 1 00000|0 111 00 1111 000 1 0 1: 3. 44 + 3 = 47.
 # Extended, 0, no data: 0 x 12, SRR 1, IDE 1, then 18 of identifier, RTR, r1, r0, 4 of DLC: 0 x 25.
@@ -74,13 +74,13 @@ def frames(draw, fd=False):
 @settings(deadline=None)
 @given(frames())
 def test_classic_frames_are_as_long_as_their_construction(frame):
-    assert length(frame) == (len(wire.classic(frame)), 0)
+    assert length(frame) == (len(reference_bits.classic(frame)), 0)
 
 
 @settings(deadline=None)
 @given(frames(fd=True))
 def test_fd_frames_are_as_long_as_their_construction(frame):
-    slow, fast, tail = wire.fd(frame)
+    slow, fast, tail = reference_bits.fd(frame)
     if frame.bit_rate_switch:  # BRS and the CRC delimiter are half of one rate, half of the other
         assert length(frame) == (len(slow) + len(tail) - 1, len(fast) + 1)
     else:
@@ -104,7 +104,7 @@ def test_the_worst_case_is_reached():
 @given(st.binary(max_size=80))
 def test_the_crc_is_that_of_the_bitwise_definition(data):
     bits = [int(digit) for byte in data for digit in format(byte, "08b")]
-    assert crc15(int.from_bytes(data, "big"), 8 * len(data)) == wire.crc15(bits)
+    assert crc15(int.from_bytes(data, "big"), 8 * len(data)) == reference_bits.crc15(bits)
 
 
 def test_the_crc_has_its_catalogued_check_value():
@@ -137,6 +137,6 @@ def test_the_first_difference_is_where_the_wires_part(frame, which):
     data = bytearray(frame.data)
     data[place] ^= 1 << bit
     other = Frame(frame.identifier, bytes(data), frame.extended)
-    one, two = wire.classic(frame), wire.classic(other)
+    one, two = reference_bits.classic(frame), reference_bits.classic(other)
     expected = next(n for n, (a, b) in enumerate(zip(one, two, strict=False)) if a != b)
     assert first_difference(frame, other) == (expected, one[expected] == 1)

@@ -32,22 +32,22 @@ URGENT, LATER = Frame(0x100, b"\x01"), Frame(0x200, b"\x02")
 
 def busy(seed=3, count=300):
     """Requests of three nodes, 90 % load for 140 ms, several at once now and then."""
-    rng, asked = random.Random(seed), []
+    rng, requested = random.Random(seed), []
     for number in range(count):
         frame = Frame(
             rng.randrange(0x100, 0x110), rng.randbytes(rng.randrange(9)), rng.random() < 0.5
         )
-        asked.append((number // 3 * 1_450_000, rng.randrange(3), frame))
-    return asked
+        requested.append((number // 3 * 1_450_000, rng.randrange(3), frame))
+    return requested
 
 
-def test_what_ended_by_t_is_told_one_step_later_and_says_when():
-    """Asked for at 0.5 ms, 200 us long: ended at 0.7 ms; on rx from 2 ms on in steps of 1 ms."""
+def test_what_ended_by_t_is_reported_one_step_later_with_its_time():
+    """Requested at 0.5 ms, 200 us long: ended at 0.7 ms; on rx from 2 ms on in steps of 1 ms."""
     scripted = Scripted(bus(), [(500_000, 0, ZERO)])
     scripted.run(5 * MS, MS)
     assert scripted.received(1) == scripted.received(2) == [(700_000, ZERO)]
     assert scripted.confirmed(0) == [(700_000, 0)]
-    assert scripted.told_at[1] == [2 * MS]
+    assert scripted.received_at[1] == [2 * MS]
 
 
 @pytest.mark.parametrize("step", [100_000, MS, 10 * MS])
@@ -83,9 +83,11 @@ def test_the_step_does_not_change_what_is_on_the_bus(step, tmp_path):
 
 def test_a_fault_acts_from_its_time_on():
     """Off from 10 ms: the frame that begins at 9.9 ms is cut; back at 20 ms."""
-    asked = [(9_900_000, 0, ZERO), (12 * MS, 0, ZERO), (20 * MS, 0, ZERO)]
+    requested = [(9_900_000, 0, ZERO), (12 * MS, 0, ZERO), (20 * MS, 0, ZERO)]
     made = bus()
-    scripted = Scripted(made, asked, {10 * MS: {"fault.n1": "off"}, 20 * MS: {"fault.n1": "none"}})
+    scripted = Scripted(
+        made, requested, {10 * MS: {"fault.n1": "off"}, 20 * MS: {"fault.n1": "none"}}
+    )
     scripted.run(30 * MS, MS)
     assert [t for t, _ in scripted.received(1)] == [20_200_000]
     # Cut at 10 ms = bit 25: six recessive bits, flag, delimiter: 20 x 4 us.
@@ -96,11 +98,11 @@ def test_a_fault_acts_from_its_time_on():
 
 
 def test_losses_are_of_software_and_not_of_the_bus():
-    """Of 2000 frames 10 % reach nobody and 30 % more of the rest not c: within 4 sigma."""
+    """Of 2000 frames 10 % reach no node and 30 % more of the rest not c: within 4 sigma."""
     count = 2000
-    asked = [(n * 500_000, 0, Frame(n % 0x7FF)) for n in range(count)]
+    requested = [(n * 500_000, 0, Frame(n % 0x7FF)) for n in range(count)]
     made = bus(loss=0.1, receive_loss=[0.0, 0.0, 0.3, *[0.0] * 9], seed=4.0)
-    scripted = Scripted(made, asked)
+    scripted = Scripted(made, requested)
     scripted.run(1_040 * MS, 10 * MS)
     assert made.get("sent")[0] == made.get("frames") == count
     got = [made.get("received")[n] - made.get("lost")[n] for n in range(3)]
@@ -113,8 +115,8 @@ def test_losses_are_of_software_and_not_of_the_bus():
 def test_bit_errors_come_as_often_as_their_rate_says():
     """Frames of n bits are hit with probability 1 - (1 - p)^n."""
     made = bus(bit_error_rate=1e-3, seed=5.0)
-    asked = [(n * 500_000, 0, ZERO) for n in range(2000)]
-    Scripted(made, asked).run(1_010 * MS, 10 * MS)
+    requested = [(n * 500_000, 0, ZERO) for n in range(2000)]
+    Scripted(made, requested).run(1_010 * MS, 10 * MS)
     hit = 1 - (1 - 1e-3) ** 50
     attempts = made.get("frames") + made.get("error_frames")
     assert made.get("frames") == 2000
@@ -221,8 +223,8 @@ def test_latency_is_the_longest_of_a_step_and_held():
     assert made.get("latency")[2] == 0.0
 
 
-def told(made, *operations, node=0):
-    """Return what node 0 and 1 hear after a node has told the bus something at 1 ms."""
+def reported(made, *operations, node=0):
+    """Return what node 0 and 1 receive after a node has sent operations at 1 ms."""
     memory: dict = {}
     for operation in operations:
         data = operation if isinstance(operation, bytes) else encode(operation)
@@ -239,38 +241,38 @@ def told(made, *operations, node=0):
 
 
 def test_what_is_no_operation_is_answered():
-    own, others = told(bus(), b"\x12\x00\x00\x00\x08\x00\x00\x00")
+    own, others = reported(bus(), b"\x12\x00\x00\x00\x08\x00\x00\x00")
     assert own == [FormatError(b"\x12\x00\x00\x00\x08\x00\x00\x00")]
     assert others == []
 
 
 def test_a_wake_up_goes_to_the_others():
-    assert told(bus(), Wakeup()) == ([], [Wakeup()])
+    assert reported(bus(), Wakeup()) == ([], [Wakeup()])
 
 
-def test_a_node_that_does_not_wait_is_told_of_a_lost_arbitration():
+def test_a_node_that_does_not_wait_is_notified_of_a_lost_arbitration():
     made = bus()
     memory: dict = {}
     Outbox(memory).put(0, encode(Transmit(URGENT)))
     made.set("tx.n2", Outbox(memory).flush())
-    own, _ = told(made, Buffering(False), Transmit(LATER))
+    own, _ = reported(made, Buffering(False), Transmit(LATER))
     assert own == [Transmit(URGENT), Confirm(0x200)]  # at 1 ms the bus is free again
     made = bus()
     memory = {}
     Outbox(memory).put(MS, encode(Transmit(URGENT)))
     made.set("tx.n2", Outbox(memory).flush())
-    own, _ = told(made, Buffering(False), Transmit(LATER))
+    own, _ = reported(made, Buffering(False), Transmit(LATER))
     assert own == [Transmit(URGENT), ArbitrationLost(0x200)]
 
 
 def test_a_node_with_another_bit_rate_is_refused():
-    told(bus(), BitRate(250_000), BitRate(2_000_000, fd=True))
+    reported(bus(), BitRate(250_000), BitRate(2_000_000, fd=True))
     with pytest.raises(
         SimulationError, match="node 'a' has 500000 bit/s, the bus's bit_rate is 250000"
     ):
-        told(bus(), BitRate(500_000))
+        reported(bus(), BitRate(500_000))
     with pytest.raises(SimulationError, match="data_bit_rate"):
-        told(bus(), BitRate(500_000, fd=True))
+        reported(bus(), BitRate(500_000, fd=True))
 
 
 def test_a_missed_text_is_an_error():

@@ -27,7 +27,7 @@ def test_a_broken_frame_is_sent_again():
     """Bits 0 to 19, 6 of flag and 8 of delimiter end at 34; it starts again 3 later."""
     once = iter([Disturbance(19)])
     bench = Bench(2, error_injector=lambda *_: next(once, None))
-    bench.ask(0, 0, DATA)
+    bench.request(0, 0, DATA)
     bench.run(400)
     (sent,) = bench.times
     assert bench.failed_at == [34]
@@ -40,7 +40,7 @@ def test_the_last_bit_before_an_error_may_be_of_the_data_phase():
     """FD with a switch: 16 bits, then BRS and ESI at 2 Mbit/s: 17 us; + 14."""
     bench = Bench(2, error_injector=lambda attempt, *_: Disturbance(17) if attempt == 1 else None)
     # 0x555 has no stuff bit there.
-    bench.ask(0, 0, Frame(0x555, fd=True, bit_rate_switch=True))
+    bench.request(0, 0, Frame(0x555, fd=True, bit_rate_switch=True))
     bench.run(400)
     assert bench.failed_at == [16 + 1 + 14]
 
@@ -53,8 +53,8 @@ def test_bus_off_and_back():
     1309. From the end of the intermission at 1312 it counts 128 x 11 bits on an idle bus: 2720.
     """
     bench = Bench(2, error_injector=broken_of(0))
-    bench.ask(0, 0, DATA)
-    bench.ask(1, 0, DATA)
+    bench.request(0, 0, DATA)
+    bench.request(1, 0, DATA)
     a, b = bench.nodes
     bench.run(15 * ATTEMPT + 33)
     assert (a.state, a.tec) == (State.ERROR_ACTIVE, 120)
@@ -67,8 +67,8 @@ def test_bus_off_and_back():
     starts = [37 * k for k in range(16)] + [600 + 45 * k for k in range(16)]
     assert bench.failed_at == [start + 34 for start in starts]
     bench.bus.error_injector = lambda *_: None
-    bench.ask(2719, 0, ZERO)
-    bench.ask(2720, 0, ZERO)
+    bench.request(2719, 0, ZERO)
+    bench.request(2720, 0, ZERO)
     bench.run(2719.5)
     assert a.state is State.BUS_OFF
     bench.run(3000)
@@ -79,10 +79,10 @@ def test_bus_off_and_back():
 def test_off_the_bus_a_busy_bus_counts_one_sequence_per_frame():
     """b sends without a pause: 128 frames later a is back, not before."""
     bench = Bench(3, queue=1000, error_injector=broken_of(0))
-    bench.ask(0, 0, DATA)
+    bench.request(0, 0, DATA)
     bench.run(1312)
     for _ in range(140):
-        bench.ask(1312, 1, ZERO)
+        bench.request(1312, 1, ZERO)
     bench.run(1312 + 128 * 53 - 4)
     assert bench.nodes[0].off
     bench.run(1312 + 128 * 53)
@@ -92,7 +92,7 @@ def test_off_the_bus_a_busy_bus_counts_one_sequence_per_frame():
 
 def test_without_recovery_it_stays_off():
     bench = Bench(2, error_injector=broken_of(0), recovers=False)
-    bench.ask(0, 0, DATA)
+    bench.request(0, 0, DATA)
     bench.run(1_000_000)
     assert bench.nodes[0].state is State.BUS_OFF
 
@@ -103,7 +103,7 @@ def test_alone_on_the_bus_it_stops_at_error_passive():
     + 8 until 128, at the 16th attempt; from then on the counter stays and it never goes off.
     """
     bench = Bench(1)
-    bench.ask(0, 0, ZERO)
+    bench.request(0, 0, ZERO)
     bench.run(16 * 59)
     (alone,) = bench.nodes
     assert bench.failed_at == [59 * k + 56 for k in range(16)]
@@ -117,7 +117,7 @@ def test_alone_on_the_bus_it_stops_at_error_passive():
 def test_a_second_node_acknowledges_at_last():
     bench = Bench(2)
     bench.bus.unplug(1)
-    bench.ask(0, 0, ZERO)
+    bench.request(0, 0, ZERO)
     bench.run(2000)
     assert (bench.sent, bench.nodes[0].tec) == ([], 128)
     bench.bus.plug(1)
@@ -129,8 +129,8 @@ def test_a_second_node_acknowledges_at_last():
 def test_listeners_do_not_acknowledge():
     bench = Bench(2)
     bench.nodes[1].listens_only = True
-    bench.ask(0, 0, ZERO)
-    bench.ask(0, 1, ZERO)
+    bench.request(0, 0, ZERO)
+    bench.request(0, 1, ZERO)
     bench.run(2000)
     assert bench.sent == []
     assert bench.nodes[1].dropped == 1
@@ -141,10 +141,10 @@ def test_an_error_passive_node_lets_others_go_first():
     """a is passive and has two frames: after the first it waits 3 + 8 bits, and b is quicker."""
     bench = Bench(3)
     bench.nodes[0].tec = 140
-    bench.ask(0, 0, ZERO)
-    bench.ask(0, 0, ZERO)
-    bench.ask(55, 1, Frame(0x7F0))
-    bench.ask(300, 0, ZERO)
+    bench.request(0, 0, ZERO)
+    bench.request(0, 0, ZERO)
+    bench.request(55, 1, Frame(0x7F0))
+    bench.request(300, 0, ZERO)
     bench.run(1000)
     last = 55 + length(Frame(0x7F0)).nominal + 3
     assert bench.times[:2] == [(0, 50, 0), (55, last - 3, 0x7F0)]
@@ -152,8 +152,8 @@ def test_an_error_passive_node_lets_others_go_first():
     # Alone, it starts 8 bits later than an active node would.
     bench = Bench(2)
     bench.nodes[0].tec = 140
-    bench.ask(0, 0, ZERO)
-    bench.ask(0, 0, ZERO)
+    bench.request(0, 0, ZERO)
+    bench.request(0, 0, ZERO)
     bench.run(1000)
     assert bench.times == [(0, 50, 0), (61, 111, 0)]
 
@@ -167,8 +167,8 @@ def test_two_senders_of_one_identifier_break_each_other():
     """
     zero, one = Frame(0x555, b"\x2a"), Frame(0x555, b"\xaa")
     bench = Bench(3)
-    bench.ask(0, 0, one)
-    bench.ask(0, 1, zero)
+    bench.request(0, 0, one)
+    bench.request(0, 1, zero)
     bench.run(16 * 44)
     assert bench.failed_at == [44 * k + 41 for k in range(16)]
     assert [(n.tec, n.rec) for n in bench.nodes] == [(128, 0), (128, 0), (0, 16)]
@@ -182,8 +182,8 @@ def test_two_senders_of_one_identifier_break_each_other():
 
 def test_two_senders_of_the_same_frame_send_it_once():
     bench = Bench(3)
-    bench.ask(0, 0, ZERO)
-    bench.ask(0, 1, ZERO)
+    bench.request(0, 0, ZERO)
+    bench.request(0, 1, ZERO)
     bench.run(200)
     assert bench.times == [(0, 50, 0)]
     assert (bench.sent[0].senders, bench.sent[0].receivers) == ([0, 1], [2])
@@ -194,7 +194,7 @@ def test_an_error_that_one_receiver_sees_is_signalled_by_it_and_then_by_all():
     bench = Bench(
         4, error_injector=lambda attempt, *_: Disturbance(30, 2) if attempt == 1 else None
     )
-    bench.ask(0, 0, ZERO)
+    bench.request(0, 0, ZERO)
     bench.run(53)
     assert bench.failed_at == [51]
     assert bench.broken[0].first == 2
@@ -208,7 +208,7 @@ def test_a_passive_receiver_only_loses_the_frame():
         3, error_injector=lambda attempt, *_: Disturbance(30, 2) if attempt == 1 else None
     )
     bench.nodes[2].rec = 130
-    bench.ask(0, 0, ZERO)
+    bench.request(0, 0, ZERO)
     bench.run(200)
     assert bench.times == [(0, 50, 0)]
     assert bench.sent[0].receivers == [1]
@@ -219,7 +219,7 @@ def test_a_receiver_comes_back_to_error_active_with_the_next_good_frame():
     """Above 127 a success sets the counter to 127 (the standard allows 119 to 127)."""
     bench = Bench(2)
     bench.nodes[1].rec = 200
-    bench.ask(0, 0, ZERO)
+    bench.request(0, 0, ZERO)
     bench.run(60)
     assert bench.nodes[1].rec == 127
 
@@ -227,7 +227,7 @@ def test_a_receiver_comes_back_to_error_active_with_the_next_good_frame():
 def test_a_babbling_node_keeps_the_bus_to_itself():
     bench = Bench(3)
     bench.nodes[2].babbles = True
-    bench.ask(0, 0, ZERO)
+    bench.request(0, 0, ZERO)
     each = length(NOISE).nominal + 3
     bench.run(100 * each)
     assert len(bench.sent) == 100
@@ -258,8 +258,8 @@ def test_a_babbling_node_comes_back_from_bus_off_by_itself():
 def test_a_node_that_is_unplugged_in_its_frame():
     """Recessive from 20 on: the sixth such bit is the others' error, flag and delimiter: 40."""
     bench = Bench(3)
-    bench.ask(0, 0, ZERO)
-    bench.ask(0, 1, Frame(0x700))
+    bench.request(0, 0, ZERO)
+    bench.request(0, 1, Frame(0x700))
     bench.run(20)
     bench.bus.unplug(0)
     bench.run(200)
@@ -274,15 +274,15 @@ def test_a_node_that_is_unplugged_in_its_frame():
 def test_off_and_back_again():
     bench = Bench(3)
     bench.bus.unplug(2)
-    bench.ask(0, 2, ZERO)
-    bench.ask(0, 0, ZERO)
+    bench.request(0, 2, ZERO)
+    bench.request(0, 0, ZERO)
     bench.run(60)
     assert bench.sent[0].receivers == [1]
     assert bench.nodes[2].dropped == 1
-    bench.ask(70, 0, ZERO)
+    bench.request(70, 0, ZERO)
     bench.run(80)
     bench.bus.plug(2)  # in the middle of a frame: too late for that one
-    bench.ask(90, 0, ZERO)
+    bench.request(90, 0, ZERO)
     bench.run(300)
     assert [s.receivers for s in bench.sent] == [[1], [1], [1, 2]]
 

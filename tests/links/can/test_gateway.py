@@ -1,4 +1,4 @@
-"""The gateways of the gateway with the programs that are to come through them."""
+"""Gateways with the programs that they are for."""
 
 import logging
 import socket
@@ -86,7 +86,7 @@ def test_nothing_is_lost_either_way_at_a_thousand_frames_a_second(gateway, reque
 
 @pytest.mark.parametrize("gateway", ["socketcand:127.0.0.1:0", "virtual:gateway-{}"])
 def test_times_are_simulated(gateway, request):
-    """An extended frame of 8 bytes lasts 131 to 143 us, and its peer asked at a whole 2 ms."""
+    """An extended frame of 8 bytes lasts 131 to 143 us, and its peer requested it at a whole 2 ms."""
     with Served(gateway.format(request.node.name)) as served, open_bus(served) as bus:
         served.wait(lambda: served.now > 500_000_000)
         served.send(Frame(0x18FF0000, b"12345678", True))
@@ -114,7 +114,7 @@ def test_remote_and_fd_frames(gateway, request):
         assert [frame for _, frame in served.received] == frames
 
 
-def test_socketcands_clients_hear_each_other_and_not_themselves():
+def test_socketcands_clients_receive_each_other_and_not_themselves():
     with (
         Served("socketcand:127.0.0.1:0") as served,
         open_bus(served) as one,
@@ -130,7 +130,7 @@ def test_socketcands_clients_hear_each_other_and_not_themselves():
     assert [frame for _, frame in served.received] == [Frame(0x100, b"one"), Frame(0x200, b"two")]
 
 
-def test_what_a_client_says_before_it_goes_arrives():
+def test_what_a_client_sends_before_it_goes_arrives():
     with Served("socketcand:127.0.0.1:0") as served:
         for number in range(10):
             with open_bus(served) as bus:
@@ -227,7 +227,9 @@ def test_an_adapter_answers_every_command():
             assert answer("N") == "NSIMU\r"
             assert answer("F") == "F00\r"
             assert [answer(each) for each in ("Z1", "O", "t12321122", "T1234567800")] == [
-                *("\r", "\r", "\r"),
+                "\r",
+                "\r",
+                "\r",
                 "\a",
             ]
             for wrong in (
@@ -318,12 +320,12 @@ def test_a_real_adapters_program_is_a_gateway_too(monkeypatch):
         assert adapter.received[0][1] == Frame(0x111, b"there")
 
 
-class Deaf(Channel):
+class Blocked(Channel):
     def __init__(self):
-        self.said = b""
+        self.sent = b""
 
     def send(self, data):
-        self.said += data
+        self.sent += data
 
 
 class Fed(Endpoint):
@@ -332,7 +334,7 @@ class Fed(Endpoint):
     url = "tcpin:127.0.0.1:1"
 
     def __init__(self):
-        self.peer, self.next = Deaf(), []
+        self.peer, self.next = Blocked(), []
 
     def channels(self):
         return [self.peer]

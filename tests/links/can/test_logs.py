@@ -64,7 +64,7 @@ def test_the_binary_log_comes_back_whole(written):
 
 
 def test_what_the_text_log_keeps_and_loses(written):
-    """Frames and microseconds; not what remote frames ask for, nor the class of errors."""
+    """Frames and microseconds; not what remote frames request, nor the class of errors."""
     assert (written / "can.log").read_text().splitlines()[:4] == [
         "(0.000000) can 7FF#010203 R",
         "(0.000001) can 1FFFFFFF#0001020304050607 R",
@@ -93,8 +93,8 @@ def run(folder, seed=1.0):
     folder.mkdir()
     made = bus(bit_error_rate=1e-3, seed=seed, watched="0x100")
     made.set("run_folder", str(folder))
-    asked = [(n * 700_000, n % 3, Frame(0x100 + n % 2, bytes([n % 256]))) for n in range(400)]
-    scripted = Scripted(made, asked)
+    requested = [(n * 700_000, n % 3, Frame(0x100 + n % 2, bytes([n % 256]))) for n in range(400)]
+    scripted = Scripted(made, requested)
     scripted.run(300 * MS, 10 * MS)
     made.close()
     made.close()  # harmless
@@ -117,7 +117,7 @@ def test_a_run_leaves_the_same_bytes_for_the_same_seed(tmp_path):
 
 
 def test_statistics_are_those_of_the_log(tmp_path):
-    """Latencies: from the time at which the frame was asked for to the log's time, rounded up to us."""
+    """Latencies: from the request of the frame to the log's time, rounded up to us."""
     made, _ = run(tmp_path / "one")
     found = json.loads((tmp_path / "one" / "can.json").read_text())
     entries = [each for each in read(tmp_path / "one" / "can.blf") if not each.is_error_frame]
@@ -129,8 +129,8 @@ def test_statistics_are_those_of_the_log(tmp_path):
     for row in found["identifiers"]:
         number = int(row["identifier"], 16)
         ended = [each.timestamp for each in entries if each.arbitration_id == number]
-        asked = [n * 0.7e-3 for n in range(400) if 0x100 + n % 2 == number]
-        late = sorted(end - begin for end, begin in zip(ended, asked, strict=True))
+        requested = [n * 0.7e-3 for n in range(400) if 0x100 + n % 2 == number]
+        late = sorted(end - begin for end, begin in zip(ended, requested, strict=True))
         assert row["frames"] == len(late)
         assert row["rate_hz"] == pytest.approx(len(late) / 0.29, rel=1e-6)
         latency = row["latency_s"]

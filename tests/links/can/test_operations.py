@@ -74,9 +74,9 @@ def test_several_operations_in_a_row():
     assert decode(b"".join(map(encode, operations))) == operations
 
 
-def test_a_remote_frame_keeps_the_length_it_asks_for():
-    asked = Transmit(Frame(0x321, remote=True, requested=5))
-    assert decode(encode(asked)) == [asked]
+def test_a_remote_frame_keeps_the_length_it_requests():
+    requested = Transmit(Frame(0x321, remote=True, requested=5))
+    assert decode(encode(requested)) == [requested]
 
 
 @pytest.mark.parametrize(

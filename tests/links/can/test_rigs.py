@@ -17,7 +17,7 @@ from seatrial.links.can.operations import Transmit
 
 
 class Listener(Component):
-    """Says how late it hears: the time at the beginning of its step, less the frame's end."""
+    """Reports how late it receives: the time at the beginning of its step, less the frame's end."""
 
     discrete = True
     rx = Input("1", "what the bus tells", type=str)
@@ -30,7 +30,7 @@ class Listener(Component):
         self._can, self._late = {}, []
 
     def step(self, t, h):
-        for when, operation in CanNode(self._can).hear(self.rx):
+        for when, operation in CanNode(self._can).receive(self.rx):
             if isinstance(operation, Transmit):
                 self._late.append(t - when / 1e9)
 
@@ -131,7 +131,7 @@ def test_both_carriers_leave_the_same_logs(tmp_path):
 
 
 def test_a_bus_above_its_bit_rate_fails_its_trial(tmp_path):
-    """Who shares the queue of the load waits longest; whoever has a higher priority does not."""
+    """Nodes that share the queue of the load wait longest; those of higher priority do not."""
     trial = load_trial("can-load").changed({"display.load": 1.1, "stop": "2 s"}, "test")
     result = run_trial(trial, tmp_path / "run", engine="direct")
     failed = [name for name, _, verdict in result.verdicts if not verdict.passed]
@@ -163,7 +163,7 @@ source    = "invented"
 kind = "can-gateway"
 link = "{gateway}"
 """
-DOOR = """
+GATEWAY = """
 step = "1 ms"
 profile = "boat"
 
@@ -183,7 +183,7 @@ gateway = { fmu = "can-gateway", profile = "links.bus" }
 def through(folder, gateway):
     for name, text in (
         ("hil_profiles/boat.toml", PROFILE.format(gateway=gateway)),
-        ("harness/rigs/gateway.toml", DOOR),
+        ("harness/rigs/gateway.toml", GATEWAY),
         ("harness/trials/gateway.toml", 'rig = "gateway"\nstop = "100 ms"\n'),
     ):
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
@@ -196,7 +196,7 @@ def test_a_profile_names_the_bus(tmp_path):
     with can.Bus(str(tmp_path), "virtual", ignore_config=True) as outside:
         assert through(tmp_path, f"python-can:virtual:{tmp_path}").status == "complete"
         found = [outside.recv(1.0).timestamp for _ in range(9)]
-    # Asked for every 10 ms; 11 bits and 2 bytes last 60 to 79 bits of 2 us.
+    # Requested every 10 ms; 11 bits and 2 bytes last 60 to 79 bits of 2 us.
     assert all(120e-6 <= time - 0.01 * k <= 160e-6 for k, time in enumerate(found))
 
 

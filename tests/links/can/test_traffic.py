@@ -20,19 +20,19 @@ def node(**values):
     return made
 
 
-def asked(made, until_ms, step_ms=1, begin_ms=0, memory=None):
-    """Return (time in ns, frame) of what it asks for."""
+def requested(made, until_ms, step_ms=1, begin_ms=0, memory=None):
+    """Return (time in ns, frame) of what it requests."""
     memory, found = memory if memory is not None else {}, []
     for k in range(begin_ms, until_ms, step_ms):
         made.advance(k / 1e3, step_ms / 1e3)
-        received = CanNode(memory).hear(made.get("tx"))
+        received = CanNode(memory).receive(made.get("tx"))
         found += [(when, each.frame) for when, each in received if isinstance(each, Transmit)]
     return found
 
 
 def test_frames_come_at_their_periods():
     made = node(messages="0x123 0.01 8; 0x09F10D01 0.02 3 0.0025")
-    found = asked(made, 100)
+    found = requested(made, 100)
     assert [when for when, f in found if f.identifier == 0x123] == [k * 10**7 for k in range(10)]
     assert [when for when, f in found if f.extended] == [
         k * 2 * 10**7 + 2_500_000 for k in range(5)
@@ -45,12 +45,12 @@ def test_frames_come_at_their_periods():
 
 
 def test_a_period_need_not_fit_the_step():
-    found = asked(node(messages="0x123 0.0003 0"), 9, 3)
+    found = requested(node(messages="0x123 0.0003 0"), 9, 3)
     assert [when for when, _ in found] == [k * 300_000 for k in range(30)]
 
 
 def test_jitter_delays_up_to_its_share_evenly():
-    found = asked(node(messages="0x123 0.01 0", jitter=0.5, seed=3.0), 10_000, 100)
+    found = requested(node(messages="0x123 0.01 0", jitter=0.5, seed=3.0), 10_000, 100)
     late = [when - k * 10**7 for k, (when, _) in enumerate(found)]
     assert len(late) >= 999
     assert 0 <= min(late) < 10**5
@@ -61,7 +61,7 @@ def test_jitter_delays_up_to_its_share_evenly():
 @pytest.mark.parametrize("form", ["classic", "fd", "fd-switch"])
 def test_the_background_takes_its_share_of_the_bus(form):
     made = node(load=0.37, background="0x700 0x18FF0000", format=form, size=8.0)
-    found = asked(made, 2000, 10)
+    found = requested(made, 2000, 10)
     time = sum(
         (bits.nominal + INTERMISSION) / 250e3 + bits.data / 2e6
         for bits in (length(frame) for _, frame in found)
@@ -73,24 +73,24 @@ def test_the_background_takes_its_share_of_the_bus(form):
 
 def test_the_step_and_a_saved_state_change_nothing():
     values = {"messages": "0x1 0.004 8; 0x2 0.007 2", "jitter": 0.3, "load": 0.2}
-    whole = asked(node(**values), 600, 10)
-    assert asked(node(**values), 600, 1) == whole
+    whole = requested(node(**values), 600, 10)
+    assert requested(node(**values), 600, 1) == whole
     made, memory = node(**values), {}
-    first = asked(made, 300, 10, memory=memory)
+    first = requested(made, 300, 10, memory=memory)
     state = json.loads(json.dumps(made.get_state()))
     other = node(**values)
     other.set_state(state)
-    assert first + asked(other, 600, 10, 300, memory) == whole
+    assert first + requested(other, 600, 10, 300, memory) == whole
 
 
 def test_silence_and_a_load_that_changes():
     made, memory = node(messages="0x1 0.01 0", load=0.1), {}
-    assert len(asked(made, 100, memory=memory)) > 10
+    assert len(requested(made, 100, memory=memory)) > 10
     made.set("silent", True)
-    assert asked(made, 200, begin_ms=100, memory=memory) == []
+    assert requested(made, 200, begin_ms=100, memory=memory) == []
     made.set("silent", False)
     made.set("load", 0.0)
-    found = asked(made, 300, begin_ms=200, memory=memory)
+    found = requested(made, 300, begin_ms=200, memory=memory)
     assert [when for when, _ in found] == [k * 10**7 for k in range(20, 30)]
 
 

@@ -12,7 +12,7 @@ from seatrial.links.can_signals.component import CanSignals
 
 
 class Peer(Component):
-    """A node that sends the frames it is given and keeps what it hears, with times in ns."""
+    """A node that sends the frames it is given and keeps what it receives, with times in ns."""
 
     def __init__(self) -> None:
         super().__init__("peer")
@@ -21,7 +21,7 @@ class Peer(Component):
 
     def exchange(self, rx: str, now_ns: int, frames: Sequence[Frame]) -> str:
         node = CanNode(self.memory)
-        for when, operation in node.hear(rx):
+        for when, operation in node.receive(rx):
             if isinstance(operation, Transmit):
                 self.received.append((when, operation.frame))
         for frame in frames:
@@ -40,7 +40,7 @@ def signals(database: Path | str, **values: object) -> CanSignals:
 
 
 class Bench:
-    """``node`` and a `Peer` on a bus of 500 kbit/s; a wire takes a step, as in a rig."""
+    """``node`` and a `Peer` on a bus of 500 kbit/s; a connection takes a step, as in a rig."""
 
     def __init__(self, node: CanSignals, *, step_ns: int = 5_000_000) -> None:
         self.node, self.peer, self.step_ns = node, Peer(), step_ns
@@ -52,17 +52,17 @@ class Bench:
         self.now = 0
 
     def run(self, seconds: float, frames: Sequence[Frame] = ()) -> None:
-        """Run on; the peer asks for ``frames`` at the beginning."""
-        peer_says = self.bus.get("tx.n2")
+        """Run on; the peer requests ``frames`` at the beginning."""
+        peer_tx = self.bus.get("tx.n2")
         for _ in range(round(seconds * 1e9) // self.step_ns):
-            told = self.bus.get("rx")
-            said = self.node.get("tx")
-            self.node.set("rx", told[0])
-            self.bus.set("tx.n1", said)
-            self.bus.set("tx.n2", peer_says)
-            peer_says = self.peer.exchange(told[1], self.now, frames)
+            rx = self.bus.get("rx")
+            tx = self.node.get("tx")
+            self.node.set("rx", rx[0])
+            self.bus.set("tx.n1", tx)
+            self.bus.set("tx.n2", peer_tx)
+            peer_tx = self.peer.exchange(rx[1], self.now, frames)
             frames = ()
             for each in (self.node, self.bus):
                 each.advance(self.now / 1e9, self.step_ns / 1e9)
             self.now += self.step_ns
-        self.bus.set("tx.n2", peer_says)
+        self.bus.set("tx.n2", peer_tx)

@@ -20,13 +20,13 @@ HYDRONE = shipped_folder("hil_profiles") / "hydrone.dbc"
 DEG = math.pi / 180.0
 
 
-def judge(path):
+def reference(path):
     return canmatrix.formats.loadp_flat(str(path))
 
 
 def decoded(path, frame):
     """Return what canmatrix reads in a frame: physical values."""
-    known = judge(path).frame_by_id(
+    known = reference(path).frame_by_id(
         canmatrix.ArbitrationId(frame.identifier, extended=frame.extended)
     )
     return {name: float(value.phys_value) for name, value in known.decode(frame.data).items()}
@@ -56,7 +56,7 @@ def test_all_layouts_are_as_another_reader_has_them():
 
 
 def test_frames_that_another_encoder_made_are_read():
-    there = judge(GLORIA).frame_by_name("ServoStatus")
+    there = reference(GLORIA).frame_by_name("ServoStatus")
     raw = {"RudderAngle": -1199, "SailAngle": 4567, "FlapAngle": 3000}
     node = signals(GLORIA, receives="; ".join(f"ServoStatus.{name}" for name in raw))
     bench = Bench(node)
@@ -68,7 +68,7 @@ def test_frames_that_another_encoder_made_are_read():
 
 
 def test_what_is_multiplexed_arrives_one_by_one():
-    there = judge(ODD).frame_by_name("Parts")
+    there = reference(ODD).frame_by_name("Parts")
     node = signals(ODD, receives="Parts.Volts; Parts.Amps")
     assert node.get("received")[:2] == [pytest.approx(12.0), 0.0]  # GenSigStartValue
     bench = Bench(node)
@@ -159,12 +159,12 @@ def test_a_restored_node_goes_on_as_it_did():
     state, at = node.get_state(), 0.1
 
     def goes_on(one):
-        said = []
+        sent = []
         for k in range(20):
             one.set("send.s1", 0.1 * k)
             one.advance(at + 0.01 * k, 0.01)
-            said.append((one.get("tx"), one.get("frames_sent"), one.get("limited")))
-        return said
+            sent.append((one.get("tx"), one.get("frames_sent"), one.get("limited")))
+        return sent
 
     first = goes_on(node)
     other = CanSignals("node")
@@ -177,7 +177,7 @@ SENDS = "ThrusterCommand.PortPulse 1100 1900 us"
 
 
 @pytest.mark.parametrize(
-    ("change", "sends", "said"),
+    ("change", "sends", "sent"),
     [
         (("", ""), "ThrusterCommand.PortPuls", ["sends", "did you mean 'PortPulse'"]),
         (("", ""), "ThrusterComand.PortPulse", ["did you mean 'ThrusterCommand'"]),
@@ -198,16 +198,16 @@ SENDS = "ThrusterCommand.PortPulse 1100 1900 us"
         (('"us"', '"parsec2000"'), SENDS, ["PortPulse", "'parsec2000' is not a unit"]),
     ],
 )
-def test_mistakes_name_the_file(tmp_path, change, sends, said):
+def test_mistakes_name_the_file(tmp_path, change, sends, sent):
     file = tmp_path / "bus.dbc"
     file.write_text(TEXT.replace(*change) if change[0] else TEXT, "utf-8")
     with pytest.raises(InputError) as caught:
         signals(file, sends=sends)
-    for part in said:
+    for part in sent:
         assert part in str(caught.value)
-    told = re.match(r"node: (sends|database): ", str(caught.value))
-    assert told, str(caught.value)
-    if "named twice" not in said[0] and "is not MESSAGE" not in said[0]:
+    named = re.match(r"node: (sends|database): ", str(caught.value))
+    assert named, str(caught.value)
+    if "named twice" not in sent[0] and "is not MESSAGE" not in sent[0]:
         assert str(file) in str(caught.value)
 
 

@@ -30,19 +30,19 @@ MODULES = (
 
 
 class Driver(AbstractDriver):
-    """The package's way to the bus."""
+    """Driver of the package for the simulated bus."""
 
     def __init__(self) -> None:
         super().__init__()
         self.received: list[CANFrame] = []
-        self.said: list[Frame] = []
+        self.sent: list[Frame] = []
 
     def receive(self, timeout=None):
         del timeout
         return self.received.pop(0) if self.received else None
 
     def send_frame(self, frame):
-        self.said.append(Frame(frame.id, bytes(frame.data), frame.extended))
+        self.sent.append(Frame(frame.id, bytes(frame.data), frame.extended))
 
     def close(self):
         pass
@@ -82,11 +82,11 @@ class Bench:
     def step(self) -> None:
         """One step: all nodes, then the bus, from outputs as they were before."""
         t, h = self.now_ns / 1e9, STEP_NS / 1e9
-        said = [node.get("tx") for node in self.nodes]
+        sent = [node.get("tx") for node in self.nodes]
         for place, node in enumerate(self.nodes):
             node.set("rx", self.bus.get(f"rx.n{place + 1}"))
         view = CanNode(self._can)
-        for when, operation in view.hear(self.bus.get(f"rx.n{len(self.nodes) + 1}")):
+        for when, operation in view.receive(self.bus.get(f"rx.n{len(self.nodes) + 1}")):
             if isinstance(operation, Transmit):
                 frame = operation.frame
                 self.frames.append((when, frame))
@@ -95,11 +95,11 @@ class Bench:
                 )
                 self.driver.received.append(received)
         self.peer.spin(0)
-        for place, text in enumerate([*said, view.text]):
+        for place, text in enumerate([*sent, view.text]):
             self.bus.set(f"tx.n{place + 1}", text)
-        for frame in self.driver.said:
+        for frame in self.driver.sent:
             view.send(self.now_ns, frame)
-        self.driver.said.clear()
+        self.driver.sent.clear()
         view.flush()
         for each in (*self.nodes, self.bus):
             each.advance(t, h)
@@ -118,7 +118,7 @@ class Bench:
         return self.now()
 
     def collect(self, kind) -> list:
-        """Return a list that what the peer hears of a type comes into, with its transfer."""
+        """Return a list that what the peer receives of a type comes into, with its transfer."""
         found: list = []
 
         def keep(event) -> None:
@@ -127,7 +127,7 @@ class Bench:
         self.peer.add_handler(kind, keep)
         return found
 
-    def ask(self, request, node_id: int, seconds: float = 2.0):
+    def request(self, request, node_id: int, seconds: float = 2.0):
         """Return the response to a request of the peer's, None if there is none."""
         answers: list = []
         self.peer.request(request, node_id, answers.append)

@@ -71,8 +71,8 @@ def test_quaternions_are_scipys(phi, theta, psi):
     assert (wanted.inv() * again).magnitude() < 1e-6
 
 
-def told(outbox: dict, time_ns: int, payload, **fields) -> str:
-    """Return what a bus tells when another node has sent a message."""
+def sent_text(outbox: dict, time_ns: int, payload, **fields) -> str:
+    """Return what a bus sends when another node has sent a message."""
     fields = {"source_node_id": 99, **fields}
     box = Outbox(outbox)
     for each in Transfer(payload=payload, **fields).to_frames():
@@ -81,7 +81,7 @@ def told(outbox: dict, time_ns: int, payload, **fields) -> str:
     return box.flush()
 
 
-def said(node, k: int) -> str:
+def sent(node, k: int) -> str:
     node.advance(k * STEP, STEP)
     return node.get("tx")
 
@@ -98,17 +98,17 @@ def test_a_state_holds_half_a_transfer_commands_and_counters():
         made(DroneCanPeripheral, "esc", node_id=9.0, gnss_period=0.05, measured="voltage")
     )
     bus: dict = {}
-    node.set("rx", told(bus, 0, uavcan.equipment.esc.RawCommand(cmd=[1000])))
+    node.set("rx", sent_text(bus, 0, uavcan.equipment.esc.RawCommand(cmd=[1000])))
     for k in range(10):
-        said(node, k)
+        sent(node, k)
     state = node.get_state()
-    first = [said(node, k) for k in range(10, 130)], node.get("command"), node.get("failsafe")
+    first = [sent(node, k) for k in range(10, 130)], node.get("command"), node.get("failsafe")
     node.set_state(state)
-    again = [said(node, k) for k in range(10, 130)], node.get("command"), node.get("failsafe")
+    again = [sent(node, k) for k in range(10, 130)], node.get("command"), node.get("failsafe")
     assert first == again
     other = started(made(DroneCanPeripheral, "esc", node_id=9.0, gnss_period=0.05))
     other.set_state(state)
-    assert [said(other, k) for k in range(10, 130)] == first[0]
+    assert [sent(other, k) for k in range(10, 130)] == first[0]
     assert len(set(first[0])) > 24  # a fix every 50 ms
     assert first[2] is True
 
@@ -117,29 +117,29 @@ def test_an_autopilots_state():
     node = started(made(DroneCanAutopilot, "autopilot", node_id=1.0))
     status = uavcan.equipment.esc.Status(voltage=15.0, esc_index=1)
     bus: dict = {}
-    node.set("rx", told(bus, 0, status, source_node_id=7))
-    said(node, 0)
+    node.set("rx", sent_text(bus, 0, status, source_node_id=7))
+    sent(node, 0)
     assert node.get("voltage")[:2] == [0.0, 15.0]
     state = node.get_state()
     later = uavcan.equipment.esc.Status(voltage=9.0, esc_index=1)
-    text = told(bus, 10_000_000, later, transfer_id=1, source_node_id=7)
+    text = sent_text(bus, 10_000_000, later, transfer_id=1, source_node_id=7)
     node.set("rx", text)
-    first = said(node, 1), node.get("voltage")
+    first = sent(node, 1), node.get("voltage")
     assert first[1][1] == 9.0
     node.set_state(state)
     assert node.get("voltage")[:2] == [0.0, 15.0]
     node.set("rx", text)
-    assert (said(node, 1), node.get("voltage")) == first
+    assert (sent(node, 1), node.get("voltage")) == first
 
 
-def test_what_is_due_is_asked_for_at_its_very_time():
+def test_what_is_due_is_requested_at_its_very_time():
     node = started(
         made(DroneCanPeripheral, "esc", node_id=9.0, status_period=0.0137, gnss_period=0.2)
     )
     times: dict[int, list[int]] = {}
     before = ""
     for k in range(300):
-        text = said(node, k)
+        text = sent(node, k)
         for when, data in decode(text)[1] if text != before else []:
             frame = operations(data)[0].frame
             if frame.data[-1] & 0x80:  # the first of a transfer

@@ -21,19 +21,19 @@ def packages_frames(payload, **fields) -> list[Frame]:
     return [Frame(each.message_id, bytes(each.bytes), True) for each in made]
 
 
-class Hearer:
+class Receiver:
     """Frames in, transfers out, with the memory of all before."""
 
     def __init__(self) -> None:
         self.transfers = Transfers({}, CanNode({}))
         self.bus: dict = {}
 
-    def hear(self, *frames: Frame, at: int = 0, node: int = 5) -> list[Transfer]:
+    def receive(self, *frames: Frame, at: int = 0, node: int = 5) -> list[Transfer]:
         outbox = Outbox(self.bus)
         for frame in frames:
             outbox.put(at, encode(Transmit(frame)))
         text = outbox.flush()
-        return [found for _, found in self.transfers.hear(text, WANTED, node)]
+        return [found for _, found in self.transfers.receive(text, WANTED, node)]
 
 
 def status(**fields) -> object:
@@ -41,85 +41,85 @@ def status(**fields) -> object:
 
 
 @pytest.fixture
-def hearer() -> Hearer:
-    return Hearer()
+def receiver() -> Receiver:
+    return Receiver()
 
 
-def test_a_transfer_of_three_frames(hearer):
+def test_a_transfer_of_three_frames(receiver):
     first, second, third = packages_frames(status())
-    assert hearer.hear(first, second) == []
-    (found,) = hearer.hear(third)
+    assert receiver.receive(first, second) == []
+    (found,) = receiver.receive(third)
     assert (found.payload.voltage, found.payload.rpm, found.source_node_id) == (16.0, -500, 10)
 
 
 @pytest.mark.parametrize("order", [(0, 0, 1, 2), (0, 1, 1, 2), (0, 1, 2, 2)])
-def test_a_frame_that_came_twice_is_passed_over(hearer, order):
+def test_a_frame_that_came_twice_is_passed_over(receiver, order):
     frames = packages_frames(status())
-    assert len(hearer.hear(*(frames[place] for place in order))) == 1
+    assert len(receiver.receive(*(frames[place] for place in order))) == 1
 
 
 @pytest.mark.parametrize("order", [(0, 2), (1, 2), (0, 2, 1), (2, 1, 0)])
-def test_what_is_lost_or_out_of_order_is_no_transfer(hearer, order):
+def test_what_is_lost_or_out_of_order_is_no_transfer(receiver, order):
     frames = packages_frames(status())
-    assert hearer.hear(*(frames[place] for place in order)) == []
-    assert len(hearer.hear(*packages_frames(status(), transfer_id=4))) == 1
+    assert receiver.receive(*(frames[place] for place in order)) == []
+    assert len(receiver.receive(*packages_frames(status(), transfer_id=4))) == 1
 
 
-def test_a_transfer_that_came_twice_is_one(hearer):
+def test_a_transfer_that_came_twice_is_one(receiver):
     frames = packages_frames(uavcan.protocol.NodeStatus(uptime_sec=7))
-    assert len(hearer.hear(*frames, *frames)) == 1
-    assert len(hearer.hear(*frames, at=TIMEOUT_NS)) == 0
-    assert len(hearer.hear(*frames, at=TIMEOUT_NS + 1)) == 1  # the node began anew
+    assert len(receiver.receive(*frames, *frames)) == 1
+    assert len(receiver.receive(*frames, at=TIMEOUT_NS)) == 0
+    assert len(receiver.receive(*frames, at=TIMEOUT_NS + 1)) == 1  # the node began anew
 
 
-def test_an_unfinished_transfer_is_given_up(hearer):
+def test_an_unfinished_transfer_is_given_up(receiver):
     frames = packages_frames(status())
-    assert hearer.hear(*frames[:2]) == []
-    assert hearer.hear(frames[2], at=TIMEOUT_NS + 1) == []
+    assert receiver.receive(*frames[:2]) == []
+    assert receiver.receive(frames[2], at=TIMEOUT_NS + 1) == []
 
 
-def test_transfers_of_two_nodes_are_put_together_apart(hearer):
+def test_transfers_of_two_nodes_are_put_together_apart(receiver):
     one, other = packages_frames(status()), packages_frames(status(), source_node_id=11)
     mixed = [frame for pair in zip(one, other, strict=True) for frame in pair]
-    assert [found.source_node_id for found in hearer.hear(*mixed)] == [10, 11]
+    assert [found.source_node_id for found in receiver.receive(*mixed)] == [10, 11]
 
 
-def test_a_wrong_checksum_is_malformed(hearer):
+def test_a_wrong_checksum_is_malformed(receiver):
     first, second, third = packages_frames(status())
     wrong = Frame(second.identifier, bytes([second.data[0] ^ 1]) + second.data[1:], True)
-    assert hearer.hear(first, wrong, third) == []
-    assert hearer.transfers.malformed == 1
+    assert receiver.receive(first, wrong, third) == []
+    assert receiver.transfers.malformed == 1
 
 
-def test_services_of_others_are_not_received(hearer):
+def test_services_of_others_are_not_received(receiver):
     # GetNodeInfo, a request without data, from 9 to 5.
     frame = Frame((20 << 24) | (1 << 16) | 0x8000 | (5 << 8) | 0x80 | 9, b"\xc0", True)
-    assert len(hearer.hear(frame)) == 1
-    assert hearer.hear(Frame(frame.identifier, b"\xc1", True), node=6) == []
+    assert len(receiver.receive(frame)) == 1
+    assert receiver.receive(Frame(frame.identifier, b"\xc1", True), node=6) == []
 
 
-def test_frames_that_are_not_dronecans_are_passed_over(hearer):
+def test_frames_that_are_not_dronecans_are_passed_over(receiver):
     (frame,) = packages_frames(uavcan.protocol.NodeStatus())
-    assert hearer.hear(Frame(0x123, bytes(8)), Frame(frame.identifier, b"", True)) == []
-    assert hearer.hear(Frame(frame.identifier, frame.data, True, fd=True)) == []
+    assert receiver.receive(Frame(0x123, bytes(8)), Frame(frame.identifier, b"", True)) == []
+    assert receiver.receive(Frame(frame.identifier, frame.data, True, fd=True)) == []
     # DroneCAN begins with toggle 0, its successor with 1.
     successor = frame.data[:-1] + bytes([frame.data[-1] | 0x20])
-    assert hearer.hear(Frame(frame.identifier, successor, True)) == []
-    assert hearer.transfers.malformed == 0
+    assert receiver.receive(Frame(frame.identifier, successor, True)) == []
+    assert receiver.transfers.malformed == 0
 
 
 @given(st.lists(st.tuples(st.sampled_from([1034, 341, 1]), st.binary(max_size=8)), max_size=20))
 def test_no_bytes_stop_it(content):
-    hearer = Hearer()
+    receiver = Receiver()
     frames = [
         Frame(number << 8 | source, data, True) for number, data in content for source in (0, 9)
     ]
     frames += [Frame(0x18018585 | number << 8 & 0x8000, data, True) for number, data in content]
-    hearer.hear(*frames)
+    receiver.receive(*frames)
 
 
-def test_a_long_flood_of_middles_is_given_up(hearer):
+def test_a_long_flood_of_middles_is_given_up(receiver):
     first, second, _ = packages_frames(status())
     tails = [second.data[:-1] + bytes([0x03 | 0x20 * (n % 2)]) for n in range(1, 1000)]
-    assert hearer.hear(first, *(Frame(first.identifier, data, True) for data in tails)) == []
-    assert len(hearer.hear(*packages_frames(status(), transfer_id=4))) == 1
+    assert receiver.receive(first, *(Frame(first.identifier, data, True) for data in tails)) == []
+    assert len(receiver.receive(*packages_frames(status(), transfer_id=4))) == 1

@@ -53,7 +53,7 @@ def polled(endpoint, until=lambda arrived: arrived):
     raise AssertionError(f"only {arrived}")
 
 
-def test_udp_out_sends_to_its_address_and_hears_it_alone(opened, udp):
+def test_udp_out_sends_to_its_address_and_receives_it_alone(opened, udp):
     endpoint = opened(f"udpout:127.0.0.1:{udp.getsockname()[1]}")
     (channel,) = endpoint.channels()
     channel.send(b"hello")
@@ -243,7 +243,7 @@ def test_a_real_port_needs_permission(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("url", "said"),
+    ("url", "sent"),
     [
         ("upd:127.0.0.1:14550", "unknown kind of link 'upd'"),
         ("udpinn:127.0.0.1:14550", "did you mean 'udpin'"),
@@ -258,12 +258,12 @@ def test_a_real_port_needs_permission(monkeypatch):
         ("udpout:127.0.0.1:0", "the port is 0, allowed 1 to 65535"),
         ("serial:/dev/ttyS0:0", "the baud rate is 0"),
         ("pty:", "is not of the form 'pty:/tmp/vehicle'"),
-        (f"udpout:{'x' * 64}:14550", f"host '{'x' * 64}'"),  # refused without asking anybody
+        (f"udpout:{'x' * 64}:14550", f"host '{'x' * 64}'"),  # refused without a look-up
         ("udpin:192.0.2.1:0", "cannot open the link 'udpin:192.0.2.1:0': "),
     ],
 )
-def test_a_bad_url_is_refused_with_the_url(url, said):
-    with pytest.raises(InputError, match=re.escape(said)) as caught:
+def test_a_bad_url_is_refused_with_the_url(url, sent):
+    with pytest.raises(InputError, match=re.escape(sent)) as caught:
         open_endpoint(url)
     assert repr(url) in str(caught.value)
 

@@ -1,4 +1,4 @@
-"""A vehicle on the bench: services in simulated time, an air that writes down what is said."""
+"""A vehicle on the bench: services in simulated time, a transport that records what is sent."""
 
 import math
 from dataclasses import replace
@@ -17,19 +17,19 @@ STATION = Sender(255, 190, 0)
 OTHER_STATION = Sender(250, 190, 1)
 
 
-class WrittenDown:
-    """An air with two links, that keeps what is said: (link, message), None for all links."""
+class RecordingTransport:
+    """A transport with two links, that keeps what is sent: (link, message), None for all links."""
 
     def __init__(self):
         self.there = [0, 1]
-        self.said = []
+        self.sent = []
 
     def links(self):
         return self.there
 
     def send(self, link, message):
         assert message.pack(mavlink.MAVLink(None, 7, 1))  # it can be sent at all
-        self.said.append((link, message))
+        self.sent.append((link, message))
 
     def broadcast(self, message):
         self.send(None, message)
@@ -38,10 +38,10 @@ class WrittenDown:
         """Return and forget messages, of one kind, over one link."""
         found = [
             (to, m)
-            for to, m in self.said
+            for to, m in self.sent
             if kind in (None, m.get_type()) and (link is ... or to == link)
         ]
-        self.said = [each for each in self.said if each not in found]
+        self.sent = [each for each in self.sent if each not in found]
         return [m for _, m in found]
 
 
@@ -66,12 +66,16 @@ class Bench:
         identity = Identity(7, 1, types[submerged], submerged, "4.5.1-beta", 12345, 10**15)
         self.vehicle = Vehicle(identity, kind, ORIGIN, kind.mode("hold"))
         self.vehicle.estimates = Estimates(position_valid=valid, heading_valid=valid)
-        self.transport = WrittenDown()
+        self.transport = RecordingTransport()
         self.settings = Settings(**settings)
         self.parameters = vehicle_parameters(self.vehicle, self.settings)
         self.ticks, self.pace = 0, 1.0
         self.node = Node(
-            *(self.vehicle, self.transport, self.settings, self.parameters, plans),
+            self.vehicle,
+            self.transport,
+            self.settings,
+            self.parameters,
+            plans,
             clock=lambda: self.now / self.pace,
             failures=failures,
         )
@@ -83,7 +87,7 @@ class Bench:
     def measure(self, **changes):
         self.vehicle.estimates = replace(self.vehicle.estimates, **changes)
 
-    def hear(self, message, sender=STATION):
+    def receive(self, message, sender=STATION):
         self.node.receive(message, sender, self.now)
 
     def wait(self, seconds):
@@ -99,7 +103,7 @@ class Bench:
         """Give a COMMAND_LONG and return the result of its one answer, None without an answer."""
         self.transport.take("COMMAND_ACK")
         given = [*parameters, *[0.0] * (7 - len(parameters))]
-        self.hear(
+        self.receive(
             mavlink.MAVLink_command_long_message(system, component, number, 0, *given), sender
         )
         return self._answer(number, sender)
@@ -107,7 +111,7 @@ class Bench:
     def command_int(self, number, *parameters, frame, x, y, z, sender=STATION):
         self.transport.take("COMMAND_ACK")
         given = [*parameters, *[0.0] * (4 - len(parameters))]
-        self.hear(
+        self.receive(
             mavlink.MAVLink_command_int_message(7, 1, frame, number, 0, 0, *given, x, y, z), sender
         )
         return self._answer(number, sender)
@@ -124,29 +128,29 @@ class Bench:
     def enter(self, name):
         """Change the mode as a ground station does, and check that it is entered."""
         mode = self.vehicle.dialect.mode(name)
-        self.hear(mavlink.MAVLink_set_mode_message(7, 1, mode.custom_mode))
+        self.receive(mavlink.MAVLink_set_mode_message(7, 1, mode.custom_mode))
         assert self.vehicle.mode is mode
 
     def arm(self):
         assert self.command(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1) == mavlink.MAV_RESULT_ACCEPTED
 
     def heartbeat(self, sender=STATION, kind=mavlink.MAV_TYPE_GCS):
-        self.hear(mavlink.MAVLink_heartbeat_message(kind, 8, 0, 0, 4, 3), sender)
+        self.receive(mavlink.MAVLink_heartbeat_message(kind, 8, 0, 0, 4, 3), sender)
 
     def texts(self):
-        """Return and forget what was said to people, whole sentences."""
+        """Return and forget the status texts, whole sentences."""
         self.tick()
         return [m.text for m in self.transport.take("STATUSTEXT")]
 
     def request(self, number):
-        """Ask for one message, and return the copies that came."""
+        """Request one message, and return the copies that came."""
         self.transport.take()
         result = self.command(mavlink.MAV_CMD_REQUEST_MESSAGE, number)
         kind = mavlink.mavlink_map[number].msgname
         return result, self.transport.take(kind, STATION.link)
 
     def one(self, number):
-        """Ask for one message and return it."""
+        """Request one message and return it."""
         result, (message,) = self.request(number)
         assert result == mavlink.MAV_RESULT_ACCEPTED
         return message

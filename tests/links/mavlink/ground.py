@@ -1,4 +1,4 @@
-"""A ground station that uploads and downloads as they do, and an air that loses what they say."""
+"""A ground station that uploads and downloads as they do, and a transport that loses messages."""
 
 import math
 import random
@@ -64,7 +64,7 @@ def north_of(metres, east=0.0):
 
 
 def content(message):
-    """Return what an item says, without who it is for and whether it is current."""
+    """Return an item's content, without its target and whether it is current."""
     fields = message.to_dict()
     for name in ("target_system", "target_component", "current", "mavpackettype"):
         del fields[name]
@@ -72,16 +72,16 @@ def content(message):
 
 
 def upload(bench, items, kind=MISSION, sender=STATION, sends=None):
-    """Upload a list over an air that loses nothing; return MAV_MISSION_RESULT."""
+    """Upload a list over a transport that loses nothing; return MAV_MISSION_RESULT."""
     bench.transport.take()
-    bench.hear(mavlink.MAVLink_mission_count_message(7, 1, len(items), kind), sender)
+    bench.receive(mavlink.MAVLink_mission_count_message(7, 1, len(items), kind), sender)
     for _ in range(len(items)):
         requests = bench.transport.take("MISSION_REQUEST_INT", sender.link)
         if not requests:
             break
         (request,) = requests
         assert request.mission_type == kind
-        bench.hear((sends or items)[request.seq], sender)
+        bench.receive((sends or items)[request.seq], sender)
     (answer,) = bench.transport.take("MISSION_ACK", sender.link)
     assert answer.mission_type == kind
     assert (answer.target_system, answer.target_component) == (sender.system, sender.component)
@@ -91,17 +91,17 @@ def upload(bench, items, kind=MISSION, sender=STATION, sends=None):
 def download(
     bench, kind=MISSION, sender=STATION, request=mavlink.MAVLink_mission_request_int_message
 ):
-    """Download a list over an air that loses nothing; return its items."""
+    """Download a list over a transport that loses nothing; return its items."""
     bench.transport.take()
-    bench.hear(mavlink.MAVLink_mission_request_list_message(7, 1, kind), sender)
+    bench.receive(mavlink.MAVLink_mission_request_list_message(7, 1, kind), sender)
     (count,) = bench.transport.take("MISSION_COUNT", sender.link)
     items = []
     for sequence in range(count.count):
-        bench.hear(request(7, 1, sequence, kind), sender)
+        bench.receive(request(7, 1, sequence, kind), sender)
         (found,) = [m for m in bench.transport.take(link=sender.link) if hasattr(m, "command")]
         assert (found.seq, found.mission_type) == (sequence, kind)
         items.append(found)
-    bench.hear(mavlink.MAVLink_mission_ack_message(7, 1, 0, kind), sender)
+    bench.receive(mavlink.MAVLink_mission_ack_message(7, 1, 0, kind), sender)
     return items
 
 
@@ -114,11 +114,23 @@ def save(items, path: Path):
 
 
 def as_float(m):
-    """Return a MISSION_ITEM_INT as the MISSION_ITEM that says the same."""
+    """Return a MISSION_ITEM_INT as the MISSION_ITEM with the same content."""
     unit = 1e-7 if m.frame in (GLOBAL, RELATIVE) else 1
     return mavlink.MAVLink_mission_item_message(
-        *(m.target_system, m.target_component, m.seq, m.frame, m.command, m.current),
-        *(m.autocontinue, m.param1, m.param2, m.param3, m.param4, m.x * unit, m.y * unit, m.z),
+        m.target_system,
+        m.target_component,
+        m.seq,
+        m.frame,
+        m.command,
+        m.current,
+        m.autocontinue,
+        m.param1,
+        m.param2,
+        m.param3,
+        m.param4,
+        m.x * unit,
+        m.y * unit,
+        m.z,
         m.mission_type,
     )
 
@@ -133,51 +145,51 @@ class Client:
 
     def upload(self, items, kind, now):
         self.items, self.kind, self.result = items, kind, None
-        self._say(mavlink.MAVLink_mission_count_message(7, 1, len(items), kind), now)
+        self._send(mavlink.MAVLink_mission_count_message(7, 1, len(items), kind), now)
 
     def download(self, kind, now):
         self.items, self.kind, self.count = [], kind, None
-        self._say(mavlink.MAVLink_mission_request_list_message(7, 1, kind), now)
+        self._send(mavlink.MAVLink_mission_request_list_message(7, 1, kind), now)
 
     @property
     def has_all(self):
         return self.count is not None and len(self.items) == self.count
 
-    def hear(self, m, now):
+    def receive(self, m, now):
         if getattr(m, "mission_type", None) != self.kind:
             return
         match m.get_type():
             case "MISSION_REQUEST_INT" if self.result is None:
-                self._say(self.items[m.seq], now)
+                self._send(self.items[m.seq], now)
             case "MISSION_REQUEST" if self.result is None:
-                self._say(as_float(self.items[m.seq]), now)
+                self._send(as_float(self.items[m.seq]), now)
             case "MISSION_ACK":
                 self.result = m.type
             case "MISSION_COUNT" if self.count is None:
                 self.count = m.count
-                self._ask(now)
+                self._request(now)
             case "MISSION_ITEM_INT" if not self.has_all and m.seq == len(self.items):
                 self.items.append(m)
-                self._ask(now)
+                self._request(now)
 
     def tick(self, now):
         if self._last is not None and now - self._since >= self._retry_s:
-            self._say(self._last, now)
+            self._send(self._last, now)
 
-    def _ask(self, now):
+    def _request(self, now):
         if self.has_all:
-            self._say(mavlink.MAVLink_mission_ack_message(7, 1, 0, self.kind), now)
+            self._send(mavlink.MAVLink_mission_ack_message(7, 1, 0, self.kind), now)
             self._last = None
         else:
             request = mavlink.MAVLink_mission_request_int_message
-            self._say(request(7, 1, len(self.items), self.kind), now)
+            self._send(request(7, 1, len(self.items), self.kind), now)
 
-    def _say(self, message, now):
+    def _send(self, message, now):
         self._last, self._since = message, now
         self.speak(message)
 
 
-class BadAir:
+class LossyTransport:
     """Bytes from one end to the other: lost, doubled, or late, and so out of order."""
 
     def __init__(self, seed, loss=0.1, doubled=0.1, late_s=0.15):

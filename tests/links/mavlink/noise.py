@@ -9,14 +9,62 @@ from pymavlink.dialects.v20 import all as mavlink
 RECEIVED = [
     mavlink.mavlink_map[number]
     for number in (
-        *(0, 4, 11, 20, 21, 23, 39, 40, 41, 43, 44, 45, 47, 48, 51, 66, 69, 70, 73, 75, 76, 82, 84),
-        *(86, 110, 111, 243, 256),
+        0,
+        4,
+        11,
+        20,
+        21,
+        23,
+        39,
+        40,
+        41,
+        43,
+        44,
+        45,
+        47,
+        48,
+        51,
+        66,
+        69,
+        70,
+        73,
+        75,
+        76,
+        82,
+        84,
+        86,
+        110,
+        111,
+        243,
+        256,
     )
 ]
 ALL = [m for number, m in sorted(mavlink.mavlink_map.items()) if number >= 0]
 COMMANDS = [
-    *(16, 20, 176, 178, 179, 181, 183, 192, 193, 207, 222, 224, 241, 246, 300, 400, 401, 410, 420),
-    *(510, 511, 512, 519, 520),
+    16,
+    20,
+    176,
+    178,
+    179,
+    181,
+    183,
+    192,
+    193,
+    207,
+    222,
+    224,
+    241,
+    246,
+    300,
+    400,
+    401,
+    410,
+    420,
+    510,
+    511,
+    512,
+    519,
+    520,
 ]
 NAMES = [b"FS_ACTION", b"ARMING_CHECK", b"CRUISE_SPEED", b"WP_RADIUS", b"SYSID_THISMAV", b"NO_SUCH"]
 SYSTEM, OTHER = 7, 8
@@ -41,7 +89,7 @@ def value(random, kind):
 
 
 def message(random, system=None):
-    """Return any message with any content, meant for ``system`` or for anybody."""
+    """Return any message with any content, meant for ``system`` or for all."""
     cls = random.choice(RECEIVED if random.random() < 0.7 else ALL)
     # Lengths are given in the order of the frame.
     lengths = dict(zip(cls.ordered_fieldnames, cls.array_lengths, strict=True))

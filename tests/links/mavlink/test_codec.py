@@ -72,7 +72,7 @@ def test_lost_and_duplicated_frames_are_counted_per_sender():
     codec.decode(frame(HEARTBEAT, 77, system=250))
     codec.decode(frame(HEARTBEAT, 78, system=250))
     assert (codec.lost, codec.duplicated) == (2, 1)
-    codec.decode(frame(HEARTBEAT, 0))  # somebody began anew
+    codec.decode(frame(HEARTBEAT, 0))  # the sender began anew
     assert (codec.lost, codec.duplicated) == (2, 1)
 
 

@@ -38,8 +38,8 @@ def test_only_what_is_meant_for_us_is_answered(system, component, answered):
 
 def test_the_answer_goes_over_the_link_of_the_command():
     bench = Bench()
-    bench.hear(mavlink.MAVLink_command_long_message(7, 1, 999, 0, *[0] * 7), Sender(255, 1, 1))
-    ((link, _),) = bench.transport.said
+    bench.receive(mavlink.MAVLink_command_long_message(7, 1, 999, 0, *[0] * 7), Sender(255, 1, 1))
+    ((link, _),) = bench.transport.sent
     assert link == 1
 
 
@@ -147,7 +147,7 @@ def test_what_it_cannot_do_is_refused_with_the_reason(number, why):
 
 def test_no_key_is_taken_over_a_link():
     bench = Bench()
-    bench.hear(mavlink.MAVLink_setup_signing_message(7, 1, [1] * 32, 1))
+    bench.receive(mavlink.MAVLink_setup_signing_message(7, 1, [1] * 32, 1))
     bench.tick()
     assert "signing_key_file" in "".join(m.text for m in bench.transport.take("STATUSTEXT"))
 
@@ -157,12 +157,12 @@ def test_there_are_no_files(opcode):
     bench = Bench()
     asked = FTP_OP(65535, 9, opcode, 3, 0, 0, 17, b"@SY").pack()
     payload = list(asked.ljust(251, b"\0"))
-    bench.hear(mavlink.MAVLink_file_transfer_protocol_message(0, 7, 1, payload))
+    bench.receive(mavlink.MAVLink_file_transfer_protocol_message(0, 7, 1, payload))
     (answer,) = bench.transport.take("FILE_TRANSFER_PROTOCOL", STATION.link)
     assert (answer.target_system, answer.target_component) == (STATION.system, STATION.component)
     refusal = FTP_OP(0, 9, OP_Nack, 1, opcode, 0, 0, bytes([UNKNOWN_COMMAND])).pack()
     assert bytes(answer.payload) == refusal.ljust(251, b"\0")
-    bench.hear(answer)  # an answer gets none
+    bench.receive(answer)  # an answer gets none
     assert bench.transport.take("FILE_TRANSFER_PROTOCOL") == []
 
 
@@ -178,8 +178,8 @@ def test_descriptions_of_components_are_refused_at_once(number):
     ("options", "parameters", "name"),
     [
         ({}, (1, 0), "manual"),
-        ({}, (1, 15), "guided"),  # as MAVProxy asks
-        ({}, (129, 11, 0), "return"),  # as MAVSDK asks
+        ({}, (1, 15), "guided"),  # as MAVProxy requests it
+        ({}, (129, 11, 0), "return"),  # as MAVSDK requests it
         ({"submerged": True}, (1, 19), "manual"),
         ({"submerged": True}, (1, 2), "depth-hold"),
         ({"submerged": True}, (1, 0), "stabilize"),
@@ -203,11 +203,11 @@ def test_what_is_no_mode_is_denied(parameters):
 
 def test_modes_by_message():
     bench = Bench()
-    bench.hear(mavlink.MAVLink_set_mode_message(7, 1, 0))
+    bench.receive(mavlink.MAVLink_set_mode_message(7, 1, 0))
     assert bench.vehicle.mode.name == "manual"
-    bench.hear(mavlink.MAVLink_set_mode_message(7, 0, 15))  # no custom mode
-    bench.hear(mavlink.MAVLink_set_mode_message(8, 1, 15))  # not us
-    bench.hear(mavlink.MAVLink_set_mode_message(7, 1, 99))
+    bench.receive(mavlink.MAVLink_set_mode_message(7, 0, 15))  # no custom mode
+    bench.receive(mavlink.MAVLink_set_mode_message(8, 1, 15))  # not us
+    bench.receive(mavlink.MAVLink_set_mode_message(7, 1, 99))
     assert bench.vehicle.mode.name == "manual"
     assert bench.texts() == ["Mode MANUAL", "There is no mode 99"]
 
@@ -217,8 +217,8 @@ def test_modes_that_need_a_position_are_refused_without(number):
     bench = Bench(valid=False)
     assert bench.command(MODE, 1, number) == FAILED
     assert bench.vehicle.mode.name == "hold"
-    (said,) = bench.texts()
-    assert said.endswith("refused: no position")
+    (sent,) = bench.texts()
+    assert sent.endswith("refused: no position")
     assert bench.command(MODE, 1, 0) == OK  # manual needs none
 
 
@@ -248,7 +248,7 @@ def test_leaving_a_mode_forgets_its_set_point():
     bench = Bench()
     bench.enter("guided")
     sender = STATION
-    bench.hear(
+    bench.receive(
         mavlink.MAVLink_set_position_target_local_ned_message(
             0, 7, 1, 1, 0xDF8, 5, 5, 0, 0, 0, 0, 0, 0, 0, 0, 0
         ),

@@ -76,7 +76,7 @@ def until(component, wanted):
 
 
 def received(component, station, kind, accept=lambda m: True):
-    """Step until the ground station hears such a message, and return it."""
+    """Step until the ground station receives such a message, and return it."""
 
     def found():
         message = station.recv_match(type=kind)
@@ -125,7 +125,7 @@ def test_two_ground_stations_at_once(started, connect):
     assert received(boat, one, "COMMAND_ACK").command == 519
     assert received(boat, other, "AUTOPILOT_VERSION")
     assert received(boat, other, "COMMAND_ACK").command == 512
-    # No frame is lost on the way to either, whoever gets which.
+    # No frame is lost on the way to either.
     assert (one.mav_loss, other.mav_loss) == (0, 0)
 
 
@@ -196,7 +196,7 @@ def test_signatures(started, connect, tmp_path):
     until(boat, lambda: boat.get("ground_stations") == 2)  # presence needs none
     arm = (1, 1, 400, 0, 1, 0, 0, 0, 0, 0, 0)
     for station in (stranger, owner):
-        # Nobody changes the key over a link, not even who knows it.
+        # The key cannot be changed over a link, not even by a station that knows it.
         station.mav.setup_signing_send(1, 1, list(range(32)), 0)
     stranger.mav.command_long_send(*arm)
     for _ in itertools.islice(steps(boat), 50):
@@ -261,7 +261,7 @@ def test_a_parameter_set_late_opens_the_links_again(started):
 
 
 @pytest.mark.parametrize(
-    ("values", "said"),
+    ("values", "sent"),
     [
         ({"links": "udpin:127.0.0.1:0 upd:x:1"}, "unknown kind of link 'upd'"),
         ({"firmware_version": "one"}, "firmware_version is 'one'"),
@@ -280,11 +280,11 @@ def test_a_parameter_set_late_opens_the_links_again(started):
         ({"signing_key_file": "/no/such", "state_file": "/no/state"}, "signing key file /no/such"),
     ],
 )
-def test_what_cannot_be_is_refused_at_the_start(values, said):
+def test_what_cannot_be_is_refused_at_the_start(values, sent):
     component = made(**values)
     with pytest.raises(InputError) as caught:
         component.initialise()
-    assert said in str(caught.value)
+    assert sent in str(caught.value)
     assert component.urls == []  # and nothing stays open
 
 

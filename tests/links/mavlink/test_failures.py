@@ -1,4 +1,4 @@
-"""Failures that a station orders, by pymavlink's own list of units and types."""
+"""Failure injection, by pymavlink's own list of units and types."""
 
 import math
 
@@ -43,13 +43,13 @@ def test_units_are_named_as_mavlink_names_them():
 
 @pytest.mark.parametrize("unit", entries("FAILURE_UNIT"))
 @pytest.mark.parametrize("kind", entries("FAILURE_TYPE"))
-def test_only_what_is_wired_fails(unit, kind):
+def test_only_what_is_connected_fails(unit, kind):
     boat = bench()
-    wired = {GPS: ["gps"], MAG: ["mag"], MOTOR: ["motor1", "motor2"]}.get(unit)
-    assert boat.command(INJECT, unit, kind, 0) == (ACCEPTED if wired else UNSUPPORTED)
+    connected = {GPS: ["gps"], MAG: ["mag"], MOTOR: ["motor1", "motor2"]}.get(unit)
+    assert boat.command(INJECT, unit, kind, 0) == (ACCEPTED if connected else UNSUPPORTED)
     failure = ["none", *FAULTS][kind]
     for name, found in boat.node.failures.failing.items():
-        assert found == (failure if name in (wired or []) else "none")
+        assert found == (failure if name in (connected or []) else "none")
 
 
 def test_an_instance_fails_alone_and_nought_or_none_means_all():
@@ -72,7 +72,7 @@ def test_the_only_one_of_its_kind_is_number_one():
     assert boat.command(INJECT, GPS, OFF, 1) == ACCEPTED
 
 
-def test_people_are_told_what_fails_and_what_is_mended():
+def test_status_texts_report_what_fails_and_what_is_cleared():
     boat = bench()
     boat.texts()
     boat.command(INJECT, MOTOR, STUCK)
@@ -80,7 +80,7 @@ def test_people_are_told_what_fails_and_what_is_mended():
     boat.command(INJECT, MOTOR, STUCK)
     assert boat.texts() == []
     boat.command(INJECT, MOTOR, OK, 1)
-    assert boat.texts() == ["Mended: motor1"]
+    assert boat.texts() == ["Cleared: motor1"]
     boat.command(INJECT, mavlink.FAILURE_UNIT_SENSOR_VIO, OFF)
     assert "".join(boat.texts()) == "No failure injected: this vehicle has no such unit to fail"
 
@@ -134,6 +134,6 @@ def test_they_come_out_at_ports_and_back_in_telemetry(started, connect):  # noqa
     boat.set("imu_valid", False)
     bits = mavlink.MAV_SYS_STATUS_SENSOR_3D_GYRO | mavlink.MAV_SYS_STATUS_SENSOR_3D_ACCEL
     status = received(
-        *(boat, station, "SYS_STATUS"), lambda m: not m.onboard_control_sensors_health & bits
+        boat, station, "SYS_STATUS", lambda m: not m.onboard_control_sensors_health & bits
     )
     assert status.onboard_control_sensors_present & bits == bits

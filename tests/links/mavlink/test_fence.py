@@ -127,7 +127,7 @@ class Fenced(Bench):
 
 
 @pytest.mark.parametrize("where", [(51.0, 0.0), (0.0, -51.0), (30.0, 5.0)])
-def test_a_breach_holds_and_is_told(where):
+def test_a_breach_holds_and_is_reported(where):
     boat = Fenced()
     boat.arm()
     boat.enter("manual")
@@ -137,9 +137,9 @@ def test_a_breach_holds_and_is_told(where):
     boat.wait(0.5)
     boat.transport.take()
     boat.be(*where)
-    (told,) = boat.transport.take("FENCE_STATUS", None)
-    assert (told.breach_status, told.breach_type, told.breach_count) == (1, BOUNDARY, 1)
-    assert told.breach_time == round(boat.now * 1e3)
+    (reported,) = boat.transport.take("FENCE_STATUS", None)
+    assert (reported.breach_status, reported.breach_type, reported.breach_count) == (1, BOUNDARY, 1)
+    assert reported.breach_time == round(boat.now * 1e3)
     assert boat.vehicle.mode.name == "hold"
     assert boat.vehicle.failsafe
     assert "Failsafe: outside the fence, hold" in [
@@ -180,7 +180,7 @@ def test_it_acts_once_per_breach():
     boat = Fenced()
     boat.arm()
     boat.be(51.0)
-    boat.enter("manual")  # somebody brings it back
+    boat.enter("manual")  # a pilot brings it back
     boat.wait(5.0)
     assert boat.vehicle.mode.name == "manual"
 
@@ -197,7 +197,7 @@ def test_a_position_that_is_lost_ends_no_breach():
     assert boat.status() == (0, NONE, 0)
 
 
-def test_without_action_it_is_said():
+def test_without_action_it_is_reported():
     boat = Fenced(fence_action="none")
     boat.arm()
     boat.enter("manual")
@@ -247,7 +247,7 @@ def test_a_return_point_fences_nothing():
     assert not boat.vehicle.failsafe
 
 
-def test_without_a_fence_nothing_is_told():
+def test_without_a_fence_nothing_is_reported():
     boat = Bench()
     boat.wait(3.0)
     assert boat.transport.take("FENCE_STATUS") == []

@@ -1,4 +1,4 @@
-"""Whatever comes over a link: no crash, and with signatures no command from a stranger."""
+"""Fuzzing of a link: no crash, and with signatures no command from a stranger."""
 
 import hashlib
 import random
@@ -52,8 +52,8 @@ def deliver(bench, codec, data):
     bench.tick()
 
 
-def what_was_told(bench):
-    """Return all that somebody may change in a vehicle."""
+def reported_state(bench):
+    """Return all that a station may change in a vehicle."""
     v, table = bench.vehicle, bench.parameters
     plans = [[content(m) for m in download(bench, kind)] for kind in (MISSION, FENCE, RALLY)]
     values = [table[name] for name in table.names]
@@ -63,7 +63,7 @@ def what_was_told(bench):
 def is_sane(bench):
     v = bench.vehicle
     assert v.dialect.mode(v.mode.name) is v.mode
-    assert all(-1.0 <= stick <= 1.0 for stick in v.manual)
+    assert all(-1.0 <= axis <= 1.0 for axis in v.manual)
     assert all(abs(x) <= 1e6 for x in v.home_n)
     assert v.target is None or all(abs(x) <= 1e6 for x in v.target.position)
 
@@ -73,10 +73,10 @@ def is_sane(bench):
 
 def bytes_change_nothing(random):
     bench, received = some_bench(random), codec()
-    before = what_was_told(bench)
+    before = reported_state(bench)
     for _ in range(random.randint(1, 10)):
         deliver(bench, received, random.randbytes(random.randint(0, 300)))
-    assert what_was_told(bench) == before
+    assert reported_state(bench) == before
 
 
 def messages_leave_it_sane(random):
@@ -107,26 +107,26 @@ def lengths_leave_it_sane(random):
 
 def broken_frames_change_nothing(random):
     bench, received, sender = some_bench(random), codec(), peer()
-    before = what_was_told(bench)
+    before = reported_state(bench)
     for _ in range(random.randint(1, MOST_MESSAGES)):
         frame = bytearray(message(random).pack(sender))
         # A checksum finds each single error, but for those in the length and the flags: they make
         # it another frame.
         frame[random.randrange(3, len(frame))] ^= 1 << random.randrange(8)
         deliver(bench, received, bytes(frame))
-    assert what_was_told(bench) == before
+    assert reported_state(bench) == before
 
 
 def a_stranger_changes_nothing(random):
     bench, received = some_bench(random), codec(KEY)
     strangers = [peer(), peer(OTHER_KEY)]
-    before = what_was_told(bench)
+    before = reported_state(bench)
     for _ in range(random.randint(1, MOST_MESSAGES)):
         stranger = random.choice(strangers)
         data = message(random).pack(stranger) if random.random() < 0.8 else sized(random, stranger)
         deliver(bench, received, data)
     assert bench.transport.take("COMMAND_ACK") == []
-    assert what_was_told(bench) == before
+    assert reported_state(bench) == before
 
 
 def what_is_replayed_changes_nothing(random):
@@ -134,23 +134,23 @@ def what_is_replayed_changes_nothing(random):
     frames = [message(random).pack(owner) for _ in range(random.randint(1, MOST_MESSAGES))]
     for frame in frames:
         received.decode(frame)
-    before = what_was_told(bench)
+    before = reported_state(bench)
     for frame in frames:
         deliver(bench, received, frame)
     assert received.refused == len(frames)
-    assert what_was_told(bench) == before
+    assert reported_state(bench) == before
 
 
 def what_is_for_another_changes_nothing(random):
     key = random.choice([None, KEY])
     bench, received, sender = some_bench(random), codec(key), peer(key)
-    before = what_was_told(bench)
+    before = reported_state(bench)
     for _ in range(random.randint(1, MOST_MESSAGES)):
-        said = message(random, system=OTHER)
-        if hasattr(said, "target_system") or hasattr(said, "target"):
-            deliver(bench, received, said.pack(sender))
+        sent = message(random, system=OTHER)
+        if hasattr(sent, "target_system") or hasattr(sent, "target"):
+            deliver(bench, received, sent.pack(sender))
     assert bench.transport.take("COMMAND_ACK") == []
-    assert what_was_told(bench) == before
+    assert reported_state(bench) == before
 
 
 CASES = [
@@ -183,8 +183,8 @@ def test_the_cases_reach_what_they_are_about():
     for seed in range(200):
         drawn = random.Random(seed)
         bench, received, sender = some_bench(drawn), codec(), peer()
-        before = what_was_told(bench)
+        before = reported_state(bench)
         for _ in range(MOST_MESSAGES):
             deliver(bench, received, message(drawn).pack(sender))
-        obeyed += what_was_told(bench) != before
+        obeyed += reported_state(bench) != before
     assert obeyed > 50

@@ -66,7 +66,7 @@ def submarine():
 )
 def test_local_positions_in_every_frame(boat, submarine, frame, position, wanted):
     for bench in (boat, submarine):
-        bench.hear(local(frame, POSITION, position))
+        bench.receive(local(frame, POSITION, position))
         assert bench.vehicle.target.kind == "position"
     assert submarine.vehicle.target.position == pytest.approx(wanted)
     # A boat stays on the surface.
@@ -75,7 +75,7 @@ def test_local_positions_in_every_frame(boat, submarine, frame, position, wanted
 
 def test_a_depth_that_is_ignored_is_kept(submarine):
     for frame in (NED, BODY):
-        submarine.hear(local(frame, POSITION | 4, (1, 1, 99)))
+        submarine.receive(local(frame, POSITION | 4, (1, 1, 99)))
         assert submarine.vehicle.target.position[2] == 5.0
 
 
@@ -84,16 +84,16 @@ def test_a_depth_that_is_ignored_is_kept(submarine):
 )
 def test_velocities(submarine, boat, frame, wanted):
     for mask in (VELOCITY, VELOCITY_AND_YAW):
-        submarine.hear(local(frame, mask, velocity=(1, 2, 0.5), yaw=0.3))
+        submarine.receive(local(frame, mask, velocity=(1, 2, 0.5), yaw=0.3))
         assert submarine.vehicle.target.kind == "velocity"
         assert submarine.vehicle.target.velocity == pytest.approx(wanted)
-    boat.hear(local(frame, VELOCITY, velocity=(1, 2, 0.5)))
+    boat.receive(local(frame, VELOCITY, velocity=(1, 2, 0.5)))
     assert boat.vehicle.target.velocity == pytest.approx((*wanted[:2], 0.0))
 
 
 @pytest.mark.parametrize(("frame", "heading"), [(NED, 0.3), (BODY, math.pi / 2 + 0.3)])
 def test_a_yaw_alone_turns_on_the_spot(boat, frame, heading):
-    boat.hear(local(frame, YAW, yaw=0.3))
+    boat.receive(local(frame, YAW, yaw=0.3))
     target = boat.vehicle.target
     assert (target.kind, target.speed) == ("heading", 0.0)
     assert target.heading == pytest.approx(heading)
@@ -102,26 +102,26 @@ def test_a_yaw_alone_turns_on_the_spot(boat, frame, heading):
 def test_attitudes_give_heading_and_share_of_full_speed():
     bench = Bench(full_speed=1.6)
     bench.enter("guided")
-    bench.hear(attitude(-2.0, 0.5))
+    bench.receive(attitude(-2.0, 0.5))
     target = bench.vehicle.target
     assert (target.kind, target.speed) == ("heading", pytest.approx(0.8))
     assert target.heading == pytest.approx(-2.0, abs=1e-6)
-    bench.hear(attitude(1.0, 0.5, mask=0x7 | 0x40))
+    bench.receive(attitude(1.0, 0.5, mask=0x7 | 0x40))
     assert bench.vehicle.target.speed == 0.0
 
 
 def test_global_positions(submarine, boat):
     latitude, longitude, _ = ORIGIN.geodetic((100.0, -50.0, 0.0))
     for frame, altitude in ((0, -10.0), (5, -10.0), (3, -12.0), (6, -12.0)):
-        submarine.hear(global_(frame, POSITION, latitude, longitude, altitude))
+        submarine.receive(global_(frame, POSITION, latitude, longitude, altitude))
         # The origin is 2 m above the sea, home is there; 1e-7 degrees are 1 cm.
         assert submarine.vehicle.target.position == pytest.approx((100.0, -50.0, 12.0), abs=0.02)
-        boat.hear(global_(frame, POSITION, latitude, longitude, altitude))
+        boat.receive(global_(frame, POSITION, latitude, longitude, altitude))
         assert boat.vehicle.target.position == pytest.approx((100.0, -50.0, 0.2), abs=0.02)
 
 
 def test_velocities_with_global_frames_are_north_and_east(boat):
-    boat.hear(global_(6, VELOCITY, 0, 0, 0, velocity=(0.5, -0.5, 0)))
+    boat.receive(global_(6, VELOCITY, 0, 0, 0, velocity=(0.5, -0.5, 0)))
     assert boat.vehicle.target.velocity == (0.5, -0.5, 0.0)
 
 
@@ -134,26 +134,26 @@ def test_velocities_with_global_frames_are_north_and_east(boat):
         local(NED, VELOCITY, velocity=(0, 1e4, 0)),
         local(NED, YAW, yaw=NAN),
         local(NED, 0xFFF),
-        local(4, POSITION, (1, 1, 1)),  # ENU is not spoken here
+        local(4, POSITION, (1, 1, 1)),  # ENU is not supported
         global_(6, POSITION, 91.0, 0.0, 0.0),
         global_(6, POSITION, 31.78, 52.26, 0.0),  # the other side of the Earth
-        global_(11, POSITION, -31.78, -52.26, 0.0),  # above terrain that nobody knows
+        global_(11, POSITION, -31.78, -52.26, 0.0),  # above terrain that is not known
         attitude(1.0, NAN),
         attitude(1.0, 1.0, mask=0x87),
         mavlink.MAVLink_set_attitude_target_message(0, 7, 1, 7, [0, 0, 0, 0], 0, 0, 0, 1),
     ],
 )
 def test_what_makes_no_sense_changes_nothing(boat, message):
-    boat.hear(local(NED, POSITION, (1, 2, 3)))
+    boat.receive(local(NED, POSITION, (1, 2, 3)))
     before = boat.vehicle.target
-    boat.hear(message)
+    boat.receive(message)
     assert boat.vehicle.target is before
 
 
 def test_only_guided_mode_takes_set_points():
     bench = Bench()
     for message in (local(NED, POSITION), attitude(1.0, 1.0)):
-        bench.hear(message)
+        bench.receive(message)
         assert bench.vehicle.target is None
 
 
@@ -164,7 +164,7 @@ def test_set_points_count_as_long_as_they_come(message):
     bench = Bench(target_timeout=3.0)
     bench.enter("guided")
     for _ in range(4):
-        bench.hear(message)
+        bench.receive(message)
         bench.wait(2.9)
         assert bench.vehicle.target is not None
     bench.wait(0.1)
@@ -231,9 +231,9 @@ def test_reposition_to_nowhere_is_denied(boat, place):
     assert boat.vehicle.target is None
 
 
-def test_the_set_point_is_told(boat):
+def test_the_set_point_is_sent(boat):
     number = mavlink.MAVLINK_MSG_ID_POSITION_TARGET_LOCAL_NED
     assert boat.request(number) == (DENIED, [])
-    boat.hear(local(NED, POSITION, (3, 4, 0)))
-    told = boat.one(number)
-    assert (told.x, told.y, told.type_mask & 0x7) == (3.0, 4.0, 0)
+    boat.receive(local(NED, POSITION, (3, 4, 0)))
+    reported = boat.one(number)
+    assert (reported.x, reported.y, reported.type_mask & 0x7) == (3.0, 4.0, 0)

@@ -34,10 +34,10 @@ def guided(**kind):
 
 def test_a_velocity_ahead_holds_the_heading_at_which_it_began():
     boat = guided()
-    boat.hear(ahead(0.6, 0.0))
+    boat.receive(ahead(0.6, 0.0))
     boat.wait(0.1)
     boat.measure(attitude=(0.0, 0.0, EAST + 0.3))  # pushed aside
-    boat.hear(ahead(0.5, 0.0))
+    boat.receive(ahead(0.5, 0.0))
     boat.wait(0.1)
     target = boat.vehicle.target
     assert (target.kind, target.speed) == ("heading", 0.5)
@@ -46,14 +46,14 @@ def test_a_velocity_ahead_holds_the_heading_at_which_it_began():
 
 def test_a_yaw_rate_turns_the_heading_as_far_as_the_craft_follows():
     boat = guided()
-    boat.hear(ahead(0.6, 0.2))
+    boat.receive(ahead(0.6, 0.2))
     boat.wait(1.0)
     assert boat.vehicle.target.heading == pytest.approx(EAST + 0.2, abs=1e-9)
-    boat.hear(ahead(0.6, -0.1))
+    boat.receive(ahead(0.6, -0.1))
     boat.wait(1.0)
     assert boat.vehicle.target.heading == pytest.approx(EAST + 0.1, abs=1e-9)
     for _ in range(9):
-        boat.hear(ahead(0.6, -2.0))
+        boat.receive(ahead(0.6, -2.0))
         boat.wait(1.0)
     assert boat.vehicle.target.heading == pytest.approx(EAST - 0.5, abs=1e-9)
     boat.wait(3.1)
@@ -63,7 +63,7 @@ def test_a_yaw_rate_turns_the_heading_as_far_as_the_craft_follows():
 def test_a_submarine_dives_on_the_way_and_a_boat_does_not():
     for kind, down in (({"submerged": True}, 5.3), ({}, 5.0)):
         craft = guided(**kind)
-        craft.hear(ahead(0.2, 0.0, down=0.1))
+        craft.receive(ahead(0.2, 0.0, down=0.1))
         craft.wait(3.0)
         assert craft.vehicle.target.position == pytest.approx((10.0, 20.0, down))
 
@@ -71,11 +71,11 @@ def test_a_submarine_dives_on_the_way_and_a_boat_does_not():
 def test_a_rate_that_is_none_is_not_obeyed():
     boat = guided()
     for rate in (math.nan, math.inf, 1e9):
-        boat.hear(ahead(0.6, rate))
+        boat.receive(ahead(0.6, rate))
         assert boat.vehicle.target is None
 
 
-def test_a_speed_counts_for_places_until_the_mode_ends():
+def test_a_speed_applies_to_places_until_the_mode_ends():
     boat = guided()
     assert boat.command_int(REPOSITION, -1.0, 0, **place()) == OK
     assert boat.command(CHANGE_SPEED, 1, 0.4, -1) == OK
@@ -105,7 +105,7 @@ def test_a_px4_shows_hold_while_it_goes_elsewhere():
     boat.wait(1.0)
     (heartbeat, *_) = boat.transport.take("HEARTBEAT")
     assert heartbeat.custom_mode == hold.custom_mode
-    boat.hear(ahead(0.6, 0.0))  # counts in Offboard alone
+    boat.receive(ahead(0.6, 0.0))  # applies in Offboard alone
     assert boat.vehicle.target.kind == "position"
     boat.enter("hold")
     assert boat.vehicle.target is None

@@ -25,11 +25,11 @@ def test_home_is_the_origin_at_first():
     assert place(home) == (-317800000, -522600000, 2000)
     assert (home.x, home.y, home.z) == (0.0, 0.0, 0.0)
     assert bench.command(GET) == OK
-    (told,) = bench.transport.take("HOME_POSITION", STATION.link)
-    assert place(told) == place(home)
+    (reported,) = bench.transport.take("HOME_POSITION", STATION.link)
+    assert place(reported) == place(home)
 
 
-def test_home_where_it_is_now_is_told_to_all():
+def test_home_where_it_is_now_is_sent_to_all():
     bench = Bench()
     bench.measure(position_n=(30.0, 40.0, 1.0))
     bench.tick()
@@ -52,7 +52,7 @@ def test_home_at_a_place(way):
     elif way == "int":
         assert bench.command_int(SET, 0, frame=0, x=x, y=y, z=altitude) == OK
     else:
-        bench.hear(
+        bench.receive(
             mavlink.MAVLink_set_home_position_message(
                 7, x, y, round(altitude * 1e3), 0, 0, 0, [1, 0, 0, 0], 0, 0, 0
             )
@@ -76,12 +76,12 @@ def test_home_nowhere_is_denied(parameters):
     assert bench.vehicle.home_n == (0.0, 0.0, 0.0)
 
 
-def test_the_origin_is_told_and_stays():
+def test_the_origin_is_sent_and_stays():
     bench = Bench()
     number = mavlink.MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN
     origin = bench.one(number)
     assert place(origin) == (-317800000, -522600000, 2000)
-    bench.hear(mavlink.MAVLink_set_gps_global_origin_message(7, 10, 20, 30), OTHER_STATION)
+    bench.receive(mavlink.MAVLink_set_gps_global_origin_message(7, 10, 20, 30), OTHER_STATION)
     (answer,) = bench.transport.take("GPS_GLOBAL_ORIGIN", OTHER_STATION.link)
     assert place(answer) == place(origin)
 
@@ -97,21 +97,21 @@ def test_altitude_above_home_moves_with_home():
 def test_time_is_synchronised_to_simulated_time():
     bench = Bench()
     bench.wait(1.23)
-    bench.hear(mavlink.MAVLink_timesync_message(0, 123_456_789), OTHER_STATION)
+    bench.receive(mavlink.MAVLink_timesync_message(0, 123_456_789), OTHER_STATION)
     (answer,) = bench.transport.take("TIMESYNC", OTHER_STATION.link)
     assert (answer.tc1, answer.ts1) == (1_230_000_000, 123_456_789)
-    bench.hear(mavlink.MAVLink_timesync_message(5, 6))  # somebody's answer
+    bench.receive(mavlink.MAVLink_timesync_message(5, 6))  # another station's answer
     assert bench.transport.take("TIMESYNC") == []
 
 
-def test_pings_are_answered_to_who_asked():
+def test_pings_are_answered_to_the_sender():
     bench = Bench()
     bench.wait(0.5)
-    bench.hear(mavlink.MAVLink_ping_message(99, 42, 0, 0), OTHER_STATION)
+    bench.receive(mavlink.MAVLink_ping_message(99, 42, 0, 0), OTHER_STATION)
     (answer,) = bench.transport.take("PING", OTHER_STATION.link)
     assert (answer.seq, answer.time_usec) == (42, 500_000)
     assert (answer.target_system, answer.target_component) == (250, 190)
-    bench.hear(mavlink.MAVLink_ping_message(99, 42, 7, 1))  # an answer to us
+    bench.receive(mavlink.MAVLink_ping_message(99, 42, 7, 1))  # an answer to us
     assert bench.transport.take("PING") == []
 
 

@@ -11,9 +11,9 @@ from .bench import Bench
 def put(bench: Bench, name: str, value: float) -> None:
     """Set a parameter as a ground station does, and check that it is taken."""
     kind = mavlink.MAV_PARAM_TYPE_REAL32
-    bench.hear(mavlink.MAVLink_param_set_message(7, 1, name.encode(), value, kind))
-    (told,) = bench.transport.take("PARAM_VALUE")
-    assert (told.param_id, told.param_value) == (name, pytest.approx(value))
+    bench.receive(mavlink.MAVLink_param_set_message(7, 1, name.encode(), value, kind))
+    (reported,) = bench.transport.take("PARAM_VALUE")
+    assert (reported.param_id, reported.param_value) == (name, pytest.approx(value))
 
 
 def guided_alone(bench: Bench) -> None:
@@ -51,13 +51,13 @@ def test_fs_gcs_enable_switches_it_off() -> None:
 
 
 @pytest.mark.parametrize(("enabled", "mode"), [(1, "hold"), (0, "manual")])
-def test_fs_timeout_and_fs_thr_enable_are_for_the_sticks(enabled: int, mode: str) -> None:
+def test_fs_timeout_and_fs_thr_enable_are_for_manual_control(enabled: int, mode: str) -> None:
     bench = Bench(manual_timeout=30.0)
     bench.enter("manual")
     bench.arm()
     put(bench, "FS_TIMEOUT", 0.5)
     put(bench, "FS_THR_ENABLE", enabled)
-    bench.hear(mavlink.MAVLink_manual_control_message(7, 0, 500, 800, 0, 0))
+    bench.receive(mavlink.MAVLink_manual_control_message(7, 0, 500, 800, 0, 0))
     bench.wait(0.5)
     assert bench.vehicle.mode.name == "manual"
     assert bench.vehicle.manual != (0.0, 0.0, 0.0, 0.0)
@@ -66,14 +66,14 @@ def test_fs_timeout_and_fs_thr_enable_are_for_the_sticks(enabled: int, mode: str
     assert bench.vehicle.manual == (0.0, 0.0, 0.0, 0.0)
 
 
-def test_guid_timeout_is_how_long_a_set_point_counts() -> None:
+def test_guid_timeout_is_how_long_a_set_point_is_valid() -> None:
     bench = Bench()
     bench.enter("guided")
     put(bench, "GUID_TIMEOUT", 0.5)
     ahead = mavlink.MAVLink_set_position_target_local_ned_message(
         0, 7, 1, mavlink.MAV_FRAME_LOCAL_NED, 0xDC7, 0, 0, 0, 1.0, 0, 0, 0, 0, 0, 0, 0
     )
-    bench.hear(ahead)
+    bench.receive(ahead)
     bench.wait(0.5)
     assert bench.vehicle.target is not None
     bench.tick()
@@ -93,12 +93,12 @@ def test_arming_check_says_what_arming_waits_for(mask: int, reasons: set[str]) -
     assert bench.vehicle.armed is not bool(reasons)
 
 
-def test_px4_arms_without_gps_if_told_to() -> None:
+def test_px4_arms_without_gps_if_set_to() -> None:
     bench = Bench(autopilot="px4", valid=False)
     bench.measure(heading_valid=True)
     arm = (mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
     assert bench.command(*arm) == mavlink.MAV_RESULT_FAILED
-    bench.hear(
+    bench.receive(
         mavlink.MAVLink_param_set_message(
             7, 1, b"COM_ARM_WO_GPS", 1.401298464324817e-45, mavlink.MAV_PARAM_TYPE_INT32
         )
@@ -106,7 +106,7 @@ def test_px4_arms_without_gps_if_told_to() -> None:
     assert bench.command(*arm) == mavlink.MAV_RESULT_ACCEPTED
 
 
-def test_a_submarine_surfaces_if_told_to() -> None:
+def test_a_submarine_surfaces_if_set_to() -> None:
     bench = Bench(submerged=True)
     guided_alone(bench)
     put(bench, "FS_GCS_ENABLE", 4)

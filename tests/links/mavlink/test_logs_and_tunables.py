@@ -1,4 +1,4 @@
-"""The component in rigs: its log beside the run, its tunables on wires."""
+"""The component in rigs: its log beside the run, its tunables on connections."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ MIDNIGHT = 1_770_249_600  # 2026-02-05, s
 
 @pytest.fixture
 def listener() -> Iterator[int]:
-    """Return a UDP port at which somebody listens and says nothing."""
+    """Return a UDP port at which a socket listens and sends nothing."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as bound:
         bound.bind(("127.0.0.1", 0))
         yield bound.getsockname()[1]
@@ -134,7 +134,7 @@ def test_a_start_outside_the_limits_of_the_other_component_is_named(write, tmp_p
 
 
 def test_two_stations_fetch_all_parameters_at_once(write, tmp_path: Path) -> None:
-    """pymavlink collects what comes after it asked for the list once."""
+    """pymavlink collects what comes after it requested the list once."""
     write("gain.py", GAIN)
     rig = write("rig.toml", RIG.format(tunables="A 1 0 2; B 1 0 2", file=tmp_path / "x.param"))
     system = assemble(load_rig(str(rig)), "direct")

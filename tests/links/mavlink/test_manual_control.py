@@ -35,7 +35,7 @@ def override(system=7, **channels):
 )
 def test_axes_of_manual_control(options, message, axes):
     bench = Bench(**options)
-    bench.hear(message)
+    bench.receive(message)
     assert bench.vehicle.manual == pytest.approx(axes)
 
 
@@ -52,37 +52,37 @@ def test_axes_of_manual_control(options, message, axes):
 )
 def test_channels(options, message, axes):
     bench = Bench(**options)
-    bench.hear(message)
+    bench.receive(message)
     assert bench.vehicle.manual == pytest.approx(axes)
 
 
 def test_a_channel_is_left_changed_or_released():
     bench = Bench()
-    bench.hear(override(c1=1900, c3=1900, c9=1700))
-    bench.hear(override(c3=1500))
+    bench.receive(override(c1=1900, c3=1900, c9=1700))
+    bench.receive(override(c3=1500))
     assert bench.vehicle.manual == (0.0, 0.0, 1.0, 0.0)
-    bench.hear(override(c1=0))
+    bench.receive(override(c1=0))
     assert bench.vehicle.manual == RELEASED
     channels = bench.one(mavlink.MAVLINK_MSG_ID_RC_CHANNELS)
     assert (channels.chan1_raw, channels.chan3_raw, channels.chan9_raw) == (65535, 1500, 1700)
-    bench.hear(override(c9=65534))
+    bench.receive(override(c9=65534))
     assert bench.one(mavlink.MAVLINK_MSG_ID_RC_CHANNELS).chan9_raw == 65535
 
 
-def test_sticks_for_another_vehicle_are_not_ours():
+def test_manual_control_for_another_vehicle_is_not_ours():
     bench = Bench()
-    bench.hear(manual(z=1000, target=8))
-    bench.hear(override(8, c3=1900))
+    bench.receive(manual(z=1000, target=8))
+    bench.receive(override(8, c3=1900))
     assert bench.vehicle.manual == RELEASED
 
 
 @pytest.mark.parametrize("message", [manual(z=1000), override(c3=1900)])
-def test_sticks_that_nobody_holds_let_go_and_the_failsafe_acts(message):
+def test_manual_control_that_stops_is_released_and_the_failsafe_acts(message):
     bench = Bench(manual_timeout=2.0)
     bench.enter("manual")
     bench.arm()
     for _ in range(5):
-        bench.hear(message)
+        bench.receive(message)
         bench.wait(1.9)
         assert bench.vehicle.manual == (1.0, 0.0, 0.0, 0.0)
     bench.wait(0.1)
@@ -91,37 +91,37 @@ def test_sticks_that_nobody_holds_let_go_and_the_failsafe_acts(message):
     assert bench.vehicle.manual == RELEASED
     assert (bench.vehicle.mode.name, bench.vehicle.armed) == ("hold", True)
     assert bench.vehicle.failsafe
-    bench.hear(message)
+    bench.receive(message)
     assert not bench.vehicle.failsafe
-    assert bench.vehicle.mode.name == "hold"  # nobody is thrown back into manual
+    assert bench.vehicle.mode.name == "hold"  # it is not put back into manual
 
 
-def test_what_is_said_of_lost_sticks():
+def test_what_is_reported_of_lost_manual_control():
     bench = Bench(manual_timeout=1.0)
     bench.enter("manual")
     bench.arm()
-    bench.hear(manual(z=1))
+    bench.receive(manual(z=1))
     bench.texts()
     bench.wait(2.0)
-    said = [m.text for m in bench.transport.take("STATUSTEXT")]
-    assert said == ["Failsafe: sticks lost, hold", "Mode HOLD"]
+    sent = [m.text for m in bench.transport.take("STATUSTEXT")]
+    assert sent == ["Failsafe: manual control lost, hold", "Mode HOLD"]
 
 
-def test_who_releases_all_channels_has_let_go_on_purpose():
+def test_releasing_all_channels_is_on_purpose():
     bench = Bench()
     bench.enter("manual")
     bench.arm()
-    bench.hear(override(c1=1900, c3=1900))
-    bench.hear(override(c1=0, c3=0))
+    bench.receive(override(c1=1900, c3=1900))
+    bench.receive(override(c1=0, c3=0))
     assert bench.vehicle.manual == RELEASED
     bench.wait(10.0)
     assert (bench.vehicle.mode.name, bench.vehicle.failsafe) == ("manual", False)
 
 
-def test_sticks_lost_in_another_mode_are_nothing():
+def test_manual_control_lost_in_another_mode_is_nothing():
     bench = Bench()
     bench.arm()
-    bench.hear(manual(z=1000))
+    bench.receive(manual(z=1000))
     bench.wait(10.0)
     assert bench.vehicle.manual == RELEASED
     assert (bench.vehicle.mode.name, bench.vehicle.failsafe) == ("hold", False)
@@ -129,6 +129,6 @@ def test_sticks_lost_in_another_mode_are_nothing():
 
 def test_the_newest_hand_wins():
     bench = Bench()
-    bench.hear(manual(z=1000))
-    bench.hear(manual(z=-1000), OTHER_STATION)
+    bench.receive(manual(z=1000))
+    bench.receive(manual(z=-1000), OTHER_STATION)
     assert bench.vehicle.manual == (-1.0, 0.0, 0.0, 0.0)

@@ -45,7 +45,7 @@ def square():
 
 
 class Mission(Bench):
-    """A bench whose vehicle gets where it is sent when somebody says so."""
+    """A bench whose vehicle gets where it is sent when a test has it."""
 
     def __init__(self, items, **bench):
         super().__init__(**bench)
@@ -66,13 +66,13 @@ class Mission(Bench):
         self.tick()
 
     def arrive(self):
-        """Be at the end of the leg, and hear it from guidance."""
+        """Be at the end of the leg, as guidance reports it."""
         self.measure(position_n=self.leg.end)
         self.node.missions.reached = self.leg.number
         self.tick()
 
     def reached(self):
-        """Return and forget the items that were told to be reached."""
+        """Return and forget the items that were reported as reached."""
         return [m.seq for m in self.transport.take("MISSION_ITEM_REACHED", None)]
 
     def current(self):
@@ -121,7 +121,7 @@ def test_a_px4_begins_with_item_0():
     assert boat.reached() == [0, 1, 2, 3]
 
 
-def test_what_a_waypoint_asks_for():
+def test_what_a_waypoint_requests():
     boat = Mission(listed(one(WAYPOINT, 7.5, 4.0), one(WAYPOINT, math.nan, -1.0, math.nan)))
     boat.go()
     assert (boat.leg.wait, boat.leg.radius) == (7.5, 4.0)
@@ -133,7 +133,7 @@ def test_a_leg_of_before_does_not_count():
     boat = Mission(square())
     boat.go()
     boat.arrive()
-    boat.wait(1.0)  # guidance says the old number for a while
+    boat.wait(1.0)  # guidance reports the old number for a while
     assert boat.current() == (2, ACTIVE)
 
 
@@ -196,7 +196,7 @@ def test_the_speed_of_the_leg_changes_by_command():
     assert boat.command(SPEED, 1, 2.0) == OK
     assert (boat.leg.number, boat.leg.end, boat.leg.speed) == (before.number, before.end, 2.0)
     for speed in (math.nan, math.inf, 0.0, -3.0, 1e6):
-        assert boat.command(SPEED, 1, speed) == OK  # nothing asked for
+        assert boat.command(SPEED, 1, speed) == OK  # nothing requested
         assert boat.leg.speed == 2.0
     boat.arrive()
     assert boat.leg.speed == 2.0
@@ -319,7 +319,7 @@ def test_home_is_moved_by_the_mission():
     assert "home cannot be moved" in "".join(boat.texts())  # to another ocean
 
 
-def test_what_is_not_known_is_skipped_and_said_once():
+def test_what_is_not_known_is_skipped_and_reported_once():
     boat = Mission(listed(one(112, 5.0, **DO), one(at=north_of(9)), one(JUMP, 1.0, 3.0, **DO)))
     boat.go()
     assert len(boat.ends()) == 4
@@ -453,8 +453,10 @@ def interrupt_by_pause_and_start(boat):
 interruptions = pytest.mark.parametrize(
     "interruption",
     [
-        *(interrupt_by_mode, interrupt_by_disarming),
-        *(interrupt_by_pause, interrupt_by_pause_and_start),
+        interrupt_by_mode,
+        interrupt_by_disarming,
+        interrupt_by_pause,
+        interrupt_by_pause_and_start,
     ],
 )
 
@@ -504,7 +506,7 @@ def set_by_command(boat, sequence):
 
 
 def set_by_message(boat, sequence):
-    boat.hear(mavlink.MAVLink_mission_set_current_message(7, 1, sequence))
+    boat.receive(mavlink.MAVLink_mission_set_current_message(7, 1, sequence))
     return "There is no mission item" not in "".join(boat.texts())
 
 
@@ -539,12 +541,12 @@ def test_set_current_out_of_range():
 
 def test_set_current_is_always_answered():
     boat = Mission(square())
-    boat.hear(mavlink.MAVLink_mission_set_current_message(7, 1, 1))
+    boat.receive(mavlink.MAVLink_mission_set_current_message(7, 1, 1))
     boat.tick()
     assert [m.seq for m in boat.transport.take("MISSION_CURRENT", None)] == [1]
 
 
-def test_jumps_are_counted_anew_if_asked():
+def test_jumps_are_counted_anew_if_requested():
     items = listed(one(at=north_of(1)), one(JUMP, 1.0, 1.0, **DO), one(at=north_of(2)))
     boat = Mission(items)
     boat.go()
@@ -594,7 +596,7 @@ def test_current_is_streamed_and_told_at_every_change():
     assert m.seq == 2
 
 
-def test_what_is_done_is_said():
+def test_what_is_done_is_reported():
     boat = Mission(square())
     boat.go()
     assert "Mission: item 1, NAV_WAYPOINT" in boat.texts()
@@ -607,7 +609,7 @@ def test_what_is_done_is_said():
 
 def guide(boat, **more):
     boat.transport.take()
-    boat.hear(item(0, current=2, at=north_of(15), **more))
+    boat.receive(item(0, current=2, at=north_of(15), **more))
     (answer,) = boat.transport.take("MISSION_ACK", STATION.link)
     return answer.type
 
@@ -624,7 +626,7 @@ def test_an_item_in_guided_mode_is_a_place_to_go_to():
 def test_an_item_in_guided_mode_is_no_part_of_an_upload():
     boat = Bench()
     boat.enter("guided")
-    boat.hear(mavlink.MAVLink_mission_count_message(7, 1, 2, 0))
+    boat.receive(mavlink.MAVLink_mission_count_message(7, 1, 2, 0))
     guide(boat)
     boat.wait(1.0)
     (request,) = boat.transport.take("MISSION_REQUEST_INT")

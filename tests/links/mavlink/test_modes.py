@@ -46,11 +46,11 @@ def test_numbers_and_names_are_unique_and_found(autopilot, submerged):
 
 
 @pytest.mark.parametrize("autopilot", ["ardupilotmega", "px4"])
-def test_modes_are_told_one_by_one_or_all_at_once(autopilot):
+def test_modes_are_reported_one_by_one_or_all_at_once(autopilot):
     bench = Bench(autopilot=autopilot, submerged=True)
     number, modes = mavlink.MAVLINK_MSG_ID_AVAILABLE_MODES, bench.vehicle.dialect.modes
 
-    def told(index):
+    def reported(index):
         bench.transport.take()
         result = bench.command(mavlink.MAV_CMD_REQUEST_MESSAGE, number, index)
         found = bench.transport.take("AVAILABLE_MODES", STATION.link)
@@ -58,12 +58,12 @@ def test_modes_are_told_one_by_one_or_all_at_once(autopilot):
         return result, [(m.mode_index, m.custom_mode, m.mode_name) for m in found]
 
     each = [(n, mode.custom_mode, mode.shown) for n, mode in enumerate(modes, 1)]
-    assert told(0) == (mavlink.MAV_RESULT_ACCEPTED, each)
-    assert told(NAN) == (mavlink.MAV_RESULT_ACCEPTED, each)
+    assert reported(0) == (mavlink.MAV_RESULT_ACCEPTED, each)
+    assert reported(NAN) == (mavlink.MAV_RESULT_ACCEPTED, each)
     for index, mode in enumerate(each, 1):
-        assert told(index) == (mavlink.MAV_RESULT_ACCEPTED, [mode])
+        assert reported(index) == (mavlink.MAV_RESULT_ACCEPTED, [mode])
     for index in (-1, len(modes) + 1, 255):
-        assert told(index) == (mavlink.MAV_RESULT_DENIED, [])
+        assert reported(index) == (mavlink.MAV_RESULT_DENIED, [])
 
 
 NAN, INF = float("nan"), float("inf")

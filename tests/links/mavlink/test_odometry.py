@@ -15,7 +15,7 @@ EAST = math.pi / 2
 DENIED = mavlink.MAV_RESULT_DENIED
 
 
-def test_nobody_gets_them_unasked():
+def test_they_are_sent_on_request_only():
     bench = Bench()
     bench.wait(5.0)
     assert not bench.transport.take("ODOMETRY")

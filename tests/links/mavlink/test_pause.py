@@ -31,14 +31,17 @@ class Standing:
     def __init__(self, script, bench=None, **settings):
         self.bench = bench or Bench(**settings)
         self.script, self.wall = sorted(script, key=lambda each: each[0]), 0.0
-        self.bench.hear(put(SPEEDUP, 0.0))
+        self.bench.receive(put(SPEEDUP, 0.0))
         self.table = next(s.table for s in self.bench.node.services if hasattr(s, "table"))
-        self.said = []
+        self.sent = []
 
     def run(self):
         """Stand still, and return for how long."""
         stand_still(
-            *(self._exchange, self.bench.node, self.bench.settings, self.table),
+            self._exchange,
+            self.bench.node,
+            self.bench.settings,
+            self.table,
             clock=lambda: self.wall,
             sleep=self._sleep,
         )
@@ -52,13 +55,13 @@ class Standing:
         due = [message for at, message in self.script if at <= self.wall]
         self.script = [each for each in self.script if each[0] > self.wall]
         for message in due:
-            self.bench.hear(message)
+            self.bench.receive(message)
         self.bench.node.tick(self.bench.now)
-        self.said += [(self.wall, m) for m in self.bench.transport.take()]
+        self.sent += [(self.wall, m) for m in self.bench.transport.take()]
         return bool(due)
 
     def received(self, kind):
-        return [(at, m) for at, m in self.said if m.get_type() == kind]
+        return [(at, m) for at, m in self.sent if m.get_type() == kind]
 
     def texts(self):
         return [m.text for _, m in self.received("STATUSTEXT")]
@@ -85,7 +88,7 @@ def test_the_last_one_that_could_end_it_is_gone():
     assert standing.bench.settings.speedup == 2.0
     assert standing.table[SPEEDUP] == 2.0
     texts = standing.bench.texts()
-    assert texts == ["Nobody is left who could end the pause", "Goes on at SIM_SPEEDUP 2"]
+    assert texts == ["No station is left to end the pause", "Goes on at SIM_SPEEDUP 2"]
 
 
 def test_two_pauses_add_up():
@@ -105,7 +108,7 @@ def test_heartbeats_go_on_and_everything_else_stands_still():
     ours = [at for at, _ in standing.received("HEARTBEAT")]
     # To both links.
     assert len(ours) == pytest.approx(2 * 60, abs=2)
-    others = {m.get_type() for _, m in standing.said} - {"HEARTBEAT"}
+    others = {m.get_type() for _, m in standing.sent} - {"HEARTBEAT"}
     assert others <= {"STATUSTEXT", "PARAM_VALUE"}
     bench.transport.take()
     bench.wait(1.0)
@@ -141,7 +144,7 @@ def test_commands_are_carried_out_and_time_sync_stands_still():
 
 def test_a_mission_is_uploaded_with_requests_again_where_one_was_lost():
     count = mavlink.MAVLink_mission_count_message(7, 1, 2, 0)
-    # The item that was asked for at 1 s comes after the second and the third time.
+    # The item that was requested at 1 s comes after the second and the third time.
     items = [(3.5, item(0)), (3.8, item(1, WAYPOINT))]
     standing = Standing([(1.0, count), *items, *beats(6), (6.0, put(SPEEDUP, 1.0))])
     standing.run()
@@ -169,7 +172,7 @@ def test_nobody_is_missed_because_of_a_pause():
 )
 def test_speed_ups_that_links_stand(autopilot, value, becomes):
     bench = Bench(autopilot=autopilot)
-    bench.hear(put(SPEEDUP, value))
+    bench.receive(put(SPEEDUP, value))
     assert bench.settings.speedup == becomes
     (answer,) = bench.transport.take("PARAM_VALUE")
     assert answer.param_value == pytest.approx(becomes)
@@ -197,12 +200,12 @@ def test_a_signal_ends_it_and_reaches_its_handler(number):
     try:
         handler = signal.getsignal(number)
         bench = Bench()
-        bench.hear(put(SPEEDUP, 0.0))
+        bench.receive(put(SPEEDUP, 0.0))
         table = next(s.table for s in bench.node.services if hasattr(s, "table"))
         timer = threading.Timer(0.3, lambda: signal.raise_signal(number))
         begun = time.monotonic()
         timer.start()
-        # Somebody always says something.
+        # A station always sends something.
         stand_still(lambda: True, bench.node, bench.settings, table)
         assert time.monotonic() - begun >= 0.25
         assert asked == [number]

@@ -35,7 +35,7 @@ def test_ground_stations_read_the_mode_from_it(submerged, autopilot, shown):
     assert heartbeat.autopilot == (12 if autopilot == "px4" else 3)
 
 
-def test_it_tells_at_once_what_changes():
+def test_it_sends_at_once_what_changes():
     bench = Bench()
     bench.wait(0.5)
     heartbeats(bench)
@@ -63,7 +63,7 @@ def test_it_tells_at_once_what_changes():
         lambda bench: bench.command(mavlink.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES, 1),
     ],
 )
-def test_version_is_told_on_request_to_who_asks(ask):
+def test_version_is_sent_on_request_to_the_requester(ask):
     bench = Bench()
     assert ask(bench) == mavlink.MAV_RESULT_ACCEPTED
     (version,) = bench.transport.take("AUTOPILOT_VERSION", STATION.link)

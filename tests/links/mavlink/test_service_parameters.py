@@ -17,7 +17,7 @@ from seatrial.links.mavlink.service_parameters import RATE, ParameterService
 from seatrial.links.mavlink.settings import Settings
 from seatrial.links.mavlink.vehicle import Identity, Vehicle
 
-from .bench import ORIGIN, OTHER_STATION, STATION, WrittenDown
+from .bench import ORIGIN, OTHER_STATION, STATION, RecordingTransport
 
 BOAT = Identity(7, 1, mavlink.MAV_TYPE_SURFACE_BOAT, False, "4.5.1", 1, 0)
 COUNT = 120
@@ -37,12 +37,12 @@ class ParameterBench:
     def __init__(self, autopilot: str = "ardupilotmega") -> None:
         kind = dialect(autopilot, submerged=False)
         self.vehicle = Vehicle(BOAT, kind, ORIGIN, kind.mode("hold"))
-        self.transport = WrittenDown()
+        self.transport = RecordingTransport()
         self.table = ParameterTable(DEFINITIONS, Settings())
         self.service = ParameterService(self.vehicle, self.transport, self.table)
         self.ticks = 0
 
-    def hear(self, message, sender=STATION) -> None:
+    def receive(self, message, sender=STATION) -> None:
         self.service.handle(message, sender, self.ticks / 100)
 
     def wait(self, seconds: float) -> None:
@@ -50,15 +50,15 @@ class ParameterBench:
             self.ticks += 1
             self.service.tick(self.ticks / 100)
 
-    def ask_list(self, sender=STATION) -> None:
-        self.hear(mavlink.MAVLink_param_request_list_message(7, 1), sender)
+    def request_list(self, sender=STATION) -> None:
+        self.receive(mavlink.MAVLink_param_request_list_message(7, 1), sender)
 
     def read(self, name: str = "", index: int = -1, sender=STATION) -> list:
-        self.hear(mavlink.MAVLink_param_request_read_message(7, 1, name.encode(), index), sender)
+        self.receive(mavlink.MAVLink_param_request_read_message(7, 1, name.encode(), index), sender)
         return self.transport.take(link=sender.link)
 
     def set(self, name: str, value: float, kind: int = REAL32, sender=STATION) -> None:
-        self.hear(mavlink.MAVLink_param_set_message(7, 1, name.encode(), value, kind), sender)
+        self.receive(mavlink.MAVLink_param_set_message(7, 1, name.encode(), value, kind), sender)
 
 
 @pytest.fixture
@@ -71,7 +71,7 @@ def identity(message) -> tuple:
 
 
 def test_a_list_is_complete_in_order_and_paced(bench: ParameterBench) -> None:
-    bench.ask_list()
+    bench.request_list()
     bench.wait(0.5)
     first = bench.transport.take("PARAM_VALUE", link=0)
     assert len(first) == pytest.approx(0.5 * RATE, abs=1)
@@ -87,37 +87,37 @@ def test_a_list_is_complete_in_order_and_paced(bench: ParameterBench) -> None:
 
 
 def test_stations_on_two_links_get_a_list_each(bench: ParameterBench) -> None:
-    bench.ask_list()
+    bench.request_list()
     bench.wait(0.3)
-    bench.ask_list(OTHER_STATION)
+    bench.request_list(OTHER_STATION)
     bench.wait(1.5)
     for link in (0, 1):
         got = bench.transport.take("PARAM_VALUE", link=link)
         assert [m.param_index for m in got] == list(range(COUNT))
 
 
-def test_who_asks_again_and_again_gets_the_list_all_the_same(bench: ParameterBench) -> None:
-    """A list takes 1.2 s; a station that asks each second would never see its end."""
+def test_repeated_requests_get_the_list_all_the_same(bench: ParameterBench) -> None:
+    """A list takes 1.2 s; a station that requests it each second would never see its end."""
     for _ in range(3):
-        bench.ask_list()
+        bench.request_list()
         bench.wait(1.0)
     indices = [m.param_index for m in bench.transport.take("PARAM_VALUE", link=0)]
     assert indices == [i % COUNT for i in range(len(indices))]
     assert len(indices) == pytest.approx(3.0 * RATE, abs=3)
     bench.wait(2.0)
     last = [m.param_index for m in bench.transport.take("PARAM_VALUE", link=0)]
-    assert set(indices[200:] + last) == set(range(COUNT))  # since it was asked last, after 2 s
+    assert set(indices[200:] + last) == set(range(COUNT))  # since the last request, after 2 s
 
 
 def test_a_slow_vehicle_sends_as_many_a_second(bench: ParameterBench) -> None:
-    bench.ask_list()
+    bench.request_list()
     for tick in range(1, 6):
         bench.service.tick(0.2 * tick)
     assert len(bench.transport.take("PARAM_VALUE")) == 101  # of 1 s, both ends counted
 
 
 def test_a_list_for_a_link_that_is_gone_ends(bench: ParameterBench) -> None:
-    bench.ask_list()
+    bench.request_list()
     bench.wait(0.2)
     bench.transport.there = [1]
     bench.transport.take()
@@ -151,17 +151,17 @@ def test_what_there_is_not_is_an_error_message(
     assert [m.get_type() for m in bench.transport.take()] == ["PARAM_ERROR"]
 
 
-def test_what_is_set_is_told_to_all(bench: ParameterBench) -> None:
+def test_what_is_set_is_sent_to_all(bench: ParameterBench) -> None:
     sent = struct.unpack("<f", struct.pack("<f", 0.1))[0]
     bench.set("REAL", sent)
-    ((link, answer),) = bench.transport.said
+    ((link, answer),) = bench.transport.sent
     assert (link, answer.get_type(), answer.param_value) == (None, "PARAM_VALUE", 0.1)
     assert bench.table["REAL"] == 0.1
     assert identity(answer) == ("REAL", 3, COUNT, REAL32)
 
 
 @pytest.mark.parametrize(
-    ("name", "value", "error", "said"),
+    ("name", "value", "error", "sent"),
     [
         (
             "REAL",
@@ -174,17 +174,17 @@ def test_what_is_set_is_told_to_all(bench: ParameterBench) -> None:
         ("STAYS", 2.0, mavlink.MAV_PARAM_ERROR_READ_ONLY, "STAYS stays 1: it belongs to the trial"),
     ],
 )
-def test_what_is_refused_is_told_to_the_sender_alone(
-    bench: ParameterBench, name, value, error, said
+def test_what_is_refused_is_sent_to_the_sender_alone(
+    bench: ParameterBench, name, value, error, sent
 ) -> None:
     before = bench.table[name]
     bench.set(name, value, sender=OTHER_STATION)
-    refusal, value_told = bench.transport.take(link=OTHER_STATION.link)
-    assert bench.transport.said == []
-    assert (value_told.get_type(), value_told.param_value) == ("PARAM_VALUE", before)
+    refusal, value_sent = bench.transport.take(link=OTHER_STATION.link)
+    assert bench.transport.sent == []
+    assert (value_sent.get_type(), value_sent.param_value) == ("PARAM_VALUE", before)
     assert (refusal.get_type(), refusal.param_id, refusal.error) == ("PARAM_ERROR", name, error)
     (text,) = bench.vehicle.texts
-    assert text.text.startswith(said)
+    assert text.text.startswith(sent)
 
 
 # ------------------------------------------------------------------ integers
@@ -230,7 +230,7 @@ def test_px4_refuses_another_type(bench: ParameterBench) -> None:
 
 
 class Client:
-    """Asks for the list, then each half second for what it has not got, as ground stations do."""
+    """Requests the list, then each half second for what it has not got, as ground stations do."""
 
     def __init__(self) -> None:
         self.values: dict[int, tuple[str, float]] = {}
@@ -246,7 +246,7 @@ class Client:
     def complete(self) -> bool:
         return self.count is not None and len(self.values) == self.count
 
-    def asks(self) -> list:
+    def requests(self) -> list:
         if self.count is None:
             return [mavlink.MAVLink_param_request_list_message(7, 1)]
         gaps = [i for i in range(self.count) if i not in self.values]
@@ -269,13 +269,13 @@ def test_a_bad_link_loses_nothing_for_good(seed: int) -> None:
 
     while not client.complete:
         if bench.ticks % 50 == 0:
-            through(client.asks(), down=False)
+            through(client.requests(), down=False)
         bench.wait(0.01)
         through(bench.transport.take(link=0), down=True)
         arrived = sorted(each for each in on_the_way if each[0] <= bench.ticks)
         on_the_way[:] = [each for each in on_the_way if each[0] > bench.ticks]
         for _, _, down, message in arrived:
-            client.take(message) if down else bench.hear(message)
+            client.take(message) if down else bench.receive(message)
         assert bench.ticks < 2000, "no list after 20 s"
     assert [client.values[i] for i in range(COUNT)] == [(d.name, d.default) for d in DEFINITIONS]
 
@@ -289,7 +289,7 @@ def test_a_bad_link_loses_nothing_for_good(seed: int) -> None:
 )
 def test_nothing_crashes_it(kind, name, value, number, index) -> None:
     bench = ParameterBench("px4" if number % 2 else "ardupilotmega")
-    bench.hear(
+    bench.receive(
         {
             "PARAM_SET": lambda: mavlink.MAVLink_param_set_message(7, 1, name, value, number),
             "PARAM_REQUEST_READ": lambda: mavlink.MAVLink_param_request_read_message(
@@ -299,5 +299,5 @@ def test_nothing_crashes_it(kind, name, value, number, index) -> None:
         }[kind]()
     )
     bench.wait(0.02)
-    for _, message in bench.transport.said:
+    for _, message in bench.transport.sent:
         assert message.get_type() in ("PARAM_VALUE", "PARAM_ERROR")

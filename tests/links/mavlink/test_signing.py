@@ -86,7 +86,7 @@ def test_a_frame_is_received_once(guarded):
     assert guarded.refused == 1
 
 
-def test_a_frame_heard_over_one_link_is_not_received_over_another():
+def test_a_frame_received_over_one_link_is_not_received_over_another():
     shared = signing()
     frame = ARM.pack(station())
     assert len(Codec(7, 1, 0, shared).decode(frame)) == 1
@@ -104,7 +104,7 @@ def test_presence_with_a_wrong_or_old_signature_is_refused(guarded):
     guarded.decode(frame)
     assert guarded.decode(frame) == []
     assert guarded.decode(HEARTBEAT.pack(station(OTHER_KEY))) == []
-    # And that says nothing against the next unsigned one.
+    # And the next unsigned one is still received.
     assert len(guarded.decode(HEARTBEAT.pack(station(None)))) == 1
 
 
@@ -128,10 +128,10 @@ def test_frames_of_an_earlier_run_are_refused(tmp_path):
     frame = ARM.pack(sender)
     assert len(Codec(7, 1, 0, first).decode(frame)) == 1
     first.save()
-    # The clock has not moved: nothing but the file tells that this frame is old.
+    # The clock has not moved: only by the file is this frame old.
     again = Codec(7, 1, 0, signing(path))
     assert again.decode(frame) == []
-    # The owner hears us, takes our time and is received again.
+    # The owner receives our frames, takes our time and is received again.
     sender.parse_buffer(again.encode(HEARTBEAT))
     assert len(again.decode(ARM.pack(sender))) == 1
 
@@ -160,21 +160,21 @@ def test_the_key_is_that_of_the_pass_phrase(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("content", "said"), [(None, "No such file"), (b"\nx", "is empty"), (b"\xff\xfe", "not UTF-8")]
+    ("content", "sent"), [(None, "No such file"), (b"\nx", "is empty"), (b"\xff\xfe", "not UTF-8")]
 )
-def test_a_bad_key_file_is_refused(tmp_path, content, said):
+def test_a_bad_key_file_is_refused(tmp_path, content, sent):
     path = tmp_path / "key"
     if content is not None:
         path.write_bytes(content)
-    with pytest.raises(InputError, match=f"signing key file {path}.*{said}"):
+    with pytest.raises(InputError, match=f"signing key file {path}.*{sent}"):
         read_key(path)
 
 
-@pytest.mark.parametrize(("content", "said"), [("{", "not JSON"), ("[]", "a JSON object")])
-def test_a_bad_state_file_is_refused(tmp_path, content, said):
+@pytest.mark.parametrize(("content", "sent"), [("{", "not JSON"), ("[]", "a JSON object")])
+def test_a_bad_state_file_is_refused(tmp_path, content, sent):
     path = tmp_path / "state.json"
     path.write_text(content)
-    with pytest.raises(InputError, match=f"state file {path}: {said}"):
+    with pytest.raises(InputError, match=f"state file {path}: {sent}"):
         StateFile(path)
 
 

@@ -15,7 +15,7 @@ def test_before_the_first_ground_station_nothing_happens():
 
 
 @pytest.mark.parametrize("armed", [False, True])
-def test_losing_the_last_one_is_what_counts(armed):
+def test_losing_the_last_one_is_what_matters(armed):
     bench = Bench(station_timeout=5.0)
     bench.enter("guided")
     if armed:
@@ -83,7 +83,7 @@ def test_it_acts_once_and_again_after_somebody_was_back():
         assert not bench.vehicle.failsafe
         bench.wait(3.0)
         assert bench.vehicle.mode.name == "hold"
-        bench.enter("guided")  # somebody without a heartbeat; nobody acts against that
+        bench.enter("guided")  # a sender without a heartbeat; not refused
         bench.wait(10.0)
         assert bench.vehicle.mode.name == "guided"
 
@@ -106,8 +106,8 @@ def test_every_action(action, submerged, mode, armed):
     bench.heartbeat()
     bench.wait(6.0)
     assert (bench.vehicle.mode.name, bench.vehicle.armed) == (mode, armed)
-    said = [m.text for m in bench.transport.take("STATUSTEXT")]
-    assert any("all ground stations lost" in text for text in said)
+    sent = [m.text for m in bench.transport.take("STATUSTEXT")]
+    assert any("all ground stations lost" in text for text in sent)
 
 
 def test_a_mode_that_cannot_be_entered_becomes_disarmed():
@@ -117,11 +117,11 @@ def test_a_mode_that_cannot_be_entered_becomes_disarmed():
     bench.heartbeat()
     bench.wait(6.0)
     assert (bench.vehicle.mode.name, bench.vehicle.armed) == ("hold", False)
-    said = [m.text for m in bench.transport.take("STATUSTEXT")]
-    assert "Failsafe: return impossible, no position" in said
+    sent = [m.text for m in bench.transport.take("STATUSTEXT")]
+    assert "Failsafe: return impossible, no position" in sent
 
 
-def test_it_is_told_in_the_heartbeat_until_somebody_is_back():
+def test_it_is_sent_in_the_heartbeat_until_a_station_is_back():
     bench = Bench()
     bench.heartbeat()
     bench.wait(6.0)
@@ -139,9 +139,9 @@ def test_one_failsafe_lasts_while_another_ends():
     bench.enter("manual")
     bench.arm()
     bench.heartbeat()
-    bench.hear(mavlink.MAVLink_manual_control_message(7, 0, 0, 1000, 0, 0))
+    bench.receive(mavlink.MAVLink_manual_control_message(7, 0, 0, 1000, 0, 0))
     bench.wait(6.0)  # neither is there any more
-    bench.hear(mavlink.MAVLink_manual_control_message(7, 0, 0, 1000, 0, 0))
+    bench.receive(mavlink.MAVLink_manual_control_message(7, 0, 0, 1000, 0, 0))
     assert bench.vehicle.failsafe
     bench.heartbeat()
     assert not bench.vehicle.failsafe

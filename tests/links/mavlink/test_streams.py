@@ -17,9 +17,9 @@ def count(bench, seconds, kind="ATTITUDE", link=STATION.link):
 
 def interval_of(bench, number):
     assert bench.command(GET, number) == OK
-    (told,) = bench.transport.take("MESSAGE_INTERVAL", STATION.link)
-    assert told.message_id == number
-    return told.interval_us
+    (reported,) = bench.transport.take("MESSAGE_INTERVAL", STATION.link)
+    assert reported.message_id == number
+    return reported.interval_us
 
 
 def test_what_a_ground_station_needs_comes_unasked():
@@ -28,21 +28,37 @@ def test_what_a_ground_station_needs_comes_unasked():
     bench.wait(4.0)
     received = {m.get_type() for m in bench.transport.take(link=0)}
     assert received >= {
-        *("HEARTBEAT", "SYS_STATUS", "SYSTEM_TIME", "GLOBAL_POSITION_INT", "LOCAL_POSITION_NED"),
-        *("ATTITUDE", "ATTITUDE_QUATERNION", "GPS_RAW_INT", "VFR_HUD", "RC_CHANNELS", "ALTITUDE"),
-        *("SERVO_OUTPUT_RAW", "BATTERY_STATUS", "HOME_POSITION", "EXTENDED_SYS_STATE"),
-        *("EKF_STATUS_REPORT", "SCALED_IMU", "HIGHRES_IMU", "SCALED_PRESSURE", "CURRENT_MODE"),
+        "HEARTBEAT",
+        "SYS_STATUS",
+        "SYSTEM_TIME",
+        "GLOBAL_POSITION_INT",
+        "LOCAL_POSITION_NED",
+        "ATTITUDE",
+        "ATTITUDE_QUATERNION",
+        "GPS_RAW_INT",
+        "VFR_HUD",
+        "RC_CHANNELS",
+        "ALTITUDE",
+        "SERVO_OUTPUT_RAW",
+        "BATTERY_STATUS",
+        "HOME_POSITION",
+        "EXTENDED_SYS_STATE",
+        "EKF_STATUS_REPORT",
+        "SCALED_IMU",
+        "HIGHRES_IMU",
+        "SCALED_PRESSURE",
+        "CURRENT_MODE",
     }
 
 
 @pytest.mark.parametrize("rate", [1, 3, 4, 10, 20, 50, 100])
-def test_a_message_comes_at_the_rate_asked_for(rate):
+def test_a_message_comes_at_the_rate_requested(rate):
     bench = Bench()
     assert bench.command(SET, ATTITUDE, round(1e6 / rate)) == OK
     assert count(bench, 10.0) == pytest.approx(10 * rate, abs=1)
 
 
-def test_rates_belong_to_the_link_that_asked():
+def test_rates_belong_to_the_link_that_requested():
     bench = Bench()
     usual = count(bench, 5.0)
     assert bench.command(SET, ATTITUDE, 20_000, sender=OTHER_STATION) == OK
@@ -95,9 +111,9 @@ def test_an_interval_below_the_period_is_one_per_instant():
 )
 def test_groups_of_streams(group, kind):
     bench = Bench()
-    bench.hear(mavlink.MAVLink_request_data_stream_message(7, 1, group, 25, 1))
+    bench.receive(mavlink.MAVLink_request_data_stream_message(7, 1, group, 25, 1))
     assert count(bench, 4.0, kind) == pytest.approx(100, abs=1)
-    bench.hear(mavlink.MAVLink_request_data_stream_message(7, 1, group, 25, 0))
+    bench.receive(mavlink.MAVLink_request_data_stream_message(7, 1, group, 25, 0))
     assert count(bench, 4.0, kind) == 0
 
 
@@ -105,7 +121,7 @@ def test_a_group_leaves_the_others_alone():
     bench = Bench()
     usual = count(bench, 4.0, "VFR_HUD")
     group = mavlink.MAV_DATA_STREAM_EXTRA1
-    bench.hear(mavlink.MAVLink_request_data_stream_message(7, 1, group, 25, 1))
+    bench.receive(mavlink.MAVLink_request_data_stream_message(7, 1, group, 25, 1))
     assert count(bench, 4.0, "VFR_HUD") == usual
 
 
@@ -118,7 +134,7 @@ def test_a_new_link_starts_with_the_usual_streams():
     assert count(bench, 5.0) == 50
 
 
-def test_messages_on_request_go_to_who_asks():
+def test_messages_on_request_go_to_the_requester():
     bench = Bench()
     assert bench.command(mavlink.MAV_CMD_REQUEST_MESSAGE, ATTITUDE, sender=OTHER_STATION) == OK
     assert len(bench.transport.take("ATTITUDE", OTHER_STATION.link)) == 1

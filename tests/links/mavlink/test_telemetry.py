@@ -1,4 +1,4 @@
-"""What the messages say, against the conversions written out here or made by pymavlink."""
+"""Content of telemetry messages, against conversions written out here or made by pymavlink."""
 
 import math
 from dataclasses import replace
@@ -17,7 +17,7 @@ ID = {name: getattr(mavlink, name) for name in dir(mavlink) if name.startswith("
 angles = st.floats(-3.1, 3.1)
 
 
-def said(name, *, submerged=False, valid=True, **measured):
+def sent(name, *, submerged=False, valid=True, **measured):
     bench = Bench(submerged=submerged, valid=valid)
     bench.measure(**measured)
     return bench.one(ID[f"MAVLINK_MSG_ID_{name}"])
@@ -31,7 +31,7 @@ def silent(name, **options):
 
 
 def test_position():
-    m = said("GLOBAL_POSITION_INT", position_n=(100.0, 50.0, -1.5), velocity_n=(1.234, -0.5, 0.1))
+    m = sent("GLOBAL_POSITION_INT", position_n=(100.0, 50.0, -1.5), velocity_n=(1.234, -0.5, 0.1))
     latitude, longitude, _ = ORIGIN.geodetic((100.0, 50.0, 0.0))
     assert (m.lat, m.lon) == (round(latitude * 1e7), round(longitude * 1e7))
     assert (m.alt, m.relative_alt) == (3500, 1500)  # the origin is at 2 m
@@ -39,33 +39,33 @@ def test_position():
 
 
 def test_coordinates_are_rounded_not_cut():
-    m = said("GLOBAL_POSITION_INT")
+    m = sent("GLOBAL_POSITION_INT")
     assert (m.lat, m.lon) == (-317800000, -522600000)
 
 
 def test_depth_is_negative_altitude():
-    m = said("GLOBAL_POSITION_INT", submerged=True, position_n=(0.0, 0.0, 12.0))
+    m = sent("GLOBAL_POSITION_INT", submerged=True, position_n=(0.0, 0.0, 12.0))
     assert (m.alt, m.relative_alt) == (-10000, -12000)
-    hud = said("VFR_HUD", submerged=True, position_n=(0.0, 0.0, 12.0), velocity_n=(3.0, 4.0, 0.5))
+    hud = sent("VFR_HUD", submerged=True, position_n=(0.0, 0.0, 12.0), velocity_n=(3.0, 4.0, 0.5))
     assert (hud.alt, hud.groundspeed, hud.climb) == (-10.0, 5.0, -0.5)
-    altitude = said("ALTITUDE", submerged=True, position_n=(0.0, 0.0, 12.0))
+    altitude = sent("ALTITUDE", submerged=True, position_n=(0.0, 0.0, 12.0))
     assert altitude.altitude_relative == -12.0
 
 
-def test_a_submarine_without_a_position_tells_its_depth():
-    m = said("GLOBAL_POSITION_INT", submerged=True, position_valid=False, position_n=(5, 5, 7))
+def test_a_submarine_without_a_position_sends_its_depth():
+    m = sent("GLOBAL_POSITION_INT", submerged=True, position_valid=False, position_n=(5, 5, 7))
     assert (m.lat, m.lon, m.relative_alt) == (0, 0, -7000)
     assert silent("GPS_RAW_INT", submerged=True, position_valid=False)
 
 
-def test_a_boat_without_a_position_tells_none():
+def test_a_boat_without_a_position_sends_none():
     assert silent("GLOBAL_POSITION_INT", position_valid=False)
     assert silent("LOCAL_POSITION_NED", position_valid=False)
-    assert said("GPS_RAW_INT", position_valid=False).fix_type == mavlink.GPS_FIX_TYPE_NO_FIX
+    assert sent("GPS_RAW_INT", position_valid=False).fix_type == mavlink.GPS_FIX_TYPE_NO_FIX
 
 
 def test_satellites():
-    m = said("GPS_RAW_INT", position_n=(0.0, 0.0, 0.0), velocity_n=(-3.0, 4.0, 9.0))
+    m = sent("GPS_RAW_INT", position_n=(0.0, 0.0, 0.0), velocity_n=(-3.0, 4.0, 9.0))
     assert m.fix_type == mavlink.GPS_FIX_TYPE_3D_FIX
     assert (m.lat, m.lon, m.alt) == (-317800000, -522600000, 2000)
     assert m.vel == 500
@@ -76,22 +76,22 @@ def test_satellites():
     ("psi", "heading"), [(0.0, 0), (-1e-9, 0), (math.pi, 180), (-math.pi / 2, 270), (7.0, 41)]
 )
 def test_headings_go_round_once(psi, heading):
-    assert said("VFR_HUD", attitude=(0, 0, psi)).heading == heading
-    m = said("GLOBAL_POSITION_INT", attitude=(0, 0, psi))
+    assert sent("VFR_HUD", attitude=(0, 0, psi)).heading == heading
+    m = sent("GLOBAL_POSITION_INT", attitude=(0, 0, psi))
     assert 0 <= m.hdg < 36000
     assert math.cos(math.radians(m.hdg / 100) - psi) == pytest.approx(1.0, abs=1e-7)
-    yaw = said("ATTITUDE", attitude=(0, 0, psi)).yaw
+    yaw = sent("ATTITUDE", attitude=(0, 0, psi)).yaw
     assert -math.pi <= yaw <= math.pi
     assert math.cos(yaw - psi) == pytest.approx(1.0)
 
 
 def test_a_heading_that_is_not_valid_is_unknown():
-    assert said("GLOBAL_POSITION_INT", heading_valid=False).hdg == 65535
+    assert sent("GLOBAL_POSITION_INT", heading_valid=False).hdg == 65535
 
 
 @given(angles, st.floats(-1.5, 1.5), angles)
 def test_quaternions(phi, theta, psi):
-    m = said("ATTITUDE_QUATERNION", attitude=(phi, theta, psi), rates=(0.1, 0.2, 0.3))
+    m = sent("ATTITUDE_QUATERNION", attitude=(phi, theta, psi), rates=(0.1, 0.2, 0.3))
     ours, theirs = (m.q1, m.q2, m.q3, m.q4), Quaternion([phi, theta, psi]).q
     # q and -q are the same attitude.
     assert abs(sum(a * b for a, b in zip(ours, theirs, strict=True))) == pytest.approx(1.0)
@@ -100,25 +100,25 @@ def test_quaternions(phi, theta, psi):
 
 def test_inertia():
     measured = {"specific_force": (0.0, 9.80665, -19.6133), "rates": (0.5, -1.0, 0.0015)}
-    m = said("SCALED_IMU", **measured)
+    m = sent("SCALED_IMU", **measured)
     assert (m.xacc, m.yacc, m.zacc) == (0, 1000, -2000)
     assert (m.xgyro, m.ygyro, m.zgyro) == (500, -1000, 2)
-    m = said("HIGHRES_IMU", **measured, pressure=90_000.0)
+    m = sent("HIGHRES_IMU", **measured, pressure=90_000.0)
     assert (m.yacc, m.ygyro, m.abs_pressure) == (9.80665, -1.0, 900.0)
 
 
 def test_pressure_of_air_and_water():
-    assert said("SCALED_PRESSURE", pressure=101_000.0).press_abs == 1010.0
+    assert sent("SCALED_PRESSURE", pressure=101_000.0).press_abs == 1010.0
     assert silent("SCALED_PRESSURE2")
-    assert said("SCALED_PRESSURE2", submerged=True, pressure=201_325.0).press_abs == 2013.25
+    assert sent("SCALED_PRESSURE2", submerged=True, pressure=201_325.0).press_abs == 2013.25
     assert silent("SCALED_PRESSURE", submerged=True, pressure=201_325.0)
     assert silent("SCALED_PRESSURE")
     assert silent("SCALED_PRESSURE2", submerged=True)
-    assert said("HIGHRES_IMU").fields_updated & 0x200 == 0
+    assert sent("HIGHRES_IMU").fields_updated & 0x200 == 0
 
 
 def test_distance_to_the_ground():
-    m = said("DISTANCE_SENSOR", ground_distance=12.344)
+    m = sent("DISTANCE_SENSOR", ground_distance=12.344)
     assert (m.current_distance, m.orientation) == (1234, mavlink.MAV_SENSOR_ROTATION_PITCH_270)
     assert silent("DISTANCE_SENSOR")
 
@@ -127,13 +127,13 @@ WAY = Way(heading=math.radians(200.0), speed=0.8, depth=3.0, cross_track=-1.5, d
 
 
 def test_where_it_heads_for():
-    m = said("NAV_CONTROLLER_OUTPUT", way=WAY, velocity_n=(0.5, 0.0, 0.0))
+    m = sent("NAV_CONTROLLER_OUTPUT", way=WAY, velocity_n=(0.5, 0.0, 0.0))
     assert (m.nav_bearing, m.target_bearing, m.wp_dist) == (-160, -160, 70)
     assert (m.xtrack_error, m.alt_error) == (-1.5, 0.0)
     assert m.aspd_error == pytest.approx(0.3)
-    deep = said("NAV_CONTROLLER_OUTPUT", submerged=True, way=WAY, position_n=(0.0, 0.0, 12.0))
+    deep = sent("NAV_CONTROLLER_OUTPUT", submerged=True, way=WAY, position_n=(0.0, 0.0, 12.0))
     assert deep.alt_error == 9.0  # 3 m deep is wanted: higher
-    sails = said("NAV_CONTROLLER_OUTPUT", way=replace(WAY, speed=None), velocity_n=(0.5, 0.0, 0.0))
+    sails = sent("NAV_CONTROLLER_OUTPUT", way=replace(WAY, speed=None), velocity_n=(0.5, 0.0, 0.0))
     assert sails.aspd_error == 0.0
     assert silent("NAV_CONTROLLER_OUTPUT")
 
@@ -154,11 +154,11 @@ def test_true_wind_from_the_apparent_one():
     # A west wind of 6 m/s on a boat that goes north at 2 m/s: the air comes at it with
     # (-2, 6) along its axes.
     apparent = (math.hypot(2, 6), math.atan2(6, -2))
-    m = said("WIND", apparent_wind=apparent, velocity_n=(2, 0, 0), attitude=(0, 0, 0))
+    m = sent("WIND", apparent_wind=apparent, velocity_n=(2, 0, 0), attitude=(0, 0, 0))
     assert (m.speed, m.direction) == (pytest.approx(6.0), pytest.approx(270.0))
     # The same air and boat, that points east now and is set north by a current.
     turned = (math.hypot(2, 6), math.atan2(2, 6))
-    m = said("WIND_COV", apparent_wind=turned, velocity_n=(2, 0, 0), attitude=(0, 0, math.pi / 2))
+    m = sent("WIND_COV", apparent_wind=turned, velocity_n=(2, 0, 0), attitude=(0, 0, math.pi / 2))
     assert (m.wind_x, m.wind_y) == (pytest.approx(0.0, abs=1e-12), pytest.approx(6.0))
     assert silent("WIND")
     assert silent("WIND_COV")
@@ -166,13 +166,13 @@ def test_true_wind_from_the_apparent_one():
 
 def test_battery():
     measured = {"voltage": 15.9, "current": 3.21, "charge": 0.604}
-    m = said("BATTERY_STATUS", **measured)
+    m = sent("BATTERY_STATUS", **measured)
     assert (m.voltages[0], m.current_battery, m.battery_remaining) == (15900, 321, 60)
-    m = said("SYS_STATUS", **measured)
+    m = sent("SYS_STATUS", **measured)
     assert (m.voltage_battery, m.current_battery, m.battery_remaining) == (15900, 321, 60)
     assert m.onboard_control_sensors_health & mavlink.MAV_SYS_STATUS_SENSOR_BATTERY
     assert silent("BATTERY_STATUS")
-    m = said("SYS_STATUS")
+    m = sent("SYS_STATUS")
     assert (m.voltage_battery, m.current_battery, m.battery_remaining) == (65535, -1, -1)
     assert not m.onboard_control_sensors_present & mavlink.MAV_SYS_STATUS_SENSOR_BATTERY
 
@@ -185,25 +185,25 @@ def test_battery():
     ],
 )
 def test_health_follows_validity(lost, bits):
-    m = said("SYS_STATUS")
+    m = sent("SYS_STATUS")
     healthy = m.onboard_control_sensors_health
     assert m.onboard_control_sensors_enabled == m.onboard_control_sensors_present
     # What a ground station takes for healthy: gyro, accelerometer, compass, satellites, attitude.
     assert healthy & 0x200027 == 0x200027
-    assert said("SYS_STATUS", **{lost: False}).onboard_control_sensors_health == healthy & ~bits
+    assert sent("SYS_STATUS", **{lost: False}).onboard_control_sensors_health == healthy & ~bits
 
 
 def test_filter_status():
     horizontal = mavlink.EKF_POS_HORIZ_ABS
-    assert said("EKF_STATUS_REPORT").flags & horizontal
-    flags = said("EKF_STATUS_REPORT", position_valid=False).flags
+    assert sent("EKF_STATUS_REPORT").flags & horizontal
+    flags = sent("EKF_STATUS_REPORT", position_valid=False).flags
     assert not flags & horizontal
     assert flags & mavlink.EKF_CONST_POS_MODE
 
 
 def test_servo_outputs():
     pulses = (1.1e-3, 0.0, 1.9e-3, *[0.0] * 12, 1.5004e-3)
-    m = said("SERVO_OUTPUT_RAW", pulses=pulses)
+    m = sent("SERVO_OUTPUT_RAW", pulses=pulses)
     assert (m.servo1_raw, m.servo2_raw, m.servo3_raw, m.servo16_raw) == (1100, 0, 1900, 1500)
 
 
@@ -215,7 +215,7 @@ def test_named_values():
 
 
 def test_it_has_always_landed():
-    assert said("EXTENDED_SYS_STATE").landed_state == mavlink.MAV_LANDED_STATE_ON_GROUND
+    assert sent("EXTENDED_SYS_STATE").landed_state == mavlink.MAV_LANDED_STATE_ON_GROUND
 
 
 def test_truth_stands_beside_the_estimates():
@@ -256,5 +256,5 @@ def test_values_of_any_size_can_be_sent(x, submerged):
         ground_distance=x[0],
         way=Way(*x[:5]),
     )
-    bench.wait(1.0)  # the air of the bench packs every message
-    assert len(bench.transport.said) > 20
+    bench.wait(1.0)  # the transport of the bench packs every message
+    assert len(bench.transport.sent) > 20

@@ -21,8 +21,8 @@ from .ground import (
     SPEED,
     TERRAIN,
     WAYPOINT,
-    BadAir,
     Client,
+    LossyTransport,
     as_float,
     content,
     download,
@@ -58,7 +58,7 @@ def bench():
 
 
 def same(found, sent, first=0):
-    """Say if items are the same; what is not a number is the same as itself."""
+    """Return whether items are the same; what is not a number is the same as itself."""
     return repr([content(m) for m in found[first:]]) == repr([content(m) for m in sent[first:]])
 
 
@@ -70,15 +70,15 @@ def acks(bench, sender=STATION):
     return [m.type for m in bench.transport.take("MISSION_ACK", sender.link)]
 
 
-def said(bench):
-    """Return what was said to people: pieces of a sentence joined, and all sentences too."""
+def sent(bench):
+    """Return the status texts: pieces of a sentence joined, and all sentences too."""
     return "".join(bench.texts())
 
 
-def asked_for(bench, sender=STATION):
-    """Return the items that are asked for, and as what."""
-    asked = bench.transport.take(link=sender.link)
-    return [(m.get_type(), m.seq) for m in asked if m.get_type().startswith("MISSION_REQUEST")]
+def requested(bench, sender=STATION):
+    """Return the items that are requested, and by which message."""
+    expected = bench.transport.take(link=sender.link)
+    return [(m.get_type(), m.seq) for m in expected if m.get_type().startswith("MISSION_REQUEST")]
 
 
 # ---------------------------------------------------------------------- whole lists
@@ -149,7 +149,7 @@ def test_an_empty_upload_clears(bench, kind):
 def test_clear(bench, cleared):
     for kind, items in LISTS.items():
         upload(bench, items, kind)
-    bench.hear(mavlink.MAVLink_mission_clear_all_message(7, 1, cleared))
+    bench.receive(mavlink.MAVLink_mission_clear_all_message(7, 1, cleared))
     assert acks(bench) == [ACCEPTED]
     left = [kind for kind in LISTS if download(bench, kind)]
     assert left == [kind for kind in LISTS if cleared not in (kind, ALL)]
@@ -158,98 +158,98 @@ def test_clear(bench, cleared):
 # ---------------------------------------------------------------------- time and order
 
 
-def test_items_that_do_not_come_are_asked_for_again(bench):
-    bench.hear(count(3))
-    bench.hear(MISSION_ITEMS[0])
+def test_items_that_do_not_come_are_requested_again(bench):
+    bench.receive(count(3))
+    bench.receive(MISSION_ITEMS[0])
     bench.transport.take()
     bench.wait(0.99)
-    assert asked_for(bench) == []
+    assert requested(bench) == []
     for _ in range(8):
         bench.wait(0.01)
-        assert asked_for(bench) == [("MISSION_REQUEST_INT", 1)]
+        assert requested(bench) == [("MISSION_REQUEST_INT", 1)]
         bench.wait(0.99)
 
 
-def test_a_station_that_knows_no_integers_is_asked_for_floats(bench):
-    bench.hear(count(3))
+def test_a_station_that_knows_no_integers_is_sent_float_requests(bench):
+    bench.receive(count(3))
     bench.wait(3.0)
-    assert asked_for(bench) == [("MISSION_REQUEST_INT", 0)] * 3 + [("MISSION_REQUEST", 0)]
+    assert requested(bench) == [("MISSION_REQUEST_INT", 0)] * 3 + [("MISSION_REQUEST", 0)]
     for sequence in (1, 2):
-        bench.hear(as_float(MISSION_ITEMS[sequence - 1]))
+        bench.receive(as_float(MISSION_ITEMS[sequence - 1]))
         bench.wait(1.0)
-        asked = [("MISSION_REQUEST_INT", sequence), ("MISSION_REQUEST", sequence)]
-        assert asked_for(bench) == asked
-    bench.hear(as_float(MISSION_ITEMS[2]))
+        expected = [("MISSION_REQUEST_INT", sequence), ("MISSION_REQUEST", sequence)]
+        assert requested(bench) == expected
+    bench.receive(as_float(MISSION_ITEMS[2]))
     assert acks(bench) == [ACCEPTED]
 
 
 def test_an_upload_without_items_ends_and_nothing_is_changed(bench):
     upload(bench, MISSION_ITEMS)
-    bench.hear(count(2))
+    bench.receive(count(2))
     bench.wait(5.0)
-    bench.hear(MISSION_ITEMS[0])
+    bench.receive(MISSION_ITEMS[0])
     bench.wait(9.99)
     assert acks(bench) == []
     bench.wait(0.01)
     assert acks(bench) == [CANCELLED]
-    assert "Mission: upload timed out, nothing is changed" in said(bench)
+    assert "Mission: upload timed out, nothing is changed" in sent(bench)
     bench.transport.take()
-    bench.hear(MISSION_ITEMS[1])
+    bench.receive(MISSION_ITEMS[1])
     bench.wait(20.0)
-    assert asked_for(bench) == []
+    assert requested(bench) == []
     assert same(download(bench), MISSION_ITEMS, first=1)
 
 
 def test_duplicates_are_ignored(bench):
-    bench.hear(count(3))
+    bench.receive(count(3))
     for message in MISSION_ITEMS[:3]:
-        bench.hear(message)
-        bench.hear(message)
-    # The last one's duplicate is a sender's who missed the answer.
-    assert asked_for(bench) == [("MISSION_REQUEST_INT", n) for n in range(3)]
+        bench.receive(message)
+        bench.receive(message)
+    # A duplicate of the last one: its sender missed the answer.
+    assert requested(bench) == [("MISSION_REQUEST_INT", n) for n in range(3)]
     bench = Bench()
-    bench.hear(count(3))
+    bench.receive(count(3))
     for message in MISSION_ITEMS[:3]:
-        bench.hear(message)
-    bench.hear(MISSION_ITEMS[1])
-    bench.hear(MISSION_ITEMS[2])
+        bench.receive(message)
+    bench.receive(MISSION_ITEMS[1])
+    bench.receive(MISSION_ITEMS[2])
     assert acks(bench) == [ACCEPTED, ACCEPTED]
 
 
 def test_a_refusal_that_was_missed_is_repeated_too(bench):
     wrong = listed(one(22))
     assert upload(bench, wrong) == UNSUPPORTED
-    bench.hear(wrong[-1])
+    bench.receive(wrong[-1])
     assert acks(bench) == [UNSUPPORTED]
 
 
 def test_an_item_too_far_ahead_is_not_taken(bench):
-    bench.hear(count(3))
-    bench.hear(MISSION_ITEMS[2])
-    assert asked_for(bench) == [("MISSION_REQUEST_INT", 0), ("MISSION_REQUEST_INT", 0)]
+    bench.receive(count(3))
+    bench.receive(MISSION_ITEMS[2])
+    assert requested(bench) == [("MISSION_REQUEST_INT", 0), ("MISSION_REQUEST_INT", 0)]
     for message in MISSION_ITEMS[:3]:
-        bench.hear(message)
+        bench.receive(message)
     assert acks(bench) == [ACCEPTED]
     assert same(download(bench), MISSION_ITEMS[:3], first=1)
 
 
-def test_items_that_nobody_asked_for_are_ignored(bench):
+def test_items_that_nobody_requested_are_ignored(bench):
     for message in MISSION_ITEMS:
-        bench.hear(message)
+        bench.receive(message)
     assert bench.transport.take() == []
     assert download(bench) == []
 
 
 def test_items_of_another_kind_are_ignored(bench):
-    bench.hear(count(2, RALLY))
-    bench.hear(MISSION_ITEMS[0])
-    bench.hear(RALLY_ITEMS[0])
-    assert asked_for(bench) == [("MISSION_REQUEST_INT", 0), ("MISSION_REQUEST_INT", 1)]
+    bench.receive(count(2, RALLY))
+    bench.receive(MISSION_ITEMS[0])
+    bench.receive(RALLY_ITEMS[0])
+    assert requested(bench) == [("MISSION_REQUEST_INT", 0), ("MISSION_REQUEST_INT", 1)]
 
 
-def test_who_counts_again_begins_again(bench):
-    bench.hear(count(3))
-    bench.hear(MISSION_ITEMS[0])
+def test_a_repeated_count_begins_again(bench):
+    bench.receive(count(3))
+    bench.receive(MISSION_ITEMS[0])
     bench.transport.take()
     assert upload(bench, MISSION_ITEMS) == ACCEPTED
     assert same(download(bench), MISSION_ITEMS, first=1)
@@ -257,17 +257,17 @@ def test_who_counts_again_begins_again(bench):
 
 def test_an_upload_is_cancelled_by_its_sender(bench):
     upload(bench, MISSION_ITEMS)
-    bench.hear(count(2))
-    bench.hear(MISSION_ITEMS[0])
-    bench.hear(mavlink.MAVLink_mission_ack_message(7, 1, CANCELLED, MISSION), OTHER_STATION)
-    bench.hear(mavlink.MAVLink_mission_ack_message(7, 1, CANCELLED, FENCE))
+    bench.receive(count(2))
+    bench.receive(MISSION_ITEMS[0])
+    bench.receive(mavlink.MAVLink_mission_ack_message(7, 1, CANCELLED, MISSION), OTHER_STATION)
+    bench.receive(mavlink.MAVLink_mission_ack_message(7, 1, CANCELLED, FENCE))
     bench.transport.take()
     bench.wait(1.0)
-    assert asked_for(bench) == [("MISSION_REQUEST_INT", 1)]
-    bench.hear(mavlink.MAVLink_mission_ack_message(7, 1, CANCELLED, MISSION))
+    assert requested(bench) == [("MISSION_REQUEST_INT", 1)]
+    bench.receive(mavlink.MAVLink_mission_ack_message(7, 1, CANCELLED, MISSION))
     bench.wait(20.0)
-    assert asked_for(bench) == []
-    assert "Mission: upload cancelled, nothing is changed" in said(bench)
+    assert requested(bench) == []
+    assert "Mission: upload cancelled, nothing is changed" in sent(bench)
     assert same(download(bench), MISSION_ITEMS, first=1)
 
 
@@ -277,19 +277,21 @@ def test_an_upload_is_cancelled_by_its_sender(bench):
 @pytest.mark.parametrize(
     "attempt",
     [
-        *(count(2), count(0), count(2, FENCE)),
+        count(2),
+        count(0),
+        count(2, FENCE),
         *(mavlink.MAVLink_mission_clear_all_message(7, 1, kind) for kind in (MISSION, ALL)),
     ],
 )
 def test_a_second_station_is_denied_while_one_uploads(bench, attempt):
-    bench.hear(count(len(MISSION_ITEMS)))
-    bench.hear(MISSION_ITEMS[0])
-    bench.hear(attempt, OTHER_STATION)
+    bench.receive(count(len(MISSION_ITEMS)))
+    bench.receive(MISSION_ITEMS[0])
+    bench.receive(attempt, OTHER_STATION)
     assert acks(bench, OTHER_STATION) == [DENIED]
-    assert "another ground station is uploading" in said(bench)
-    bench.hear(MISSION_ITEMS[1], OTHER_STATION)
+    assert "another ground station is uploading" in sent(bench)
+    bench.receive(MISSION_ITEMS[1], OTHER_STATION)
     for message in MISSION_ITEMS[1:]:
-        bench.hear(message)
+        bench.receive(message)
     assert acks(bench) == [ACCEPTED]
     assert upload(bench, RALLY_ITEMS, RALLY, OTHER_STATION) == ACCEPTED
 
@@ -297,27 +299,27 @@ def test_a_second_station_is_denied_while_one_uploads(bench, attempt):
 def test_a_download_is_of_one_list_whatever_is_uploaded_meanwhile(bench):
     upload(bench, MISSION_ITEMS)
     ask = mavlink.MAVLink_mission_request_int_message
-    bench.hear(mavlink.MAVLink_mission_request_list_message(7, 1, MISSION), OTHER_STATION)
-    bench.hear(ask(7, 1, 1, MISSION), OTHER_STATION)
+    bench.receive(mavlink.MAVLink_mission_request_list_message(7, 1, MISSION), OTHER_STATION)
+    bench.receive(ask(7, 1, 1, MISSION), OTHER_STATION)
     first = bench.transport.take("MISSION_ITEM_INT")
     other = listed(one(at=north_of(99)), one(at=north_of(98)))
     assert upload(bench, other) == ACCEPTED
-    bench.hear(ask(7, 1, 3, MISSION), OTHER_STATION)
+    bench.receive(ask(7, 1, 3, MISSION), OTHER_STATION)
     assert same(
         [*first, *bench.transport.take("MISSION_ITEM_INT")], [MISSION_ITEMS[1], MISSION_ITEMS[3]]
     )
-    bench.hear(mavlink.MAVLink_mission_ack_message(7, 1, ACCEPTED, MISSION), OTHER_STATION)
-    bench.hear(ask(7, 1, 1, MISSION), OTHER_STATION)
+    bench.receive(mavlink.MAVLink_mission_ack_message(7, 1, ACCEPTED, MISSION), OTHER_STATION)
+    bench.receive(ask(7, 1, 1, MISSION), OTHER_STATION)
     assert same(bench.transport.take("MISSION_ITEM_INT"), other[1:2])
 
 
 def test_what_was_offered_is_forgotten_after_a_while(bench):
     upload(bench, MISSION_ITEMS)
-    bench.hear(mavlink.MAVLink_mission_request_list_message(7, 1, MISSION), OTHER_STATION)
+    bench.receive(mavlink.MAVLink_mission_request_list_message(7, 1, MISSION), OTHER_STATION)
     upload(bench, MISSION_ITEMS[:2])
     bench.wait(31.0)
     bench.transport.take()
-    bench.hear(mavlink.MAVLink_mission_request_int_message(7, 1, 3, MISSION), OTHER_STATION)
+    bench.receive(mavlink.MAVLink_mission_request_int_message(7, 1, 3, MISSION), OTHER_STATION)
     assert acks(bench, OTHER_STATION) == [BAD_SEQUENCE]
 
 
@@ -326,7 +328,7 @@ def test_what_was_offered_is_forgotten_after_a_while(bench):
 
 def test_an_item_that_is_not_there(bench):
     upload(bench, MISSION_ITEMS)
-    bench.hear(mavlink.MAVLink_mission_request_int_message(7, 1, len(MISSION_ITEMS), MISSION))
+    bench.receive(mavlink.MAVLink_mission_request_int_message(7, 1, len(MISSION_ITEMS), MISSION))
     assert acks(bench) == [BAD_SEQUENCE]
 
 
@@ -343,13 +345,13 @@ def test_an_item_that_is_not_there(bench):
     ],
 )
 def test_kinds_and_parts_that_are_not_supported(bench, message):
-    bench.hear(message)
+    bench.receive(message)
     (answer,) = bench.transport.take("MISSION_ACK", STATION.link)
     assert (answer.type, answer.mission_type) == (UNSUPPORTED, message.mission_type)
 
 
 def test_too_many_items(bench):
-    bench.hear(count(MOST_ITEMS + 1))
+    bench.receive(count(MOST_ITEMS + 1))
     assert acks(bench) == [NO_SPACE]
     many = [item(n, at=north_of(n / 10)) for n in range(MOST_ITEMS)]
     assert upload(bench, many) == ACCEPTED
@@ -400,7 +402,7 @@ def test_too_many_items(bench):
 def test_bad_lists_are_refused_with_the_item_and_the_old_one_stays(bench, kind, items, result):
     upload(bench, LISTS[kind], kind)
     assert upload(bench, listed(*items, kind=kind), kind) == result
-    assert "refused: item " in said(bench)
+    assert "refused: item " in sent(bench)
     assert same(download(bench, kind), LISTS[kind], first=kind == MISSION)
 
 
@@ -416,9 +418,9 @@ def test_frames_of_submarines():
 
 @pytest.mark.parametrize("seed", range(12))
 @kinds
-def test_transfers_survive_bad_air(kind, seed):
+def test_transfers_survive_losses(kind, seed):
     bench = Bench(autopilot="px4")
-    up, down = BadAir(seed), BadAir(seed + 1000)
+    up, down = LossyTransport(seed), LossyTransport(seed + 1000)
     client = Client(lambda message: up.put(message, bench.now))
     sent = LISTS[kind] * 4 if kind != MISSION else MISSION_ITEMS
     sent = [item_renumbered(m, n) for n, m in enumerate(sent)]
@@ -426,14 +428,14 @@ def test_transfers_survive_bad_air(kind, seed):
     def until(done):
         for _ in range(12_000):
             bench.tick()
-            for link, message in bench.transport.said:
+            for link, message in bench.transport.sent:
                 if link in (None, STATION.link):
                     down.put(message, bench.now)
-            bench.transport.said.clear()
+            bench.transport.sent.clear()
             for message in up.take(bench.now):
-                bench.hear(message)
+                bench.receive(message)
             for message in down.take(bench.now):
-                client.hear(message, bench.now)
+                client.receive(message, bench.now)
             client.tick(bench.now)
             if done():
                 return True

@@ -1,4 +1,4 @@
-"""Whatever is said about missions: no crash, and a list is never half replaced."""
+"""Fuzzing of mission messages: no crash, and a list is never half replaced."""
 
 import math
 import os
@@ -73,11 +73,11 @@ steps = st.lists(st.tuples(messages, st.booleans(), st.floats(0.0, 12.0)), max_s
 
 @settings(max_examples=CASES, deadline=None)
 @given(steps, st.booleans(), st.sampled_from(["ardupilotmega", "px4"]))
-def test_no_message_is_too_much(said, submerged, autopilot):
+def test_no_message_is_too_much(sent, submerged, autopilot):
     bench = Bench(submerged=submerged, autopilot=autopilot)
     bench.vehicle.armed = True
-    for message, other, pause in said:
-        bench.hear(message, OTHER_STATION if other else STATION)
+    for message, other, pause in sent:
+        bench.receive(message, OTHER_STATION if other else STATION)
         bench.ticks += round(100 * pause)
         bench.tick()
         leg = bench.node.missions.leg
@@ -94,18 +94,18 @@ def test_a_list_is_the_old_one_or_the_new_one(order, noise):
     old = [item(n, at=north_of(n)) for n in range(3)]
     new = [item(n, at=north_of(10 + n)) for n in range(5)]
     assert upload(bench, old) == 0
-    # An upload with losses, repetitions and neighbours that change places, and somebody who
-    # says anything in between but has no items.
-    said = [mavlink.MAVLink_mission_count_message(7, 1, len(new), MISSION), *new]
-    said = [(m, STATION) for m in said for _ in range(order.choice([0, 1, 1, 1, 1, 2]))]
-    for k in range(len(said) - 1):
+    # An upload with losses, repetitions and neighbours that change places, and a station that
+    # sends anything in between but has no items.
+    sent = [mavlink.MAVLink_mission_count_message(7, 1, len(new), MISSION), *new]
+    sent = [(m, STATION) for m in sent for _ in range(order.choice([0, 1, 1, 1, 1, 2]))]
+    for k in range(len(sent) - 1):
         if order.random() < 0.2:
-            said[k : k + 2] = said[k + 1], said[k]
+            sent[k : k + 2] = sent[k + 1], sent[k]
     for message in noise:
         if not message.get_type().startswith("MISSION_ITEM"):
-            said.insert(order.randint(0, len(said)), (message, OTHER_STATION))
-    for message, sender in said:
-        bench.hear(message, sender)
+            sent.insert(order.randint(0, len(sent)), (message, OTHER_STATION))
+    for message, sender in sent:
+        bench.receive(message, sender)
         found = download(bench, sender=Sender(240, 190, 0))
         whole = [content(m) for m in found[1:]]
         assert whole in ([content(m) for m in old[1:]], [content(m) for m in new[1:]], [])
@@ -118,9 +118,9 @@ def test_lists_of_every_length_survive_an_upload_that_breaks_off():
         old = [item(n, at=north_of(n)) for n in range(generator.randint(1, 6))]
         new = [item(n, at=north_of(50 + n)) for n in range(generator.randint(2, 6))]
         for m in (mavlink.MAVLink_mission_count_message(7, 1, len(old), MISSION), *old):
-            bench.hear(m)
-        bench.hear(mavlink.MAVLink_mission_count_message(7, 1, len(new), MISSION))
+            bench.receive(m)
+        bench.receive(mavlink.MAVLink_mission_count_message(7, 1, len(new), MISSION))
         for m in new[: generator.randint(0, len(new) - 1)]:
-            bench.hear(m)
+            bench.receive(m)
         bench.wait(11.0)
         assert [content(m) for m in download(bench)[1:]] == [content(m) for m in old[1:]]

@@ -1,4 +1,4 @@
-"""An NMEA 0183 component that a test feeds and steps, and pynmea2 as who reads it."""
+"""An NMEA 0183 component that a test feeds and steps, and pynmea2 as its reader."""
 
 import math
 import re
@@ -29,8 +29,15 @@ VALID = {
     **{
         f"{name}_valid": True
         for name in (
-            *("position", "heading", "imu", "wind", "true_wind", "water_speed"),
-            *("depth", "water_temperature", "rudder"),
+            "position",
+            "heading",
+            "imu",
+            "wind",
+            "true_wind",
+            "water_speed",
+            "depth",
+            "water_temperature",
+            "rudder",
         )
     },
 }
@@ -39,8 +46,20 @@ VALID = {
 ALL = "; ".join(
     f"{name} 1"
     for name in (
-        *("GPRMC", "GPGGA", "GPVTG", "HEHDT", "HCHDG", "TIROT", "WIMWV-R", "WIMWV-T"),
-        *("IIXDR", "VWVHW", "SDDBT", "SDDPT", "YXMTW", "AGRSA"),
+        "GPRMC",
+        "GPGGA",
+        "GPVTG",
+        "HEHDT",
+        "HCHDG",
+        "TIROT",
+        "WIMWV-R",
+        "WIMWV-T",
+        "IIXDR",
+        "VWVHW",
+        "SDDBT",
+        "SDDPT",
+        "YXMTW",
+        "AGRSA",
     )
 )
 
@@ -56,7 +75,7 @@ class Bench:
         self.one.begin()
         self.now = 0
         self.number = 0
-        self.said: list[tuple[int, bytes]] = []
+        self.sent: list[tuple[int, bytes]] = []
         self._seen = 0
 
     def __enter__(self) -> "Bench":
@@ -69,22 +88,22 @@ class Bench:
         for name, value in values.items():
             self.one.set(name, value)
 
-    def hear(self, *data: bytes) -> None:
+    def receive(self, *data: bytes) -> None:
         """Let bytes arrive by the port; they are read in the next step."""
         self.number += 1
         self.one.set("rx", encode(self.number, [(self.now, each) for each in data]))
 
     def run(self, seconds: float, step_ns: int = 50_000_000) -> list[bytes]:
-        """Run on; return what was said on the port meanwhile."""
-        before = len(self.said)
+        """Run on; return what was sent on the port meanwhile."""
+        before = len(self.sent)
         for _ in range(round(seconds * 1e9) // step_ns):
             self.one.advance(self.now / 1e9, step_ns / 1e9)
             self.now += step_ns
             number, chunks = decode(self.one.get("tx"))
             if number != self._seen:
                 self._seen = number
-                self.said += chunks
-        return [data for _, data in self.said[before:]]
+                self.sent += chunks
+        return [data for _, data in self.sent[before:]]
 
 
 def read(sentences: Sequence[bytes]) -> dict[str, pynmea2.NMEASentence]:

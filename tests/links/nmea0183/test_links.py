@@ -1,4 +1,4 @@
-"""Over sockets and lines, with a peer that pynmea2, sockets and pyserial make."""
+"""NMEA 0183 over sockets and lines, with a peer of pynmea2, sockets and pyserial."""
 
 import contextlib
 import socket
@@ -55,7 +55,7 @@ def test_datagrams_are_sentences():
             until(bench, lambda: commanded(bench))
 
 
-def test_clients_of_a_server_hear_and_are_received():
+def test_clients_of_a_server_receive_and_are_received():
     with talking("tcpin:127.0.0.1:0") as bench:
         where = bench.one.get("reached_at").removeprefix("tcp:").split(":")
         peers = [socket.create_connection((where[0], int(where[1])), WAIT_S) for _ in range(2)]
@@ -104,7 +104,7 @@ def test_a_serial_line(tmp_path):
 
 
 def test_two_components_by_their_ports():
-    """A plotter's orders are text to a board or a simulated topside as they are to a socket."""
+    """A plotter's commands are text to a board or a simulated topside as they are to a socket."""
     boat = Bench(sentences="GPRMC 1")
     plotter = Bench(sentences="HEHDT 0.5")
     plotter.set(**VALID)
@@ -116,7 +116,7 @@ def test_two_components_by_their_ports():
     assert boat.one.get("lines_refused") == 0
 
 
-def test_a_port_that_is_taken_is_said():
+def test_a_port_that_is_taken_is_reported():
     with socket.create_server(("127.0.0.1", 0)) as server:
         url = f"tcpin:127.0.0.1:{server.getsockname()[1]}"
         with pytest.raises(InputError, match=r"nmea: cannot open the link"):

@@ -1,4 +1,4 @@
-"""What is received: sentences that pynmea2 wrote, sentences as plotters send them, and noise."""
+"""Received sentences: those that pynmea2 wrote, sentences as plotters send them, and noise."""
 
 import random
 
@@ -10,41 +10,66 @@ from .bench import DEG, VALID, Bench
 HOME = {"latitude": -22.862 * DEG, "longitude": -43.223 * DEG, "variation": -23.0 * DEG}
 
 
-def said(name, *fields):
+def sent(name, *fields):
     return (
         f"{pynmea2.NMEASentence.parse(f'$II{name},' + ','.join(fields), check=False)}\r\n".encode()
     )
 
 
 def apb(heading="45.0", reference="T", error="0.10", side="L", gps="A"):
-    return said(
-        *("APB", gps, "A", error, side, "N", "V", "V", "40.0", "T", "MARK", "41.0", "T"),
-        *(heading, reference),
+    return sent(
+        "APB",
+        gps,
+        "A",
+        error,
+        side,
+        "N",
+        "V",
+        "V",
+        "40.0",
+        "T",
+        "MARK",
+        "41.0",
+        "T",
+        heading,
+        reference,
     )
 
 
 def rmb(status="A", arrived="V"):
-    return said(
-        *("RMB", status, "0.05", "R", "START", "MARK"),
-        *("2251.000", "S", "04313.000", "W", "1.3", "40.0", "2.0", arrived),
+    return sent(
+        "RMB",
+        status,
+        "0.05",
+        "R",
+        "START",
+        "MARK",
+        "2251.000",
+        "S",
+        "04313.000",
+        "W",
+        "1.3",
+        "40.0",
+        "2.0",
+        arrived,
     )
 
 
 def received(*sentences, **values):
     bench = Bench(**{**HOME, "sentences": "", **values})
-    bench.hear(*sentences)
+    bench.receive(*sentences)
     bench.run(0.2)
     return bench
 
 
 def test_a_heading_is_commanded():
-    bench = received(said("HSC", "123.5", "T", "", "M"))
+    bench = received(sent("HSC", "123.5", "T", "", "M"))
     assert bench.one.get("target_valid")
     assert bench.one.get("target_kind") == "heading"
     assert bench.one.get("target_heading") == pytest.approx(123.5 * DEG)
-    magnetic = received(said("HSC", "", "T", "10.0", "M"))
+    magnetic = received(sent("HSC", "", "T", "10.0", "M"))
     assert magnetic.one.get("target_heading") == pytest.approx(347.0 * DEG)
-    report = received(said("HSC", "123.5", "T", "", "M", "R"))
+    report = received(sent("HSC", "123.5", "T", "", "M", "R"))
     assert (report.one.get("lines_refused"), report.one.get("sentences_received")) == (0, 1)
     assert not report.one.get("target_valid")
 
@@ -57,7 +82,7 @@ def test_an_autopilot_is_steered():
     assert received(apb(side="R")).one.get("cross_track") == pytest.approx(-185.2)
     assert received(apb("45.0", "M")).one.get("target_heading") == pytest.approx(22.0 * DEG)
     assert not received(apb(gps="V")).one.get("target_valid")
-    both = received(said("HSC", "123.5", "T", "", "M"), apb())
+    both = received(sent("HSC", "123.5", "T", "", "M"), apb())
     assert both.one.get("target_heading") == pytest.approx(123.5 * DEG)
     assert both.one.get("cross_track") == pytest.approx(185.2)
 
@@ -76,14 +101,14 @@ def test_a_waypoint_is_named():
     assert received(rmb(), apb()).one.get("target_kind") == "heading"
 
 
-def test_orders_count_for_their_time():
+def test_orders_apply_for_their_time():
     bench = received(apb(), order_timeout=2.0)
     bench.run(1.7)
     assert bench.one.get("target_valid")
     bench.run(0.3)
     assert not bench.one.get("target_valid")
     assert not bench.one.get("cross_track_valid")
-    bench.hear(apb())
+    bench.receive(apb())
     bench.run(0.1)
     assert bench.one.get("target_valid")
 
@@ -107,7 +132,7 @@ def test_pieces_and_wrong_lines():
     whole = apb()
     bench = received(whole[:10], whole[10:40])
     assert bench.one.get("sentences_received") == 0
-    bench.hear(whole[40:])
+    bench.receive(whole[40:])
     bench.run(0.1)
     assert bench.one.get("target_valid")
     wrong = (
@@ -116,9 +141,9 @@ def test_pieces_and_wrong_lines():
         b"\xff\x00\x80\r\n",
         b"$\r\n",
         b"$II\r\n",
-        said("HSC", "nan", "T", "", "M"),
-        said("HSC", "x", "T", "", "M"),
-        said("RMB", "A", "0.05", "R", "A", "M\0"),  # a right checksum
+        sent("HSC", "nan", "T", "", "M"),
+        sent("HSC", "x", "T", "", "M"),
+        sent("RMB", "A", "0.05", "R", "A", "M\0"),  # a right checksum
     )
     bench = received(*wrong)
     assert bench.one.get("lines_refused") == len(wrong)
@@ -138,9 +163,9 @@ def test_noise_is_survived():
         xor = 0
         for octet in body:
             xor ^= octet
-        bench.hear(b"$" + body + f"*{xor:02X}\r\n".encode(), draw.randbytes(60))
+        bench.receive(b"$" + body + f"*{xor:02X}\r\n".encode(), draw.randbytes(60))
         bench.run(0.05)
-    bench.hear(b"\n", apb())
+    bench.receive(b"\n", apb())
     bench.set(**VALID)
     bench.run(0.05)
     bench.run(0.05)

@@ -1,4 +1,4 @@
-"""Gloria with her feed: what plotters read is where she is, and she goes where one says."""
+"""Gloria with her feed: what plotters read is where she is, and she goes where one commands."""
 
 import csv
 import math
@@ -53,7 +53,7 @@ every = "20 ms"
 """
 
 
-def test_what_plotters_read_and_say(tmp_path):
+def test_what_plotters_read_and_send(tmp_path):
     rig = (shipped_folder("harness") / "rigs" / "gloria-nmea0183.toml").read_text("utf-8")
     rig = rig.replace("[components]", '[components]\nplotter = { fmu = "plotter.py:Plotter" }')
     (tmp_path / "rig.toml").write_text(f'{rig}"plotter.tx" = "instruments.rx"\n', "utf-8")

@@ -1,4 +1,4 @@
-"""What is said, read by pynmea2, which did not write it."""
+"""Sent sentences, read by pynmea2, which did not write them."""
 
 import datetime
 import math
@@ -23,9 +23,9 @@ def test_every_sentence_says_what_the_inputs_are():
     bench = Bench(**HOME, variation=-23.0 * DEG, transducer_offset=0.4, date="2018-09-01")
     bench.set(**VALID)
     bench.run(61.0)
-    said = read(bench.run(1.05))
+    sent = read(bench.run(1.05))
     latitude, longitude, _ = pymap3d.ned2geodetic(100.0, -50.0, 0.0, -22.862, -43.223, 2.0)
-    rmc, gga, vtg = said["GPRMC"], said["GPGGA"], said["GPVTG"]
+    rmc, gga, vtg = sent["GPRMC"], sent["GPGGA"], sent["GPVTG"]
     for fix in (rmc, gga):
         assert fix.latitude == pytest.approx(latitude, abs=1e-7)
         assert fix.longitude == pytest.approx(longitude, abs=1e-7)
@@ -40,40 +40,40 @@ def test_every_sentence_says_what_the_inputs_are():
     assert float(vtg.true_track) == pytest.approx(course, abs=0.005)
     assert float(vtg.mag_track) == pytest.approx((course + 23.0) % 360.0, abs=0.01)
     assert float(vtg.spd_over_grnd_kmph) == pytest.approx(speed * 3.6, abs=0.005)
-    assert float(said["HEHDT"].heading) == 350.0
-    assert float(said["HCHDG"].heading) == 13.0  # true 350 = magnetic 13 + variation -23
-    assert (float(said["HCHDG"].variation), said["HCHDG"].var_dir) == (23.0, "W")
-    assert float(said["TIROT"].rate_of_turn) == 180.0  # degrees per minute
-    apparent, true = said["WIMWV-R"], said["WIMWV-T"]
+    assert float(sent["HEHDT"].heading) == 350.0
+    assert float(sent["HCHDG"].heading) == 13.0  # true 350 = magnetic 13 + variation -23
+    assert (float(sent["HCHDG"].variation), sent["HCHDG"].var_dir) == (23.0, "W")
+    assert float(sent["TIROT"].rate_of_turn) == 180.0  # degrees per minute
+    apparent, true = sent["WIMWV-R"], sent["WIMWV-T"]
     assert (float(apparent.wind_angle), apparent.status) == (45.0, "A")
     assert float(apparent.wind_speed) * KNOT == pytest.approx(6.0, abs=0.005)
     # Blowing to (-4, -3) it comes from 36.87 degrees; that is 46.87 from a bow at 350.
     assert float(true.wind_angle) == pytest.approx(46.87, abs=0.01)
     assert float(true.wind_speed) * KNOT == pytest.approx(5.0, abs=0.005)
-    assert said["IIXDR"].data == ["A", "-2.00", "D", "PTCH", "A", "5.00", "D", "ROLL"]
-    assert float(said["VWVHW"].water_speed_knots) * KNOT == pytest.approx(1.25, abs=0.005)
-    assert float(said["VWVHW"].heading_magnetic) == 13.0
-    assert float(said["SDDBT"].depth_meters) == 12.34
-    assert float(said["SDDBT"].depth_feet) * 0.3048 == pytest.approx(12.34, abs=0.002)
-    assert float(said["SDDBT"].depth_fathoms) * 1.8288 == pytest.approx(12.34, abs=0.01)
-    assert (float(said["SDDPT"].depth), float(said["SDDPT"].offset)) == (12.34, 0.4)
-    assert float(said["YXMTW"].temperature) == 22.5
-    assert (float(said["AGRSA"].rsa_starboard), said["AGRSA"].rsa_starboard_status) == (-7.5, "A")
+    assert sent["IIXDR"].data == ["A", "-2.00", "D", "PTCH", "A", "5.00", "D", "ROLL"]
+    assert float(sent["VWVHW"].water_speed_knots) * KNOT == pytest.approx(1.25, abs=0.005)
+    assert float(sent["VWVHW"].heading_magnetic) == 13.0
+    assert float(sent["SDDBT"].depth_meters) == 12.34
+    assert float(sent["SDDBT"].depth_feet) * 0.3048 == pytest.approx(12.34, abs=0.002)
+    assert float(sent["SDDBT"].depth_fathoms) * 1.8288 == pytest.approx(12.34, abs=0.01)
+    assert (float(sent["SDDPT"].depth), float(sent["SDDPT"].offset)) == (12.34, 0.4)
+    assert float(sent["YXMTW"].temperature) == 22.5
+    assert (float(sent["AGRSA"].rsa_starboard), sent["AGRSA"].rsa_starboard_status) == (-7.5, "A")
 
 
 def test_what_is_not_valid_is_empty_and_says_so():
     bench = Bench(**HOME)
     bench.set(**{name: value for name, value in VALID.items() if not name.endswith("_valid")})
-    said = read(bench.run(0.1))
-    assert len(said) == len(ALL.split(";"))
-    assert (said["GPRMC"].status, said["GPRMC"].mode_indicator) == ("V", "N")
-    assert said["GPRMC"].is_valid is False
-    assert (said["GPGGA"].gps_qual, said["GPVTG"].faa_mode) == (0, "N")
+    sent = read(bench.run(0.1))
+    assert len(sent) == len(ALL.split(";"))
+    assert (sent["GPRMC"].status, sent["GPRMC"].mode_indicator) == ("V", "N")
+    assert sent["GPRMC"].is_valid is False
+    assert (sent["GPGGA"].gps_qual, sent["GPVTG"].faa_mode) == (0, "N")
     for name in ("GPRMC", "GPGGA"):
-        assert (said[name].lat, said[name].lat_dir, said[name].lon, said[name].lon_dir) == ("",) * 4
+        assert (sent[name].lat, sent[name].lat_dir, sent[name].lon, sent[name].lon_dir) == ("",) * 4
     for name in ("TIROT", "WIMWV-R", "WIMWV-T"):
-        assert said[name].status == "V"
-    assert said["AGRSA"].rsa_starboard_status == "V"
+        assert sent[name].status == "V"
+    assert sent["AGRSA"].rsa_starboard_status == "V"
     for name, field in {
         "GPRMC": "spd_over_grnd",
         "GPVTG": "true_track",
@@ -88,7 +88,7 @@ def test_what_is_not_valid_is_empty_and_says_so():
         "YXMTW": "temperature",
         "AGRSA": "rsa_starboard",
     }.items():
-        assert not getattr(said[name], field), name
+        assert not getattr(sent[name], field), name
 
 
 def test_a_reading_that_fails_and_comes_back():
@@ -123,26 +123,26 @@ def test_all_values_come_back(latitude, longitude, heading, speed, variation, ti
         heading=heading,
         apparent_wind=(abs(speed), heading),
     )
-    said = read(
+    sent = read(
         [
             encode("GP", name[:3], SENTENCES[name](readings))
             for name in ("RMC", "GGA", "HDT", "HDG", "MWV-R")
         ]
     )
     for name in ("GPRMC", "GPGGA"):
-        assert said[name].latitude == pytest.approx(latitude, abs=1e-7)
-        assert said[name].longitude == pytest.approx(longitude, abs=1e-7)
-        assert float(said[name].lat[-8:]) < 60.0
+        assert sent[name].latitude == pytest.approx(latitude, abs=1e-7)
+        assert sent[name].longitude == pytest.approx(longitude, abs=1e-7)
+        assert float(sent[name].lat[-8:]) < 60.0
     for text, wanted in (
-        (said["GPHDT"].heading, heading),
-        (said["GPHDG"].heading, heading - variation),
-        (said["GPMWV-R"].wind_angle, heading),
+        (sent["GPHDT"].heading, heading),
+        (sent["GPHDG"].heading, heading - variation),
+        (sent["GPMWV-R"].wind_angle, heading),
     ):
         assert 0.0 <= float(text) < 360.0
         away = (float(text) - math.degrees(wanted) + 180.0) % 360.0 - 180.0
         assert away == pytest.approx(0.0, abs=0.0051)
-    assert said["GPRMC"].spd_over_grnd >= 0.0
-    assert said["GPRMC"].datetime.date() == time.date()
+    assert sent["GPRMC"].spd_over_grnd >= 0.0
+    assert sent["GPRMC"].datetime.date() == time.date()
 
 
 def test_rates_do_not_depend_on_the_step():
@@ -151,7 +151,7 @@ def test_rates_do_not_depend_on_the_step():
         bench = Bench(**HOME, sentences="GPRMC 1; HEHDT 0.1; WIMWV-R 0.25")
         bench.set(**VALID)
         bench.run(10.0, step_ns)
-        runs.append(bench.said)
+        runs.append(bench.sent)
     assert runs[0] == runs[1] == runs[2]
     times = {
         name: [when for when, data in runs[0] if name in data] for name in (b"RMC", b"HDT", b"MWV")
@@ -162,7 +162,7 @@ def test_rates_do_not_depend_on_the_step():
 
 
 @pytest.mark.parametrize(
-    ("values", "said"),
+    ("values", "sent"),
     [
         ({"sentences": "GPRMV 1"}, "unknown sentence 'RMV'; did you mean 'RMC'"),
         ({"sentences": "GPMWV 1"}, "did you mean 'MWV-T' or 'MWV-R'"),
@@ -175,10 +175,10 @@ def test_rates_do_not_depend_on_the_step():
         ({"links": "serial:/dev/nowhere:4800"}, "'serial:/dev/nowhere:4800'"),
     ],
 )
-def test_mistakes(values, said):
+def test_mistakes(values, sent):
     with pytest.raises(InputError) as caught:
         Bench(**values)
-    assert said in str(caught.value)
+    assert sent in str(caught.value)
     assert str(caught.value).startswith("nmea")
 
 

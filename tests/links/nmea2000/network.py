@@ -26,7 +26,7 @@ def node(name: str = "node", **settings: Any) -> Nmea2000:
 
 
 class Network:
-    """Nodes by name, and one more on the bus that only listens and says what a test wants.
+    """Nodes by name, and one more on the bus that only listens and sends what a test wants.
 
     ``frames`` has (time in ns, frame) of all that was on the bus, ``messages`` what it means.
     """
@@ -55,7 +55,7 @@ class Network:
         self._tap = CanNode(self._can)
         self._decoder, self._encoder = Decoder({}), Encoder({})
 
-    def say(self, message: Message) -> None:
+    def send_message(self, message: Message) -> None:
         for frame in self._encoder.encode(message):
             self.send(frame)
 
@@ -71,17 +71,17 @@ class Network:
                 each.set("rx", self.bus.get(f"rx.n{k}"))
             tap = len(self.nodes) + 1
             self.bus.set(f"tx.n{tap}", self._tap.flush())
-            self._hear(self.bus.get(f"rx.n{tap}"))
+            self._receive(self.bus.get(f"rx.n{tap}"))
             for each in (*self.nodes.values(), self.bus):
                 each.advance(t, h)
             self.now += self.step_ns
 
-    def said(self, pgn: int, source: int | None = None) -> list[Message]:
+    def sent(self, pgn: int, source: int | None = None) -> list[Message]:
         """Return the messages of a PGN that were on the bus."""
         return [m for _, m in self.messages if m.pgn == pgn and source in (None, m.source)]
 
-    def _hear(self, text: str) -> None:
-        for when, operation in self._tap.hear(text):
+    def _receive(self, text: str) -> None:
+        for when, operation in self._tap.receive(text):
             if isinstance(operation, Transmit):
                 self.frames.append((when, operation.frame))
                 whole = self._decoder.decode(operation.frame)

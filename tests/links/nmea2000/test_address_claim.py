@@ -1,4 +1,4 @@
-"""Address claiming in simulated time, without a bus; canboat's own claimer as a peer."""
+"""Address claiming in simulated time, without a bus, with canboat's own claimer as another node."""
 
 import copy
 import heapq
@@ -28,8 +28,8 @@ class Ours:
         self.claim.start(now)
         return []
 
-    def hear(self, now, source, name):
-        self.claim.hear_claim(now, source, name)
+    def receive(self, now, source, name):
+        self.claim.receive_claim(now, source, name)
 
     def advance(self, now):
         self.claim.tick(now + 1)
@@ -55,7 +55,7 @@ class Canboat:
     def start(self, now):
         self._keep(self.claimer.start(now // MS))
 
-    def hear(self, now, source, name):
+    def receive(self, now, source, name):
         self._keep(self.claimer.on_address_claim(now // MS, source, name))
 
     def advance(self, now):
@@ -76,9 +76,9 @@ class Canboat:
 
 
 def settle(nodes, until_ms=SETTLED_MS, start_ms=None):
-    """Run nodes on a wire that delivers to all others; return [(time in ns, name, source)]."""
+    """Run nodes on a bus that delivers to all others; return [(time in ns, name, source)]."""
     starts = [((start_ms or {}).get(k, 0)) * MS for k in range(len(nodes))]
-    said, on_the_way, now = [], [], 0
+    sent, on_the_way, now = [], [], 0
     while now < until_ms * MS:
         for node, start in zip(nodes, starts, strict=True):
             if now == start:
@@ -87,17 +87,17 @@ def settle(nodes, until_ms=SETTLED_MS, start_ms=None):
             _, sender, source = heapq.heappop(on_the_way)
             for other, start in zip(nodes, starts, strict=True):
                 if other is not nodes[sender] and now >= start:
-                    other.hear(now, source, nodes[sender].name)
+                    other.receive(now, source, nodes[sender].name)
         for k, node in enumerate(nodes):
             if now >= starts[k]:
                 for when, source in node.advance(now):
-                    said.append((when, node.name, source))
+                    sent.append((when, node.name, source))
                     heapq.heappush(on_the_way, (max(when, now) + FRAME_NS, k, source))
         coming = [*starts, *(when for when, *_ in on_the_way)]
         coming += [node.due for node, start in zip(nodes, starts, strict=True) if now >= start]
         # To the next whole millisecond in which something happens.
         now = -(-min((when for when in coming if when > now), default=until_ms * MS) // MS) * MS
-    return said
+    return sent
 
 
 def test_alone_it_waits_at_random_claims_and_uses_the_address_250_ms_later():
@@ -117,25 +117,28 @@ def test_alone_it_waits_at_random_claims_and_uses_the_address_250_ms_later():
 
 def test_of_two_the_lower_name_keeps_the_address_and_the_other_takes_the_next():
     low, high = Ours(100, 35, delays=(0.9,)), Ours(200, 35, delays=(0.1,))
-    said = settle([low, high])
+    sent = settle([low, high])
     assert (low.address, high.address) == (35, 36)
-    assert [(name, source) for _, name, source in said] == [(200, 35), (100, 35), (200, 36)]
+    assert [(name, source) for _, name, source in sent] == [(200, 35), (100, 35), (200, 36)]
     assert high.claim.contests == 1
 
 
 def test_the_lower_name_defends_what_it_has():
     low, high = Ours(100, 35), Ours(200, 35)
-    said = settle([low, high], start_ms={1: 1000})
+    sent = settle([low, high], start_ms={1: 1000})
     assert (low.address, high.address) == (35, 36)
-    # The newcomer has received nothing before it claims; it is told, and goes.
-    assert [(name, source) for _, name, source in said] == [
-        *((100, 35), (200, 35), (100, 35), (200, 36))
+    # The newcomer has received nothing before it claims; it receives the claim, and moves.
+    assert [(name, source) for _, name, source in sent] == [
+        (100, 35),
+        (200, 35),
+        (100, 35),
+        (200, 36),
     ]
 
 
 @pytest.mark.parametrize(("until_ms", "address"), [(2300, None), (2400, 36)])
 def test_a_late_lower_name_takes_an_address_in_use(until_ms, address):
-    """Who had it moves on, and is silent for 250 ms: from 2077 ms on here."""
+    """Its holder moves on, and is silent for 250 ms: from 2077 ms on here."""
     low, high = Ours(100, 35), Ours(200, 35)
     settle([low, high], start_ms={0: 2000}, until_ms=until_ms)
     assert high.address == address
@@ -187,20 +190,20 @@ def test_it_settles_with_canboats_claimer(ours, theirs, arbitrary, late):
     assert one.address is None or one.address != other.address
     if ours < theirs:
         assert one.address == 35
-    elif late > 1250:  # it has its address; before, it gives way to whom it hears in its scan
+    elif late > 1250:  # it has its address; before, it gives way to claims in its scan
         assert other.address == 35
         assert one.address == (36 if arbitrary[0] else None)
 
 
 def test_one_that_cannot_move_says_so_and_is_silent():
     low, fixed = Ours(100, 35, delays=(0.0,)), Ours(200, 35, arbitrary=False, delays=(0.5, 1.0))
-    said = settle([low, fixed], start_ms={1: 1000})
+    sent = settle([low, fixed], start_ms={1: 1000})
     assert fixed.address is None
     assert fixed.claim.state == "without"
-    (refusal,) = [when for when, name, source in said if (name, source) == (200, 254)]
-    defended = max(when for when, name, source in said if (name, source) == (100, 35))
+    (refusal,) = [when for when, name, source in sent if (name, source) == (200, 254)]
+    defended = max(when for when, name, source in sent if (name, source) == (100, 35))
     assert 153 * MS <= refusal - defended <= 155 * MS  # the whole random delay, drawn as 1
-    fixed.claim.hear_request(9_000 * MS)
+    fixed.claim.receive_request(9_000 * MS)
     fixed.claim.tick(9_154 * MS)
     ((when, source),) = fixed.claim.take()
     assert source == 254
@@ -211,7 +214,7 @@ def test_a_node_with_no_free_address_cannot_claim():
     node = Ours(1000, 35)
     node.start(0)
     for address in range(252):
-        node.hear(0, address, address)
+        node.receive(0, address, address)
     node.claim.tick(400 * MS)
     assert [source for _, source in node.claim.take()] == [254]
     assert node.address is None
@@ -219,7 +222,7 @@ def test_a_node_with_no_free_address_cannot_claim():
     other = Ours(1000, 35)
     other.start(0)
     for address in set(range(252)) - {34}:
-        other.hear(0, address, address)
+        other.receive(0, address, address)
     other.claim.tick(400 * MS)
     assert [source for _, source in other.claim.take()] == [34]
 
@@ -227,8 +230,8 @@ def test_a_node_with_no_free_address_cannot_claim():
 def test_addresses_that_were_only_received_sending_are_left_alone():
     node = Ours(1000, 35)
     node.start(0)
-    node.claim.hear_source(36)
-    node.hear(0, 35, 1)
+    node.claim.receive_source(36)
+    node.receive(0, 35, 1)
     node.claim.tick(400 * MS)
     assert node.claim.take()[0][1] == 37
 
@@ -236,14 +239,14 @@ def test_addresses_that_were_only_received_sending_are_left_alone():
 def test_a_request_is_answered_with_the_claim():
     node = Ours(100, 35)
     settle([node])
-    node.claim.hear_request(6_000 * MS)
+    node.claim.receive_request(6_000 * MS)
     assert node.claim.take() == [(6_000 * MS, 35)]
 
 
 def test_a_twin_is_counted_and_not_fought():
     one, other = Ours(100, 35, delays=(0.1,)), Ours(100, 35, delays=(0.9,))
-    said = settle([one, other])
-    assert len(said) == 2
+    sent = settle([one, other])
+    assert len(sent) == 2
     assert (one.claim.twins, other.claim.twins) == (1, 1)
 
 
@@ -251,12 +254,12 @@ def test_a_twin_is_counted_and_not_fought():
 def test_a_copy_of_its_memory_goes_on_in_the_same_way(at_ms):
     one = Ours(200, 35)
     one.start(0)
-    one.hear(0, 40, 5)
+    one.receive(0, 40, 5)
     one.claim.tick(at_ms * MS)
     other = Ours(200, 35)
     other.memory.update(copy.deepcopy(one.memory))
     for each in (one, other):
-        each.hear(at_ms * MS, 35, 100)
+        each.receive(at_ms * MS, 35, 100)
         each.claim.tick(3_000 * MS)
     assert one.claim.take() == other.claim.take()
     assert one.address == other.address == 36

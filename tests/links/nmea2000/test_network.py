@@ -15,11 +15,11 @@ from seatrial.links.nmea2000.name import name_of
 from .network import Network, node
 
 COMPASS = {"sends": "127250", "heading": 1.0, "device_function": 140.0, "device_class": 60.0}
-ASKER = 200
+REQUESTER = 200
 
 
-def ask(network, pgn, to):
-    network.say(Message(59904, {"pgn": pgn}, source=ASKER, destination=to))
+def request(network, pgn, to):
+    network.send_message(Message(59904, {"pgn": pgn}, source=REQUESTER, destination=to))
 
 
 def after(network, seconds):
@@ -38,7 +38,7 @@ def settled():
 
 
 def test_the_lower_name_has_the_address_and_nobody_sends_without_one(settled):
-    names = {m.source: name_of(m.fields) for m in settled.said(60928)}
+    names = {m.source: name_of(m.fields) for m in settled.sent(60928)}
     compass, pilot = (settled.nodes[n].get("claimed_address") for n in ("compass", "pilot"))
     assert {compass, pilot} == {35, 36}
     assert names[35] < names[36]
@@ -67,63 +67,67 @@ def test_the_interval_is_exact_and_the_sid_counts(settled):
 def test_requests_are_answered(settled):
     compass = settled.nodes["compass"].get("claimed_address")
     for pgn in (126996, 126998, 126464, 126993, 60928):
-        ask(settled, pgn, compass)
+        request(settled, pgn, compass)
     found = after(settled, 0.3)
-    said = {m.pgn: m for m in found if m.source == compass}
-    assert said[126996].fields["modelId"] == "seatrial"
-    assert said[126996].fields["productCode"] == 1
-    assert said[126998].fields["manufacturerInformation"] == "simulated"
-    assert said[126993].fields["dataTransmitOffset"] == 60.0
-    assert said[60928].fields["deviceFunction"] == 140
+    sent = {m.pgn: m for m in found if m.source == compass}
+    assert sent[126996].fields["modelId"] == "seatrial"
+    assert sent[126996].fields["productCode"] == 1
+    assert sent[126998].fields["manufacturerInformation"] == "simulated"
+    assert sent[126993].fields["dataTransmitOffset"] == 60.0
+    assert sent[60928].fields["deviceFunction"] == 140
     lists = {
         m.fields["functionCode"]: {i["pgn"] for i in m.items} for m in found if m.pgn == 126464
     }
     assert lists[0] == {127250, *NETWORK}
     assert {127245, 127237, 59904} <= lists[1]
-    assert all(m.destination == ASKER for m in found if m.pgn == 126464)
+    assert all(m.destination == REQUESTER for m in found if m.pgn == 126464)
 
 
 def test_a_request_for_claims_to_all_is_answered_by_all(settled):
-    ask(settled, 60928, GLOBAL)
+    request(settled, 60928, GLOBAL)
     claims = [m.source for m in after(settled, 0.2) if m.pgn == 60928]
     assert sorted(claims) == [35, 36]
 
 
-def test_what_it_does_not_have_is_refused_unless_all_were_asked(settled):
+def test_what_it_does_not_have_is_refused_unless_the_request_was_to_all(settled):
     compass = settled.nodes["compass"].get("claimed_address")
-    ask(settled, 130306, compass)
+    request(settled, 130306, compass)
     (refusal,) = [m for m in after(settled, 0.2) if m.pgn == 59392]
     assert (refusal.source, refusal.fields["control"], refusal.fields["pgn"]) == (
         compass,
         1,
         130306,
     )
-    ask(settled, 130306, GLOBAL)
+    request(settled, 130306, GLOBAL)
     assert not [m for m in after(settled, 0.2) if m.pgn == 59392]
 
 
-def test_data_can_be_asked_for(settled):
+def test_data_can_be_requested(settled):
     network = Network({"compass": {**COMPASS, "intervals": "127250 0"}})
     network.run(1.0)
-    assert not network.said(127250)
-    ask(network, 127250, GLOBAL)
+    assert not network.sent(127250)
+    request(network, 127250, GLOBAL)
     network.run(0.1)
-    (found,) = network.said(127250)
+    (found,) = network.sent(127250)
     assert found.fields["heading"] == pytest.approx(1.0, abs=5e-5)
 
 
 def request_interval(network, to, pgn, seconds):
     fields = {"functionCode": 0, "pgn": pgn, "transmissionInterval": seconds}
     fields |= {"numberOfParameters": 0}
-    message = Message(126208, fields, ASKER, to, id="nmeaRequestGroupFunction")
-    network.say(message)
+    message = Message(126208, fields, REQUESTER, to, id="nmeaRequestGroupFunction")
+    network.send_message(message)
 
 
 @pytest.mark.parametrize(
     ("pgn", "seconds", "errors", "count"),
     [
-        *((127250, 0.5, (0, 0), 4), (127250, 0.0, (0, 0), 1), (127250, 0.001, (0, 2), 20)),
-        *((130306, 0.5, (2, 0), 20), (126720, 0.5, (1, 0), 20), (127250, None, (0, 0), 21)),
+        (127250, 0.5, (0, 0), 4),
+        (127250, 0.0, (0, 0), 1),
+        (127250, 0.001, (0, 2), 20),
+        (130306, 0.5, (2, 0), 20),
+        (126720, 0.5, (1, 0), 20),
+        (127250, None, (0, 0), 21),
     ],
 )
 def test_intervals_are_changed_over_the_bus(pgn, seconds, errors, count):
@@ -134,7 +138,7 @@ def test_intervals_are_changed_over_the_bus(pgn, seconds, errors, count):
     found = after(network, 2.02)
     (answer,) = [m for m in found if m.pgn == 126208 and m.source == 35]
     assert answer.id == "nmeaAcknowledgeGroupFunction"
-    assert answer.destination == ASKER
+    assert answer.destination == REQUESTER
     names = ("pgnErrorCode", "transmissionIntervalPriorityErrorCode")
     assert tuple(answer.fields[name] for name in names) == errors
     assert abs(len([m for m in found if m.pgn == 127250]) - count) <= 1
@@ -150,7 +154,9 @@ def test_fields_are_commanded_over_the_bus():
         {"parameter": 99, "value": 1},
     )
     fields = {"functionCode": 1, "pgn": 127237, "priority": 8, "numberOfParameters": 2}
-    network.say(Message(126208, fields, ASKER, 35, items[:2], id="nmeaCommandGroupFunction"))
+    network.send_message(
+        Message(126208, fields, REQUESTER, 35, items[:2], id="nmeaCommandGroupFunction")
+    )
     found = after(network, 0.2)
     pilot = network.nodes["pilot"]
     assert pilot.get("bus_heading_to_steer") == pytest.approx(1.25, abs=5e-5)
@@ -195,7 +201,7 @@ def test_a_claim_in_the_middle_of_a_fast_packet_ends_it():
         network.run(0.03)  # a claim has a low priority
     reader = network.nodes["reader"]
     assert not reader.get("bus_position_valid")
-    # Without the claim, nobody could tell.
+    # Without the claim, no node could know.
     for frame in (*one[:3], *other[3:]):
         network.send(frame)
     network.run(0.2)
@@ -206,13 +212,13 @@ def test_a_node_that_loses_its_address_in_a_fast_packet_goes_on_from_another():
     network = Network({"gnss": {"sends": "129029", "position_n": [0.0, 0.0, 0.0]}})
     network.run(1.005)  # the packet of t = 1 s is being sent
     lower = dict.fromkeys(network.nodes["gnss"]._identity.claim(), 0)
-    network.say(Message(60928, lower, source=35))
+    network.send_message(Message(60928, lower, source=35))
     network.run(2.0)
     gnss = network.nodes["gnss"]
     assert gnss.get("claimed_address") == 36
     assert gnss.get("contests") == 1
-    assert {m.source for m in network.said(129029)} <= {35, 36}
-    assert network.said(129029, 36)
+    assert {m.source for m in network.sent(129029)} <= {35, 36}
+    assert network.sent(129029, 36)
     silent = [t for t, m in network.messages if m.source in (35, 36) and m.pgn in DATA]
     moved = max(t for t, m in network.messages if m.pgn == 60928 and m.source == 36)
     assert not [t for t in silent if moved < t < moved + 250_000_000]
@@ -232,7 +238,7 @@ def test_five_percent_of_loss_gives_no_wrong_value():
     network.run(15.0)
     counts = {}
     for pgn in (127250, 129029, 127237):
-        found = network.said(pgn)
+        found = network.sent(pgn)
         counts[pgn] = len(found) / 147
         for each in found:
             known = {
@@ -247,7 +253,7 @@ def test_five_percent_of_loss_gives_no_wrong_value():
 
 
 def test_a_copy_of_the_state_goes_on_to_the_same_bytes():
-    """Also in the middle of a fast packet, for who reads and who sends."""
+    """Also in the middle of a fast packet, for reader and sender."""
     gnss = {"sends": "129029 127250 129025", "position_n": [1.0, 2.0, 3.0]}
     network = Network({"gnss": gnss, "reader": {}}, step_ns=1_000_000)
     network.run(1.0)

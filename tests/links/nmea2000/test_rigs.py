@@ -64,7 +64,7 @@ def check(one, other):
 def test_a_chart_plotter_turns_the_ship_as_without_a_bus(tmp_path):
     one, other = compared(tmp_path, 40, 5)
     check(one, other)
-    # What the pilot hears is what the plant does, an interval and three steps before.
+    # What the pilot receives is what the plant does, an interval and three steps before.
     late = np.interp(one["time"] - 0.15, one["time"], one["ship.attitude.psi"])
     received = np.remainder(one["pilot.bus_heading"] + math.pi, math.tau) - math.pi
     assert np.max(np.abs(received[4:] - late[4:])) < 1e-4 + 0.15 * np.max(
@@ -87,7 +87,7 @@ def test_shipped_trials_hold(name, tmp_path):
     assert [name for name, _, verdict in result.verdicts if not verdict.passed] == []
 
 
-def test_the_catamaran_goes_by_what_it_hears(tmp_path):
+def test_the_catamaran_goes_by_what_it_receives(tmp_path):
     """As long as its bus works; guidance stops without a heading."""
     trial = load_trial("hydrone-nmea2000-square").changed(
         {"stop": "9 s", "heading_sensor.silent": True}, "test"

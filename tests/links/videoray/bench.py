@@ -38,7 +38,7 @@ def request(node=1, flags=0, address=0, payload=b""):
     return Frame(False, node, flags, address, payload)
 
 
-def ask(node, **fields):
+def exchange(node, **fields):
     """Return the payload of the answer after the type of device; None if there is none."""
     answer = node.handle(request(**fields))
     if answer is None:
@@ -48,7 +48,7 @@ def ask(node, **fields):
     return answer.payload[1:]
 
 
-class Wired:
+class Line:
     """A component on a line: bytes in, bytes out, in simulated time."""
 
     def __init__(self, cls, **parameters):
@@ -65,11 +65,11 @@ class Wired:
     def now(self):
         return self.steps * 10_000_000
 
-    def say(self, data, at_ns=None):
+    def send(self, data, at_ns=None):
         Outbox(self._out).put(self.now if at_ns is None else at_ns, data)
 
     def step(self, count=1):
-        """Step and return (time ns, bytes) of what was said."""
+        """Step and return (time ns, bytes) of what was sent."""
         received = []
         for _ in range(count):
             self.component.set("rx", Outbox(self._out).flush())
@@ -78,9 +78,9 @@ class Wired:
             received += Inbox(self._in).take(self.component.get("tx"))
         return received
 
-    def ask(self, frame, steps=5, dialect=PRO4):
-        """Say a request and return the frames that come back."""
-        self.say(encode(frame, dialect))
+    def exchange(self, frame, steps=5, dialect=PRO4):
+        """Send a request and return the frames that come back."""
+        self.send(encode(frame, dialect))
         return [f for _, data in self.step(steps) for f in frames(data, dialect)]
 
     def __getitem__(self, name):

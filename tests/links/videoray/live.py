@@ -50,9 +50,9 @@ class LiveRov:
         begun, steps = time.monotonic(), 0
         try:
             while not self._stop.is_set():
-                said, received = self.rov.get("tx"), self.gateway.get("tx")
+                sent, received = self.rov.get("tx"), self.gateway.get("tx")
                 self.rov.set("rx", received)
-                self.gateway.set("rx", said)
+                self.gateway.set("rx", sent)
                 for component in (self.rov, self.gateway):
                     component.advance(steps * STEP, STEP)
                 steps += 1

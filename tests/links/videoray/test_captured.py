@@ -10,7 +10,7 @@ from seatrial.links.videoray.replies import read, read_memory
 from seatrial.links.videoray.rov import Pro4Rov
 from seatrial.links.videoray.vrcsr import Health, ThrusterNode, propulsion_request, read_health
 
-from .bench import PACKETS, Wired, frames, make_node
+from .bench import PACKETS, Line, frames, make_node
 
 PAIRS = list(zip(PACKETS[::2], PACKETS[1::2], strict=True))
 M5_COMMAND = bytes.fromhex("f55f8102f00a807cd6ecaa010000003f0000803e9a4c1893")
@@ -26,7 +26,7 @@ def memory_behind(number):
     if number < 3:
         return memory_of(PACKETS[5])
     memory = memory_of(PACKETS[5] if number < 4 else PACKETS[9])
-    if number == 3:  # reply 5: what it says itself
+    if number == 3:  # reply 5: its own content
         (frame,) = frames(PACKETS[7])
         for name, value in read(5, frame.payload[1:]).values.items():
             csr.put(memory, name, csr.BY_NAME[name].clipped(value))
@@ -90,9 +90,9 @@ def test_configuration():
 
 
 def test_the_component_answers_as_captured_where_no_measurement_matters():
-    wired = Wired(Pro4Rov)
-    wired.say(PACKETS[2])
-    assert [data for _, data in wired.step(5)] == [PACKETS[3]]
+    line = Line(Pro4Rov)
+    line.send(PACKETS[2])
+    assert [data for _, data in line.step(5)] == [PACKETS[3]]
 
 
 def test_propulsion_command_of_the_m5():

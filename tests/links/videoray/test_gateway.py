@@ -11,10 +11,10 @@ from seatrial.errors import InputError
 from seatrial.links.hardware import ALLOWED
 from seatrial.links.serial_gateway import SerialGateway
 from seatrial.links.videoray.frame import encode
-from seatrial.links.videoray.station import NEUTRAL, Orders
+from seatrial.links.videoray.station import NEUTRAL, Commands
 from seatrial.links.videoray.topside import Pro4Topside
 
-from .bench import PACKETS, Wired, request
+from .bench import PACKETS, Line, request
 from .live import STEP, WAIT_S, LiveRov
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="pseudo-terminals")
@@ -58,9 +58,9 @@ def cycles(topside, gateway, seconds):
     """Run a topside in real time; return the round trips of its cycles in wall time, s."""
     begun, steps, trips, asked, answered = time.monotonic(), 0, [], 0.0, 0
     while steps * STEP < seconds:
-        said, received = topside.get("tx"), gateway.get("tx")
+        sent, received = topside.get("tx"), gateway.get("tx")
         topside.set("rx", received)
-        gateway.set("rx", said)
+        gateway.set("rx", sent)
         before = topside.get("cycles")
         for component in (topside, gateway):
             component.advance(steps * STEP, STEP)
@@ -99,9 +99,9 @@ def test_the_safe_state_of_the_profile_stops_the_thrusters():
 
     safe_state = load_profile("videoray").parameters("links.topside-port")["safe_state"]
     assert bytes.fromhex(safe_state) == encode(NEUTRAL)
-    wired = Wired(Pro4Topside)
-    assert request(payload=Orders().block()) == NEUTRAL
-    assert wired["connected"] is False
+    line = Line(Pro4Topside)
+    assert request(payload=Commands().block()) == NEUTRAL
+    assert line["connected"] is False
 
 
 def test_a_real_port_needs_leave(monkeypatch):
@@ -117,6 +117,6 @@ def test_a_real_port_needs_leave(monkeypatch):
         ({"safe_state": "FAA"}, "is not bytes such as"),
     ],
 )
-def test_mistakes_are_told(parameters, message):
+def test_mistakes_are_reported(parameters, message):
     with pytest.raises(InputError, match=message):
         started(SerialGateway, **parameters)

@@ -8,7 +8,7 @@ from seatrial.links.videoray.frame import Frame
 from seatrial.links.videoray.identity import make_identity
 from seatrial.links.videoray.replies import FIELDS
 
-from .bench import BOARDS, ask, make_node, request
+from .bench import BOARDS, exchange, make_node, request
 
 SERIAL = b"J14461".ljust(16, b"\0")
 BLOCK = bytes(range(15))
@@ -116,14 +116,14 @@ def test_a_read_of_n_bytes(count, address):
 
 
 def test_the_reply_comes_after_the_write():
-    assert ask(make_node(), flags=0x8F, payload=BLOCK) == BLOCK
+    assert exchange(make_node(), flags=0x8F, payload=BLOCK) == BLOCK
     config = bytes.fromhex("0a00")
-    assert ask(make_node(), flags=0x82, address=0x14, payload=config) == config
+    assert exchange(make_node(), flags=0x82, address=0x14, payload=config) == config
 
 
 def test_the_read_begins_where_the_write_did():
     """One address serves both."""
-    assert ask(make_node(), flags=0x82, address=6, payload=b"\x32\x0a") == b"\x32\x0a"
+    assert exchange(make_node(), flags=0x82, address=6, payload=b"\x32\x0a") == b"\x32\x0a"
 
 
 def test_a_write_across_the_end_of_the_memory_stops_there():
@@ -134,7 +134,7 @@ def test_a_write_across_the_end_of_the_memory_stops_there():
 
 
 def test_a_read_across_the_end_of_the_memory_has_the_special_registers():
-    found = ask(make_node(), flags=0x80 | 18, address=0xEE)
+    found = exchange(make_node(), flags=0x80 | 18, address=0xEE)
     assert found[0xF5 - 0xEE : 0xF7 - 0xEE] == (292).to_bytes(2, "little")
     assert found[0xF8 - 0xEE : 0xFB - 0xEE] == b"\2\6\6"
     assert found[0xFB - 0xEE : 0xFD - 0xEE] == b"\1\1"
@@ -157,13 +157,13 @@ def test_a_read_across_the_end_of_the_memory_has_the_special_registers():
     ],
 )
 def test_whole_special_registers(address, expected):
-    assert ask(make_node(), flags=0x80, address=address) == expected
+    assert exchange(make_node(), flags=0x80, address=address) == expected
 
 
 def test_the_configuration_has_293_bytes_with_the_type_of_device():
     answer = make_node().handle(request(flags=0x80, address=csr.CONFIG))
     assert len(answer.payload) == 293
-    assert ask(make_node(), flags=0x85, address=csr.CONFIG) == answer.payload[1:6]
+    assert exchange(make_node(), flags=0x85, address=csr.CONFIG) == answer.payload[1:6]
 
 
 @pytest.mark.parametrize("new", [2, 0x45, 0x7F])

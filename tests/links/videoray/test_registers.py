@@ -5,14 +5,19 @@ import pytest
 from seatrial.errors import InputError
 from seatrial.links.videoray import registers as csr
 
-from .bench import PACKETS, ask, frames, make_node, request
+from .bench import PACKETS, exchange, frames, make_node, request
 
 every = pytest.mark.parametrize("register", csr.REGISTERS, ids=lambda r: r.name)
 
 # VideoRay's map, its columns "read only" and "non-volatile", and what the device itself measures.
 READ_ONLY = [
-    *(0x13, *range(0x5F, 0x62), *range(0x64, 0xA0), *range(0xB4, 0xCA)),
-    *(0xE3, 0xE4, *range(0xEB, 0xEE)),
+    0x13,
+    *range(0x5F, 0x62),
+    *range(0x64, 0xA0),
+    *range(0xB4, 0xCA),
+    0xE3,
+    0xE4,
+    *range(0xEB, 0xEE),
 ]
 STORED = [*range(0x14, 0x36), *range(0x46, 0x5A), *range(0x88, 0x8A), *range(0x8C, 0x90)]
 
@@ -56,7 +61,7 @@ def test_captured_configuration_is_that_of_a_new_vehicle():
 def test_each_byte_is_written_or_not_as_the_map_says(place):
     node = make_node()
     before = bytes(node.memory)
-    written = ask(node, flags=0x81, address=place, payload=bytes((before[place] ^ 0x55,)))
+    written = exchange(node, flags=0x81, address=place, payload=bytes((before[place] ^ 0x55,)))
     if place in (csr.COMMIT, csr.COMMIT + 1):
         assert written == b"\0"
     elif place in READ_ONLY:
@@ -78,7 +83,7 @@ def test_what_outlives_a_reboot(commits):
         other = make_node(commits=True)
         other.handle(request(payload=everything))
         other.reboot()
-        assert other.memory == factory  # nobody said so
+        assert other.memory == factory  # without a commit
         node.handle(request(address=csr.COMMIT, payload=b"\1\0"))
     node.reboot()
     kept = {a for a in range(csr.TOP) if node.memory[a] == changed[a] != factory[a]}

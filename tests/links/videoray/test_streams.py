@@ -8,7 +8,7 @@ from seatrial.links.videoray.frame import Frame, encode
 from seatrial.links.videoray.player import StreamPlayer
 from seatrial.links.videoray.stream_file import HEAD, Piece, StreamLog, read_stream
 
-from .bench import PACKETS, Wired
+from .bench import PACKETS, Line
 
 PIECES = [Piece(n * 50_000_000, "<" if n % 2 else ">", data) for n, data in enumerate(PACKETS)]
 
@@ -60,7 +60,7 @@ def test_some_frames_as_text(frame, text):
     assert describe(frame) == text
 
 
-def test_broken_bytes_are_told():
+def test_broken_bytes_are_reported():
     pieces = [
         Piece(0, ">", PACKETS[0][:-1] + b"\1"),
         Piece(10**9, ">", encode(Frame(False, 1, 1, 0))),
@@ -94,8 +94,8 @@ def test_binary_data_and_missing_files_are_refused(tmp_path):
 
 
 @pytest.mark.parametrize(("direction", "first"), [("to-device", 0), ("from-device", 1)])
-def test_the_player_says_it_at_the_same_times(recorded, direction, first):
-    class Playing(Wired):
+def test_the_player_sends_it_at_the_same_times(recorded, direction, first):
+    class Playing(Line):
         def step(self, count=1):
             from seatrial.links.text import Inbox
 
@@ -111,7 +111,7 @@ def test_the_player_says_it_at_the_same_times(recorded, direction, first):
     assert playing["played"] == 5
 
 
-def test_a_player_without_a_file_says_nothing():
-    player = Wired(StreamPlayer).component
+def test_a_player_without_a_file_sends_nothing():
+    player = Line(StreamPlayer).component
     player.advance(0.0, 0.01)
     assert (player.get("tx"), player.get("played")) == ("", 0)

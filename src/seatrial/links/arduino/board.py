@@ -1,6 +1,6 @@
-"""A simulated board: a program of its own that runs until it is told, over two pipes.
+"""Simulated board: a process that runs up to a given cycle, over two pipes.
 
-A sketch that crashes, hangs or overruns its stack takes nothing else along. What a board says is
+A sketch that crashes, hangs or overruns its stack takes nothing else along. What a board sends is
 a list of events, each with the CPU cycle at which it happened.
 """
 
@@ -26,7 +26,7 @@ UART, EDGE, DUTY = ord("T"), ord("P"), ord("D")
 """Kinds of events: a byte has left a UART; a pin has another level, or is modulated."""
 
 _ANSWER_S = 20.0
-"""Wall clock: a program that takes this long for one step hangs where it cannot say so."""
+"""Wall clock: a program that takes this long for one step hangs where it cannot report it."""
 
 Event = tuple[int, int, int, int]
 """Kind, index, value, cycle."""
@@ -34,7 +34,7 @@ Event = tuple[int, int, int, int]
 
 @dataclass
 class Inputs:
-    """What a board is told before it runs on: see ``shared/link.h``."""
+    """Records sent to a board before it runs on: see ``shared/link.h``."""
 
     data: bytearray = field(default_factory=bytearray)
 
@@ -77,7 +77,7 @@ class Board:
         """
         request = struct.pack("<IQ", 8 + len(inputs.data), target) + inputs.data
         try:
-            # A program that could not begin has said why and is gone before it is asked.
+            # A program that could not begin has reported why and is gone before the request.
             with contextlib.suppress(BrokenPipeError):
                 self._write(request)
             size = int.from_bytes(self._read(4), "little")
@@ -87,10 +87,10 @@ class Board:
         reached, count = struct.unpack_from("<QI", answer)
         end = 12 + count * _EVENT.size
         if size > end:
-            said = answer[end:].decode(errors="replace")
+            output = answer[end:].decode(errors="replace")
             seconds = reached / 16e6
             raise SimulationError(
-                f"{self.name}: at {seconds:.6f} s of its time {self._placed(said)}"
+                f"{self.name}: at {seconds:.6f} s of its time {self._placed(output)}"
             )
         return list(_EVENT.iter_unpack(answer[12:end]))
 
@@ -136,14 +136,14 @@ class Board:
         code = self._process.returncode
         return f"ended by signal {-code}" if code is not None and code < 0 else f"ended ({code})"
 
-    def _placed(self, said: str) -> str:
+    def _placed(self, output: str) -> str:
         """Return a message with the line of the sketch in the place of an address."""
-        match = _ADDRESS.search(said)
+        match = _ADDRESS.search(output)
         if match is None:
-            return said
+            return output
         command = ["addr2line", "-e", str(self._program), match[1]]
         with contextlib.suppress(OSError):
             found = subprocess.run(command, capture_output=True, text=True, check=False)
             if (line := found.stdout.strip().split(" (")[0]) and not line.startswith("?"):
-                return said.replace(match[0], f" ({line})")
-        return said
+                return output.replace(match[0], f" ({line})")
+        return output

@@ -89,11 +89,11 @@ def _narrowed_copy(sketch: Sketch, scratch: Path) -> tuple[list[Path], list[Path
 
 
 def run(command: list[str], name: str) -> None:
-    """Run a compiler. Raises InputError with what it says, if it refuses."""
+    """Run a compiler. Raises InputError with its output, if it refuses."""
     done = subprocess.run(
         command, capture_output=True, text=True, check=False, env={**os.environ, "LC_ALL": "C"}
     )
     if done.returncode:
-        said = "\n".join(done.stderr.splitlines()[:30])
-        said = "\n".join([said, *advice(said)])
-        raise InputError(f"{name} does not compile:\n{said}")
+        output = "\n".join(done.stderr.splitlines()[:30])
+        output = "\n".join([output, *advice(output)])
+        raise InputError(f"{name} does not compile:\n{output}")

@@ -46,15 +46,15 @@ class Arduino(ArduinoPorts):
     ``attitude``, ``ms5837`` (30BA) the pressure at ``depth`` under one atmosphere. ``PIN soft_rx
     N`` and ``PIN soft_tx N``: the line of UART N is at these pins, for SoftwareSerial.
 
-    **Time.** Inputs count from the beginning of the step on. What happens on pins and lines is
+    **Time.** Inputs apply from the beginning of the step on. What happens on pins and lines is
     stamped with its cycle; an output at t has what happened before t. Bytes that arrive on
     ``rx`` are put on the line one after the other at the baud rate of ``uarts``, not before
     their time and not before the step that has them; those that a UART sends are on ``tx`` when
-    their stop bit is over. A monitor hears what its UART says, and what it types the UART hears
+    their stop bit is over. A monitor receives what its UART sends, and its input goes to the UART
     with the next step, besides what is on ``rx``. Bytes that come or go while a line is ``cut``
     are lost.
 
-    The sketch runs in a program of its own. If it crashes, overruns its stack, runs for
+    The sketch runs in a process of its own. If it crashes, overruns its stack, runs for
     ``patience`` without returning or calling anything, or opens a UART at another rate than
     its line has, the step raises SimulationError that says where. It cannot be rolled back.
 
@@ -88,7 +88,7 @@ class Arduino(ArduinoPorts):
             self.close()
             raise InputError(f"{self.name}: {error}") from None
         self._begun_ns = self.now_ns
-        self._told: dict[tuple[str, int], float] = {}
+        self._last: dict[tuple[str, int], float] = {}
         self._pulses = {w.place: Pulses() for w in self._wires if w.kind in _WATCHED}
         self._rx: list[dict[str, Any]] = [{} for _ in range(UARTS)]
         self._tx: list[dict[str, Any]] = [{} for _ in range(UARTS)]
@@ -98,7 +98,7 @@ class Arduino(ArduinoPorts):
     def step(self, t: float, h: float) -> None:
         """Let the board run from ``t`` to ``t + h``."""
         inputs = Inputs()
-        if not self._told:
+        if not self._last:
             self._connect(inputs)
         self._put_bytes(inputs)
         self._put_signals(inputs)
@@ -180,13 +180,13 @@ class Arduino(ArduinoPorts):
     def _put_signals(self, inputs: Inputs) -> None:
         for wire in self._wires:
             for key, value in self._signals(wire):
-                if self._told.get(key) != value:
-                    self._told[key] = value
+                if self._last.get(key) != value:
+                    self._last[key] = value
                     inputs.put(*key, value)
-        self._told[("", 0)] = 0.0  # connected
+        self._last[("", 0)] = 0.0  # connected
 
     def _signals(self, wire: Wire) -> list[tuple[tuple[str, int], float]]:
-        """Return what a wire has to tell the board: kind and index, value."""
+        """Return the records that a wire's signals give: kind and index, value."""
         kind, n = wire.kind, wire.number - 1
         if kind == "voltage":
             return [(("A", self._channel(wire)), self.voltage[n])]
@@ -217,7 +217,7 @@ class Arduino(ArduinoPorts):
         return wire.place - MCUS[self.mcu].first_analog
 
     def _take(self, events: list[Event]) -> None:
-        said: list[list[Event]] = [[] for _ in range(UARTS)]
+        received: list[list[Event]] = [[] for _ in range(UARTS)]
         for event in events:
             kind, index, value, cycle = event
             if kind == EDGE:
@@ -225,8 +225,8 @@ class Arduino(ArduinoPorts):
             elif kind == DUTY:
                 self._pulses[index].modulated(value / 255.0)
             elif kind == UART and not self.cut[index]:
-                said[index].append(event)
-        for uart, events_of_it in enumerate(said):
+                received[index].append(event)
+        for uart, events_of_it in enumerate(received):
             if events_of_it:
                 data = bytes(event[2] for event in events_of_it)
                 box = Outbox(self._tx[uart])

@@ -14,7 +14,7 @@ LIMITS = (
     "code takes about 12 cycles from one jump to the next, whatever it computes: timing of the "
     "code itself is a guess (simavr counts cycles)",
     "interrupts come between stretches of code, never within one",
-    "memory is not the board's: a sketch too large for it is not noticed (simavr's build tells)",
+    "memory is not the board's: a sketch too large for it goes unnoticed (not by simavr's build)",
 )
 """What the host back end does not show, as `seatrial sketch check` prints it."""
 

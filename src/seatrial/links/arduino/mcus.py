@@ -50,7 +50,7 @@ class Mcu:
 
 
 def _ports(text: str) -> tuple[str, ...]:
-    """Return what 'E0-1 E4' says: E0, E1, E4; 'A7-0' runs down."""
+    """Return the pins of 'E0-1 E4': E0, E1, E4; 'A7-0' runs down."""
     found = []
     for part in text.split():
         port, bits = part[0], part[1:].split("-")

@@ -16,7 +16,7 @@ def _axes(letter: str, count: int = OTHERS) -> tuple[str, ...]:
 
 
 class ArduinoPorts(Reachable, Component):
-    """What an `Arduino` is told and says."""
+    """Parameters, inputs and outputs of `Arduino`."""
 
     backend = Parameter("host", "1", "what runs the sketch", choices=BACKENDS)
     mcu = Parameter("atmega2560", "1", "microcontroller", choices=tuple(MCUS))
@@ -100,6 +100,6 @@ class ArduinoPorts(Reachable, Component):
     pulse = Output("s", "width of the last servo pulse, 0 for none", axes=_axes("s", SERVOS))
     duty = Output("1", "share of time that PWM outputs are high", axes=_axes("p"))
     output = Output("1", "levels of digital outputs", type=bool, axes=_axes("o"))
-    connected = Output("1", "board: whether all UARTs that have spoken still do", type=bool)
+    connected = Output("1", "board: whether all UARTs that have sent still do", type=bool)
     bytes_sent = Output("1", "bytes that left the UARTs", type=int)
     bytes_received = Output("1", "bytes that were put on the lines to the UARTs", type=int)

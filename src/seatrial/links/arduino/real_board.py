@@ -16,12 +16,12 @@ _INPUT = struct.Struct("<BBHd")
 class RealBoard:
     """Serial ports in the place of a simulated board's UARTs; ``links`` are ``UART=URL``.
 
-    ``safe_state`` (hexadecimal) is what makes the sketch let go. It is sent to each at the end,
+    ``safe_state`` (hexadecimal) are the safe-state bytes. They are sent to each at the end,
     however the run ends; to one whose input has become stale, that is silent for ``timeout``
-    seconds after it was not; and to the others when one that spoke has been silent for as long:
-    its link is lost, and until it speaks again nothing is sent to the others.
+    seconds after it was not; and to the others when one that has sent has been silent for as long:
+    its link is lost, and until it sends again nothing is sent to the others.
 
-    Raises InputError for links that cannot be, for real ports that nobody allowed, and for wires:
+    Raises InputError for links that cannot be, for real ports that are not allowed, and for wires:
     pins of a real board are out of reach.
     """
 
@@ -47,7 +47,7 @@ class RealBoard:
 
     @property
     def connected(self) -> bool:
-        """Whether all that have spoken still do."""
+        """Whether all UARTs that have sent still do."""
         return not self._lost
 
     def run(self, target: int, inputs: Inputs) -> list[Event]:

@@ -178,7 +178,7 @@ def _definitions(found: list[Token]) -> list[tuple[int, int]]:
 
 
 def _is_function(words: list[Token]) -> bool:
-    """Say if tokens before a brace are 'TYPE NAME ( ... )'."""
+    """Return whether tokens before a brace are 'TYPE NAME ( ... )'."""
     texts = [t.text for t in words]
     if "(" not in texts or texts[-1] != ")" or texts[0] in ("namespace", "extern"):
         return False

@@ -47,6 +47,6 @@ def need(backend: str) -> None:
 
 @cache
 def version(compiler: str) -> str:
-    """Return what a compiler says of itself, first line."""
+    """Return a compiler's version, first line."""
     found = subprocess.run([compiler, "--version"], capture_output=True, text=True, check=True)
     return found.stdout.splitlines()[0]

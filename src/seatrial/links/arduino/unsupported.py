@@ -1,4 +1,4 @@
-"""What of a sketch the host back end cannot run, with file, line and what to do."""
+"""Sketch features that the host back end cannot run, with file, line and what to do."""
 
 from __future__ import annotations
 
@@ -12,17 +12,22 @@ from .tokens import tokens
 _ELSE = "use the back end simavr, or"
 
 _STANDARD = (
-    *("assert.h", "ctype.h", "errno.h", "float.h", "inttypes.h", "limits.h", "math.h", "stdarg.h"),
-    *(
-        "stdbool.h",
-        "stddef.h",
-        "stdint.h",
-        "stdio.h",
-        "stdlib.h",
-        "string.h",
-        "new.h",
-        "WProgram.h",
-    ),
+    "assert.h",
+    "ctype.h",
+    "errno.h",
+    "float.h",
+    "inttypes.h",
+    "limits.h",
+    "math.h",
+    "stdarg.h",
+    "stdbool.h",
+    "stddef.h",
+    "stdint.h",
+    "stdio.h",
+    "stdlib.h",
+    "string.h",
+    "new.h",
+    "WProgram.h",
 )
 _REGISTERS = re.compile(
     r"(?:PORT|DDR|PIN)[A-L]\d?|TCCR\d[ABC]|TCNT\d[HL]?|OCR\d[ABC]?[HL]?|ICR\d[HL]?|TIMSK\d|TIFR\d"
@@ -66,10 +71,10 @@ def unsupported(sketch: Sketch) -> list[str]:
     return problems
 
 
-def advice(said: str) -> list[str]:
+def advice(output: str) -> list[str]:
     """Return what to do about a compiler's errors, a line each, as far as that is known."""
-    found = [_missing(header) for header in _ABSENT.findall(said)]
-    found += [what for word in _UNDECLARED.findall(said) if (what := _unknown(word))]
+    found = [_missing(header) for header in _ABSENT.findall(output)]
+    found += [what for word in _UNDECLARED.findall(output) if (what := _unknown(word))]
     return list(dict.fromkeys(found))
 
 

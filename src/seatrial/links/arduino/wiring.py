@@ -1,4 +1,4 @@
-"""What is connected to a board: pins, I2C devices and UARTs, as a profile writes it."""
+"""Wiring of a board: pins, I2C devices and UARTs, as a profile writes it."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Wire:
 
 
 def read_wires(text: str, mcu: Mcu = MCUS["atmega2560"]) -> list[Wire]:
-    """Return what ``9 servo 1; A0 vane 5; 2 anemometer 0.9; 0x68 mpu6050`` says.
+    """Return the wires of ``9 servo 1; A0 vane 5; 2 anemometer 0.9; 0x68 mpu6050``.
 
     Raises InputError for a kind, pin, address or number that cannot be, or a pin used twice.
     """

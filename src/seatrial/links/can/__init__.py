@@ -1,1 +1,1 @@
-"""CAN: a simulated bus in exact time, what its nodes say, and the way to real buses."""
+"""CAN: a simulated bus in exact time, its nodes' operations, and gateways to real buses."""

@@ -1,4 +1,4 @@
-"""How many bits a frame has on the wire, to the bit: fields, CRC and stuff bits (ISO 11898-1).
+"""Exact lengths of frames on the bus: fields, CRC and stuff bits (ISO 11898-1).
 
 After five equal bits a transmitter inserts one of the other value: in classic frames from the
 start of frame to the end of the CRC, in CAN FD to the end of the data. CAN FD's CRC field has
@@ -38,7 +38,7 @@ def crc15(bits: int, count: int) -> int:
 
 
 def length(frame: Frame) -> Length:
-    """Return how many bits ``frame`` has on the wire."""
+    """Return how many bits ``frame`` has on the bus."""
     if frame.fd:
         return _fd_length(frame)
     data = frame.data
@@ -66,19 +66,19 @@ def stuffed(bits: int, count: int) -> int:
 
 
 def first_difference(one: Frame, other: Frame) -> tuple[int, bool]:
-    """Return the place of the first bit in which two different frames differ on the wire.
+    """Return the place of the first bit in which two different frames differ on the bus.
 
     Counted from 0 at the start of frame, stuff bits included; and whether ``one`` is recessive
     there. They must have the same arbitration field.
     """
-    first, second = _on_the_wire(one), _on_the_wire(other)
+    first, second = _on_the_bus(one), _on_the_bus(other)
     for place, (a, b) in enumerate(zip(first, second, strict=False)):
         if a != b:
             return place, a == 1
     raise ValueError("the frames do not differ")
 
 
-def _on_the_wire(frame: Frame) -> list[int]:
+def _on_the_bus(frame: Frame) -> list[int]:
     """Return the bits from start of frame to the end of what is stuffed, stuff bits included."""
     if frame.fd:
         count, *_ = _fd_begun(frame.identifier, frame.extended, frame.bit_rate_switch)
@@ -89,12 +89,12 @@ def _on_the_wire(frame: Frame) -> list[int]:
         count += 5 + size
     else:
         bits, count = sequence(frame)
-    state, wire = _START, []
+    state, stuffed = _START, []
     for shift in range(count - 1, -1, -1):
         bit = bits >> shift & 1
         added, state = _after_bit(state, bit)
-        wire += [bit, 1 - bit] if added else [bit]
-    return wire
+        stuffed += [bit, 1 - bit] if added else [bit]
+    return stuffed
 
 
 @lru_cache(4096)
@@ -145,7 +145,7 @@ def _fd_begun(identifier: int, extended: bool, switch: bool) -> tuple[int, int, 
 def _fd_stuffed(state: int, frame: Frame) -> int:
     """Return the stuff bits from ESI to the end of the data.
 
-    What the very last bit asks for is the CRC field's first fixed stuff bit, and not counted.
+    A stuff bit due after the very last bit is the CRC field's first fixed one, and not counted.
     """
     control = int(frame.error_state) << 4 | frame.dlc
     if not frame.data:

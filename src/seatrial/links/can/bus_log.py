@@ -1,4 +1,4 @@
-"""Logs of a bus: what was on it, as others' tools read it."""
+"""Bus logs in the formats of common tools."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class BusLog:
 
     One entry for each frame and error frame, when it ended: simulated time, which is counted
     from 0; to the nanosecond in the first, to the microsecond in the second. The same entries
-    leave the same bytes. The second has no length of what remote frames ask for, and of error
+    leave the same bytes. The second has no length of what remote frames request, and of error
     frames no class. Lines of the second are on disk at once, blocks of the first
     each 128 kB, and at the end.
 

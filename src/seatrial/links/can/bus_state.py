@@ -13,7 +13,7 @@ from .simulated_bus import Attempt, SimulatedBus
 _BUS = ("now_ps", "free_ps", "taken_ps", "attempts", "requests", "counted_ps")
 _LISTS = ("queue", "ready")
 _NUMBERS = tuple(f.name for f in fields(Controller) if f.name not in (*_LISTS, "name", "sending"))
-_ATTEMPT = ("start_ps", "end_ps", "first", "deaf")
+_ATTEMPT = ("start_ps", "end_ps", "first", "missed_by")
 _NODES = ("senders", "losers", "gave_way")
 
 
@@ -64,20 +64,25 @@ def _plain_attempt(attempt: Attempt) -> dict[str, Any]:
 def _attempt(plain: dict[str, Any]) -> Attempt:
     senders, losers, gave_way = (list(plain[name]) for name in _NODES)
     return Attempt(
-        *(plain["start_ps"], plain["end_ps"], _frame(plain["frame"])),
-        *(senders, losers, gave_way),
+        plain["start_ps"],
+        plain["end_ps"],
+        _frame(plain["frame"]),
+        senders,
+        losers,
+        gave_way,
         None if plain["error"] is None else Error(plain["error"]),
-        *(plain["first"], plain["deaf"]),
+        plain["first"],
+        plain["missed_by"],
     )
 
 
 def _plain(request: Request) -> list[Any]:
-    return [request.priority, request.number, request.asked_ps, _text(request.frame)]
+    return [request.priority, request.number, request.requested_ps, _text(request.frame)]
 
 
 def _request(plain: list[Any]) -> Request:
-    priority, number, asked_ps, text = plain
-    return Request(priority, number, asked_ps, _frame(text))
+    priority, number, requested_ps, text = plain
+    return Request(priority, number, requested_ps, _frame(text))
 
 
 def _text(frame: Frame) -> str:

@@ -51,8 +51,8 @@ class CanBus(Logging, Noise, Component):
     another bit rate is refused.
 
     **Time.** Frames, queues and arbitration are `SimulatedBus`'s: to the bit, however coarse the
-    communication step. In the step from t to t + h the bus lives until t, since all that nodes
-    asked for until then is known; so what ended by t is on ``rx`` and on all other outputs at
+    communication step. In the step from t to t + h the bus runs until t, since all that nodes
+    requested until then is known; so what ended by t is on ``rx`` and on all other outputs at
     t + h: one step late, with the time at which it ended, and never wrong.
 
     **Controllers** have ``mailboxes`` and a queue of ``queue_length`` (`Controller`), and come back
@@ -113,15 +113,15 @@ class CanBus(Logging, Noise, Component):
         max=1.0,
         tunable=True,
     )
-    watched = Parameter("", "1", "identifiers whose latency is told, separated by spaces")
+    watched = Parameter("", "1", "identifiers whose latency is reported, separated by spaces")
     load_window = Parameter(1.0, "s", "time over which the load is counted", min=1e-3)
 
-    tx = Input("1", "what nodes tell the bus", type=str, axes=_NODES, optional=True)
+    tx = Input("1", "operations from the nodes", type=str, axes=_NODES, optional=True)
     fault = Input(
         "1", f"{', '.join(FAULTS)}", type=str, axes=_NODES, start=("none",) * NODES, optional=True
     )
 
-    rx = Output("1", "what the bus tells nodes", type=str, axes=_NODES)
+    rx = Output("1", "operations to the nodes", type=str, axes=_NODES)
     load = Output("1", "share of time that the bus is busy")
     frames = Output("1", "frames sent", type=int)
     error_frames = Output("1", "error frames", type=int)
@@ -159,12 +159,12 @@ class CanBus(Logging, Noise, Component):
         self._build(names, silent)
 
     def step(self, t: float, h: float) -> None:
-        """Take in what nodes have asked for, and let the bus live until ``t``."""
+        """Take in what nodes have requested, and let the bus run until ``t``."""
         if self._run_log is not None:
             self._run_log.open(self.run_folder)
         for node, (inbox, text) in enumerate(zip(self._inboxes, self.tx, strict=False)):
             for when, data in Inbox(inbox).take(text):
-                self._hear(node, when, data)
+                self._receive(node, when, data)
         self._longest = [0.0] * WATCHED
         self._bus.run(self.now_ns * _PS_PER_NS)
         self._latencies = [
@@ -176,7 +176,7 @@ class CanBus(Logging, Noise, Component):
         self._apply_faults()
 
     def outputs(self, t: float) -> None:
-        """Publish what the bus told, and its counts."""
+        """Publish the bus's operations and counters."""
         each = self._bus.controllers
         nothing = (0,) * (NODES - len(each))
         self.rx = [*(port.text for port in self._ports), *("" for _ in nothing)]
@@ -239,16 +239,16 @@ class CanBus(Logging, Noise, Component):
 
     # ------------------------------------------------------------------ nodes
 
-    def _hear(self, node: int, when: int, data: bytes) -> None:
+    def _receive(self, node: int, when: int, data: bytes) -> None:
         try:
             operations = decode(data)
         except InputError:
-            self._say(node, when, FormatError(data))
+            self._send(node, when, FormatError(data))
             return
         for operation in operations:
             match operation:
                 case Transmit(frame):
-                    self._bus.ask(when * _PS_PER_NS, node, frame)
+                    self._bus.request(when * _PS_PER_NS, node, frame)
                 case BitRate(rate, fd):
                     self._agree(node, rate, fd)
                 case Buffering(waits):
@@ -256,11 +256,11 @@ class CanBus(Logging, Noise, Component):
                 case Wakeup():
                     for other in range(len(self._ports)):
                         if other != node:
-                            self._say(other, when, operation)
+                            self._send(other, when, operation)
                 case Status():
                     pass  # this bus counts its nodes' errors itself
                 case _:
-                    self._say(node, when, FormatError(data))
+                    self._send(node, when, FormatError(data))
 
     def _agree(self, node: int, rate: int, fd: bool) -> None:
         own = self.data_bit_rate if fd else self.bit_rate
@@ -271,7 +271,7 @@ class CanBus(Logging, Noise, Component):
                 f"{self.name}: node {name!r} has {rate} bit/s, the bus's {what} is {own:g}"
             )
 
-    def _say(self, node: int, when_ns: int, operation: Operation) -> None:
+    def _send(self, node: int, when_ns: int, operation: Operation) -> None:
         self._ports[node].put(when_ns, encode(operation))
 
     # ------------------------------------------------------------------ what happens
@@ -279,7 +279,7 @@ class CanBus(Logging, Noise, Component):
     def _was_sent(self, sent: Sent) -> None:
         self._frames += 1
         attempt, frame = self._bus.attempts, sent.frame
-        latency = sent.end_ps - sent.asked_ps
+        latency = sent.end_ps - sent.requested_ps
         key = [frame.identifier, frame.extended]
         if key in self._keys:
             place = self._keys.index(key)
@@ -288,7 +288,7 @@ class CanBus(Logging, Noise, Component):
             self._run_log.sent(attempt, sent, latency)
         when = _rounded_up(sent.end_ps)
         for node in sent.senders:
-            self._say(node, when, Confirm(frame.identifier))
+            self._send(node, when, Confirm(frame.identifier))
         gone = self._losers(attempt)
         received = chunk(when, encode(Transmit(frame)))
         for node in sent.receivers:
@@ -315,11 +315,11 @@ class CanBus(Logging, Noise, Component):
             if each.plugged and not each.listens_only:
                 first, sender = node == broken.first, node in broken.senders
                 error = BusError(broken.frame.identifier, broken.error, first, sender)
-                self._say(node, _rounded_up(broken.end_ps), error)
+                self._send(node, _rounded_up(broken.end_ps), error)
 
     def _was_given_up(self, lost: GivenUp) -> None:
         when = _rounded_up(lost.when_ps)
-        self._say(lost.node, when, ArbitrationLost(lost.frame.identifier))
+        self._send(lost.node, when, ArbitrationLost(lost.frame.identifier))
 
     def _apply_faults(self) -> None:
         bus, faults = self._bus, self.fault
@@ -346,7 +346,7 @@ class CanBus(Logging, Noise, Component):
 
 
 def _rounded_up(time_ps: int) -> int:
-    """Return a time in ns: nothing is told before it has happened."""
+    """Return a time in ns: nothing is reported before it has happened."""
     return -(-time_ps // _PS_PER_NS)
 
 

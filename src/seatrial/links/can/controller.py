@@ -1,4 +1,4 @@
-"""One node's CAN controller: what waits to be sent, and how much it is to be trusted."""
+"""CAN controller of one node: transmit queue and error counters."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ class Request:
     priority: int
     number: int
     """Counts all requests of the bus: equal identifiers are sent in order; 0 for noise."""
-    asked_ps: int = field(compare=False)
-    """When it was asked for."""
+    requested_ps: int = field(compare=False)
+    """When it was requested."""
     frame: Frame = field(compare=False)
 
 
@@ -69,7 +69,7 @@ class Controller:
     sequences: int = 0
     """Off the bus: sequences of 11 recessive bits seen since."""
     back_ps: int = 0
-    """When it last came onto the bus: it hears what began since. `NEVER` while it is off it."""
+    """When it last came onto the bus: it receives what began since. `NEVER` while it is off it."""
     suspended_until_ps: int = 0
     """Error passive: no start before this, after a frame of its own."""
     queue: deque[Request] = field(default_factory=deque)
@@ -114,10 +114,10 @@ class Controller:
         """Of what it would send next; it must have something."""
         return _BEFORE_ALL if self.babbles else self.ready[0].priority
 
-    def ask(self, request: Request) -> None:
+    def request(self, request: Request) -> None:
         """Take a request in, or drop it."""
         self.asked += 1
-        if self.listens_only or request.asked_ps < self.back_ps:
+        if self.listens_only or request.requested_ps < self.back_ps:
             self.dropped += 1
         elif self._occupied < self.mailboxes:
             heapq.heappush(self.ready, request)
@@ -167,7 +167,7 @@ class Controller:
             self.forget()
 
     def failed_to_receive(self, more: int = 1) -> None:
-        """Count an error in somebody else's frame."""
+        """Count an error in another node's frame."""
         self.rec = min(self.rec + more, BUS_OFF_ABOVE)
 
     def unplug(self) -> None:

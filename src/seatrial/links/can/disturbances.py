@@ -1,4 +1,4 @@
-"""What goes wrong on a bus, by chance or on purpose."""
+"""Disturbances of a bus: bit errors by chance, faults on purpose."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Generator = Callable[[int], np.random.Generator]
 class Disturbances:
     """Bit errors and broken transmitters; each attempt to send draws numbers of its own.
 
-    With ``bit_error_rate`` p each bit is wrong for everybody with probability p: a frame of n
+    With ``bit_error_rate`` p each bit is wrong for all nodes with probability p: a frame of n
     bits is hit with probability 1 - (1 - p)^n, first at bit floor(ln(1 - x) / ln(1 - p)) with x
     uniform. With ``receive_error_rate`` of a node it alone sees a wrong bit. A node among
     ``defective`` breaks each of its own frames where its data begin: at bit 19 or 39.

@@ -28,7 +28,7 @@ _LONGEST = 2 * 64
 
 
 def packed(frame: Frame) -> bytes | None:
-    """Return a frame as a datagram, None for a remote frame: there is no word for it."""
+    """Return a frame as a datagram, None for a remote frame: the protocol has none."""
     if frame.remote:
         return None
     identifier = frame.identifier | (_EXTENDED if frame.extended else 0)
@@ -57,7 +57,7 @@ def unpacked(datagram: bytes) -> Frame | None:
 
 
 class DroneCanMulticastGateway(Gateway):
-    """A bus of this machine's programs; they hear each other without it.
+    """A bus of this machine's programs, which receive each other without it.
 
     It joins and sends on the loopback interface alone. Programs that leave the choice to the
     system are there too if the route of the group leads there.
@@ -69,33 +69,33 @@ class DroneCanMulticastGateway(Gateway):
         self._group = GROUP.format(bus)
         self.reached_at = f"mcast:{bus}"
         self._senders: dict[tuple[str, int], int] = {}
-        self._received, self._said = _socket(), _socket()
+        self._receiving, self._sending = _socket(), _socket()
         try:
-            self._received.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-            # Bound to the group, a socket hears nothing else; Windows cannot.
-            self._received.bind((LOOPBACK if sys.platform == "win32" else self._group, PORT))
+            self._receiving.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            # Bound to the group, a socket receives nothing else; Windows cannot.
+            self._receiving.bind((LOOPBACK if sys.platform == "win32" else self._group, PORT))
             member = socket.inet_aton(self._group) + socket.inet_aton(LOOPBACK)
-            self._received.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, member)
+            self._receiving.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, member)
             interface = socket.inet_aton(LOOPBACK)
-            self._said.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, interface)
-            self._said.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 0)
-            self._said.bind((LOOPBACK, 0))
+            self._sending.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, interface)
+            self._sending.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 0)
+            self._sending.bind((LOOPBACK, 0))
         except OSError:
             self.close()
             raise
 
     @property
     def clients(self) -> int:
-        """Return how many have said something."""
+        """Return how many have sent something."""
         return len(self._senders)
 
     def poll(self) -> list[tuple[int, Frame]]:
-        """Return frames that have arrived, and who sent each; others' datagrams are passed over."""
+        """Return frames that have arrived, with their senders; other datagrams are passed over."""
         found: list[tuple[int, Frame]] = []
-        own = self._said.getsockname()
+        own = self._sending.getsockname()
         while len(found) < MOST_FRAMES:
             try:
-                datagram, sender = self._received.recvfrom(_LONGEST)
+                datagram, sender = self._receiving.recvfrom(_LONGEST)
             except OSError:
                 break
             frame = unpacked(datagram) if sender != own else None
@@ -108,12 +108,12 @@ class DroneCanMulticastGateway(Gateway):
         datagram = packed(frame)
         if sender is None and datagram is not None:
             with contextlib.suppress(OSError):  # a datagram may be lost
-                self._said.sendto(datagram, (self._group, PORT))
+                self._sending.sendto(datagram, (self._group, PORT))
 
     def close(self) -> None:
         """Leave the bus."""
-        self._received.close()
-        self._said.close()
+        self._receiving.close()
+        self._sending.close()
 
 
 def _socket() -> socket.socket:

@@ -24,7 +24,7 @@ class Frame:
     extended: bool = False
     """29 bits of identifier instead of 11."""
     remote: bool = False
-    """A request for data: it has none, and ``dlc`` says how much is wanted."""
+    """A request for data: it has none, and ``dlc`` is how much is wanted."""
     fd: bool = False
     bit_rate_switch: bool = False
     """FD: the data phase has a rate of its own."""
@@ -62,7 +62,7 @@ class Frame:
 
     @property
     def priority(self) -> int:
-        """What arbitration compares, bit by bit: the lower wins.
+        """Bits that arbitration compares, one by one: the lower value wins.
 
         The arbitration field: 11 bits of identifier, RTR or SRR, IDE, and in extended frames 18
         bits and RTR. A base frame wins against an extended one with the same first 11 bits, a

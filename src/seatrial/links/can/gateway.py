@@ -1,4 +1,4 @@
-"""A gateway: where programs outside meet a simulated bus."""
+"""Gateway interface between a simulated bus and programs outside."""
 
 from __future__ import annotations
 
@@ -14,27 +14,27 @@ MOST_FRAMES = 1000
 class Gateway(ABC):
     """Polled once a step, never waited for. What is lost outside is no error here.
 
-    Whoever is behind it is known by a number: several clients hear each other too.
+    Clients behind it are known by numbers: several receive each other too.
     """
 
     reached_at: str
-    """What the other side opens, as it is bound: with the port's number where 0 was asked for."""
+    """What the other side opens, as it is bound: with the port's number where 0 was given."""
 
     @property
     @abstractmethod
     def clients(self) -> int:
-        """How many are connected."""
+        """Number of clients connected."""
 
     @abstractmethod
     def poll(self) -> list[tuple[int, Frame]]:
-        """Return frames that have arrived, and who sent each; accept and answer on the way."""
+        """Return frames that have arrived, and each one's sender; accept and answer on the way."""
 
     @abstractmethod
     def send(self, time_ns: int, frame: Frame, sender: int | None = None) -> None:
-        """Tell all but ``sender`` of a frame that was on the bus at a simulated time."""
+        """Send all but ``sender`` a frame that was on the bus at a simulated time."""
 
     def send_error(self, time_ns: int, error: Error) -> None:
-        """Tell all of an error frame, where the protocol has a word for it."""
+        """Report an error frame to all, where the protocol can."""
         del time_ns, error
 
     @abstractmethod

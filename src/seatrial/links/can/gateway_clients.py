@@ -1,4 +1,4 @@
-"""A gateway with clients who speak a protocol of text: each has a state of its own."""
+"""Gateway for clients of a text protocol: each has a state of its own."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ LONGEST_LINE = 1000
 
 
 class Client(ABC):
-    """What one client has asked for, and what it is told."""
+    """One client: what it has requested, and what is sent to it."""
 
     def __init__(self, channel: Channel) -> None:
         self._channel = channel
@@ -38,7 +38,7 @@ class Client(ABC):
                 found.append(frame)
         return found
 
-    def say(self, text: str) -> None:
+    def write(self, text: str) -> None:
         """Send a text."""
         self._channel.send(text.encode("ascii"))
 
@@ -51,14 +51,14 @@ class Client(ABC):
 
     @abstractmethod
     def refuse(self) -> None:
-        """Say that a line was not understood."""
+        """Report that a line was not understood."""
 
     @abstractmethod
     def send(self, time_ns: int, frame: Frame) -> None:
-        """Tell of a frame, if that is wanted."""
+        """Send a frame, if that is wanted."""
 
     def send_error(self, time_ns: int, error: Error) -> None:
-        """Tell of an error frame, if that is wanted and there is a word for it."""
+        """Report an error frame, if that is wanted and the protocol can."""
         del time_ns, error
 
     def tick(self) -> None:  # noqa: B027  most have nothing to do
@@ -76,30 +76,32 @@ class ClientsGateway(Gateway):
 
     @property
     def clients(self) -> int:
-        """How many are connected."""
+        """Number of clients connected."""
         return len(self._clients)
 
     def poll(self) -> list[tuple[int, Frame]]:
-        """Return frames that have arrived, and who sent each."""
+        """Return frames that have arrived, and each one's sender."""
         arrived = self._endpoint.poll()
         self._greet([*self._endpoint.channels(), *(channel for channel, _ in arrived)])
         found = []
         for channel, data in arrived:
             frames = self._clients[channel].receive(data)
             found += [(self._numbers[channel], frame) for frame in frames]
-        self._forget(self._endpoint.channels())  # whoever is gone may have said something before
+        self._forget(
+            self._endpoint.channels()
+        )  # a client that is gone may have sent something before
         for client in self._clients.values():
             client.tick()
         return found
 
     def send(self, time_ns: int, frame: Frame, sender: int | None = None) -> None:
-        """Tell all but ``sender`` of a frame."""
+        """Send a frame to all but ``sender``."""
         for channel, client in self._clients.items():
             if self._numbers[channel] != sender:
                 client.send(time_ns, frame)
 
     def send_error(self, time_ns: int, error: Error) -> None:
-        """Tell all of an error frame."""
+        """Report an error frame to all."""
         for client in self._clients.values():
             client.send_error(time_ns, error)
 

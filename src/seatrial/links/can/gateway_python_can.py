@@ -1,4 +1,4 @@
-"""Any bus that python-can has: its virtual one, or hardware."""
+"""Gateway to any bus of python-can: its virtual one, or hardware."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class PythonCanGateway(Gateway):
     Times of what is sent are simulated, as far as the interface carries them: ``virtual`` does.
 
     Raises InputError for a bus that cannot be opened, and for a real one if hardware was not
-    allowed: whoever listens there may drive thrusters.
+    allowed: what listens there may drive thrusters.
     """
 
     def __init__(self, url: str, interface: str, channel: str, bitrate: int | None) -> None:
@@ -42,7 +42,7 @@ class PythonCanGateway(Gateway):
 
     @property
     def clients(self) -> int:
-        """Return 1: who else is there is not known."""
+        """Return 1: other nodes of the bus are not known."""
         return 1
 
     def poll(self) -> list[tuple[int, Frame]]:
@@ -77,12 +77,12 @@ class PythonCanGateway(Gateway):
             self._bus.shutdown()
 
     def _put(self, sent: can.Message) -> None:
-        with contextlib.suppress(can.CanError, OSError):  # full, or nobody there: it is lost
+        with contextlib.suppress(can.CanError, OSError):  # full, or no receiver: it is lost
             self._bus.send(sent, timeout=0)
 
 
 def _is_simulated(interface: str, channel: str) -> bool:
-    """Say if there is no more than a program behind a bus."""
+    """Return whether there is no more than a program behind a bus."""
     if interface in ("slcan", "serial"):
         loopback = channel.startswith(("socket://127.0.0.1:", "socket://localhost:"))
         return loopback or is_simulated_port(channel)

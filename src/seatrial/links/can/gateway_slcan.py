@@ -1,4 +1,4 @@
-"""An adapter that speaks slcan, as serial CAN adapters do.
+"""slcan gateway: an adapter as serial CAN adapters are.
 
 Commands of LAWICEL's CAN232 and, for CAN FD, of the CANable 2: one letter, then digits, ended by
 a carriage return. Every one is answered, by a carriage return if it was understood and by BEL if
@@ -47,19 +47,19 @@ class _Adapter(Client):
         elif letter == "Z":
             self._stamps = line[1:2] == "1"
         elif letter in _ANSWERS:
-            self.say(_ANSWERS[letter])
+            self.write(_ANSWERS[letter])
         elif letter and letter not in _SETTINGS:
             raise ValueError("unknown command")
-        self.say("\r")
+        self.write("\r")
         return frame
 
     def refuse(self) -> None:
-        self.say("\a")
+        self.write("\a")
 
     def send(self, time_ns: int, frame: Frame) -> None:
         if self._open:
             stamp = f"{time_ns // 10**6 % _TIMESTAMP_MS:04X}" if self._stamps else ""
-            self.say(f"{_written(frame)}{stamp}\r")
+            self.write(f"{_written(frame)}{stamp}\r")
 
 
 def _written(frame: Frame) -> str:

@@ -1,8 +1,8 @@
-"""A server for clients of socketcand: python-can's ``socketcand``, SavvyCAN, Kayak.
+"""socketcand gateway: a server for python-can's ``socketcand``, SavvyCAN, Kayak.
 
 socketcand's protocol in its raw mode (linux-can/socketcand, doc/protocol.md): texts between
-``<`` and ``>``. The client is greeted, opens a bus, whose name does not matter here, and asks
-for the raw mode.
+``<`` and ``>``. The client is greeted, opens a bus, whose name does not matter here, and requests
+the raw mode.
 """
 
 from __future__ import annotations
@@ -41,19 +41,19 @@ class _Client(Client):
         self._quiet_until: float | None = None
         self._raw = False
         self._held: list[str] = []
-        self.say("< hi >")
+        self.write("< hi >")
 
     def read(self, line: str) -> Frame | None:
         command, *words = line.strip().lstrip("<").split()
         match command:
             case "open" | "bcmmode":
                 self._raw = False
-                self.say("< ok >")
+                self.write("< ok >")
             case "rawmode":
-                self.say("< ok >")
+                self.write("< ok >")
                 self._raw, self._quiet_until = True, time.monotonic() + QUIET_S
             case "echo":
-                self._tell("< echo >")
+                self._write_later("< echo >")
             case "send":
                 return _frame(words[0], words[2:], int(words[1], 16))
             case "fdsend":
@@ -67,7 +67,7 @@ class _Client(Client):
         return None
 
     def refuse(self) -> None:
-        self._tell("< error unknown command >")
+        self._write_later("< error unknown command >")
 
     def send(self, time_ns: int, frame: Frame) -> None:
         if not self._raw:
@@ -75,27 +75,27 @@ class _Client(Client):
         name = f"{frame.identifier:0{8 if frame.extended else 3}X}"
         when, data = _time(time_ns), frame.data.hex().upper()
         if frame.remote:
-            self._tell(f"< rtr {name} {when} {frame.requested:X} >")
+            self._write_later(f"< rtr {name} {when} {frame.requested:X} >")
         elif frame.fd:
             flags = _SWITCH * frame.bit_rate_switch | _ERROR_STATE * frame.error_state
-            self._tell(f"< fdframe {name} {flags:02X} {when} {data} >")
+            self._write_later(f"< fdframe {name} {flags:02X} {when} {data} >")
         else:
-            self._tell(f"< frame {name} {when} {data} >")
+            self._write_later(f"< frame {name} {when} {data} >")
 
     def send_error(self, time_ns: int, error: Error) -> None:
         if self._raw:
-            self._tell(f"< error {error_class(error):03X} {_time(time_ns)} >")
+            self._write_later(f"< error {error_class(error):03X} {_time(time_ns)} >")
 
     def tick(self) -> None:
         if self._quiet_until is not None and time.monotonic() >= self._quiet_until:
             self._quiet_until = None
             held, self._held = self._held, []
             for text in held:
-                self.say(text)
+                self.write(text)
 
-    def _tell(self, text: str) -> None:
+    def _write_later(self, text: str) -> None:
         if self._quiet_until is None:
-            self.say(text)
+            self.write(text)
         else:
             self._held.append(text)
 

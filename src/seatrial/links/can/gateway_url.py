@@ -1,10 +1,10 @@
 """Gateways by URL.
 
 ======================================== ====================================================
-``socketcand:HOST:PORT``                 a server that speaks as socketcand does
-``slcan-tcp:HOST:PORT``                  a server that speaks as serial adapters do (LAWICEL)
+``socketcand:HOST:PORT``                 a server with socketcand's protocol
+``slcan-tcp:HOST:PORT``                  a server with serial adapters' protocol (LAWICEL)
 ``slcan-pty``                            the same at a pseudo-terminal
-``yd-raw-tcp:HOST:PORT``                 a server that speaks as Yacht Devices' gateways do
+``yd-raw-tcp:HOST:PORT``                 a server with Yacht Devices' protocol
 ``yd-raw-udp:HOST:PORT``                 the same, to one address
 ``dronecan-multicast:BUS``               DroneCAN's bus over UDP multicast, of this machine alone
 ``virtual:CHANNEL``                      python-can's bus within this process
@@ -65,7 +65,7 @@ def open_gateway(url: str) -> Gateway:
     """Open the gateway ``url``.
 
     Raises InputError, with the URL, for one that is malformed or cannot be opened (a port in
-    use, no such bus, hardware that nobody allowed).
+    use, no such bus, hardware that is not allowed).
     """
     kind, parts = _parts(url)
     if kind in ("virtual", "python-can"):

@@ -1,4 +1,4 @@
-"""A gateway of Yacht Devices in RAW mode, which most marine programs can read.
+"""Yacht Devices gateway in RAW mode, which most marine programs can read.
 
 Lines of text (YDWG-02 user manual, appendix E): time of day, direction, identifier and data in
 hexadecimal, as ``17:33:21.107 R 19F51323 01 2F 30 70 00 2F 30 70``; a program sends the same
@@ -24,7 +24,7 @@ class YdRawGateway(ClientsGateway):
         )
 
     def send(self, time_ns: int, frame: Frame, sender: int | None = None) -> None:
-        """Tell all but ``sender``; also a peer that has never said anything."""
+        """Send to all but ``sender``; also to a peer that has never sent anything."""
         self._greet(self._endpoint.channels())
         super().send(time_ns, frame, sender)
 
@@ -36,7 +36,7 @@ class _Client(Client):
         return read_line(line)
 
     def refuse(self) -> None:
-        """Say nothing: the protocol has no word for it."""
+        """Send nothing: the protocol has no such line."""
 
     def send(self, time_ns: int, frame: Frame) -> None:
         if frame.extended and not frame.remote and not frame.fd:

@@ -10,7 +10,7 @@ from .operations import Operation, Transmit, decode, encode
 
 
 class CanNode:
-    """What one node hears on its ``rx`` and says on its ``tx``, as operations with their times.
+    """Operations with times that one node receives on its ``rx`` and sends on its ``tx``.
 
     ``memory`` is a dict that belongs to the component's state, empty at the start; the node is
     only a view of it and need not be kept::
@@ -20,7 +20,7 @@ class CanNode:
 
         def step(self, t, h):
             node = CanNode(self._can)
-            for time_ns, operation in node.hear(self.rx):
+            for time_ns, operation in node.receive(self.rx):
                 if isinstance(operation, Transmit):
                     ...                                  # operation.frame was received
             node.send(self.now_ns, Frame(0x123, bytes(8)))
@@ -29,7 +29,7 @@ class CanNode:
         def outputs(self, t):
             self.tx = CanNode(self._can).text
 
-    A frame is asked for at a time in the step from t to t + h, ends included; those of one node
+    A frame is requested at a time in the step from t to t + h, ends included; those of one node
     in the order of their times. Its way onto the bus begins at that very time (`CanBus`).
     """
 
@@ -39,10 +39,10 @@ class CanNode:
 
     @property
     def text(self) -> str:
-        """What ``tx`` holds: as of the last `flush`."""
+        """Text of ``tx``: as of the last `flush`."""
         return self._outbox.text
 
-    def hear(self, rx: str) -> list[tuple[int, Operation]]:
+    def receive(self, rx: str) -> list[tuple[int, Operation]]:
         """Return what is new on ``rx``, once: simulated time (ns) and operation.
 
         Raises InputError for a text that no bus has written, SimulationError if one was missed.
@@ -50,13 +50,13 @@ class CanNode:
         return [(when, each) for when, data in self._inbox.take(rx) for each in decode(data)]
 
     def send(self, time_ns: int, frame: Frame) -> None:
-        """Ask the bus at ``time_ns`` to send a frame."""
-        self.tell(time_ns, Transmit(frame))
+        """Request a frame of the bus at ``time_ns``."""
+        self.send_operation(time_ns, Transmit(frame))
 
-    def tell(self, time_ns: int, operation: Operation) -> None:
-        """Tell the bus something else at ``time_ns``: `BitRate`, `Buffering`, `Status`."""
+    def send_operation(self, time_ns: int, operation: Operation) -> None:
+        """Send the bus another operation at ``time_ns``: `BitRate`, `Buffering`, `Status`."""
         self._outbox.put(time_ns, encode(operation))
 
     def flush(self) -> str:
-        """Publish what was said, once at the end of a step; return `text`."""
+        """Publish what was sent, once at the end of a step; return `text`."""
         return self._outbox.flush()

@@ -1,4 +1,4 @@
-"""What CAN nodes and a bus tell each other: the operations of FMI-LS-BUS, as bytes.
+"""Operations of FMI-LS-BUS between CAN nodes and a bus, as bytes.
 
 Modelica Association, FMI Layered Standard Network Communication, version 1.3, section CAN: each
 operation is a code and its whole length, 32 bits each, then its arguments; all little endian.
@@ -84,7 +84,7 @@ class BitRate:
 
 @dataclass(frozen=True, slots=True)
 class Buffering:
-    """To the bus: whether frames that lose an arbitration wait, or are discarded and told of."""
+    """To the bus: whether frames that lose an arbitration wait, or are discarded and reported."""
 
     waits: bool
 
@@ -184,7 +184,7 @@ def _whole(code: int, arguments: bytes) -> bytes:
 
 
 def _can(frame: Frame) -> bytes:
-    # As many bytes as a remote frame asks for: its length would be lost otherwise.
+    # As many bytes as a remote frame requests: its length would be lost otherwise.
     data = bytes(frame.requested) if frame.remote else frame.data
     return _CAN.pack(frame.identifier, frame.extended, frame.remote, len(data)) + data
 

@@ -1,4 +1,4 @@
-"""What a bus leaves in the run's folder: logs and statistics."""
+"""Bus log of a run: logs and statistics in the run's folder."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A CAN bus in simulated time: who sends next, how long it takes, what goes wrong."""
+"""CAN bus in simulated time: arbitration, frame lengths, errors."""
 
 from __future__ import annotations
 
@@ -36,8 +36,8 @@ class Sent(NamedTuple):
     frame: Frame
     senders: list[int]
     """More than one if several sent the very same frame at once."""
-    asked_ps: int
-    """When the first of them asked for it."""
+    requested_ps: int
+    """When the first of them requested it."""
     receivers: list[int]
 
 
@@ -61,7 +61,7 @@ class GivenUp(NamedTuple):
 
 
 class Disturbance(NamedTuple):
-    """What shall go wrong with a frame: at which bit, and at which receiver, or everywhere."""
+    """Error to inject into a frame: at which bit, and at which receiver, or everywhere."""
 
     bit: int
     receiver: int | None = None
@@ -73,7 +73,7 @@ ErrorInjector = Callable[[int, int, Frame, int], Disturbance | None]
 
 @dataclass(slots=True)
 class Attempt:
-    """What is on the bus."""
+    """Transmission under way on the bus."""
 
     start_ps: int
     end_ps: int
@@ -86,8 +86,8 @@ class Attempt:
     """Error passive nodes whose frame had the same arbitration field."""
     error: Error | None = None
     first: int = -1
-    """Who notices the error first."""
-    deaf: int = -1
+    """Nodes that notice the error first."""
+    missed_by: int = -1
     """A receiver that alone gets it wrong, and cannot stop it."""
 
 
@@ -95,15 +95,15 @@ class Attempt:
 class SimulatedBus:
     """Arbitration among controllers, frame by frame (ISO 11898-1).
 
-    A bus that is idle is taken at once by whoever asks; when it becomes free, all that have a
+    A bus that is idle is taken at once by the first request; when it becomes free, all that have a
     request start together and the lowest arbitration field goes through. A frame lasts as long as
     its bits, stuff bits included (`bits.length`), then come three bits of intermission. Its
     reception and its confirmation are at the end of the end of frame.
 
-    **Errors.** A disturbed bit is seen by all nodes, who signal it from the next bit on: 6 bits of
-    flag, 8 of delimiter, 3 of intermission. An error that one receiver alone sees is signalled by
-    it and then by all others: 12 bits of flag. Passive nodes cannot interrupt others: a receiver
-    among them just loses the frame. A frame that nobody acknowledges is an error at the bit of the
+    **Errors.** A disturbed bit is seen by all nodes, which signal it from the next bit on: 6 bits
+    of flag, 8 of delimiter, 3 of intermission. An error that one receiver alone sees is signalled
+    by it and then by all others: 12 bits of flag. Passive nodes cannot interrupt others: a receiver
+    among them just loses the frame. A frame that no node acknowledges is an error at the bit of the
     acknowledgement. The sender of a broken frame sends it again. Counters: sender + 8, receivers
     + 1, and + 8 more for one that noticed alone and first; not for a passive sender that misses an
     acknowledgement, which thus stays as it is. A sender that is unplugged leaves recessive bits,
@@ -116,7 +116,7 @@ class SimulatedBus:
     while the bus is idle.
 
     Times are whole picoseconds; `run` reports to ``on_sent``, ``on_broken`` and ``on_given_up``
-    what has ended, in order. Who acknowledges a frame is settled at its start.
+    what has ended, in order. The nodes that acknowledge a frame are settled at its start.
     """
 
     controllers: list[Controller]
@@ -155,8 +155,8 @@ class SimulatedBus:
         """Time that frames, error frames and intermissions have taken until now."""
         return self.taken_ps - max(0, self.free_ps - self.now_ps)
 
-    def ask(self, when_ps: int, node: int, frame: Frame) -> None:
-        """Ask for a frame to be sent, not before ``when_ps`` nor in the past."""
+    def request(self, when_ps: int, node: int, frame: Frame) -> None:
+        """Request a frame, not before ``when_ps`` nor in the past."""
         self.requests += 1
         when = max(when_ps, self.now_ps)
         request = Request(frame.priority, self.requests, when, frame)
@@ -225,7 +225,7 @@ class SimulatedBus:
         arriving = self.arriving
         while arriving and arriving[0][0] <= until_ps:
             _, _, node, request = heapq.heappop(arriving)
-            self.controllers[node].ask(request)
+            self.controllers[node].request(request)
 
     def _idle(self, until_ps: int) -> None:
         """Let the bus be idle until then: nodes off the bus count recessive bits."""
@@ -269,7 +269,7 @@ class SimulatedBus:
         self._take(attempt)
 
     def _arbitrate(self, start: int) -> tuple[list[int], list[int]]:
-        """Return who sends, and who loses and does not wait for another time."""
+        """Return the senders, and the losers that do not wait for another time."""
         best, senders, impatient = 1 << 32, [], []
         for node, each in enumerate(self.controllers):
             if not (each.ready or each.babbles) or not each.takes_part:
@@ -285,7 +285,7 @@ class SimulatedBus:
         return senders, [node for node in impatient if node not in senders]
 
     def _disturbed(self, attempt: Attempt, bits: int) -> bool:
-        """Ask what goes wrong; say if that ends the frame."""
+        """Draw what goes wrong; return whether that ends the frame."""
         wrong = self.error_injector(self.attempts, attempt.senders[0], attempt.frame, bits)
         if wrong is None:
             return False
@@ -296,12 +296,12 @@ class SimulatedBus:
         if receiver.takes_part and not receiver.passive:
             self._fail(attempt, wrong, Error.CRC, LONGEST_FLAG)
             return True
-        attempt.deaf = wrong.receiver
+        attempt.missed_by = wrong.receiver
         return False
 
     def _is_received(self, attempt: Attempt) -> bool:
-        """Say if anybody acknowledges the frame."""
-        silent = (*attempt.senders, *attempt.gave_way, attempt.deaf)
+        """Return whether any node acknowledges the frame."""
+        silent = (*attempt.senders, *attempt.gave_way, attempt.missed_by)
         for node, each in enumerate(self.controllers):
             if each.back_ps <= attempt.start_ps and not each.listens_only and node not in silent:
                 return True
@@ -369,17 +369,17 @@ class SimulatedBus:
                 self.on_given_up(GivenUp(attempt.end_ps, node, request.frame))
 
     def _succeed(self, attempt: Attempt) -> None:
-        start, senders, deaf = attempt.start_ps, attempt.senders, attempt.deaf
-        asked, receivers = start, []
+        start, senders, missed_by = attempt.start_ps, attempt.senders, attempt.missed_by
+        requested, receivers = start, []
         for node in senders:
             each = self.controllers[node]
-            asked = min(asked, each.sent_one().asked_ps)
+            requested = min(requested, each.sent_one().requested_ps)
             self._suspend(each)
         apart = (*senders, *attempt.gave_way)
         for node, each in enumerate(self.controllers):
             if each.back_ps > start or node in apart:
                 continue
-            if node == deaf:
+            if node == missed_by:
                 each.lost += 1
                 each.failed_to_receive(0 if each.listens_only else 1)
                 continue
@@ -387,7 +387,7 @@ class SimulatedBus:
             if each.rec:
                 each.recover()
             receivers.append(node)
-        self.on_sent(Sent(start, attempt.end_ps, attempt.frame, senders, asked, receivers))
+        self.on_sent(Sent(start, attempt.end_ps, attempt.frame, senders, requested, receivers))
 
     def _break(self, attempt: Attempt, error: Error) -> None:
         apart = {*attempt.senders, *attempt.gave_way}

@@ -38,7 +38,7 @@ class CanTraffic(Noise, Component):
 
     ``messages`` has ``IDENTIFIER PERIOD BYTES [OFFSET]`` of each, times in s, with ``;``:
     ``0x123 0.01 8; 0x09F11217 0.1 8 0.05``. Identifiers of more than three digits have 29 bits.
-    Frame k is asked for at the start of the run + offset + k period, and up to ``jitter`` of a
+    Frame k is requested at the start of the run + offset + k period, and up to ``jitter`` of a
     period later, uniform.
 
     ``load`` > 0 adds frames of ``background``, one identifier after the other, ``size`` bytes
@@ -46,7 +46,7 @@ class CanTraffic(Noise, Component):
     (its length + 3 bits) / (load bit_rate) to itself. Above 1 the bus cannot carry them.
 
     Data are the number of the frame (32 bits, the lowest byte first), then random bytes, which
-    decide on stuff bits. In ``format`` fd-switch, ``data_bit_rate`` counts for the load.
+    decide on stuff bits. In ``format`` fd-switch, ``data_bit_rate`` applies to the load.
 
     ``asked``, ``confirmed`` and ``received`` count frames. ``silent`` stops it.
 
@@ -68,11 +68,11 @@ class CanTraffic(Noise, Component):
         2_000_000.0, "1/s", "bit rate of CAN FD's data phase", min=1000.0, max=2e7
     )
 
-    rx = Input("1", "what the bus tells", type=str)
+    rx = Input("1", "operations from the bus", type=str)
     silent = Input("1", "whether it is silent", type=bool, optional=True)
 
-    tx = Output("1", "what it tells the bus", type=str)
-    asked = Output("1", "frames asked for", type=int)
+    tx = Output("1", "operations to the bus", type=str)
+    asked = Output("1", "frames requested", type=int)
     confirmed = Output("1", "frames sent", type=int)
     received = Output("1", "frames received", type=int)
 
@@ -97,14 +97,14 @@ class CanTraffic(Noise, Component):
         self._counts = [0] * len(self._messages)
         self._background_count = 0
         self._background_ns = float(self.now_ns)
-        self._asked = self._confirmed = self._received = 0
+        self._requested = self._confirmed = self._received = 0
         self._can: dict[str, Any] = {}
         self._drawn: dict[int, tuple[int, Any]] = {}
 
     def step(self, t: float, h: float) -> None:
-        """Ask for what is due from ``t`` to before ``t + h``."""
+        """Request what is due from ``t`` to before ``t + h``."""
         node, end_ns = CanNode(self._can), self.now_ns + round(h * NS)
-        for _, operation in node.hear(self.rx):
+        for _, operation in node.receive(self.rx):
             if isinstance(operation, Confirm):
                 self._confirmed += 1
             elif isinstance(operation, Transmit):
@@ -116,13 +116,13 @@ class CanTraffic(Noise, Component):
         if not self.silent:
             for when, _, frame in sorted(due, key=lambda entry: entry[:2]):
                 node.send(when, frame)
-            self._asked += len(due)
+            self._requested += len(due)
         node.flush()
 
     def outputs(self, t: float) -> None:
         """Publish."""
         self.tx = CanNode(self._can).text
-        self.asked, self.confirmed, self.received = self._asked, self._confirmed, self._received
+        self.asked, self.confirmed, self.received = self._requested, self._confirmed, self._received
 
     def set_state(self, state: Any) -> None:
         """Restore what `get_state` returned."""

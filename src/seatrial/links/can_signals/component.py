@@ -1,4 +1,4 @@
-"""A node of a CAN bus whose messages a DBC describes."""
+"""CAN node whose messages a DBC describes."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class CanSignals(Component):
     ``sends`` and ``receives`` name signals, ``MESSAGE.SIGNAL`` each, separated by ``;``: the
     first one is the port ``send.s1`` or ``received.s1``, and so on. Ports have SI units and
     radians: the DBC's unit of the signal says what that means (``us`` is s, ``deg`` is rad, ``%``
-    is a share of 1). So their wires are written with ``convert = false``. A range after a
+    is a share of 1). So their connections are written with ``convert = false``. A range after a
     signal's name, ``LOW HIGH UNIT``, is refused if the signal cannot carry it.
 
     **Sending.** A message goes out at the start of the run + k cycle times (GenMsgCycleTime),
@@ -44,7 +44,7 @@ class CanSignals(Component):
     without a cycle time is never lost. A frame of the wrong length, or a remote one, changes
     nothing; ``frames_refused`` counts them.
 
-    Identifiers of 11 and of 29 bits count as they are; CAN FD where the DBC says so. Not here:
+    Identifiers of 11 and of 29 bits are taken as they are; CAN FD where the DBC says so. Not here:
     multiplexed messages to send, counters and checksums inside messages, J1939.
 
     Raises InputError at the start, with the file, for a DBC that cannot be read or in which
@@ -65,13 +65,13 @@ class CanSignals(Component):
         3.0, "1", "cycles without a message after which it is lost, 0: never", min=0.0
     )
 
-    rx = Input("1", "what the bus tells", type=str)
+    rx = Input("1", "operations from the bus", type=str)
     send = Input("1", "values to send, in SI", axes=_AXES, optional=True)
 
-    tx = Output("1", "what it tells the bus", type=str)
+    tx = Output("1", "operations to the bus", type=str)
     received = Output("1", "values that were received, in SI", axes=_AXES)
     valid = Output("1", "whether they were, and are not lost", type=bool, axes=_AXES)
-    frames_sent = Output("1", "frames asked for", type=int)
+    frames_sent = Output("1", "frames requested", type=int)
     frames_received = Output("1", "frames received that it reads", type=int)
     frames_refused = Output("1", "frames received that are not as the DBC says", type=int)
     limited = Output("1", "values that were beyond their limits", type=int)
@@ -97,9 +97,9 @@ class CanSignals(Component):
     def step(self, t: float, h: float) -> None:
         """Read what was received, and send what is due from ``t`` to before ``t + h``."""
         node = CanNode(self._can)
-        for when, operation in node.hear(self.rx):
+        for when, operation in node.receive(self.rx):
             if isinstance(operation, Transmit):
-                self._hear(when, operation.frame)
+                self._receive(when, operation.frame)
         self._lose(self.now_ns + round(h * NS))
         due: list[tuple[int, int, Frame]] = []
         for number in range(len(self._sent)):
@@ -195,7 +195,7 @@ class CanSignals(Component):
 
     # ------------------------------------------------------------------ receiving
 
-    def _hear(self, when: int, frame: Frame) -> None:
+    def _receive(self, when: int, frame: Frame) -> None:
         message = self._known.get((frame.identifier, frame.extended))
         if message is None:
             return

@@ -1,4 +1,4 @@
-"""A signal of a DBC that a port has: its unit, limits and start value."""
+"""DBC signal of a port: its unit, limits and start value."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""DroneCAN (UAVCAN v0): nodes of a CAN bus that speak as ESCs, servos, receivers and autopilots do.
+"""DroneCAN (UAVCAN v0): ESCs, servos, receivers and autopilots as nodes of a CAN bus.
 
 `peripheral` and `autopilot` are what a rig uses; `node` is what both share: identity, status,
 parameters, a node ID. Below it `transfers` makes frames into transfers and back, with the types

@@ -1,4 +1,4 @@
-"""A node ID from an allocator: the node's side of it."""
+"""Dynamic node ID allocation: the node's side of it."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _MS = 1_000_000
 
 
 class Allocatee:
-    """Asks for a node ID, by its unique ID of 16 bytes in three parts: rules A to E of the message.
+    """Requests a node ID, by its unique ID of 16 bytes in three parts: rules A to E of the message.
 
     Source: DroneCAN specification, uavcan.protocol.dynamic_node_id.Allocation.
 
@@ -40,11 +40,11 @@ class Allocatee:
 
     @property
     def due_ns(self) -> int:
-        """When it says something next, if it hears nothing before."""
+        """Time of its next message, if it receives nothing before."""
         due: int = self._memory["due"]
         return due
 
-    def hear(self, now_ns: int, transfer: Transfer) -> int:
+    def receive(self, now_ns: int, transfer: Transfer) -> int:
         """Take in an Allocation message; return the node ID that it grants, or 0."""
         message = transfer.payload
         known = bytes(message.unique_id)
@@ -57,7 +57,7 @@ class Allocatee:
             return 0
         return int(message.node_id)
 
-    def ask(self) -> tuple[Any, int]:
+    def request(self) -> tuple[Any, int]:
         """Return the message that is due, and its discriminator; wait for an answer."""
         offset = self._memory["offset"]
         message = Allocation(first_part_of_unique_id=offset == 0)
@@ -66,7 +66,7 @@ class Allocatee:
         return message, int(self._random() * (1 << 14))
 
     def _wait(self, now_ns: int, offset: int, range_ms: tuple[int, int]) -> None:
-        """Say the part of the unique ID at ``offset`` after a random time."""
+        """Send the part of the unique ID at ``offset`` after a random time."""
         low, high = range_ms
         delay = round((low + (high - low) * self._random()) * _MS)
         self._memory.update(due=now_ns + delay, offset=offset)

@@ -1,4 +1,4 @@
-"""An autopilot's DroneCAN: commands to ESCs and servos, and what the other nodes say."""
+"""DroneCAN of an autopilot: commands to ESCs and servos, and the other nodes' reports."""
 
 from __future__ import annotations
 
@@ -21,20 +21,20 @@ _NED = ("north", "east", "down")
 
 
 class DroneCanAutopilot(DroneCanNode):
-    """The node that commands the others.
+    """DroneCAN node that commands ESCs and servos.
 
     Every ``command_period`` it sends ``command`` to the ``channels``, named as in
     `DroneCanPeripheral`: one RawCommand for all esc, one RPMCommand for all rpm, one
     ArrayCommand for all actuators, at high priority; beyond their range they are cut off. While
     ``enabled`` is false it sends none, and the others' failsafe acts.
 
-    What the channels' status says, is on outputs, 0 until it is known; ``status_valid`` says if
+    The channels' status is on outputs, 0 until it is known; ``status_valid`` is whether
     it is younger than ``timeout``. So are position and velocity of the last Fix2 that had a fix
     (north-east-down from ``latitude``, ``longitude``, ``altitude``) and attitude, rates and
     acceleration of the last ahrs.Solution, with ``position_valid`` and ``attitude_valid``; of
-    several senders, the last one counts. A Fix2 without a fix ends ``position_valid`` at once.
+    several senders, the last one applies. A Fix2 without a fix ends ``position_valid`` at once.
 
-    ``others`` counts the nodes whose NodeStatus came in the last 3 s.
+    ``others`` is the number of nodes whose NodeStatus came in the last 3 s.
 
     Raises InputError at the start for channels that cannot be.
     """
@@ -44,7 +44,9 @@ class DroneCanAutopilot(DroneCanNode):
 
     channels = Parameter("esc0 esc1", "1", "what command.c1, c2... are", check=channels_of)
     command_period = Parameter(0.02, "s", "period of commands", min=1e-3, max=60.0)
-    timeout = Parameter(1.0, "s", "age at which what others said no longer counts", min=1e-3)
+    timeout = Parameter(
+        1.0, "s", "age at which values of other nodes are no longer valid", min=1e-3
+    )
     latitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-1.5707, max=1.5707)
     longitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-3.1416, max=3.1416)
     altitude = Parameter(0.0, "m", "of the origin")
@@ -65,13 +67,13 @@ class DroneCanAutopilot(DroneCanNode):
     attitude = Output("rad", "Euler angles, ZYX", axes=("phi", "theta", "psi"))
     rates = Output("rad/s", "angular velocity, body axes", axes="pqr")
     acceleration = Output("m/s2", "specific force, body axes", axes="xyz")
-    attitude_valid = Output("1", "whether attitude counts", type=bool)
+    attitude_valid = Output("1", "whether attitude is valid", type=bool)
     others = Output("1", "other nodes that are there", type=int)
 
     # ------------------------------------------------------------------ running
 
     def begin(self) -> None:
-        """Forget what others said."""
+        """Forget what was received."""
         self._written: str = self.setting("CHANNELS")
         self._set_up()
         for name in (*QUANTITIES, "position_n", "velocity_n", "attitude", "rates", "acceleration"):
@@ -82,13 +84,13 @@ class DroneCanAutopilot(DroneCanNode):
         self._nodes: dict[int, int] = {}
 
     def outputs(self, t: float) -> None:
-        """Publish what counts still, and what it says."""
+        """Publish what is still valid, and what is sent."""
         super().outputs(t)
         missing = MOST_CHANNELS - len(self._channels)
-        fresh = [self._counts(at) for at in self._reported_ns]
+        fresh = [self._valid(at) for at in self._reported_ns]
         self.publish("status_valid", (*fresh, *(False,) * missing))
-        self.publish("position_valid", self._counts(self._fix_ns))
-        self.publish("attitude_valid", self._counts(self._motion_ns))
+        self.publish("position_valid", self._valid(self._fix_ns))
+        self.publish("attitude_valid", self._valid(self._motion_ns))
         self.publish("others", sum(self.now_ns - at < OFFLINE_NS for at in self._nodes.values()))
 
     def settings(self) -> Sequence[Setting]:
@@ -99,11 +101,11 @@ class DroneCanAutopilot(DroneCanNode):
         )
 
     def tasks(self) -> Sequence[Task]:
-        """Return what it says again and again."""
-        return (Task("commands", self.setting("COMMAND_PERIOD"), self._say_commands, False),)
+        """Return its periodic messages."""
+        return (Task("commands", self.setting("COMMAND_PERIOD"), self._send_commands, False),)
 
     def received(self, time_ns: int, transfer: Transfer) -> None:
-        """Take in what another node says."""
+        """Take in a transfer of another node."""
         message = transfer.payload
         if message._type is NodeStatus:
             self._nodes[transfer.source_node_id] = time_ns
@@ -137,17 +139,17 @@ class DroneCanAutopilot(DroneCanNode):
         self._origin = Origin(self.latitude, self.longitude, self.altitude)
 
     def _report(self, place: int, found: Mapping[str, float]) -> None:
-        """Publish what the status of a channel says."""
+        """Publish the status of a channel."""
         for name in QUANTITIES:
             values = list(getattr(self, name))
             values[place] = found.get(name, 0.0)
             setattr(self, name, values)
 
-    def _counts(self, at: int | None) -> bool:
+    def _valid(self, at: int | None) -> bool:
         return at is not None and self.now_ns - at < round(self.timeout * NS)
 
-    def _say_commands(self, time_ns: int) -> None:
+    def _send_commands(self, time_ns: int) -> None:
         if self.enabled:
             values = self.command[: len(self._channels)]
             for message in messages(self._channels, values):
-                self.say(time_ns, message, HIGH)
+                self.send(time_ns, message, HIGH)

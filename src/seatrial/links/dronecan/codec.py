@@ -41,5 +41,5 @@ def transfer_of(identifier: int, datas: Sequence[bytes]) -> Transfer | None:
 
 
 def is_a(payload: Any, kind: Any) -> bool:
-    """Say if a payload is of a type, or a request or response of a service."""
+    """Return whether a payload is of a type, or a request or response of a service."""
     return bool(payload._type is kind)

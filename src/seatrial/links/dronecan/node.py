@@ -39,7 +39,7 @@ _FIRST_DRAW = 100
 
 
 class Task(NamedTuple):
-    """What a node does every ``period`` (s), at most each millisecond; never if that is 0."""
+    """Task of a node every ``period`` (s), at most each millisecond; never if that is 0."""
 
     name: str
     period: float
@@ -73,12 +73,12 @@ def check_version(text: str) -> None:
 class DroneCanNode(Noise, Component):
     """Base of the nodes of a DroneCAN bus.
 
-    **It says** NodeStatus once a second, and answers GetNodeInfo, RestartNode, param.GetSet and
-    param.ExecuteOpcode. With the ``node_id`` 0 it first asks an allocator for one, by its
-    ``unique_id`` (`Allocatee`), and until then says and takes in nothing else. Without a
+    **It sends** NodeStatus once a second, and answers GetNodeInfo, RestartNode, param.GetSet and
+    param.ExecuteOpcode. With the ``node_id`` 0 it first requests one of an allocator, by its
+    ``unique_id`` (`Allocatee`), and until then sends and takes in nothing else. Without a
     ``unique_id`` it is made of the component's name.
 
-    **Time** is simulated: what is due from t to before t + h is asked for at its very time, with
+    **Time** is simulated: what is due from t to before t + h is requested at its very time, with
     the inputs as of t; requests are answered at the beginning of the step in which they are
     received.
 
@@ -86,8 +86,8 @@ class DroneCanNode(Noise, Component):
     once, but for ``NODE_ID`` and ``CHANNELS``, which wait for a restart. A restart forgets what was
     not saved, counts time and transfers anew, and is over at once.
 
-    Whoever writes one declares ``messages``, the message types that it takes in, and overrides
-    `begin`, `settings`, `tasks`, `received` and `attention`; it sends with `say`.
+    A subclass declares ``messages``, the message types that it takes in, and overrides
+    `begin`, `settings`, `tasks`, `received` and `attention`; it sends with `send`.
     """
 
     feedthrough: ClassVar = {}
@@ -107,9 +107,9 @@ class DroneCanNode(Noise, Component):
     software_version = Parameter("1.0", "1", "version of the software", check=check_version)
     hardware_version = Parameter("1.0", "1", "version of the hardware", check=check_version)
 
-    rx = Input("1", "what the bus tells", type=str)
+    rx = Input("1", "operations from the bus", type=str)
 
-    tx = Output("1", "what it tells the bus", type=str)
+    tx = Output("1", "operations to the bus", type=str)
     own_id = Output("1", "node ID that it has, 0 while it has none", type=int)
     malformed = Output("1", "transfers received that could not be understood", type=int)
 
@@ -130,7 +130,7 @@ class DroneCanNode(Noise, Component):
         """Take in a message of `messages`, which was on the bus at ``time_ns``."""
 
     def attention(self) -> bool:
-        """Say if the node's health is a warning."""
+        """Return whether the node's health is a warning."""
         return False
 
     # ------------------------------------------------------------------ running
@@ -142,18 +142,18 @@ class DroneCanNode(Noise, Component):
         self._can: dict[str, Any] = {}
         self._link: dict[str, Any] = {}
         self._stored: dict[str, Any] = {}
-        self._asking: dict[str, Any] = {}
+        self._allocating: dict[str, Any] = {}
         self._boots = -1
         self._view()
         self._boot()
 
     def step(self, t: float, h: float) -> None:
-        """Take in what was received, and say what is due from ``t`` to before ``t + h``."""
+        """Take in what was received, and send what is due from ``t`` to before ``t + h``."""
         wanted = self._wanted if self._id else _ALLOCATION
         restarts = False
-        for when, transfer in self._transfers.hear(self.rx, wanted, self._id):
+        for when, transfer in self._transfers.receive(self.rx, wanted, self._id):
             if not self._id:
-                self._hear_of_id(transfer)
+                self._receive_allocation(transfer)
             elif transfer.service_not_message:
                 restarts |= self._serve(transfer)
             else:
@@ -164,7 +164,7 @@ class DroneCanNode(Noise, Component):
         self._node.flush()
 
     def outputs(self, t: float) -> None:
-        """Publish what is said."""
+        """Publish what is sent."""
         self.publish("tx", self._node.text)
         self.publish("own_id", self._id)
         self.publish("malformed", self._transfers.malformed)
@@ -175,7 +175,7 @@ class DroneCanNode(Noise, Component):
         if "_link" in state:
             self._view()
 
-    def say(self, time_ns: int, message: Any, priority: int) -> None:
+    def send(self, time_ns: int, message: Any, priority: int) -> None:
         """Send a message at ``time_ns``."""
         self._transfers.broadcast(time_ns, self._id, message, priority)
 
@@ -200,7 +200,7 @@ class DroneCanNode(Noise, Component):
         self._node = CanNode(self._can)
         self._transfers = Transfers(self._link, self._node)
         self._parameters = ParameterServer(self._stored, self.visible)
-        self._allocatee = Allocatee(self._asking, self._unique_id, self._draw)
+        self._allocatee = Allocatee(self._allocating, self._unique_id, self._draw)
         messages = ((message.default_dtid, False) for message in self.messages)
         self._wanted: frozenset[Kind] = _SERVICES.union(messages)
 
@@ -228,20 +228,20 @@ class DroneCanNode(Noise, Component):
         number = (self._boots << 32) + _FIRST_DRAW + k
         return float(self.generator(number, zlib.crc32(self._unique_id)).random())
 
-    def _hear_of_id(self, transfer: Transfer) -> None:
-        self._id = self._allocatee.hear(self.now_ns, transfer)
+    def _receive_allocation(self, transfer: Transfer) -> None:
+        self._id = self._allocatee.receive(self.now_ns, transfer)
 
     def _do_what_is_due(self, end_ns: int) -> None:
         while not self._id and self._allocatee.due_ns < end_ns:
             when = self._allocatee.due_ns
-            message, discriminator = self._allocatee.ask()
+            message, discriminator = self._allocatee.request()
             self._transfers.broadcast_anonymously(when, message, discriminator)
         if self._id and (self._periods_may_differ or min(self._due.values()) < end_ns):
             self._periods_may_differ = False
             self._do_tasks(end_ns)
 
     def _do_tasks(self, end_ns: int) -> None:
-        tasks = [Task("status", STATUS_NS / NS, self._say_status), *self.tasks()]
+        tasks = [Task("status", STATUS_NS / NS, self._send_status), *self.tasks()]
         self._schedule(tasks)
         while True:
             task = min((each for each in tasks if _ns(each.period)), key=self._due_ns)
@@ -269,23 +269,23 @@ class DroneCanNode(Noise, Component):
     # ------------------------------------------------------------------ services
 
     def _serve(self, request: Transfer) -> bool:
-        """Answer a request; say if the node restarts."""
-        asked, restarts = request.payload, False
+        """Answer a request; return whether the node restarts."""
+        requested, restarts = request.payload, False
         if not request.request_not_response:
             return False
-        if asked._type is GetNodeInfo:
+        if requested._type is GetNodeInfo:
             response = self._info()
-        elif asked._type is RestartNode:
-            restarts = asked.magic_number == asked.MAGIC_NUMBER
+        elif requested._type is RestartNode:
+            restarts = requested.magic_number == requested.MAGIC_NUMBER
             response = RestartNode.Response(ok=restarts)
         else:
-            response = self._parameters.answer(asked)
+            response = self._parameters.answer(requested)
             self._periods_may_differ = True
         self._transfers.respond(self.now_ns, self._id, request, response)
         return restarts
 
-    def _say_status(self, time_ns: int) -> None:
-        self.say(time_ns, self._status(time_ns), LOW)
+    def _send_status(self, time_ns: int) -> None:
+        self.send(time_ns, self._status(time_ns), LOW)
 
     def _status(self, time_ns: int) -> Any:
         status = NodeStatus(uptime_sec=(time_ns - self._begun_ns) // NS)

@@ -36,7 +36,7 @@ class Setting:
         return {int: "integer_value", float: "real_value", str: "string_value"}[kind]
 
     def accepts(self, value: Value) -> bool:
-        """Say if it may have this value."""
+        """Return whether it may have this value."""
         if isinstance(value, str):
             try:
                 if self.check is not None:
@@ -79,7 +79,7 @@ class ParameterServer:
 
     def _get_set(self, request: Any) -> Any:
         response = GetSet.Response()
-        setting = self._asked_for(request)
+        setting = self._requested(request)
         if setting is None:
             return response
         field = get_active_union_field(request.value)
@@ -96,7 +96,7 @@ class ParameterServer:
             response.max_value = _NumericValue(**{setting.field: kind(setting.high)})
         return response
 
-    def _asked_for(self, request: Any) -> Setting | None:
+    def _requested(self, request: Any) -> Setting | None:
         name = _text(request.name)
         if name:
             return self._settings.get(name)

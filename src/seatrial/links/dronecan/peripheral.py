@@ -1,4 +1,4 @@
-"""What hangs on an autopilot's DroneCAN bus: ESCs, servos, a GNSS receiver, an AHRS."""
+"""DroneCAN peripherals of an autopilot: ESCs, servos, a GNSS receiver, an AHRS."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class DroneCanPeripheral(DroneCanNode):
 
     **Commands.** ``channels`` names what ``command.c1``, ``c2``... are: ``esc0`` takes element 0
     of RawCommand, and has -1 to 1; ``rpm0`` element 0 of RPMCommand, rad/s; ``actuator3`` what
-    ArrayCommand says of actuator 3 in the type named: ``actuator3:unitless`` (the default, -1 to
+    ArrayCommand has for actuator 3 in the type named: ``actuator3:unitless`` (the default, -1 to
     1), ``:position``, ``:force``, ``:speed`` (SI), ``:pwm`` (a pulse, s). ``pulse`` is the servo
     pulse of those with a command from -1 to 1, by ``pulse_min``, ``pulse_neutral``,
     ``pulse_max``, and of pwm; of others it is neutral. Commands act at the end of the step in
@@ -43,7 +43,7 @@ class DroneCanPeripheral(DroneCanNode):
 
     **Failsafe.** A channel that has had no command for ``command_timeout`` is neutral: 0, or the
     neutral pulse. So is one that has not had any yet. 0: it keeps the last one for ever.
-    ``failsafe`` tells that a channel is neutral for want of commands; the node's health is a
+    ``failsafe`` reports that a channel is neutral for want of commands; the node's health is a
     warning once they have stopped.
 
     **Status** of each channel every ``status_period``: those quantities that ``measured`` names
@@ -92,7 +92,7 @@ class DroneCanPeripheral(DroneCanNode):
     attitude = Input("rad", "Euler angles, ZYX", axes=("phi", "theta", "psi"), optional=True)
     rates = Input("rad/s", "angular velocity, body axes", axes="pqr", optional=True)
     acceleration = Input("m/s2", "specific force, body axes", axes="xyz", optional=True)
-    attitude_valid = Input("1", "whether attitude counts", type=bool, start=True, optional=True)
+    attitude_valid = Input("1", "whether attitude is valid", type=bool, start=True, optional=True)
 
     command = Output("1", "command: -1 to 1, or in the channel's unit", axes=AXES)
     pulse = Output("s", "servo pulse", axes=AXES)
@@ -117,7 +117,7 @@ class DroneCanPeripheral(DroneCanNode):
         self._commanded_ns: list[int | None] = [None] * len(self._channels)
 
     def outputs(self, t: float) -> None:
-        """Publish commands, and what is said."""
+        """Publish commands, and what is sent."""
         super().outputs(t)
         channels, timeout = range(len(self._channels)), round(self.setting("COMMAND_TIMEOUT") * NS)
         late = [self._is_late(place, timeout) for place in channels]
@@ -139,11 +139,11 @@ class DroneCanPeripheral(DroneCanNode):
         )
 
     def tasks(self) -> Sequence[Task]:
-        """Return what it says again and again."""
+        """Return its periodic messages."""
         return (
-            Task("channels", self.setting("STATUS_PERIOD"), self._say_channels),
-            Task("gnss", self.setting("GNSS_PERIOD"), self._say_fix, False),
-            Task("ahrs", self.setting("AHRS_PERIOD"), self._say_attitude, False),
+            Task("channels", self.setting("STATUS_PERIOD"), self._send_channels),
+            Task("gnss", self.setting("GNSS_PERIOD"), self._send_fix, False),
+            Task("ahrs", self.setting("AHRS_PERIOD"), self._send_attitude, False),
         )
 
     def received(self, time_ns: int, transfer: Transfer) -> None:
@@ -152,7 +152,7 @@ class DroneCanPeripheral(DroneCanNode):
             self._commands[place], self._commanded_ns[place] = value, time_ns
 
     def attention(self) -> bool:
-        """Say if commands have stopped."""
+        """Return whether commands have stopped."""
         timeout = round(self.setting("COMMAND_TIMEOUT") * NS)
         return any(
             at is not None and self._is_late(place, timeout)
@@ -190,22 +190,22 @@ class DroneCanPeripheral(DroneCanNode):
         end = self.pulse_max if command > 0.0 else self.pulse_min
         return float(neutral + min(abs(command), 1.0) * (end - neutral))
 
-    def _say_channels(self, time_ns: int) -> None:
+    def _send_channels(self, time_ns: int) -> None:
         known = {name: getattr(self, name) for name in self.measured.split()}
         for place, channel in enumerate(self._channels):
             measured = {name: values[place] for name, values in known.items()}
             demand = abs(self.command[place]) if channel.kind == "esc" else 0.0
-            self.say(time_ns, status(channel, measured, demand), LOW)
+            self.send(time_ns, status(channel, measured, demand), LOW)
 
-    def _say_fix(self, time_ns: int) -> None:
+    def _send_fix(self, time_ns: int) -> None:
         north, east, down = self.position_n
         utc_us = self._midnight_us + time_ns // 1000
         message = fix(
             self._origin, (north, east, down), self.velocity_n, self.position_valid, utc_us
         )
-        self.say(time_ns, message, MEDIUM)
+        self.send(time_ns, message, MEDIUM)
 
-    def _say_attitude(self, time_ns: int) -> None:
+    def _send_attitude(self, time_ns: int) -> None:
         if self.attitude_valid:
             motion = Motion(tuple(self.attitude), tuple(self.rates), tuple(self.acceleration))
-            self.say(time_ns, solution(motion), MEDIUM)
+            self.send(time_ns, solution(motion), MEDIUM)

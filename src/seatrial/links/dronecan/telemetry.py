@@ -48,7 +48,7 @@ def status(channel: Channel, measured: Mapping[str, float], demand: float) -> An
 
 
 def is_status_of(channel: Channel, message: Any) -> bool:
-    """Say if a message is the status of a channel."""
+    """Return whether a message is the status of a channel."""
     if message._type is EscStatus:
         return channel.is_esc and channel.number == message.esc_index
     return (
@@ -59,7 +59,7 @@ def is_status_of(channel: Channel, message: Any) -> bool:
 
 
 def reported(message: Any) -> dict[str, float]:
-    """Return what a status says, without what is unknown."""
+    """Return the values of a status, without what is unknown."""
     if message._type is EscStatus:
         found = {
             "voltage": message.voltage,

@@ -1,4 +1,4 @@
-"""Transfers of one node: out of the frames that it hears, and into frames that it says."""
+"""Transfers of one node: out of received frames, and into frames to send."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Transfers:
     Transfers of each data type and source are put together apart. A frame that is there twice,
     out of order or of another transfer is passed over, and with it the transfer; so is a
     transfer whose ID is that of the one before, within 2 s: its last frame was repeated.
-    Anonymous transfers have one frame. CAN FD is not spoken.
+    Anonymous transfers have one frame. CAN FD is not supported.
 
     Source: DroneCAN specification, CAN bus transport layer.
     """
@@ -49,12 +49,14 @@ class Transfers:
         count: int = self._memory["malformed"]
         return count
 
-    def hear(self, rx: str, wanted: frozenset[Kind], node: int) -> Iterator[tuple[int, Transfer]]:
+    def receive(
+        self, rx: str, wanted: frozenset[Kind], node: int
+    ) -> Iterator[tuple[int, Transfer]]:
         """Give what is new on ``rx`` of the kinds wanted: simulated time (ns) and transfer.
 
         Of services, what goes to ``node``.
         """
-        for when, operation in self._can.hear(rx):
+        for when, operation in self._can.receive(rx):
             if isinstance(operation, Transmit) and _is_for(node, operation.frame, wanted):
                 found = self._take(when, operation.frame)
                 if found is not None:
@@ -123,13 +125,13 @@ class Transfers:
 
 
 def _follows(session: list[Any], number: int, toggle: bool) -> bool:
-    """Say if a frame with this transfer ID is the next one of a session."""
+    """Return whether a frame with this transfer ID is the next one of a session."""
     known = len(session[2])
     return 0 < known < MOST_FRAMES and session[1] == number and toggle == bool(known % 2)
 
 
 def _is_for(node: int, frame: Frame, wanted: frozenset[Kind]) -> bool:
-    """Say if a frame is of a kind wanted, and a service's for ``node``."""
+    """Return whether a frame is of a kind wanted, and a service's for ``node``."""
     identifier = frame.identifier
     if not frame.extended or not frame.data or frame.fd:
         return False

@@ -1,4 +1,4 @@
-"""A peer behind a file descriptor: a serial line, a terminal."""
+"""Channel at a file descriptor: a serial line, a terminal."""
 
 from __future__ import annotations
 

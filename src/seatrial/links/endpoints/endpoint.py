@@ -1,4 +1,4 @@
-"""An endpoint: where peers are found, polled, never waited for."""
+"""Endpoint interface: peers are found and polled, never waited for."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ class Channel(ABC):
 
     @abstractmethod
     def send(self, data: bytes) -> None:
-        """Send one frame; it is lost without a word if the peer takes no more or is gone."""
+        """Send one frame; it is lost silently if the peer takes no more or is gone."""
 
 
 class Endpoint(ABC):
     """One URL. What has gone wrong on the way is no error here: protocols repeat themselves."""
 
     url: str
-    """As it is bound: with the port's number where 0 was asked for."""
+    """As it is bound: with the port's number where 0 was given."""
 
     @abstractmethod
     def channels(self) -> Sequence[Channel]:

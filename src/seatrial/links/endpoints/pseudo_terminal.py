@@ -12,7 +12,7 @@ from .descriptor import DescriptorChannel
 from .endpoint import LARGEST_DATAGRAM, Channel, Endpoint
 
 LONGEST_QUEUE = 1 << 16
-"""Bytes kept for somebody who does not read; what comes beyond is lost."""
+"""Bytes kept while the other end does not read; what comes beyond is lost."""
 
 
 class PseudoTerminal(Endpoint):
@@ -26,7 +26,7 @@ class PseudoTerminal(Endpoint):
         self._place = Path(place) if place else None
         if self._place is not None:
             _clear(self._place)
-        self._own, self._other = os.openpty()  # the other stays open: whoever has it may go
+        self._own, self._other = os.openpty()  # the other stays open: its users may come and go
         tty.setraw(self._other)
         os.set_blocking(self._own, False)
         self._device = os.ttyname(self._other)
@@ -42,7 +42,7 @@ class PseudoTerminal(Endpoint):
                 ) from None
 
     def channels(self) -> Sequence[Channel]:
-        """Return the one peer, whether anybody has opened the device or not."""
+        """Return the one peer, whether the device is open or not."""
         return self._peers
 
     def poll(self) -> list[tuple[Channel, bytes]]:

@@ -19,7 +19,7 @@ class SerialEndpoint(Endpoint):
     """A serial port with one peer, 8 bits, no parity, one stop bit. POSIX only.
 
     Raises InputError for a device that cannot be opened, and for a real one if hardware was not
-    allowed: whoever answers there may drive thrusters.
+    allowed: what answers there may drive thrusters.
     """
 
     def __init__(self, url: str, device: str, baud: int) -> None:

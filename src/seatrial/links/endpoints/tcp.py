@@ -97,9 +97,9 @@ class TcpServer(Endpoint):
         return [stream for stream in self._streams if stream.is_open]
 
     def poll(self) -> list[tuple[Channel, bytes]]:
-        """Accept who has come, and return what has arrived."""
+        """Accept clients, and return what has arrived."""
         self._streams = [stream for stream in self._streams if stream.is_open]
-        with contextlib.suppress(OSError):  # nobody, or somebody who has gone again
+        with contextlib.suppress(OSError):  # none, or one that has gone again
             while len(self._streams) < MOST_CLIENTS:
                 self._streams.append(_Stream(self._socket.accept()[0]))
         return _read(self._streams)
@@ -112,7 +112,7 @@ class TcpServer(Endpoint):
 
 
 class TcpClient(Endpoint):
-    """Connects, and again every `RETRY_S` of wall time while there is nobody."""
+    """Connects, and again every `RETRY_S` of wall time while there is no server."""
 
     def __init__(self, address: _Address) -> None:
         self.url = f"tcpout:{address[0]}:{address[1]}"

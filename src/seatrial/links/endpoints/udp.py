@@ -1,4 +1,4 @@
-"""UDP: one known address, or whoever sends."""
+"""UDP endpoints: one known address, or any sender."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ class _UdpPeer(Channel):
             else:
                 self._socket.sendto(data, self._address)
         except OSError:
-            pass  # nobody there, or the queue is full: a datagram may be lost
+            pass  # no receiver, or the queue is full: a datagram may be lost
 
 
 class UdpSender(Endpoint):
-    """Sends to one address from a port of its own; connected, so that it hears that one alone."""
+    """Sends to one address from a port of its own; connected, so it receives that one alone."""
 
     def __init__(self, address: _Address) -> None:
         self.url = f"udpout:{address[0]}:{address[1]}"
@@ -54,7 +54,7 @@ class UdpSender(Endpoint):
             except BlockingIOError:
                 break
             except OSError:
-                continue  # the answer to an earlier datagram: nobody listens there
+                continue  # the answer to an earlier datagram: the port is closed
         return arrived
 
     def close(self) -> None:

@@ -1,8 +1,8 @@
 """Endpoints by URL.
 
 =========================== =================================================================
-``udpout:HOST:PORT``        sends to one address, and hears it alone
-``udpin:HOST:PORT``         bound there; sends to whoever has sent something
+``udpout:HOST:PORT``        sends to one address, and receives it alone
+``udpin:HOST:PORT``         bound there; sends to all that have sent something
 ``tcpin:HOST:PORT``         a server with any number of clients
 ``tcpout:HOST:PORT``        a client, which connects again when the connection is lost
 ``serial:DEVICE:BAUD``      a serial port; a real one only if hardware is allowed
@@ -42,7 +42,7 @@ def open_endpoint(url: str) -> Endpoint:
     """Open the endpoint ``url``.
 
     Raises InputError, with the URL, for one that is malformed or cannot be opened (a port in
-    use, an unknown host, no such device, hardware that nobody allowed).
+    use, an unknown host, no such device, hardware that is not allowed).
     """
     kind, place, number = _parts(url)
     if kind == "serial":

@@ -1,4 +1,4 @@
-"""Bytes to messages and back, for one peer."""
+"""MAVLink codec of one peer: bytes to messages and back."""
 
 from __future__ import annotations
 
@@ -94,14 +94,14 @@ class _Parser(mavlink.MAVLink):  # type: ignore[misc]
             guard.allow_unsigned_callback = _allowed_unsigned
 
     def check_signature(self, msgbuf: bytearray, srcSystem: int, srcComponent: int) -> bool:
-        """Say if the signature holds."""
+        """Return whether the signature holds."""
         assert self.guard is not None
         genuine = self.guard.accepts(bytes(msgbuf), srcSystem, srcComponent)
         self._forged = not genuine
         return genuine
 
     def was_forged(self) -> bool:
-        """Say if the frame being parsed has a signature that does not hold."""
+        """Return whether the frame being parsed has a signature that does not hold."""
         forged, self._forged = self._forged, False
         return forged
 

@@ -1,4 +1,4 @@
-"""The MAVLink link as a component: estimates in, what ground stations want out."""
+"""The MAVLink link as a component: estimates in, commands of ground stations out."""
 
 from __future__ import annotations
 
@@ -43,9 +43,9 @@ _STAYS = 2
 class Mavlink(MavlinkPorts):
     """A vehicle that ground stations see, command and guide over MAVLink 2.
 
-    Every ``period`` it takes in what has arrived, and sends what is due; what it was told is on
-    the outputs from the instant after. Times and rates are simulated; the wall clock serves
-    sockets and signatures alone. So a run that nobody listens to is the same each time.
+    Every ``period`` it takes in what has arrived, and sends what is due; what it was commanded is
+    on the outputs from the instant after. Times and rates are simulated; the wall clock serves
+    sockets and signatures alone. So a run without listeners is the same each time.
 
     **Links**: URLs separated by spaces, as `endpoints.url` has them. Peers that are not there are
     no error; a malformed URL, or a port that cannot be had, is. Streams and their rates are
@@ -62,13 +62,13 @@ class Mavlink(MavlinkPorts):
     and returns to the nearest of home and the rally points.
 
     **Parameters** are those that stations look for in vehicles of this kind, and the rig's
-    ``tunables``, which are on the output ``tunable`` in their order, for wires to other
+    ``tunables``, which are on the output ``tunable`` in their order, for connections to other
     components' tunable parameters. What is set is kept in ``parameter_file``, relative to the
     current folder.
 
     **Left alone** it carries out ``failsafe`` if it is armed: when all ground stations were
-    silent for ``station_timeout``, and in a manual mode when the sticks were for
-    ``manual_timeout``. Set-points count for ``target_timeout``. See `Failsafe`.
+    silent for ``station_timeout``, and in a manual mode when manual control was for
+    ``manual_timeout``. Set-points apply for ``target_timeout``. See `Failsafe`.
 
     **Live**: stations set the ``speedup``, which a trial may pace its run by, and inject failures:
     ``failure`` goes to the input ``fault`` of devices, for the units that ``failures`` lists
@@ -84,7 +84,7 @@ class Mavlink(MavlinkPorts):
     ``truth`` is on.
 
     Not here: radio channels with losses and delays, MAVLink FTP, cameras, logs on
-    board. It cannot be rolled back: what was said has been said.
+    board. It cannot be rolled back: what was sent has been sent.
 
     It keeps a log of all frames, ``NAME.tlog``, in ``run_folder`` (`TelemetryLog`).
 
@@ -123,7 +123,11 @@ class Mavlink(MavlinkPorts):
             self._settings = settings
             self._failing: dict[str, str] = {}
             self._node = Node(
-                *(vehicle, self._transport, settings, self._parameters, plans),
+                vehicle,
+                self._transport,
+                settings,
+                self._parameters,
+                plans,
                 failures=failing_units(self.failures),
             )
         except InputError as error:
@@ -131,7 +135,7 @@ class Mavlink(MavlinkPorts):
             raise InputError(f"{self.name}: {error}") from None
 
     def sample(self, t: float, k: int) -> None:
-        """Publish what the vehicle was told until now."""
+        """Publish what the vehicle was commanded until now."""
         vehicle = self._vehicle
         self.mode, self.armed = vehicle.mode.name, vehicle.armed
         driven = vehicle.armed and vehicle.mode.name in MANUAL_MODES
@@ -173,7 +177,7 @@ class Mavlink(MavlinkPorts):
             stand_still(lambda: self._exchange(now), self._node, self._settings, self._parameters)
 
     def hold(self, t: float) -> None:
-        """Say how long it stood still."""
+        """Publish how long it stood still."""
         self.paused = self._vehicle.paused_s
 
     def close(self) -> None:
@@ -185,7 +189,7 @@ class Mavlink(MavlinkPorts):
 
     @property
     def urls(self) -> list[str]:
-        """URLs of the links as they are bound: with a port's number where 0 was asked for."""
+        """URLs of the links as they are bound: with a port's number where 0 was given."""
         return [] if self._transport is None else [link.url for link in self._transport.endpoints]
 
     # ------------------------------------------------------------------ inside
@@ -196,7 +200,7 @@ class Mavlink(MavlinkPorts):
         return self._node.vehicle
 
     def _exchange(self, now: float) -> bool:
-        """Take in what has arrived, and send what is due; say if anything has arrived."""
+        """Take in what has arrived, and send what is due; return whether anything has arrived."""
         assert self._transport is not None
         assert self._node is not None
         arrived = self._transport.poll()

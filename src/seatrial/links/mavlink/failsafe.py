@@ -1,4 +1,4 @@
-"""What the vehicle does by itself when it was left alone."""
+"""Failsafe actions of the vehicle."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ ACTIONS = ("none", "disarm", "hold", "loiter", "return", "surface")
 
 
 class Failsafe:
-    """Carries out one of `ACTIONS` in an armed vehicle: a mode, to disarm, or to say it only.
+    """Carries out one of `ACTIONS` in an armed vehicle: a mode, to disarm, or to report it only.
 
     A mode that cannot be entered (no position) is replaced by disarming: outputs go to neutral.
     Raises InputError for a mode that this kind of vehicle has not.
@@ -29,7 +29,7 @@ class Failsafe:
         self._reasons: set[str] = set()
 
     def act(self, reason: str, action: str | None = None) -> None:
-        """Act because of ``reason``; a vehicle that is not armed only says it.
+        """Act because of ``reason``; a vehicle that is not armed only reports it.
 
         ``action`` is one of `ACTIONS` instead of its own.
         """
@@ -50,7 +50,7 @@ class Failsafe:
             self._arming.disarm()
 
     def end(self, reason: str, news: str) -> None:
-        """Say that ``reason`` is over; the vehicle stays as it is."""
+        """Report that ``reason`` is over; the vehicle stays as it is."""
         self._reasons.discard(reason)
         self._vehicle.failsafe = bool(self._reasons)
         self._vehicle.say(CRITICAL, news)

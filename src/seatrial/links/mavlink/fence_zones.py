@@ -37,7 +37,7 @@ class Zone:
     radius: float
 
     def contains(self, place: Ned) -> bool:
-        """Say if a place in {n} is in it, whatever its depth.
+        """Return whether a place in {n} is in it, whatever its depth.
 
         A polygon contains what a line to the north, which crosses its edges, leaves an odd
         number of times.
@@ -85,7 +85,7 @@ def zones_of(items: Sequence[Item], vehicle: Vehicle) -> list[Zone]:
 
 
 def is_allowed(zones: Sequence[Zone], place: Ned) -> bool:
-    """Say if a place in {n} is in no exclusion, and in all inclusions of at least one group."""
+    """Return whether a place in {n} is in no exclusion, and in all inclusions of some group."""
     if any(zone.contains(place) for zone in zones if not zone.inclusion):
         return False
     inclusions = [zone for zone in zones if zone.inclusion]

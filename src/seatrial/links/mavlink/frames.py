@@ -1,4 +1,4 @@
-"""Positions in the frames that ground stations speak of."""
+"""Positions in MAVLink's coordinate frames."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _ABOVE_HOME = {
     mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT,
 }
 GLOBAL_FRAMES = frozenset(_ABOVE_SEA | _ABOVE_HOME)
-"""Frames with latitude and longitude; those above terrain, which nobody here knows, are not."""
+"""Frames with latitude and longitude; those above terrain, which is not known here, are not."""
 
 FARTHEST = 1e6
 """Positions beyond, m from the origin, are no place to go to."""
@@ -51,5 +51,5 @@ def global_position(
 
 
 def is_near(*position: float) -> bool:
-    """Say if a position in {n} is finite and not beyond `FARTHEST`."""
+    """Return whether a position in {n} is finite and not beyond `FARTHEST`."""
     return all(abs(x) <= FARTHEST for x in position)  # false for what is not a number

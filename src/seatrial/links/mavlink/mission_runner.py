@@ -1,4 +1,4 @@
-"""Carrying out a mission: item by item, as legs that guidance follows."""
+"""Mission execution: item by item, as legs that guidance follows."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _COMPLETE: int = mavlink.MISSION_STATE_COMPLETE
 
 @dataclass(frozen=True)
 class Leg:
-    """What guidance is to follow. SI, positions in {n}."""
+    """Leg that guidance is to follow. SI, positions in {n}."""
 
     number: int = 0
     """Another one for each leg; 0 for none: the vehicle stays where it is."""
@@ -61,14 +61,14 @@ class MissionRunner:
     NAV_LOITER_TIME         the same for the time in parameter 1
     NAV_RETURN_TO_LAUNCH    a leg to where the vehicle returns to
     NAV_DELAY               stays for the time in parameter 1
-    DO_JUMP                 goes on at the item in parameter 1, as often as parameter 2 says
+    DO_JUMP                 goes on at the item in parameter 1, parameter 2 times
                             since the mission began; always if that is negative
     DO_CHANGE_SPEED         parameter 2 is the speed of the legs from here on; -2 is the
                             vehicle's own, others below 0 change nothing
     DO_SET_HOME             moves home
     ======================= =============================================================
 
-    Other commands are skipped, which is said. A leg begins where the last one ended, or where
+    Other commands are skipped, which is reported. A leg begins where the last one ended, or where
     the vehicle is if there was none, or it was interrupted: by another mode, by disarming or by
     ``paused``. The current item then begins anew. After the last item the vehicle stays; when it
     is free to act again after an interruption, it begins from the first.
@@ -89,9 +89,9 @@ class MissionRunner:
         self._vehicle, self._plan, self._settings = vehicle, plan, settings
         self._set_home, self._refuge = set_home, refuge
         self.paused = False
-        """Whether somebody asked for a pause; other modes end it."""
+        """Whether a pause was requested; other modes end it."""
         self.passed: list[int] = []
-        """Items that are done; whoever tells of them empties it."""
+        """Items that are done; the reporting service empties it."""
         self._legs = 0
         self._acted = False
         self._until, self._turned = 0.0, 0.0
@@ -121,7 +121,7 @@ class MissionRunner:
         self._skipped: set[int] = set()
 
     def set_current(self, sequence: int) -> bool:
-        """Go on at an item, 0 for the first one; say if there is one of that number."""
+        """Go on at an item, 0 for the first one; return whether there is one of that number."""
         sequence = sequence or self.first
         if not self.first <= sequence < len(self._plan.items):
             return False
@@ -203,7 +203,7 @@ class MissionRunner:
         return round(item.number(1))
 
     def _starts(self, item: Item, now: float) -> bool:
-        """Start an item; say if it takes time."""
+        """Start an item; return whether it takes time."""
         match item.command:
             case mavlink.MAV_CMD_NAV_WAYPOINT:
                 return self._leads(item, radius=item.number(2), wait=item.number(1))
@@ -249,9 +249,12 @@ class MissionRunner:
         self._legs += 1
         self.leg = Leg(
             self._legs,
-            *(start, end, self._leg_speed()),
-            radius + abs(circle),  # who is on the circle has come to its centre
-            *(max(wait, 0.0), circle),
+            start,
+            end,
+            self._leg_speed(),
+            radius + abs(circle),  # on the circle, its centre is reached
+            max(wait, 0.0),
+            circle,
         )
 
     def _skip(self, item: Item, why: str) -> None:
@@ -271,7 +274,7 @@ class MissionRunner:
         return True
 
     def _has_turned(self, turns: float) -> bool:
-        """Say if the vehicle has been round its circle often enough since it came to it."""
+        """Return whether the vehicle has been round its circle often enough since it came to it."""
         (north, east, _), (to_north, to_east, _) = self._vehicle.estimates.position_n, self.leg.end
         bearing = math.atan2(east - to_east, north - to_north)
         if self._bearing is not None:

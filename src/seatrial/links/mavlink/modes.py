@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pymavlink.dialects.v20 import all as mavlink
 
 MANUAL_MODES = ("manual", "stabilize", "depth-hold")
-"""Modes in which a person's sticks act."""
+"""Modes in which manual control acts."""
 
 POSITION_MODES = ("guided", "auto", "return", "loiter")
 """Modes that cannot be entered without a position."""
@@ -72,7 +72,7 @@ _PX4_SUBMERGED = (
 
 @dataclass(frozen=True)
 class Dialect:
-    """How one autopilot numbers things: what a ground station expects of its kind."""
+    """Numbering of one autopilot, as a ground station expects it."""
 
     name: str
     autopilot: int
@@ -96,7 +96,7 @@ class Dialect:
         return next((mode for mode in self.modes if mode.custom_mode == custom_mode), None)
 
     def by_command(self, main: float, sub: float) -> Mode | None:
-        """Return the mode that parameters 2 and 3 of DO_SET_MODE ask for, None if there is none.
+        """Return the mode that parameters 2 and 3 of DO_SET_MODE request, None if there is none.
 
         ArduPilot reads its number from the first alone; ground stations leave the other 0 or
         not a number.

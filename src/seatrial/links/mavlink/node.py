@@ -1,4 +1,4 @@
-"""The vehicle's node on the network: its services, and who gets which message."""
+"""MAVLink node of the vehicle: its services, and the routing of messages to them."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class Node:
 
     `receive` takes messages one by one, `tick` lets time pass; answers and streams go to
     ``transport``. Messages of the vehicle itself, and those meant for another system or component,
-    are nobody's business here. Missions, fence and rally points are kept in ``plans``, a folder.
+    are ignored. Missions, fence and rally points are kept in ``plans``, a folder.
     ``clock`` is wall time, s, by which ground stations live. ``failures`` are the units that can
     fail.
     Raises InputError for settings that the vehicle cannot have, and for what is in the folder.
@@ -105,7 +105,7 @@ class Node:
             SensorTelemetry(vehicle, transport),
             SystemTelemetry(vehicle, transport),
             NavigationTelemetry(vehicle, transport, lambda: self.goal),
-            # What the others changed is told last.
+            # What the others changed is reported last.
             PresenceService(vehicle, transport),
             StreamService(vehicle, transport, builders, intervals),
         ]
@@ -117,7 +117,7 @@ class Node:
 
     @property
     def goal(self) -> Ned | None:
-        """Where the vehicle goes to, in {n}; None for a heading, a velocity, or nowhere."""
+        """Position the vehicle goes to, in {n}; None for a heading, a velocity, or none."""
         target, leg = self.vehicle.target, self.missions.leg
         match self.vehicle.mode.name:
             case "auto" if leg.number:

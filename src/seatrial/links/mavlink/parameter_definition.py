@@ -1,4 +1,4 @@
-"""What a parameter is: name, type, limits, and the setting that it moves."""
+"""Definition of a parameter: name, type, limits, and the setting that it changes."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Definition:
     apply: Apply | None = None
     """Passes a value on to the settings."""
     fixed: str = ""
-    """Why nobody can set it; empty if anybody can."""
+    """Why it cannot be set; empty if it can."""
     or_zero: bool = False
     """Whether 0 is allowed too."""
     passing: str = ""
@@ -84,7 +84,7 @@ class Definition:
 
 
 def fixed(name: str, kind: int, value: float, why: str = BELONGS_TO_TRIAL) -> Definition:
-    """Return a parameter that nobody can set."""
+    """Return a parameter that cannot be set."""
     return Definition(name, kind, value, fixed=why)
 
 

@@ -14,7 +14,7 @@ Check = Callable[[str, float], float]
 
 
 class ParameterFile:
-    """What was set over the link, for the runs to come.
+    """File of parameters set over the link, for later runs.
 
     Lines are ``NAME VALUE`` or ``NAME,VALUE``; ``#`` begins a comment. A file that is not there
     is one without lines. Raises InputError if its folder is not there.

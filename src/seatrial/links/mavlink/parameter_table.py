@@ -15,7 +15,7 @@ from .settings import Settings
 
 @dataclass(frozen=True)
 class Refusal:
-    """Why a parameter was not set."""
+    """Refusal of a parameter, with its reason."""
 
     error: int
     """MAV_PARAM_ERROR."""

@@ -1,4 +1,4 @@
-"""All parameters of a vehicle."""
+"""Parameters of a vehicle, all together."""
 
 from __future__ import annotations
 

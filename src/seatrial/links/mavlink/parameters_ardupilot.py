@@ -1,4 +1,4 @@
-"""The parameters that ground stations look for in ArduPilot's Rover and Sub."""
+"""Parameters of ArduPilot's Rover and Sub that ground stations look for."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _SUB_ACTIONS = {1: "none", 0: "none", 2: "disarm", 3: "hold", 4: "surface", 5: "
 _SUB_FENCE_ACTIONS = {0: "none", 1: "surface", 2: "hold", 3: "disarm", 4: "loiter"}
 _SWITCH = {0: False, 1: True}
 
-_MANUAL_AXES = "the sticks' channels are always the same"
+_MANUAL_AXES = "the channels of manual control are always the same"
 _NO_SWITCH = "no channel chooses modes"
 _TRUE_NORTH = "the vehicle is given its true heading"
 
@@ -58,7 +58,7 @@ def ardupilot_parameters(
 ) -> list[Definition]:
     """Return the parameters of a boat (Rover) or a submarine (Sub); ``servos`` by channel.
 
-    Those that lead to ``settings`` start with its values. The others say what the trial's files
+    Those that lead to ``settings`` start with its values. The others have what the trial's files
     made of the vehicle, and cannot be set. Raises InputError for a setting that ArduPilot has no
     number for.
     """
@@ -148,7 +148,7 @@ def _servo(channel: int, servos: Mapping[int, Servo], submerged: bool) -> list[D
 
 
 def _compass() -> list[Definition]:
-    # A compass without an identity or without offsets counts as one that nobody calibrated.
+    # A compass without an identity or without offsets is one that was never calibrated.
     offsets = [fixed(f"COMPASS_OFS_{axis}", REAL32, 1.0, _TRUE_NORTH) for axis in "XYZ"]
     return [
         fixed("COMPASS_ENABLE", INT8, 1, _TRUE_NORTH),

@@ -1,4 +1,4 @@
-"""The parameters that ground stations look for in PX4."""
+"""Parameters of PX4 that ground stations look for."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _WITHOUT_POSITION = {0: ALL_CHECKS, 1: COMPASS_CHECK}
 def px4_parameters(identity: Identity, settings: Settings) -> list[Definition]:
     """Return the parameters of a boat or a submarine.
 
-    All lead to ``settings`` and start with its values, but for those that say who the vehicle
+    All lead to ``settings`` and start with its values, but for those with the identity the vehicle
     is: these cannot be set. Raises InputError for a setting that PX4 has no number for.
     """
     actions = _SUBMERGED_ACTIONS if identity.submerged else _ACTIONS

@@ -18,7 +18,11 @@ def simulation_parameters(settings: Settings, *, is_px4: bool) -> list[Definitio
     A speed-up ends with the run: no file keeps it.
     """
     speedup = Definition(
-        *(SPEEDUP, REAL32, settings.speedup, SLOWEST, FASTEST),
+        SPEEDUP,
+        REAL32,
+        settings.speedup,
+        SLOWEST,
+        FASTEST,
         or_zero=True,
         apply=_speed_up,
         passing="it ends with the run, which starts at the speed-up that the rig sets",

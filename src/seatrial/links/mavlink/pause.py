@@ -19,7 +19,7 @@ POLL_S = 0.02
 
 
 class Interruption:
-    """Notices, while it is entered, a signal that asks the process to end.
+    """Notices, while it is entered, a signal that requests the process to end.
 
     The handler that there is still runs. Only a Python program's main thread can notice.
     """
@@ -55,11 +55,11 @@ def stand_still(
     clock: Callable[[], float] = time.monotonic,
     sleep: Callable[[float], None] = time.sleep,
 ) -> None:
-    """Serve the links until the pause is over; `Vehicle.paused_s` tells how long it took.
+    """Serve the links until the pause is over; `Vehicle.paused_s` is how long it took.
 
-    ``exchange`` takes in what has arrived, sends what is due, and says if anything has arrived.
-    It is over when a station sets SIM_SPEEDUP above 0, when nobody is left who could, that is
-    when nothing arrived for ``station_timeout`` of wall time, or when the process is asked to
+    ``exchange`` takes in what has arrived, sends what is due, and returns whether any has.
+    It is over when a station sets SIM_SPEEDUP above 0, when no station is left, that is
+    when nothing arrived for ``station_timeout`` of wall time, or when the process is requested to
     end. Then the run goes on at the speed before.
     """
     vehicle = node.vehicle
@@ -75,6 +75,6 @@ def stand_still(
                 received = now
             elif now - received > settings.station_timeout:
                 parameters.put(SPEEDUP, settings.speedup)
-                vehicle.say(WARNING, "Nobody is left who could end the pause")
+                vehicle.say(WARNING, "No station is left to end the pause")
     if not settings.paused:
         vehicle.say(NOTICE, f"Goes on at {SPEEDUP} {settings.speedup:g}")

@@ -1,4 +1,4 @@
-"""Which missions and rally points the vehicle takes, and what all items must keep to."""
+"""Checks of missions and rally points, and limits of all items."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ _NAVIGATION = (
     mavlink.MAV_CMD_NAV_DELAY,
 )
 _LAST_NAVIGATION = mavlink.MAV_CMD_NAV_LAST
-"""Commands up to this one say where to go: one that is not known cannot be skipped."""
+"""Commands up to this one have a destination: one that is not known cannot be skipped."""
 
 
 class Refusal(NamedTuple):
-    """Why a list is not taken."""
+    """Refusal of a list, with its reason."""
 
     result: int
     """MAV_MISSION_RESULT."""
@@ -47,7 +47,7 @@ def first_item(vehicle: Vehicle) -> int:
 def check_mission(items: Sequence[Item], vehicle: Vehicle) -> Refusal | None:
     """Refuse places that are none, jumps out of the list, and commands that cannot be skipped.
 
-    Commands that do not say where to go are taken: those that are not known are skipped.
+    Commands without a destination are taken: those that are not known are skipped.
     """
     first = first_item(vehicle)
     for sequence, item in enumerate(items[first:], first):
@@ -87,7 +87,7 @@ def bad_parameter(index: int, found: float, needed: str) -> Refusal:
 
 
 def of_item(sequence: int, item: Item, refusal: Refusal) -> Refusal:
-    """Return a refusal whose text says which item it is about."""
+    """Return a refusal whose text names the item."""
     return Refusal(refusal.result, f"item {sequence}, {item.name}: {refusal.text}")
 
 
@@ -105,7 +105,7 @@ def _check_command(item: Item, vehicle: Vehicle, sequences: range) -> Refusal | 
 
 
 def _check_numbers(item: Item) -> Refusal | None:
-    """Refuse infinities; what is not a number says that nothing is asked for."""
+    """Refuse infinities; what is not a number requests nothing."""
     for index, value in (*enumerate(item.parameters, 1), (7, item.z)):
         if math.isinf(value):
             return bad_parameter(index, value, "a finite number")

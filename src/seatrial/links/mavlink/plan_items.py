@@ -1,4 +1,4 @@
-"""Items of missions, fences and rally points: what one MISSION_ITEM or MISSION_ITEM_INT says."""
+"""Items of missions, fences and rally points: content of MISSION_ITEM and MISSION_ITEM_INT."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ class Item:
 
 
 def from_message(message: Message) -> Item:
-    """Return what MISSION_ITEM or MISSION_ITEM_INT says."""
+    """Return the item of a MISSION_ITEM or MISSION_ITEM_INT."""
     x, y = message.x, message.y
     if message.get_type() == "MISSION_ITEM":
         x, y = (as_integer(value, message.frame) for value in (x, y))
@@ -77,7 +77,9 @@ def from_message(message: Message) -> Item:
         message.command,
         message.frame,
         (message.param1, message.param2, message.param3, message.param4),
-        *(x, y, message.z),
+        x,
+        y,
+        message.z,
         message.autocontinue,
     )
 
@@ -110,5 +112,7 @@ def home_item(vehicle: Vehicle) -> Item:
         mavlink.MAV_CMD_NAV_WAYPOINT,
         mavlink.MAV_FRAME_GLOBAL,
         (0.0, 0.0, 0.0, 0.0),
-        *(deg_e7(latitude), deg_e7(longitude), altitude),
+        deg_e7(latitude),
+        deg_e7(longitude),
+        altitude,
     )

@@ -28,7 +28,7 @@ _NAMED = tuple(f"n{number}" for number in range(1, NAMED_VALUES + 1))
 
 
 class MavlinkPorts(Logging, Reachable, Sampled):
-    """What `Mavlink` is told and says."""
+    """Parameters, inputs and outputs of `Mavlink`."""
 
     period = Parameter(0.01, "s", "sample period", min=1e-6)
     links = Parameter(
@@ -50,8 +50,8 @@ class MavlinkPorts(Logging, Reachable, Sampled):
     date = Parameter("2026-01-01", "1", "day on which the run starts, at midnight UTC")
     failsafe = Parameter("hold", "1", "what it does when left alone", choices=ACTIONS)
     station_timeout = Parameter(5.0, "s", "silence after which a ground station is lost", min=0.0)
-    manual_timeout = Parameter(3.0, "s", "time for which sticks count", min=0.0)
-    target_timeout = Parameter(3.0, "s", "time for which a set-point counts", min=0.0)
+    manual_timeout = Parameter(3.0, "s", "time for which manual control is valid", min=0.0)
+    target_timeout = Parameter(3.0, "s", "time for which a set-point is valid", min=0.0)
     full_speed = Parameter(1.0, "m/s", "speed of full thrust in an attitude set-point", min=0.0)
     truth = Parameter("off", "1", "whether the truth is sent", choices=("off", "on"))
     waypoint_radius = Parameter(3.0, "m", "distance at which a waypoint is reached", min=0.0)
@@ -71,7 +71,7 @@ class MavlinkPorts(Logging, Reachable, Sampled):
         1.0, "1", "simulated time per wall time until it is set", min=SLOWEST, max=FASTEST
     )
     failures = Parameter(
-        "", "1", "units whose failures are wired, separated by spaces", check=failing_units
+        "", "1", "units whose failures are connected, separated by spaces", check=failing_units
     )
     names = Parameter("", "1", "names of the first values of `named`, separated by spaces")
     signing_key_file = Parameter("", "1", "file with the pass phrase; empty: no signatures")
@@ -134,7 +134,7 @@ class MavlinkPorts(Logging, Reachable, Sampled):
     armed = Output("1", "whether to act", type=bool)
     manual = Output(
         "1",
-        "sticks, -1 to 1: ahead, to starboard, turn to starboard, down",
+        "manual control, -1 to 1: ahead, to starboard, turn to starboard, down",
         axes=("surge", "sway", "yaw", "heave"),
     )
     target_kind = Output("1", "position, velocity or heading", type=str, start="position")
@@ -142,7 +142,9 @@ class MavlinkPorts(Logging, Reachable, Sampled):
     target_position = Output("m", "position to go to; its down with a heading", axes=_NED)
     target_velocity = Output("m/s", "velocity over ground", axes=_NED)
     target_heading = Output("rad", "heading, clockwise from north")
-    target_speed = Output("m/s", "speed along the bow with a heading; to a position, 0 if not said")
+    target_speed = Output(
+        "m/s", "speed along the bow with a heading; to a position, 0 if not given"
+    )
     home = Output("m", "position to return to: home, or a rally point", axes=_NED)
     leg = Output("1", "number of the mission's leg, another for each; 0 for none", type=int)
     leg_from = Output("m", "where the leg begins", axes=_NED)

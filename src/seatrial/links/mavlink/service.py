@@ -29,22 +29,22 @@ class Command:
 Handler = Callable[[Command, Sender, float], int]
 """Carries a command out at a simulated time, s, and returns MAV_RESULT."""
 Builder = Callable[[float], list[Message]]
-"""Returns what a message says at a simulated time, s; nothing if there is nothing to say."""
+"""Returns a message's content at a simulated time, s; nothing if there is none."""
 
 
 class Service:
     """Base of the services.
 
     A service sees every message that is meant for this vehicle (`handle`) and every instant
-    (`tick`), offers ``commands`` by MAV_CMD and ``messages`` by number to whoever asks for them
-    or streams them, and sends through ``transport``. Times are simulated, s, and never run
+    (`tick`), offers ``commands`` by MAV_CMD and ``messages`` by number to any link that requests
+    them or streams them, and sends through ``transport``. Times are simulated, s, and never run
     backwards.
     """
 
     capabilities: ClassVar[int] = 0
     """What it adds to MAV_PROTOCOL_CAPABILITY."""
     streams: ClassVar[Mapping[int, float]] = {}
-    """Messages that every link gets unless it asks for something else: interval, s."""
+    """Messages that every link gets unless it requests something else: interval, s."""
 
     def __init__(self, vehicle: Vehicle, transport: Transport) -> None:
         self.vehicle, self.transport = vehicle, transport

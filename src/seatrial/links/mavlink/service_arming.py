@@ -12,18 +12,18 @@ from .transport import Sender, Transport
 from .vehicle import Vehicle
 
 FORCE = 21196.0
-"""Parameter 2 of COMPONENT_ARM_DISARM that arms whatever the checks say."""
+"""Parameter 2 of COMPONENT_ARM_DISARM that arms against all checks."""
 
 Check = Callable[[], str | None]
-"""Returns what speaks against arming, None if nothing does."""
+"""Returns the reason against arming, None if there is none."""
 
 
 class ArmingService(Service):
     """COMPONENT_ARM_DISARM and RUN_PREARM_CHECKS.
 
     A boat needs a position and a heading, a submarine a heading; other services add ``checks``
-    of theirs, and the settings say which of them count. Each reason against arming is
-    said. Disarming always works, and so does arming by `FORCE`, which says so.
+    of theirs, and the settings say which of them apply. Each reason against arming is
+    reported. Disarming always works, and so does arming by `FORCE`, which is reported.
     """
 
     def __init__(self, vehicle: Vehicle, transport: Transport, settings: Settings) -> None:
@@ -46,7 +46,7 @@ class ArmingService(Service):
             self.vehicle.say(INFO, "Disarmed")
 
     def tick(self, now: float) -> None:
-        """Keep what the health bit says."""
+        """Keep the health bit."""
         self.vehicle.healthy = not self._reasons()
 
     def _reasons(self) -> list[str]:

@@ -11,7 +11,7 @@ from .transport import Sender
 
 
 class ClockService(Service):
-    """Answers TIMESYNC (tc1 = 0) and PING (to nobody in particular) over the same link.
+    """Answers TIMESYNC (tc1 = 0) and PING (without a target) over the same link.
 
     Times are simulated: a run that is faster or slower than real time drifts, and an answer
     waits for the vehicle's next instant.

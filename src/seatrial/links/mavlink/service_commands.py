@@ -1,4 +1,4 @@
-"""Commands: COMMAND_LONG and COMMAND_INT to whoever carries them out, and always an answer."""
+"""Commands: COMMAND_LONG and COMMAND_INT to their services, and always an answer."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _NOT_GIVEN = 0x7FFFFFFF
 class CommandService(Service):
     """Dispatches commands to ``handlers`` by number and answers with COMMAND_ACK.
 
-    The answer goes to the sender over its own link; a command that nobody carries out is
+    The answer goes to the sender over its own link; a command without a service is
     UNSUPPORTED.
     """
 

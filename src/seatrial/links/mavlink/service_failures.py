@@ -1,4 +1,4 @@
-"""Failures that a station orders: MAV_CMD_INJECT_FAILURE."""
+"""Failure injection: MAV_CMD_INJECT_FAILURE."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from .transport import Sender, Transport
 from .vehicle import Vehicle
 
 _MOST = 8
-"""Motors, and servos, that are told apart."""
+"""Motors, and servos, with an instance each."""
 _COUNTED = {mavlink.FAILURE_UNIT_SYSTEM_MOTOR: "motor", mavlink.FAILURE_UNIT_SYSTEM_SERVO: "servo"}
 _SINGLE = {
     mavlink.FAILURE_UNIT_SENSOR_GYRO: "gyro",
@@ -74,7 +74,7 @@ class FailureService(Service):
 
     ``units`` are those whose failures lead somewhere; ``failing`` has the failure of each,
     ``none`` without. Whatever is not among them is UNSUPPORTED, and everything is DENIED while
-    the settings do not allow it. What fails and what is mended is said in a status text.
+    the settings do not allow it. Failed and cleared units are reported in a status text.
     """
 
     def __init__(
@@ -111,5 +111,5 @@ class FailureService(Service):
         self.failing.update(dict.fromkeys(names, failure))
         if changed:
             listed = ", ".join(changed)
-            news = f"Mended: {listed}" if failure == "none" else f"Failure: {listed} {failure}"
+            news = f"Cleared: {listed}" if failure == "none" else f"Failure: {listed} {failure}"
             self.vehicle.say(INFO if failure == "none" else WARNING, news)

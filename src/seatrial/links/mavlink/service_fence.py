@@ -1,4 +1,4 @@
-"""Fence: where the vehicle must be, and what it does when it is not there."""
+"""Fence: the zones where the vehicle must stay, and the action at a breach."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ _TYPES = {BREACH: mavlink.FENCE_BREACH_BOUNDARY, TOO_DEEP: mavlink.FENCE_BREACH_
 class FenceService(Service):
     """FENCE_STATUS and DO_FENCE_ENABLE; carries out ``settings.fence_action`` at a breach.
 
-    The fence is breached where `is_allowed` says no, and deeper than ``settings.fence_depth``
+    The fence is breached where `is_allowed` is false, and deeper than ``settings.fence_depth``
     below the surface (0: no limit), while the position is valid. Without zones and limit there
-    is no fence, and no FENCE_STATUS. The vehicle acts once per breach: whoever then
+    is no fence, and no FENCE_STATUS. The vehicle acts once per breach: a station that then
     takes over may bring it back. It does not arm outside.
 
     Raises InputError for an action that the vehicle cannot carry out.
@@ -71,7 +71,7 @@ class FenceService(Service):
         return {mavlink.MAVLINK_MSG_ID_FENCE_STATUS: self._status}
 
     def check(self) -> str | None:
-        """Say what speaks against arming, None if nothing does."""
+        """Return the reason against arming, None if there is none."""
         return self._found()
 
     def tick(self, now: float) -> None:
@@ -112,7 +112,7 @@ class FenceService(Service):
         return BREACH if outside else None
 
     def _can_tell(self) -> bool:
-        """Say if the breach could be seen if it lasted."""
+        """Return whether the breach could be seen if it lasted."""
         return self._breach != BREACH or self.vehicle.estimates.position_valid
 
     def _enable(self, command: Command, sender: Sender, now: float) -> int:

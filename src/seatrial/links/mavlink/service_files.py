@@ -1,4 +1,4 @@
-"""Files on board, of which there are none: who asks is told so at once."""
+"""File transfer: there are no files on board, and each request is refused at once."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _UNKNOWN_COMMAND = 7
 class FileService(Service):
     """Answers each request of FILE_TRANSFER_PROTOCOL by NAK, unknown command.
 
-    Ground stations that first look for a file of parameters then ask for the list, and need not
+    Ground stations that first look for a file of parameters then request the list, and need not
     wait until they give up.
     """
 

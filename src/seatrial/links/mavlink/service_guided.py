@@ -44,11 +44,11 @@ class GuidedService(Service):
     """SET_POSITION_TARGET_LOCAL_NED, SET_POSITION_TARGET_GLOBAL_INT, SET_ATTITUDE_TARGET, and
     DO_REPOSITION.
 
-    The three messages count in guided mode and until the time-out each; then the vehicle stops.
+    The three messages apply in guided mode and until the time-out each; then the vehicle stops.
     Of what a mask lets through, a position goes before a velocity, a velocity before a yaw;
     an attitude gives the heading, its thrust the share of the full speed. DO_REPOSITION stays,
-    and enters guided mode if it says so (PX4: Hold, which it shows on the way too). A boat keeps
-    the height it has.
+    and enters guided mode if the command has it (PX4: Hold, which it shows on the way too). A boat
+    keeps the height it has.
 
     Frames: from the origin, from the vehicle (offset), along its heading (body), or global. A
     velocity along the heading, with a yaw rate, holds the heading that the vehicle had and turns
@@ -138,7 +138,7 @@ class GuidedService(Service):
         return Target("position", position, speed=self.vehicle.guided_speed)
 
     def _moving(self, m: Message, frame: int) -> Target | None:
-        """Return what a message asks for that has no position."""
+        """Return what a message requests that has no position."""
         if m.type_mask & _IGNORE_VX_VY == 0:
             down = 0.0 if m.type_mask & _IGNORE_VZ else m.vz
             if frame not in _NORTH_EAST and m.type_mask & _IGNORE_YAW_RATE == 0:
@@ -234,7 +234,7 @@ class GuidedService(Service):
 
 
 def _is_sane(target: Target) -> bool:
-    """Say if all numbers are finite and of a size that a vehicle could mean."""
+    """Return whether all numbers are finite and of a size that a vehicle could mean."""
     return (
         is_near(*target.position)
         and _within((*target.velocity, target.speed), FASTEST)

@@ -20,8 +20,8 @@ class HomeService(Service):
     """HOME_POSITION and GPS_GLOBAL_ORIGIN out; DO_SET_HOME, SET_HOME_POSITION,
     GET_HOME_POSITION and SET_GPS_GLOBAL_ORIGIN in.
 
-    Home is the origin until somebody sets it; whoever does is answered with the new one, as
-    are all others. The origin belongs to the trial and stays: who sets it is told where it is.
+    Home is the origin until it is set; the setting station is answered with the new one, as
+    are all others. The origin belongs to the trial and stays: requests to set it get it.
     """
 
     streams: ClassVar = {mavlink.MAVLINK_MSG_ID_HOME_POSITION: 2.0}
@@ -43,7 +43,7 @@ class HomeService(Service):
         }
 
     def handle(self, message: Message, sender: Sender, now: float) -> None:
-        """Set home, or tell the origin."""
+        """Set home, or send the origin."""
         match message.get_type():
             case "SET_HOME_POSITION":
                 self._move(
@@ -65,7 +65,7 @@ class HomeService(Service):
         return ACCEPTED if self._move(latitude, longitude, altitude, now) else DENIED
 
     def _move(self, latitude: float, longitude: float, altitude: float, now: float) -> bool:
-        """Move home to degrees and m above the sea; say if that is a place near enough."""
+        """Move home to degrees and m above the sea; return whether that is a place near enough."""
         if not (abs(latitude) <= 90.0 and abs(longitude) <= 180.0 and math.isfinite(altitude)):
             return False
         position = self.vehicle.origin.position(latitude, longitude, altitude)

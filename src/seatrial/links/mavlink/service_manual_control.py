@@ -1,4 +1,4 @@
-"""Sticks: MANUAL_CONTROL and RC_CHANNELS_OVERRIDE, for as long as somebody holds them."""
+"""Manual control: MANUAL_CONTROL and RC_CHANNELS_OVERRIDE, for as long as they come."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from .vehicle import MANUAL_RELEASED, Vehicle
 _MIDDLE_US, _TRAVEL_US = 1500, 400
 _IGNORE, _RELEASE = 0xFFFF, 0
 _HIGH_RELEASE = 0xFFFE
-"""What releases channels 9 to 18, in which 0 says nothing."""
-_LOST = "sticks lost"
+"""What releases channels 9 to 18, in which 0 is ignored."""
+_LOST = "manual control lost"
 _UNUSED = 0x7FFF
 """An axis of MANUAL_CONTROL that is not there."""
 
@@ -26,7 +26,7 @@ _SUB_CHANNELS = (5, 6, 4, 3)
 
 
 class ManualControlService(Service):
-    """Axes of a person's sticks, -1 to 1, from the newest of two messages.
+    """Axes of manual control, -1 to 1, from the newest of two messages.
 
     MANUAL_CONTROL: a boat steers with y and drives with z, -1000 to 1000 (PX4: z from 0 to
     1000, 500 in the middle); a submarine takes x ahead, y to starboard, r to turn and z, 0 to
@@ -35,8 +35,8 @@ class ManualControlService(Service):
     submarine. A channel of 65535 is left as it is, 0 is released.
 
     After the time-out without either the axes are 0, and in an armed vehicle in a manual mode
-    the failsafe acts, unless it is told not to watch them. Whoever releases all channels has
-    let go on purpose.
+    the failsafe acts, unless it is set not to watch them. A station that releases all channels has
+    released them on purpose.
     """
 
     def __init__(
@@ -48,7 +48,7 @@ class ManualControlService(Service):
         self._let_go = False
 
     def handle(self, message: Message, sender: Sender, now: float) -> None:
-        """Take the sticks."""
+        """Take in manual control."""
         match message.get_type():
             case "MANUAL_CONTROL":
                 self.vehicle.manual = self._axes(message)
@@ -63,10 +63,10 @@ class ManualControlService(Service):
         self._held_until = now + self._settings.manual_timeout
         if self._let_go:
             self._let_go = False
-            self._failsafe.end(_LOST, "Sticks are back")
+            self._failsafe.end(_LOST, "Manual control is back")
 
     def tick(self, now: float) -> None:
-        """Let go of sticks that nobody holds."""
+        """Release manual control that no longer comes."""
         if now <= self._held_until:
             return
         self._release()

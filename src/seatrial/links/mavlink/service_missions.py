@@ -1,4 +1,4 @@
-"""Missions: started, paused, told of; and single waypoints for guided mode."""
+"""Missions: started, paused, reported; and single waypoints for guided mode."""
 
 from __future__ import annotations
 
@@ -41,13 +41,13 @@ class MissionService(Service):
     DO_SET_MISSION_CURRENT, MISSION_SET_CURRENT and DO_CHANGE_SPEED in.
 
     MISSION_CURRENT comes every second and at every change. The mode auto is refused without a
-    mission. MISSION_START goes on, or begins again after the end; DO_PAUSE_CONTINUE counts in
+    mission. MISSION_START goes on, or begins again after the end; DO_PAUSE_CONTINUE applies in
     auto only, DO_CHANGE_SPEED in guided mode too.
 
     A MISSION_ITEM whose ``current`` is 2 is not part of a mission, but a place to go to in guided
     mode: some clients know no other way.
 
-    ``reached`` is what guidance says, `leg` what it is to follow.
+    ``reached`` comes from guidance, `leg` what it is to follow.
     """
 
     streams: ClassVar = {mavlink.MAVLINK_MSG_ID_MISSION_CURRENT: 1.0}
@@ -69,13 +69,13 @@ class MissionService(Service):
         self._runner = MissionRunner(vehicle, plan, settings, self._move_home, refuge)
         modes.requirements.append(self._needs_mission)
         self.reached = 0
-        """Number of the leg that is done, as guidance says; 0 for none."""
+        """Number of the leg that is done, by guidance; 0 for none."""
         self._told: dict[str, Any] = {}
         self._asked = False
 
     @property
     def leg(self) -> Leg:
-        """What guidance is to follow."""
+        """Leg that guidance is to follow."""
         return self._runner.leg
 
     @property
@@ -107,7 +107,7 @@ class MissionService(Service):
                 self.transport.send(sender.link, answer)
 
     def tick(self, now: float) -> None:
-        """Go on with the mission, and tell what has changed."""
+        """Go on with the mission, and report what has changed."""
         self._runner.tick(now, self.reached)
         for sequence in self._runner.passed:
             self.transport.broadcast(mavlink.MAVLink_mission_item_reached_message(sequence))

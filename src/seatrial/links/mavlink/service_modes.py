@@ -1,4 +1,4 @@
-"""Modes: asked for by command or message, listed, told."""
+"""Modes: requested by command or message, listed, reported."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from .transport import Sender, Transport
 from .vehicle import Vehicle
 
 Requirement = Callable[[Mode], str | None]
-"""Returns why a mode cannot be entered now, None if nothing speaks against it."""
+"""Returns why a mode cannot be entered now, None if nothing prevents it."""
 
 
 class ModeService(Service):
@@ -33,7 +33,7 @@ class ModeService(Service):
     out.
 
     A submarine that is to land surfaces. A mode of `POSITION_MODES` needs a valid position; other
-    services add ``requirements`` of theirs. What is refused is said, with the reason.
+    services add ``requirements`` of theirs. What is refused is reported, with the reason.
     """
 
     streams: ClassVar = {mavlink.MAVLINK_MSG_ID_CURRENT_MODE: 1.0}

@@ -16,7 +16,7 @@ from .transport import Sender, Transport
 from .vehicle import Vehicle
 
 RATE = 100.0
-"""Parameters of a list that a link gets per second: 4 kB/s, which a slow radio still carries."""
+"""Parameters of a list that a link gets per second: 4 kB/s, enough for a slow radio link."""
 
 _LAYOUTS: Mapping[int, str] = {INT8: "<b3x", INT16: "<h2x", INT32: "<i", REAL32: "<f"}
 _BY_NAME = -1
@@ -35,16 +35,16 @@ class _Listing:
 class ParameterService(Service):
     """PARAM_REQUEST_LIST, PARAM_REQUEST_READ and PARAM_SET in; PARAM_VALUE, PARAM_ERROR out.
 
-    **Lists** go to the link that asked, `RATE` parameters a second of link time. Whoever
-    asks again meanwhile lets the list go round once more from where it is, so a station that
+    **Lists** go to the requesting link, `RATE` parameters a second of link time. A request
+    meanwhile lets the list go round once more from where it is, so a station that
     repeats itself, or a second one on the same link, gets all of it. What was lost is read by
     index. Links have lists of their own.
 
     **Reads** are answered at once, over the same link. **Setting** is answered to all links by
     the new value; where it is refused, to the sender by PARAM_ERROR and, for those that do not
     know it, by the old value, as an ArduPilot does it; a status text gives the reason. An
-    unknown name or index gets PARAM_ERROR alone: who does not know it waits in vain, as with
-    other vehicles.
+    unknown name or index gets PARAM_ERROR alone: a station that does not know it gets no other, as
+    with other vehicles.
 
     **Integers** travel as numbers (ArduPilot; rounded, and exact up to 2^24) or as the four
     bytes of their type (PX4, which refuses a value of another type than the parameter's).
@@ -110,7 +110,7 @@ class ParameterService(Service):
                 self.transport.broadcast(self._value(name))
                 return
             error, reason = refusal.error, refusal.reason
-        # The error first: who knows it does not take the old value for a lost message.
+        # The error first: a station that knows it does not take the old value for a lost message.
         self._refuse(name, self.table.index(name), error, sender)
         self.transport.send(sender.link, self._value(name))
         self.vehicle.say(WARNING, f"{name} stays {self.table[name]:g}: {reason}")

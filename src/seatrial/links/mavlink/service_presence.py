@@ -1,4 +1,4 @@
-"""Presence: HEARTBEAT, who the vehicle is, and what it has to say."""
+"""Presence: HEARTBEAT, identity of the vehicle, and status texts."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class PresenceService(Service):
         }
 
     def tick(self, now: float) -> None:
-        """Tell at once what has changed, and say what is to be said."""
+        """Send at once what has changed, and the status texts."""
         state = (self.vehicle.mode, self.vehicle.armed, self.vehicle.failsafe)
         if state != self._told:
             self._told = state

@@ -15,7 +15,7 @@ class RallyService(Service):
     """Chooses where the vehicle returns to: the nearest of home and the rally points.
 
     The nearest when the mode return begins is kept until it ends; home is followed if it moves.
-    Depths do not count in distances; altitudes to break off, and directions to land, are not
+    Depths are left out of distances; altitudes to break off, and directions to land, are not
     obeyed.
     """
 
@@ -28,7 +28,7 @@ class RallyService(Service):
 
     @property
     def refuge(self) -> Ned:
-        """Where the vehicle returns to, in {n}."""
+        """Position the vehicle returns to, in {n}."""
         return self.vehicle.home_n if self._chosen is None else self._chosen
 
     def tick(self, now: float) -> None:

@@ -25,7 +25,7 @@ _REASONS: Mapping[int, str] = {
 
 
 class RefusalService(Service):
-    """Denies reboot, calibration, servos and relays, refuses SETUP_SIGNING, and says why."""
+    """Denies reboot, calibration, servos and relays, refuses SETUP_SIGNING, with the reason."""
 
     @property
     def commands(self) -> Mapping[int, Handler]:

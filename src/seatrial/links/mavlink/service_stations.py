@@ -1,4 +1,4 @@
-"""Ground stations: who is there, and what happens when nobody is left."""
+"""Ground stations: presence, and the failsafe when the last one is lost."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _LOST = "all ground stations lost"
 
 @dataclass
 class _Station:
-    """When a station was received last, s: simulated time, and wall time."""
+    """Times of a station's last heartbeat, s: simulated time, and wall time."""
 
     at: float
     wall_at: float
@@ -31,12 +31,12 @@ class _Station:
     """Of wall time, between its last beats."""
 
     def beat(self, now: float, wall: float) -> None:
-        """Hear it again."""
+        """Receive it again."""
         self.intervals.append(wall - self.wall_at)
         self.at, self.wall_at = now, wall
 
     def is_there(self, now: float, wall: float, timeout: float) -> bool:
-        """Say if its silence is no longer than it may be."""
+        """Return whether its silence is no longer than it may be."""
         known = len(self.intervals) == _BEATS  # fewer may be one beat that came doubled
         patience = min(timeout, _BEATS * max(self.intervals)) if known else timeout
         return now - self.at <= timeout or wall - self.wall_at <= patience
@@ -49,7 +49,7 @@ class StationService(Service):
     its own too, by wall time (``clock``, s), or for that time-out: in a trial that is much faster
     stations would be lost between two beats.
 
-    When the last one is lost the failsafe acts, unless it is told not to watch them; before the
+    When the last one is lost the failsafe acts, unless it is set not to watch them; before the
     first one was seen nothing happens.
     """
 

@@ -13,10 +13,10 @@ from .transport import Sender, Transport
 from .vehicle import Vehicle
 
 _FIXED = (mavlink.MAVLINK_MSG_ID_HEARTBEAT,)
-"""Messages whose rate nobody changes: presence depends on them."""
+"""Messages whose rate cannot be changed: presence depends on them."""
 
 _NUMBERED = (mavlink.MAVLINK_MSG_ID_AVAILABLE_MODES,)
-"""Messages of which one is asked for by its index, from 1; 0 asks for all."""
+"""Messages of which one is requested by its index, from 1; 0 requests all."""
 
 GROUPS: Mapping[int, tuple[int, ...]] = {
     mavlink.MAV_DATA_STREAM_RAW_SENSORS: (
@@ -54,7 +54,7 @@ GROUPS: Mapping[int, tuple[int, ...]] = {
         mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE,
     ),
 }
-"""What REQUEST_DATA_STREAM asks for by group; group 0 is all of them."""
+"""What REQUEST_DATA_STREAM requests by group; group 0 is all of them."""
 
 _SLACK_S = 1e-9  # what two doubles for one instant may differ by
 
@@ -68,7 +68,7 @@ class _Schedule:
 
 
 class StreamService(Service):
-    """Sends messages at the intervals that each link asked for, and once on request.
+    """Sends messages at the intervals that each link requested, and once on request.
 
     A link starts with ``defaults``. SET_MESSAGE_INTERVAL and REQUEST_DATA_STREAM change the
     streams of the link over which they come, REQUEST_MESSAGE answers over it. Intervals are in

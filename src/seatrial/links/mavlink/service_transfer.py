@@ -15,7 +15,7 @@ from .transport import Sender, Transport
 from .vehicle import Vehicle
 
 RETRY_S = 1.0
-"""Silence after which an item is asked for again."""
+"""Silence after which an item is requested again."""
 GIVE_UP_S = 10.0
 """Silence after which an upload is over."""
 _PATIENCE = 3
@@ -34,9 +34,9 @@ class _Upload:
     progress: float
     """When it last went on, s."""
     asked: float = 0.0
-    """When the next item was last asked for, s."""
+    """When the next item was last requested, s."""
     unanswered: int = 0
-    """How often the next item was asked for in vain."""
+    """How often the next item was requested without an answer."""
     knows_integers: bool = False
     """Whether the station has sent a MISSION_ITEM_INT."""
     items: list[Item] = field(default_factory=list)
@@ -44,7 +44,7 @@ class _Upload:
 
 @dataclass
 class _Offer:
-    """A list that somebody reads: as it was when they asked how long it is."""
+    """A list that a station reads: as it was when its length was requested."""
 
     items: tuple[Item, ...]
     expires: float
@@ -53,17 +53,17 @@ class _Offer:
 class TransferService(Service):
     """MISSION_COUNT, MISSION_REQUEST_LIST, MISSION_CLEAR_ALL and what follows them.
 
-    **Upload.** Items are asked for one by one; the list is replaced, and that is acknowledged,
+    **Upload.** Items are requested one by one; the list is replaced, and that is acknowledged,
     when all of them are there and good. Until then the vehicle keeps the one it has. An item
-    that does not come is asked for again every `RETRY_S`; of a station that never answers
+    that does not come is requested again every `RETRY_S`; of a station that never answers
     MISSION_REQUEST_INT, by MISSION_REQUEST, whose answer is exact to half a metre only. After
-    `GIVE_UP_S` of silence the upload is over. Items that nobody asked for are ignored, but for a
+    `GIVE_UP_S` of silence the upload is over. Items that were not requested are ignored, but for a
     repeated last one: its sender missed the acknowledgement, and gets it again. While one station
     uploads, others are denied to upload or clear. A list is refused with the reason in a status
     text too.
 
-    **Download.** Whoever asks for a list gets the items of that moment, whatever is uploaded
-    meanwhile, until they acknowledge it or ask for nothing during 30 s.
+    **Download.** A station that requests a list gets the items of that moment, whatever is uploaded
+    meanwhile, until it acknowledges it or requests nothing during 30 s.
 
     Lists in part are not supported. Times are those of the link (`Vehicle.link_time`).
     """
@@ -103,7 +103,7 @@ class TransferService(Service):
                 self._refuse_part(message, sender)
 
     def tick(self, now: float) -> None:
-        """Ask again for what has not come, and give up in time."""
+        """Request again what has not come, and give up in time."""
         now = self.vehicle.link_time(now)
         self._offers = {who: offer for who, offer in self._offers.items() if now < offer.expires}
         upload = self._upload
@@ -167,7 +167,7 @@ class TransferService(Service):
         self._answer(sender, plan.kind, result)
 
     def _replaced(self, plan: Plan, items: list[Item]) -> int:
-        """Replace a list if it is good, else say why not; return MAV_MISSION_RESULT."""
+        """Replace a list if it is good, else report why not; return MAV_MISSION_RESULT."""
         refusal = plan.replace(items)
         if refusal is None:
             return int(mavlink.MAV_MISSION_ACCEPTED)
@@ -188,7 +188,7 @@ class TransferService(Service):
         self._answer(sender, message.mission_type, max(results))
 
     def _is_denied(self, plan: Plan, sender: Sender) -> bool:
-        """Deny an upload while somebody else has one going."""
+        """Deny an upload while another station has one going."""
         if self._upload is None or self._upload.sender == sender:
             return False
         self._say_why(plan, "another ground station is uploading")

@@ -1,4 +1,4 @@
-"""What decides how the vehicle acts, and may change while it does: parameters lead here."""
+"""Settings that change how the vehicle acts while it runs: parameters lead here."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Settings:
     watches_stations: bool = True
     """Whether the failsafe acts when all ground stations are lost."""
     watches_manual_control: bool = True
-    """Whether the failsafe acts when the sticks are lost."""
+    """Whether the failsafe acts when manual control is lost."""
     arming_check: int = ALL_CHECKS
     speedup: float = 1.0
     """Simulated seconds per second of wall time; while paused, those before and afterwards."""
@@ -49,5 +49,5 @@ class Settings:
         return self.waypoint_speed or self.cruise_speed
 
     def checks(self, check: int = 0) -> bool:
-        """Say if arming waits for ``check``; without one, for what has no bit of its own."""
+        """Return whether arming waits for ``check``; without one, for all without a bit."""
         return bool(self.arming_check & (ALL_CHECKS | check) if check else self.arming_check)

@@ -1,4 +1,4 @@
-"""Signatures of frames: who may command, and nothing twice."""
+"""Message signing: authentication and replay protection of frames."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ class Signing(mavlink.MAVLinkSigning):  # type: ignore[misc]
         self._state.put(_KEY, self.timestamp)
 
     def accepts(self, frame: bytes, system: int, component: int) -> bool:
-        """Say if a signed frame is genuine and new, and remember it if so."""
+        """Return whether a signed frame is genuine and new, and remember it if so."""
         digest = hashlib.sha256(self.secret_key + frame[:-6]).digest()[:6]
         if not hmac.compare_digest(digest, frame[-6:]):
             return False

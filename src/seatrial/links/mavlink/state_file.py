@@ -1,4 +1,4 @@
-"""What a vehicle remembers from one run to the next, in a file."""
+"""State file: what a vehicle keeps from one run to the next."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the vehicle says of its motion: attitude, position, velocity, home, truth."""
+"""Motion telemetry: attitude, position, velocity, home, truth."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class MotionTelemetry(Service):
     """ATTITUDE, ATTITUDE_QUATERNION, LOCAL_POSITION_NED, GLOBAL_POSITION_INT, VFR_HUD, ALTITUDE,
     and SIM_STATE, the truth beside the estimates, if it is known.
 
-    A boat without a valid position says nothing of it; a submarine gives its depth, as
+    A boat without a valid position sends none; a submarine gives its depth, as
     negative altitude, at latitude and longitude 0, which ground stations take for none.
     """
 
@@ -139,13 +139,19 @@ class MotionTelemetry(Service):
         return [
             mavlink.MAVLink_sim_state_message(
                 *quaternion(truth.attitude),
-                *(phi, theta, math.remainder(psi, math.tau)),
+                phi,
+                theta,
+                math.remainder(psi, math.tau),
                 *truth.specific_force,
                 *truth.rates,
-                *(latitude, longitude, altitude),
-                *(0.0, 0.0),
+                latitude,
+                longitude,
+                altitude,
+                0.0,
+                0.0,
                 *truth.velocity_n,
-                *(deg_e7(latitude), deg_e7(longitude)),
+                deg_e7(latitude),
+                deg_e7(longitude),
             )
         ]
 

@@ -1,4 +1,4 @@
-"""What the vehicle says of its way: where it heads for, and how far off it is."""
+"""Navigation telemetry: commanded course, distance and errors."""
 
 from __future__ import annotations
 
@@ -48,7 +48,8 @@ class NavigationTelemetry(Service):
         ahead = math.cos(psi) * e.velocity_n[0] + math.sin(psi) * e.velocity_n[1]
         return [
             mavlink.MAVLink_nav_controller_output_message(
-                *(0.0, 0.0),
+                0.0,
+                0.0,
                 _bearing(way.heading),
                 _bearing(bearing),
                 uint16(way.distance),

@@ -1,4 +1,4 @@
-"""What the vehicle says of its motion when somebody asks for it: odometry, and the whole truth."""
+"""Odometry telemetry, sent on request: odometry, and the true state."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _UNKNOWN = [math.nan] * 21
 
 class OdometryTelemetry(Service):
     """ODOMETRY, the estimates of pose and motion in one, and HIL_STATE_QUATERNION, the truth as a
-    PX4's simulator tells it. No link gets them before it asks.
+    PX4's simulator sends it. No link gets them before it requests them.
 
     ODOMETRY has its pose in {n} from the origin, its velocity and rates along the body axes; its
     covariances are not known. Without a valid position there is none.
@@ -37,12 +37,15 @@ class OdometryTelemetry(Service):
             return []
         return [
             mavlink.MAVLink_odometry_message(
-                *(microseconds(now), mavlink.MAV_FRAME_LOCAL_NED, mavlink.MAV_FRAME_BODY_FRD),
+                microseconds(now),
+                mavlink.MAV_FRAME_LOCAL_NED,
+                mavlink.MAV_FRAME_BODY_FRD,
                 *e.position_n,
                 quaternion(e.attitude),
                 *to_body(e.attitude, e.velocity_n),
                 *e.rates,
-                *(_UNKNOWN, _UNKNOWN),
+                _UNKNOWN,
+                _UNKNOWN,
             )
         ]
 
@@ -56,9 +59,12 @@ class OdometryTelemetry(Service):
                 microseconds(now),
                 quaternion(truth.attitude),
                 *truth.rates,
-                *(deg_e7(latitude), deg_e7(longitude), int32(altitude * 1e3)),
+                deg_e7(latitude),
+                deg_e7(longitude),
+                int32(altitude * 1e3),
                 *(int16(v * 100) for v in truth.velocity_n),
-                *(0, 0),
+                0,
+                0,
                 *(int16(a / STANDARD_GRAVITY * 1e3) for a in truth.specific_force),
             )
         ]

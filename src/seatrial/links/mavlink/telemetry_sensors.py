@@ -1,4 +1,4 @@
-"""What the vehicle says of its sensors: satellites, inertia, pressure, wind, battery."""
+"""Sensor telemetry: satellites, inertia, pressure, wind, battery."""
 
 from __future__ import annotations
 
@@ -82,7 +82,8 @@ class SensorTelemetry(Service):
                 deg_e7(latitude),
                 deg_e7(longitude),
                 int32(altitude * 1e3),
-                *(UNKNOWN_U16, UNKNOWN_U16),
+                UNKNOWN_U16,
+                UNKNOWN_U16,
                 uint16(math.hypot(north, east) * 100),
                 course,
                 0xFF,
@@ -96,7 +97,9 @@ class SensorTelemetry(Service):
                 milliseconds(now),
                 *(int16(a / STANDARD_GRAVITY * 1e3) for a in e.specific_force),
                 *(int16(w * 1e3) for w in e.rates),
-                *(0, 0, 0),
+                0,
+                0,
+                0,
             )
         ]
 
@@ -107,9 +110,13 @@ class SensorTelemetry(Service):
                 microseconds(now),
                 *e.specific_force,
                 *e.rates,
-                *(0.0, 0.0, 0.0),
+                0.0,
+                0.0,
+                0.0,
                 (e.pressure or 0.0) / 100.0,
-                *(0.0, 0.0, 0.0),
+                0.0,
+                0.0,
+                0.0,
                 _IMU | (0 if e.pressure is None else _PRESSURE),
             )
         ]
@@ -137,7 +144,8 @@ class SensorTelemetry(Service):
         return [
             mavlink.MAVLink_distance_sensor_message(
                 milliseconds(now),
-                *(0, _FARTHEST_CM),
+                0,
+                _FARTHEST_CM,
                 uint16(distance * 100),
                 mavlink.MAV_DISTANCE_SENSOR_ULTRASOUND,
                 0,
@@ -172,7 +180,8 @@ class SensorTelemetry(Service):
                 0x7FFF,
                 [uint16(e.voltage * 1e3), *[UNKNOWN_U16] * 9],
                 -1 if e.current is None else int16(e.current * 100),
-                *(-1, -1),
+                -1,
+                -1,
                 -1 if e.charge is None else clamped(e.charge * 100, 0, 100),
             )
         ]

@@ -1,4 +1,4 @@
-"""What the vehicle says of itself: health, time, servo outputs, radio channels."""
+"""System telemetry: health, time, servo outputs, radio channels."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class SystemTelemetry(Service):
     RC_CHANNELS.
 
     Health comes from the validity of the estimates. Simulated time counts from the Unix time of
-    the vehicle's day, so that two runs say the same.
+    the vehicle's day, so that two runs send the same.
     """
 
     streams: ClassVar = {
@@ -58,7 +58,7 @@ class SystemTelemetry(Service):
         e = self.vehicle.estimates
         present = _IMU | _HEADING | mavlink.MAV_SYS_STATUS_PREARM_CHECK
         healthy = (_IMU if e.imu_valid else 0) | (_HEADING if e.heading_valid else 0)
-        present |= mavlink.MAV_SYS_STATUS_GEOFENCE  # or a ground station tells of a breach
+        present |= mavlink.MAV_SYS_STATUS_GEOFENCE  # or a ground station reports a breach
         if not self.vehicle.fence_breached:
             healthy |= mavlink.MAV_SYS_STATUS_GEOFENCE
         if self.vehicle.healthy:
@@ -74,12 +74,19 @@ class SystemTelemetry(Service):
             present, healthy = (present | bit, healthy | bit) if there else (present, healthy)
         return [
             mavlink.MAVLink_sys_status_message(
-                *(present, present, healthy),
+                present,
+                present,
+                healthy,
                 0,
                 UNKNOWN_U16 if e.voltage is None else uint16(e.voltage * 1e3),
                 -1 if e.current is None else int16(e.current * 100),
                 -1 if e.charge is None else clamped(e.charge * 100, 0, 100),
-                *(0, 0, 0, 0, 0, 0),
+                0,
+                0,
+                0,
+                0,
+                0,
+                0,
             )
         ]
 

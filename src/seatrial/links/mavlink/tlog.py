@@ -12,7 +12,7 @@ from .scaling import microseconds
 class TelemetryLog:
     """A .tlog: for each frame the Unix time, us, in 8 bytes, the highest first; then the frame.
 
-    Time is simulated, counted from ``boot_unix_us``: two runs that hear the same leave the same
+    Time is simulated, counted from ``boot_unix_us``: two runs that receive the same leave the same
     file. What is written before it is opened is not kept; afterwards each frame is on disk when
     `write` returns. Raises SimulationError if the file is there already or cannot be written.
     """

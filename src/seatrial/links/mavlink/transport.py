@@ -1,4 +1,4 @@
-"""All links of a vehicle: who is there, what has come, what goes out."""
+"""Transport of a vehicle's messages over all its links."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .tlog import TelemetryLog
 
 @dataclass(frozen=True, eq=False)
 class Link:
-    """One peer and the codec that speaks with it; ``number`` is never used again."""
+    """One peer and the codec of its frames; ``number`` is never used again."""
 
     number: int
     channel: Channel
@@ -23,7 +23,7 @@ class Link:
 
 @dataclass(frozen=True)
 class Sender:
-    """Who sent a message, and over which link."""
+    """Sender of a message: system, component and link."""
 
     system: int
     component: int
@@ -32,7 +32,7 @@ class Sender:
 
 
 class Transport(Protocol):
-    """What services need to be received."""
+    """Interface through which services send."""
 
     def links(self) -> Sequence[int]:
         """Return the numbers of the links that there are now."""
@@ -101,7 +101,7 @@ class EndpointTransport:
         link.channel.send(frame)
 
     def _reconcile(self) -> None:
-        """Know the peers that have not sent anything, forget those that are gone."""
+        """Add the peers that have not sent anything, remove those that are gone."""
         there = [channel for endpoint in self.endpoints for channel in endpoint.channels()]
         self._links = {channel: self._link(channel) for channel in there}
 

@@ -1,4 +1,4 @@
-"""The vehicle as the services see it: what it measures, what it was told, who listens."""
+"""State of the vehicle that the services share: measurements, commands, presence."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ MANUAL_RELEASED = (0.0, 0.0, 0.0, 0.0)
 
 @dataclass(frozen=True)
 class Identity:
-    """Who the vehicle is on a MAVLink network."""
+    """Identity of the vehicle on a MAVLink network."""
 
     system: int
     component: int
@@ -30,7 +30,7 @@ class Identity:
 
 @dataclass(frozen=True)
 class Way:
-    """What guidance wants, and how far off the vehicle is. SI, rad."""
+    """Guidance's commanded course, and the vehicle's errors. SI, rad."""
 
     heading: float
     speed: float | None
@@ -44,7 +44,7 @@ class Way:
 
 @dataclass(frozen=True)
 class Estimates:
-    """What the vehicle measures. SI, rad; {n} north-east-down, {b} bow-starboard-down."""
+    """Estimates that the vehicle measures. SI, rad; {n} north-east-down, {b} bow-starboard-down."""
 
     position_n: Ned = (0.0, 0.0, 0.0)
     velocity_n: Ned = (0.0, 0.0, 0.0)
@@ -75,7 +75,7 @@ class Estimates:
 
 @dataclass(frozen=True)
 class Truth:
-    """What the simulated vehicle really does. SI, rad; velocity in {n}, the rest in {b}."""
+    """True state of the simulated vehicle. SI, rad; velocity in {n}, the rest in {b}."""
 
     position_n: Ned
     velocity_n: Ned
@@ -86,7 +86,7 @@ class Truth:
 
 @dataclass(frozen=True)
 class Target:
-    """A guided set-point: ``kind`` says which of the others count. SI, rad, {n}."""
+    """A guided set-point: ``kind`` says which of the others apply. SI, rad, {n}."""
 
     kind: str
     """position, velocity or heading."""
@@ -98,12 +98,12 @@ class Target:
     """Rate at which the heading turns, rad/s, and the position's down goes with the velocity's;
     None for a heading that stays."""
     expires: float | None = None
-    """Simulated time at which it counts no longer, s; None if it stays."""
+    """Simulated time at which it expires, s; None if it stays."""
 
 
 @dataclass(frozen=True)
 class StatusText:
-    """A sentence for the people at the ground stations."""
+    """STATUSTEXT for the ground stations."""
 
     severity: int
     text: str
@@ -127,7 +127,7 @@ class Vehicle:
     manual: tuple[float, float, float, float] = MANUAL_RELEASED
     """Surge, sway, yaw, heave, -1 to 1: ahead, to starboard, turn to starboard, down."""
     channels: list[int] = field(default_factory=lambda: [0] * 18)
-    """RC channels as overridden, us; 0 is one that nobody overrides."""
+    """RC channels as overridden, us; 0 is one that is not overridden."""
     failsafe: bool = False
     """Whether a failsafe acted, and what it was about still lasts."""
     fence_breached: bool = False
@@ -135,16 +135,16 @@ class Vehicle:
     stations: int = 0
     """Number of ground stations that are there."""
     healthy: bool = False
-    """Whether nothing speaks against arming."""
+    """Whether all arming checks pass."""
     capabilities: int = 0
     """MAV_PROTOCOL_CAPABILITY, of all services together."""
     paused_s: float = 0.0
     """Wall time that it stood still, s."""
     texts: list[StatusText] = field(default_factory=list)
-    """What is still to be said."""
+    """Status texts still to be sent."""
 
     def say(self, severity: int, text: str) -> None:
-        """Say something to all ground stations, at the end of this instant."""
+        """Send a status text to all ground stations, at the end of this instant."""
         self.texts.append(StatusText(severity, text))
 
     def link_time(self, now: float) -> float:
@@ -152,6 +152,6 @@ class Vehicle:
         return now + self.paused_s
 
     def enter(self, mode: Mode) -> None:
-        """Change the mode; set-points and speeds of the one before count no longer."""
+        """Change the mode; set-points and speeds of the one before no longer apply."""
         if mode != self.mode:
             self.mode, self.target, self.guided_speed = mode, None, 0.0

@@ -8,7 +8,7 @@ from pathlib import Path
 
 
 def write_whole(path: Path, text: str) -> None:
-    """Write a file that nobody ever finds half written. Raises OSError."""
+    """Write a file that is never found half written. Raises OSError."""
     new = path.with_name(f".{path.name}.{os.getpid()}.new")
     try:
         new.write_text(text, "utf-8")

@@ -21,9 +21,16 @@ from pynmeagps.nmeatypes_get import NMEA_PAYLOADS_GET
 
 _HEMISPHERES = ("NS", "EW")
 _REFUSALS = (
-    *(NMEAMessageError, NMEAParseError, NMEAStreamError, NMEATypeError),
+    NMEAMessageError,
+    NMEAParseError,
+    NMEAStreamError,
+    NMEATypeError,
     # It lets these through for some malformed sentences.
-    *(ArithmeticError, AttributeError, LookupError, TypeError, ValueError),
+    ArithmeticError,
+    AttributeError,
+    LookupError,
+    TypeError,
+    ValueError,
 )
 
 
@@ -52,7 +59,7 @@ def decode(line: bytes) -> Any:
     """Return a sentence with its fields as attributes: numbers, text, "" for an empty one.
 
     Returns None for what is no sentence, has no checksum or a wrong one, characters that are not
-    ASCII or not printable, or numbers that are not finite. Fields of a formatter that nobody knows
+    ASCII or not printable, or numbers that are not finite. Fields of a formatter that is not known
     have no names.
     """
     if not (line.isascii() and line.decode("ascii").isprintable()):

@@ -1,4 +1,4 @@
-"""NMEA 0183 as a component: what instruments know out, what chart plotters want in."""
+"""NMEA 0183 as a component: readings out, steering commands of chart plotters in."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ..geodesy import Origin
 from ..text import Inbox, Outbox
 from .codec import decode, encode
 from .lines import Lines
-from .orders import Order, heading_ordered, last_told, read_order
+from .orders import Order, heading_ordered, last_reported, read_order
 from .ports import Nmea0183Ports
 from .readings import Readings
 from .schedule import schedule
@@ -26,7 +26,7 @@ from .sentences import SENTENCES
 class Nmea0183(Nmea0183Ports):
     """A talker and a listener on NMEA 0183: over UDP, TCP, serial lines, and as text on ports.
 
-    **Talking.** ``sentences`` has who says what how often: ``GPRMC 1; WIMWV-R 0.5``, talker and
+    **Talking.** ``sentences`` are what is sent, as ``GPRMC 1; WIMWV-R 0.5``: talker and
     sentence (`SENTENCES`) and the period in s. Sentence k of one goes out at the first multiple
     of ``period`` that is not before the start of the run + k times its own period, in the order
     of the text, with the readings of that instant; to all ``links`` (`endpoints.url`), and to
@@ -40,7 +40,7 @@ class Nmea0183(Nmea0183Ports):
 
     **Listening** to all links and ``rx``: HSC, APB and RMB (`read_order`) become the ``target_``
     outputs, which are named after the inputs of guidance: a heading, from HSC or, if there is
-    none, APB; or else the waypoint of RMB, whose depth is 0; with ``cruise_speed``. They count for
+    none, APB; or else the waypoint of RMB, whose depth is 0; with ``cruise_speed``. They apply for
     ``order_timeout``, and so do cross-track error, arrival and the waypoint's name, from whichever
     came last. Other sentences are only counted; lines with a wrong checksum or none are refused.
 
@@ -48,7 +48,7 @@ class Nmea0183(Nmea0183Ports):
     does not, waits, and is lost when too much waits. Not here: AIS, queries, DSC, tag blocks,
     GNSS constellations (GGA has 10 satellites).
 
-    It cannot be rolled back: what was said has been said. Raises InputError at the start for a
+    It cannot be rolled back: what was sent has been sent. Raises InputError at the start for a
     link, date or sentence that cannot be.
     """
 
@@ -100,10 +100,10 @@ class Nmea0183(Nmea0183Ports):
         self.target_heading = 0.0 if heading is None else heading
         self.target_position = (0.0, 0.0, 0.0) if place is None else self._position(*place)
         self.target_speed = self.cruise_speed if self.target_valid else 0.0
-        told = last_told(orders)
-        self.cross_track_valid = told.cross_track is not None
-        self.cross_track = told.cross_track or 0.0
-        self.waypoint, self.arrived = told.waypoint or "", bool(told.arrived)
+        reported = last_reported(orders)
+        self.cross_track_valid = reported.cross_track is not None
+        self.cross_track = reported.cross_track or 0.0
+        self.waypoint, self.arrived = reported.waypoint or "", bool(reported.arrived)
         self.reached_at = " ".join(other_end(each.url) for each in self._endpoints)
 
     def update(self, t: float, k: int) -> None:
@@ -124,7 +124,7 @@ class Nmea0183(Nmea0183Ports):
             self._send(now_ns, encode(each.talker, each.name[:3], SENTENCES[each.name](readings)))
 
     def hold(self, t: float) -> None:
-        """Publish what was said, and counts."""
+        """Publish what was sent, and the counters."""
         self.tx = Outbox(self._out).text
         self.sentences_sent, self.sentences_received = self._sent, self._received
         self.lines_refused = self._refused
@@ -137,7 +137,7 @@ class Nmea0183(Nmea0183Ports):
 
     @property
     def urls(self) -> list[str]:
-        """URLs of the links as they are bound: with a port's number where 0 was asked for."""
+        """URLs of the links as they are bound: with a port's number where 0 was given."""
         return [endpoint.url for endpoint in self._endpoints]
 
     # ------------------------------------------------------------------ talking

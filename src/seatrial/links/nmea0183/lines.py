@@ -1,4 +1,4 @@
-"""Bytes as they arrive to sentences."""
+"""Splitter of received bytes into sentences."""
 
 from __future__ import annotations
 

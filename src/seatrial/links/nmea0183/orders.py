@@ -1,4 +1,4 @@
-"""What chart plotters and remote controls want: the sentences APB, RMB and HSC.
+"""Steering commands of chart plotters and remote controls: the sentences APB, RMB and HSC.
 
 Source: E. S. Raymond, "NMEA Revealed" (gpsd project); pynmeagps has the fields.
 """
@@ -19,7 +19,7 @@ _LARGEST_ERROR = 1e3
 
 @dataclass(frozen=True)
 class Order:
-    """What one sentence says; None for what it does not say."""
+    """Content of one sentence; None for what it does not have."""
 
     heading: float | None = None
     """True, clockwise from north, rad."""
@@ -34,7 +34,7 @@ class Order:
 
 
 def read_order(message: Any, variation: float) -> Order | None:
-    """Return what a sentence orders; None if nothing, or it says itself that it is not valid.
+    """Return what a sentence orders; None if nothing, or its status is not valid.
 
     HSC: the heading commanded, true if there, else magnetic; not one that is only reported.
     APB: the heading to steer, cross-track error and arrival; RMB: the waypoint and the same.
@@ -51,10 +51,10 @@ def heading_ordered(orders: Mapping[str, Order]) -> float | None:
     return next((heading for heading in headings if heading is not None), None)
 
 
-def last_told(orders: Mapping[str, Order]) -> Order:
+def last_reported(orders: Mapping[str, Order]) -> Order:
     """Return the last order with a cross-track error; ``orders`` stand the oldest first."""
-    told = (order for order in reversed(list(orders.values())) if order.cross_track is not None)
-    return next(told, Order())
+    reported = (order for order in reversed(list(orders.values())) if order.cross_track is not None)
+    return next(reported, Order())
 
 
 def _hsc(message: Any, variation: float) -> Order | None:
@@ -94,7 +94,7 @@ def _rmb(message: Any, variation: float) -> Order | None:
 
 
 def _cross_track(message: Any, unit: float) -> float | None:
-    """Return the error: whoever is told to steer left, is to starboard of the leg."""
+    """Return the error: a vessel to be steered left is to starboard of the leg."""
     error, side = _field(message, "ctrkerr"), _text(message, "dirs")
     if error is None or side not in ("L", "R") or abs(error) > _LARGEST_ERROR:
         return None

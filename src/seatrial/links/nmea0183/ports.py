@@ -11,7 +11,7 @@ _NED = ("north", "east", "down")
 
 
 class Nmea0183Ports(Reachable, Sampled):
-    """What `Nmea0183` is told and says."""
+    """Parameters, inputs and outputs of `Nmea0183`."""
 
     period = Parameter(0.05, "s", "time between two looks at links and clock", min=1e-6)
     links = Parameter(
@@ -34,7 +34,7 @@ class Nmea0183Ports(Reachable, Sampled):
         0.0, "m", "from the depth's transducer up to the waterline, or, negative, down to the keel"
     )
     cruise_speed = Parameter(1.0, "m/s", "speed that goes with orders: they name none", min=0.0)
-    order_timeout = Parameter(5.0, "s", "time for which an order counts", min=0.0)
+    order_timeout = Parameter(5.0, "s", "time for which an order is valid", min=0.0)
 
     rx = Input("1", "bytes that arrive, as text", type=str, optional=True)
     position_n = Input("m", "position, north-east-down", axes=_NED)
@@ -76,10 +76,10 @@ class Nmea0183Ports(Reachable, Sampled):
     target_heading = Output("rad", "heading ordered, clockwise from north")
     target_position = Output("m", "waypoint ordered, north-east-down", axes=_NED)
     target_speed = Output("m/s", "speed that goes with it, 0 without an order")
-    cross_track = Output("m", "cross-track error that was told, positive to starboard of the leg")
+    cross_track = Output("m", "cross-track error received, positive to starboard of the leg")
     cross_track_valid = Output("1", "whether it was", type=bool)
-    waypoint = Output("1", "name of the waypoint that was told", type=str)
-    arrived = Output("1", "whether it was told that the waypoint is reached", type=bool)
+    waypoint = Output("1", "name of the waypoint received", type=str)
+    arrived = Output("1", "whether the waypoint was reported as reached", type=bool)
     sentences_sent = Output("1", "sentences sent", type=int)
     sentences_received = Output("1", "sentences received", type=int)
     lines_refused = Output("1", "lines received that are no sentences", type=int)

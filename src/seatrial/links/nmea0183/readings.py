@@ -1,4 +1,4 @@
-"""What instruments know at an instant."""
+"""Instrument readings at an instant."""
 
 from __future__ import annotations
 

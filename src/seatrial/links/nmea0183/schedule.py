@@ -1,4 +1,4 @@
-"""Which sentences are sent, by whom and how often."""
+"""Schedule of sentences: talkers and periods."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Periodic(NamedTuple):
 
 
 def schedule(written: str) -> list[Periodic]:
-    """Return what ``TALKER+SENTENCE PERIOD; ...`` says, periods in s.
+    """Return the schedule of ``TALKER+SENTENCE PERIOD; ...``, periods in s.
 
     Raises InputError for a text of another form, a sentence that is not known (near misses), one
     that is named twice, and a period of 0.

@@ -1,4 +1,4 @@
-"""What each sentence says of the readings; its fields by pynmeagps's names.
+"""Sentences made of the readings; fields by pynmeagps's names.
 
 Source: E. S. Raymond, "NMEA Revealed" (gpsd project), which has the fields, units and status
 marks of NMEA 0183 up to 4.x from many public sources; the standard itself is not public.

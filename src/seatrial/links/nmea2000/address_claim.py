@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 HIGHEST = 251
-"""Addresses are 0 to 251; 252 and 253 are reserved, 254 is nobody's, 255 everybody's."""
+"""Addresses are 0 to 251; 252 and 253 are reserved, 254 is null, 255 global."""
 WAIT_NS = 250_000_000
 """For so long a claim must stand before the address is used."""
 LONGEST_DELAY_NS = 153_000_000
@@ -24,7 +24,7 @@ class AddressClaim:
     Another node's claim of the same address: the lower NAME keeps it. If that is ours, the claim
     is repeated. If not, a node that is ``arbitrary`` claims the next address, upwards and round,
     that no message came from, and is without one for another 250 ms. One that is not, or finds
-    none free, says 'cannot claim' after a random delay (a claim with source 254), and stays silent.
+    none free, sends 'cannot claim' after a random delay (a claim from 254), and stays silent.
 
     A request for claims is answered with the claim, or 'cannot claim' after a delay. A claim with
     our own NAME is not contested, and counted in ``twins``: two nodes have one identity.
@@ -71,7 +71,7 @@ class AddressClaim:
 
     @property
     def changes_ns(self) -> int:
-        """When it will do something by itself, far ahead if it will not."""
+        """Time of its next own action, far ahead if there is none."""
         due: int | None = self._memory["due"]
         return _FAR_NS if due is None else due
 
@@ -89,15 +89,15 @@ class AddressClaim:
         """Begin, as at power-up."""
         self._wait("delay", now_ns + self._random_ns())
 
-    def hear_claim(self, now_ns: int, source: int, name: int) -> None:
+    def receive_claim(self, now_ns: int, source: int, name: int) -> None:
         """Take in another node's claim of ``source`` (254: it cannot claim)."""
         if name == self._name:
             self._memory["twins"] += 1
             return
-        self.hear_source(source)
+        self.receive_source(source)
         if source != self._memory["held"] or self.state in ("off", "refusing", "without"):
             return
-        if self.state == "delay":  # not said yet, so nobody can be told to go
+        if self.state == "delay":  # not sent yet, so no other node can be made to move
             if name < self._name:
                 self._choose()
             return
@@ -111,12 +111,12 @@ class AddressClaim:
         else:
             self._wait("refusing", now_ns + self._random_ns())
 
-    def hear_source(self, source: int) -> None:
-        """Take in that somebody sends from an address."""
+    def receive_source(self, source: int) -> None:
+        """Take in that a node sends from an address."""
         if source <= HIGHEST and source not in self._memory["taken"]:
             self._memory["taken"].append(source)
 
-    def hear_request(self, now_ns: int) -> None:
+    def receive_request(self, now_ns: int) -> None:
         """Take in a request for claims."""
         if self.state in ("claiming", "claimed"):
             self._claim(now_ns)

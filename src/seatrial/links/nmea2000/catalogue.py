@@ -1,4 +1,4 @@
-"""The messages that a node sends and reads: names, priorities and intervals of the standard.
+"""Messages that a node sends and reads: names, priorities and intervals of the standard.
 
 Numbers from canboat's table of PGNs (canboat.json 6.2.0). Layouts and resolutions are the package
 nmea2000's, which has the same table.
@@ -16,7 +16,7 @@ class Field:
     """A field that a node fills or reads: its name at canboat, our ports, and its sense."""
 
     name: str
-    said: str = ""
+    sent: str = ""
     """Input or parameter that it comes from."""
     received: str = ""
     """Output that it goes to."""
@@ -42,7 +42,11 @@ DATA = {
     each.number: each
     for each in (
         Pgn(
-            *(126992, "systemTime", "System time", 3, 1.0),
+            126992,
+            "systemTime",
+            "System time",
+            3,
+            1.0,
             (
                 _SID,
                 Field("source", sense="0, GPS"),
@@ -51,45 +55,63 @@ DATA = {
             ),
         ),
         Pgn(
-            *(127237, "headingTrackControl", "Heading/track control", 2, 0.25),
+            127237,
+            "headingTrackControl",
+            "Heading/track control",
+            2,
+            0.25,
             (
                 Field("steeringMode", "steering_mode", "bus_steering_mode"),
                 Field("headingReference", sense="true"),
                 Field("commandedRudderDirection", "commanded_rudder", sense="as the angle's sign"),
                 Field(
-                    *("commandedRudderAngle", "commanded_rudder", "bus_commanded_rudder"),
+                    "commandedRudderAngle",
+                    "commanded_rudder",
+                    "bus_commanded_rudder",
                     "positive to turn to starboard",
                 ),
-                Field(*("headingToSteerCourse", "heading_to_steer", "bus_heading_to_steer"), _WAYS),
+                Field("headingToSteerCourse", "heading_to_steer", "bus_heading_to_steer", _WAYS),
                 Field("track", "track", "bus_track", _WAYS),
                 Field("rudderLimit", "rudder_limit"),
                 Field("vesselHeading", "heading", sense=_WAYS),
             ),
         ),
         Pgn(
-            *(127245, "rudder", "Rudder", 2, 0.1),
+            127245,
+            "rudder",
+            "Rudder",
+            2,
+            0.1,
             (
                 Field("instance", "rudder_instance", sense="only this instance is read"),
                 Field(
-                    *("directionOrder", "rudder_order", "bus_rudder_direction"),
+                    "directionOrder",
+                    "rudder_order",
+                    "bus_rudder_direction",
                     "sent: as the angle's sign, 0 amidships",
                 ),
                 Field(
-                    *("angleOrder", "rudder_order", "bus_rudder_order"),
+                    "angleOrder",
+                    "rudder_order",
+                    "bus_rudder_order",
                     "positive to turn to starboard",
                 ),
                 Field("position", "rudder", "bus_rudder", "positive to turn to starboard"),
             ),
         ),
         Pgn(
-            *(127250, "vesselHeading", "Vessel heading", 2, 0.1),
+            127250,
+            "vesselHeading",
+            "Vessel heading",
+            2,
+            0.1,
             (
                 _SID,
                 Field(
                     "heading",
                     "heading",
                     "bus_heading",
-                    _WAYS + "; true or magnetic as `reference` says",
+                    _WAYS + "; true or magnetic by `reference`",
                 ),
                 Field("deviation", "deviation", sense="positive east; read: added if magnetic"),
                 Field("variation", "variation", sense="positive east; read: added if magnetic"),
@@ -97,11 +119,19 @@ DATA = {
             ),
         ),
         Pgn(
-            *(127251, "rateOfTurn", "Rate of turn", 2, 0.1),
+            127251,
+            "rateOfTurn",
+            "Rate of turn",
+            2,
+            0.1,
             (_SID, Field("rate", "rate_of_turn", "bus_rate_of_turn", "positive to starboard")),
         ),
         Pgn(
-            *(127257, "attitude", "Attitude", 3, 1.0),
+            127257,
+            "attitude",
+            "Attitude",
+            3,
+            1.0,
             (
                 _SID,
                 Field("yaw", "attitude.psi", "bus_attitude.psi", _WAYS + ", -π to π"),
@@ -110,17 +140,27 @@ DATA = {
             ),
         ),
         Pgn(
-            *(127488, "engineParametersRapidUpdate", "Engine parameters, rapid update", 2, 0.1),
+            127488,
+            "engineParametersRapidUpdate",
+            "Engine parameters, rapid update",
+            2,
+            0.1,
             (
                 Field("instance", sense="0 for `e1`, and so on: one message each"),
                 Field(
-                    *("speed", "engine_speed", "bus_engine_speed"),
+                    "speed",
+                    "engine_speed",
+                    "bus_engine_speed",
                     "the magnitude: there is no sign",
                 ),
             ),
         ),
         Pgn(
-            *(127489, "engineParametersDynamic", "Engine parameters, dynamic", 2, 0.5),
+            127489,
+            "engineParametersDynamic",
+            "Engine parameters, dynamic",
+            2,
+            0.5,
             (
                 Field("instance", sense="0 for `e1`, and so on: one message each"),
                 Field("temperature", "engine_temperature"),
@@ -131,36 +171,55 @@ DATA = {
             ),
         ),
         Pgn(
-            *(128259, "speed", "Speed, water referenced", 2, 1.0),
+            128259,
+            "speed",
+            "Speed, water referenced",
+            2,
+            1.0,
             (
                 _SID,
                 Field(
-                    *("speedWaterReferenced", "water_speed", "bus_water_speed"),
+                    "speedWaterReferenced",
+                    "water_speed",
+                    "bus_water_speed",
                     "ahead; astern is not available",
                 ),
-                Field(*("speedGroundReferenced", "velocity_n", ""), "the magnitude"),
+                Field("speedGroundReferenced", "velocity_n", "", "the magnitude"),
             ),
         ),
         Pgn(
-            *(128267, "waterDepth", "Water depth", 3, 1.0),
+            128267,
+            "waterDepth",
+            "Water depth",
+            3,
+            1.0,
             (
                 _SID,
                 Field("depth", "depth", "bus_depth", "below the transducer"),
                 Field(
-                    *("offset", "transducer_offset"),
+                    "offset",
+                    "transducer_offset",
                     sense="positive up to the waterline, negative down to the keel",
                 ),
             ),
         ),
         Pgn(
-            *(129025, "positionRapidUpdate", "Position, rapid update", 2, 0.1),
+            129025,
+            "positionRapidUpdate",
+            "Position, rapid update",
+            2,
+            0.1,
             (
                 Field("latitude", "position_n", "bus_position_n", "WGS 84, north"),
                 Field("longitude", "position_n", "bus_position_n", "WGS 84, east"),
             ),
         ),
         Pgn(
-            *(129026, "cogSogRapidUpdate", "COG and SOG, rapid update", 2, 0.25),
+            129026,
+            "cogSogRapidUpdate",
+            "COG and SOG, rapid update",
+            2,
+            0.25,
             (
                 _SID,
                 Field("cogReference", sense="true; read: only that"),
@@ -169,7 +228,11 @@ DATA = {
             ),
         ),
         Pgn(
-            *(129029, "gnssPositionData", "GNSS position data", 3, 1.0),
+            129029,
+            "gnssPositionData",
+            "GNSS position data",
+            3,
+            1.0,
             (
                 _SID,
                 Field("date", "date", sense="UTC"),
@@ -184,12 +247,18 @@ DATA = {
             ),
         ),
         Pgn(
-            *(130306, "windData", "Wind data", 2, 0.1),
+            130306,
+            "windData",
+            "Wind data",
+            2,
+            0.1,
             (
                 _SID,
                 Field("windSpeed", "wind_speed", "bus_wind_speed"),
                 Field(
-                    *("windAngle", "wind_angle", "bus_wind_angle"),
+                    "windAngle",
+                    "wind_angle",
+                    "bus_wind_angle",
                     "where it comes from, from the bow to starboard; the ports: where it blows to",
                 ),
                 Field("reference", sense="2, apparent; for `true_wind` 0, ground and north"),

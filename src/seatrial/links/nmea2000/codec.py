@@ -15,7 +15,7 @@ from ..can.messages import frame_of, message
 from .catalogue import ALL
 
 GLOBAL, NO_ADDRESS = 255, 254
-"""Everybody as a destination; the source of who has no address (ISO 11783-5)."""
+"""All nodes as a destination; the source of a node without address (ISO 11783-5)."""
 
 _LIST = "##list##"
 """What the package calls a message's repeated fields."""

@@ -1,4 +1,4 @@
-"""A node of an NMEA 2000 network as a component."""
+"""NMEA 2000 node as a component."""
 
 from __future__ import annotations
 
@@ -39,19 +39,19 @@ class Nmea2000(Nmea2000Ports):
 
     **Sends** the PGNs of ``sends`` at the standard's intervals, or those of ``intervals``, counted
     from the start of the run and exact whatever the communication step; values are those of the
-    beginning of the step. What is not wired or not valid goes out as not available, and so does a
-    value that its field cannot hold. Messages of one instant have one SID. Engines that are not
-    wired send nothing. ``silent`` stops the data.
+    beginning of the step. What is not connected or not valid goes out as not available, and so
+    does a value that its field cannot hold. Messages of one instant have one SID. Engines that are
+    not connected send nothing. ``silent`` stops the data.
 
     **Reads** the PGNs of `catalogue.RECEIVED` from all other nodes: the outputs ``bus_...``, with
-    whether they count (`Received`). A magnetic heading counts if its message has the variation.
+    whether they are valid (`Received`). A magnetic heading is, if its message has the variation.
 
     **Answers** ISO requests (`services.answer`) and group functions (`group_functions.serve`):
     other nodes may change its intervals, and command fields of 127237 and 127245.
 
     **Signs.** All headings, courses and the yaw are clockwise from north; roll is positive to
     starboard, pitch bow up, rate of turn to starboard. Rudders, on ports and bus, are positive to
-    turn to starboard: components that count the other way are wired with ``factor = -1``. Wind is
+    turn to starboard: components with the other sign are connected with ``factor = -1``. Wind is
     on ports where it blows to, as an anemometer here has it, and on the bus where it comes from.
     Position in {n} from the origin (``latitude``, ``longitude``, ``altitude``). UTC is midnight of
     ``date`` plus simulated time.
@@ -101,14 +101,14 @@ class Nmea2000(Nmea2000Ports):
         """Read what has come, and send what is due from ``t`` to before ``t + h``."""
         now, end = self.now_ns, self.now_ns + round(h * NS)
         node, queue = CanNode(self._can), []
-        for when, operation in node.hear(self.rx):
+        for when, operation in node.receive(self.rx):
             if isinstance(operation, Transmit):
                 source = header(operation.frame)[1]
-                self._claim.hear_source(source)
-                said = self._decoder.decode(operation.frame)
-                if said is not None:
+                self._claim.receive_source(source)
+                message = self._decoder.decode(operation.frame)
+                if message is not None:
                     self._received += 1
-                    queue += [(now, each) for each in self._hear(when, said)]
+                    queue += [(now, each) for each in self._receive(when, message)]
         self._claim.tick(end)
         for when, source in self._claim.take():
             queue.append((max(when, now), Message(60928, self._identity.claim(), source)))
@@ -118,7 +118,7 @@ class Nmea2000(Nmea2000Ports):
                 node.send(when, frame)
         self._sent += len(queue)
         self.tx = node.flush()
-        # Mostly little is new, and all of it is asked for often.
+        # Mostly little is new, and all of it is requested often.
         expired = self._changes <= end
         names = self._readings.names() if expired else dict.fromkeys(self._news)
         for name in names:
@@ -143,25 +143,25 @@ class Nmea2000(Nmea2000Ports):
         self.sent, self.received = self._sent, self._received
 
     def _publish(self, name: str, now: int) -> None:
-        """Set the outputs of a quantity to what counts at ``now``."""
-        values, counts = self._readings.get(name, now)
+        """Set the outputs of a quantity to what is valid at ``now``."""
+        values, valid = self._readings.get(name, now)
         assert values is not None
         if name in _PUBLISHED:
             setattr(self, f"bus_{name}", values[0])
-            setattr(self, f"bus_{name}_valid", counts)
+            setattr(self, f"bus_{name}_valid", valid)
         elif name in ("place", "altitude"):
             self._publish_position(now)
         elif name == "velocity":
-            self.bus_velocity_n, self.bus_velocity_valid = (*values, 0.0), counts
+            self.bus_velocity_n, self.bus_velocity_valid = (*values, 0.0), valid
         elif name == "wind":
             self.bus_wind_speed, self.bus_wind_angle = values
-            self.bus_wind_valid = counts
+            self.bus_wind_valid = valid
         elif name == "attitude":
-            self.bus_attitude, self.bus_attitude_valid = values, counts
+            self.bus_attitude, self.bus_attitude_valid = values, valid
         elif name == "steering_mode":
-            self.bus_steering_mode = int(values[0]) if counts else -1
+            self.bus_steering_mode = int(values[0]) if valid else -1
         elif name == "rudder_direction":
-            self.bus_rudder_direction = int(values[0]) if counts else 0
+            self.bus_rudder_direction = int(values[0]) if valid else 0
         else:
             self._publish_engines(now)
 
@@ -175,7 +175,7 @@ class Nmea2000(Nmea2000Ports):
     def _publish_engines(self, now: int) -> None:
         engines = [self._readings.get(f"engine {number}", now) for number in range(ENGINES)]
         self.bus_engine_speed = [
-            values[0] if values is not None and counts else 0.0 for values, counts in engines
+            values[0] if values is not None and valid else 0.0 for values, valid in engines
         ]
 
     # ------------------------------------------------------------------ inside
@@ -193,27 +193,27 @@ class Nmea2000(Nmea2000Ports):
     def _delay(self, number: int) -> float:
         return float(self.generator(number, self._name % _STREAMS).random())
 
-    def _hear(self, when: int, said: Message) -> list[Message]:
+    def _receive(self, when: int, message: Message) -> list[Message]:
         """Take in a message; return answers."""
-        if said.pgn == 60928:
-            self._decoder.forget(said.source)
-            self._claim.hear_claim(self.now_ns, said.source, name_of(said.fields))
+        if message.pgn == 60928:
+            self._decoder.forget(message.source)
+            self._claim.receive_claim(self.now_ns, message.source, name_of(message.fields))
             return []
         own = self._claim.address
-        if said.destination not in (GLOBAL, own):
+        if message.destination not in (GLOBAL, own):
             return []
-        if said.pgn not in _NETWORK:
-            self._news += self._readings.take(when, said)
+        if message.pgn not in _NETWORK:
+            self._news += self._readings.take(when, message)
             return []
-        if said.pgn == 59904 and said.fields.get("pgn") == 60928:
-            self._claim.hear_request(self.now_ns)
+        if message.pgn == 59904 and message.fields.get("pgn") == 60928:
+            self._claim.receive_request(self.now_ns)
             return []
         if own is None:
             return []
-        if said.pgn == 59904:
-            found = answer(said, self._identity, self._sends, self._beats, self._now)
+        if message.pgn == 59904:
+            found = answer(message, self._identity, self._sends, self._beats, self._now)
         else:
-            found, due, commanded = serve(said, self._sends, self._change)
+            found, due, commanded = serve(message, self._sends, self._change)
             found += [each for pgn in due for each in self._now(pgn)]
             if commanded is not None:
                 self._news += self._readings.take(when, commanded)
@@ -281,8 +281,15 @@ class Nmea2000(Nmea2000Ports):
 
 
 _PUBLISHED = (
-    *("heading", "rate_of_turn", "rudder", "rudder_order", "water_speed", "depth"),
-    *("heading_to_steer", "track", "commanded_rudder"),
+    "heading",
+    "rate_of_turn",
+    "rudder",
+    "rudder_order",
+    "water_speed",
+    "depth",
+    "heading_to_steer",
+    "track",
+    "commanded_rudder",
 )
 """Quantities of one value that go to outputs of their name."""
 

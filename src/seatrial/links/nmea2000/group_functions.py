@@ -23,35 +23,35 @@ _LEAST_S = 0.01
 
 
 def serve(
-    said: Message, sends: Sequence[int], change: Callable[[int, float], None]
+    message: Message, sends: Sequence[int], change: Callable[[int, float], None]
 ) -> tuple[list[Message], list[int], Message | None]:
     """Carry out a group function addressed to this node, or to all.
 
     Returns answers, PGNs to send now, and what was commanded as a message like any other (of the
     same source). A request for a PGN that the node sends sends it, and ``change(pgn, seconds)``
     sets its interval, if it names one: 0 stops it, 'standard' is the standard's. Commands are
-    carried out for the fields of `COMMANDED`. What was asked of all is not answered.
+    carried out for the fields of `COMMANDED`. Requests to all are not answered.
     """
-    pgn = said.fields.get("pgn")
-    if said.id == _REQUEST and pgn is not None:
-        error, interval_error = _requested(said, pgn, sends, change)
+    pgn = message.fields.get("pgn")
+    if message.id == _REQUEST and pgn is not None:
+        error, interval_error = _requested(message, pgn, sends, change)
         due = [pgn] if (error, interval_error) == (_OK, _OK) else []
-        return _answer(said, pgn, error, interval_error), due, None
-    if said.id == _COMMAND and pgn is not None:
+        return _answer(message, pgn, error, interval_error), due, None
+    if message.id == _COMMAND and pgn is not None:
         if pgn not in COMMANDED:
-            return _answer(said, pgn, _NOT_SUPPORTED), [], None
-        fields, wrong = _commanded(said, pgn)
-        commanded = Message(pgn, fields, said.source) if fields else None
-        return _answer(said, pgn, _OK, parameters=wrong), [], commanded
+            return _answer(message, pgn, _NOT_SUPPORTED), [], None
+        fields, wrong = _commanded(message, pgn)
+        commanded = Message(pgn, fields, message.source) if fields else None
+        return _answer(message, pgn, _OK, parameters=wrong), [], commanded
     return [], [], None
 
 
 def _requested(
-    said: Message, pgn: int, sends: Sequence[int], change: Callable[[int, float], None]
+    message: Message, pgn: int, sends: Sequence[int], change: Callable[[int, float], None]
 ) -> tuple[int, int]:
     if pgn not in sends:
         return _NOT_AVAILABLE if pgn in DATA else _NOT_SUPPORTED, _OK
-    interval = said.fields.get("transmissionInterval")
+    interval = message.fields.get("transmissionInterval")
     if interval is None or interval >= _UNCHANGED_S:
         return _OK, _OK
     if interval >= _STANDARD_S:
@@ -64,9 +64,9 @@ def _requested(
     return _OK, _OK
 
 
-def _commanded(said: Message, pgn: int) -> tuple[dict[str, Any], list[int]]:
+def _commanded(message: Message, pgn: int) -> tuple[dict[str, Any], list[int]]:
     names, fields, wrong = _names(pgn), {}, []
-    items = said.items or ({k: said.fields.get(k) for k in ("parameter", "value")},)
+    items = message.items or ({k: message.fields.get(k) for k in ("parameter", "value")},)
     for item in items:
         number = item.get("parameter")
         known = isinstance(number, int) and 1 <= number <= len(names)
@@ -83,9 +83,13 @@ def _names(pgn: int) -> tuple[str, ...]:
 
 
 def _answer(
-    said: Message, pgn: int, error: int, interval_error: int = _OK, parameters: Sequence[int] = ()
+    message: Message,
+    pgn: int,
+    error: int,
+    interval_error: int = _OK,
+    parameters: Sequence[int] = (),
 ) -> list[Message]:
-    if said.destination == GLOBAL:
+    if message.destination == GLOBAL:
         return []
     fields = {
         "pgn": pgn,
@@ -94,4 +98,4 @@ def _answer(
         "numberOfParameters": len(parameters),
     }
     items = tuple({"parameter": each} for each in parameters)
-    return [Message(126208, fields, destination=said.source, items=items)]
+    return [Message(126208, fields, destination=message.source, items=items)]

@@ -1,4 +1,4 @@
-"""Who a node is: its 64-bit NAME (ISO 11783-5) and its product."""
+"""Identity of a node: its 64-bit NAME (ISO 11783-5) and its product."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _LONGEST_TEXT = 32
 
 @dataclass(frozen=True)
 class Identity:
-    """What a node says of itself. ``uid`` gives the unique number: its remainder of 2^21."""
+    """NAME and product of a node. ``uid`` gives the unique number: its remainder of 2^21."""
 
     uid: int
     manufacturer_code: int

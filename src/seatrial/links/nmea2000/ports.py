@@ -8,7 +8,7 @@ from ...component import Component, Input, Noise, Output, Parameter
 from .address_claim import HIGHEST
 from .catalogue import check_intervals, check_sends
 
-NOT_WIRED = 1e30
+NOT_CONNECTED = 1e30
 """Start value of the inputs: nothing measures this, and it goes out as not available."""
 ENGINES = 4
 """Most engines of a node."""
@@ -20,7 +20,7 @@ _PI, _HALF_PI = 3.1415927, 1.5707964
 
 
 def _measured(unit: str, description: str, **options: Any) -> Input:
-    return Input(unit, description, start=NOT_WIRED, optional=True, **options)
+    return Input(unit, description, start=NOT_CONNECTED, optional=True, **options)
 
 
 def _valid(what: str) -> Input:
@@ -32,7 +32,7 @@ def _received(what: str) -> Output:
 
 
 class Nmea2000Ports(Noise, Component):
-    """What `Nmea2000` is told and says."""
+    """Parameters, inputs and outputs of `Nmea2000`."""
 
     sends = Parameter("", "1", "PGNs that it sends, separated by spaces", check=check_sends)
     intervals = Parameter(
@@ -69,10 +69,10 @@ class Nmea2000Ports(Noise, Component):
     )
     rudder_instance = Parameter(0.0, "1", "which rudder it sends and reads", min=0.0, max=252.0)
     timeout = Parameter(
-        1.0, "s", "time for which what was received counts, at least 3 intervals", min=0.0
+        1.0, "s", "time for which a received value is valid, at least 3 intervals", min=0.0
     )
 
-    rx = Input("1", "what the bus tells", type=str)
+    rx = Input("1", "operations from the bus", type=str)
     heading = _measured("rad", "heading, clockwise from north, as a compass shows it")
     heading_valid = _valid("the heading")
     deviation = _measured("rad", "deviation of the heading, positive east")
@@ -82,7 +82,7 @@ class Nmea2000Ports(Noise, Component):
     attitude = _measured("rad", "Euler angles, ZYX", axes=_EULER)
     attitude_valid = _valid("the attitude")
     rudder = _measured("rad", "angle of the rudder, positive to turn to starboard")
-    rudder_order = _measured("rad", "angle asked of the rudder, positive to turn to starboard")
+    rudder_order = _measured("rad", "rudder angle ordered, positive to turn to starboard")
     water_speed = _measured("m/s", "speed through the water, ahead")
     depth = _measured("m", "depth of the water below the transducer")
     position_n = _measured("m", "position, north-east-down", axes=_NED)
@@ -99,10 +99,8 @@ class Nmea2000Ports(Noise, Component):
     engine_temperature = _measured("K", "temperatures of the engines", axes=_ENGINES)
     engine_load = _measured("1", "loads of the engines, as shares of the largest", axes=_ENGINES)
     steering_mode = Input(
-        *(
-            "1",
-            "0 main steering, 1 non-follow-up, 2 follow-up, 3 heading alone, 4 heading, 5 track",
-        ),
+        "1",
+        "0 main steering, 1 non-follow-up, 2 follow-up, 3 heading alone, 4 heading, 5 track",
         type=int,
         start=-1,
         optional=True,
@@ -115,7 +113,7 @@ class Nmea2000Ports(Noise, Component):
         "1", "whether it sends no data; the network's messages go on", type=bool, optional=True
     )
 
-    tx = Output("1", "what it tells the bus", type=str)
+    tx = Output("1", "operations to the bus", type=str)
     claimed_address = Output("1", "its address, 254 while it has none", type=int, start=254)
     contests = Output("1", "claims of its address by others", type=int)
     twins = Output("1", "claims by others under its own NAME", type=int)
@@ -129,8 +127,8 @@ class Nmea2000Ports(Noise, Component):
     bus_attitude_valid = _received("an attitude")
     bus_rudder = Output("rad", "angle of the rudder, positive to turn to starboard")
     bus_rudder_valid = _received("an angle of the rudder")
-    bus_rudder_order = Output("rad", "angle asked of the rudder, positive to turn to starboard")
-    bus_rudder_order_valid = _received("an angle asked of the rudder")
+    bus_rudder_order = Output("rad", "rudder angle ordered, positive to turn to starboard")
+    bus_rudder_order_valid = _received("a rudder angle ordered")
     bus_rudder_direction = Output("1", "way the rudder is to move: 1 starboard, -1 port", type=int)
     bus_water_speed = Output("m/s", "speed through the water, ahead")
     bus_water_speed_valid = _received("a speed through the water")

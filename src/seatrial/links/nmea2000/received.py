@@ -13,7 +13,7 @@ from .codec import Message, numbers
 _TRUE, _MAGNETIC, _APPARENT = 0, 1, 2
 _PER_RPM = math.tau / 60.0
 _INTERVALS = 3
-"""Intervals of a PGN for which a value counts at least."""
+"""Intervals of a PGN for which a value is valid at least."""
 
 _FAR_NS = 1 << 62
 
@@ -32,25 +32,26 @@ class Received:
         self._memory = memory
         self._timeout_ns, self._rudder_instance = timeout_ns, rudder_instance
 
-    def take(self, when_ns: int, said: Message) -> list[str]:
+    def take(self, when_ns: int, message: Message) -> list[str]:
         """Take in a message; return the quantities that it changed."""
-        reader = _READERS.get(said.pgn)
+        reader = _READERS.get(message.pgn)
         if reader is None:
             return []
-        if said.pgn == 127245 and said.fields.get("instance") not in (self._rudder_instance, None):
+        instance = message.fields.get("instance")
+        if message.pgn == 127245 and instance not in (self._rudder_instance, None):
             return []
         changed = []
-        interval_ns = round(DATA[said.pgn].interval_s * NS)
+        interval_ns = round(DATA[message.pgn].interval_s * NS)
         until_ns = when_ns + max(self._timeout_ns, _INTERVALS * interval_ns)
-        for name, values in reader(said.fields).items():
+        for name, values in reader(message.fields).items():
             known = self._memory.get(name)
-            if known and known["source"] != said.source and self._counts(known, when_ns):
+            if known and known["source"] != message.source and self._valid(known, when_ns):
                 continue
             if values is not None:
-                found = {"values": list(values), "until": until_ns, "source": said.source}
+                found = {"values": list(values), "until": until_ns, "source": message.source}
                 self._memory[name] = found
                 changed.append(name)
-            elif known and known["source"] == said.source:
+            elif known and known["source"] == message.source:
                 known["until"] = -1
                 changed.append(name)
         return changed
@@ -64,15 +65,15 @@ class Received:
         known = self._memory.get(name)
         if known is None:
             return None, False
-        return known["values"], self._counts(known, now_ns)
+        return known["values"], self._valid(known, now_ns)
 
     def expires(self, now_ns: int) -> int:
-        """Return when the next value that counts will no longer, ns; far ahead if none does."""
+        """Return when the next valid value expires, ns; far ahead if none does."""
         ends = [known["until"] for known in self._memory.values()]
         return min((until + 1 for until in ends if until >= now_ns), default=_FAR_NS)
 
     @staticmethod
-    def _counts(known: dict[str, Any], now_ns: int) -> bool:
+    def _valid(known: dict[str, Any], now_ns: int) -> bool:
         return bool(known["until"] >= now_ns)
 
 

@@ -1,4 +1,4 @@
-"""What every node of NMEA 2000 answers: who it is, what it sends and reads, that it lives."""
+"""Mandatory services of an NMEA 2000 node: identity, PGN lists, heartbeat."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def answer(
 
     Product and configuration information and PGN lists go out as they are, a PGN that the node
     sends with its values of ``now``. What it does not have is refused (ISO acknowledgement, NACK,
-    to all, as ISO 11783-3 says) unless all were asked. Claims are `AddressClaim`'s.
+    to all, as ISO 11783-3 says) unless the request was to all. Claims are `AddressClaim`'s.
     """
     wanted, everybody = request.fields.get("pgn"), request.destination == GLOBAL
     if wanted is None or wanted == 60928:

@@ -5,8 +5,8 @@ The map names P, I, D and an output multiplier K for each, and their terms; the 
     output = K (P e + I sum(e) + D (e - e_before)),  clipped to -1 to 1
 
 once per loop, e = target - measurement in mbar or degrees. The sums are per loop, not per second:
-so the captured gains make sense (I/P is a fiftieth for depth, D/P 13 for heading). The signs of
-the captured gains then say that ahead of the vertical thruster is upwards: its P is negative.
+so the captured gains make sense (I/P is a fiftieth for depth, D/P 13 for heading). By the
+signs of the captured gains, ahead of the vertical thruster is upwards: its P is negative.
 """
 
 from __future__ import annotations

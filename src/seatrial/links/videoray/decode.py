@@ -1,4 +1,4 @@
-"""Frames as text for a person: who, what is asked, written and answered, registers by name."""
+"""Frames as text: node, request, write or answer, registers by name."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def describe_stream(pieces: Iterable[Piece]) -> Iterator[str]:
 
 
 def describe(frame: Frame) -> str:
-    """Return one line that says what a frame is."""
+    """Return one line that describes a frame."""
     return _response(frame) if frame.is_response else _request(frame)
 
 

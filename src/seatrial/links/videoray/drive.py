@@ -1,4 +1,4 @@
-"""From targets to thrusters: limits, slew, dead band and power, as the memory has them.
+"""Thruster drive: limits, slew, dead band and power, as the memory has them.
 
 The map has names and scales only; what they do is ours:
 

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from ...errors import InputError
 
 EXTENDED = 0xFF
-"""Length that says that two bytes with the length follow."""
+"""Length that marks that two bytes with the length follow."""
 LONGEST_PAYLOAD = 0xFFFF
 HEADER = 6
 """Bytes before the header's check."""
@@ -61,7 +61,7 @@ def _crc32(data: bytes) -> bytes:
 
 @dataclass(frozen=True)
 class Dialect:
-    """What differs between the protocols."""
+    """Differences between the protocols."""
 
     name: str
     request: bytes

@@ -1,4 +1,4 @@
-"""An RS-485 line: one pair of wires, on which one speaks at a time."""
+"""Half-duplex RS-485 line: one sender at a time."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ def byte_time(baud: float) -> int:
 
 
 class HalfDuplex:
-    """When one end may speak: after what it hears, and after what it says itself.
+    """Times at which one end may send: after what it receives, and after what it sends itself.
 
-    An ideal line: nobody speaks while another does, whoever has to wait, waits; so there are no
+    An ideal line: only one end sends at a time, the other waits; so there are no
     collisions. ``turnaround_ns`` is the pause before an answer, in which drivers change over.
     """
 
@@ -32,8 +32,8 @@ class HalfDuplex:
         self.free_ns = max(self.free_ns, end)
         return end
 
-    def speak(self, asked_ns: int, count: int) -> int:
-        """Return when the first of ``count`` bytes begins that are ready at ``asked_ns``."""
-        begin = max(asked_ns, self.free_ns) + self._turnaround_ns
+    def transmit(self, requested_ns: int, count: int) -> int:
+        """Return when the first of ``count`` bytes begins that are ready at ``requested_ns``."""
+        begin = max(requested_ns, self.free_ns) + self._turnaround_ns
         self.free_ns = begin + count * self.byte_ns
         return begin

@@ -1,4 +1,4 @@
-"""Who a Pro 4 is: serial number, firmware, boards; and its configuration data.
+"""Identity of a Pro 4: serial number, firmware, boards; and its configuration data.
 
 Source: VideoRay, PRO4_Hardware_Config.txt and VideoRay_Bootloader_Technical_info.txt.
 """
@@ -15,20 +15,26 @@ PRO4_ROV = 1
 SERIAL_LENGTH = 16
 BOARD_LENGTH = 32
 BOARDS = (
-    *("cpu", "power", "pressure", "camera_io", "camera", "lights"),
-    *("horizontal_thruster", "vertical_thruster"),
+    "cpu",
+    "power",
+    "pressure",
+    "camera_io",
+    "camera",
+    "lights",
+    "horizontal_thruster",
+    "vertical_thruster",
 )
 """What the configuration names the revision of, in its order."""
 
 _BOOTLOADER = struct.Struct("<HH16s8s4s")
 _VALID = bytes.fromhex("600df00d")
-"""Says that the firmware is valid."""
+"""Marks the firmware as valid."""
 CONFIG_LENGTH = _BOOTLOADER.size + 4 + BOARD_LENGTH * len(BOARDS)
 
 
 @dataclass(frozen=True)
 class Identity:
-    """What the configuration registers tell."""
+    """Content of the configuration registers."""
 
     serial_number: str
     boards: tuple[str, ...]

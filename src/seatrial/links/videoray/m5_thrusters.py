@@ -28,9 +28,9 @@ class M5Thrusters(Logging, Component):
 
     ``nodes`` are their node ids; motor ids count from 0 in their order. ``rx`` and ``tx`` are bytes
     with their times (`seatrial.links.text`), timed as `Pro4Rov`'s are; what requests do is
-    `ThrusterNode`'s. A power counts for ``watchdog``, 0 for ever (no document has one).
+    `ThrusterNode`'s. A power applies for ``watchdog``, 0 for ever (no document has one).
 
-    Between requests, with P the power that counts (0 while ``fault`` is not 0):
+    Between requests, with P the power that applies (0 while ``fault`` is not 0):
 
         time_constant n' = P - n          n: share of full speed
         rpm = full_speed n,  current = full_current |n|^3
@@ -49,7 +49,7 @@ class M5Thrusters(Logging, Component):
     nodes = Parameter("1 2 3", "1", "node ids, separated by spaces")
     baud = Parameter(115_200.0, "1/s", "baud rate", min=300.0, max=1e7)
     byte_timeout = Parameter(0.05, "s", "gap after which a frame is given up", min=1e-4)
-    watchdog = Parameter(1.0, "s", "time for which a power counts, 0 for ever", min=0.0)
+    watchdog = Parameter(1.0, "s", "time for which a power applies, 0 for ever", min=0.0)
     time_constant = Parameter(0.15, "s", "of the speed", min=1e-3)
     full_speed = Parameter(3000.0, "rpm", "speed at full power", min=0.0)
     full_current = Parameter(10.0, "A", "current at full power", min=0.0)
@@ -59,11 +59,11 @@ class M5Thrusters(Logging, Component):
     thermal_resistance = Parameter(0.05, "K/W", "of a thruster to the water", min=0.0)
     greatest_temperature = Parameter(358.15, "K", "temperature at which it stops", min=0.0)
 
-    rx = Input("1", "bytes that they hear", type=str, optional=True)
+    rx = Input("1", "bytes received", type=str, optional=True)
     fault = Input("1", "fault bits from outside", type=int, axes=_AXES, optional=True)
     water_temperature = Input("K", "temperature of the water", start=288.15, optional=True)
 
-    tx = Output("1", "bytes that they say", type=str)
+    tx = Output("1", "bytes sent", type=str)
     thrust = Output("1", "share of full thrust, -1 to 1", axes=_AXES)
     speed = Output("rpm", "speed of the shaft", axes=_AXES)
     voltage = Output("V", "voltage of the supply at the thrusters")
@@ -91,7 +91,7 @@ class M5Thrusters(Logging, Component):
         self._tx: dict[str, Any] = {}
 
     def step(self, t: float, h: float) -> None:
-        """Hear and answer what is complete before ``t + h``, and turn until then."""
+        """Receive and answer what is complete before ``t + h``, and turn until then."""
         self._log.open(self.run_folder, self.name)
         end = self.now_ns + round(h * NS)
         found = self._parser.expire(self.now_ns)
@@ -104,7 +104,7 @@ class M5Thrusters(Logging, Component):
         ]
         while self._waiting and self._waiting[0][0] < end:
             when, is_response, node, flags, address, payload = self._waiting.pop(0)
-            self._hear(when, Frame(is_response, node, flags, address, bytes.fromhex(payload)))
+            self._receive(when, Frame(is_response, node, flags, address, bytes.fromhex(payload)))
         self._turn(h, end)
         Outbox(self._tx).flush()
 
@@ -161,7 +161,7 @@ class M5Thrusters(Logging, Component):
         self._parser = Parser(round(self.byte_timeout * NS), (VRCSR,))
         self._line = HalfDuplex(self.baud, 0)
 
-    def _hear(self, when: int, request: Frame) -> None:
+    def _receive(self, when: int, request: Frame) -> None:
         for number, node in enumerate(self._nodes):
             self._report(number, node)
             answer = node.handle(request)
@@ -170,7 +170,7 @@ class M5Thrusters(Logging, Component):
                 self._received_ns[number] = when
             if answer is not None:
                 data = encode(answer, VRCSR)
-                begin = self._line.speak(when, len(data))
+                begin = self._line.transmit(when, len(data))
                 self._log.write(begin, FROM_DEVICE, data)
                 Outbox(self._tx).put(begin, data)
 

@@ -27,7 +27,7 @@ class RovNode:
     """One node of the bus. `handle` takes a request and returns the answer, if there is one.
 
     **Ids**: it takes requests to its own id, its group's (0x80 + group) and to all (0xFF), and
-    answers the first alone. Id 0 is nobody's. Others with the relay bit (0x40) go to
+    answers the first alone. Id 0 is no node's. Others with the relay bit (0x40) go to
     ``relayed``, whole; so do custom commands for the manipulator, which it knows itself.
 
     **Writes** are carried out before the answer. Below 0xF0 each byte goes where it belongs if
@@ -54,7 +54,7 @@ class RovNode:
         self.group_id = 1
         self.wants_reboot = False
         self.was_commanded = False
-        """Whether the command block was written since somebody looked."""
+        """Whether the command block was written since this was last read."""
         self.requests = 0
         """Requests to its own id, its group or all, since the start."""
         self.manipulator = 0
@@ -90,7 +90,7 @@ class RovNode:
         self.manipulator = 0
 
     def count_errors(self, errors: int) -> None:
-        """Say how many errors of communication there were since the start; 65535 is the most."""
+        """Set how many errors of communication there were since the start; 65535 is the most."""
         register = csr.BY_NAME["communication_errors"]
         csr.put(self.memory, register.name, min(errors, register.highest))
 

@@ -12,7 +12,7 @@ Timed = tuple[int, Frame]
 
 
 class Parser:
-    """Finds the frames in what a serial port hears, requests and responses of some dialects.
+    """Finds the frames in what a serial port receives, requests and responses of some dialects.
 
     After a wrong check it looks for the next sync from the byte after the last one's first, so
     that a frame inside or behind a broken one is found. A frame that does not go on for
@@ -68,14 +68,14 @@ class Parser:
 
     def saved(self) -> dict[str, Any]:
         """Return what it knows, as plain data."""
-        counts = {name: getattr(self, name) for name in _COUNTS}
-        return {"buffer": self._buffer.hex(), "last_ns": self._last_ns, **counts}
+        counters = {name: getattr(self, name) for name in _COUNTERS}
+        return {"buffer": self._buffer.hex(), "last_ns": self._last_ns, **counters}
 
     def restore(self, saved: dict[str, Any]) -> None:
         """Restore what `saved` returned."""
         self._buffer = bytearray.fromhex(saved["buffer"])
         self._last_ns = saved["last_ns"]
-        for name in _COUNTS:
+        for name in _COUNTERS:
             setattr(self, name, saved[name])
 
     def _next(self) -> tuple[Frame | None, int] | None:
@@ -104,7 +104,7 @@ class Parser:
         return frame, skipped + used
 
     def _checked(self, begin: int, end: int, dialect: Dialect) -> bool | None:
-        """Say if the check after a part is right; None if it is not there yet."""
+        """Return whether the check after a part is right; None if it is not there yet."""
         stop = end + dialect.check_length
         if len(self._buffer) < stop:
             return None
@@ -136,4 +136,4 @@ class Parser:
         return count
 
 
-_COUNTS = ("frames", "checksum_errors", "broken_off", "skipped")
+_COUNTERS = ("frames", "checksum_errors", "broken_off", "skipped")

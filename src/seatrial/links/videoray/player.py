@@ -1,4 +1,4 @@
-"""Plays a recorded stream into a simulation."""
+"""Player of a recorded stream into a simulation."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .stream_file import FROM_DEVICE, TO_DEVICE, read_stream
 
 
 class StreamPlayer(Component):
-    """Says what was recorded one way, at the times at which it was said.
+    """Sends what was recorded one way, at the recorded times.
 
     ``file`` is a stream (`stream_file`), relative to the current folder; ``direction`` is
     to-device, to stand for the topside, or from-device, to stand for the vehicle. In the step
@@ -30,7 +30,7 @@ class StreamPlayer(Component):
         "to-device", "1", "which way is played", choices=("to-device", "from-device")
     )
 
-    tx = Output("1", "bytes that were said", type=str)
+    tx = Output("1", "bytes sent", type=str)
     played = Output("1", "pieces played", type=int)
 
     def start(self, t: float) -> None:
@@ -42,7 +42,7 @@ class StreamPlayer(Component):
         self._tx: dict[str, Any] = {}
 
     def step(self, t: float, h: float) -> None:
-        """Say what is due."""
+        """Send what is due."""
         end = self.now_ns + round(h * NS)
         box = Outbox(self._tx)
         while self._played < len(self._pieces) and self._pieces[self._played].time_ns < end:
@@ -52,5 +52,5 @@ class StreamPlayer(Component):
         box.flush()
 
     def outputs(self, t: float) -> None:
-        """Publish what is said."""
+        """Publish what is sent."""
         self.tx, self.played = Outbox(self._tx).text, self._played

@@ -1,8 +1,8 @@
-"""The power that the ROV allows its thrusters.
+"""Power manager of the ROV: the power its thrusters may use.
 
 The map has names and scales only: each loop the power falls by the decrement of a limit that is
 crossed (least voltage, greatest current), and else grows by its increment, between the least and
-the greatest power. What it says of changes of thrust is not carried out here.
+the greatest power. Its limits on changes of thrust are not carried out here.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Device specific replies of the Pro 4, 1 to 5.
 
-Source: VideoRay, pro4_specific_response.h and "PRO4 application layer"; on the wire a real vehicle
+Source: VideoRay, pro4_specific_response.h and "PRO4 application layer"; on the line a real vehicle
 answers 1, an acknowledgement, with the four of 2. Reply 5 ends, other than the document's names
 say, with humidity and water temperature: so the captured ones fit the memory read beside them.
 """
@@ -17,7 +17,7 @@ ATTITUDE = 2
 ATTITUDE_TEMPERATURE = 3
 ATTITUDE_HEALTH = 4
 NAVIGATION = 5
-"""What VideoRay's own topside asks for."""
+"""What VideoRay's own topside requests."""
 
 _ATTITUDE = ("heading", "pitch", "roll", "pressure")
 _TEMPERATURE = ("water_temperature",)
@@ -32,8 +32,14 @@ FIELDS: dict[int, tuple[str, ...]] = {
     ATTITUDE_TEMPERATURE: _ATTITUDE + _TEMPERATURE,
     ATTITUDE_HEALTH: _ATTITUDE + _TEMPERATURE + _HUMIDITY,
     NAVIGATION: (
-        *(*_ATTITUDE, *_ROTATION, *_LINEAR, *_MAGNETOMETER, "attitude_status"),
-        *(*_HUMIDITY, *_TEMPERATURE, "total_power"),
+        *_ATTITUDE,
+        *_ROTATION,
+        *_LINEAR,
+        *_MAGNETOMETER,
+        "attitude_status",
+        *_HUMIDITY,
+        *_TEMPERATURE,
+        "total_power",
     ),
 }
 """Registers of each reply, in its order: of 2 bytes each, but for the power at the end."""
@@ -41,7 +47,7 @@ FIELDS: dict[int, tuple[str, ...]] = {
 
 @dataclass(frozen=True)
 class Reading:
-    """What a reply, or a read of the whole memory, says: values by register, in its unit."""
+    """Content of a reply, or of a read of the whole memory: values by register, in its unit."""
 
     values: dict[str, float]
 
@@ -55,7 +61,7 @@ def payload(number: int, memory: bytes | bytearray) -> bytes | None:
 
 
 def read(number: int, data: bytes) -> Reading | None:
-    """Return what a reply's bytes after the type of device say; None if they are none.
+    """Return the content of a reply's bytes after the type of device; None if they are none.
 
     Pressure is taken for signed here, as the reply has it.
     """

@@ -27,12 +27,12 @@ _CELSIUS = 273.15
 
 
 class Pro4Rov(Pro4RovPorts):
-    """The vehicle's end of the Pro 4 protocol: what it hears, does, measures and answers.
+    """The vehicle's end of the Pro 4 protocol: what it receives, does, measures and answers.
 
     ``rx`` and ``tx`` are bytes with their times (`seatrial.links.text`); `SerialGateway` joins
     them to a pseudo-terminal, a TCP port or a serial port. What requests do is `RovNode`'s.
 
-    **Time.** In the step from t to t + h it hears what ``rx`` has, each byte at its time at
+    **Time.** In the step from t to t + h it receives what ``rx`` has, each byte at its time at
     ``baud``, 10 bits each, and answers what is complete before t + h: the first byte of an answer
     begins ``turnaround`` after the last that it received (`HalfDuplex`), and is on ``tx`` with that
     time at t + h. A cycle of 23 and 42 bytes takes 5.64 ms.
@@ -42,7 +42,7 @@ class Pro4Rov(Pro4RovPorts):
     (`Drive`). The auto loops' outputs are added to the targets: heading's to port and taken off
     starboard. ``command`` is what is left when ``motor_dead_band`` is taken off the ``duty``,
     as a share of full thrust, the vertical one positive downwards, whatever ``vertical_ahead``
-    is on the wire. The captured gains need ``up``.
+    is on the line. The captured gains need ``up``.
 
     **Measurements**: heading, pitch, roll in 0.1 degrees; pressure in mbar,
     surface_pressure + density gravity (depth + depth_offset); specific force, forward, to
@@ -53,9 +53,9 @@ class Pro4Rov(Pro4RovPorts):
     **Watchdog**: when nothing was written to the command block for ``watchdog``, the thrusters
     stop at once and the auto loops rest, until something is. Lights and camera stay.
 
-    **Reboot**: after the answer it is deaf for ``reboot_time``, then starts with what is stored.
+    **Reboot**: after the answer it is off for ``reboot_time``, then starts with what is stored.
 
-    ``cut`` cuts the line: it hears and says nothing. ``communication_errors`` counts wrong
+    ``cut`` cuts the line: nothing is received or sent. ``communication_errors`` counts wrong
     checksums and frames that were broken off, as its register does since the last reboot. It
     records its stream in ``run_folder``, ``NAME.stream`` (`StreamLog`).
 
@@ -97,10 +97,10 @@ class Pro4Rov(Pro4RovPorts):
         self._measure()
 
     def step(self, t: float, h: float) -> None:
-        """Hear, control and answer, in the order of time, until ``t + h``."""
+        """Receive, control and answer, in the order of time, until ``t + h``."""
         self._log.open(self.run_folder, self.name)
         end, before = self.now_ns + round(h * NS), self._changes
-        self._hear()
+        self._receive()
         while True:
             frame_ns = self._waiting[0][0] if self._waiting else end
             if min(frame_ns, self._next_ns) >= end:
@@ -196,7 +196,7 @@ class Pro4Rov(Pro4RovPorts):
         self._drive = Drive(self.loop_period, self.slew_unit, self.compensation == "on")
         self._period_ns = max(1, round(self.loop_period * NS))
 
-    def _hear(self) -> None:
+    def _receive(self) -> None:
         found = self._parser.expire(self.now_ns)
         text = self.rx
         chunks = Inbox(self._rx).take(text) if text != self._text else []
@@ -229,7 +229,7 @@ class Pro4Rov(Pro4RovPorts):
         node.relayed.clear()
         if answer is not None and not self.cut:
             data = encode(answer)
-            begin = self._line.speak(when, len(data))
+            begin = self._line.transmit(when, len(data))
             self._log.write(begin, FROM_DEVICE, data)
             Outbox(self._tx).put(begin, data)
         if node.wants_reboot:

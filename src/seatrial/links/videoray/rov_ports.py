@@ -13,7 +13,7 @@ _XYZ = ("x", "y", "z")
 
 
 class Pro4RovPorts(Logging, Component):
-    """What `Pro4Rov` is told and says."""
+    """Parameters, inputs and outputs of `Pro4Rov`."""
 
     baud = Parameter(115_200.0, "1/s", "baud rate", min=300.0, max=1e7)
     turnaround = Parameter(0.0, "s", "from the end of a request to its answer", min=0.0, max=1.0)
@@ -65,7 +65,7 @@ class Pro4RovPorts(Logging, Component):
     gravity = Parameter(9.80665, "m/s2", "acceleration of gravity", min=0.0)
     depth_offset = Parameter(0.0, "m", "depth that its pressure sensor reads too much")
 
-    rx = Input("1", "bytes that it hears", type=str, optional=True)
+    rx = Input("1", "bytes received", type=str, optional=True)
     cut = Input("1", "whether the line is cut", type=bool, optional=True)
     attitude = Input("rad", "Euler angles, ZYX", axes=("phi", "theta", "psi"))
     depth = Input("m", "depth, positive down")
@@ -81,12 +81,12 @@ class Pro4RovPorts(Logging, Component):
     bus_voltage = Input("V", "voltage of the 12 V supply", start=12.19, optional=True)
     bus_current = Input("A", "current of the 12 V supply", start=0.385, optional=True)
 
-    tx = Output("1", "bytes that it says", type=str)
+    tx = Output("1", "bytes sent", type=str)
     accessory_tx = Output("1", "requests that it passes on", type=str)
     command = Output(
         "1", "shares of full thrust, -1 to 1: ahead, vertical downwards", axes=THRUSTERS
     )
-    duty = Output("1", "duties of the motors, as the firmware counts them", axes=THRUSTERS)
+    duty = Output("1", "duties of the motors, as the firmware scales them", axes=THRUSTERS)
     lights = Output("1", "brightness, 0 to 1")
     camera_tilt = Output("rad", "of the camera, -pi/2 to pi/2", min=-math.pi / 2, max=math.pi / 2)
     camera_focus = Output("1", "-1 to 1")

@@ -1,8 +1,8 @@
-"""The topside of a Pro 4 without its port: what it sends in each cycle, what it has understood.
+"""Protocol of a Pro 4's topside: what it sends in each cycle, what it has understood.
 
 Source: VideoRay, "PRO4 application layer": Cockpit looks for a vehicle with an empty request that
 wants an acknowledgement, reads its configuration, then its whole memory, and then writes the
-command block again and again, asking for reply 5.
+command block again and again, requesting reply 5.
 """
 
 from __future__ import annotations
@@ -30,11 +30,11 @@ def _within(value: float, low: int, high: int) -> int:
 
 
 @dataclass
-class Orders:
-    """What the pilot wants, as the command block has it."""
+class Commands:
+    """The pilot's commands, as the command block has them."""
 
     thrust: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Port, starboard, vertical as on the wire, -1 to 1."""
+    """Port, starboard, vertical as on the line, -1 to 1."""
     lights: float = 0.0
     """0 to 1."""
     camera_tilt: float = 0.0
@@ -63,13 +63,13 @@ class Orders:
         )
 
 
-NEUTRAL = Frame(False, ROV, 0, 0, Orders().block())
+NEUTRAL = Frame(False, ROV, 0, 0, Commands().block())
 """The request that stops the thrusters and wants no answer."""
 
 
 @dataclass
 class Station:
-    """Cycle by cycle: `request` is what to send, `hear` what came back.
+    """Topside, cycle by cycle: `request` is what to send, `receive` what came back.
 
     Without an answer for ``timeout_ns`` the vehicle is lost, and looked for again: until it has
     answered, nothing commands it. ``readings`` are the newest, by register in its unit.
@@ -86,7 +86,7 @@ class Station:
     """Cycles whose answer had not come when the next began."""
     round_trip_ns: int = 0
     """From the first byte of the last request that was answered to the end of its answer."""
-    _asked_ns: int = -1
+    _requested_ns: int = -1
     _answered_ns: int = -1
     _waiting: bool = False
 
@@ -95,30 +95,30 @@ class Station:
         """Whether a vehicle answers, and is driven."""
         return self.phase == DRIVE
 
-    def request(self, now_ns: int, orders: Orders) -> Frame:
+    def request(self, now_ns: int, commands: Commands) -> Frame:
         """Return the request of the cycle that begins now."""
         self.cycles += 1
         if self._waiting:
             self.missed += 1
             if self.phase != DETECT and now_ns - self._answered_ns >= self.timeout_ns:
                 self.phase = DETECT
-        self._asked_ns, self._waiting = now_ns, True
+        self._requested_ns, self._waiting = now_ns, True
         if self.phase == DETECT:
             return Frame(False, self.node_id, ACKNOWLEDGE, 0)
         if self.phase == CONFIGURE:
             return Frame(False, self.node_id, READ_BIT, csr.CONFIG)
         if self.phase == READ:
             return Frame(False, self.node_id, READ_BIT, 0)
-        return Frame(False, self.node_id, NAVIGATION, 0, orders.block())
+        return Frame(False, self.node_id, NAVIGATION, 0, commands.block())
 
-    def hear(self, now_ns: int, frame: Frame) -> bool:
-        """Take in an answer; say if it is the one that was waited for."""
+    def receive(self, now_ns: int, frame: Frame) -> bool:
+        """Take in an answer; return whether it is the one that was waited for."""
         if not frame.is_response or frame.id != self.node_id or frame.payload[:1] != _ROV:
             return False
         if not self._understand(frame.flags, frame.address, frame.payload[1:]):
             return False
         if self._waiting:
-            self.round_trip_ns = now_ns - self._asked_ns
+            self.round_trip_ns = now_ns - self._requested_ns
         self._waiting, self._answered_ns = False, now_ns
         return True
 
@@ -154,7 +154,7 @@ class Station:
 
 
 def manipulator_request(direction: int) -> Frame:
-    """Return the request to the manipulator: 1 opens, -1 closes, 0 stops; nobody answers it."""
+    """Return the request to the manipulator: 1 opens, -1 closes, 0 stops; it is not answered."""
     command = {1: 3, -1: 2, 0: 0}[direction]
     payload = b"\x35\x49" + bytes(4) + bytes((command, 0))
     return Frame(False, MANIPULATOR, 0, csr.CUSTOM_COMMAND, payload)

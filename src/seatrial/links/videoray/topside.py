@@ -1,4 +1,4 @@
-"""The topside of a VideoRay Pro 4 as a component: stick axes in, what the vehicle says out."""
+"""Topside of a VideoRay Pro 4 as a component: manual control in, the vehicle's telemetry out."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .frame import encode
 from .half_duplex import HalfDuplex
 from .nmea import sentences
 from .parser import Parser
-from .station import PHASES, Orders, Station, manipulator_request
+from .station import PHASES, Commands, Station, manipulator_request
 from .stream_file import FROM_DEVICE, TO_DEVICE, StreamLog
 from .topside_ports import Pro4TopsidePorts
 
@@ -28,10 +28,10 @@ class Pro4Topside(Pro4TopsidePorts):
     (`seatrial.links.text`), at ``baud``: join them to `Pro4Rov`, or by `SerialGateway` to a real
     vehicle.
 
-    **Sticks**, -1 to 1, times ``manual_limit``, and 0 unless ``armed``: port = surge + yaw,
+    **Manual control**, -1 to 1, times ``manual_limit``, and 0 unless ``armed``: port = surge + yaw,
     starboard = surge - yaw, held within +-1, vertical = heave, positive downwards, whatever
-    ``vertical_ahead`` is on the wire. They count for the whole cycle. ``hold_depth`` and
-    ``hold_heading`` ask the vehicle to hold ``depth_wanted`` (as its pressure sensor has it,
+    ``vertical_ahead`` is on the line. They apply for the whole cycle. ``hold_depth`` and
+    ``hold_heading`` request the vehicle to hold ``depth_wanted`` (as its pressure sensor has it,
     surface_pressure + density gravity depth) and ``heading_wanted`` (whole degrees), if armed.
 
     **Readings** hold their last value. ``attitude`` has psi from 0 to 2 pi, whether the vehicle
@@ -40,7 +40,7 @@ class Pro4Topside(Pro4TopsidePorts):
     cycles without an answer before the next; after ``timeout`` without one ``connected`` is
     false, and the vehicle is looked for, which commands nothing.
 
-    A change of ``manipulator`` is sent after the command block, which nobody answers. With
+    A change of ``manipulator`` is sent after the command block, which is not answered. With
     ``nmea`` on, ``nmea_tx`` has the sentences of VideoRay's export each second (`nmea`).
 
     It records its stream in ``run_folder``, ``NAME.stream`` (`StreamLog`).
@@ -73,7 +73,7 @@ class Pro4Topside(Pro4TopsidePorts):
         self._changes, self._published = 0, -1
 
     def step(self, t: float, h: float) -> None:
-        """Hear what was answered, and send what is due before ``t + h``, in the order of time."""
+        """Receive answers, and send what is due before ``t + h``, in the order of time."""
         self._log.open(self.run_folder, self.name)
         end, before = self.now_ns + round(h * NS), self._changes
         found = self._parser.expire(self.now_ns)
@@ -85,7 +85,7 @@ class Pro4Topside(Pro4TopsidePorts):
             self._line.received(when, len(data))
             found += self._parser.feed(data, when, self._line.byte_ns)
         for when, frame in found:
-            self._station.hear(when, frame)
+            self._station.receive(when, frame)
         errors = self._parser.checksum_errors + self._parser.broken_off
         if found or errors != self._errors:
             self._errors = errors
@@ -95,7 +95,7 @@ class Pro4Topside(Pro4TopsidePorts):
             self._next_ns += self._period_ns
         while self._next_nmea_ns < end:
             if self.nmea == "on" and self._station.connected:
-                self._say_nmea(self._next_nmea_ns)
+                self._send_nmea(self._next_nmea_ns)
             self._next_nmea_ns += NS
         if self._changes != before:
             Outbox(self._tx).flush()
@@ -155,21 +155,21 @@ class Pro4Topside(Pro4TopsidePorts):
         self._period_ns = max(1, round(self.period * NS))
 
     def _cycle(self, now_ns: int) -> None:
-        orders = self._orders()
-        self._say(now_ns, encode(self._station.request(now_ns, orders)))
+        commands = self._commands()
+        self._send(now_ns, encode(self._station.request(now_ns, commands)))
         if self.manipulator != self._manipulated and self._station.connected:
             self._manipulated = self.manipulator
             direction = (self.manipulator > 0) - (self.manipulator < 0)
-            self._say(now_ns, encode(manipulator_request(direction)))
+            self._send(now_ns, encode(manipulator_request(direction)))
 
-    def _say(self, now_ns: int, data: bytes) -> None:
-        begin = self._line.speak(now_ns, len(data))
+    def _send(self, now_ns: int, data: bytes) -> None:
+        begin = self._line.transmit(now_ns, len(data))
         self._changes += 1
         self._log.write(begin, TO_DEVICE, data)
         Outbox(self._tx).put(begin, data)
 
-    def _orders(self) -> Orders:
-        orders = Orders(
+    def _commands(self) -> Commands:
+        commands = Commands(
             lights=self.lights,
             camera_tilt=math.degrees(self.camera_tilt),
             camera_focus=self.camera_focus,
@@ -177,22 +177,22 @@ class Pro4Topside(Pro4TopsidePorts):
             camera_buttons=self.camera_buttons,
         )
         if not self.armed:
-            return orders
+            return commands
         surge, yaw, heave = (self.manual_limit * min(max(x, -1.0), 1.0) for x in self.manual)
         down = -1.0 if self.vertical_ahead == "up" else 1.0
-        orders.thrust = (surge + yaw, surge - yaw, down * heave)
+        commands.thrust = (surge + yaw, surge - yaw, down * heave)
         if self.hold_depth:
             water = self.density * self.gravity * self.depth_wanted
-            orders.auto_depth = (self.surface_pressure + water) / _MBAR
+            commands.auto_depth = (self.surface_pressure + water) / _MBAR
         if self.hold_heading:
-            orders.auto_heading = math.degrees(self.heading_wanted)
-        return orders
+            commands.auto_heading = math.degrees(self.heading_wanted)
+        return commands
 
     def _depth_of(self, pressure: float) -> float:
         weight = self.density * self.gravity
         return (pressure * _MBAR - self.surface_pressure) / weight if weight else 0.0
 
-    def _say_nmea(self, now_ns: int) -> None:
+    def _send_nmea(self, now_ns: int) -> None:
         readings = self._station.readings
         text = sentences((now_ns - self._begun_ns) / NS, readings, self._depth_of)
         Outbox(self._nmea).put(now_ns, text)

@@ -10,14 +10,14 @@ _XYZ = ("x", "y", "z")
 
 
 class Pro4TopsidePorts(Logging, Component):
-    """What `Pro4Topside` is told and says."""
+    """Parameters, inputs and outputs of `Pro4Topside`."""
 
     period = Parameter(0.1, "s", "period of the command block", min=1e-3)
     node_id = Parameter(1.0, "1", "node id of the vehicle", min=1.0, max=127.0)
     baud = Parameter(115_200.0, "1/s", "baud rate", min=300.0, max=1e7)
     byte_timeout = Parameter(0.05, "s", "gap after which a frame is given up", min=1e-4)
     timeout = Parameter(1.0, "s", "silence after which the vehicle is lost", min=0.0)
-    manual_limit = Parameter(1.0, "1", "thrust at full stick", min=0.0, max=1.0)
+    manual_limit = Parameter(1.0, "1", "thrust at full deflection", min=0.0, max=1.0)
     vertical_ahead = Parameter(
         "up",
         "1",
@@ -27,10 +27,10 @@ class Pro4TopsidePorts(Logging, Component):
     surface_pressure = Parameter(101_325.0, "Pa", "pressure at the surface", min=0.0)
     density = Parameter(1000.0, "kg/m3", "density of the water", min=1e-3)
     gravity = Parameter(9.80665, "m/s2", "acceleration of gravity", min=1e-3)
-    nmea = Parameter("off", "1", "whether it says NMEA sentences", choices=("off", "on"))
+    nmea = Parameter("off", "1", "whether it sends NMEA sentences", choices=("off", "on"))
 
-    rx = Input("1", "bytes that it hears", type=str, optional=True)
-    armed = Input("1", "whether sticks and holds count", type=bool, optional=True)
+    rx = Input("1", "bytes received", type=str, optional=True)
+    armed = Input("1", "whether manual control and holds apply", type=bool, optional=True)
     manual = Input(
         "1",
         "-1 to 1: ahead, turn to starboard, down",
@@ -52,7 +52,7 @@ class Pro4TopsidePorts(Logging, Component):
     )
     heading_wanted = Input("rad", "heading to hold, clockwise from north", optional=True)
 
-    tx = Output("1", "bytes that it says", type=str)
+    tx = Output("1", "bytes sent", type=str)
     nmea_tx = Output("1", "NMEA sentences", type=str)
     connected = Output("1", "whether a vehicle answers, and is driven", type=bool)
     phase = Output("1", "detect, configure, read or drive", type=str, start="detect")

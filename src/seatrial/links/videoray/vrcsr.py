@@ -33,7 +33,7 @@ _WRITABLE = ((0x00, 0x08), (_MOTOR_ID, 0x4E), (0x54, 0x58), (0x60, 0xA9), (0xEE,
 
 @dataclass(frozen=True)
 class Health:
-    """What a thruster says of itself: rpm, V, A, degrees C and fault bits."""
+    """Telemetry of a thruster: rpm, V, A, degrees C and fault bits."""
 
     rpm: float
     voltage: float
@@ -52,7 +52,7 @@ def propulsion_request(
 
 
 def read_health(response: Frame) -> Health | None:
-    """Return what a standard response says; None if it is none."""
+    """Return the content of a standard response; None if it is none."""
     payload = response.payload
     if not response.is_response or response.flags != STANDARD:
         return None
@@ -67,7 +67,7 @@ class ThrusterNode:
     A propulsion command, which is a group's or all's, sets the power of the motor id's place in
     its list, and is answered by the node that it names alone, as its flags say. Requests to its
     own id write and read its memory as with the Pro 4 (`RovNode`); the node id and group id
-    are at 0xFC and 0xFD. ``requested`` tells that a power was set since somebody looked.
+    are at 0xFC and 0xFD. ``requested``: a power was set since this was last read.
     """
 
     def __init__(self, node_id: int, motor_id: int) -> None:
@@ -85,7 +85,7 @@ class ThrusterNode:
 
     @property
     def power(self) -> float:
-        """The power that it was told, -1 to 1; 0 for what is no number."""
+        """The power commanded, -1 to 1; 0 for what is no number."""
         power = float(struct.unpack_from("<f", self.memory, _POWER_TARGET)[0])
         return min(max(power, -1.0), 1.0) if power == power else 0.0
 

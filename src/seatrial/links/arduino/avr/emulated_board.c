@@ -25,7 +25,7 @@ static uint64_t target;
 static avr_irq_t *twi_input;
 static int twi_reading;
 
-static void said(avr_t *from, const int level, const char *format, va_list values)
+static void logged(avr_t *from, const int level, const char *format, va_list values)
 {
     (void)from, (void)level, (void)format, (void)values;
 }
@@ -47,7 +47,7 @@ static void turned(avr_irq_t *irq, uint32_t value, void *which)
     link_put(OUT_EDGE, *(uint8_t *)which, value ? 1 : 0, avr->cycle);
 }
 
-/* simavr does not turn pins that a timer modulates: its registers tell, at the end of a step. */
+/* simavr does not turn pins that a timer modulates: its registers are read, at the end of a step. */
 static const struct output { uint8_t pin, timer, compare; } mega[] = {
     {2, 3, 1}, {3, 3, 2}, {4, 0, 1}, {5, 3, 0}, {6, 4, 0}, {7, 4, 1}, {8, 4, 2}, {9, 2, 1},
     {10, 2, 0}, {11, 1, 0}, {12, 1, 1}, {13, 0, 0}, {44, 5, 2}, {45, 5, 1}, {46, 5, 0}, {0, 0, 0},
@@ -191,7 +191,7 @@ int main(int count, char **arguments)
     if (count < 5)
         return 2;
     link_out = atoi(arguments[1]);
-    avr_global_logger_set(said);
+    avr_global_logger_set(logged);
     if (!load(arguments[2], arguments[3]))
         end("simavr cannot load the firmware for this microcontroller");
     const char *at = arguments[4];

@@ -25,7 +25,7 @@ static line lines[UARTS];
 /* When the next byte that waits begins. */
 static double begins(const line *one) { return fmax(one->earliest[one->first], one->free); }
 
-/* Drop the byte that has arrived; say if another waits. */
+/* Drop the byte that has arrived; return whether another waits. */
 static int another(line *one, double when)
 {
     one->free = when;

@@ -131,7 +131,7 @@ int sketch_sscanf(const char *text, const char *format, ...)
 /* ------------------------------------------------------------------ numbers as digits */
 
 /* A value's first digits, at most eight, rounded half up; it is 0.DIGITS times ten to the `power`.
-   `from_point` says if `count` are wanted after the point, or in all. */
+   `from_point` is whether `count` are wanted after the point, or in all. */
 static std::string digits_of(double value, int count, bool from_point, int &power)
 {
     char exact[80];

@@ -50,7 +50,7 @@ bool SoftwareSerial::listen()
         listener_->stopListening();
     listener_ = this;
     if (line_ >= 0)
-        machine::hear((uint8_t)line_, true);
+        machine::listen((uint8_t)line_, true);
     return true;
 }
 
@@ -60,7 +60,7 @@ bool SoftwareSerial::stopListening()
         return false;
     listener_ = nullptr;
     if (line_ >= 0)
-        machine::hear((uint8_t)line_, false);
+        machine::listen((uint8_t)line_, false);
     return true;
 }
 
@@ -77,10 +77,10 @@ size_t SoftwareSerial::write(uint8_t data)
     bool was = interrupts_enabled();
     noInterrupts();
     if (line_ >= 0) {
-        machine::hear((uint8_t)line_, false);
+        machine::listen((uint8_t)line_, false);
         machine::send((uint8_t)line_, data);
         machine::drain((uint8_t)line_);
-        machine::hear((uint8_t)line_, isListening());
+        machine::listen((uint8_t)line_, isListening());
     } else {
         delayMicroseconds(byte_us_);
     }

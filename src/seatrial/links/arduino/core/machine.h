@@ -27,9 +27,9 @@ int take(uint8_t uart, bool keep);
 int room(uint8_t uart);
 void send(uint8_t uart, uint8_t data);
 void drain(uint8_t uart);
-bool overflowed(uint8_t uart); /* a byte found no room since this was asked last */
+bool overflowed(uint8_t uart); /* a byte found no room since this was last read */
 int line_at(int rx_pin, int tx_pin); /* the UART whose line is at these pins, or -1 */
-void hear(uint8_t uart, bool on);    /* software hears one line at a time, and none while it sends */
+void listen(uint8_t uart, bool on);  /* software receives one line at a time, and none while it sends */
 
 int new_servo();
 void set_servo(int servo, int pin, double us); /* pin -1: detached */

@@ -20,7 +20,7 @@ struct Incoming {
 struct Uart {
     double line_baud = 0.0, bit = 0.0; /* baud; cycles of a bit, 0 while closed */
     int rx_pin = -1, tx_pin = -1;      /* of a line at pins */
-    bool deaf = false, overflowed = false;
+    bool muted = false, overflowed = false;
     std::deque<Incoming> line;
     double line_free = 0.0, arrival = NOT_DUE;
     std::deque<uint8_t> in, out;
@@ -88,7 +88,7 @@ static void arrive(Uart &uart)
     uart.line.pop_front();
     uart.line_free = uart.arrival;
     schedule(uart);
-    if (uart.bit <= 0.0 || uart.deaf)
+    if (uart.bit <= 0.0 || uart.muted)
         return;
     if (uart.in.size() < RING - 1)
         uart.in.push_back(data);
@@ -177,6 +177,6 @@ bool overflowed(uint8_t uart)
     return was;
 }
 
-void hear(uint8_t uart, bool on) { uarts[uart].deaf = !on; }
+void listen(uint8_t uart, bool on) { uarts[uart].muted = !on; }
 
 } // namespace machine

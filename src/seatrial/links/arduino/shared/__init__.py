@@ -1,4 +1,4 @@
-"""What simulated and emulated boards have in common, in C."""
+"""Code shared by simulated and emulated boards, in C."""
 
 DATA_FILES = (
     "link.h",

@@ -1,6 +1,6 @@
-/* The pipe between a simulated board and whoever steps it: records of 12 bytes, little endian.
+/* The pipe between a simulated board and the process that steps it: records of 12 bytes, little endian.
  *
- * Asked: u32 size, u64 target (cycles), records {u8 kind, u8 index, u16 value, f64 number}.
+ * Request: u32 size, u64 target (cycles), records {u8 kind, u8 index, u16 value, f64 number}.
  * Answered: u32 size, u64 reached (cycles), u32 number of records, records
  * {u8 kind, u8 index, u16 value, u64 cycle}, and a text if the sketch has come to an end.
  */
@@ -103,7 +103,7 @@ static void link_answer(uint64_t reached, const char *end)
 }
 
 /* Wait for the next request, give each record to `take`, and return its target; the program
- * ends with the one that asks. */
+ * ends with the one that requests it. */
 static uint64_t link_await(void (*take)(const link_input *))
 {
     static char *buffer;

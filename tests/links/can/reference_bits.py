@@ -1,4 +1,4 @@
-"""An independent construction of frames on the wire: plain lists of bits, one rule after the other."""
+"""An independent construction of frames on the bus: plain lists of bits, one rule after the other."""
 
 from seatrial.links.can.frame import FD_LENGTHS, Frame
 
@@ -19,16 +19,16 @@ def crc15(bits: list[int]) -> int:
 
 
 def stuffed(bits: list[int]) -> list[int]:
-    """After five equal bits one of the other value, which counts itself."""
-    wire: list[int] = []
+    """After five equal bits one of the other value, which is itself counted."""
+    sequence: list[int] = []
     run = 0
     for bit in bits:
-        run = run + 1 if wire and wire[-1] == bit else 1
-        wire.append(bit)
+        run = run + 1 if sequence and sequence[-1] == bit else 1
+        sequence.append(bit)
         if run == 5:
-            wire.append(1 - bit)
+            sequence.append(1 - bit)
             run = 1
-    return wire
+    return sequence
 
 
 def identifier(frame: Frame, request: int) -> list[int]:
@@ -59,13 +59,13 @@ def fd(frame: Frame) -> tuple[list[int], list[int], list[int]]:
     rest = [int(frame.error_state), *number(FD_LENGTHS.index(len(frame.data)), 4)]
     for byte in frame.data:
         rest += number(byte, 8)
-    arbitration, wire = len(stuffed(head)), stuffed(head + rest)
-    if stuffed((head + rest)[:-1]) != wire[:-1]:  # a stuff bit after the very last one: the
-        wire = wire[:-1]  # fixed stuff bit that follows takes its place
+    arbitration, sequence = len(stuffed(head)), stuffed(head + rest)
+    if stuffed((head + rest)[:-1]) != sequence[:-1]:  # a stuff bit after the very last one: the
+        sequence = sequence[:-1]  # fixed stuff bit that follows takes its place
     crc = number(0, 4 + (17 if len(frame.data) <= 16 else 21))
     field = []
     for place, bit in enumerate(crc):
         if place % 4 == 0:
-            field.append(1 - wire[-1] if place == 0 else 1 - field[-1])
+            field.append(1 - sequence[-1] if place == 0 else 1 - field[-1])
         field.append(bit)
-    return wire[:arbitration], wire[arbitration:] + field, [1, 0, 1] + [1] * 7
+    return sequence[:arbitration], sequence[arbitration:] + field, [1, 0, 1] + [1] * 7
