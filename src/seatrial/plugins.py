@@ -1,0 +1,96 @@
+"""Registries: what is shipped under a name, and what installed packages add by entry points.
+
+A package adds a name in its own ``pyproject.toml``; nothing of it is imported before somebody
+asks for that name::
+
+    [project.entry-points."seatrial.algorithms"]
+    "my-algorithm" = "my_package.coupling:MyAlgorithm"
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from pkgutil import resolve_name
+from typing import Any
+
+from .errors import InputError, unknown
+
+
+@dataclass(frozen=True)
+class _Entry:
+    """One name that a package adds."""
+
+    package: str
+    name: str
+    target: str
+
+
+@dataclass(frozen=True)
+class Registry:
+    """Names of one kind and the objects behind them.
+
+    A name that two packages add, or that a package adds although it is shipped, is an error when
+    it is asked for, never a choice made in silence; other names are not affected.
+    """
+
+    group: str
+    """Entry-point group that packages add names to."""
+    noun: str
+    """What one of them is, for messages."""
+    shipped: Mapping[str, str]
+    """``module:attribute`` by name."""
+
+    def names(self) -> list[str]:
+        """Return every name, shipped ones first."""
+        added = sorted({entry.name for entry in self._added()})
+        return [*self.shipped, *(name for name in added if name not in self.shipped)]
+
+    def target(self, name: str) -> str:
+        """Return the ``module:attribute`` of a name. Raises InputError for none, or several."""
+        entries = [entry for entry in self._added() if entry.name == name]
+        found = [f"the package {entry.package} ({entry.target})" for entry in entries]
+        targets = [entry.target for entry in entries]
+        if name in self.shipped:
+            found.insert(0, f"seatrial itself ({self.shipped[name]})")
+            targets.insert(0, self.shipped[name])
+        if not found:
+            raise InputError(unknown(self.noun, name, self.names()))
+        if len(found) > 1:
+            raise InputError(
+                f"{self.noun} {name!r} comes from {' and from '.join(found)}; "
+                f"one of them must give up the name in the entry-point group {self.group!r}"
+            )
+        return targets[0]
+
+    def load(self, name: str) -> Any:
+        """Return the object of a name.
+
+        Raises InputError for a name that `target` refuses, and for one whose module or attribute
+        cannot be imported.
+        """
+        target = self.target(name)
+        try:
+            return resolve_name(target)
+        except Exception as error:  # whatever somebody else's module does when it is imported
+            raise InputError(
+                f"{self.noun} {name!r}: cannot load {target!r} of the entry-point group "
+                f"{self.group!r}: {type(error).__name__}: {error}"
+            ) from error
+
+    def _added(self) -> tuple[_Entry, ...]:
+        return _entries(self.group, tuple(sys.path))
+
+
+@cache
+def _entries(group: str, path: tuple[str, ...]) -> tuple[_Entry, ...]:
+    """Return what the packages on ``sys.path``, which is ``path``, add to a group."""
+    from importlib.metadata import entry_points  # imports much, and not every run comes here
+
+    found = [
+        _Entry(point.dist.name if point.dist else "?", point.name, point.value)
+        for point in entry_points(group=group)
+    ]
+    return tuple(sorted(found, key=lambda entry: (entry.name, entry.package)))
