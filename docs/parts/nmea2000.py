@@ -11,7 +11,7 @@ from parts.markdown import shown_number, table
 from seatrial.links.nmea2000.catalogue import DATA, Pgn
 from seatrial.links.nmea2000.codec import is_fast
 from seatrial.links.nmea2000.component import Nmea2000
-from seatrial.links.nmea2000.ports import NOT_WIRED
+from seatrial.links.nmea2000.ports import NOT_CONNECTED
 
 
 def _field(pgn: Pgn, name: str) -> tuple[str, str]:
@@ -60,4 +60,4 @@ def fields() -> str:
 @part("nmea2000-ports")
 def node_ports() -> str:
     """Return the node's ports."""
-    return ports(Nmea2000).replace(f"{NOT_WIRED:g}", "not wired")
+    return ports(Nmea2000).replace(f"{NOT_CONNECTED:g}", "not connected")

@@ -287,7 +287,7 @@ class Component:
         if not self._inputs.issuperset(references):
             if running:  # a tunable parameter; before, all are checked at the start
                 for reference, value in zip(references, values, strict=True):
-                    if value != self.values[reference]:  # a wire writes the same again and again
+                    if value != self.values[reference]:  # written again and again, often the same
                         self._check_parameter(self.scalars[reference], value)
             elif self._phase == _INITIALISING:
                 self._restart = True

@@ -26,7 +26,7 @@ class FatalError(SimulationError):
 
 
 class ExcessError(SimulationError):
-    """An output is not finite, or beyond what its wire may carry."""
+    """An output is not finite, or beyond what its connection may carry."""
 
 
 class DiscardError(SimulationError):

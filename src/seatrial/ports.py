@@ -168,7 +168,7 @@ class Parameter(Port):
 
 
 class Input(Port):
-    """A value that arrives over at most one wire; ``start`` holds while nothing is connected.
+    """A value that arrives over at most one connection; ``start`` holds while nothing is connected.
 
     An ``optional`` input is normally not connected: a run does not mention it.
     """

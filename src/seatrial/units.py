@@ -60,7 +60,7 @@ def _registry() -> Any:
     import pint
 
     # In pint a radian has no dimension, but it is a base unit, as in FMI: its exponent is what
-    # tells an angle from a count on a wire.
+    # tells an angle from a count on a connection.
     registry: Any = pint.UnitRegistry(cache_folder=None, non_int_type=Fraction)
     registry.define("@alias degree = °")
     registry.define("@alias revolution = rev")

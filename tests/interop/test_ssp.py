@@ -68,7 +68,7 @@ def test_a_package_runs_alike_in_libcosim(
 def test_a_package_runs_alike_in_ecos(
     package: Path, expected: tuple[list[str], list[list[float]]]
 ) -> None:
-    # ecos reads an output when it is asked, after the wires have moved: what an input acts on
+    # ecos reads an output when it is asked, after the connections have moved: what an input acts on
     # at once is a step ahead of the record. All others must be equal.
     system = assemble(read_ssp(package).rig)
     through = {

@@ -60,7 +60,7 @@ class PlainJacobi(Jacobi):
 class GaussSeidel:
     """Components step one after the other, with the newest outputs; first order.
 
-    The order is that of the strongly connected components of the wiring; within one, that of
+    The order is that of the strongly connected components of the connections; within one, that of
     the declared feed-through; what is still tied, the rig's. A chain of components without a
     loop has no delay at all.
     """
@@ -87,9 +87,9 @@ class Extrapolated:
     """Jacobi with inputs extrapolated linearly from the last two points; second order.
 
     A component holds its inputs while it steps, so it gets the extrapolated value at the middle
-    of its step: u + (u - u_before) / 2. Only wires whose ends are both declared continuous are
-    extrapolated; sampled signals are held, and so is everything in the first step and after an
-    event.
+    of its step: u + (u - u_before) / 2. Only connections whose ends are both declared continuous
+    are extrapolated; sampled signals are held, and so is everything in the first step and after
+    an event.
     """
 
     def __init__(self, network: Network, feedthrough: Feedthrough) -> None:

@@ -1,6 +1,6 @@
 """Feed-through: outputs that depend on inputs at the same instant, read again in order.
 
-Whoever moved values along wires alone would add a delay of one step per hop. Here the outputs
+Whoever moved values along connections alone would add a delay of one step per hop. Here the outputs
 that were declared to depend on inputs are visited in the order of their dependencies at every
 communication point. Outputs that depend on each other in a loop are found by fixed-point
 iteration: with relaxation where it grows, with Anderson's acceleration where it is slow.
@@ -103,7 +103,7 @@ class Feedthrough:
         if not turns or self._groups[turns[-1]].is_loop:
             return False
         read_in = {name: i for i, group in enumerate(self._groups) for name in group.outputs}
-        sources = [wire.source for writes in node.writes for wire in writes.wires]
+        sources = [connection.source for writes in node.writes for connection in writes.connections]
         return all(read_in.get(source, -1) < turns[-1] for source in sources)
 
     # ------------------------------------------------------------------ loops

@@ -1,4 +1,4 @@
-"""Iteration with rollback: each step is repeated until the wires' values agree at its end."""
+"""Iteration with rollback: each step is repeated until the connections' values agree at its end."""
 
 from __future__ import annotations
 
@@ -42,11 +42,11 @@ class Iterated:
 
     The first pass extrapolates, each further one rolls all components back and steps them with
     the mean of the inputs at the beginning and, from the pass before, at the end. It ends when
-    no wire's value at the end changes by more than ``tolerance`` times its nominal value, or
+    no connection's value at the end changes by more than ``tolerance`` times its nominal value, or
     after ``count`` repetitions. Sampled signals are held.
 
     A change that grows from one repetition to the next (contraction factor above 1) is an error
-    that names the wire.
+    that names the connection.
     """
 
     def __init__(
@@ -67,7 +67,8 @@ class Iterated:
                     f"{where}: {part.name} has a step of its own; all must step together"
                 )
         self._nominals = {
-            wire.target: network.nominal(wire.source) for wire in network.system.wires
+            connection.target: network.nominal(connection.source)
+            for connection in network.system.connections
         }
 
     def advance(self, steps: int, t_ns: int, h_ns: int) -> None:
@@ -113,7 +114,7 @@ class Iterated:
                 if writes.previous is not None:
                     for i in writes.continuous:
                         end[i] = 2.0 * begin[i] - writes.previous[i]
-                nominals = [self._nominals[wire.target] for wire in writes.wires]
+                nominals = [self._nominals[connection.target] for connection in writes.connections]
                 inputs.append(_Inputs(writes, begin, end, nominals))
                 writes.previous = begin
         return inputs
@@ -126,7 +127,7 @@ class Iterated:
         arrive(self._network, self._feedthrough, steps + 1, t_ns + h_ns)
 
     def _update(self, inputs: Sequence[_Inputs]) -> tuple[float, tuple[str, str] | None]:
-        """Take the new values at the end; return the largest relative change and its wire."""
+        """Take the new values at the end; return the largest relative change and its connection."""
         largest, worst = 0.0, None
         for one in inputs:
             values = one.writes.values(self._network.signals)
@@ -134,7 +135,7 @@ class Iterated:
                 difference = values[i] - one.end[i]
                 change = abs(difference) / one.nominals[i]
                 if change > largest:
-                    largest, worst = change, one.writes.wires[i].source
+                    largest, worst = change, one.writes.connections[i].source
                 one.end[i] += self._settings.relaxation * difference
         return largest, worst
 

@@ -1,4 +1,4 @@
-"""The master: steps components, moves values along wires, and knows nothing of boats.
+"""The master: steps components, moves values along connections, and knows nothing of boats.
 
 Time is a whole number of nanoseconds. `Network` holds the signals, `Feedthrough` keeps outputs
 that depend on inputs at once up to date at every communication point, an `Algorithm` moves
@@ -70,7 +70,7 @@ class Master:
         return self.time_ns / NS
 
     def initialise(self) -> None:
-        """Set parameters, start every component and solve the wires at the start time.
+        """Set parameters, start every component and solve the connections at the start time.
 
         Raises SimulationError if a component refuses or a feed-through loop has no solution,
         InputError if the rig's algorithm cannot step its components.
@@ -112,7 +112,7 @@ class Master:
         self._changed()
 
     def release(self, component: str, name: str) -> None:
-        """End an override: the wire carries its own value again."""
+        """End an override: the connection carries its own value again."""
         self._network.override(component, name, None)
         self._changed()
 

@@ -1,4 +1,4 @@
-"""Rigs: which components, with which parameters, wired how (``harness/rigs/*.toml``)."""
+"""Rigs: which components, with which parameters, connected how (``harness/rigs/*.toml``)."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ class IterationEntry(FileModel):
     """How the iterated algorithm repeats a step."""
 
     tolerance: float = Field(default=1e-6, gt=0.0, allow_inf_nan=False)
-    """Of every wire's value, relative to the nominal value of its output."""
+    """Of every connection's value, relative to the nominal value of its output."""
     count: int = Field(default=10, ge=1, le=1000)
     """At most so many repetitions."""
     relaxation: float = Field(default=1.0, gt=0.0, le=1.0)
     """Share of each repetition's change that is applied."""
 
 
-class WireEntry(FileModel):
+class ConnectionEntry(FileModel):
     """One end of a connection with a linear transformation, after conversion of units."""
 
     to: str
@@ -70,7 +70,9 @@ class RigFile(FileModel):
     variant: str | None = None
     profile: str | None = None
     components: dict[str, ComponentEntry]
-    connections: dict[str, str | WireEntry | list[str | WireEntry]] = Field(default_factory=dict)
+    connections: dict[str, str | ConnectionEntry | list[str | ConnectionEntry]] = Field(
+        default_factory=dict
+    )
 
 
 @dataclass(frozen=True)
@@ -98,12 +100,12 @@ class Rig:
         file = validated(RigFile, content, self.read_from.path)
         return _checked(replace(self, file=file))
 
-    def connections(self) -> list[tuple[str, WireEntry]]:
+    def connections(self) -> list[tuple[str, ConnectionEntry]]:
         """Return (from, where to) pairs as written, ports or scalars."""
         pairs = []
         for source, targets in self.file.connections.items():
             for target in targets if isinstance(targets, list) else [targets]:
-                entry = WireEntry(to=target) if isinstance(target, str) else target
+                entry = ConnectionEntry(to=target) if isinstance(target, str) else target
                 pairs.append((source, entry))
         return pairs
 

@@ -1,4 +1,4 @@
-"""A rig assembled: instances of its FMUs with their parameters, and its wires."""
+"""A rig assembled: instances of its FMUs with their parameters, and its connections."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from ..fmi.source import find_source
 from ..units import conversion
 from .parameters import ParameterSet, load_vehicle, split_reference
 from .profile import Profile, Profiles
-from .rig import ComponentEntry, Rig, WireEntry, duration_ns
+from .rig import ComponentEntry, ConnectionEntry, Rig, duration_ns
 from .values import Given, from_entry, from_written, port_names, port_scalars
 
 Engine = Literal["fmu", "direct"]
@@ -48,7 +48,7 @@ class Part:
 
 
 @dataclass(frozen=True)
-class Wire:
+class Connection:
     """One scalar connection; the target gets factor * value + offset."""
 
     source: tuple[str, str]
@@ -73,7 +73,7 @@ class System:
     seed: int
     variant: str | None
     parts: dict[str, Part]
-    wires: list[Wire]
+    connections: list[Connection]
 
     def set(self, key: str, written: Any, origin: str) -> None:
         """Set ``component.port`` to what a person wrote, before the run.
@@ -82,7 +82,7 @@ class System:
         """
         part, scalars = self._settable(key, origin)
         for variable in scalars:
-            self.refuse_wired(part.name, variable.name, origin)
+            self.refuse_connected(part.name, variable.name, origin)
         presets = part.presets.get(key.partition(".")[2], {})
         part.given.update(from_written(written, scalars, presets, f"{origin}: {key}"))
 
@@ -102,11 +102,11 @@ class System:
                 value * factor, f"{origin}: {factor!r} times {before}"
             )
 
-    def refuse_wired(self, component: str, variable: str, origin: str) -> None:
-        """Raise InputError if a wire feeds the input, so that a value set would do nothing."""
-        for wire in self.wires:
-            if wire.target == (component, variable):
-                feeder = ".".join(wire.source)
+    def refuse_connected(self, component: str, variable: str, origin: str) -> None:
+        """Raise InputError if a connection feeds the input: a value set there would do nothing."""
+        for connection in self.connections:
+            if connection.target == (component, variable):
+                feeder = ".".join(connection.source)
                 raise InputError(
                     f"{origin}: {component}.{variable} is fed by {feeder}; override it in an event"
                 )
@@ -120,19 +120,21 @@ class System:
 
     def feeders(self, component: str) -> dict[str, str]:
         """Return which outputs feed the inputs and parameters of a component, by their names."""
-        return {w.target[1]: ".".join(w.source) for w in self.wires if w.target[0] == component}
+        return {
+            w.target[1]: ".".join(w.source) for w in self.connections if w.target[0] == component
+        }
 
     def unconnected_inputs(self) -> list[str]:
-        """Return the inputs that no wire reaches and nobody set; whole ports by their name.
+        """Return the inputs that no connection reaches and nobody set; whole ports by their name.
 
         Optional ones are not among them.
         """
-        wired = {wire.target for wire in self.wires}
+        connected = {connection.target for connection in self.connections}
         found: dict[str, None] = {}
         for name, part in self.parts.items():
             variables = part.instance.variables
             inputs = {n for n, v in variables.items() if v.causality == "input"}
-            reached = {n for n in inputs if (name, n) in wired or n in part.given}
+            reached = {n for n in inputs if (name, n) in connected or n in part.given}
             loose = {n for n in inputs - reached if not variables[n].optional}
             whole = {}
             for variable in (n for n in variables if n in loose):
@@ -168,7 +170,7 @@ def assemble(
     seed: int = 1,
     progress: Callable[[str], None] = lambda _: None,
 ) -> System:
-    """Load, or build, every FMU of ``rig``, and check its wires.
+    """Load, or build, every FMU of ``rig``, and check its connections.
 
     ``variant`` replaces the rig's; ``seed`` is what the components' own seeds derive from,
     where a component has one. Raises InputError for anything in the files that does not fit.
@@ -187,14 +189,14 @@ def assemble(
                 f"{rig.read_from.path}: variant {system.variant!r}: no component takes parameters "
                 "of a vehicle, so there is nothing to vary"
             )
-        system.wires = _wires(system)
-        fed = {wire.target for wire in system.wires}
+        system.connections = _connections(system)
+        fed = {connection.target for connection in system.connections}
         for name, part in system.parts.items():
-            # What a vehicle's file says of all its rigs gives way to a wire of this one.
+            # What a vehicle's file says of all its rigs gives way to a connection of this one.
             for variable in [v for v in part.given if part.given[v].mark and (name, v) in fed]:
                 del part.given[variable]
             for variable in part.given:
-                system.refuse_wired(name, variable, part.given[variable].origin)
+                system.refuse_connected(name, variable, part.given[variable].origin)
     except BaseException:
         system.free()
         raise
@@ -314,11 +316,11 @@ def _parameter_set(system: System, entry: ComponentEntry, where: str) -> Paramet
         raise InputError(f"{where}.parameters: {error}") from None
 
 
-def _wires(system: System) -> list[Wire]:
-    wires: list[Wire] = []
+def _connections(system: System) -> list[Connection]:
+    connections: list[Connection] = []
     taken: dict[tuple[str, str], str] = {}
-    for written_source, wire in system.rig.connections():
-        written_target = wire.to
+    for written_source, connection in system.rig.connections():
+        written_target = connection.to
         where = f'{system.rig.read_from.path}: connections."{written_source}"'
         sources = _end(system, written_source, ("output",), where)
         targets = _end(system, written_target, ("input", "tunable parameter"), where)
@@ -332,20 +334,22 @@ def _wires(system: System) -> list[Wire]:
             if key in taken:
                 raise InputError(
                     f"{where}: {key[0]}.{key[1]} is already fed by {taken[key]}; "
-                    "an input takes one wire"
+                    "an input takes one connection"
                 )
             taken[key] = written_source
             origin = (written_source.partition(".")[0], source.name)
             to_real = (source.type, target.type) == (int, float)
-            factor, offset = _transformed(*_converting(source, target, wire, where), wire)
+            factor, offset = _transformed(
+                *_converting(source, target, connection, where), connection
+            )
             if (factor, offset) != (1.0, 0.0) and target.type is not float:
                 raise InputError(f"{where}: {written_target} is no real number to transform")
-            wires.append(Wire(origin, key, factor, offset, to_real))
-    return wires
+            connections.append(Connection(origin, key, factor, offset, to_real))
+    return connections
 
 
 def _end(system: System, written: str, wanted: tuple[str, ...], where: str) -> list[Variable]:
-    """Return the scalars at one end of a wire, which must be of a wanted kind."""
+    """Return the scalars at one end of a connection, which must be of a wanted kind."""
     name, _, port = written.partition(".")
     if name not in system.parts:
         raise InputError(f"{where}: {unknown('component', name, system.parts)}")
@@ -367,15 +371,15 @@ def _kind(variable: Variable) -> str:
     return f"{variable.variability} parameter"
 
 
-def _transformed(factor: float, offset: float, wire: WireEntry) -> tuple[float, float]:
-    """Return a conversion of units followed by a wire's own linear transformation."""
-    if (wire.factor, wire.offset) == (1.0, 0.0):
+def _transformed(factor: float, offset: float, connection: ConnectionEntry) -> tuple[float, float]:
+    """Return a conversion of units followed by a connection's own linear transformation."""
+    if (connection.factor, connection.offset) == (1.0, 0.0):
         return factor, offset
-    return wire.factor * factor, wire.factor * offset + wire.offset
+    return connection.factor * factor, connection.factor * offset + connection.offset
 
 
 def _converting(
-    source: Variable, target: Variable, wire: WireEntry, where: str
+    source: Variable, target: Variable, connection: ConnectionEntry, where: str
 ) -> tuple[float, float]:
     """Return the factor and offset between two ends; raise InputError if they do not fit."""
     if source.type is not target.type and (source.type, target.type) != (int, float):
@@ -383,7 +387,7 @@ def _converting(
             f"{where}: {source.name} is {source.type.__name__}, "
             f"{target.name} is {target.type.__name__}"
         )
-    if not (wire.convert and source.unit and target.unit and target.type is float):
+    if not (connection.convert and source.unit and target.unit and target.type is float):
         return 1.0, 0.0
     try:
         return conversion(source.measure, target.measure)

@@ -135,7 +135,7 @@ def _tell_reachable(master: Master, hooks: Hooks) -> None:
 
 
 def _loose_inputs(trial: Trial, system: System) -> list[str]:
-    """Return a note on the inputs that neither a wire nor an event reaches, if there are any."""
+    """Return a note on the inputs that neither connection nor event reaches, if there are any."""
     moved = {event.key for event in trial.events()}
     loose = [name for name in system.unconnected_inputs() if name not in moved]
     said = f"inputs that nothing feeds keep their start values: {', '.join(loose)}"

@@ -43,13 +43,13 @@ def test_units_are_named_as_mavlink_names_them():
 
 @pytest.mark.parametrize("unit", entries("FAILURE_UNIT"))
 @pytest.mark.parametrize("kind", entries("FAILURE_TYPE"))
-def test_only_what_is_wired_fails(unit, kind):
+def test_only_what_is_connected_fails(unit, kind):
     boat = bench()
-    wired = {GPS: ["gps"], MAG: ["mag"], MOTOR: ["motor1", "motor2"]}.get(unit)
-    assert boat.command(INJECT, unit, kind, 0) == (ACCEPTED if wired else UNSUPPORTED)
+    connected = {GPS: ["gps"], MAG: ["mag"], MOTOR: ["motor1", "motor2"]}.get(unit)
+    assert boat.command(INJECT, unit, kind, 0) == (ACCEPTED if connected else UNSUPPORTED)
     failure = ["none", *FAULTS][kind]
     for name, found in boat.node.failures.failing.items():
-        assert found == (failure if name in (wired or []) else "none")
+        assert found == (failure if name in (connected or []) else "none")
 
 
 def test_an_instance_fails_alone_and_nought_or_none_means_all():
@@ -97,7 +97,7 @@ def test_a_unit_that_there_is_not_is_unsupported(unit):
     assert bench().command(INJECT, unit, OFF) == UNSUPPORTED
 
 
-def test_a_vehicle_without_wires_for_failures_has_none():
+def test_a_vehicle_without_connections_for_failures_has_none():
     assert bench("").command(INJECT, GPS, OFF) == UNSUPPORTED
 
 

@@ -1,4 +1,4 @@
-"""The component in rigs: its log beside the run, its tunables on wires."""
+"""The component in rigs: its log beside the run, its tunables on connections."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ class CanSignals(Component):
     ``sends`` and ``receives`` name signals, ``MESSAGE.SIGNAL`` each, separated by ``;``: the
     first one is the port ``send.s1`` or ``received.s1``, and so on. Ports have SI units and
     radians: the DBC's unit of the signal says what that means (``us`` is s, ``deg`` is rad, ``%``
-    is a share of 1). So their wires are written with ``convert = false``. A range after a
+    is a share of 1). So their connections are written with ``convert = false``. A range after a
     signal's name, ``LOW HIGH UNIT``, is refused if the signal cannot carry it.
 
     **Sending.** A message goes out at the start of the run + k cycle times (GenMsgCycleTime),

@@ -62,7 +62,7 @@ class Mavlink(MavlinkPorts):
     and returns to the nearest of home and the rally points.
 
     **Parameters** are those that stations look for in vehicles of this kind, and the rig's
-    ``tunables``, which are on the output ``tunable`` in their order, for wires to other
+    ``tunables``, which are on the output ``tunable`` in their order, for connections to other
     components' tunable parameters. What is set is kept in ``parameter_file``, relative to the
     current folder.
 

@@ -71,7 +71,7 @@ class MavlinkPorts(Logging, Reachable, Sampled):
         1.0, "1", "simulated time per wall time until it is set", min=SLOWEST, max=FASTEST
     )
     failures = Parameter(
-        "", "1", "units whose failures are wired, separated by spaces", check=failing_units
+        "", "1", "units whose failures are connected, separated by spaces", check=failing_units
     )
     names = Parameter("", "1", "names of the first values of `named`, separated by spaces")
     signing_key_file = Parameter("", "1", "file with the pass phrase; empty: no signatures")

@@ -39,9 +39,9 @@ class Nmea2000(Nmea2000Ports):
 
     **Sends** the PGNs of ``sends`` at the standard's intervals, or those of ``intervals``, counted
     from the start of the run and exact whatever the communication step; values are those of the
-    beginning of the step. What is not wired or not valid goes out as not available, and so does a
-    value that its field cannot hold. Messages of one instant have one SID. Engines that are not
-    wired send nothing. ``silent`` stops the data.
+    beginning of the step. What is not connected or not valid goes out as not available, and so
+    does a value that its field cannot hold. Messages of one instant have one SID. Engines that are
+    not connected send nothing. ``silent`` stops the data.
 
     **Reads** the PGNs of `catalogue.RECEIVED` from all other nodes: the outputs ``bus_...``, with
     whether they count (`Received`). A magnetic heading counts if its message has the variation.
@@ -51,8 +51,8 @@ class Nmea2000(Nmea2000Ports):
 
     **Signs.** All headings, courses and the yaw are clockwise from north; roll is positive to
     starboard, pitch bow up, rate of turn to starboard. Rudders, on ports and bus, are positive to
-    turn to starboard: components that count the other way are wired with ``factor = -1``. Wind is
-    on ports where it blows to, as an anemometer here has it, and on the bus where it comes from.
+    turn to starboard: components that count the other way are connected with ``factor = -1``. Wind
+    is on ports where it blows to, as an anemometer here has it, and on the bus where it comes from.
     Position in {n} from the origin (``latitude``, ``longitude``, ``altitude``). UTC is midnight of
     ``date`` plus simulated time.
 

@@ -10,7 +10,7 @@ from typing import Any
 from ...component import NS, seconds
 from ..geodesy import Origin
 from .codec import Fields, Message
-from .ports import ENGINES, NOT_WIRED, Nmea2000Ports
+from .ports import ENGINES, NOT_CONNECTED, Nmea2000Ports
 
 _DAY_S = 86400
 _ANGLE_DIGITS = 4
@@ -23,7 +23,7 @@ _RPM = 60.0 / math.tau
 def messages(node: Nmea2000Ports, pgn: int, sid: int, origin: Origin, day: int) -> list[Message]:
     """Return the messages of a PGN with the inputs as they are; ``day`` is counted from 1970.
 
-    Values that are not wired or not valid are left out, and so not available.
+    Values that are not connected or not valid are left out, and so not available.
     """
     made = _MAKERS[pgn](_Measured(node, sid, origin, day))
     return [Message(pgn, each) for each in made]
@@ -37,19 +37,19 @@ class _Measured:
         self._origin = origin
 
     def one(self, name: str, valid: bool = True) -> float | None:
-        """Return an input, None if it is not wired or not valid."""
+        """Return an input, None if it is not connected or not valid."""
         value: float = getattr(self.node, name)
-        return value if valid and value < NOT_WIRED else None
+        return value if valid and value < NOT_CONNECTED else None
 
     def each(self, name: str, valid: bool = True) -> Sequence[float | None]:
         """Return the values of an input with axes."""
         values: Sequence[float] = getattr(self.node, name)
-        return [value if valid and value < NOT_WIRED else None for value in values]
+        return [value if valid and value < NOT_CONNECTED else None for value in values]
 
     def whole(self, name: str, valid: bool = True) -> Sequence[float] | None:
         """Return the values of an input with axes, None if one of them is not there."""
         values: Sequence[float] = getattr(self.node, name)
-        return values if valid and all(value < NOT_WIRED for value in values) else None
+        return values if valid and all(value < NOT_CONNECTED for value in values) else None
 
     def geodetic(self) -> Sequence[float | None]:
         """Return latitude and longitude (deg) and altitude (m)."""

@@ -8,7 +8,7 @@ from ...component import Component, Input, Noise, Output, Parameter
 from .address_claim import HIGHEST
 from .catalogue import check_intervals, check_sends
 
-NOT_WIRED = 1e30
+NOT_CONNECTED = 1e30
 """Start value of the inputs: nothing measures this, and it goes out as not available."""
 ENGINES = 4
 """Most engines of a node."""
@@ -20,7 +20,7 @@ _PI, _HALF_PI = 3.1415927, 1.5707964
 
 
 def _measured(unit: str, description: str, **options: Any) -> Input:
-    return Input(unit, description, start=NOT_WIRED, optional=True, **options)
+    return Input(unit, description, start=NOT_CONNECTED, optional=True, **options)
 
 
 def _valid(what: str) -> Input:
