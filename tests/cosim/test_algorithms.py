@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
+from seatrial.cosim import rollback
 from seatrial.cosim.master import Master
 from seatrial.errors import InputError, SimulationError
 
@@ -313,6 +314,38 @@ def test_a_discarded_step_is_taken_in_smaller_ones(bench: Bench, algorithm: str)
         whole = 0.1 * sum(k / 10 for k in range(4))
         quarters = 0.025 * sum(0.4 + k / 40 for k in range(24))
         assert value(master, "coarse.x") == pytest.approx(whole + quarters, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("algorithm", "more"),
+    [
+        ("jacobi", ""),
+        ("plain-jacobi", ""),
+        ("gauss-seidel", ""),
+        ("extrapolated", ""),
+        ("iterated", "iteration = { count = 1, tolerance = 1e-15 }"),
+    ],
+)
+def test_what_comes_out_does_not_depend_on_where_the_states_were_saved(
+    direct: Bench, monkeypatch: pytest.MonkeyPatch, algorithm: str, more: str
+) -> None:
+    """Every signal and note, at every step, of two bodies beside a component that discards."""
+    components = TWO_BODIES + COARSE.replace(
+        'bodies.py:Coarse" }', 'bodies.py:Coarse", set = { after = "0.3 s", limit = "6 ms" } }'
+    )
+    seen = []
+    for between in (1, 7, 250):
+        monkeypatch.setattr(rollback, "_STEPS_BETWEEN", between)
+        master = direct.master(
+            components, BODY_CONNECTIONS + '"ramp.y" = "coarse.u"', top=top(algorithm, 0.01, more)
+        )
+        rows = []
+        for _ in range(40):
+            master.step()
+            rows.append(list(master.signals))
+        seen.append((rows, master.notes()))
+    assert seen[0] == seen[1] == seen[2]
+    assert "10 of 40 steps were discarded" in seen[0][1][0]
 
 
 def test_a_late_discard_runs_the_steps_before_again(bench: Bench) -> None:

@@ -88,13 +88,13 @@ class Feedthrough:
         for node in self._network.nodes.values():
             node.reads, node.written_by_visit = node.chunks, False
 
-    def memory(self) -> list[float]:
+    def save(self) -> list[float]:
         """Return what the loops have learned, for a rollback."""
         return [group.relaxation for group in self._groups]
 
-    def restore(self, memory: list[float]) -> None:
-        """Restore what `memory` returned."""
-        for group, relaxation in zip(self._groups, memory, strict=True):
+    def restore(self, state: list[float]) -> None:
+        """Restore what `save` returned."""
+        for group, relaxation in zip(self._groups, state, strict=True):
             group.relaxation = relaxation
 
     def _writes_all(self, node: Node) -> bool:

@@ -8,7 +8,7 @@ from typing import Any
 
 from ..component import NS
 from ..errors import InputError, SimulationError
-from .algorithms import arrive
+from .algorithms import Remembering, arrive
 from .feedthrough import Feedthrough
 from .network import Network, Writes
 from .rig import IterationEntry
@@ -37,7 +37,7 @@ class _Inputs:
         return values
 
 
-class Iterated:
+class Iterated(Remembering):
     """Repeats each step with inputs interpolated linearly between its ends; second order.
 
     The first pass extrapolates, each further one rolls all components back and steps them with
@@ -49,14 +49,15 @@ class Iterated:
     that names the connection.
     """
 
-    def __init__(
-        self, network: Network, feedthrough: Feedthrough, settings: IterationEntry
-    ) -> None:
-        self._network, self._feedthrough, self._settings = network, feedthrough, settings
+    iterates = True
+
+    def __init__(self, network: Network, feedthrough: Feedthrough) -> None:
+        super().__init__(network, feedthrough)
+        self._settings = network.system.rig.file.iteration or IterationEntry()
         self._parts = [node.part for node in network.nodes.values()]
         self._proven = False
         """Whether the components have shown that they can restore their states."""
-        self.unsettled = 0
+        self._unsettled = 0
         """Steps that ended after ``count`` repetitions above the tolerance."""
         where = f'{network.system.rig.read_from.path}: algorithm = "iterated"'
         for part in self._parts:
@@ -80,6 +81,24 @@ class Iterated:
             for part, state in zip(self._parts, states, strict=True):
                 part.instance.free_state(state)
 
+    def save(self) -> Any:
+        """Return the inputs of the point before, and how many steps did not settle."""
+        return super().save(), self._unsettled
+
+    def restore(self, state: Any) -> None:
+        """Restore what `save` returned."""
+        previous, self._unsettled = state
+        super().restore(previous)
+
+    def notes(self, steps: int) -> list[str]:
+        """Return how many steps did not settle."""
+        if not self._unsettled:
+            return []
+        return [
+            f"{self._unsettled} of {steps} steps ended after the last repetition with changes "
+            "above the tolerance of the iteration"
+        ]
+
     def _repeat(self, steps: int, t_ns: int, h_ns: int, states: Sequence[Any]) -> None:
         independent = [] if self._proven else self._network.independent()
         inputs = self._inputs()
@@ -102,21 +121,22 @@ class Iterated:
         factor = _contraction(changes)
         if factor > 1.0 and changes[-1] > _ROUND_OFF:
             self._refuse(worst, factor, t_ns + h_ns)
-        self.unsettled += 1
+        self._unsettled += 1
 
     def _inputs(self) -> list[_Inputs]:
         """Return all inputs at the beginning of a step, extrapolated to its end."""
         inputs = []
-        for node in self._network.nodes.values():
-            for writes in node.writes:
+        for of_node in self._past:
+            for past in of_node:
+                writes = past.writes
                 begin = writes.values(self._network.signals)
                 end = list(begin)
-                if writes.previous is not None:
+                if past.previous is not None:
                     for i in writes.continuous:
-                        end[i] = 2.0 * begin[i] - writes.previous[i]
+                        end[i] = 2.0 * begin[i] - past.previous[i]
                 nominals = [self._nominals[connection.target] for connection in writes.connections]
                 inputs.append(_Inputs(writes, begin, end, nominals))
-                writes.previous = begin
+                past.previous = begin
         return inputs
 
     def _pass(self, inputs: Sequence[_Inputs], steps: int, t_ns: int, h_ns: int) -> None:

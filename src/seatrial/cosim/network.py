@@ -50,8 +50,6 @@ class Writes:
     """Inputs that change continuously between two communication points."""
     gather: Callable[[list[Any]], Sequence[Any]]
     scales: list[tuple[int, float, float]]
-    previous: Sequence[Any] | None = None
-    """What an algorithm remembers of an earlier communication point."""
 
     def values(self, signals: list[Any]) -> Sequence[Any]:
         """Return the inputs' values, converted."""
@@ -142,7 +140,6 @@ class Network:
     def _bind(self, writes: Writes) -> None:
         """Say how values are gathered, which a connection converts and which are continuous."""
         writes.gather = _gatherer(writes.places)
-        writes.previous = None
         connected = [
             (i, connection)
             for i, connection in enumerate(writes.connections)
@@ -253,29 +250,19 @@ class Network:
                 override.own = self.signals[place]
                 self.signals[place] = override.value
 
-    def forget_previous(self) -> None:
-        """Forget what algorithms remember of earlier points: a value jumps, or a step differs."""
-        for node in self.nodes.values():
-            for writes in node.writes:
-                writes.previous = None
-
     # ------------------------------------------------------------------ rollback
 
-    def memory(self) -> Any:
+    def save(self) -> Any:
         """Return a copy of everything here that a step changes."""
-        previous = [w.previous for node in self.nodes.values() for w in node.writes]
         overrides = {place: override.own for place, override in self._overrides.items()}
-        return self.time_ns, list(self.signals), overrides, previous
+        return self.time_ns, list(self.signals), overrides
 
-    def restore(self, memory: Any) -> None:
-        """Restore what `memory` returned; no override may have come or gone since."""
-        self.time_ns, signals, overrides, previous = memory
+    def restore(self, state: Any) -> None:
+        """Restore what `save` returned; no override may have come or gone since."""
+        self.time_ns, signals, overrides = state
         self.signals[:] = signals
         for place, own in overrides.items():
             self._overrides[place].own = own
-        writes = [w for node in self.nodes.values() for w in node.writes]
-        for one, before in zip(writes, previous, strict=True):
-            one.previous = before
 
     def independent(self) -> list[list[Any]]:
         """Return, freshly read, the outputs that follow from states alone."""

@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 from pydantic import Field
 
@@ -14,13 +14,11 @@ from ..component import NS
 from ..errors import InputError
 from ..units import quantity
 from .files import FileModel, Source, find_file, read_toml, validated
+from .registry import ALGORITHMS
 
 LONGEST_S = 9.0e9
 """Times are counted in ns in 64 bits: 285 years."""
 _IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
-
-
-AlgorithmName = Literal["jacobi", "plain-jacobi", "gauss-seidel", "extrapolated", "iterated"]
 
 
 class IterationEntry(FileModel):
@@ -65,7 +63,8 @@ class RigFile(FileModel):
 
     title: str = ""
     step: str
-    algorithm: AlgorithmName = "jacobi"
+    algorithm: str = "jacobi"
+    """A name of `registry.ALGORITHMS`."""
     iteration: IterationEntry | None = None
     variant: str | None = None
     profile: str | None = None
@@ -129,12 +128,21 @@ def _checked(rig: Rig) -> Rig:
             raise InputError(f"{path}: components.{name}.timeout: needs isolated = true")
     if rig.step_ns <= 0:
         raise InputError(f"{path}: step: must be positive, found {file.step!r}")
-    if file.iteration is not None and file.algorithm != "iterated":
-        raise InputError(
-            f"{path}: iteration: has no effect with the algorithm {file.algorithm!r}; "
-            'it belongs to algorithm = "iterated"'
-        )
+    _check_algorithm(path, file)
     return rig
+
+
+def _check_algorithm(path: Path, file: RigFile) -> None:
+    try:
+        ALGORITHMS.target(file.algorithm)
+        # What a package brings is imported at once only where a setting depends on it.
+        if file.iteration and not getattr(ALGORITHMS.load(file.algorithm), "iterates", False):
+            raise InputError(
+                f"iteration has no effect with {file.algorithm!r}, only with one that iterates, "
+                'such as "iterated"'
+            )
+    except InputError as error:
+        raise InputError(f"{path}: algorithm: {error}") from None
 
 
 def duration_ns(text: str, where: str) -> int:

@@ -109,9 +109,9 @@ def _components(
     return components
 
 
-def _connections(connections: list[FlatConnection], names: dict[Path_, str]) -> dict[str, Any]:
+def _connections(flat: list[FlatConnection], names: dict[Path_, str]) -> dict[str, Any]:
     connections: dict[str, Any] = {}
-    for connection in connections:
+    for connection in flat:
         (source, output), (target, variable) = connection.source, connection.target
         entry = {
             "to": f"{names[target]}.{variable}",
