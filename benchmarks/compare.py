@@ -23,9 +23,9 @@ from typing import Any
 
 import fmpy
 
+from seatrial.cosim.assembly import assemble
 from seatrial.cosim.rig import load_rig
 from seatrial.cosim.ssp.writing import Experiment, write_ssp
-from seatrial.cosim.system import assemble
 
 from .pages import write_measured
 

@@ -22,9 +22,9 @@ Result = tuple[float, float | None, dict[str, float]]
 
 
 def ours(ssp: Path, steps: int, algorithm: str, watch: list[str]) -> Result:
+    from seatrial.cosim.assembly import assemble
     from seatrial.cosim.master import Master
     from seatrial.cosim.ssp.reading import read_ssp
-    from seatrial.cosim.system import assemble
 
     rig = read_ssp(ssp).rig.changed({"algorithm": algorithm})
     system = assemble(rig)
@@ -43,8 +43,8 @@ def fmpy_lists(ssp: Path, steps: int, step: float, watch: list[str]) -> Result:
     """A loop written by hand: a list call of FMPy to get and to set per type, FMU and step."""
     from fmpy.fmi2 import FMU2Slave
 
+    from seatrial.cosim.assembly import assemble
     from seatrial.cosim.ssp.reading import read_ssp
-    from seatrial.cosim.system import assemble
 
     system = assemble(read_ssp(ssp).rig)
     gets: list[tuple[Any, list[int], list[str]]] = []

@@ -77,7 +77,7 @@ PROGRAM = """
 import sys
 from seatrial.cosim.master import Master
 from seatrial.cosim.rig import load_rig
-from seatrial.cosim.system import assemble
+from seatrial.cosim.assembly import assemble
 
 system = assemble(load_rig(sys.argv[1]), "direct")
 master = Master(system)

@@ -9,11 +9,12 @@ import pytest
 from fmpy.ssp.ssd import read_ssd, validate_tree
 from lxml import etree
 
+from seatrial.cosim.assembly import assemble
 from seatrial.cosim.master import Master
 from seatrial.cosim.rig import load_rig
 from seatrial.cosim.ssp.reading import read_ssp
 from seatrial.cosim.ssp.tools import findings
-from seatrial.cosim.system import System, assemble
+from seatrial.cosim.system import System
 from seatrial.errors import InputError
 from seatrial.fmi.export import build_fmu
 from seatrial.fmi.source import ComponentSource, find_source

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from seatrial.cosim.assembly import assemble
 from seatrial.cosim.master import Master
 from seatrial.cosim.rig import load_rig
-from seatrial.cosim.system import assemble
 from seatrial.errors import InputError, SimulationError
 
 from .native import changed, forgetful

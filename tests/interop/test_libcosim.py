@@ -11,9 +11,10 @@ from typing import Any
 import pytest
 
 from seatrial.component import seconds
+from seatrial.cosim.assembly import assemble
 from seatrial.cosim.master import Master
 from seatrial.cosim.rig import load_rig
-from seatrial.cosim.system import System, assemble
+from seatrial.cosim.system import System
 from seatrial.shipped import shipped_folder
 
 _KINDS = {float: "real", int: "integer", bool: "boolean", str: "string"}

@@ -14,9 +14,10 @@ from pathlib import Path
 from typing import Any
 
 from ..component import Logging, Reachable, seconds
+from ..cosim.assembly import assemble
 from ..cosim.master import Master
 from ..cosim.recorder import Recorder
-from ..cosim.system import Engine, System, assemble
+from ..cosim.system import Engine, System
 from ..cosim.values import from_written, port_scalars
 from ..errors import InputError, SimulationError
 from .checks import check_criteria, check_events, check_plots, check_real_time
