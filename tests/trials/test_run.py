@@ -11,8 +11,9 @@ import pytest
 
 from seatrial.errors import InputError
 from seatrial.trials.campaign import load_campaign, run_campaign
+from seatrial.trials.output import claim_folder
 from seatrial.trials.report import write_report
-from seatrial.trials.run import Hooks, StoppedError, claim_folder, run_trial
+from seatrial.trials.run import Hooks, StoppedError, run_trial
 from seatrial.trials.run_folder import load_run
 from seatrial.trials.trial import load_trial
 
