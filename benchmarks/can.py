@@ -70,7 +70,7 @@ def arbitration(count: int) -> float:
     return spent
 
 
-def component(count: int, *, heard: bool, folder: str = "") -> float:
+def component(count: int, *, reads: bool, folder: str = "") -> float:
     """Return the time of the component, its nodes asking, and all hearing if wanted; s."""
     bus = CanBus("can")
     bus.set("nodes", " ".join(f"n{n}" for n in range(SENDERS)))
@@ -83,7 +83,7 @@ def component(count: int, *, heard: bool, folder: str = "") -> float:
     begin = time.process_time()
     while bus.get("frames") < count:
         nodes = [CanNode(memory) for memory in memories]
-        if heard:
+        if reads:
             received += sum(len(node.hear(rx)) for node, rx in zip(nodes, bus.rx, strict=False))
         while place < count and asked[place][0] <= now + STEP_NS:
             when, number, frame = asked[place]
@@ -94,7 +94,7 @@ def component(count: int, *, heard: bool, folder: str = "") -> float:
         now += STEP_NS
     bus.close()
     spent = time.process_time() - begin
-    assert received >= (count - 40) * SENDERS * heard
+    assert received >= (count - 40) * SENDERS * reads
     return spent
 
 
@@ -131,13 +131,13 @@ def rig(count: int, engine: str) -> float:
 def logged(count: int) -> float:
     """Return the time of the component with its logs, s."""
     with tempfile.TemporaryDirectory() as folder:
-        return component(count, heard=True, folder=folder)
+        return component(count, reads=True, folder=folder)
 
 
 ROWS: dict[str, Callable[[int], float]] = {
     "arbitration alone": arbitration,
-    "the component; nodes ask": lambda count: component(count, heard=False),
-    "the component; nodes ask, and hear all": lambda count: component(count, heard=True),
+    "the component; nodes ask": lambda count: component(count, reads=False),
+    "the component; nodes ask, and read all": lambda count: component(count, reads=True),
     "the same, with logs": logged,
     "a rig of ten `can-traffic`, in process": lambda count: rig(count, "direct"),
     "the same as FMUs": lambda count: rig(count, "fmu"),

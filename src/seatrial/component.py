@@ -352,7 +352,12 @@ class Noise:
     """
 
     seed = Parameter(
-        1.0, "1", "seed of this instance's noise (a whole number)", min=0.0, max=2.0**53
+        1.0,
+        "1",
+        "seed of this instance's noise (a whole number)",
+        min=0.0,
+        max=2.0**53,
+        role="seed",
     )
 
     def generator(self, index: int, stream: int = 0) -> np.random.Generator:
@@ -374,14 +379,20 @@ class Logging:
     """
 
     run_folder = Parameter(
-        "", "1", "folder of the run, for logs of its own; empty: it keeps none", tunable=True
+        "",
+        "1",
+        "folder of the run, for logs of its own; empty: it keeps none",
+        tunable=True,
+        role="run-folder",
     )
 
 
 class Reachable:
     """Mix-in for a component that programs outside connect to."""
 
-    reached_at = Output("1", "what others connect to, separated by spaces", type=str)
+    reached_at = Output(
+        "1", "what others connect to, separated by spaces", type=str, role="address"
+    )
 
 
 def _is_fixed(port: Port) -> bool:

@@ -15,6 +15,14 @@ Limit = float | tuple[float, ...] | None
 Units = str | tuple[str, ...]
 """One unit for all elements of a port, or one per axis."""
 
+ROLES = {
+    "seed": "seed of the component's noise: derived from the run's seed unless it is given",
+    "run-folder": "folder of the run, for logs of its own: given once there is one",
+    "address": "where programs outside connect to: shown when a run in real time begins",
+    "file": "name of a file: relative to the profile that gives it",
+}
+"""What whoever runs a component does with a port that declares a role."""
+
 _TYPES: tuple[type, ...] = (float, int, bool, str)
 
 
@@ -25,7 +33,8 @@ class Port:
     of them if the port has axes; assigning converts to the port's type and checks the length.
 
     Values are SI with angles in radians; ``unit`` is written as in FMI (``N.m``, ``kg.m2``,
-    ``rad/s``, ``1`` for none), one for all elements or a tuple with one per axis.
+    ``rad/s``, ``1`` for none), one for all elements or a tuple with one per axis. A ``role`` of
+    `ROLES` says what whoever runs the component does with the port.
     """
 
     kind: Kind
@@ -41,7 +50,10 @@ class Port:
         min: Limit = None,
         max: Limit = None,
         nominal: Limit = None,
+        role: str = "",
     ) -> None:
+        if role and role not in ROLES:
+            raise ValueError(f"role {role!r} is none of {', '.join(ROLES)}")
         if type not in _TYPES:
             raise TypeError(f"a port's type is float, int, bool or str, not {type!r}")
         for axis in axes or ():
@@ -57,6 +69,7 @@ class Port:
         self.size = 1 if self.axes is None else len(self.axes)
         self.start = self._spread(start)
         self.min, self.max, self.nominal = min, max, nominal
+        self.role = role
         for each in (unit, min, max, nominal):
             if isinstance(each, tuple) and len(each) != self.size:
                 raise ValueError(f"{each} needs one element for each of {self.size} values")
@@ -148,12 +161,21 @@ class Parameter(Port):
         tunable: bool = False,
         choices: Sequence[str] | None = None,
         check: Callable[[str], object] | None = None,
+        role: str = "",
     ) -> None:
         if isinstance(start, bool):
             raise TypeError("a parameter is a number or a text: give 0.0 or 1.0 for a flag")
         kind = str if isinstance(start, str) else float
         super().__init__(
-            unit, description, start=start, axes=axes, type=kind, min=min, max=max, nominal=nominal
+            unit,
+            description,
+            start=start,
+            axes=axes,
+            type=kind,
+            min=min,
+            max=max,
+            nominal=nominal,
+            role=role,
         )
         self.tunable = tunable
         self.choices = tuple(choices) if choices is not None else None

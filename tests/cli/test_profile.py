@@ -8,7 +8,7 @@ import pytest
 
 from seatrial.cosim.files import available
 from seatrial.cosim.profile import load_profile
-from seatrial.cosim.profile_kinds import KINDS, keys
+from seatrial.cosim.profile_kinds import GROUPS, keys
 from tests.command import seatrial
 from tests.cosim.test_profile import GOOD
 
@@ -78,8 +78,9 @@ def test_describe_shows_every_parameter_of_every_table(name: str, tmp_path: Path
     done = seatrial("profile", "describe", name, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     profile = load_profile(name)
-    for group in KINDS:
+    for group in GROUPS:
         for table, entry in profile.tables(group).items():
-            shown = rows(done.stdout, f"{group}.{table}: {entry.kind}")
+            kind = entry["kind"]
+            shown = rows(done.stdout, f"{group}.{table}: {kind}")
             first = 2 if shown[0].startswith("  source") else 1
-            assert [line.split()[0] for line in shown[first:]] == list(keys(group, entry.kind))
+            assert [line.split()[0] for line in shown[first:]] == list(keys(group, kind))

@@ -3,11 +3,11 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.cosim.profile import load_profile
-from seatrial.cosim.profile_kinds import component_of
+from seatrial.cosim.profile import check_profile, load_profile
 from seatrial.devices.servo import Servo
 from seatrial.devices.thruster import Thruster
 from seatrial.errors import InputError
+from seatrial.fmi.index import component_class
 
 GOOD = """\
 title = "A boat"
@@ -71,7 +71,7 @@ def load(write):
 
     def load(old="", new=""):
         assert not old or GOOD.count(old) == 1
-        return load_profile("boat.toml", write("boat.toml", GOOD.replace(old, new)).parent)
+        return check_profile("boat.toml", write("boat.toml", GOOD.replace(old, new)).parent)
 
     return load
 
@@ -266,7 +266,7 @@ def test_mistakes_of_all_kinds_are_reported_together(write):
         text = text.replace(old, new)
     path = write("boat.toml", text)
     with pytest.raises(InputError) as caught:
-        load_profile(str(path))
+        check_profile(str(path))
     keys = [line.removeprefix(f"{path}: ") for line in str(caught.value).splitlines()]
     assert sorted(key.partition(": ")[0] for key in keys) == [
         "identity.system_id",
@@ -304,13 +304,13 @@ SHIPPED = sorted((Path(__file__).parents[2] / "hil_profiles").glob("*.toml"))
 
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
 def test_shipped_profile_fits_its_components(path):
-    profile = load_profile(str(path))
+    profile = check_profile(str(path))
     for section in profile.sections():
         group, _, name = section.partition(".")
         if group == "actuators":
             classes = [Thruster, Servo]
         else:
-            classes = [component_of(group, profile.tables(group)[name].kind)]
+            classes = [component_class(profile.tables(group)[name]["kind"])]
         for cls in classes:
             component = cls(name)
             for parameter, value in profile.parameters(section).items():

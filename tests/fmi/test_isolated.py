@@ -15,7 +15,8 @@ import pytest
 from seatrial.errors import DiscardError, InputError, SimulationError
 from seatrial.fmi.export import build_fmu
 from seatrial.fmi.isolated import IsolatedInstance
-from seatrial.fmi.load import LoadedFmu, load_fmu, open_instance
+from seatrial.fmi.load import load_fmu, open_instance
+from seatrial.fmi.loaded import LoadedFmu
 
 from . import crashing
 from .conftest import source

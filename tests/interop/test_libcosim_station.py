@@ -14,7 +14,7 @@ from typing import Any
 from pymavlink import mavutil
 from pymavlink.dialects.v20 import all as mavlink
 
-from seatrial.fmi.bundle import bundle
+from seatrial.fmi.bundle import bundled
 from seatrial.fmi.export import cached_fmu
 from seatrial.fmi.load import load_fmu
 from seatrial.fmi.source import find_source
@@ -36,7 +36,7 @@ class Libcosim:
 
     def __init__(self, port: int) -> None:
         source = find_source("mavlink", Path.cwd())
-        script = bundle(source.stem, source.script, source.folder).script
+        script = bundled(source).script
         fmu = load_fmu(cached_fmu(source, script))
         number = {v.name: v.valueReference for v in fmu.description.modelVariables}
         self._names = {number[name]: name for names in WATCHED.values() for name in names}

@@ -80,14 +80,14 @@ def _run(topside: Pro4Topside, gateway: SerialGateway, pilot: Pilot, pad: Gamepa
             if pad is not None:
                 pad.poll(pilot)
             pilot.depth, pilot.heading = topside.get("depth"), topside.get("attitude")[2]
-            sticks = pilot.manual(now) if pilot.armed else (0.0, 0.0, 0.0)
-            _order(topside, pilot, sticks)
+            manual = pilot.manual(now) if pilot.armed else (0.0, 0.0, 0.0)
+            _order(topside, pilot, manual)
             connected = topside.get("connected")
             exchange(topside, gateway, steps * _STEP)
             if connected and pilot.armed and not topside.get("connected"):
                 pilot.toggle_armed()  # it is not to start again by itself
             if steps % _PICTURES == 0:
-                live.update(picture(topside, pilot, sticks), refresh=True)
+                live.update(picture(topside, pilot, manual), refresh=True)
             steps += 1
             late = time.monotonic() - begun - steps * _STEP
             if late > _STEP * _PICTURES:  # it was suspended: what was missed is over
@@ -104,9 +104,9 @@ def exchange(topside: Component, gateway: Component, t: float) -> None:
     gateway.advance(t, _STEP)
 
 
-def _order(topside: Pro4Topside, pilot: Pilot, sticks: tuple[float, float, float]) -> None:
+def _order(topside: Pro4Topside, pilot: Pilot, manual: tuple[float, float, float]) -> None:
     topside.set("armed", pilot.armed)
-    topside.set("manual", list(sticks))
+    topside.set("manual", list(manual))
     for name in ("lights", "camera_tilt", "manipulator", "hold_depth", "hold_heading"):
         topside.set(name, getattr(pilot, name))
     topside.set("depth_wanted", pilot.depth_wanted)

@@ -24,7 +24,7 @@ _ASPECT = 2.0
 """A character is about twice as high as wide."""
 
 
-def picture(topside: Component, pilot: Pilot, sticks: tuple[float, float, float]) -> Any:
+def picture(topside: Component, pilot: Pilot, manual: tuple[float, float, float]) -> Any:
     """Return what is shown, for a terminal of 80 columns and 24 rows."""
     phi, theta, psi = topside.get("attitude")
     if not topside.get("connected"):
@@ -36,7 +36,7 @@ def picture(topside: Component, pilot: Pilot, sticks: tuple[float, float, float]
     body = Columns(
         [
             Panel(horizon(phi, theta), title="attitude", width=_HORIZON_WIDTH + 4),
-            Panel(_values(topside, pilot, sticks), title="vehicle", width=43),
+            Panel(_values(topside, pilot, manual), title="vehicle", width=43),
         ],
         padding=(0, 0),
     )
@@ -80,7 +80,7 @@ def horizon(phi: float, theta: float) -> Text:
     return Text("\n".join(rows))
 
 
-def _values(topside: Component, pilot: Pilot, sticks: tuple[float, float, float]) -> Table:
+def _values(topside: Component, pilot: Pilot, manual: tuple[float, float, float]) -> Table:
     table = Table.grid(padding=(0, 1))
     phi, theta, _ = (math.degrees(angle) for angle in topside.get("attitude"))
     depth = f"{topside.get('depth'):.2f} m"
@@ -95,9 +95,9 @@ def _values(topside: Component, pilot: Pilot, sticks: tuple[float, float, float]
         ("heading", heading),
         ("roll, pitch", f"{phi:+.1f}°  {theta:+.1f}°"),
         ("water", f"{water:.1f} °C   inside {topside.get('humidity'):.0%}"),
-        ("ahead", bar(sticks[0])),
-        ("turn", bar(sticks[1])),
-        ("down", bar(sticks[2])),
+        ("ahead", bar(manual[0])),
+        ("turn", bar(manual[1])),
+        ("down", bar(manual[2])),
         ("keys make", f"{pilot.share:.0%}   power {topside.get('power'):.0%}"),
         ("lights", f"{pilot.lights:.0%}   tilt {math.degrees(pilot.camera_tilt):+.0f}°"),
         ("link", f"{topside.get('round_trip') * 1e3:.1f} ms   missed {topside.get('missed')}"),

@@ -19,8 +19,9 @@ from ..fmi.description import summary
 from ..fmi.direct import DirectInstance
 from ..fmi.export import build_fmu
 from ..fmi.instance import Value, Variable
-from ..fmi.load import LoadedFmu, load_fmu, open_instance
-from ..fmi.source import ComponentSource, find_source, shipped_sources
+from ..fmi.load import load_fmu, open_instance
+from ..fmi.loaded import LoadedFmu
+from ..fmi.source import ComponentSource, find_source, named_sources, shipped_sources
 from .show import console
 
 fmu_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
@@ -31,8 +32,8 @@ Named = Annotated[str, typer.Argument(metavar="FMU", help="A shipped name, x.fmu
 @fmu_app.command("list")
 def list_fmus() -> None:
     """List the FMUs that are shipped."""
-    for name, source in shipped_sources().items():
-        console.print(f"{name:20} {escape(summary(source.component_class()))}", soft_wrap=True)
+    for name, source in named_sources().items():
+        console.print(f"{name:20} {escape(source.title)}", soft_wrap=True)
 
 
 @fmu_app.command()

@@ -9,8 +9,8 @@ from typing import Annotated, Any
 import typer
 from rich.markup import escape
 
-from ..cosim.profile import Actuator, Home, Identity, Profile, load_profile
-from ..cosim.profile_kinds import KINDS, keys
+from ..cosim.profile import Actuator, Home, Identity, Profile, check_profile
+from ..cosim.profile_kinds import GROUPS, keys
 from ..ports import Parameter
 from ..trials.readable import from_si, number, person_unit
 from .show import console
@@ -24,24 +24,25 @@ Named = Annotated[str, typer.Argument(metavar="PROFILE", help="A profile: a name
 @profile_app.command()
 def check(name: Named) -> None:
     """Check a profile; every mistake is told with file and key (status 2)."""
-    profile = load_profile(name)
+    profile = check_profile(name)
     console.print(f"{escape(str(profile.read_from.path))}: no problem found", soft_wrap=True)
 
 
 @profile_app.command()
 def describe(name: Named) -> None:
     """Show a profile: identity, home, actuators, sensors and links with all their values."""
-    profile = load_profile(name)
+    profile = check_profile(name)
     console.print(f"[bold]{escape(profile.file.title)}[/bold]", soft_wrap=True)
     console.print(escape(str(profile.read_from.path)), soft_wrap=True)
     _print("identity", _identity(profile.file.identity))
     _print("home", _home(profile.file.home), profile.file.home.source)
     if profile.file.actuators:
         _print("actuators", _actuators(profile.file.actuators))
-    for group in KINDS:
+    for group in GROUPS:
         for table, entry in profile.tables(group).items():
-            rows = _parameters(keys(group, entry.kind), profile, f"{group}.{table}")
-            _print(f"{group}.{table}: {entry.kind}", rows, entry.source)
+            kind, section = entry["kind"], f"{group}.{table}"
+            rows = _parameters(keys(group, kind), profile, section)
+            _print(f"{section}: {kind}", rows, entry.get("source", ""))
 
 
 def _print(title: str, rows: Rows, source: str = "") -> None:

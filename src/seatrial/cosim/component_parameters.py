@@ -5,7 +5,6 @@ from __future__ import annotations
 import zlib
 from dataclasses import replace
 
-from ..component import Noise
 from ..errors import InputError
 from .parameters import ParameterSet, load_vehicle, split_reference
 from .profile import Profile, Profiles
@@ -34,10 +33,9 @@ def give_parameters(system: System, part: Part, profiles: Profiles) -> None:
 
 def _give_seed(part: Part, seed: int) -> None:
     """Give each instance noise of its own, yet the same in every tool and run."""
-    port = part.instance.variables.get("seed")
-    if port is not None and port.description == Noise.seed.description:
+    for name in part.instance.variables.of_role("seed"):
         own = zlib.crc32(f"{seed}/{part.name}".encode())
-        part.given["seed"] = Given(float(own), f"derived from seed {seed}")
+        part.given[name] = Given(float(own), f"derived from seed {seed}")
 
 
 def _give_parameter_set(part: Part, values: ParameterSet) -> None:

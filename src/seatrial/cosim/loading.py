@@ -6,7 +6,7 @@ from pathlib import Path
 
 from ..component import seconds
 from ..errors import InputError
-from ..fmi.bundle import bundle
+from ..fmi.bundle import bundled
 from ..fmi.direct import DirectInstance
 from ..fmi.export import cached_fmu
 from ..fmi.instance import Instance
@@ -76,7 +76,7 @@ def _instance(
             )
         loaded, code = load_fmu(source), ""
     else:
-        code = bundle(source.stem, source.script, source.folder).script
+        code = bundled(source).script
         if in_process:
             return DirectInstance(source.component_class()(name)), "", code
         loaded = load_fmu(cached_fmu(source, code))

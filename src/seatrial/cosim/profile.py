@@ -10,25 +10,16 @@ from __future__ import annotations
 import datetime
 import math
 import re
-from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, Field, create_model
+from pydantic import BeforeValidator, Field
 
 from ..errors import InputError, unknown
+from ..fmi.index import component_class
 from .files import FileModel, Source, find_file, read_toml, validated
-from .profile_kinds import (
-    FILES,
-    KINDS,
-    NAME,
-    component_of,
-    group_model,
-    in_si,
-    of_a_kind,
-    refused,
-)
+from .profile_kinds import GROUPS, NAME, in_si, keys, of_a_kind, refused, section_model
 
 VEHICLE_TYPES = ("ground_rover", "submarine", "surface_boat")
 """MAVLink's MAV_TYPE, in lower case."""
@@ -131,26 +122,33 @@ class ProfileFile(FileModel):
     actuators: dict[Annotated[str, _like(NAME, "port")], Actuator] = Field(
         default_factory=dict, title="table per output channel", description="by name"
     )
-    sensors: Any = Field(None, title="table per sensor", description="by name")
-    links: Any = Field(None, title="table per link", description="by name")
+    sensors: dict[str, dict[str, Any]] = Field(
+        default_factory=dict, title="table per sensor", description="by name"
+    )
+    links: dict[str, dict[str, Any]] = Field(
+        default_factory=dict, title="table per link", description="by name"
+    )
 
 
 @dataclass(frozen=True)
 class Profile:
-    """A profile as read, everything in SI."""
+    """A profile as read. A section of sensors or links is checked, and its class imported, when
+    somebody asks for its values.
+    """
 
     file: ProfileFile
     read_from: Source
+    _checked: dict[str, FileModel] = field(default_factory=dict, compare=False, repr=False)
 
     def sections(self) -> list[str]:
         """Return what `parameters` can be asked for: actuators.NAME, sensors.NAME, links.NAME."""
-        named = [f"{group}.{name}" for group in KINDS for name in self.tables(group)]
+        named = [f"{group}.{name}" for group in GROUPS for name in self.tables(group)]
         return [*(f"actuators.{name}" for name in self.file.actuators), *named]
 
-    def tables(self, group: str) -> dict[str, Any]:
-        """Return the tables of ``sensors`` or ``links``, by name."""
-        entries = getattr(self.file, group)
-        return {name: getattr(entries, name) for name in type(entries).model_fields}
+    def tables(self, group: str) -> dict[str, dict[str, Any]]:
+        """Return the tables of ``sensors`` or ``links`` as written, by name."""
+        written: dict[str, dict[str, Any]] = getattr(self.file, group)
+        return written
 
     def parameters(self, section: str) -> dict[str, Any]:
         """Return a section's values by name of the component's parameter, in the port's unit.
@@ -159,28 +157,27 @@ class Profile:
         actuator gives ``pulse_min``, ``pulse_neutral``,
         ``pulse_max`` (s) and ``reversed`` (0 or 1). A link also gives those of identity, home
         and, as text, ``actuators`` that its component has. Raises InputError for an unknown
-        section.
+        section, and with a line for each mistake in it.
         """
         entry = self._section(section)
         if isinstance(entry, Actuator):
             pulses = ("pulse_min", "pulse_neutral", "pulse_max")
             return {**{p: getattr(entry, p) for p in pulses}, "reversed": float(entry.reversed)}
+        group, _, name = section.partition(".")
+        kind = self.tables(group)[name]["kind"]
         values: dict[str, Any] = entry.model_dump(exclude={"kind", "source"}, exclude_unset=True)
-        if section.startswith("links."):
-            ports = component_of("links", entry.kind).ports
+        for key, port in keys(group, kind).items():
+            if port.role == "file" and values.get(key):
+                values[key] = str(self.read_from.path.parent / values[key])
+        if group == "links":
+            ports = component_class(kind).ports
             shared = {name: value for name, value in self._shared().items() if name in ports}
-            folder = self.read_from.path.parent
-            files = {
-                name: str(folder / values[name])
-                for name in FILES.get(entry.kind, ())
-                if values.get(name)
-            }
-            return {**shared, **values, **files}
+            return {**shared, **values}
         return values
 
     def source(self, section: str) -> str:
         """Return where a section's values come from. Raises InputError as `parameters`."""
-        return self._section(section).source or self.file.home.source
+        return str(getattr(self._section(section), "source", "")) or self.file.home.source
 
     def _shared(self) -> dict[str, Any]:
         identity, home = self.file.identity, self.file.home
@@ -207,7 +204,12 @@ class Profile:
             path = self.read_from.path
             raise InputError(f"{path}: {unknown('section', section, self.sections())}")
         group, _, name = section.partition(".")
-        return self.tables(group)[name] if group in KINDS else self.file.actuators[name]
+        if group == "actuators":
+            return self.file.actuators[name]
+        if section not in self._checked:
+            table = self.tables(group)[name]
+            self._checked[section] = _read_section(self.read_from.path, group, name, table)
+        return self._checked[section]
 
 
 def load_profile(name: str | Path, relative_to: Path | None = None) -> Profile:
@@ -218,26 +220,30 @@ def load_profile(name: str | Path, relative_to: Path | None = None) -> Profile:
     """
     path = find_file("hil_profiles", str(name), relative_to)
     content, read_from = read_toml(path)
-    mistakes: list[str] = []
-    groups: dict[str, dict[str, Any]] = {}
-    for group in KINDS:
-        groups[group], wrong = of_a_kind(group, content.get(group, {}))
-        mistakes += [f"{path}: {mistake}" for mistake in wrong]
-    models: dict[str, Any] = {
-        group: (group_model(group, tables), ...) for group, tables in groups.items()
-    }
-    model = create_model("ProfileFile", __base__=ProfileFile, **models)
-    try:
-        file = validated(model, {**content, **groups}, path)
-    except InputError as error:
-        raise InputError("\n".join([*mistakes, str(error)])) from None
-    mistakes += [f"{path}: {mistake}" for mistake in _channel_mistakes(file)]
-    mistakes += [f"{path}: {mistake}" for mistake in _file_mistakes(file, path.parent)]
-    if mistakes:
+    file, _, mistakes = _parsed(content, path)
+    if file is None or mistakes:
         raise InputError("\n".join(mistakes))
-    profile = Profile(file, read_from)
-    mistakes = [f"{path}: {mistake}" for mistake in _misfits(profile)]
-    if mistakes:
+    return Profile(file, read_from)
+
+
+def check_profile(name: str | Path, relative_to: Path | None = None) -> Profile:
+    """Read a profile with all its sections, also those that no rig uses.
+
+    Raises InputError with a line for each mistake, as `load_profile`, in all sections.
+    """
+    path = find_file("hil_profiles", str(name), relative_to)
+    content, read_from = read_toml(path)
+    file, groups, mistakes = _parsed(content, path)
+    profile = None if file is None else Profile(file, read_from)
+    for group, tables in groups.items():
+        for section, table in tables.items():
+            try:
+                _read_section(path, group, section, table)
+                if profile is not None:
+                    _check_together(profile, f"{group}.{section}", table["kind"])
+            except InputError as error:
+                mistakes.append(str(error))
+    if profile is None or mistakes:
         raise InputError("\n".join(mistakes))
     return profile
 
@@ -273,28 +279,46 @@ class Profiles:
         return self._read[name]
 
 
-def _misfits(profile: Profile) -> Iterator[str]:
-    """Yield what components say of their sections' values together."""
-    for group in KINDS:
-        for name, table in profile.tables(group).items():
-            section = f"{group}.{name}"
-            component = component_of(group, table.kind)(section)
-            try:
-                for key, value in profile.parameters(section).items():
-                    component.set(key, value)
-                component.check_parameters()
-            except InputError as error:
-                yield str(error)
+def _parsed(
+    content: dict[str, Any], path: Path
+) -> tuple[ProfileFile | None, dict[str, dict[str, Any]], list[str]]:
+    """Return a profile as far as it can be read without its components' classes.
+
+    The file, None if a key of it does not fit; the tables of known kinds, by group; mistakes.
+    """
+    mistakes: list[str] = []
+    groups: dict[str, dict[str, Any]] = {}
+    for group in GROUPS:
+        groups[group], wrong = of_a_kind(group, content.get(group, {}))
+        mistakes += [f"{path}: {mistake}" for mistake in wrong]
+    try:
+        file = validated(ProfileFile, {**content, **groups}, path)
+    except InputError as error:
+        return None, groups, [*mistakes, str(error)]
+    return file, groups, [*mistakes, *(f"{path}: {m}" for m in _channel_mistakes(file))]
 
 
-def _file_mistakes(file: ProfileFile, folder: Path) -> list[str]:
-    """Return which files of links are not there."""
-    return [
-        f"links.{name}.{key}: there is no file {folder / written}"
-        for name in type(file.links).model_fields
-        for key in FILES.get(getattr(file.links, name).kind, ())
-        if (written := getattr(getattr(file.links, name), key)) and not (folder / written).is_file()
-    ]
+def _read_section(path: Path, group: str, name: str, table: dict[str, Any]) -> FileModel:
+    """Return a table in SI. Raises InputError with a line for each mistake in it."""
+    model = section_model(group, name, table["kind"])
+    entry: FileModel = getattr(getattr(validated(model, {group: {name: table}}, path), group), name)
+    for key, port in keys(group, table["kind"]).items():
+        written = getattr(entry, key)
+        if port.role == "file" and written and not (path.parent / written).is_file():
+            file = path.parent / written
+            raise InputError(f"{path}: {group}.{name}.{key}: there is no file {file}")
+    return entry
+
+
+def _check_together(profile: Profile, section: str, kind: str) -> None:
+    """Raise InputError for values that its component refuses together."""
+    component = component_class(kind)(section)
+    try:
+        for key, value in profile.parameters(section).items():
+            component.set(key, value)
+        component.check_parameters()
+    except InputError as error:
+        raise InputError(f"{profile.read_from.path}: {error}") from None
 
 
 def _channel_mistakes(file: ProfileFile) -> list[str]:

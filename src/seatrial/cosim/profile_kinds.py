@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import re
 from collections.abc import Callable
 from functools import cache
@@ -11,38 +10,14 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, create_model
 from pydantic_core import PydanticCustomError
 
-from ..component import Component
 from ..errors import InputError, unknown
+from ..fmi.index import component_class, components
 from ..ports import Parameter
 from ..units import quantity, unit
 from .files import FileModel
 
-# Named, not imported: a profile without links needs none of their libraries.
-KINDS: dict[str, dict[str, str]] = {
-    "sensors": {
-        "ahrs": "devices.ahrs:Ahrs",
-        "anemometer": "devices.anemometer:Anemometer",
-        "compass": "devices.compass:Compass",
-        "depth": "devices.depth:Depth",
-        "gnss": "devices.gnss:Gnss",
-        "imu": "devices.imu:Imu",
-    },
-    "links": {
-        "arduino": "links.arduino.component:Arduino",
-        "can-gateway": "links.can.component_gateway:CanGateway",
-        "can-signals": "links.can_signals.component:CanSignals",
-        "canbus": "links.can.component:CanBus",
-        "dronecan-autopilot": "links.dronecan.autopilot:DroneCanAutopilot",
-        "dronecan-peripheral": "links.dronecan.peripheral:DroneCanPeripheral",
-        "mavlink": "links.mavlink.component:Mavlink",
-        "pro4-rov": "links.videoray.rov:Pro4Rov",
-        "pro4-topside": "links.videoray.topside:Pro4Topside",
-        "serial-gateway": "links.serial_gateway:SerialGateway",
-        "nmea0183": "links.nmea0183.component:Nmea0183",
-        "nmea2000": "links.nmea2000.component:Nmea2000",
-    },
-}
-"""Groups of tables, their kinds, and the component whose parameters a table of a kind gives."""
+GROUPS = ("sensors", "links")
+"""Groups of tables whose ``kind`` is a component of the index (`fmi.index`)."""
 
 SHARED = (
     *("system_id", "component_id", "vehicle_type", "autopilot_type", "firmware_version", "uid"),
@@ -50,35 +25,25 @@ SHARED = (
 )
 """Parameters of links that the rest of the profile gives: identity, home and actuators."""
 
-FILES = {"arduino": ("sketch", "firmware"), "can-signals": ("database",)}
-"""Parameters that name a file, relative to the profile, by the kind of the link."""
-
 NAME = re.compile(r"[A-Za-z][\w-]*", re.ASCII)
-
-
-@cache
-def component_of(group: str, kind: str) -> type[Component]:
-    """Return the component whose parameters a table of a kind gives."""
-    module, _, name = KINDS[group][kind].partition(":")
-    root = __package__.rpartition(".")[0]
-    found: type[Component] = getattr(importlib.import_module(f"{root}.{module}"), name)
-    return found
 
 
 def keys(group: str, kind: str) -> dict[str, Parameter]:
     """Return the parameters that a table of a kind may give, by name."""
-    # A seed belongs to an instance and a run, not to a data sheet.
-    others = {"seed", "run_folder", *(SHARED if group == "links" else ())}
+    shared = SHARED if group == "links" else ()
     return {
         name: port
-        for name, port in component_of(group, kind).ports.items()
-        if isinstance(port, Parameter) and name not in others
+        for name, port in component_class(kind).ports.items()
+        if isinstance(port, Parameter)
+        # A seed belongs to an instance and a run, not to a data sheet.
+        and port.role not in ("seed", "run-folder")
+        and name not in shared
     }
 
 
 def of_a_kind(group: str, written: Any) -> tuple[dict[str, Any], list[str]]:
     """Return the tables of a group whose kind is known, and what is wrong with the others."""
-    what, kinds = group.removesuffix("s"), KINDS[group]
+    what, kinds = group.removesuffix("s"), components().names()
     if not isinstance(written, dict):
         return {}, [f"{group}: a table per {what} is needed, found {written!r}"]
     good, mistakes = {}, []
@@ -95,12 +60,12 @@ def of_a_kind(group: str, written: Any) -> tuple[dict[str, Any], list[str]]:
     return good, mistakes
 
 
-def group_model(group: str, tables: dict[str, Any]) -> type[FileModel]:
-    """Return the schema of a group with these tables: each has its kind's parameters as keys."""
-    models: dict[str, Any] = {
-        name: (_table_model(group, table["kind"]), ...) for name, table in tables.items()
-    }
-    return create_model(group.capitalize(), __base__=FileModel, **models)
+def section_model(group: str, name: str, kind: str) -> type[FileModel]:
+    """Return the schema of a file with one table, whose keys are its kind's parameters."""
+    table: dict[str, Any] = {name: (_table_model(group, kind), ...)}
+    tables = create_model(group.capitalize(), __base__=FileModel, **table)
+    content: dict[str, Any] = {group: (tables, ...)}
+    return create_model("Section", __base__=FileModel, **content)
 
 
 @cache

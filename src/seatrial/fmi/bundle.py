@@ -25,6 +25,7 @@ from functools import cache, cached_property, lru_cache
 from pathlib import Path
 
 from ..errors import InputError
+from .source import ComponentSource
 
 _COOKIE = re.compile(r"^[ \t\f]*#.*?coding[:=]")
 _NO_INIT = b'"""Part of pythonfmu (MIT licence, beside this file)."""\n'
@@ -45,17 +46,22 @@ class Bundle:
         return self.write()
 
 
-def bundle(stem: str, source: bytes, folder: Path) -> Bundle:
-    """Bundle a slave script with all it imports from seatrial, pythonfmu and ``folder``.
+def bundled(source: ComponentSource) -> Bundle:
+    """Bundle a component's slave script; see `bundle`."""
+    return bundle(source.stem, source.script, source.folder, source.package)
 
-    ``source`` is the script's text, ``stem`` its name; modules beside it in ``folder`` count
-    as its own, wherever they are imported. Of seatrial's own modules, imports inside functions
-    are left out: what they bring is for builds and tools.
+
+def bundle(stem: str, source: bytes, folder: Path | None, package: str | None = None) -> Bundle:
+    """Bundle a slave script with all it imports from seatrial, pythonfmu and of its own.
+
+    ``source`` is the script's text, ``stem`` its name. Its own are the modules in ``folder``,
+    and those of the installed ``package``, wherever they are imported. Of seatrial's own
+    modules, imports inside functions are left out: what they bring is for builds and tools.
 
     Raises InputError for a file that is not Python, an import that is found nowhere or a data
     file that is not there.
     """
-    local = _Local(folder)
+    local = _Local(folder, package)
     modules, third_party = _closure(source, f"{stem}.py", local)
     digest = hashlib.sha256()
     data: dict[str, bytes] = {}
@@ -90,22 +96,25 @@ def bundle(stem: str, source: bytes, folder: Path) -> Bundle:
 
 
 class _Local:
-    """Finds the modules that travel: seatrial's, pythonfmu's and those beside the script."""
+    """Finds the modules that travel: seatrial's, pythonfmu's and the component's own."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path | None, package: str | None) -> None:
         self.folder = folder
-        self.roots = {"seatrial": Path(__file__).parents[1], "pythonfmu": _package("pythonfmu")}
+        self.ours = {"seatrial": Path(__file__).parents[1], "pythonfmu": _package("pythonfmu")}
+        self.roots = self.ours if package is None else {**self.ours, package: _package(package)}
 
     def find(self, name: str) -> Path | None:
         """Return the file of module ``name``, None if it is not one that travels."""
         top, *rest = name.split(".")
         if top in self.roots:
             return _package_file(self.roots[top], *rest)
-        return _module_file(self.folder / top, *rest)
+        return None if self.folder is None else _module_file(self.folder / top, *rest)
 
     def is_namespace(self, name: str) -> bool:
         """Say if ``name`` is a folder beside the script without an ``__init__.py``."""
-        return "." not in name and (self.folder / name).is_dir() and self.find(name) is None
+        if self.folder is None or "." in name:
+            return False
+        return (self.folder / name).is_dir() and self.find(name) is None
 
 
 def _module_file(base: Path, *rest: str) -> Path | None:
@@ -121,10 +130,15 @@ _package_file = lru_cache(maxsize=4096)(_module_file)
 
 
 def _package(name: str) -> Path:
+    """Return where an installed package lies: its folder, or its one module without ``.py``."""
     spec = importlib.util.find_spec(name)
-    assert spec is not None
-    assert spec.origin is not None
-    return Path(spec.origin).parent
+    if spec is None or spec.origin is None:
+        raise InputError(
+            f"the package {name!r} cannot travel in an FMU: "
+            + ("it is not installed" if spec is None else "it needs an __init__.py")
+        )
+    origin = Path(spec.origin)
+    return origin.parent if spec.submodule_search_locations else origin.with_suffix("")
 
 
 def _closure(
@@ -150,7 +164,7 @@ def _closure(
             text = _NO_INIT  # its __init__ imports the builder, which an FMU does not need
         modules[name] = (path, text)
         package = path.name == "__init__.py"
-        own = name.partition(".")[0] not in local.roots
+        own = name.partition(".")[0] not in local.ours
         found = _imports(text, str(path), name, package, everywhere=own)
         todo += [(one, str(path)) for one in found]
         if "." in name:
@@ -200,8 +214,8 @@ def _require_installed(top: str, importer: str, local: _Local) -> None:
         raise InputError(f"{importer}: imports {top!r}, a folder without an __init__.py; add one")
     if importlib.util.find_spec(top) is None:
         raise InputError(
-            f"{importer}: imports {top!r}, which is neither installed nor a module beside it in "
-            f"{local.folder}"
+            f"{importer}: imports {top!r}, which is not installed"
+            + (f" and no module beside it in {local.folder}" if local.folder else "")
         )
 
 

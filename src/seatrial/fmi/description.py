@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from typing import Any
 from xml.etree.ElementTree import Element, SubElement
 
 from pythonfmu.default_experiment import DefaultExperiment
@@ -13,11 +13,9 @@ from pythonfmu.variables import Boolean, Integer, Real, String
 
 from ..component import Component, Input, Parameter
 from ..errors import InputError
-from ..ports import ScalarPort
+from ..ports import Port, ScalarPort
 from ..units import unit
-
-if TYPE_CHECKING:
-    from .slave import Slave
+from .slave import Slave
 
 _VARIABLES = {float: Real, int: Integer, bool: Boolean, str: String}
 _CAUSALITY = {
@@ -27,33 +25,49 @@ _CAUSALITY = {
 }
 
 
-def describe(slave: Slave, base: Callable[[dict[str, str]], Element]) -> Element:
-    """Return the model description of ``slave``, ``base`` being pythonfmu's own ``to_xml``.
+def describe(cls: type[Component], name: str, start_values: Mapping[str, Any]) -> Element:
+    """Return the model description of a component class, as the FMU ``name``.
 
-    Adds units, min, max, nominal, exact start values, variability, output dependencies,
-    InitialUnknowns and an annotation on optional inputs, and names the capabilities that the
-    component really has.
+    ``start_values`` (by port name, SI) replace start values of the class. pythonfmu writes the
+    description; added are units, min, max, nominal, exact start values, variability, output
+    dependencies, InitialUnknowns, annotations of roles and of optional inputs, and the
+    capabilities that the component really has.
 
-    Raises InputError for a unit that cannot be written in FMI's base units.
+    Raises InputError for a start value that does not fit, or a unit that cannot be written in
+    FMI's base units.
     """
+    slave = type(cls.__name__, (Slave,), {"component_class": cls})(instance_name=name, resources="")
     component = slave.component
+    for port, value in start_values.items():
+        component.set(port, value)
+    component.check_parameters()
     _register(slave)
     able = str(component.rolls_back).lower()
-    root = base({"canGetAndSetFMUstate": able, "canSerializeFMUstate": able})
+    root: Element = slave.to_xml({"canGetAndSetFMUstate": able, "canSerializeFMUstate": able})
+    root.set("modelName", name)
     root.attrib.pop("generationDateAndTime", None)
     variables = root.find("ModelVariables")
     assert variables is not None
     for scalar, element in zip(component.scalars, variables, strict=True):
         _complete_variable(component, scalar, element[0])
-        if isinstance(scalar.port, Input) and scalar.port.optional:
-            tool = SubElement(SubElement(element, "Annotations"), "Tool", {"name": "seatrial"})
-            SubElement(tool, "optional")
+        _annotate(element, scalar.port)
     _insert_units(root, component)
     structure = root.find("ModelStructure")
     assert structure is not None
     structure.clear()
     _add_unknowns(structure, component)
     return root
+
+
+def _annotate(element: Element, port: Port) -> None:
+    """Write what FMI has no attribute for, where `variables` reads it."""
+    optional = isinstance(port, Input) and port.optional
+    if optional or port.role:
+        tool = SubElement(SubElement(element, "Annotations"), "Tool", {"name": "seatrial"})
+        if optional:
+            SubElement(tool, "optional")
+        if port.role:
+            SubElement(tool, "role", {"name": port.role})
 
 
 def summary(component: type[Component]) -> str:
@@ -63,7 +77,6 @@ def summary(component: type[Component]) -> str:
 
 def _register(slave: Slave) -> None:
     component = slave.component
-    slave.modelName = type(slave).__module__
     slave.description = summary(type(component))
     slave.default_experiment = DefaultExperiment(start_time=0.0, stop_time=10.0, step_size=0.01)
     slave.vars.clear()

@@ -118,4 +118,5 @@ def _variable(component: Component, scalar: ScalarPort) -> Variable:
         nominal=port.limit("nominal", scalar.index),
         description=port.description,
         optional=isinstance(port, Input) and port.optional,
+        role=port.role,
     )

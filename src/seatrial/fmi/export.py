@@ -11,14 +11,15 @@ import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
-from xml.etree.ElementTree import Element, indent, tostring
+from xml.etree.ElementTree import indent, tostring
 
 import pythonfmu
 
 from .. import __version__
 from ..errors import InputError
-from .bundle import Bundle, bundle
+from .bundle import Bundle, bundled
 from .cache import cache_folder
+from .description import describe
 from .slave import START_VALUES
 from .source import ComponentSource
 
@@ -52,7 +53,7 @@ def cached_fmu(source: ComponentSource, code: str) -> Path:
 
 def fmu_bytes(source: ComponentSource, start_values: Mapping[str, Any] | None = None) -> bytes:
     """Return the content of the FMU file; see `build_fmu`."""
-    carried = bundle(source.stem, source.script, source.folder)
+    carried = bundled(source)
     files = {f"resources/{name}": data for name, data in carried.files.items()}
     if start_values:
         text = json.dumps(dict(sorted(start_values.items())), indent=1)
@@ -71,13 +72,7 @@ def _model_description(
     files: Mapping[str, bytes],
     start_values: Mapping[str, Any],
 ) -> bytes:
-    source.component_class()  # says what is wrong with a class that is no component
-    slave = source.slave_class()(instance_name=source.name, resources="")
-    for name, value in start_values.items():
-        slave.component.set(name, value)
-    slave.component.check_parameters()
-    root: Element = slave.to_xml()
-    root.set("modelName", source.name)
+    root = describe(source.component_class(), source.name, start_values)
     root.set("generationTool", f"seatrial {__version__}, pythonfmu {pythonfmu.__version__}")
     simulation = root.find("CoSimulation")
     assert simulation is not None

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import fmpy
 from fmpy import fmi2
 
 from .fmuinstance import FmuInstance
 from .instance import Reader, Variable, Writer
+from .loaded import LoadedFmu
 from .messages import WARNING, listening_callbacks, stop_listening
-
-if TYPE_CHECKING:
-    from .load import LoadedFmu
 
 _CTYPES: dict[type, Any] = {
     float: ctypes.c_double,

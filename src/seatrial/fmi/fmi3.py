@@ -6,7 +6,7 @@ import ctypes
 import math
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import fmpy
 from fmpy import fmi3
@@ -15,10 +15,8 @@ from ..errors import SimulationError
 from .arrays import ArrayCall
 from .fmuinstance import FmuInstance
 from .instance import Reader, Variable, Writer
+from .loaded import LoadedFmu
 from .messages import WARNING
-
-if TYPE_CHECKING:
-    from .load import LoadedFmu
 
 _MOST_RETURNS = 10_000
 """Early returns from one step."""

@@ -6,15 +6,13 @@ import ctypes
 import os
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 from ..errors import INTERRUPTED, DiscardError, FatalError, InputError, SimulationError
 from ..serialisation import is_c_text
 from .instance import ByType, Value, Variable
+from .loaded import LoadedFmu
 from .messages import DISCARD, FATAL, WARNING, Messages, word
-
-if TYPE_CHECKING:
-    from .load import LoadedFmu
 
 
 class FmuInstance(ByType):

@@ -47,6 +47,8 @@ class Variable:
     """Place in its array, row by row."""
     optional: bool = False
     """An input that is normally not connected."""
+    role: str = ""
+    """What whoever runs the component does with it, of `ports.ROLES`; empty: nothing special."""
 
     @property
     def measure(self) -> Unit | str:
@@ -73,6 +75,10 @@ class Variables(dict[str, Variable]):
                 order = {v.name: _numbers(i) for v, i in zip(variables, indices, strict=True)}
                 variables.sort(key=lambda v: order[v.name])
         return ports
+
+    def of_role(self, role: str) -> list[str]:
+        """Return the names of the variables that declare a role of `ports.ROLES`."""
+        return [name for name, variable in self.items() if variable.role == role]
 
     @staticmethod
     def port_of(name: str) -> str:

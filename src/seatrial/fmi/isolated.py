@@ -17,7 +17,7 @@ from typing import Any
 
 from ..errors import DiscardError, InputError, SimulationError
 from .instance import Reader, Value, Writer
-from .load import LoadedFmu
+from .loaded import LoadedFmu
 from .pipe import CALL, INTERVAL, READ, RESULT, STEP, WRITE, Codec, Frames, frame
 from .process import EndedError, WorkerProcess
 from .worker import shortened

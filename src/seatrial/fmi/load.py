@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from fmpy.model_description import ModelDescription, ValidationError, read_model_description
+from fmpy.model_description import ValidationError, read_model_description
 
 from ..errors import InputError
 from .archive import content_hash, unpacked
 from .fmi2 import Fmi2Instance
 from .fmi3 import Fmi3Instance
-from .instance import Instance, Variables
-from .variables import Array, described
+from .instance import Instance
+from .loaded import LoadedFmu
+from .variables import described
 from .xmlfile import read_xml
 
 _NEEDED = "co-simulation of FMI 2.0 or 3.0 is needed"
@@ -27,22 +26,6 @@ _INTERFACES = {
     "Implementation": "co-simulation",  # of FMI 1.0
 }
 _MOST_PROBLEMS = 3
-
-
-@dataclass(frozen=True)
-class LoadedFmu:
-    """An FMU file unpacked and described; instances are made from it."""
-
-    path: Path
-    folder: Path
-    sha256: str
-    description: ModelDescription
-    variables: Variables
-    arrays: Mapping[int, Array]
-    """What each value reference of an FMI 3 FMU stands for."""
-    feedthrough: Mapping[str, Sequence[str]]
-    notes: tuple[str, ...]
-    """What this FMU has that cannot be used here, for its user."""
 
 
 def load_fmu(path: Path) -> LoadedFmu:

@@ -16,10 +16,9 @@ import math
 import os
 import sys
 import traceback
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, ClassVar
-from xml.etree.ElementTree import Element
 
 import numpy as np
 from pythonfmu.enums import Fmi2Status
@@ -121,12 +120,6 @@ class Slave(Fmi2Slave):  # type: ignore[misc]
     def set_string(self, vrs: list[int], values: list[str]) -> None:
         """Set String variables; an error is reported by the next step."""
         self._guarded(lambda: self.component.write(vrs, values, str))
-
-    def to_xml(self, model_options: Mapping[str, str] | None = None) -> Element:
-        """Return the model description, with all that pythonfmu leaves out."""
-        from .description import describe  # only a build needs it: not bundled
-
-        return describe(self, super().to_xml)
 
     # ------------------------------------------------------------------ state
 

@@ -1,21 +1,23 @@
-"""Where an FMU comes from: a shipped name, an ``.fmu`` file, or ``my_boat.py:Class``."""
+"""Sources of FMUs: a name of the index, an ``.fmu`` file, or ``my_boat.py:Class``."""
 
 from __future__ import annotations
 
-import importlib.util
+import importlib
+import re
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 from ..component import Component
 from ..errors import InputError, unknown
-from ..shipped import shipped_folder
+from .index import component_class, components, title
 
-_SCRIPT = '''"""{name}: {class_name} of {file} as an FMU."""
+# The method is there because pythonfmu's binary releases the script's globals once too often: only
+# a function that is defined in the script keeps them alive at the second instantiation.
+_SCRIPT = '''"""{name}: {class_name} as an FMU."""
 
 from {module} import {class_name}
 from seatrial.fmi.slave import Slave
@@ -39,57 +41,60 @@ class ComponentSource:
     """The FMU's name, as rigs write it."""
     stem: str
     """The same as an identifier."""
-    script: bytes
-    """The slave script's text."""
-    folder: Path
-    """Where the modules beside the script are."""
+    module: str
+    class_name: str
     origin: str
-    """What the user wrote or where the script is, for messages."""
+    """What the user wrote, for messages."""
+    folder: Path | None = None
+    """Where the module and those beside it lie, if they are a user's files."""
 
-    def slave_class(self) -> type[Any]:
-        """Return the script's slave class, from the modules as they lie on disk.
+    @property
+    def script(self) -> bytes:
+        """Text of the FMU's slave script."""
+        text = _SCRIPT.format(name=self.name, module=self.module, class_name=self.class_name)
+        return text.encode()
 
-        Raises InputError if the script cannot be imported.
+    @property
+    def package(self) -> str | None:
+        """Top-level package of somebody else that has to travel in the FMU."""
+        top = self.module.partition(".")[0]
+        return None if self.folder is not None or top == "seatrial" else top
+
+    @property
+    def title(self) -> str:
+        """What it is, for listings; of a user's file, its class."""
+        return title(self.name) if self.folder is None else self.class_name
+
+    def component_class(self) -> type[Component]:
+        """Return the component's class, from the modules as they lie on disk.
+
+        Raises InputError if it cannot be imported, or is no component.
         """
+        if self.folder is None:
+            return component_class(self.name)
         with _importable(self.folder):
-            module = ModuleType(self.stem)
             try:
-                exec(compile(self.script, f"{self.stem}.py", "exec"), module.__dict__)
+                module: Any = importlib.import_module(self.module)
             except InputError:
                 raise
             except Exception as error:
                 raise InputError(
                     f"{self.origin}: cannot be imported: {type(error).__name__}: {error}"
                 ) from error
-        from .slave import Slave
-
-        found = [
-            v
-            for v in vars(module).values()
-            if isinstance(v, type) and issubclass(v, Slave) and v is not Slave
-        ]
-        if len(found) != 1:
-            raise InputError(f"{self.origin}: has {len(found)} subclasses of Slave, one is needed")
-        if "__init__" not in vars(found[0]):
-            raise InputError(
-                f"{self.origin}: {found[0].__name__} needs an __init__ of its own: pythonfmu's "
-                "binary releases the script's globals unless a function defined there holds them"
-            )
-        return found[0]
-
-    def component_class(self) -> type[Component]:
-        """Return the component class behind the slave; raises InputError as `slave_class`."""
-        cls = getattr(self.slave_class(), "component_class", None)
-        if not (isinstance(cls, type) and issubclass(cls, Component)):
+        if not hasattr(module, self.class_name):
+            names = [n for n, v in vars(module).items() if _is_component(v)]
+            raise InputError(f"{self.origin}: {unknown('component', self.class_name, names)}")
+        cls = getattr(module, self.class_name)
+        if not _is_component(cls):
             raise InputError(f"{self.origin}: {cls!r} is not a subclass of seatrial's Component")
-        return cls
+        return cls  # type: ignore[no-any-return]
 
 
 def find_source(text: str, relative_to: Path) -> ComponentSource | Path:
     """Return what ``text`` names: a component, or the path of an ``.fmu`` file.
 
     ``text`` is ``path/to/x.fmu``, ``path/to/my_boat.py:Class`` (both relative to the file that
-    says it) or the name of a shipped FMU. Raises InputError if there is nothing there.
+    says it) or a name of the index. Raises InputError if there is nothing there.
     """
     if text.endswith(".fmu"):
         path = (relative_to / text).resolve()
@@ -99,21 +104,26 @@ def find_source(text: str, relative_to: Path) -> ComponentSource | Path:
     if ".py:" in text:
         file, _, class_name = text.rpartition(":")
         return _user_source((relative_to / file).resolve(), class_name, text)
-    shipped = shipped_sources()
-    if text not in shipped:
+    if text not in components().names():
         raise InputError(
-            unknown("FMU", text, shipped) + "; or give a path: x.fmu, my_boat.py:Class"
+            unknown("FMU", text, components().names()) + "; or give a path: x.fmu, my_boat.py:Class"
         )
-    return shipped[text]
+    return _indexed(text)
+
+
+def named_sources() -> dict[str, ComponentSource]:
+    """Return the components of the index by FMU name: shipped, and of installed packages."""
+    return {name: _indexed(name) for name in components().names()}
 
 
 def shipped_sources() -> dict[str, ComponentSource]:
     """Return the shipped components by FMU name."""
-    sources = {}
-    for path in sorted(shipped_folder("fmus").glob("*.py")):
-        name = path.stem.replace("_", "-")
-        sources[name] = ComponentSource(name, path.stem, path.read_bytes(), path.parent, str(path))
-    return sources
+    return {name: _indexed(name) for name in components().shipped}
+
+
+def _indexed(name: str) -> ComponentSource:
+    module, _, class_name = components().target(name).partition(":")
+    return ComponentSource(name, re.sub(r"\W", "_", name), module, class_name, name)
 
 
 def _user_source(path: Path, class_name: str, written: str) -> ComponentSource:
@@ -123,11 +133,12 @@ def _user_source(path: Path, class_name: str, written: str) -> ComponentSource:
         raise InputError(f"{written}: file and class must be Python identifiers: my_boat.py:Class")
     if path.stem in ("seatrial", "pythonfmu") or path.stem in sys.stdlib_module_names:
         raise InputError(f"{written}: a file called {path.name} would hide a library; rename it")
-    script = _SCRIPT.format(
-        name=class_name, class_name=class_name, file=path.name, module=path.stem
-    )
     stem = f"{path.stem}_{class_name}"
-    return ComponentSource(class_name, stem, script.encode(), path.parent, str(path))
+    return ComponentSource(class_name, stem, path.stem, class_name, str(path), path.parent)
+
+
+def _is_component(value: Any) -> bool:
+    return isinstance(value, type) and issubclass(value, Component) and value is not Component
 
 
 @contextmanager

@@ -114,7 +114,9 @@ class _Reading:
         inherited = {a: getattr(v, a) or getattr(declared, a, None) for a in _INHERITED}
         limits = {a: _number(inherited[a]) if kind in (int, float) else None for a in _LIMITS}
         unit = (inherited["unit"] or "") if kind is float else ""
-        optional = element.find("Annotations/Tool[@name='seatrial']/optional") is not None
+        tool = element.find("Annotations/Tool[@name='seatrial']")
+        optional = tool is not None and tool.find("optional") is not None
+        role = tool.find("role") if tool is not None else None
         starts = self._starts(v, element, len(names))
         return [
             Variable(
@@ -134,6 +136,7 @@ class _Reading:
                 items={item.name: int(item.value) for item in getattr(declared, "items", ())},
                 element=place,
                 optional=optional,
+                role="" if role is None else role.get("name", ""),
             )
             for place, name in enumerate(names)
         ]

@@ -8,7 +8,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ..component import Logging, Reachable
 from ..cosim.master import Master
 from ..cosim.system import Engine
 from .hooks import Hooks, StoppedError
@@ -91,17 +90,15 @@ def _timed(wall: dict[str, float], what: str) -> Iterator[None]:
 def _tell_folder(master: Master, out: Path) -> None:
     """Say where the run's folder is to the components that keep logs and were told nothing."""
     for name, part in master.system.parts.items():
-        port = part.instance.variables.get("run_folder")
-        keeps_logs = port is not None and port.description == Logging.run_folder.description
-        if keeps_logs and "run_folder" not in part.given:
-            master.set(name, ["run_folder"], [str(out.resolve())])
+        for port in part.instance.variables.of_role("run-folder"):
+            if port not in part.given:
+                master.set(name, [port], [str(out.resolve())])
 
 
 def _tell_reachable(master: Master, hooks: Hooks) -> None:
     """Say which components programs outside connect to, and where."""
     for name, part in master.system.parts.items():
-        port = part.instance.variables.get("reached_at")
-        if port is not None and port.description == Reachable.reached_at.description:
-            (where,) = part.instance.reader(["reached_at"])()
+        for port in part.instance.variables.of_role("address"):
+            (where,) = part.instance.reader([port])()
             if where:
                 hooks.reachable(name, str(where))

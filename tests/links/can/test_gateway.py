@@ -265,15 +265,15 @@ def test_dronecans_slcan_driver_at_a_pseudo_terminal():
         ]
 
 
-def gateway(gateway):
+def gateway(link):
     made = CanGateway("gateway")
-    made.set("link", gateway)
+    made.set("link", link)
     made.initialise()
     return made
 
 
 @pytest.mark.parametrize(
-    ("gateway", "what"),
+    ("link", "what"),
     [
         ("socketcnd:127.0.0.1:1", "did you mean 'socketcand'"),
         ("socketcand:127.0.0.1", "of the form 'socketcand:127.0.0.1:29536'"),
@@ -287,10 +287,10 @@ def gateway(gateway):
         ("python-can:nosuchbus:x", "is a real bus"),
     ],
 )
-def test_gateways_that_cannot_be_are_named(gateway, what, monkeypatch):
+def test_gateways_that_cannot_be_are_named(link, what, monkeypatch):
     monkeypatch.delenv(ALLOWED, raising=False)
     with pytest.raises(InputError, match=what):
-        gateway(gateway)
+        gateway(link)
 
 
 def test_an_unknown_bus_is_named_where_hardware_is_allowed(monkeypatch):

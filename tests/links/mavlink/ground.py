@@ -73,16 +73,16 @@ def content(message):
 
 def upload(bench, items, kind=MISSION, sender=STATION, sends=None):
     """Upload a list over an air that loses nothing; return MAV_MISSION_RESULT."""
-    bench.air.take()
+    bench.transport.take()
     bench.hear(mavlink.MAVLink_mission_count_message(7, 1, len(items), kind), sender)
     for _ in range(len(items)):
-        requests = bench.air.take("MISSION_REQUEST_INT", sender.link)
+        requests = bench.transport.take("MISSION_REQUEST_INT", sender.link)
         if not requests:
             break
         (request,) = requests
         assert request.mission_type == kind
         bench.hear((sends or items)[request.seq], sender)
-    (answer,) = bench.air.take("MISSION_ACK", sender.link)
+    (answer,) = bench.transport.take("MISSION_ACK", sender.link)
     assert answer.mission_type == kind
     assert (answer.target_system, answer.target_component) == (sender.system, sender.component)
     return answer.type
@@ -92,13 +92,13 @@ def download(
     bench, kind=MISSION, sender=STATION, request=mavlink.MAVLink_mission_request_int_message
 ):
     """Download a list over an air that loses nothing; return its items."""
-    bench.air.take()
+    bench.transport.take()
     bench.hear(mavlink.MAVLink_mission_request_list_message(7, 1, kind), sender)
-    (count,) = bench.air.take("MISSION_COUNT", sender.link)
+    (count,) = bench.transport.take("MISSION_COUNT", sender.link)
     items = []
     for sequence in range(count.count):
         bench.hear(request(7, 1, sequence, kind), sender)
-        (found,) = [m for m in bench.air.take(link=sender.link) if hasattr(m, "command")]
+        (found,) = [m for m in bench.transport.take(link=sender.link) if hasattr(m, "command")]
         assert (found.seq, found.mission_type) == (sequence, kind)
         items.append(found)
     bench.hear(mavlink.MAVLink_mission_ack_message(7, 1, 0, kind), sender)

@@ -39,7 +39,7 @@ def test_only_what_is_meant_for_us_is_answered(system, component, answered):
 def test_the_answer_goes_over_the_link_of_the_command():
     bench = Bench()
     bench.hear(mavlink.MAVLink_command_long_message(7, 1, 999, 0, *[0] * 7), Sender(255, 1, 1))
-    ((link, _),) = bench.air.said
+    ((link, _),) = bench.transport.said
     assert link == 1
 
 
@@ -142,14 +142,14 @@ def test_what_it_cannot_do_is_refused_with_the_reason(number, why):
     bench = Bench()
     assert bench.command(number, 1, 1500) == DENIED
     bench.tick()
-    assert why in "".join(m.text for m in bench.air.take("STATUSTEXT"))
+    assert why in "".join(m.text for m in bench.transport.take("STATUSTEXT"))
 
 
 def test_no_key_is_taken_over_a_link():
     bench = Bench()
     bench.hear(mavlink.MAVLink_setup_signing_message(7, 1, [1] * 32, 1))
     bench.tick()
-    assert "signing_key_file" in "".join(m.text for m in bench.air.take("STATUSTEXT"))
+    assert "signing_key_file" in "".join(m.text for m in bench.transport.take("STATUSTEXT"))
 
 
 @pytest.mark.parametrize("opcode", [1, 2, 3, 4, 15])
@@ -158,12 +158,12 @@ def test_there_are_no_files(opcode):
     asked = FTP_OP(65535, 9, opcode, 3, 0, 0, 17, b"@SY").pack()
     payload = list(asked.ljust(251, b"\0"))
     bench.hear(mavlink.MAVLink_file_transfer_protocol_message(0, 7, 1, payload))
-    (answer,) = bench.air.take("FILE_TRANSFER_PROTOCOL", STATION.link)
+    (answer,) = bench.transport.take("FILE_TRANSFER_PROTOCOL", STATION.link)
     assert (answer.target_system, answer.target_component) == (STATION.system, STATION.component)
     refusal = FTP_OP(0, 9, OP_Nack, 1, opcode, 0, 0, bytes([UNKNOWN_COMMAND])).pack()
     assert bytes(answer.payload) == refusal.ljust(251, b"\0")
     bench.hear(answer)  # an answer gets none
-    assert bench.air.take("FILE_TRANSFER_PROTOCOL") == []
+    assert bench.transport.take("FILE_TRANSFER_PROTOCOL") == []
 
 
 @pytest.mark.parametrize("number", [395, 397])  # COMPONENT_INFORMATION, COMPONENT_METADATA

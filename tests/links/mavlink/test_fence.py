@@ -135,14 +135,16 @@ def test_a_breach_holds_and_is_told(where):
     assert boat.status() == (0, NONE, 0)
     assert boat.is_healthy()
     boat.wait(0.5)
-    boat.air.take()
+    boat.transport.take()
     boat.be(*where)
-    (told,) = boat.air.take("FENCE_STATUS", None)
+    (told,) = boat.transport.take("FENCE_STATUS", None)
     assert (told.breach_status, told.breach_type, told.breach_count) == (1, BOUNDARY, 1)
     assert told.breach_time == round(boat.now * 1e3)
     assert boat.vehicle.mode.name == "hold"
     assert boat.vehicle.failsafe
-    assert "Failsafe: outside the fence, hold" in [m.text for m in boat.air.take("STATUSTEXT")]
+    assert "Failsafe: outside the fence, hold" in [
+        m.text for m in boat.transport.take("STATUSTEXT")
+    ]
     assert not boat.is_healthy()
 
 
@@ -248,7 +250,7 @@ def test_a_return_point_fences_nothing():
 def test_without_a_fence_nothing_is_told():
     boat = Bench()
     boat.wait(3.0)
-    assert boat.air.take("FENCE_STATUS") == []
+    assert boat.transport.take("FENCE_STATUS") == []
 
 
 def test_the_floor_of_a_submarine():

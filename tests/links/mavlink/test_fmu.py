@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from pymavlink import mavutil
 
-from seatrial.fmi.bundle import bundle
+from seatrial.fmi.bundle import bundled
 from seatrial.fmi.direct import DirectInstance
 from seatrial.fmi.export import cached_fmu
 from seatrial.fmi.isolated import IsolatedInstance
@@ -29,7 +29,7 @@ OUTPUTS = ["mode", "armed", "manual.surge", "target_valid", "home.north", "groun
 def fmu():
     """Return the component's FMU, built on demand as a run does."""
     source = find_source("mavlink", Path.cwd())
-    return load_fmu(cached_fmu(source, bundle(source.stem, source.script, source.folder).script))
+    return load_fmu(cached_fmu(source, bundled(source).script))
 
 
 def opened(how, fmu):

@@ -57,13 +57,13 @@ def what_was_told(bench):
     v, table = bench.vehicle, bench.parameters
     plans = [[content(m) for m in download(bench, kind)] for kind in (MISSION, FENCE, RALLY)]
     values = [table[name] for name in table.names]
-    return v.mode.name, v.armed, v.sticks, v.target, v.home_n, list(v.channels), plans, values
+    return v.mode.name, v.armed, v.manual, v.target, v.home_n, list(v.channels), plans, values
 
 
 def is_sane(bench):
     v = bench.vehicle
     assert v.dialect.mode(v.mode.name) is v.mode
-    assert all(-1.0 <= stick <= 1.0 for stick in v.sticks)
+    assert all(-1.0 <= stick <= 1.0 for stick in v.manual)
     assert all(abs(x) <= 1e6 for x in v.home_n)
     assert v.target is None or all(abs(x) <= 1e6 for x in v.target.position)
 
@@ -125,7 +125,7 @@ def a_stranger_changes_nothing(random):
         stranger = random.choice(strangers)
         data = message(random).pack(stranger) if random.random() < 0.8 else sized(random, stranger)
         deliver(bench, received, data)
-    assert bench.air.take("COMMAND_ACK") == []
+    assert bench.transport.take("COMMAND_ACK") == []
     assert what_was_told(bench) == before
 
 
@@ -149,7 +149,7 @@ def what_is_for_another_changes_nothing(random):
         said = message(random, system=OTHER)
         if hasattr(said, "target_system") or hasattr(said, "target"):
             deliver(bench, received, said.pack(sender))
-    assert bench.air.take("COMMAND_ACK") == []
+    assert bench.transport.take("COMMAND_ACK") == []
     assert what_was_told(bench) == before
 
 

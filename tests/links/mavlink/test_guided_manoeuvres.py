@@ -101,9 +101,9 @@ def test_a_px4_shows_hold_while_it_goes_elsewhere():
     assert boat.command_int(REPOSITION, -1.0, 0, **place()) == DENIED
     assert boat.command_int(REPOSITION, -1.0, 1, **place()) == OK
     assert boat.vehicle.mode.name == "guided"  # to guidance
-    boat.air.take()
+    boat.transport.take()
     boat.wait(1.0)
-    (heartbeat, *_) = boat.air.take("HEARTBEAT")
+    (heartbeat, *_) = boat.transport.take("HEARTBEAT")
     assert heartbeat.custom_mode == hold.custom_mode
     boat.hear(ahead(0.6, 0.0))  # counts in Offboard alone
     assert boat.vehicle.target.kind == "position"

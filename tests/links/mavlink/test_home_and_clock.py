@@ -25,7 +25,7 @@ def test_home_is_the_origin_at_first():
     assert place(home) == (-317800000, -522600000, 2000)
     assert (home.x, home.y, home.z) == (0.0, 0.0, 0.0)
     assert bench.command(GET) == OK
-    (told,) = bench.air.take("HOME_POSITION", STATION.link)
+    (told,) = bench.transport.take("HOME_POSITION", STATION.link)
     assert place(told) == place(home)
 
 
@@ -33,10 +33,10 @@ def test_home_where_it_is_now_is_told_to_all():
     bench = Bench()
     bench.measure(position_n=(30.0, 40.0, 1.0))
     bench.tick()
-    bench.air.take()
+    bench.transport.take()
     assert bench.command(SET, 1) == OK
     assert bench.vehicle.home_n == (30.0, 40.0, 1.0)
-    assert len(bench.air.take("HOME_POSITION", None)) == 1
+    assert len(bench.transport.take("HOME_POSITION", None)) == 1
     bench.measure(position_valid=False)
     assert bench.command(SET, 1) == FAILED
 
@@ -82,7 +82,7 @@ def test_the_origin_is_told_and_stays():
     origin = bench.one(number)
     assert place(origin) == (-317800000, -522600000, 2000)
     bench.hear(mavlink.MAVLink_set_gps_global_origin_message(7, 10, 20, 30), OTHER_STATION)
-    (answer,) = bench.air.take("GPS_GLOBAL_ORIGIN", OTHER_STATION.link)
+    (answer,) = bench.transport.take("GPS_GLOBAL_ORIGIN", OTHER_STATION.link)
     assert place(answer) == place(origin)
 
 
@@ -98,21 +98,21 @@ def test_time_is_synchronised_to_simulated_time():
     bench = Bench()
     bench.wait(1.23)
     bench.hear(mavlink.MAVLink_timesync_message(0, 123_456_789), OTHER_STATION)
-    (answer,) = bench.air.take("TIMESYNC", OTHER_STATION.link)
+    (answer,) = bench.transport.take("TIMESYNC", OTHER_STATION.link)
     assert (answer.tc1, answer.ts1) == (1_230_000_000, 123_456_789)
     bench.hear(mavlink.MAVLink_timesync_message(5, 6))  # somebody's answer
-    assert bench.air.take("TIMESYNC") == []
+    assert bench.transport.take("TIMESYNC") == []
 
 
 def test_pings_are_answered_to_who_asked():
     bench = Bench()
     bench.wait(0.5)
     bench.hear(mavlink.MAVLink_ping_message(99, 42, 0, 0), OTHER_STATION)
-    (answer,) = bench.air.take("PING", OTHER_STATION.link)
+    (answer,) = bench.transport.take("PING", OTHER_STATION.link)
     assert (answer.seq, answer.time_usec) == (42, 500_000)
     assert (answer.target_system, answer.target_component) == (250, 190)
     bench.hear(mavlink.MAVLink_ping_message(99, 42, 7, 1))  # an answer to us
-    assert bench.air.take("PING") == []
+    assert bench.transport.take("PING") == []
 
 
 def test_unix_time_is_that_of_the_vehicles_day():

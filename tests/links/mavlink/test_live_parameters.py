@@ -12,7 +12,7 @@ def put(bench: Bench, name: str, value: float) -> None:
     """Set a parameter as a ground station does, and check that it is taken."""
     kind = mavlink.MAV_PARAM_TYPE_REAL32
     bench.hear(mavlink.MAVLink_param_set_message(7, 1, name.encode(), value, kind))
-    (told,) = bench.air.take("PARAM_VALUE")
+    (told,) = bench.transport.take("PARAM_VALUE")
     assert (told.param_id, told.param_value) == (name, pytest.approx(value))
 
 
@@ -60,10 +60,10 @@ def test_fs_timeout_and_fs_thr_enable_are_for_the_sticks(enabled: int, mode: str
     bench.hear(mavlink.MAVLink_manual_control_message(7, 0, 500, 800, 0, 0))
     bench.wait(0.5)
     assert bench.vehicle.mode.name == "manual"
-    assert bench.vehicle.sticks != (0.0, 0.0, 0.0, 0.0)
+    assert bench.vehicle.manual != (0.0, 0.0, 0.0, 0.0)
     bench.tick()
     assert bench.vehicle.mode.name == mode
-    assert bench.vehicle.sticks == (0.0, 0.0, 0.0, 0.0)
+    assert bench.vehicle.manual == (0.0, 0.0, 0.0, 0.0)
 
 
 def test_guid_timeout_is_how_long_a_set_point_counts() -> None:

@@ -19,7 +19,7 @@ def override(system=7, **channels):
 
 
 @pytest.mark.parametrize(
-    ("options", "message", "manual"),
+    ("options", "message", "axes"),
     [
         ({}, manual(z=1000), (1.0, 0.0, 0.0, 0.0)),
         ({}, manual(z=-500, y=250), (-0.5, 0.0, 0.25, 0.0)),
@@ -33,14 +33,14 @@ def override(system=7, **channels):
         ({"submerged": True}, manual(z=250), (0.0, 0.0, 0.0, 0.5)),
     ],
 )
-def test_axes_of_manual_control(options, message, sticks):
+def test_axes_of_manual_control(options, message, axes):
     bench = Bench(**options)
     bench.hear(message)
-    assert bench.vehicle.sticks == pytest.approx(sticks)
+    assert bench.vehicle.manual == pytest.approx(axes)
 
 
 @pytest.mark.parametrize(
-    ("options", "message", "manual"),
+    ("options", "message", "axes"),
     [
         ({}, override(c3=1900), (1.0, 0.0, 0.0, 0.0)),
         ({}, override(c1=1100, c3=1700), (0.5, 0.0, -1.0, 0.0)),
@@ -50,19 +50,19 @@ def test_axes_of_manual_control(options, message, sticks):
         ({"submerged": True}, override(c3=1900), (0.0, 0.0, 0.0, -1.0)),
     ],
 )
-def test_channels(options, message, sticks):
+def test_channels(options, message, axes):
     bench = Bench(**options)
     bench.hear(message)
-    assert bench.vehicle.sticks == pytest.approx(sticks)
+    assert bench.vehicle.manual == pytest.approx(axes)
 
 
 def test_a_channel_is_left_changed_or_released():
     bench = Bench()
     bench.hear(override(c1=1900, c3=1900, c9=1700))
     bench.hear(override(c3=1500))
-    assert bench.vehicle.sticks == (0.0, 0.0, 1.0, 0.0)
+    assert bench.vehicle.manual == (0.0, 0.0, 1.0, 0.0)
     bench.hear(override(c1=0))
-    assert bench.vehicle.sticks == RELEASED
+    assert bench.vehicle.manual == RELEASED
     channels = bench.one(mavlink.MAVLINK_MSG_ID_RC_CHANNELS)
     assert (channels.chan1_raw, channels.chan3_raw, channels.chan9_raw) == (65535, 1500, 1700)
     bench.hear(override(c9=65534))
@@ -73,7 +73,7 @@ def test_sticks_for_another_vehicle_are_not_ours():
     bench = Bench()
     bench.hear(manual(z=1000, target=8))
     bench.hear(override(8, c3=1900))
-    assert bench.vehicle.sticks == RELEASED
+    assert bench.vehicle.manual == RELEASED
 
 
 @pytest.mark.parametrize("message", [manual(z=1000), override(c3=1900)])
@@ -84,11 +84,11 @@ def test_sticks_that_nobody_holds_let_go_and_the_failsafe_acts(message):
     for _ in range(5):
         bench.hear(message)
         bench.wait(1.9)
-        assert bench.vehicle.sticks == (1.0, 0.0, 0.0, 0.0)
+        assert bench.vehicle.manual == (1.0, 0.0, 0.0, 0.0)
     bench.wait(0.1)
-    assert bench.vehicle.sticks[0] == 1.0
+    assert bench.vehicle.manual[0] == 1.0
     bench.tick()
-    assert bench.vehicle.sticks == RELEASED
+    assert bench.vehicle.manual == RELEASED
     assert (bench.vehicle.mode.name, bench.vehicle.armed) == ("hold", True)
     assert bench.vehicle.failsafe
     bench.hear(message)
@@ -103,7 +103,7 @@ def test_what_is_said_of_lost_sticks():
     bench.hear(manual(z=1))
     bench.texts()
     bench.wait(2.0)
-    said = [m.text for m in bench.air.take("STATUSTEXT")]
+    said = [m.text for m in bench.transport.take("STATUSTEXT")]
     assert said == ["Failsafe: sticks lost, hold", "Mode HOLD"]
 
 
@@ -113,7 +113,7 @@ def test_who_releases_all_channels_has_let_go_on_purpose():
     bench.arm()
     bench.hear(override(c1=1900, c3=1900))
     bench.hear(override(c1=0, c3=0))
-    assert bench.vehicle.sticks == RELEASED
+    assert bench.vehicle.manual == RELEASED
     bench.wait(10.0)
     assert (bench.vehicle.mode.name, bench.vehicle.failsafe) == ("manual", False)
 
@@ -123,7 +123,7 @@ def test_sticks_lost_in_another_mode_are_nothing():
     bench.arm()
     bench.hear(manual(z=1000))
     bench.wait(10.0)
-    assert bench.vehicle.sticks == RELEASED
+    assert bench.vehicle.manual == RELEASED
     assert (bench.vehicle.mode.name, bench.vehicle.failsafe) == ("hold", False)
 
 
@@ -131,4 +131,4 @@ def test_the_newest_hand_wins():
     bench = Bench()
     bench.hear(manual(z=1000))
     bench.hear(manual(z=-1000), OTHER_STATION)
-    assert bench.vehicle.sticks == (-1.0, 0.0, 0.0, 0.0)
+    assert bench.vehicle.manual == (-1.0, 0.0, 0.0, 0.0)

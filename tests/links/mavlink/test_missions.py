@@ -541,7 +541,7 @@ def test_set_current_is_always_answered():
     boat = Mission(square())
     boat.hear(mavlink.MAVLink_mission_set_current_message(7, 1, 1))
     boat.tick()
-    assert [m.seq for m in boat.air.take("MISSION_CURRENT", None)] == [1]
+    assert [m.seq for m in boat.transport.take("MISSION_CURRENT", None)] == [1]
 
 
 def test_jumps_are_counted_anew_if_asked():
@@ -583,14 +583,14 @@ def test_a_cleared_mission_stops():
 
 def test_current_is_streamed_and_told_at_every_change():
     boat = Mission(square())
-    boat.air.take()
+    boat.transport.take()
     boat.wait(10.0)
-    assert len(boat.air.take("MISSION_CURRENT", STATION.link)) == 10
+    assert len(boat.transport.take("MISSION_CURRENT", STATION.link)) == 10
     boat.go()
-    (m,) = boat.air.take("MISSION_CURRENT", None)[-1:]
+    (m,) = boat.transport.take("MISSION_CURRENT", None)[-1:]
     assert (m.seq, m.total, m.mission_state, m.mission_mode) == (1, 4, ACTIVE, 1)
     boat.arrive()
-    (m,) = boat.air.take("MISSION_CURRENT", None)
+    (m,) = boat.transport.take("MISSION_CURRENT", None)
     assert m.seq == 2
 
 
@@ -606,9 +606,9 @@ def test_what_is_done_is_said():
 
 
 def guide(boat, **more):
-    boat.air.take()
+    boat.transport.take()
     boat.hear(item(0, current=2, at=north_of(15), **more))
-    (answer,) = boat.air.take("MISSION_ACK", STATION.link)
+    (answer,) = boat.transport.take("MISSION_ACK", STATION.link)
     return answer.type
 
 
@@ -627,7 +627,7 @@ def test_an_item_in_guided_mode_is_no_part_of_an_upload():
     boat.hear(mavlink.MAVLink_mission_count_message(7, 1, 2, 0))
     guide(boat)
     boat.wait(1.0)
-    (request,) = boat.air.take("MISSION_REQUEST_INT")
+    (request,) = boat.transport.take("MISSION_REQUEST_INT")
     assert request.seq == 0
 
 

@@ -39,7 +39,7 @@ def sail(bench, seconds, **settings):
         bench.measure(position_n=tuple(guided.position_n))
         bench.node.missions.reached = guided.get("reached")
         bench.wait(guided.period)
-        reached.extend((m.seq, t) for m in bench.air.take("MISSION_ITEM_REACHED"))
+        reached.extend((m.seq, t) for m in bench.transport.take("MISSION_ITEM_REACHED"))
 
     drive(guided, seconds, each=each)
     return dict(reached), guided

@@ -51,9 +51,9 @@ def test_modes_are_told_one_by_one_or_all_at_once(autopilot):
     number, modes = mavlink.MAVLINK_MSG_ID_AVAILABLE_MODES, bench.vehicle.dialect.modes
 
     def told(index):
-        bench.air.take()
+        bench.transport.take()
         result = bench.command(mavlink.MAV_CMD_REQUEST_MESSAGE, number, index)
-        found = bench.air.take("AVAILABLE_MODES", STATION.link)
+        found = bench.transport.take("AVAILABLE_MODES", STATION.link)
         assert all(m.number_modes == len(modes) for m in found)
         return result, [(m.mode_index, m.custom_mode, m.mode_name) for m in found]
 

@@ -18,8 +18,8 @@ DENIED = mavlink.MAV_RESULT_DENIED
 def test_nobody_gets_them_unasked():
     bench = Bench()
     bench.wait(5.0)
-    assert not bench.air.take("ODOMETRY")
-    assert not bench.air.take("HIL_STATE_QUATERNION")
+    assert not bench.transport.take("ODOMETRY")
+    assert not bench.transport.take("HIL_STATE_QUATERNION")
 
 
 def test_odometry_has_its_velocity_along_the_body():

@@ -54,7 +54,7 @@ class Standing:
         for message in due:
             self.bench.hear(message)
         self.bench.node.tick(self.bench.now)
-        self.said += [(self.wall, m) for m in self.bench.air.take()]
+        self.said += [(self.wall, m) for m in self.bench.transport.take()]
         return bool(due)
 
     def received(self, kind):
@@ -99,7 +99,7 @@ def test_two_pauses_add_up():
 def test_heartbeats_go_on_and_everything_else_stands_still():
     bench = Bench()
     bench.wait(10.0)
-    bench.air.take()
+    bench.transport.take()
     standing = Standing([*beats(60), (60.0, put(SPEEDUP, 1.0))], bench)
     standing.run()
     ours = [at for at, _ in standing.received("HEARTBEAT")]
@@ -107,9 +107,9 @@ def test_heartbeats_go_on_and_everything_else_stands_still():
     assert len(ours) == pytest.approx(2 * 60, abs=2)
     others = {m.get_type() for _, m in standing.said} - {"HEARTBEAT"}
     assert others <= {"STATUSTEXT", "PARAM_VALUE"}
-    bench.air.take()
+    bench.transport.take()
     bench.wait(1.0)
-    attitudes = [m.time_boot_ms for m in bench.air.take("ATTITUDE", 0)]
+    attitudes = [m.time_boot_ms for m in bench.transport.take("ATTITUDE", 0)]
     assert 10_000 < attitudes[0] <= 10_110
 
 
@@ -171,7 +171,7 @@ def test_speed_ups_that_links_stand(autopilot, value, becomes):
     bench = Bench(autopilot=autopilot)
     bench.hear(put(SPEEDUP, value))
     assert bench.settings.speedup == becomes
-    (answer,) = bench.air.take("PARAM_VALUE")
+    (answer,) = bench.transport.take("PARAM_VALUE")
     assert answer.param_value == pytest.approx(becomes)
     if value != becomes:
         assert f"{SPEEDUP} stays 1: 0, or 0.1 to 1000 is allowed" in bench.texts()

@@ -8,14 +8,14 @@ CAPABILITIES = mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION
 
 
 def heartbeats(bench):
-    return bench.air.take("HEARTBEAT")
+    return bench.transport.take("HEARTBEAT")
 
 
 def test_a_heartbeat_a_second_on_every_link():
     bench = Bench()
     bench.wait(10.0)
     for link in (0, 1):
-        assert len(bench.air.take("HEARTBEAT", link)) == 10
+        assert len(bench.transport.take("HEARTBEAT", link)) == 10
 
 
 @pytest.mark.parametrize(
@@ -66,7 +66,7 @@ def test_it_tells_at_once_what_changes():
 def test_version_is_told_on_request_to_who_asks(ask):
     bench = Bench()
     assert ask(bench) == mavlink.MAV_RESULT_ACCEPTED
-    (version,) = bench.air.take("AUTOPILOT_VERSION", STATION.link)
+    (version,) = bench.transport.take("AUTOPILOT_VERSION", STATION.link)
     # Version 4.5.1-beta, a byte each, as MAVLink's FIRMWARE_VERSION_TYPE says.
     assert version.flight_sw_version == 0x04050180
     assert version.uid == 12345
@@ -85,7 +85,7 @@ def test_sentences_of_any_length_arrive(length):
     bench.vehicle.say(4, sentence)
     bench.tick()
     sender, reader = mavlink.MAVLink(None, 7, 1), mavlink.MAVLink(None)
-    pieces = [reader.parse_buffer(m.pack(sender))[0] for m in bench.air.take("STATUSTEXT")]
+    pieces = [reader.parse_buffer(m.pack(sender))[0] for m in bench.transport.take("STATUSTEXT")]
     assert "".join(piece.text for piece in pieces) == sentence
     assert {piece.severity for piece in pieces} == {4}
     if length <= 50:
@@ -96,4 +96,4 @@ def test_sentences_of_any_length_arrive(length):
         assert pieces[0].id > 0
         assert len(pieces[-1].text) < 50  # how a reader knows the last one
     bench.tick()
-    assert bench.air.take("STATUSTEXT") == []
+    assert bench.transport.take("STATUSTEXT") == []

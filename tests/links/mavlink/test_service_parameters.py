@@ -73,17 +73,17 @@ def identity(message) -> tuple:
 def test_a_list_is_complete_in_order_and_paced(bench: ParameterBench) -> None:
     bench.ask_list()
     bench.wait(0.5)
-    first = bench.air.take("PARAM_VALUE", link=0)
+    first = bench.transport.take("PARAM_VALUE", link=0)
     assert len(first) == pytest.approx(0.5 * RATE, abs=1)
     bench.wait(1.0)
-    got = [*first, *bench.air.take("PARAM_VALUE", link=0)]
+    got = [*first, *bench.transport.take("PARAM_VALUE", link=0)]
     kinds = {d.name: d.kind for d in DEFINITIONS}
     assert [identity(m) for m in got] == [
         (d.name, i, COUNT, kinds[d.name]) for i, d in enumerate(DEFINITIONS)
     ]
     assert [m.param_value for m in got[5:]] == [n / 8 for n in range(COUNT - 5)]
     bench.wait(1.0)
-    assert bench.air.take() == []
+    assert bench.transport.take() == []
 
 
 def test_stations_on_two_links_get_a_list_each(bench: ParameterBench) -> None:
@@ -92,7 +92,7 @@ def test_stations_on_two_links_get_a_list_each(bench: ParameterBench) -> None:
     bench.ask_list(OTHER_STATION)
     bench.wait(1.5)
     for link in (0, 1):
-        got = bench.air.take("PARAM_VALUE", link=link)
+        got = bench.transport.take("PARAM_VALUE", link=link)
         assert [m.param_index for m in got] == list(range(COUNT))
 
 
@@ -101,11 +101,11 @@ def test_who_asks_again_and_again_gets_the_list_all_the_same(bench: ParameterBen
     for _ in range(3):
         bench.ask_list()
         bench.wait(1.0)
-    indices = [m.param_index for m in bench.air.take("PARAM_VALUE", link=0)]
+    indices = [m.param_index for m in bench.transport.take("PARAM_VALUE", link=0)]
     assert indices == [i % COUNT for i in range(len(indices))]
     assert len(indices) == pytest.approx(3.0 * RATE, abs=3)
     bench.wait(2.0)
-    last = [m.param_index for m in bench.air.take("PARAM_VALUE", link=0)]
+    last = [m.param_index for m in bench.transport.take("PARAM_VALUE", link=0)]
     assert set(indices[200:] + last) == set(range(COUNT))  # since it was asked last, after 2 s
 
 
@@ -113,18 +113,18 @@ def test_a_slow_vehicle_sends_as_many_a_second(bench: ParameterBench) -> None:
     bench.ask_list()
     for tick in range(1, 6):
         bench.service.tick(0.2 * tick)
-    assert len(bench.air.take("PARAM_VALUE")) == 101  # of 1 s, both ends counted
+    assert len(bench.transport.take("PARAM_VALUE")) == 101  # of 1 s, both ends counted
 
 
 def test_a_list_for_a_link_that_is_gone_ends(bench: ParameterBench) -> None:
     bench.ask_list()
     bench.wait(0.2)
-    bench.air.there = [1]
-    bench.air.take()
+    bench.transport.there = [1]
+    bench.transport.take()
     bench.wait(0.5)
-    bench.air.there = [0, 1]
+    bench.transport.there = [0, 1]
     bench.wait(0.5)
-    assert bench.air.take() == []
+    assert bench.transport.take() == []
 
 
 def test_reads_by_index_and_by_name_agree(bench: ParameterBench) -> None:
@@ -148,13 +148,13 @@ def test_what_there_is_not_is_an_error_message(
     assert answer.error == mavlink.MAV_PARAM_ERROR_DOES_NOT_EXIST
     assert (answer.param_id, answer.param_index) == (name if index == -1 else "", index)
     bench.set("NONE", 1.0)
-    assert [m.get_type() for m in bench.air.take()] == ["PARAM_ERROR"]
+    assert [m.get_type() for m in bench.transport.take()] == ["PARAM_ERROR"]
 
 
 def test_what_is_set_is_told_to_all(bench: ParameterBench) -> None:
     sent = struct.unpack("<f", struct.pack("<f", 0.1))[0]
     bench.set("REAL", sent)
-    ((link, answer),) = bench.air.said
+    ((link, answer),) = bench.transport.said
     assert (link, answer.get_type(), answer.param_value) == (None, "PARAM_VALUE", 0.1)
     assert bench.table["REAL"] == 0.1
     assert identity(answer) == ("REAL", 3, COUNT, REAL32)
@@ -179,8 +179,8 @@ def test_what_is_refused_is_told_to_the_sender_alone(
 ) -> None:
     before = bench.table[name]
     bench.set(name, value, sender=OTHER_STATION)
-    refusal, value_told = bench.air.take(link=OTHER_STATION.link)
-    assert bench.air.said == []
+    refusal, value_told = bench.transport.take(link=OTHER_STATION.link)
+    assert bench.transport.said == []
     assert (value_told.get_type(), value_told.param_value) == ("PARAM_VALUE", before)
     assert (refusal.get_type(), refusal.param_id, refusal.error) == ("PARAM_ERROR", name, error)
     (text,) = bench.vehicle.texts
@@ -210,7 +210,7 @@ def test_px4_sends_the_bytes_of_integers(data) -> None:
     union = struct.pack(layout, number).ljust(4, b"\0")
     bench.set(name, struct.unpack("<f", union)[0], kind)
     assert bench.table[name] == number
-    (answer,) = bench.air.take("PARAM_VALUE")
+    (answer,) = bench.transport.take("PARAM_VALUE")
     frame = answer.pack(mavlink.MAVLink(None, 7, 1))
     payload = frame[10:-2].ljust(25, b"\0")  # MAVLink 2 cuts zeros off
     assert payload[:4] == union
@@ -220,7 +220,7 @@ def test_px4_refuses_another_type(bench: ParameterBench) -> None:
     px4 = ParameterBench("px4")
     px4.set("SMALL", 6.0, REAL32)
     assert px4.table["SMALL"] == 5.0
-    assert px4.air.take("PARAM_ERROR")
+    assert px4.transport.take("PARAM_ERROR")
     assert px4.vehicle.capabilities & mavlink.MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_BYTEWISE
     bench.set("SMALL", 6.0, REAL32)
     assert bench.table["SMALL"] == 6.0
@@ -271,7 +271,7 @@ def test_a_bad_link_loses_nothing_for_good(seed: int) -> None:
         if bench.ticks % 50 == 0:
             through(client.asks(), down=False)
         bench.wait(0.01)
-        through(bench.air.take(link=0), down=True)
+        through(bench.transport.take(link=0), down=True)
         arrived = sorted(each for each in on_the_way if each[0] <= bench.ticks)
         on_the_way[:] = [each for each in on_the_way if each[0] > bench.ticks]
         for _, _, down, message in arrived:
@@ -299,5 +299,5 @@ def test_nothing_crashes_it(kind, name, value, number, index) -> None:
         }[kind]()
     )
     bench.wait(0.02)
-    for _, message in bench.air.said:
+    for _, message in bench.transport.said:
         assert message.get_type() in ("PARAM_VALUE", "PARAM_ERROR")

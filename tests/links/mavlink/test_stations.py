@@ -106,7 +106,7 @@ def test_every_action(action, submerged, mode, armed):
     bench.heartbeat()
     bench.wait(6.0)
     assert (bench.vehicle.mode.name, bench.vehicle.armed) == (mode, armed)
-    said = [m.text for m in bench.air.take("STATUSTEXT")]
+    said = [m.text for m in bench.transport.take("STATUSTEXT")]
     assert any("all ground stations lost" in text for text in said)
 
 
@@ -117,7 +117,7 @@ def test_a_mode_that_cannot_be_entered_becomes_disarmed():
     bench.heartbeat()
     bench.wait(6.0)
     assert (bench.vehicle.mode.name, bench.vehicle.armed) == ("hold", False)
-    said = [m.text for m in bench.air.take("STATUSTEXT")]
+    said = [m.text for m in bench.transport.take("STATUSTEXT")]
     assert "Failsafe: return impossible, no position" in said
 
 
@@ -125,13 +125,13 @@ def test_it_is_told_in_the_heartbeat_until_somebody_is_back():
     bench = Bench()
     bench.heartbeat()
     bench.wait(6.0)
-    bench.air.take()
+    bench.transport.take()
     bench.wait(1.0)
-    assert bench.air.take("HEARTBEAT")[0].system_status == mavlink.MAV_STATE_CRITICAL
+    assert bench.transport.take("HEARTBEAT")[0].system_status == mavlink.MAV_STATE_CRITICAL
     bench.heartbeat()
     bench.tick()
-    assert bench.air.take("HEARTBEAT")[0].system_status == mavlink.MAV_STATE_STANDBY
-    assert "Ground station is back" in [m.text for m in bench.air.take("STATUSTEXT")]
+    assert bench.transport.take("HEARTBEAT")[0].system_status == mavlink.MAV_STATE_STANDBY
+    assert "Ground station is back" in [m.text for m in bench.transport.take("STATUSTEXT")]
 
 
 def test_one_failsafe_lasts_while_another_ends():

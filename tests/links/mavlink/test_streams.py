@@ -10,14 +10,14 @@ UNSUPPORTED = mavlink.MAV_RESULT_UNSUPPORTED
 
 
 def count(bench, seconds, kind="ATTITUDE", link=STATION.link):
-    bench.air.take()
+    bench.transport.take()
     bench.wait(seconds)
-    return len(bench.air.take(kind, link))
+    return len(bench.transport.take(kind, link))
 
 
 def interval_of(bench, number):
     assert bench.command(GET, number) == OK
-    (told,) = bench.air.take("MESSAGE_INTERVAL", STATION.link)
+    (told,) = bench.transport.take("MESSAGE_INTERVAL", STATION.link)
     assert told.message_id == number
     return told.interval_us
 
@@ -26,7 +26,7 @@ def test_what_a_ground_station_needs_comes_unasked():
     bench = Bench()
     bench.measure(voltage=16.0, pressure=101_325.0)
     bench.wait(4.0)
-    received = {m.get_type() for m in bench.air.take(link=0)}
+    received = {m.get_type() for m in bench.transport.take(link=0)}
     assert received >= {
         *("HEARTBEAT", "SYS_STATUS", "SYSTEM_TIME", "GLOBAL_POSITION_INT", "LOCAL_POSITION_NED"),
         *("ATTITUDE", "ATTITUDE_QUATERNION", "GPS_RAW_INT", "VFR_HUD", "RC_CHANNELS", "ALTITUDE"),
@@ -112,17 +112,17 @@ def test_a_group_leaves_the_others_alone():
 def test_a_new_link_starts_with_the_usual_streams():
     bench = Bench()
     bench.command(SET, ATTITUDE, -1)
-    bench.air.there = [1]
+    bench.transport.there = [1]
     bench.tick()
-    bench.air.there = [0, 1]  # not the same peer any more: links are never used again
+    bench.transport.there = [0, 1]  # not the same peer any more: links are never used again
     assert count(bench, 5.0) == 50
 
 
 def test_messages_on_request_go_to_who_asks():
     bench = Bench()
     assert bench.command(mavlink.MAV_CMD_REQUEST_MESSAGE, ATTITUDE, sender=OTHER_STATION) == OK
-    assert len(bench.air.take("ATTITUDE", OTHER_STATION.link)) == 1
-    assert bench.air.take("ATTITUDE", STATION.link) == []
+    assert len(bench.transport.take("ATTITUDE", OTHER_STATION.link)) == 1
+    assert bench.transport.take("ATTITUDE", STATION.link) == []
 
 
 @pytest.mark.parametrize(

@@ -257,4 +257,4 @@ def test_values_of_any_size_can_be_sent(x, submerged):
         way=Way(*x[:5]),
     )
     bench.wait(1.0)  # the air of the bench packs every message
-    assert len(bench.air.said) > 20
+    assert len(bench.transport.said) > 20

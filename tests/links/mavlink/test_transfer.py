@@ -67,7 +67,7 @@ def count(items, kind=MISSION):
 
 
 def acks(bench, sender=STATION):
-    return [m.type for m in bench.air.take("MISSION_ACK", sender.link)]
+    return [m.type for m in bench.transport.take("MISSION_ACK", sender.link)]
 
 
 def said(bench):
@@ -77,7 +77,7 @@ def said(bench):
 
 def asked_for(bench, sender=STATION):
     """Return the items that are asked for, and as what."""
-    asked = bench.air.take(link=sender.link)
+    asked = bench.transport.take(link=sender.link)
     return [(m.get_type(), m.seq) for m in asked if m.get_type().startswith("MISSION_REQUEST")]
 
 
@@ -161,7 +161,7 @@ def test_clear(bench, cleared):
 def test_items_that_do_not_come_are_asked_for_again(bench):
     bench.hear(count(3))
     bench.hear(MISSION_ITEMS[0])
-    bench.air.take()
+    bench.transport.take()
     bench.wait(0.99)
     assert asked_for(bench) == []
     for _ in range(8):
@@ -193,7 +193,7 @@ def test_an_upload_without_items_ends_and_nothing_is_changed(bench):
     bench.wait(0.01)
     assert acks(bench) == [CANCELLED]
     assert "Mission: upload timed out, nothing is changed" in said(bench)
-    bench.air.take()
+    bench.transport.take()
     bench.hear(MISSION_ITEMS[1])
     bench.wait(20.0)
     assert asked_for(bench) == []
@@ -236,7 +236,7 @@ def test_an_item_too_far_ahead_is_not_taken(bench):
 def test_items_that_nobody_asked_for_are_ignored(bench):
     for message in MISSION_ITEMS:
         bench.hear(message)
-    assert bench.air.take() == []
+    assert bench.transport.take() == []
     assert download(bench) == []
 
 
@@ -250,7 +250,7 @@ def test_items_of_another_kind_are_ignored(bench):
 def test_who_counts_again_begins_again(bench):
     bench.hear(count(3))
     bench.hear(MISSION_ITEMS[0])
-    bench.air.take()
+    bench.transport.take()
     assert upload(bench, MISSION_ITEMS) == ACCEPTED
     assert same(download(bench), MISSION_ITEMS, first=1)
 
@@ -261,7 +261,7 @@ def test_an_upload_is_cancelled_by_its_sender(bench):
     bench.hear(MISSION_ITEMS[0])
     bench.hear(mavlink.MAVLink_mission_ack_message(7, 1, CANCELLED, MISSION), OTHER_STATION)
     bench.hear(mavlink.MAVLink_mission_ack_message(7, 1, CANCELLED, FENCE))
-    bench.air.take()
+    bench.transport.take()
     bench.wait(1.0)
     assert asked_for(bench) == [("MISSION_REQUEST_INT", 1)]
     bench.hear(mavlink.MAVLink_mission_ack_message(7, 1, CANCELLED, MISSION))
@@ -299,14 +299,16 @@ def test_a_download_is_of_one_list_whatever_is_uploaded_meanwhile(bench):
     ask = mavlink.MAVLink_mission_request_int_message
     bench.hear(mavlink.MAVLink_mission_request_list_message(7, 1, MISSION), OTHER_STATION)
     bench.hear(ask(7, 1, 1, MISSION), OTHER_STATION)
-    first = bench.air.take("MISSION_ITEM_INT")
+    first = bench.transport.take("MISSION_ITEM_INT")
     other = listed(one(at=north_of(99)), one(at=north_of(98)))
     assert upload(bench, other) == ACCEPTED
     bench.hear(ask(7, 1, 3, MISSION), OTHER_STATION)
-    assert same([*first, *bench.air.take("MISSION_ITEM_INT")], [MISSION_ITEMS[1], MISSION_ITEMS[3]])
+    assert same(
+        [*first, *bench.transport.take("MISSION_ITEM_INT")], [MISSION_ITEMS[1], MISSION_ITEMS[3]]
+    )
     bench.hear(mavlink.MAVLink_mission_ack_message(7, 1, ACCEPTED, MISSION), OTHER_STATION)
     bench.hear(ask(7, 1, 1, MISSION), OTHER_STATION)
-    assert same(bench.air.take("MISSION_ITEM_INT"), other[1:2])
+    assert same(bench.transport.take("MISSION_ITEM_INT"), other[1:2])
 
 
 def test_what_was_offered_is_forgotten_after_a_while(bench):
@@ -314,7 +316,7 @@ def test_what_was_offered_is_forgotten_after_a_while(bench):
     bench.hear(mavlink.MAVLink_mission_request_list_message(7, 1, MISSION), OTHER_STATION)
     upload(bench, MISSION_ITEMS[:2])
     bench.wait(31.0)
-    bench.air.take()
+    bench.transport.take()
     bench.hear(mavlink.MAVLink_mission_request_int_message(7, 1, 3, MISSION), OTHER_STATION)
     assert acks(bench, OTHER_STATION) == [BAD_SEQUENCE]
 
@@ -342,7 +344,7 @@ def test_an_item_that_is_not_there(bench):
 )
 def test_kinds_and_parts_that_are_not_supported(bench, message):
     bench.hear(message)
-    (answer,) = bench.air.take("MISSION_ACK", STATION.link)
+    (answer,) = bench.transport.take("MISSION_ACK", STATION.link)
     assert (answer.type, answer.mission_type) == (UNSUPPORTED, message.mission_type)
 
 
@@ -424,10 +426,10 @@ def test_transfers_survive_bad_air(kind, seed):
     def until(done):
         for _ in range(12_000):
             bench.tick()
-            for link, message in bench.air.said:
+            for link, message in bench.transport.said:
                 if link in (None, STATION.link):
                     down.put(message, bench.now)
-            bench.air.said.clear()
+            bench.transport.said.clear()
             for message in up.take(bench.now):
                 bench.hear(message)
             for message in down.take(bench.now):

@@ -343,7 +343,7 @@ altitude = "0 m"
 date = 2026-01-01
 source = "invented"
 [links.sounder]
-kind = "nmea2000"
+kind = "nmea2000-node"
 sends = "{sends}"
 address = 40
 """

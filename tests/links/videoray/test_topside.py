@@ -89,10 +89,10 @@ def test_disarmed_it_commands_nothing_but_lights_and_camera():
         ([1.0, 1.0, -9.0], (1.0, 0.0, 1.0)),
     ],
 )
-def test_manual_control(sticks, thrust):
+def test_manual_control(manual, thrust):
     wired = driven()
     wired.component.set("armed", True)
-    wired.component.set("manual", sticks)
+    wired.component.set("manual", manual)
     values = block(wired)
     found = [values[f"{name}_target"] for name in ("port", "starboard", "vertical")]
     assert found == pytest.approx(thrust)

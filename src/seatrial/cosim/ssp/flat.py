@@ -7,7 +7,8 @@ from pathlib import Path
 
 from ...errors import InputError, unknown
 from ...fmi.instance import Variable
-from ...fmi.load import LoadedFmu, load_fmu
+from ...fmi.load import load_fmu
+from ...fmi.loaded import LoadedFmu
 from .definitions import Measure, converted
 from .package import DEFAULT, open_package
 from .parameters import Parameter, Value, value_for

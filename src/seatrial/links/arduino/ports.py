@@ -20,8 +20,10 @@ class ArduinoPorts(Reachable, Component):
 
     backend = Parameter("host", "1", "what runs the sketch", choices=BACKENDS)
     mcu = Parameter("atmega2560", "1", "microcontroller", choices=tuple(MCUS))
-    sketch = Parameter("", "1", "folder of the sketch, or its .ino")
-    firmware = Parameter("", "1", "simavr: a .hex or .elf file in the place of a sketch")
+    sketch = Parameter("", "1", "folder of the sketch, or its .ino", role="file")
+    firmware = Parameter(
+        "", "1", "simavr: a .hex or .elf file in the place of a sketch", role="file"
+    )
     uarts = Parameter("0 115200", "1", "UART BAUD of each line; with ;", check=read_uarts)
     wires = Parameter(
         "",
@@ -45,7 +47,7 @@ class ArduinoPorts(Reachable, Component):
     timeout = Parameter(
         2.0,
         "s",
-        "board: silence after which an input is stale, or a link lost; safe-state bytes is sent then",
+        "board: silence after which an input is stale, or a link lost: the safe state is sent",
         min=1e-3,
     )
     patience = Parameter(

@@ -55,7 +55,7 @@ class CanSignals(Component):
     discrete = True
     transient = Component.transient | {"_sends", "_receives", "_sent", "_known"}
 
-    database = Parameter("", "1", "the DBC file; in a profile, relative to it")
+    database = Parameter("", "1", "the DBC file; in a profile, relative to it", role="file")
     sends = Parameter("", "1", "MESSAGE.SIGNAL [LOW HIGH UNIT] of each signal to send; with ;")
     receives = Parameter("", "1", "MESSAGE.SIGNAL [LOW HIGH UNIT] of each signal to read; with ;")
     cycle_time = Parameter(

@@ -135,7 +135,7 @@ class Mavlink(MavlinkPorts):
         vehicle = self._vehicle
         self.mode, self.armed = vehicle.mode.name, vehicle.armed
         driven = vehicle.armed and vehicle.mode.name in MANUAL_MODES
-        self.manual = vehicle.sticks if driven else MANUAL_RELEASED
+        self.manual = vehicle.manual if driven else MANUAL_RELEASED
         target = vehicle.target
         self.target_valid = target is not None
         shown = target or Target("position")

@@ -39,7 +39,7 @@ class Service:
 
     A service takes in the messages of its ``receivers``, by number, among those that are meant for
     this vehicle, and every instant (`tick`). It offers ``commands`` by MAV_CMD and ``messages`` by
-    number to whoever asks for them or streams them, and speaks through ``transport``. Times are
+    number to whoever asks for them or streams them, and sends through ``transport``. Times are
     simulated, s, and never run backwards.
     """
 

@@ -59,7 +59,7 @@ class ManualControlService(Service):
         }
 
     def _take_axes(self, message: Message, sender: Sender, now: float) -> None:
-        self.vehicle.sticks = self._axes(message)
+        self.vehicle.manual = self._axes(message)
         self._hold(now)
 
     def _take_channels(self, message: Message, sender: Sender, now: float) -> None:
@@ -67,7 +67,7 @@ class ManualControlService(Service):
         if not any(self.vehicle.channels):
             self._release()
             return
-        self.vehicle.sticks = self._from_channels()
+        self.vehicle.manual = self._from_channels()
         self._hold(now)
 
     def _hold(self, now: float) -> None:
@@ -88,7 +88,7 @@ class ManualControlService(Service):
 
     def _release(self) -> None:
         self._held_until = math.inf
-        self.vehicle.sticks = MANUAL_RELEASED
+        self.vehicle.manual = MANUAL_RELEASED
         self.vehicle.channels = [0] * len(self.vehicle.channels)
 
     def _axes(self, m: Message) -> tuple[float, float, float, float]:

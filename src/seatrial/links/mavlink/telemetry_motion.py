@@ -103,7 +103,7 @@ class MotionTelemetry(Service):
     def _hud(self, now: float) -> list[Message]:
         e = self.vehicle.estimates
         wind = e.apparent_wind[0] if e.apparent_wind is not None else 0.0
-        throttle = abs(self.vehicle.sticks[0]) if self.vehicle.armed else 0.0
+        throttle = abs(self.vehicle.manual[0]) if self.vehicle.armed else 0.0
         return [
             mavlink.MAVLink_vfr_hud_message(
                 wind,

@@ -124,7 +124,7 @@ class Vehicle:
     target: Target | None = None
     guided_speed: float = 0.0
     """Speed to guided positions that name none, m/s; 0 is the vehicle's own."""
-    sticks: tuple[float, float, float, float] = MANUAL_RELEASED
+    manual: tuple[float, float, float, float] = MANUAL_RELEASED
     """Surge, sway, yaw, heave, -1 to 1: ahead, to starboard, turn to starboard, down."""
     channels: list[int] = field(default_factory=lambda: [0] * 18)
     """RC channels as overridden, us; 0 is one that nobody overrides."""

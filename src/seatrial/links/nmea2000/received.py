@@ -1,4 +1,4 @@
-"""What a node has received of the vessel: values by quantity, from whom, and until when they count."""
+"""Values received over NMEA 2000: by quantity, with source and time of expiry."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ Values = dict[str, tuple[float, ...] | None]
 class Received:
     """Values by quantity; ``memory`` is a dict of plain data, the caller's.
 
-    Of several nodes that send the same quantity the one is listened to that was received first, until
-    it says that it is not available, or nothing in time; then the next. A value counts for
+    Of several nodes that send the same quantity the first that was received is used, until it
+    sends 'not available', or nothing in time; then the next. A value is valid for
     ``timeout_ns``, and for three standard intervals of its PGN at least.
     """
 
