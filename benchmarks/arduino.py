@@ -15,9 +15,9 @@ import statistics
 from collections.abc import Callable
 from pathlib import Path
 
+from seatrial.cosim.assembly import assemble
 from seatrial.cosim.master import Master
 from seatrial.cosim.rig import load_rig
-from seatrial.cosim.system import assemble
 from seatrial.links.arduino.component import Arduino
 from seatrial.links.text import encode
 

@@ -17,9 +17,9 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+from seatrial.cosim.assembly import assemble
 from seatrial.cosim.master import Master
 from seatrial.cosim.rig import load_rig
-from seatrial.cosim.system import assemble
 from seatrial.links.can.component import NODES, CanBus
 from seatrial.links.can.controller import Controller
 from seatrial.links.can.frame import Frame
@@ -40,7 +40,7 @@ can = {{ fmu = "canbus", set = {{ nodes = "{names}", queue_length = 1000 }} }}
 {nodes}
 
 [connections]
-{wires}
+{connections}
 """
 
 
@@ -105,11 +105,13 @@ def rig(count: int, engine: str) -> float:
         f'{n} = {{ fmu = "can-traffic", set = {{ load = 0.1, background = "0x09F1{k:04X}" }} }}'
         for k, n in enumerate(names)
     ]
-    wires = [f'"{n}.tx" = "can.tx.{n}"\n"can.rx.{n}" = "{n}.rx"' for n in names]
+    connections = [f'"{n}.tx" = "can.tx.{n}"\n"can.rx.{n}" = "{n}.rx"' for n in names]
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder, "rig.toml")
         path.write_text(
-            RIG.format(names=" ".join(names), nodes="\n".join(each), wires="\n".join(wires)),
+            RIG.format(
+                names=" ".join(names), nodes="\n".join(each), connections="\n".join(connections)
+            ),
             "utf-8",
         )
         system = assemble(load_rig(str(path)), engine)

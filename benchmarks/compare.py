@@ -23,9 +23,9 @@ from typing import Any
 
 import fmpy
 
+from seatrial.cosim.assembly import assemble
 from seatrial.cosim.rig import load_rig
 from seatrial.cosim.ssp.writing import Experiment, write_ssp
-from seatrial.cosim.system import assemble
 
 from .pages import write_measured
 
@@ -108,12 +108,12 @@ def cases(folder: Path, steps: int) -> list[Case]:
     return [
         Case(
             f"Python FMUs: the Hydrone's closed loop, {len(hydrone.parts)} FMUs, "
-            f"{len(hydrone.wires)} connections",
+            f"{len(hydrone.connections)} connections",
             folder / "hydrone.ssp", len(hydrone.parts), steps, 0.01,
             ["hull.attitude.phi", "hull.position.x"],
         ),
         Case(
-            f"Native FMUs: a chain of {MASSES} masses, {len(chain.wires)} connections",
+            f"Native FMUs: a chain of {MASSES} masses, {len(chain.connections)} connections",
             folder / "chain.ssp", MASSES, 5 * steps, 0.01, ["m2.x"],
         ),
     ]  # fmt: skip

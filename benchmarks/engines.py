@@ -22,9 +22,9 @@ Result = tuple[float, float | None, dict[str, float]]
 
 
 def ours(ssp: Path, steps: int, algorithm: str, watch: list[str]) -> Result:
+    from seatrial.cosim.assembly import assemble
     from seatrial.cosim.master import Master
     from seatrial.cosim.ssp.reading import read_ssp
-    from seatrial.cosim.system import assemble
 
     rig = read_ssp(ssp).rig.changed({"algorithm": algorithm})
     system = assemble(rig)
@@ -43,8 +43,8 @@ def fmpy_lists(ssp: Path, steps: int, step: float, watch: list[str]) -> Result:
     """A loop written by hand: a list call of FMPy to get and to set per type, FMU and step."""
     from fmpy.fmi2 import FMU2Slave
 
+    from seatrial.cosim.assembly import assemble
     from seatrial.cosim.ssp.reading import read_ssp
-    from seatrial.cosim.system import assemble
 
     system = assemble(read_ssp(ssp).rig)
     gets: list[tuple[Any, list[int], list[str]]] = []
@@ -80,11 +80,11 @@ def fmpy_lists(ssp: Path, steps: int, step: float, watch: list[str]) -> Result:
             if outputs:
                 names = [f"{name}.{v.name}" for v in outputs]
                 gets.append((getters[kind], [v.reference for v in outputs], names))
-            wires = [w for w in system.wires if w.target[0] == name]
-            wires = [w for w in wires if variables[w.target[1]].type is kind]
-            if wires:
-                inputs = [variables[w.target[1]].reference for w in wires]
-                sets.append((setters[kind], inputs, [".".join(w.source) for w in wires]))
+            connections = [w for w in system.connections if w.target[0] == name]
+            connections = [w for w in connections if variables[w.target[1]].type is kind]
+            if connections:
+                inputs = [variables[w.target[1]].reference for w in connections]
+                sets.append((setters[kind], inputs, [".".join(w.source) for w in connections]))
     values: dict[str, Any] = {}
     own = 0.0
     begun = perf_counter()

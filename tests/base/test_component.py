@@ -538,10 +538,10 @@ def test_numpy_numbers_are_plain_data(value) -> None:
 
 
 def test_transient_attributes_are_no_state_and_survive_a_rollback() -> None:
-    class Wired(Lag):
+    class Connected(Lag):
         transient = Component.transient | {"socket"}
 
-    component = running(Wired)
+    component = running(Connected)
     component.socket = object()
     state = component.get_state()
     assert "socket" not in state

@@ -7,9 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from seatrial.cosim.assembly import assemble
 from seatrial.cosim.master import Master
 from seatrial.cosim.rig import load_rig
-from seatrial.cosim.system import System, assemble
+from seatrial.cosim.system import System
 
 from . import bodies, users
 

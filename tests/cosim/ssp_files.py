@@ -5,8 +5,8 @@ from __future__ import annotations
 import zipfile
 from pathlib import Path
 
+from seatrial.cosim.assembly import assemble
 from seatrial.cosim.master import Master
-from seatrial.cosim.system import assemble
 from seatrial.fmi.export import build_fmu
 from seatrial.fmi.source import ComponentSource, find_source
 from seatrial.trials.trial import load_trial

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
+from seatrial.cosim import rollback
 from seatrial.cosim.master import Master
 from seatrial.errors import InputError, SimulationError
 
@@ -18,7 +19,7 @@ TWO_BODIES = """
 hull      = { fmu = "bodies.py:Body", set = { max_step = "1 ms" } }
 appendage = { fmu = "bodies.py:Appendage", set = { max_step = "1 ms" } }
 """
-BODY_WIRES = """
+BODY_CONNECTIONS = """
 "hull.x" = "appendage.x_hull"
 "hull.v" = "appendage.v_hull"
 "appendage.force" = "hull.force"
@@ -47,7 +48,7 @@ def errors(bench: Bench, algorithm: str, more: str = "") -> list[float]:
     """Error of the hull's position at 2 s for steps of 40, 20, 10, 5 ms."""
     found = []
     for step in (0.04, 0.02, 0.01, 0.005):
-        master = bench.master(TWO_BODIES, BODY_WIRES, top=top(algorithm, step, more))
+        master = bench.master(TWO_BODIES, BODY_CONNECTIONS, top=top(algorithm, step, more))
         for _ in range(round(2.0 / step)):
             master.step()
         found.append(abs(value(master, "hull.x") - exact_two_bodies(2.0)))
@@ -95,7 +96,7 @@ def test_second_order_is_worth_it(bench: Bench) -> None:
     ],
 )
 def test_dahlquist(bench: Bench, algorithm: str, order: float, exact) -> None:
-    """x' = -x through a wire from its own output to its own input."""
+    """x' = -x through a connection from its own output to its own input."""
     more = "iteration = { count = 60, tolerance = 1e-15 }" if algorithm == "iterated" else ""
     found = []
     for n in (50, 100):
@@ -117,7 +118,7 @@ def test_dahlquist(bench: Bench, algorithm: str, order: float, exact) -> None:
 ADDERS = 'a0 = { fmu = "bodies.py:Counter" }\n' + "\n".join(
     f'a{i} = {{ fmu = "bodies.py:StepAdd" }}' for i in range(9, 0, -1)
 )
-ADDER_WIRES = "\n".join(f'"a{i - 1}.y" = "a{i}.u"' for i in range(1, 10))
+ADDER_CONNECTIONS = "\n".join(f'"a{i - 1}.y" = "a{i}.u"' for i in range(1, 10))
 
 
 @pytest.mark.parametrize(
@@ -127,7 +128,7 @@ def test_adder_chain_delays_each_hop_by_a_step_or_not_at_all(
     bench: Bench, algorithm: str, delay: int
 ) -> None:
     """Ten components that add in their steps, declared back to front."""
-    master = bench.master(ADDERS, ADDER_WIRES, top=top(algorithm))
+    master = bench.master(ADDERS, ADDER_CONNECTIONS, top=top(algorithm))
     for _ in range(20):
         master.step()
     for i in range(10):
@@ -196,7 +197,7 @@ def test_added_mass_beyond_the_mass_diverges_with_a_name(bench: Bench, algorithm
     master = added_mass(bench, 1.5, top(algorithm))
     with pytest.raises(
         SimulationError,
-        match=r"diverges at t = .* the wire (body\.a -> water\.a|water\.force -> body\.force)",
+        match=r"diverges at t = .* the connection (body\.a -> water\.a|water\.force -> body\.force)",
     ):
         for _ in range(1000):
             master.step()
@@ -219,7 +220,9 @@ def test_a_slow_component_diverges_with_a_name_too(
         '"body.a" = "water.a"\n"water.force" = "body.force"',
         top=top(algorithm),
     )
-    with pytest.raises(SimulationError, match=r"diverges at t = .* the wire .* swings from step"):
+    with pytest.raises(
+        SimulationError, match=r"diverges at t = .* the connection .* swings from step"
+    ):
         for _ in range(1000):
             master.step()
 
@@ -255,7 +258,7 @@ def test_iteration_sees_its_contraction_factor(bench: Bench) -> None:
     settings = "iteration = { count = 100, tolerance = 1e-10 }"
     with pytest.raises(
         SimulationError,
-        match=r"iteration diverges at t = 0\.1 s on the wire .* contraction factor is",
+        match=r"iteration diverges at t = 0\.1 s on the connection .* contraction factor is",
     ):
         added_mass(bench, 8.0, top("iterated", more=settings)).step()
     master = added_mass(bench, 0.95, top("iterated", more=settings))
@@ -283,7 +286,7 @@ def test_a_signal_beyond_a_thousand_nominals_is_named(bench: Bench) -> None:
     master = bench.master('a = { fmu = "bodies.py:Nominal" }', '"a.y" = "a.u"')
     with pytest.raises(
         SimulationError,
-        match=r"the wire a\.y -> a\.u carries 2048, more than 1000 times its nominal value 2",
+        match=r"the connection a\.y -> a\.u carries 2048, more than 1000 times its nominal value 2",
     ):
         for _ in range(20):
             master.step()
@@ -311,6 +314,38 @@ def test_a_discarded_step_is_taken_in_smaller_ones(bench: Bench, algorithm: str)
         whole = 0.1 * sum(k / 10 for k in range(4))
         quarters = 0.025 * sum(0.4 + k / 40 for k in range(24))
         assert value(master, "coarse.x") == pytest.approx(whole + quarters, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("algorithm", "more"),
+    [
+        ("jacobi", ""),
+        ("plain-jacobi", ""),
+        ("gauss-seidel", ""),
+        ("extrapolated", ""),
+        ("iterated", "iteration = { count = 1, tolerance = 1e-15 }"),
+    ],
+)
+def test_what_comes_out_does_not_depend_on_where_the_states_were_saved(
+    direct: Bench, monkeypatch: pytest.MonkeyPatch, algorithm: str, more: str
+) -> None:
+    """Every signal and note, at every step, of two bodies beside a component that discards."""
+    components = TWO_BODIES + COARSE.replace(
+        'bodies.py:Coarse" }', 'bodies.py:Coarse", set = { after = "0.3 s", limit = "6 ms" } }'
+    )
+    seen = []
+    for between in (1, 7, 250):
+        monkeypatch.setattr(rollback, "_STEPS_BETWEEN", between)
+        master = direct.master(
+            components, BODY_CONNECTIONS + '"ramp.y" = "coarse.u"', top=top(algorithm, 0.01, more)
+        )
+        rows = []
+        for _ in range(40):
+            master.step()
+            rows.append(list(master.signals))
+        seen.append((rows, master.notes()))
+    assert seen[0] == seen[1] == seen[2]
+    assert "10 of 40 steps were discarded" in seen[0][1][0]
 
 
 def test_a_late_discard_runs_the_steps_before_again(bench: Bench) -> None:
@@ -376,7 +411,7 @@ def test_iteration_refuses_who_cannot_take_part(bench: Bench, other: str, why: s
 
 def test_steps_that_do_not_settle_are_noted(bench: Bench) -> None:
     settings = "iteration = { count = 1, tolerance = 1e-12 }"
-    master = bench.master(TWO_BODIES, BODY_WIRES, top=top("iterated", 0.04, settings))
+    master = bench.master(TWO_BODIES, BODY_CONNECTIONS, top=top("iterated", 0.04, settings))
     for _ in range(10):
         master.step()
     assert master.notes() == [
@@ -395,8 +430,8 @@ def ring(gain: float, count: int, turn: int, kind: str = "users.py:Scale") -> tu
         f"bias = {float(i == 0)} }} }}"
         for i in range(count)
     ]
-    wires = "\n".join(f'"c{i}.y" = "c{(i + 1) % count}.u"' for i in range(count))
-    return "\n".join(lines[::turn]), wires
+    connections = "\n".join(f'"c{i}.y" = "c{(i + 1) % count}.u"' for i in range(count))
+    return "\n".join(lines[::turn]), connections
 
 
 @pytest.mark.parametrize("turn", [1, -1])

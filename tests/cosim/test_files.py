@@ -248,7 +248,7 @@ def test_a_vehicle_may_be_the_users_own(write) -> None:
     assert load_vehicle("hydrone").file.title == "mine"
 
 
-def test_a_wire_of_no_known_form_is_one_line(write) -> None:
+def test_a_connection_of_no_known_form_is_one_line(write) -> None:
     head = 'step = "1 s"\n[components.a]\nfmu = "x"\n[connections]\n'
     path = write("here/harness/rigs/mine.toml", head + '"a.y" = 3\n"a.z" = { factor = 2.0 }\n')
     with pytest.raises(InputError) as error:

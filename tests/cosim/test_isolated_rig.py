@@ -16,8 +16,8 @@ from typing import Any
 
 import pytest
 
+from seatrial.cosim.assembly import assemble
 from seatrial.cosim.rig import load_rig
-from seatrial.cosim.system import assemble
 from seatrial.errors import InputError
 from seatrial.fmi.isolated import IsolatedInstance
 from seatrial.trials.run import run_trial

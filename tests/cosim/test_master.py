@@ -49,7 +49,7 @@ def test_initial_loop_is_solved(bench: Bench) -> None:
     assert value(master, "a.y") == pytest.approx(1.25, abs=1e-11)
 
 
-def test_loop_without_a_solution_names_its_wires(bench: Bench) -> None:
+def test_loop_without_a_solution_names_its_connections(bench: Bench) -> None:
     with pytest.raises(SimulationError, match=r"loop through a\.y, b\.y does not settle"):
         bench.master(
             'a = { fmu = "users.py:Scale", set = { gain = 2.0 } }\n'
@@ -90,7 +90,7 @@ def test_sampled_component_keeps_its_own_instants(bench: Bench) -> None:
     assert [k for _, k in seen] == [k for _, k in expected]
 
 
-def test_units_are_converted_on_the_wire(bench: Bench) -> None:
+def test_units_are_converted_on_the_connection(bench: Bench) -> None:
     master = bench.master(
         'turn = { fmu = "users.py:Turn" }\nsum = { fmu = "users.py:Sum" }',
         '"turn.a" = "sum.angle"\n"turn.flag" = "sum.on"',
@@ -199,7 +199,7 @@ def test_an_input_that_is_set_acts_at_once(bench: Bench) -> None:
     assert (value(master, "a.y"), value(master, "b.y")) == (11.0, 12.0)
 
 
-def test_a_tunable_parameter_takes_what_a_wire_brings(bench: Bench) -> None:
+def test_a_tunable_parameter_takes_what_a_connection_brings(bench: Bench) -> None:
     """x' = rate u with rate = 2 t, u = t, by explicit Euler: x_n = 2 h^3 times the sum of k^2."""
     master = bench.master(
         'ramp = { fmu = "users.py:Ramp" }\nsum = { fmu = "users.py:Sum" }',
@@ -211,7 +211,7 @@ def test_a_tunable_parameter_takes_what_a_wire_brings(bench: Bench) -> None:
         master.step()
 
 
-def test_a_tunable_parameter_on_a_wire_keeps_to_its_limits(bench: Bench) -> None:
+def test_a_tunable_parameter_on_a_connection_keeps_to_its_limits(bench: Bench) -> None:
     master = bench.master(
         'ramp = { fmu = "users.py:Ramp" }\nlimited = { fmu = "users.py:Limited" }',
         '"ramp.y" = "limited.width"',

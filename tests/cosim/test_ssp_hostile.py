@@ -149,8 +149,8 @@ def test_units_whose_ratio_no_double_holds_are_refused(yard: Yard, tmp_path: Pat
     for units_in in (("huge", "tiny"), ("tiny", "huge")):
         inner = sub("b", units_in[1], DAMPER, 'endElement="damper" endConnector="v"')
         outer = sub("a", units_in[0], inner, 'endElement="b" endConnector="in"')
-        wire = THERE.replace('"damper" endConnector="v"', '"a" endConnector="in"')
-        ssd = description(system(HULL + outer, wire), after=f"<ssd:Units>{units}</ssd:Units>")
+        connection = THERE.replace('"damper" endConnector="v"', '"a" endConnector="in"')
+        ssd = description(system(HULL + outer, connection), after=f"<ssd:Units>{units}</ssd:Units>")
         assert "the factor is beyond" in refused(yard.package(tmp_path / "x.ssp", ssd))
 
 
@@ -210,10 +210,10 @@ def test_a_connection_that_leads_back_to_itself_is_refused(yard: Yard, tmp_path:
     <ssd:Connector name="in" kind="input"><ssc:Real/></ssd:Connector>
     <ssd:Connector name="out" kind="output"><ssc:Real/></ssd:Connector></ssd:Connectors>
     <ssd:Connections><ssd:Connection startConnector="in" endConnector="out"/></ssd:Connections></ssd:System>"""
-    wires = """<ssd:Connection startElement="a" startConnector="out" endElement="b" endConnector="in"/>
+    connections = """<ssd:Connection startElement="a" startConnector="out" endElement="b" endConnector="in"/>
     <ssd:Connection startElement="b" startConnector="out" endElement="a" endConnector="in"/>
     <ssd:Connection startElement="b" startConnector="out" endElement="damper" endConnector="v"/>"""
-    ssd = description(system(ring.format("a") + ring.format("b") + DAMPER, wires))
+    ssd = description(system(ring.format("a") + ring.format("b") + DAMPER, connections))
     assert "leads back to itself" in refused(yard.package(tmp_path / "x.ssp", ssd))
 
 
@@ -349,10 +349,10 @@ def test_ten_thousand_connectors_are_read_in_bounded_time(yard: Yard, tmp_path: 
 
 def test_nested_systems_may_have_the_same_names(yard: Yard, tmp_path: Path) -> None:
     sub = SUB.format(elements=DAMPER, inner=linear(2.0), bindings="")
-    wires = TO_SUB.format(outer="")
+    connections = TO_SUB.format(outer="")
     twice = (sub + sub.replace('name="sub"', 'name="sub_damper"')).replace(BINDING, "")
     ssd = description(
-        system(twice + DAMPER.replace('"damper"', '"sub_damper_damper"') + HULL, wires)
+        system(twice + DAMPER.replace('"damper"', '"sub_damper_damper"') + HULL, connections)
     )
     names = list(read_ssp(yard.package(tmp_path / "x.ssp", ssd)).rig.file.components)
     assert names == ["sub_damper", "sub_damper_damper", "sub_damper_damper_2", "hull"]

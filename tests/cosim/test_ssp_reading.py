@@ -82,8 +82,8 @@ def test_the_types_of_version_2_are_read(yard: Yard, tmp_path: Path) -> None:
 def test_a_transformation_applies_with_its_defaults(
     factor: float | None, offset: float | None, yard: Yard, tmp_path: Path
 ) -> None:
-    wire = THERE[:-2] + f">{linear(factor, offset)}</ssd:Connection>"
-    path = yard.package(tmp_path / "x.ssp", MINIMAL.replace(THERE, wire))
+    connection = THERE[:-2] + f">{linear(factor, offset)}</ssd:Connection>"
+    path = yard.package(tmp_path / "x.ssp", MINIMAL.replace(THERE, connection))
     f, o = 1.0 if factor is None else factor, 0.0 if offset is None else offset
     v = 1.0
     for _ in range(200):
@@ -192,21 +192,21 @@ def test_values_of_every_type_reach_their_variables(yard: Yard, tmp_path: Path) 
 def test_units_of_connections_are_converted_before_the_transformation(
     suppress: str, transformation: str, expected: float, yard: Yard, tmp_path: Path
 ) -> None:
-    wire = f"{TURN} {suppress}>{transformation}</ssd:Connection>"
-    ssd = description(system(COMPASS.format(unit="") + TURNED, wire), stop="0.01")
+    connection = f"{TURN} {suppress}>{transformation}</ssd:Connection>"
+    ssd = description(system(COMPASS.format(unit="") + TURNED, connection), stop="0.01")
     path = yard.package(tmp_path / "x.ssp", ssd)
     assert run(path)["hull.turned"] == pytest.approx(expected, rel=1e-14)
 
 
 def test_an_integer_feeds_a_real(yard: Yard, tmp_path: Path) -> None:
-    wire = TURN.replace('startConnector="angle"', 'startConnector="count"') + "/>"
-    ssd = description(system(COMPASS.format(unit="") + TURNED, wire), stop="0.01")
+    connection = TURN.replace('startConnector="angle"', 'startConnector="count"') + "/>"
+    ssd = description(system(COMPASS.format(unit="") + TURNED, connection), stop="0.01")
     assert run(yard.package(tmp_path / "x.ssp", ssd))["hull.turned"] == 3.0
 
 
 def test_a_connection_may_be_written_from_its_input(yard: Yard, tmp_path: Path) -> None:
-    wire = '<ssd:Connection startElement="damper" startConnector="v" endElement="hull" endConnector="v"/>'
-    path = yard.package(tmp_path / "x.ssp", MINIMAL.replace(THERE, wire))
+    connection = '<ssd:Connection startElement="damper" startConnector="v" endElement="hull" endConnector="v"/>'
+    path = yard.package(tmp_path / "x.ssp", MINIMAL.replace(THERE, connection))
     assert run(path)["hull.v"] == pytest.approx(speed(8.0), rel=1e-13)
 
 

@@ -9,11 +9,12 @@ import pytest
 from fmpy.ssp.ssd import read_ssd, validate_tree
 from lxml import etree
 
+from seatrial.cosim.assembly import assemble
 from seatrial.cosim.master import Master
 from seatrial.cosim.rig import load_rig
 from seatrial.cosim.ssp.reading import read_ssp
 from seatrial.cosim.ssp.tools import findings
-from seatrial.cosim.system import System, assemble
+from seatrial.cosim.system import System
 from seatrial.errors import InputError
 from seatrial.fmi.export import build_fmu
 from seatrial.fmi.source import ComponentSource, find_source
@@ -136,7 +137,7 @@ def test_seeds_travel_as_parameters(tmp_path: Path) -> None:
     assert all(isinstance(seed, float) and seed > 0.0 for seed in seeds.values())
 
 
-def test_a_wire_to_a_parameter_is_refused(write, tmp_path: Path) -> None:
+def test_a_connection_to_a_parameter_is_refused(write, tmp_path: Path) -> None:
     write("users.py", users.CHAIN)
     rig = write(
         "knob.toml",
@@ -208,7 +209,7 @@ twice = { fmu = "DISPLAY" }
 """
 
 
-def test_wires_that_do_not_convert_units_do_not_when_read_back(write, tmp_path: Path) -> None:
+def test_connections_that_do_not_convert_units_do_not_when_read_back(write, tmp_path: Path) -> None:
     write("speeds.py", SPEEDS)
     text = SHOWN.replace("LOG", "speeds.py:Log").replace("DISPLAY", "speeds.py:Display")
     rig = write("shown.toml", text)

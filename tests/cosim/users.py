@@ -1,4 +1,4 @@
-"""Components of users that the master's tests wire together."""
+"""Components of users that the master's tests connect."""
 
 CHAIN = '''
 """Small components for rigs."""

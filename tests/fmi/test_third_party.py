@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from seatrial.cosim.assembly import assemble
 from seatrial.cosim.master import Master
 from seatrial.cosim.rig import load_rig
-from seatrial.cosim.system import assemble
 from seatrial.errors import InputError, SimulationError
 
 from .native import changed, forgetful
@@ -57,7 +57,7 @@ def test_a_discarded_step_is_taken_in_parts(kind: str, rig) -> None:
     assert values(master, "a.x") == [pytest.approx(math.exp(-0.5), rel=1e-13)]
 
 
-def test_whole_arrays_and_every_type_cross_a_wire(rig) -> None:
+def test_whole_arrays_and_every_type_cross_a_connection(rig) -> None:
     master = rig(
         'a = { fmu = "fmi3", set = { in_Float64 = [1, 2, 3], in_String = ["x", "é", ""], '
         'in_Binary = ["AP8=", "", "YWJj"], in_UInt8 = 7, in_Boolean = true, in_Mode = "sail", '
@@ -87,7 +87,7 @@ def test_whole_arrays_and_every_type_cross_a_wire(rig) -> None:
     assert values(master, "b.out_Float64[1]") == [4.0]
 
 
-def test_arrays_are_wired_by_index_whatever_the_order_of_declaration(rig) -> None:
+def test_arrays_are_connected_by_index_whatever_the_order_of_declaration(rig) -> None:
     master = rig(
         'a = { fmu = "fmi2", set = { q = [1, 10] } }\nb = { fmu = "fmi2" }', '"a.p" = "b.q"'
     )
@@ -118,7 +118,7 @@ def test_quantities_in_a_unit_that_only_the_fmu_knows(written, expected: float, 
     assert values(master, "a.echo") == [pytest.approx(expected, rel=1e-12)]
 
 
-def test_wires_convert_by_definition(rig, native_fmu, tmp_path: Path) -> None:
+def test_connections_convert_by_definition(rig, native_fmu, tmp_path: Path) -> None:
     metres = changed(
         native_fmu("fmi2"), tmp_path / "si.fmu", ('name="knot_x"><BaseUnit m="1" s="-1" factor="0.5144444444444445"',
         'name="m/s"><BaseUnit m="1" s="-1"'), ('unit="knot_x"', 'unit="m/s"'),

@@ -1,6 +1,6 @@
 """Run a system of FMUs in libcosim, in a process of its own; prints every step as JSON.
 
-Reads {"slaves": [{"name", "path", "real": {vr: value}, "string": {...}}], "wires":
+Reads {"slaves": [{"name", "path", "real": {vr: value}, "string": {...}}], "connections":
 [[from, vr, to, vr, type]], "step": s, "steps": n, "watch": [[slave, vr]]} from standard input.
 """
 
@@ -29,7 +29,7 @@ def assembled(job: dict[str, Any]) -> tuple[CosimExecution, dict[str, int], Cosi
             set_initial = getattr(execution, f"{kind}_initial_value")
             for reference, value in slave[kind].items():
                 assert set_initial(number, int(reference), value)
-    for source, vr_out, target, vr_in, kind in job["wires"]:
+    for source, vr_out, target, vr_in, kind in job["connections"]:
         connect = getattr(execution, f"connect_{kind}_variables")
         assert connect(index[source], vr_out, index[target], vr_in) == 0
     observer = CosimObserver.create_last_value()

@@ -11,9 +11,10 @@ from typing import Any
 import pytest
 
 from seatrial.component import seconds
+from seatrial.cosim.assembly import assemble
 from seatrial.cosim.master import Master
 from seatrial.cosim.rig import load_rig
-from seatrial.cosim.system import System, assemble
+from seatrial.cosim.system import System
 from seatrial.shipped import shipped_folder
 
 _KINDS = {float: "real", int: "integer", bool: "boolean", str: "string"}
@@ -41,21 +42,27 @@ def job(system: System, steps: int) -> dict[str, Any]:
         slaves.append(slave)
         outputs = [v for v in variables.values() if v.causality == "output" and v.type is float]
         watch.append([part.name, [v.reference for v in outputs]])
-    wires = []
-    for wire in system.wires:
-        source = system.parts[wire.source[0]].instance.variables[wire.source[1]]
-        target = system.parts[wire.target[0]].instance.variables[wire.target[1]]
-        wires.append(
+    connections = []
+    for connection in system.connections:
+        source = system.parts[connection.source[0]].instance.variables[connection.source[1]]
+        target = system.parts[connection.target[0]].instance.variables[connection.target[1]]
+        connections.append(
             [
-                wire.source[0],
+                connection.source[0],
                 source.reference,
-                wire.target[0],
+                connection.target[0],
                 target.reference,
                 _KINDS[target.type],
             ]
         )
     step = seconds(system.rig.step_ns)
-    return {"slaves": slaves, "wires": wires, "step": step, "steps": steps, "watch": watch}
+    return {
+        "slaves": slaves,
+        "connections": connections,
+        "step": step,
+        "steps": steps,
+        "watch": watch,
+    }
 
 
 def ours(system: System, steps: int) -> tuple[list[str], list[list[float]]]:

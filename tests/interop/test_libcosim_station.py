@@ -44,7 +44,7 @@ class Libcosim:
         slave |= {"boolean": {number["position_valid"]: True}}
         slave |= {"string": {number["links"]: f"udpin:{HOST}:{port}"}}
         watch = {kind: [["link", number[n]] for n in names] for kind, names in WATCHED.items()}
-        job = {"slaves": [slave], "wires": [], "step": 0.01, "watch": watch, "port": port}
+        job = {"slaves": [slave], "connections": [], "step": 0.01, "watch": watch, "port": port}
         self.process = subprocess.Popen(
             [sys.executable, "-m", "tests.interop.libcosim_live"],
             cwd=ROOT, text=True, bufsize=1, stdin=subprocess.PIPE, stdout=subprocess.PIPE,

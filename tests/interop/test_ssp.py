@@ -6,9 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from seatrial.cosim.assembly import assemble
 from seatrial.cosim.rig import load_rig
 from seatrial.cosim.ssp.reading import read_ssp
-from seatrial.cosim.system import System, assemble
+from seatrial.cosim.system import System
 from seatrial.trials.export import export_ssp
 
 from .ssp_tools import run
@@ -68,7 +69,7 @@ def test_a_package_runs_alike_in_libcosim(
 def test_a_package_runs_alike_in_ecos(
     package: Path, expected: tuple[list[str], list[list[float]]]
 ) -> None:
-    # ecos reads an output when it is asked, after the wires have moved: what an input acts on
+    # ecos reads an output when it is asked, after the connections have moved: what an input acts on
     # at once is a step ahead of the record. All others must be equal.
     system = assemble(read_ssp(package).rig)
     through = {

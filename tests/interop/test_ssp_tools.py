@@ -177,10 +177,10 @@ def test_ecos_applies_the_parameter_set_that_is_named(yard: Yard, tmp_path: Path
 
 @pytest.mark.parametrize("tool", ssp_tools.TOOLS)
 def test_no_tool_converts_units(tool: str, yard: Yard, tmp_path: Path) -> None:
-    wire = '<ssd:Connection startElement="compass" startConnector="angle" endElement="hull" endConnector="angle"/>'
+    connection = '<ssd:Connection startElement="compass" startConnector="angle" endElement="hull" endConnector="angle"/>'
     angle = '<ssd:Connector name="{}" kind="{}"><ssc:Real unit="{}"/></ssd:Connector>'
     hull = angle.format("turned", "output", "rad") + angle.format("angle", "input", "rad")
-    ssd = with_compass(angle.format("angle", "output", "deg"), wire, hull)
+    ssd = with_compass(angle.format("angle", "output", "deg"), connection, hull)
     path = yard.package(tmp_path / "x.ssp", ssd)
     assert any("converts no units" in one.text for one in findings(path) if one.tool == tool)
     rows = ssp_tools.run(tool, path, steps=5, watch=["hull.turned"])

@@ -167,7 +167,7 @@ def test_stated_sensitivity(sensitivity: Cases) -> None:
 @pytest.mark.parametrize("phase", ["landing", "takeoff"])
 @pytest.mark.parametrize("pad", [p for p in PADS if p != "diagonal-aft"])
 def test_trajectories_within_the_coupling_error(phase: str, pad: str, pads: Cases) -> None:
-    """The wires hold the load for 10 ms: the peaks differ by no more than that costs.
+    """The connections hold the load for 10 ms: the peaks differ by no more than that costs.
 
     Pitch peaks while the take-off's load stands still; in the landing just when it jumps.
     """

@@ -11,8 +11,9 @@ import pytest
 
 from seatrial.errors import InputError
 from seatrial.trials.campaign import load_campaign, run_campaign
+from seatrial.trials.output import claim_folder
 from seatrial.trials.report import write_report
-from seatrial.trials.run import Hooks, StoppedError, claim_folder, run_trial
+from seatrial.trials.run import Hooks, StoppedError, run_trial
 from seatrial.trials.run_folder import load_run
 from seatrial.trials.trial import load_trial
 
@@ -184,7 +185,7 @@ release = ["twin.angle"]
     assert at(1.0, "boat.x") == pytest.approx(0.01 * (20 + 80 * 3), abs=0.06)
 
 
-def test_the_manifest_says_which_wire_feeds_a_parameter(bench, write, tmp_path: Path) -> None:
+def test_the_manifest_says_which_connection_feeds_a_parameter(bench, write, tmp_path: Path) -> None:
     text = bench()
     write("rig.toml", RIG + '[connections]\n"boat.angle" = "twin.trim"\n')
     folder = run_trial(load_trial(text), tmp_path / "run", engine="direct").folder

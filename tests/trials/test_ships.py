@@ -48,7 +48,7 @@ def table(name):
 @pytest.mark.parametrize(("step_ms", "bound"), [(100, 2e-4), (50, 5e-5)])
 @pytest.mark.parametrize(("variant", "file"), [("linear", "linS"), ("cubic", "nl")])
 def test_coupled_fmus_give_the_step_of_one_integrator(variant, file, step_ms, bound, tmp_path):
-    """Between ship and machine the angle crosses a wire, which costs the square of the step."""
+    """Between ship and machine the angle crosses a connection, which costs the square of the step."""
     found = run("mariner-step-5", tmp_path / "run", variant=variant, step=f"{step_ms} ms")
     expected = table(f"mariner_dim_step5deg_{file}.csv")
     rows = slice(None, None, 2000 // step_ms)

@@ -14,8 +14,8 @@ from ..trials.identify.experiment import load_experiment
 from ..trials.identify.page import physical_rows, ratio_rows, write_page
 from ..trials.identify.study import Study, study
 from ..trials.identify.vehicle_file import base_vehicle, write_vehicle
+from ..trials.output import claim_folder
 from ..trials.report import REPORT
-from ..trials.run import claim_folder
 from .show import console
 
 VEHICLE = "vehicle.toml"

@@ -1,33 +1,130 @@
-"""Algorithms: how all components move over one communication step.
+"""Coupling algorithms: how all components move over one communication step.
 
-An algorithm knows the network, nothing of recording, events or time keeping. The master calls
-`advance` once per communication step, with every output valid and propagated at its beginning;
-afterwards every output is valid and propagated at its end. To add one, write a class with
-``advance`` and name it in `ALGORITHMS`.
-
-``steps`` counts communication steps since the start. A component with a longer step of its own
-has values at whole multiples of it only: it steps when its interval begins (and is read when it
-ends), or, where inputs at the end are known, when it ends.
+`Algorithm` is the contract; what is shipped besides `Iterated` (`iteration`) follows it. A name
+is given to an algorithm in `registry.ALGORITHMS`, or by a package in its entry-point group.
 """
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from typing import Any, Protocol
+from dataclasses import dataclass
+from typing import Any, ClassVar
 
 from .feedthrough import Feedthrough
-from .network import Network, sources_by_target
+from .network import Network, Writes, sources_by_target
 from .order import ordered_groups
 
 
-class Algorithm(Protocol):
-    """Moves all components of a network over one communication step."""
+class Algorithm(ABC):
+    """Moves all components of a network over one communication step.
 
+    Whoever implements one derives from this class, writes `advance`, and gives the class a name:
+    a shipped one in `registry.ALGORITHMS`, one of another package in its ``pyproject.toml``::
+
+        [project.entry-points."seatrial.algorithms"]
+        "my-algorithm" = "my_package.coupling:MyAlgorithm"
+
+    Rig files then say ``algorithm = "my-algorithm"``. The class is imported when a rig asks for it.
+
+    1.  **Made once**, as ``MyAlgorithm(network, feedthrough)``, when every component has been
+        initialised and every output is valid at the start time. Settings are those of the rig,
+        ``network.system.rig.file``. For components that it cannot step it raises InputError,
+        with the file and the key; nothing has been recorded yet.
+    2.  **On entry of** `advance`, every component stands at ``t_ns``, and ``network.signals`` has
+        every output there, feed-through included. Inputs hold what was written last, not
+        necessarily what the signals are.
+    3.  **On return**, every component stands at ``t_ns + h_ns``, but for rule 5,
+        ``network.time_ns`` is that instant, every output has been read there (`Network.read`), and
+        ``feedthrough.propagate(steps + 1)`` was called after the last reading.
+    4.  **Values move** by `Network.write`, or by ``writes.write`` of the values that
+        ``writes.values(network.signals)`` returns, changed as the algorithm sees fit in the places
+        of ``writes.continuous``: only so are units converted and overrides kept. An input holds
+        its value while its component steps. Nothing writes to ``network.signals`` but
+        `Network.read`. Components step by `Network.step` alone, which takes the times.
+    5.  **Longer steps.** A component whose ``node.every`` is above 1 has values at whole multiples
+        of it: it steps once, by ``node.every * h_ns``, either when its interval begins
+        (``steps % node.every == 0``) or, where its inputs at the end are known, when it ends
+        (``(steps + 1) % node.every == 0``); it is read when its interval ends.
+    6.  **Steps are counted** by ``steps``, from the start of the run. A step that is repeated in
+        smaller ones comes as several calls with the same ``steps`` and a shorter ``h_ns``; none
+        of the components has a longer step then.
+    7.  **What may be raised**: DiscardError and any SimulationError of a component goes through,
+        wherever the components stand by then: the caller restores them or ends the run. The
+        algorithm's own failure is a SimulationError that names time and connection. An algorithm
+        that rolls components back itself frees what it saved, whatever is raised.
+    8.  **Memory** of earlier calls belongs to the algorithm. `save` returns all of it that changes
+        values or notes, as data that later calls leave alone; `restore` may be given the same
+        data many times; `forget` drops what holds for signals that go on evenly, since a value
+        has jumped (an event) or the step has another length. All three are called between two
+        calls of `advance` only. An algorithm without memory writes none of them.
+    9.  **Repeatable**: the same calls from the same state give the same bytes. Steps are run again
+        after a discard, so no clock, no random numbers, no file.
+    10. **Nothing else**: events, recording, time keeping and the check for divergence are the
+        master's.
+    """
+
+    follows_at_once: ClassVar[bool] = True
+    """Whether outputs follow an event at its own instant, or after the next step only."""
+    iterates: ClassVar[bool] = False
+    """Whether it takes the rig's settings ``iteration``."""
+
+    @abstractmethod
+    def __init__(self, network: Network, feedthrough: Feedthrough) -> None: ...
+
+    @abstractmethod
     def advance(self, steps: int, t_ns: int, h_ns: int) -> None:
         """Step from ``t_ns`` to ``t_ns + h_ns``. Raises DiscardError, SimulationError."""
 
+    def save(self) -> Any:
+        """Return everything that `advance` remembers of earlier calls."""
+        return None
 
-class Jacobi:
+    def restore(self, state: Any) -> None:  # noqa: B027  many have no memory
+        """Restore what `save` returned."""
+
+    def forget(self) -> None:  # noqa: B027
+        """Drop what was remembered of earlier points: a value jumps, or a step differs."""
+
+    def notes(self, steps: int) -> list[str]:
+        """Return what the user should know of the ``steps`` taken."""
+        return []
+
+
+@dataclass
+class PastInputs:
+    """Connected inputs of one type of one component, and what they were a step before."""
+
+    writes: Writes
+    previous: Sequence[Any] | None = None
+
+
+class Remembering(Algorithm):
+    """Base of algorithms that look back on the inputs of one communication point before."""
+
+    def __init__(self, network: Network, feedthrough: Feedthrough) -> None:
+        self._network, self._feedthrough = network, feedthrough
+        self._past = [[PastInputs(one) for one in node.writes] for node in network.nodes.values()]
+        """By component, in their order."""
+
+    def save(self) -> Any:
+        """Return the inputs of the point before."""
+        return [past.previous for of_node in self._past for past in of_node]
+
+    def restore(self, state: Any) -> None:
+        """Restore what `save` returned."""
+        pasts = [past for of_node in self._past for past in of_node]
+        for past, previous in zip(pasts, state, strict=True):
+            past.previous = previous
+
+    def forget(self) -> None:
+        """Hold what comes next: there is no point before."""
+        for of_node in self._past:
+            for past in of_node:
+                past.previous = None
+
+
+class Jacobi(Algorithm):
     """All components step with the inputs that they have at the beginning; first order.
 
     Outputs that depend on inputs at once are read again at the end, so that no hop adds a
@@ -52,15 +149,17 @@ class Jacobi:
 class PlainJacobi(Jacobi):
     """Jacobi that reads nothing again: one step of delay per hop, as libcosim and ecos do it."""
 
+    follows_at_once = False
+
     def __init__(self, network: Network, feedthrough: Feedthrough) -> None:
         super().__init__(network, feedthrough)
         feedthrough.forget()
 
 
-class GaussSeidel:
+class GaussSeidel(Algorithm):
     """Components step one after the other, with the newest outputs; first order.
 
-    The order is that of the strongly connected components of the wiring; within one, that of
+    The order is that of the strongly connected components of the connections; within one, that of
     the declared feed-through; what is still tied, the rig's. A chain of components without a
     loop has no delay at all.
     """
@@ -83,28 +182,29 @@ class GaussSeidel:
         self._feedthrough.propagate(steps + 1)
 
 
-class Extrapolated:
+class Extrapolated(Remembering):
     """Jacobi with inputs extrapolated linearly from the last two points; second order.
 
     A component holds its inputs while it steps, so it gets the extrapolated value at the middle
-    of its step: u + (u - u_before) / 2. Only wires whose ends are both declared continuous are
-    extrapolated; sampled signals are held, and so is everything in the first step and after an
-    event.
+    of its step: u + (u - u_before) / 2. Only connections whose ends are both declared continuous
+    are extrapolated; sampled signals are held, and so is everything in the first step and after
+    an event.
     """
 
     def __init__(self, network: Network, feedthrough: Feedthrough) -> None:
-        self._network, self._feedthrough = network, feedthrough
-        self._nodes = list(network.nodes.values())
+        super().__init__(network, feedthrough)
+        self._nodes = list(zip(network.nodes.values(), self._past, strict=True))
 
     def advance(self, steps: int, t_ns: int, h_ns: int) -> None:
         """Write extrapolated inputs, step all, read, propagate."""
         network = self._network
-        for node in self._nodes:
+        for node, inputs in self._nodes:
             if steps % node.every == 0:
-                for writes in node.writes:
+                for past in inputs:
+                    writes = past.writes
                     values = writes.values(network.signals)
-                    writes.write(_ahead(values, writes.previous, writes.continuous))
-                    writes.previous = values
+                    writes.write(_ahead(values, past.previous, writes.continuous))
+                    past.previous = values
                 network.step(node, t_ns, node.every * h_ns)
         arrive(network, self._feedthrough, steps + 1, t_ns + h_ns)
 

@@ -25,16 +25,16 @@ _NOISE = 1e-6
 
 
 class DivergenceWatch:
-    """Looks at eight consecutive values of every continuous wire in each block of seventeen steps.
+    """Looks at eight consecutive values of each continuous connection per seventeen steps.
 
     Eight, because near its peak even a smooth oscillation looks rough for four. The values of a
-    component with a step of its own come at that step: blocks of its wires are counted in it.
+    component with a step of its own come at that step: blocks of its connections are counted in it.
     What grows in one block alone, as noise that is switched on does, has not grown geometrically.
     """
 
     def __init__(self, network: Network) -> None:
         writes = [writes for node in network.nodes.values() for writes in node.writes]
-        sources = {one.wires[i].source for one in writes for i in one.continuous}
+        sources = {one.connections[i].source for one in writes for i in one.continuous}
         places: dict[int, list[int]] = {}
         for source in sources:
             places.setdefault(network.nodes[source[0]].every, []).append(network.places[source])
@@ -48,23 +48,23 @@ class DivergenceWatch:
 
 
 class _Pace:
-    """The wires whose values come every so many communication steps."""
+    """The connections whose values come every so many communication steps."""
 
     def __init__(self, network: Network, every: int, places: list[int]) -> None:
         self.every = every
         self._network, self._places = network, places
         self._rows: list[list[Any]] = []
         self._last: NDArray[np.float64] = np.zeros(len(places))
-        """Swing of each wire in the block before."""
+        """Swing of each connection in the block before."""
         self._first = np.zeros(len(places))
-        """Swing of each wire when it began to grow."""
+        """Swing of each connection when it began to grow."""
         self._jump = np.ones(len(places))
         """Largest factor by which it grew from one block to the next since then."""
         self._growing = np.zeros(len(places), int)
         """Blocks in a row in which it grew."""
 
     def look(self, steps: int) -> None:
-        """Look at the signals after a step of these wires. Raises SimulationError."""
+        """Look at the signals after a step of these connections. Raises SimulationError."""
         turn = steps % _BLOCK
         if turn >= _LOOKED_AT:
             return

@@ -1,6 +1,6 @@
 """Feed-through: outputs that depend on inputs at the same instant, read again in order.
 
-Whoever moved values along wires alone would add a delay of one step per hop. Here the outputs
+Whoever moved values along connections alone would add a delay of one step per hop. Here the outputs
 that were declared to depend on inputs are visited in the order of their dependencies at every
 communication point. Outputs that depend on each other in a loop are found by fixed-point
 iteration: with relaxation where it grows, with Anderson's acceleration where it is slow.
@@ -88,13 +88,13 @@ class Feedthrough:
         for node in self._network.nodes.values():
             node.reads, node.written_by_visit = node.chunks, False
 
-    def memory(self) -> list[float]:
+    def save(self) -> list[float]:
         """Return what the loops have learned, for a rollback."""
         return [group.relaxation for group in self._groups]
 
-    def restore(self, memory: list[float]) -> None:
-        """Restore what `memory` returned."""
-        for group, relaxation in zip(self._groups, memory, strict=True):
+    def restore(self, state: list[float]) -> None:
+        """Restore what `save` returned."""
+        for group, relaxation in zip(self._groups, state, strict=True):
             group.relaxation = relaxation
 
     def _writes_all(self, node: Node) -> bool:
@@ -103,7 +103,7 @@ class Feedthrough:
         if not turns or self._groups[turns[-1]].is_loop:
             return False
         read_in = {name: i for i, group in enumerate(self._groups) for name in group.outputs}
-        sources = [wire.source for writes in node.writes for wire in writes.wires]
+        sources = [connection.source for writes in node.writes for connection in writes.connections]
         return all(read_in.get(source, -1) < turns[-1] for source in sources)
 
     # ------------------------------------------------------------------ loops

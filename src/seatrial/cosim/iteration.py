@@ -1,4 +1,4 @@
-"""Iteration with rollback: each step is repeated until the wires' values agree at its end."""
+"""Iteration with rollback: each step is repeated until the connections' values agree at its end."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 from ..component import NS
 from ..errors import InputError, SimulationError
-from .algorithms import arrive
+from .algorithms import Remembering, arrive
 from .feedthrough import Feedthrough
 from .network import Network, Writes
 from .rig import IterationEntry
@@ -37,26 +37,27 @@ class _Inputs:
         return values
 
 
-class Iterated:
+class Iterated(Remembering):
     """Repeats each step with inputs interpolated linearly between its ends; second order.
 
     The first pass extrapolates, each further one rolls all components back and steps them with
     the mean of the inputs at the beginning and, from the pass before, at the end. It ends when
-    no wire's value at the end changes by more than ``tolerance`` times its nominal value, or
+    no connection's value at the end changes by more than ``tolerance`` times its nominal value, or
     after ``count`` repetitions. Sampled signals are held.
 
     A change that grows from one repetition to the next (contraction factor above 1) is an error
-    that names the wire.
+    that names the connection.
     """
 
-    def __init__(
-        self, network: Network, feedthrough: Feedthrough, settings: IterationEntry
-    ) -> None:
-        self._network, self._feedthrough, self._settings = network, feedthrough, settings
+    iterates = True
+
+    def __init__(self, network: Network, feedthrough: Feedthrough) -> None:
+        super().__init__(network, feedthrough)
+        self._settings = network.system.rig.file.iteration or IterationEntry()
         self._parts = [node.part for node in network.nodes.values()]
         self._proven = False
         """Whether the components have shown that they can restore their states."""
-        self.unsettled = 0
+        self._unsettled = 0
         """Steps that ended after ``count`` repetitions above the tolerance."""
         where = f'{network.system.rig.read_from.path}: algorithm = "iterated"'
         for part in self._parts:
@@ -67,7 +68,8 @@ class Iterated:
                     f"{where}: {part.name} has a step of its own; all must step together"
                 )
         self._nominals = {
-            wire.target: network.nominal(wire.source) for wire in network.system.wires
+            connection.target: network.nominal(connection.source)
+            for connection in network.system.connections
         }
 
     def advance(self, steps: int, t_ns: int, h_ns: int) -> None:
@@ -78,6 +80,24 @@ class Iterated:
         finally:
             for part, state in zip(self._parts, states, strict=True):
                 part.instance.free_state(state)
+
+    def save(self) -> Any:
+        """Return the inputs of the point before, and how many steps did not settle."""
+        return super().save(), self._unsettled
+
+    def restore(self, state: Any) -> None:
+        """Restore what `save` returned."""
+        previous, self._unsettled = state
+        super().restore(previous)
+
+    def notes(self, steps: int) -> list[str]:
+        """Return how many steps did not settle."""
+        if not self._unsettled:
+            return []
+        return [
+            f"{self._unsettled} of {steps} steps ended after the last repetition with changes "
+            "above the tolerance of the iteration"
+        ]
 
     def _repeat(self, steps: int, t_ns: int, h_ns: int, states: Sequence[Any]) -> None:
         independent = [] if self._proven else self._network.independent()
@@ -101,21 +121,22 @@ class Iterated:
         factor = _contraction(changes)
         if factor > 1.0 and changes[-1] > _ROUND_OFF:
             self._refuse(worst, factor, t_ns + h_ns)
-        self.unsettled += 1
+        self._unsettled += 1
 
     def _inputs(self) -> list[_Inputs]:
         """Return all inputs at the beginning of a step, extrapolated to its end."""
         inputs = []
-        for node in self._network.nodes.values():
-            for writes in node.writes:
+        for of_node in self._past:
+            for past in of_node:
+                writes = past.writes
                 begin = writes.values(self._network.signals)
                 end = list(begin)
-                if writes.previous is not None:
+                if past.previous is not None:
                     for i in writes.continuous:
-                        end[i] = 2.0 * begin[i] - writes.previous[i]
-                nominals = [self._nominals[wire.target] for wire in writes.wires]
+                        end[i] = 2.0 * begin[i] - past.previous[i]
+                nominals = [self._nominals[connection.target] for connection in writes.connections]
                 inputs.append(_Inputs(writes, begin, end, nominals))
-                writes.previous = begin
+                past.previous = begin
         return inputs
 
     def _pass(self, inputs: Sequence[_Inputs], steps: int, t_ns: int, h_ns: int) -> None:
@@ -126,7 +147,7 @@ class Iterated:
         arrive(self._network, self._feedthrough, steps + 1, t_ns + h_ns)
 
     def _update(self, inputs: Sequence[_Inputs]) -> tuple[float, tuple[str, str] | None]:
-        """Take the new values at the end; return the largest relative change and its wire."""
+        """Take the new values at the end; return the largest relative change and its connection."""
         largest, worst = 0.0, None
         for one in inputs:
             values = one.writes.values(self._network.signals)
@@ -134,7 +155,7 @@ class Iterated:
                 difference = values[i] - one.end[i]
                 change = abs(difference) / one.nominals[i]
                 if change > largest:
-                    largest, worst = change, one.writes.wires[i].source
+                    largest, worst = change, one.writes.connections[i].source
                 one.end[i] += self._settings.relaxation * difference
         return largest, worst
 

@@ -1,4 +1,4 @@
-"""The master: steps components, moves values along wires, and knows nothing of boats.
+"""The master: steps components, moves values along connections, and knows nothing of boats.
 
 Time is a whole number of nanoseconds. `Network` holds the signals, `Feedthrough` keeps outputs
 that depend on inputs at once up to date at every communication point, an `Algorithm` moves
@@ -7,26 +7,19 @@ everything over one step, and `Rollback` repeats a discarded step in smaller one
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from ..component import NS
-from .algorithms import Algorithm, Extrapolated, GaussSeidel, Jacobi, PlainJacobi
+from ..errors import InputError
+from .algorithms import Algorithm
 from .divergence import DivergenceWatch
 from .feedthrough import Feedthrough
-from .iteration import Iterated
 from .network import Name, Network
-from .rig import AlgorithmName, IterationEntry
+from .registry import ALGORITHMS
 from .rollback import Rollback
 from .system import System
 from .timing import StepTimes
-
-_ALGORITHMS: dict[AlgorithmName, Callable[[Network, Feedthrough], Algorithm]] = {
-    "jacobi": Jacobi,
-    "plain-jacobi": PlainJacobi,
-    "gauss-seidel": GaussSeidel,
-    "extrapolated": Extrapolated,
-}
 
 
 class Master:
@@ -70,7 +63,7 @@ class Master:
         return self.time_ns / NS
 
     def initialise(self) -> None:
-        """Set parameters, start every component and solve the wires at the start time.
+        """Set parameters, start every component and solve the connections at the start time.
 
         Raises SimulationError if a component refuses or a feed-through loop has no solution,
         InputError if the rig's algorithm cannot step its components.
@@ -98,11 +91,12 @@ class Master:
     def set(self, component: str, names: Sequence[str], values: Sequence[Any]) -> None:
         """Set tunable parameters or unconnected inputs now; outputs follow at once.
 
-        With plain Jacobi they follow after the next step. Raises SimulationError.
+        With an algorithm such as plain Jacobi they follow after the next step. Raises
+        SimulationError.
         """
         node = self._network.nodes[component]
         node.part.instance.writer(names)(values)
-        if not isinstance(self._algorithm, PlainJacobi) and self.steps % node.every == 0:
+        if self._algorithm.follows_at_once and self.steps % node.every == 0:
             self._network.read(node.chunks)
         self._changed()
 
@@ -112,7 +106,7 @@ class Master:
         self._changed()
 
     def release(self, component: str, name: str) -> None:
-        """End an override: the wire carries its own value again."""
+        """End an override: the connection carries its own value again."""
         self._network.override(component, name, None)
         self._changed()
 
@@ -130,21 +124,23 @@ class Master:
                 f"{self._rollback.splits} of {self.steps} steps were discarded by a component "
                 "and repeated in smaller ones"
             )
-        if isinstance(self._algorithm, Iterated) and self._algorithm.unsettled:
-            notes.append(
-                f"{self._algorithm.unsettled} of {self.steps} steps ended after the last "
-                "repetition with changes above the tolerance of the iteration"
-            )
-        return notes
+        return [*notes, *self._algorithm.notes(self.steps)]
 
     # ------------------------------------------------------------------ inside
 
     def _chosen(self) -> Algorithm:
-        file = self.system.rig.file
-        if file.algorithm == "iterated":
-            settings = file.iteration or IterationEntry()
-            return Iterated(self._network, self._feedthrough, settings)
-        return _ALGORITHMS[file.algorithm](self._network, self._feedthrough)
+        rig = self.system.rig
+        where = f"{rig.read_from.path}: algorithm"
+        try:
+            made = ALGORITHMS.load(rig.file.algorithm)
+        except InputError as error:
+            raise InputError(f"{where}: {error}") from None
+        if not (isinstance(made, type) and issubclass(made, Algorithm)):
+            raise InputError(
+                f"{where}: {rig.file.algorithm!r} is {made!r}, "
+                f"which is not derived from {Algorithm.__module__}.Algorithm"
+            )
+        return made(self._network, self._feedthrough)
 
     def _settle(self) -> None:
         network, nodes = self._network, self._network.nodes.values()
@@ -158,5 +154,5 @@ class Master:
     def _changed(self) -> None:
         """Let feed-through outputs follow a change from outside, which is no continuous one."""
         self._rollback.forget()
-        self._network.forget_previous()
+        self._algorithm.forget()
         self._feedthrough.propagate(self.steps)

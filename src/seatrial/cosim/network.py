@@ -16,7 +16,7 @@ from typing import Any
 from ..component import NS
 from ..errors import ExcessError, SimulationError
 from ..fmi.instance import Reader, Writer
-from .system import Part, System, Wire
+from .system import Connection, Part, System
 from .timing import StepTimes
 
 Name = tuple[str, str]
@@ -35,23 +35,21 @@ class Chunk:
     read: Reader
     is_real: bool
     limits: list[tuple[int, float]] = field(default_factory=list)
-    """Wired outputs with a nominal value: place within the chunk, largest magnitude."""
+    """Connected outputs with a nominal value: place within the chunk, largest magnitude."""
 
 
 @dataclass
 class Writes:
     """Connected inputs of one type of one component."""
 
-    wires: list[Wire]
+    connections: list[Connection]
     places: list[int]
-    """Where each input's value stands: at its wire's source, or by itself if overridden."""
+    """Where each input's value stands: at its connection's source, or by itself if overridden."""
     write: Writer
     continuous: list[int]
     """Inputs that change continuously between two communication points."""
     gather: Callable[[list[Any]], Sequence[Any]]
     scales: list[tuple[int, float, float]]
-    previous: Sequence[Any] | None = None
-    """What an algorithm remembers of an earlier communication point."""
 
     def values(self, signals: list[Any]) -> Sequence[Any]:
         """Return the inputs' values, converted."""
@@ -99,7 +97,7 @@ class Network:
         self.nodes = {n: Node(part, every=part.every) for n, part in system.parts.items()}
         self.time_ns = 0
         self._overrides: dict[int, _Override] = {}
-        self._sources = {wire.source for wire in system.wires}
+        self._sources = {connection.source for connection in system.connections}
 
     # ------------------------------------------------------------------ preparation
 
@@ -124,14 +122,14 @@ class Network:
         return chunks
 
     def bind_inputs(self) -> None:
-        """Bind the wires of every node, once all outputs have their places."""
-        of_target: dict[str, list[Wire]] = {name: [] for name in self.nodes}
-        for wire in self.system.wires:
-            of_target[wire.target[0]].append(wire)
-        for name, wires in of_target.items():
+        """Bind the connections of every node, once all outputs have their places."""
+        of_target: dict[str, list[Connection]] = {name: [] for name in self.nodes}
+        for connection in self.system.connections:
+            of_target[connection.target[0]].append(connection)
+        for name, connections in of_target.items():
             node, variables = self.nodes[name], self.system.parts[name].instance.variables
-            for kind in dict.fromkeys(variables[w.target[1]].type for w in wires):
-                of_kind = [w for w in wires if variables[w.target[1]].type is kind]
+            for kind in dict.fromkeys(variables[w.target[1]].type for w in connections):
+                of_kind = [w for w in connections if variables[w.target[1]].type is kind]
                 writer = node.part.instance.writer([w.target[1] for w in of_kind])
                 writes = Writes(
                     of_kind, [self.places[w.source] for w in of_kind], writer, [], tuple, []
@@ -140,21 +138,25 @@ class Network:
                 node.writes.append(writes)
 
     def _bind(self, writes: Writes) -> None:
-        """Say how values are gathered, which a wire converts and which are continuous."""
+        """Say how values are gathered, which a connection converts and which are continuous."""
         writes.gather = _gatherer(writes.places)
-        writes.previous = None
-        wired = [
-            (i, wire)
-            for i, wire in enumerate(writes.wires)
-            if writes.places[i] == self.places[wire.source]
+        connected = [
+            (i, connection)
+            for i, connection in enumerate(writes.connections)
+            if writes.places[i] == self.places[connection.source]
         ]
         # An integer becomes a real number on its way, an overridden input has its unit already.
-        writes.scales = [(i, wire.factor, wire.offset) for i, wire in wired if wire.converts]
-        writes.continuous = [i for i, wire in wired if self._is_continuous(wire)]
+        writes.scales = [
+            (i, connection.factor, connection.offset)
+            for i, connection in connected
+            if connection.converts
+        ]
+        writes.continuous = [i for i, connection in connected if self._is_continuous(connection)]
 
-    def _is_continuous(self, wire: Wire) -> bool:
+    def _is_continuous(self, connection: Connection) -> bool:
         ends = [
-            self.system.parts[part].instance.variables[n] for part, n in (wire.source, wire.target)
+            self.system.parts[part].instance.variables[n]
+            for part, n in (connection.source, connection.target)
         ]
         return all(end.type is float and end.variability == "continuous" for end in ends)
 
@@ -191,8 +193,12 @@ class Network:
 
     def targets(self, source: Name) -> str:
         """Return which inputs an output feeds, for messages."""
-        ends = [".".join(wire.target) for wire in self.system.wires if wire.source == source]
-        return f"the wire {'.'.join(source)} -> {', '.join(ends)}"
+        ends = [
+            ".".join(connection.target)
+            for connection in self.system.connections
+            if connection.source == source
+        ]
+        return f"the connection {'.'.join(source)} -> {', '.join(ends)}"
 
     def _refuse_excess(self, chunk: Chunk, values: Sequence[float]) -> None:
         limits = dict(chunk.limits)
@@ -229,10 +235,10 @@ class Network:
                 self.signals[place] = value
             return
         for writes in self.nodes[component].writes:
-            for index, wire in enumerate(writes.wires):
-                if wire.target == (component, name):
+            for index, connection in enumerate(writes.connections):
+                if connection.target == (component, name):
                     if value is None:
-                        writes.places[index] = self.places[wire.source]
+                        writes.places[index] = self.places[connection.source]
                     else:
                         writes.places[index] = len(self.signals)
                         self.signals.append(value)
@@ -244,29 +250,19 @@ class Network:
                 override.own = self.signals[place]
                 self.signals[place] = override.value
 
-    def forget_previous(self) -> None:
-        """Forget what algorithms remember of earlier points: a value jumps, or a step differs."""
-        for node in self.nodes.values():
-            for writes in node.writes:
-                writes.previous = None
-
     # ------------------------------------------------------------------ rollback
 
-    def memory(self) -> Any:
+    def save(self) -> Any:
         """Return a copy of everything here that a step changes."""
-        previous = [w.previous for node in self.nodes.values() for w in node.writes]
         overrides = {place: override.own for place, override in self._overrides.items()}
-        return self.time_ns, list(self.signals), overrides, previous
+        return self.time_ns, list(self.signals), overrides
 
-    def restore(self, memory: Any) -> None:
-        """Restore what `memory` returned; no override may have come or gone since."""
-        self.time_ns, signals, overrides, previous = memory
+    def restore(self, state: Any) -> None:
+        """Restore what `save` returned; no override may have come or gone since."""
+        self.time_ns, signals, overrides = state
         self.signals[:] = signals
         for place, own in overrides.items():
             self._overrides[place].own = own
-        writes = [w for node in self.nodes.values() for w in node.writes]
-        for one, before in zip(writes, previous, strict=True):
-            one.previous = before
 
     def independent(self) -> list[list[Any]]:
         """Return, freshly read, the outputs that follow from states alone."""
@@ -295,4 +291,4 @@ def _gatherer(places: Sequence[int]) -> Callable[[list[Any]], Sequence[Any]]:
 
 def sources_by_target(system: System) -> Mapping[Name, Name]:
     """Return which output feeds each connected input."""
-    return {wire.target: wire.source for wire in system.wires}
+    return {connection.target: connection.source for connection in system.connections}

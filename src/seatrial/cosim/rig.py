@@ -1,4 +1,4 @@
-"""Rigs: which components, with which parameters, wired how (``harness/rigs/*.toml``)."""
+"""Rigs: which components, with which parameters, connected how (``harness/rigs/*.toml``)."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 from pydantic import Field
 
@@ -14,27 +14,25 @@ from ..component import NS
 from ..errors import InputError
 from ..units import quantity
 from .files import FileModel, Source, find_file, read_toml, validated
+from .registry import ALGORITHMS
 
 LONGEST_S = 9.0e9
 """Times are counted in ns in 64 bits: 285 years."""
 _IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 
 
-AlgorithmName = Literal["jacobi", "plain-jacobi", "gauss-seidel", "extrapolated", "iterated"]
-
-
 class IterationEntry(FileModel):
     """How the iterated algorithm repeats a step."""
 
     tolerance: float = Field(default=1e-6, gt=0.0, allow_inf_nan=False)
-    """Of every wire's value, relative to the nominal value of its output."""
+    """Of every connection's value, relative to the nominal value of its output."""
     count: int = Field(default=10, ge=1, le=1000)
     """At most so many repetitions."""
     relaxation: float = Field(default=1.0, gt=0.0, le=1.0)
     """Share of each repetition's change that is applied."""
 
 
-class WireEntry(FileModel):
+class ConnectionEntry(FileModel):
     """One end of a connection with a linear transformation, after conversion of units."""
 
     to: str
@@ -65,12 +63,15 @@ class RigFile(FileModel):
 
     title: str = ""
     step: str
-    algorithm: AlgorithmName = "jacobi"
+    algorithm: str = "jacobi"
+    """A name of `registry.ALGORITHMS`."""
     iteration: IterationEntry | None = None
     variant: str | None = None
     profile: str | None = None
     components: dict[str, ComponentEntry]
-    connections: dict[str, str | WireEntry | list[str | WireEntry]] = Field(default_factory=dict)
+    connections: dict[str, str | ConnectionEntry | list[str | ConnectionEntry]] = Field(
+        default_factory=dict
+    )
 
 
 @dataclass(frozen=True)
@@ -98,12 +99,12 @@ class Rig:
         file = validated(RigFile, content, self.read_from.path)
         return _checked(replace(self, file=file))
 
-    def connections(self) -> list[tuple[str, WireEntry]]:
+    def connections(self) -> list[tuple[str, ConnectionEntry]]:
         """Return (from, where to) pairs as written, ports or scalars."""
         pairs = []
         for source, targets in self.file.connections.items():
             for target in targets if isinstance(targets, list) else [targets]:
-                entry = WireEntry(to=target) if isinstance(target, str) else target
+                entry = ConnectionEntry(to=target) if isinstance(target, str) else target
                 pairs.append((source, entry))
         return pairs
 
@@ -127,12 +128,21 @@ def _checked(rig: Rig) -> Rig:
             raise InputError(f"{path}: components.{name}.timeout: needs isolated = true")
     if rig.step_ns <= 0:
         raise InputError(f"{path}: step: must be positive, found {file.step!r}")
-    if file.iteration is not None and file.algorithm != "iterated":
-        raise InputError(
-            f"{path}: iteration: has no effect with the algorithm {file.algorithm!r}; "
-            'it belongs to algorithm = "iterated"'
-        )
+    _check_algorithm(path, file)
     return rig
+
+
+def _check_algorithm(path: Path, file: RigFile) -> None:
+    try:
+        ALGORITHMS.target(file.algorithm)
+        # What a package brings is imported at once only where a setting depends on it.
+        if file.iteration and not getattr(ALGORITHMS.load(file.algorithm), "iterates", False):
+            raise InputError(
+                f"iteration has no effect with {file.algorithm!r}, only with one that iterates, "
+                'such as "iterated"'
+            )
+    except InputError as error:
+        raise InputError(f"{path}: algorithm: {error}") from None
 
 
 def duration_ns(text: str, where: str) -> int:

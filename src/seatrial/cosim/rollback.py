@@ -27,6 +27,7 @@ class _Checkpoint:
     states: list[Any]
     network: Any
     feedthrough: Any
+    algorithm: Any
     independent: list[list[Any]]
     """Outputs that tell if the states have been restored."""
 
@@ -74,7 +75,7 @@ class Rollback:
         for k in range(checkpoint.steps, steps):
             self.algorithm.advance(k, t_ns - (steps - k) * h_ns, h_ns)
         self._split(steps, t_ns, h_ns, 1, error)
-        self._network.forget_previous()
+        self.algorithm.forget()
         self.forget()
         self.splits += 1
 
@@ -87,7 +88,7 @@ class Rollback:
         half = h_ns // 2
         for begin_ns, length_ns in ((t_ns, half), (t_ns + half, h_ns - half)):
             self._save(steps)
-            self._network.forget_previous()  # the parts are not as long as what came before
+            self.algorithm.forget()  # the parts are not as long as what came before
             if not self._taken(steps, begin_ns, length_ns):
                 self._split(steps, begin_ns, length_ns, depth + 1, error)
 
@@ -120,8 +121,9 @@ class Rollback:
         self._checkpoint = _Checkpoint(
             steps,
             states,
-            self._network.memory(),
-            self._feedthrough.memory(),
+            self._network.save(),
+            self._feedthrough.save(),
+            self.algorithm.save(),
             self._network.independent(),
         )
 
@@ -130,6 +132,7 @@ class Rollback:
             instance.set_state(state)
         self._network.restore(checkpoint.network)
         self._feedthrough.restore(checkpoint.feedthrough)
+        self.algorithm.restore(checkpoint.algorithm)
         self._network.refuse_unrestored(checkpoint.independent)
 
     def _release(self, checkpoint: _Checkpoint) -> None:

@@ -14,7 +14,8 @@ from pydantic import Field
 from ..cosim.files import FileModel, Source, find_file, read_toml, validated
 from ..cosim.system import Engine
 from ..errors import InputError
-from .run import Hooks, Result, StoppedError, check_trial, claim_folder, run_trial, write_json
+from .output import claim_folder, write_json
+from .run import Hooks, Result, StoppedError, check_trial, run_trial
 from .trial import Trial, load_trial
 
 

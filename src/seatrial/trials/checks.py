@@ -15,7 +15,7 @@ from .trial import Trial
 
 def check_events(trial: Trial, system: System) -> None:
     """Raise InputError for an event that could not be applied when its time comes."""
-    wired = {wire.target for wire in system.wires}
+    fed = {connection.target for connection in system.connections}
     for event in trial.events():
         where = f"{trial.read_from.path}: event at {seconds(event.at_ns):g} s: {event.action}"
         component, _, port = event.key.partition(".")
@@ -23,11 +23,11 @@ def check_events(trial: Trial, system: System) -> None:
             raise InputError(f"{where}: {unknown('component', component, system.parts)}")
         part = system.parts[component]
         scalars = port_scalars(part.instance.variables, port)
-        connected = [(component, v.name) in wired for v in scalars]
+        connected = [(component, v.name) in fed for v in scalars]
         if event.action == "set":
             scalars = settable(part.instance.variables, port, f"{where}: {component}")
             if any(connected):
-                raise InputError(f"{where}: {event.key} is fed by a wire; use override")
+                raise InputError(f"{where}: {event.key} is fed by a connection; use override")
             if scalars[0].causality == "parameter" and scalars[0].variability != "tunable":
                 raise InputError(f"{where}: {event.key} is fixed and cannot change during a run")
         elif not scalars or not (all(connected) or scalars[0].causality == "output"):

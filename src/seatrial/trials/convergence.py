@@ -14,8 +14,9 @@ from ..cosim.rig import duration_ns
 from ..cosim.system import Engine
 from ..errors import InputError, SimulationError
 from .accuracy import Accuracy, accuracy, ranked
+from .output import write_json
 from .readable import number
-from .run import Hooks, Result, run_trial, write_json
+from .run import Hooks, Result, run_trial
 from .run_folder import Run, load_run, read_json
 from .trial import Trial
 

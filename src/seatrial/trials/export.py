@@ -5,10 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 from ..component import seconds
+from ..cosim.assembly import assemble
 from ..cosim.files import available, find_file, read_toml
 from ..cosim.rig import load_rig
 from ..cosim.ssp.writing import Experiment, write_ssp
-from ..cosim.system import System, assemble
+from ..cosim.system import System
 from ..errors import InputError, unknown
 from .trial import Trial, load_trial
 

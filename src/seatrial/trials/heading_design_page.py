@@ -11,10 +11,10 @@ import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
 from .heading_design import GAINS, Gain, HeadingDesign, Locus, least_damping
+from .output import claim_folder
 from .plots import COLOURS, figure_json, layout
 from .readable import number
 from .report import REPORT, render
-from .run import claim_folder
 
 _WINDOW = 3.0
 """Poles are drawn to this distance from the origin, in units of U / L."""

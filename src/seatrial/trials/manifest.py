@@ -59,11 +59,12 @@ def manifest(trial: Trial, system: System, engine: Engine) -> dict[str, Any]:
 
 
 def _connections(trial: Trial) -> list[list[Any]]:
-    """Return [from, to], and [factor, offset] behind where a wire has them."""
+    """Return [from, to], and [factor, offset] behind where a connection has them."""
     rows: list[list[Any]] = []
-    for source, wire in trial.rig.connections():
-        transformed = (wire.factor, wire.offset) != (1.0, 0.0)
-        rows.append([source, wire.to, *([wire.factor, wire.offset] if transformed else [])])
+    for source, connection in trial.rig.connections():
+        transformed = (connection.factor, connection.offset) != (1.0, 0.0)
+        transformation = [connection.factor, connection.offset] if transformed else []
+        rows.append([source, connection.to, *transformation])
     return rows
 
 

@@ -334,7 +334,7 @@ def _for_person(value: Any, unit: str) -> tuple[Any, str]:
 
 
 def _value_text(value: Any) -> str:
-    if value is None:  # it comes over a wire
+    if value is None:  # it comes over a connection
         return ""
     return number(value, 8) if isinstance(value, float) else str(value)
 

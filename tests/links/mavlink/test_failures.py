@@ -97,7 +97,7 @@ def test_a_unit_that_there_is_not_is_unsupported(unit):
     assert bench().command(INJECT, unit, OFF) == UNSUPPORTED
 
 
-def test_a_vehicle_without_wires_for_failures_has_none():
+def test_a_vehicle_without_connections_for_failures_has_none():
     assert bench("").command(INJECT, GPS, OFF) == UNSUPPORTED
 
 

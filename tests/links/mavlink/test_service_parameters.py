@@ -43,7 +43,7 @@ class ParameterBench:
         self.ticks = 0
 
     def receive(self, message, sender=STATION) -> None:
-        self.service.handle(message, sender, self.ticks / 100)
+        self.service.receivers[message.get_msgId()](message, sender, self.ticks / 100)
 
     def wait(self, seconds: float) -> None:
         for _ in range(round(seconds * 100)):

@@ -1,4 +1,4 @@
-"""Nested systems made flat: every FMU with its values, every wire from output to input."""
+"""Nested systems made flat: every FMU with its values, every connection from output to input."""
 
 from __future__ import annotations
 
@@ -50,8 +50,8 @@ class Leaf:
 
 
 @dataclass(frozen=True)
-class FlatWire:
-    """A wire between two FMUs; the target gets factor * value + offset."""
+class FlatConnection:
+    """A connection between two FMUs; the target gets factor * value + offset."""
 
     source: Node
     target: Node
@@ -60,7 +60,7 @@ class FlatWire:
 
 
 class Flat:
-    """The FMUs and wires of a structure, and of all that it refers to."""
+    """The FMUs and connections of a structure, and of all that it refers to."""
 
     def __init__(self, structure: Structure, root: Path, label: str, notes: Notes) -> None:
         self.leaves: dict[Path_, Leaf] = {}
@@ -71,14 +71,14 @@ class Flat:
         description = (root / DEFAULT).resolve()
         self._add_system(structure.system, (), _Place(root, label, (description,)))
 
-    def wires(self) -> list[FlatWire]:
-        """Return all wires. Raises InputError for connections that make no sense."""
+    def connections(self) -> list[FlatConnection]:
+        """Return all connections. Raises InputError for connections that make no sense."""
         found = []
         for path, name in list(self._edges):
             if path in self.leaves:
-                wire = self._wire((path, name))
-                if wire is not None:
-                    found.append(wire)
+                connection = self._connection((path, name))
+                if connection is not None:
+                    found.append(connection)
         return found
 
     def _add_system(self, system: System, path: Path_, place: _Place) -> None:
@@ -201,8 +201,8 @@ class Flat:
                 found += self._variables(parameter, rest, (*path, element))
         return found
 
-    def _wire(self, target: Node) -> FlatWire | None:
-        """Return the wire that ends at an FMU's input; None if it starts at no FMU."""
+    def _connection(self, target: Node) -> FlatConnection | None:
+        """Return the connection that ends at an FMU's input; None if it starts at no FMU."""
         chain, node = [], target
         while node in self._edges:
             source, connection = self._edges[node]
@@ -224,7 +224,7 @@ class Flat:
             factor = connection.factor * factor
             offset = connection.factor * offset + connection.offset
             unit = there or unit
-        return FlatWire(node, target, factor, offset)
+        return FlatConnection(node, target, factor, offset)
 
     def _unit(self, node: Node) -> Measure | None:
         unit = self._connectors[node].unit

@@ -15,7 +15,7 @@ from ...errors import InputError
 from ...fmi.archive import content_hash
 from ..files import Source, validated
 from ..rig import Rig, RigFile
-from .flat import Flat, FlatWire, Leaf, Path_
+from .flat import Flat, FlatConnection, Leaf, Path_
 from .package import DEFAULT, open_package
 from .parameters import Value
 from .structure import Notes, Structure, read_structure
@@ -47,12 +47,12 @@ def read_ssp(path: Path, step: Any = None) -> SspSystem:
     if not flat.leaves:
         raise InputError(f"{path}: {DEFAULT} has no component")
     names = _names(list(flat.leaves), notes)
-    wires = flat.wires()
+    connections = flat.connections()
     content = {
         "title": structure.name,
         "step": step or _step(structure, list(flat.leaves.values()), notes),
-        "components": _components(flat, folder, names, wires, notes),
-        "connections": _connections(wires, names),
+        "components": _components(flat, folder, names, connections, notes),
+        "connections": _connections(connections, names),
     }
     file = validated(RigFile, content, path)
     rig = Rig(file, Source(path.stem, path, content_hash(path)), folder).changed(
@@ -82,10 +82,14 @@ def _names(paths: list[Path_], notes: Notes) -> dict[Path_, str]:
 
 
 def _components(
-    flat: Flat, folder: Path, names: dict[Path_, str], wires: list[FlatWire], notes: Notes
+    flat: Flat,
+    folder: Path,
+    names: dict[Path_, str],
+    connections: list[FlatConnection],
+    notes: Notes,
 ) -> dict[str, Any]:
     """Return the rig's components, as its file would have them."""
-    fed = {wire.target for wire in wires}
+    fed = {connection.target for connection in connections}
     components = {}
     for path, leaf in flat.leaves.items():
         values: dict[str, Value] = {}
@@ -105,14 +109,14 @@ def _components(
     return components
 
 
-def _connections(wires: list[FlatWire], names: dict[Path_, str]) -> dict[str, Any]:
+def _connections(flat: list[FlatConnection], names: dict[Path_, str]) -> dict[str, Any]:
     connections: dict[str, Any] = {}
-    for wire in wires:
-        (source, output), (target, variable) = wire.source, wire.target
+    for connection in flat:
+        (source, output), (target, variable) = connection.source, connection.target
         entry = {
             "to": f"{names[target]}.{variable}",
-            "factor": wire.factor,
-            "offset": wire.offset,
+            "factor": connection.factor,
+            "offset": connection.offset,
             "convert": False,  # what units need is in factor and offset already
         }
         connections.setdefault(f"{names[source]}.{output}", []).append(entry)

@@ -17,7 +17,7 @@ from ...fmi.export import fmu_bytes, write_whole, zipped
 from ...fmi.instance import Variable
 from ...fmi.source import find_source
 from ...units import Unit, conversion, unit
-from ..system import Part, System, Wire
+from ..system import Connection, Part, System
 from .annotations import write_oms, write_osp
 from .definitions import write_units
 from .documents import NAMESPACES
@@ -59,12 +59,12 @@ def write_ssp(system: System, experiment: Experiment, path: Path) -> list[str]:
 
 
 def _refuse_fed_parameters(system: System) -> None:
-    for wire in system.wires:
-        target = system.parts[wire.target[0]].instance.variables[wire.target[1]]
+    for connection in system.connections:
+        target = system.parts[connection.target[0]].instance.variables[connection.target[1]]
         if target.causality == "parameter":
             raise InputError(
-                f"{'.'.join(wire.source)} feeds the parameter {'.'.join(wire.target)}, for which "
-                "SSP has no connection"
+                f"{'.'.join(connection.source)} feeds the parameter "
+                f"{'.'.join(connection.target)}, for which SSP has no connection"
             )
 
 
@@ -110,10 +110,10 @@ def _description(system: System, experiment: Experiment, notes: list[str]) -> An
     used: dict[str, Unit] = {}
     for part in system.parts.values():
         _add_component(elements, system, part, used, notes)
-    if system.wires:
+    if system.connections:
         connections = _add(top, "ssd", "Connections")
-        for wire in system.wires:
-            _add_connection(connections, system, wire)
+        for connection in system.connections:
+            _add_connection(connections, system, connection)
     step = seconds(system.rig.step_ns)
     write_oms(top, step)
     write_units(document, used)
@@ -154,7 +154,9 @@ def _declared(system: System, part: Part) -> list[Variable]:
 
     FMPy feeds 0 to inputs that nothing feeds, and cannot record texts.
     """
-    ends = {end for wire in system.wires for end in (wire.source, wire.target)}
+    ends = {
+        end for connection in system.connections for end in (connection.source, connection.target)
+    }
     return [
         variable
         for variable in part.instance.variables.values()
@@ -181,10 +183,11 @@ def _unit(
     return {"unit": variable.unit}
 
 
-def _unlike(system: System, wire: Wire) -> bool:
-    """Say if a tool that converts units would change what goes through the wire, or refuse."""
+def _unlike(system: System, connection: Connection) -> bool:
+    """Say if a tool that converts units would change the values of a connection, or refuse it."""
     source, target = (
-        system.parts[name].instance.variables[port] for name, port in (wire.source, wire.target)
+        system.parts[name].instance.variables[port]
+        for name, port in (connection.source, connection.target)
     )
     if not (source.type is target.type is float and source.unit and target.unit):
         return False
@@ -194,21 +197,21 @@ def _unlike(system: System, wire: Wire) -> bool:
         return True
 
 
-def _add_connection(connections: Any, system: System, wire: Wire) -> None:
+def _add_connection(connections: Any, system: System, connection: Connection) -> None:
     attributes = {
-        "startElement": wire.source[0],
-        "startConnector": wire.source[1],
-        "endElement": wire.target[0],
-        "endConnector": wire.target[1],
+        "startElement": connection.source[0],
+        "startConnector": connection.source[1],
+        "endElement": connection.target[0],
+        "endConnector": connection.target[1],
     }
-    plain = (wire.factor, wire.offset) == (1.0, 0.0)
+    plain = (connection.factor, connection.offset) == (1.0, 0.0)
     # Not every tool converts units: the transformation says all, for all of them.
-    if not plain or _unlike(system, wire):
+    if not plain or _unlike(system, connection):
         attributes["suppressUnitConversion"] = "true"
     connection = _add(connections, "ssd", "Connection", **attributes)
     if plain:
         return
-    numbers = {"factor": repr(wire.factor), "offset": repr(wire.offset)}
+    numbers = {"factor": repr(connection.factor), "offset": repr(connection.offset)}
     _add(connection, "ssc", "LinearTransformation", **numbers)
 
 

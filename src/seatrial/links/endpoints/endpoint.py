@@ -1,4 +1,28 @@
-"""Endpoint interface: peers are found and polled, never waited for."""
+"""Endpoint interface: peers are found and polled, never waited for.
+
+A package adds a kind of link by an entry point, whose name is the scheme of its URLs and whose
+object is called with the URL and returns an `Endpoint`::
+
+    [project.entry-points."seatrial.transports"]
+    "acoustic" = "my_package.modem:AcousticEndpoint"
+
+``links = "acoustic:7:/dev/ttyUSB0"`` then opens ``AcousticEndpoint("acoustic:7:/dev/ttyUSB0")``.
+
+1. **The URL** has no spaces; what follows its first colon is the kind's own. The object raises
+   InputError, with the URL, what was found and what is allowed, for one that is malformed, and
+   InputError or OSError for one that cannot be opened.
+2. **Nothing waits.** Every call returns at once; connecting, accepting and trying again go on
+   inside `Endpoint.poll`, which takes a bounded number of reads, such as `MOST_READS`.
+3. **After it is open nothing raises** for what the other end does. Peers come and go, bytes that
+   do not fit are lost; queues are bounded.
+4. **One channel object stands for one peer** for as long as it is there: protocols keep what they
+   know of a peer by it. Each piece that `Endpoint.poll` returns is of one channel; where the
+   transport has frames, one piece is one frame.
+5. **Hardware** that can move something is opened only if ``seatrial.links.hardware.is_allowed()``.
+6. **It closes** everything it opened in `Endpoint.close`, which is called once; a failing
+   constructor leaves nothing open.
+7. In an FMU the package must be installed where the FMU runs: entry points do not travel with it.
+"""
 
 from __future__ import annotations
 

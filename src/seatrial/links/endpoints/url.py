@@ -12,6 +12,7 @@
 
 HOST is a name or an IPv4 address, PORT 0 at ``udpin`` and ``tcpin`` any free one. PATH becomes a
 symbolic link to the terminal, for as long as the endpoint is open.
+Packages add kinds by entry points; `endpoint` says what they must do.
 """
 
 from __future__ import annotations
@@ -20,7 +21,8 @@ import re
 import socket
 from collections.abc import Callable
 
-from ...errors import InputError, unknown
+from ...errors import InputError
+from ...plugins import Registry
 from .endpoint import Endpoint
 from .pseudo_terminal import PseudoTerminal
 from .serial_port import SerialEndpoint
@@ -35,6 +37,9 @@ _FORMS = {
     "serial": "serial:/dev/ttyUSB0:57600",
     "pty": "pty:/tmp/vehicle",
 }
+TRANSPORTS = Registry(
+    "seatrial.transports", "kind of link", dict.fromkeys(_FORMS, f"{__name__}:opened")
+)
 _URL = re.compile(r"(?P<kind>[a-z]+):(?P<place>.+):(?P<number>\d{1,9})")
 
 
@@ -44,28 +49,38 @@ def open_endpoint(url: str) -> Endpoint:
     Raises InputError, with the URL, for one that is malformed or cannot be opened (a port in
     use, an unknown host, no such device, hardware that is not allowed).
     """
+    _check(url)
+    factory: Callable[[str], Endpoint] = TRANSPORTS.load(_kind(url))
+    try:
+        return factory(url)
+    except OSError as error:
+        raise InputError(f"cannot open the link {url!r}: {error.strerror or error}") from None
+
+
+def opened(url: str) -> Endpoint:
+    """Open an endpoint of a shipped kind. Raises InputError, OSError."""
     kind, place, number = _parts(url)
     if kind == "serial":
         return SerialEndpoint(url, place, number)
     if kind == "pty":
         return PseudoTerminal(place)
     address = _resolved(url, place, number)
-    opened: dict[str, Callable[[tuple[str, int]], Endpoint]] = {
+    by_address: dict[str, Callable[[tuple[str, int]], Endpoint]] = {
         "udpout": UdpSender,
         "udpin": UdpListener,
         "tcpin": TcpServer,
         "tcpout": TcpClient,
     }
-    try:
-        return opened[kind](address)
-    except OSError as error:
-        raise InputError(f"cannot open the link {url!r}: {error.strerror or error}") from None
+    return by_address[kind](address)
 
 
 def check_urls(links: str) -> None:
-    """Raise InputError for the first of ``links``, separated by spaces, that is malformed."""
+    """Raise InputError for the first of ``links``, separated by spaces, that is malformed.
+
+    Of a kind that a package adds, nothing is known before the link is opened but its name.
+    """
     for url in links.split():
-        _parts(url)
+        _check(url)
 
 
 def other_end(url: str) -> str:
@@ -77,10 +92,21 @@ def other_end(url: str) -> str:
     return f"{others[kind]}:{place}" if kind in others else url
 
 
+def _kind(url: str) -> str:
+    return url.partition(":")[0]
+
+
+def _check(url: str) -> None:
+    try:
+        TRANSPORTS.target(_kind(url))
+    except InputError as error:
+        raise InputError(f"link {url!r}: {error}") from None
+    if _kind(url) in _FORMS:
+        _parts(url)
+
+
 def _parts(url: str) -> tuple[str, str, int]:
-    kind = url.partition(":")[0]
-    if kind not in _FORMS:
-        raise InputError(f"link {url!r}: {unknown('kind of link', kind, _FORMS)}")
+    kind = _kind(url)
     if kind == "pty":
         if url == "pty:":
             raise InputError(f"link {url!r} is not of the form {_FORMS[kind]!r}")

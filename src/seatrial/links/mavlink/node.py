@@ -13,7 +13,7 @@ from .codec import Message
 from .failsafe import Failsafe
 from .parameter_table import ParameterTable
 from .plan import Plans
-from .service import Builder, Handler, Service
+from .service import Builder, Handler, Receiver, Service
 from .service_arming import ArmingService
 from .service_clock import ClockService
 from .service_commands import CommandService
@@ -109,7 +109,11 @@ class Node:
             PresenceService(vehicle, transport),
             StreamService(vehicle, transport, builders, intervals),
         ]
+        self._receivers: dict[int, list[Receiver]] = {}
+        """By number, in the order of the services."""
         for service in self.services:
+            for number, receive in service.receivers.items():
+                self._receivers.setdefault(number, []).append(receive)
             handlers.update(service.commands)
             builders.update(service.messages)
             intervals.update(service.streams)
@@ -129,10 +133,11 @@ class Node:
         return None
 
     def receive(self, message: Message, sender: Sender, now: float) -> None:
-        """Give a message to all services, at simulated time ``now``, s."""
-        if self._is_for_us(message, sender):
-            for service in self.services:
-                service.handle(message, sender, now)
+        """Give a message to the services that take it in, at simulated time ``now``, s."""
+        receivers = self._receivers.get(message.get_msgId(), ())
+        if receivers and self._is_for_us(message, sender):
+            for receive in receivers:
+                receive(message, sender, now)
 
     def tick(self, now: float) -> None:
         """Let all services act at simulated time ``now``, s."""

@@ -28,6 +28,8 @@ class Command:
 
 Handler = Callable[[Command, Sender, float], int]
 """Carries a command out at a simulated time, s, and returns MAV_RESULT."""
+Receiver = Callable[[Message, Sender, float], None]
+"""Takes a message in at a simulated time, s."""
 Builder = Callable[[float], list[Message]]
 """Returns a message's content at a simulated time, s; nothing if there is none."""
 
@@ -35,10 +37,10 @@ Builder = Callable[[float], list[Message]]
 class Service:
     """Base of the services.
 
-    A service sees every message that is meant for this vehicle (`handle`) and every instant
-    (`tick`), offers ``commands`` by MAV_CMD and ``messages`` by number to any link that requests
-    them or streams them, and sends through ``transport``. Times are simulated, s, and never run
-    backwards.
+    A service takes in the messages of its ``receivers``, by number, among those that are meant for
+    this vehicle, and every instant (`tick`). It offers ``commands`` by MAV_CMD and ``messages`` by
+    number to whoever asks for them or streams them, and sends through ``transport``. Times are
+    simulated, s, and never run backwards.
     """
 
     capabilities: ClassVar[int] = 0
@@ -50,6 +52,11 @@ class Service:
         self.vehicle, self.transport = vehicle, transport
 
     @property
+    def receivers(self) -> Mapping[int, Receiver]:
+        """Messages that it takes in, by number; asked for once."""
+        return {}
+
+    @property
     def commands(self) -> Mapping[int, Handler]:
         """Commands that it carries out."""
         return {}
@@ -58,9 +65,6 @@ class Service:
     def messages(self) -> Mapping[int, Builder]:
         """Messages that it can build."""
         return {}
-
-    def handle(self, message: Message, sender: Sender, now: float) -> None:
-        """Take a message in."""
 
     def tick(self, now: float) -> None:
         """Let time pass: called once per instant, after its messages."""

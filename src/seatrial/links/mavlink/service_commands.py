@@ -8,7 +8,7 @@ from pymavlink.dialects.v20 import all as mavlink
 
 from .codec import Message
 from .frames import GLOBAL_FRAMES, LOCAL_FRAMES
-from .service import UNSUPPORTED, Command, Handler, Service
+from .service import UNSUPPORTED, Command, Handler, Receiver, Service
 from .transport import Sender, Transport
 from .vehicle import Vehicle
 
@@ -31,12 +31,21 @@ class CommandService(Service):
         super().__init__(vehicle, transport)
         self._handlers = handlers
 
-    def handle(self, message: Message, sender: Sender, now: float) -> None:
-        """Carry a command out."""
-        kind = message.get_type()
-        if kind not in ("COMMAND_LONG", "COMMAND_INT"):
-            return
-        command = _of_long(message) if kind == "COMMAND_LONG" else _of_int(message)
+    @property
+    def receivers(self) -> Mapping[int, Receiver]:
+        """Messages that it takes in."""
+        return {
+            mavlink.MAVLINK_MSG_ID_COMMAND_LONG: self._take_long,
+            mavlink.MAVLINK_MSG_ID_COMMAND_INT: self._take_int,
+        }
+
+    def _take_long(self, message: Message, sender: Sender, now: float) -> None:
+        self._carry_out(_of_long(message), sender, now)
+
+    def _take_int(self, message: Message, sender: Sender, now: float) -> None:
+        self._carry_out(_of_int(message), sender, now)
+
+    def _carry_out(self, command: Command, sender: Sender, now: float) -> None:
         handler = self._handlers.get(command.number)
         result = UNSUPPORTED if handler is None else handler(command, sender, now)
         answer = mavlink.MAVLink_command_ack_message(

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import struct
+from collections.abc import Mapping
 
 from pymavlink.dialects.v20 import all as mavlink
 
 from .codec import Message
-from .service import Service
+from .service import Receiver, Service
 from .transport import Sender
 
 # Sequence, session, opcode, size, requested opcode, burst complete, padding, offset; then data.
@@ -24,10 +25,14 @@ class FileService(Service):
     wait until they give up.
     """
 
-    def handle(self, message: Message, sender: Sender, now: float) -> None:
-        """Refuse a request."""
-        if message.get_type() != "FILE_TRANSFER_PROTOCOL":
-            return
+    @property
+    def receivers(self) -> Mapping[int, Receiver]:
+        """Messages that it takes in."""
+        return {
+            mavlink.MAVLINK_MSG_ID_FILE_TRANSFER_PROTOCOL: self._refuse,
+        }
+
+    def _refuse(self, message: Message, sender: Sender, now: float) -> None:
         number, session, opcode, *_ = _HEADER.unpack_from(bytes(message.payload))
         if opcode >= _FIRST_ANSWER:
             return

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 
 from pymavlink.dialects.v20 import all as mavlink
 
@@ -21,6 +22,7 @@ from .service import (
     Builder,
     Command,
     Handler,
+    Receiver,
     Service,
     whole,
 )
@@ -79,19 +81,27 @@ class GuidedService(Service):
         """Messages that it can build."""
         return {mavlink.MAVLINK_MSG_ID_POSITION_TARGET_LOCAL_NED: self._position_target}
 
-    def handle(self, message: Message, sender: Sender, now: float) -> None:
-        """Take a set-point."""
+    @property
+    def receivers(self) -> Mapping[int, Receiver]:
+        """Messages that it takes in."""
+        return {
+            mavlink.MAVLINK_MSG_ID_SET_POSITION_TARGET_LOCAL_NED: partial(self._take, self._local),
+            mavlink.MAVLINK_MSG_ID_SET_POSITION_TARGET_GLOBAL_INT: partial(
+                self._take, self._global
+            ),
+            mavlink.MAVLINK_MSG_ID_SET_ATTITUDE_TARGET: partial(self._take, self._attitude),
+        }
+
+    def _take(
+        self,
+        read: Callable[[Message], Target | None],
+        message: Message,
+        sender: Sender,
+        now: float,
+    ) -> None:
         if self.vehicle.mode != self.vehicle.dialect.mode("guided"):
             return
-        match message.get_type():
-            case "SET_POSITION_TARGET_LOCAL_NED":
-                target = self._local(message)
-            case "SET_POSITION_TARGET_GLOBAL_INT":
-                target = self._global(message)
-            case "SET_ATTITUDE_TARGET":
-                target = self._attitude(message)
-            case _:
-                return
+        target = read(message)
         if target is not None and _is_sane(target):
             self.vehicle.target = replace(target, expires=now + self._settings.target_timeout)
 

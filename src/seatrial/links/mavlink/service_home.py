@@ -12,7 +12,7 @@ from ..geodesy import Ned
 from .codec import Message
 from .frames import GLOBAL_FRAMES, is_near
 from .scaling import deg_e7, int32, microseconds
-from .service import ACCEPTED, DENIED, FAILED, WARNING, Builder, Command, Handler, Service
+from .service import ACCEPTED, DENIED, FAILED, WARNING, Builder, Command, Handler, Receiver, Service
 from .transport import Sender
 
 
@@ -42,16 +42,20 @@ class HomeService(Service):
             mavlink.MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN: self._origin,
         }
 
-    def handle(self, message: Message, sender: Sender, now: float) -> None:
-        """Set home, or send the origin."""
-        match message.get_type():
-            case "SET_HOME_POSITION":
-                self._move(
-                    message.latitude * 1e-7, message.longitude * 1e-7, message.altitude * 1e-3, now
-                )
-            case "SET_GPS_GLOBAL_ORIGIN":
-                self.vehicle.say(WARNING, "The origin stays: it belongs to the trial")
-                self.transport.send(sender.link, self._origin(now)[0])
+    @property
+    def receivers(self) -> Mapping[int, Receiver]:
+        """Messages that it takes in."""
+        return {
+            mavlink.MAVLINK_MSG_ID_SET_HOME_POSITION: self._take_home,
+            mavlink.MAVLINK_MSG_ID_SET_GPS_GLOBAL_ORIGIN: self._refuse_origin,
+        }
+
+    def _take_home(self, message: Message, sender: Sender, now: float) -> None:
+        self._move(message.latitude * 1e-7, message.longitude * 1e-7, message.altitude * 1e-3, now)
+
+    def _refuse_origin(self, message: Message, sender: Sender, now: float) -> None:
+        self.vehicle.say(WARNING, "The origin stays: it belongs to the trial")
+        self.transport.send(sender.link, self._origin(now)[0])
 
     def _set_home(self, command: Command, sender: Sender, now: float) -> int:
         if command.parameters[0] == 1.0:

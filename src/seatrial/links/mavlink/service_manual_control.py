@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+
+from pymavlink.dialects.v20 import all as mavlink
 
 from .codec import Message
 from .failsafe import Failsafe
 from .modes import MANUAL_MODES
-from .service import Service
+from .service import Receiver, Service
 from .settings import Settings
 from .transport import Sender, Transport
 from .vehicle import MANUAL_RELEASED, Vehicle
@@ -47,19 +50,27 @@ class ManualControlService(Service):
         self._held_until = math.inf
         self._let_go = False
 
-    def handle(self, message: Message, sender: Sender, now: float) -> None:
-        """Take in manual control."""
-        match message.get_type():
-            case "MANUAL_CONTROL":
-                self.vehicle.manual = self._axes(message)
-            case "RC_CHANNELS_OVERRIDE":
-                self._override(message)
-                if not any(self.vehicle.channels):
-                    self._release()
-                    return
-                self.vehicle.manual = self._from_channels()
-            case _:
-                return
+    @property
+    def receivers(self) -> Mapping[int, Receiver]:
+        """Messages that it takes in."""
+        return {
+            mavlink.MAVLINK_MSG_ID_MANUAL_CONTROL: self._take_axes,
+            mavlink.MAVLINK_MSG_ID_RC_CHANNELS_OVERRIDE: self._take_channels,
+        }
+
+    def _take_axes(self, message: Message, sender: Sender, now: float) -> None:
+        self.vehicle.manual = self._axes(message)
+        self._hold(now)
+
+    def _take_channels(self, message: Message, sender: Sender, now: float) -> None:
+        self._override(message)
+        if not any(self.vehicle.channels):
+            self._release()
+            return
+        self.vehicle.manual = self._from_channels()
+        self._hold(now)
+
+    def _hold(self, now: float) -> None:
         self._held_until = now + self._settings.manual_timeout
         if self._let_go:
             self._let_go = False

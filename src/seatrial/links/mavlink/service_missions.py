@@ -23,6 +23,7 @@ from .service import (
     Builder,
     Command,
     Handler,
+    Receiver,
     Service,
     whole,
 )
@@ -93,18 +94,28 @@ class MissionService(Service):
         """Messages that it can build."""
         return {mavlink.MAVLINK_MSG_ID_MISSION_CURRENT: self._current}
 
-    def handle(self, message: Message, sender: Sender, now: float) -> None:
-        """Set the current item, or go to a place in guided mode."""
-        match message.get_type():
-            case "MISSION_SET_CURRENT":
-                if not self._runner.set_current(message.seq):
-                    self.vehicle.say(WARNING, f"There is no mission item {message.seq}")
-                self._asked = True
-            case "MISSION_ITEM" | "MISSION_ITEM_INT" if message.current == _GUIDED_ITEM:
-                result = self._guide(from_message(message))
-                target = (sender.system, sender.component)
-                answer = mavlink.MAVLink_mission_ack_message(*target, result, self._plan.kind)
-                self.transport.send(sender.link, answer)
+    @property
+    def receivers(self) -> Mapping[int, Receiver]:
+        """Messages that it takes in."""
+        return {
+            mavlink.MAVLINK_MSG_ID_MISSION_SET_CURRENT: self._take_current,
+            mavlink.MAVLINK_MSG_ID_MISSION_ITEM: self._take_guided,
+            mavlink.MAVLINK_MSG_ID_MISSION_ITEM_INT: self._take_guided,
+        }
+
+    def _take_current(self, message: Message, sender: Sender, now: float) -> None:
+        if not self._runner.set_current(message.seq):
+            self.vehicle.say(WARNING, f"There is no mission item {message.seq}")
+        self._asked = True
+
+    def _take_guided(self, message: Message, sender: Sender, now: float) -> None:
+        """Go to a place in guided mode; items of a list are the transfer's."""
+        if message.current != _GUIDED_ITEM:
+            return
+        result = self._guide(from_message(message))
+        target = (sender.system, sender.component)
+        answer = mavlink.MAVLink_mission_ack_message(*target, result, self._plan.kind)
+        self.transport.send(sender.link, answer)
 
     def tick(self, now: float) -> None:
         """Go on with the mission, and report what has changed."""

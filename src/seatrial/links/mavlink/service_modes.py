@@ -19,6 +19,7 @@ from .service import (
     Builder,
     Command,
     Handler,
+    Receiver,
     Service,
 )
 from .transport import Sender, Transport
@@ -70,10 +71,14 @@ class ModeService(Service):
             self.vehicle.say(INFO, f"Mode {mode.shown}")
         return None
 
-    def handle(self, message: Message, sender: Sender, now: float) -> None:
-        """Take SET_MODE."""
-        if message.get_type() != "SET_MODE":
-            return
+    @property
+    def receivers(self) -> Mapping[int, Receiver]:
+        """Messages that it takes in."""
+        return {
+            mavlink.MAVLINK_MSG_ID_SET_MODE: self._take_mode,
+        }
+
+    def _take_mode(self, message: Message, sender: Sender, now: float) -> None:
         if message.base_mode & mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED:
             mode = self.vehicle.dialect.by_custom_mode(message.custom_mode)
             self._entered(mode, message.custom_mode)

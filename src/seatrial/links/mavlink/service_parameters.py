@@ -11,7 +11,7 @@ from pymavlink.dialects.v20 import all as mavlink
 from .codec import Message
 from .parameter_definition import INT8, INT16, INT32, REAL32
 from .parameter_table import ParameterTable
-from .service import WARNING, Service
+from .service import WARNING, Receiver, Service
 from .transport import Sender, Transport
 from .vehicle import Vehicle
 
@@ -63,18 +63,20 @@ class ParameterService(Service):
             else mavlink.MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_C_CAST
         )
 
-    def handle(self, message: Message, sender: Sender, now: float) -> None:
-        """Begin a list, answer a read, set a value."""
-        match message.get_type():
-            case "PARAM_REQUEST_LIST":
-                running = self._listings.get(sender.link)
-                begun = self.vehicle.link_time(now)
-                index, due = (running.index, running.due) if running else (0, begun)
-                self._listings[sender.link] = _Listing(index, len(self.table.names), due)
-            case "PARAM_REQUEST_READ":
-                self._read(message.param_id, message.param_index, sender)
-            case "PARAM_SET":
-                self._set(message, sender)
+    @property
+    def receivers(self) -> Mapping[int, Receiver]:
+        """Messages that it takes in."""
+        return {
+            mavlink.MAVLINK_MSG_ID_PARAM_REQUEST_LIST: self._begin_list,
+            mavlink.MAVLINK_MSG_ID_PARAM_REQUEST_READ: self._read,
+            mavlink.MAVLINK_MSG_ID_PARAM_SET: self._set,
+        }
+
+    def _begin_list(self, message: Message, sender: Sender, now: float) -> None:
+        running = self._listings.get(sender.link)
+        begun = self.vehicle.link_time(now)
+        index, due = (running.index, running.due) if running else (0, begun)
+        self._listings[sender.link] = _Listing(index, len(self.table.names), due)
 
     def tick(self, now: float) -> None:
         """Send what is due of the lists, and forget those of links that are gone."""
@@ -87,7 +89,8 @@ class ParameterService(Service):
                 listing.left -= 1
                 listing.due += 1.0 / RATE
 
-    def _read(self, name: str, index: int, sender: Sender) -> None:
+    def _read(self, message: Message, sender: Sender, now: float) -> None:
+        name, index = message.param_id, message.param_index
         if index != _BY_NAME:
             known = 0 <= index < len(self.table.names)
             name = self.table.names[index] if known else ""
@@ -96,7 +99,7 @@ class ParameterService(Service):
         else:
             self._refuse(name, index, mavlink.MAV_PARAM_ERROR_DOES_NOT_EXIST, sender)
 
-    def _set(self, message: Message, sender: Sender) -> None:
+    def _set(self, message: Message, sender: Sender, now: float) -> None:
         name = message.param_id
         if name not in self.table:
             self._refuse(name, _BY_NAME, mavlink.MAV_PARAM_ERROR_DOES_NOT_EXIST, sender)

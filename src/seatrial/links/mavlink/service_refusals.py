@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pymavlink.dialects.v20 import all as mavlink
 
 from .codec import Message
-from .service import DENIED, WARNING, Command, Handler, Service
+from .service import DENIED, WARNING, Command, Handler, Receiver, Service
 from .transport import Sender
 
 _REASONS: Mapping[int, str] = {
@@ -32,10 +32,15 @@ class RefusalService(Service):
         """Commands that it refuses."""
         return dict.fromkeys(_REASONS, self._refuse)
 
-    def handle(self, message: Message, sender: Sender, now: float) -> None:
-        """Refuse a key."""
-        if message.get_type() == "SETUP_SIGNING":
-            self.vehicle.say(WARNING, "No key is taken over a link: give it in signing_key_file")
+    @property
+    def receivers(self) -> Mapping[int, Receiver]:
+        """Messages that it takes in."""
+        return {
+            mavlink.MAVLINK_MSG_ID_SETUP_SIGNING: self._refuse_key,
+        }
+
+    def _refuse_key(self, message: Message, sender: Sender, now: float) -> None:
+        self.vehicle.say(WARNING, "No key is taken over a link: give it in signing_key_file")
 
     def _refuse(self, command: Command, sender: Sender, now: float) -> int:
         self.vehicle.say(WARNING, _REASONS[command.number])

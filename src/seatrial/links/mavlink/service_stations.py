@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 from pymavlink.dialects.v20 import all as mavlink
 
 from .codec import Message
 from .failsafe import Failsafe
-from .service import INFO, Service
+from .service import INFO, Receiver, Service
 from .settings import Settings
 from .transport import Sender, Transport
 from .vehicle import Vehicle
@@ -67,9 +67,15 @@ class StationService(Service):
         """By system and component."""
         self._left_alone = False
 
-    def handle(self, message: Message, sender: Sender, now: float) -> None:
-        """Note a ground station."""
-        if message.get_type() != "HEARTBEAT" or message.type != mavlink.MAV_TYPE_GCS:
+    @property
+    def receivers(self) -> Mapping[int, Receiver]:
+        """Messages that it takes in."""
+        return {
+            mavlink.MAVLINK_MSG_ID_HEARTBEAT: self._note,
+        }
+
+    def _note(self, message: Message, sender: Sender, now: float) -> None:
+        if message.type != mavlink.MAV_TYPE_GCS:
             return
         who = (sender.system, sender.component)
         if who in self._there:

@@ -8,7 +8,17 @@ from dataclasses import dataclass, field
 from pymavlink.dialects.v20 import all as mavlink
 
 from .codec import Message
-from .service import ACCEPTED, DENIED, UNSUPPORTED, Builder, Command, Handler, Service, whole
+from .service import (
+    ACCEPTED,
+    DENIED,
+    UNSUPPORTED,
+    Builder,
+    Command,
+    Handler,
+    Receiver,
+    Service,
+    whole,
+)
 from .transport import Sender, Transport
 from .vehicle import Vehicle
 
@@ -96,10 +106,14 @@ class StreamService(Service):
             mavlink.MAV_CMD_REQUEST_MESSAGE: self._send_once,
         }
 
-    def handle(self, message: Message, sender: Sender, now: float) -> None:
-        """Change the rate of a group."""
-        if message.get_type() != "REQUEST_DATA_STREAM":
-            return
+    @property
+    def receivers(self) -> Mapping[int, Receiver]:
+        """Messages that it takes in."""
+        return {
+            mavlink.MAVLINK_MSG_ID_REQUEST_DATA_STREAM: self._change_group,
+        }
+
+    def _change_group(self, message: Message, sender: Sender, now: float) -> None:
         wanted = message.req_message_rate if message.start_stop else 0
         for group, numbers in GROUPS.items():
             if message.req_stream_id in (mavlink.MAV_DATA_STREAM_ALL, group):

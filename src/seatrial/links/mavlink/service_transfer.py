@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 from pymavlink.dialects.v20 import all as mavlink
 
 from .codec import Message
 from .plan import MOST_ITEMS, Plan, Plans
 from .plan_items import Item, from_message, to_message
-from .service import WARNING, Service
+from .service import WARNING, Receiver, Service
 from .transport import Sender, Transport
 from .vehicle import Vehicle
 
@@ -22,6 +23,8 @@ _PATIENCE = 3
 """Unanswered requests after which a station might be one that knows no integers."""
 _OFFER_S = 30.0
 _MOST_OFFERS = 32
+_CURRENT_ITEM = 1
+"""`current` of the item that a vehicle is at; above it, an item belongs to no list."""
 
 
 @dataclass
@@ -81,26 +84,25 @@ class TransferService(Service):
         self._ended: tuple[tuple[Sender, int, int], int] | None = None
         self._offers: dict[tuple[Sender, int], _Offer] = {}
 
-    def handle(self, message: Message, sender: Sender, now: float) -> None:
-        """Take a message of the protocol."""
-        now = self.vehicle.link_time(now)
-        match message.get_type():
-            case "MISSION_COUNT":
-                self._begin(message, sender, now)
-            case "MISSION_ITEM" | "MISSION_ITEM_INT" if message.current <= 1:
-                self._receive(message, sender, now)
-            case "MISSION_REQUEST_LIST":
-                self._offer(message, sender, now)
-            case "MISSION_REQUEST":
-                self._tell(message, sender, now, integers=False)
-            case "MISSION_REQUEST_INT":
-                self._tell(message, sender, now, integers=True)
-            case "MISSION_ACK":
-                self._end(message, sender)
-            case "MISSION_CLEAR_ALL":
-                self._clear(message, sender)
-            case "MISSION_WRITE_PARTIAL_LIST" | "MISSION_REQUEST_PARTIAL_LIST":
-                self._refuse_part(message, sender)
+    @property
+    def receivers(self) -> Mapping[int, Receiver]:
+        """Messages that it takes in; link time stands for simulated time in all of them."""
+        takers: dict[int, Receiver] = {
+            mavlink.MAVLINK_MSG_ID_MISSION_COUNT: self._begin,
+            mavlink.MAVLINK_MSG_ID_MISSION_ITEM: self._receive,
+            mavlink.MAVLINK_MSG_ID_MISSION_ITEM_INT: self._receive,
+            mavlink.MAVLINK_MSG_ID_MISSION_REQUEST_LIST: self._offer,
+            mavlink.MAVLINK_MSG_ID_MISSION_REQUEST: partial(self._tell, integers=False),
+            mavlink.MAVLINK_MSG_ID_MISSION_REQUEST_INT: partial(self._tell, integers=True),
+            mavlink.MAVLINK_MSG_ID_MISSION_ACK: self._end,
+            mavlink.MAVLINK_MSG_ID_MISSION_CLEAR_ALL: self._clear,
+            mavlink.MAVLINK_MSG_ID_MISSION_WRITE_PARTIAL_LIST: self._refuse_part,
+            mavlink.MAVLINK_MSG_ID_MISSION_REQUEST_PARTIAL_LIST: self._refuse_part,
+        }
+        return {number: partial(self._in_link_time, taker) for number, taker in takers.items()}
+
+    def _in_link_time(self, taker: Receiver, message: Message, sender: Sender, now: float) -> None:
+        taker(message, sender, self.vehicle.link_time(now))
 
     def tick(self, now: float) -> None:
         """Request again what has not come, and give up in time."""
@@ -134,6 +136,8 @@ class TransferService(Service):
             self._ask(self._upload, now)
 
     def _receive(self, message: Message, sender: Sender, now: float) -> None:
+        if message.current > _CURRENT_ITEM:
+            return  # not of a list: a place to go to in guided mode
         upload = self._upload
         if self._ended and self._ended[0] == (sender, message.mission_type, message.seq):
             self._answer(sender, message.mission_type, self._ended[1])
@@ -174,7 +178,7 @@ class TransferService(Service):
         self._say_why(plan, refusal.text)
         return refusal.result
 
-    def _clear(self, message: Message, sender: Sender) -> None:
+    def _clear(self, message: Message, sender: Sender, now: float) -> None:
         plans: Sequence[Plan] = self._plans.all
         if message.mission_type != mavlink.MAV_MISSION_TYPE_ALL:
             plan = self._plan(message, sender)
@@ -227,7 +231,7 @@ class TransferService(Service):
             to_message(items[message.seq], plan.kind, message.seq, sender, integers=integers),
         )
 
-    def _end(self, message: Message, sender: Sender) -> None:
+    def _end(self, message: Message, sender: Sender, now: float) -> None:
         """Forget what was offered; an error, or a cancellation, ends an upload too."""
         self._offers.pop((sender, message.mission_type), None)
         upload = self._upload
@@ -248,7 +252,7 @@ class TransferService(Service):
             self._answer(sender, message.mission_type, mavlink.MAV_MISSION_UNSUPPORTED)
         return plan
 
-    def _refuse_part(self, message: Message, sender: Sender) -> None:
+    def _refuse_part(self, message: Message, sender: Sender, now: float) -> None:
         plan = self._plan(message, sender)
         if plan is not None:
             self._say_why(plan, "lists in part are not supported, send the whole")

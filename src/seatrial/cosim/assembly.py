@@ -1,0 +1,65 @@
+"""From a rig to the system that the master steps: load, give parameters, connect."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from ..errors import InputError
+from .component_parameters import give_parameters
+from .connecting import connect
+from .loading import load_part
+from .profile import Profiles
+from .rig import Rig
+from .system import Engine, System
+
+
+def assemble(
+    rig: Rig,
+    engine: Engine = "fmu",
+    *,
+    variant: str | None = None,
+    seed: int = 1,
+    progress: Callable[[str], None] = lambda _: None,
+) -> System:
+    """Load, or build, every FMU of ``rig``, and check its connections.
+
+    ``variant`` replaces the rig's; ``seed`` is what the components' own seeds derive from,
+    where a component has one. Raises InputError for anything in the files that does not fit.
+    """
+    system = System(rig, engine, seed, variant or rig.file.variant, {}, [])
+    profiles = Profiles(rig.file.profile, rig.read_from.path.parent)
+    once: dict[str, str] = {}
+    try:
+        for name, entry in rig.file.components.items():
+            progress(f"{name} ({entry.fmu})")
+            system.parts[name] = load_part(rig, name, engine, once)
+            give_parameters(system, system.parts[name], profiles)
+        _refuse_idle_variant(system)
+        system.connections = connect(system)
+        _yield_to_connections(system)
+    except BaseException:
+        system.free()
+        raise
+    return system
+
+
+def _refuse_idle_variant(system: System) -> None:
+    takers = [entry for entry in system.rig.file.components.values() if entry.parameters]
+    if system.variant and not takers:
+        raise InputError(
+            f"{system.rig.read_from.path}: variant {system.variant!r}: no component takes "
+            "parameters of a vehicle, so there is nothing to vary"
+        )
+
+
+def _yield_to_connections(system: System) -> None:
+    """Drop what a vehicle's file gives to connected ports; refuse what this rig gives to them.
+
+    The vehicle's file speaks of all its rigs.
+    """
+    fed = {connection.target for connection in system.connections}
+    for name, part in system.parts.items():
+        for variable in [v for v in part.given if part.given[v].mark and (name, v) in fed]:
+            del part.given[variable]
+        for variable in part.given:
+            system.refuse_connected(name, variable, part.given[variable].origin)

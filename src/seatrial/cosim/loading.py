@@ -1,0 +1,92 @@
+"""Components of a rig as instances: in this process or isolated, from Python or an FMU."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ..component import seconds
+from ..errors import InputError
+from ..fmi.bundle import bundled
+from ..fmi.direct import DirectInstance
+from ..fmi.export import cached_fmu
+from ..fmi.instance import Instance
+from ..fmi.isolated import IsolatedInstance
+from ..fmi.load import load_fmu, open_instance
+from ..fmi.source import find_source
+from .rig import ComponentEntry, Rig, duration_ns
+from .system import Engine, Part
+
+_TIMEOUT_S = 60.0
+"""Longest wall time of a call of an isolated component, where the rig says nothing else."""
+
+
+def load_part(rig: Rig, name: str, engine: Engine, once: dict[str, str]) -> Part:
+    """Return the component ``name`` of a rig, with nothing given yet.
+
+    ``once`` has, by their hashes, the names of the components in this process whose FMU allows
+    one instance only; it is kept up to date. Raises InputError.
+    """
+    entry = rig.file.components[name]
+    where = f"{rig.read_from.path}: components.{name}"
+    every = 1
+    if entry.step is not None:
+        step_ns = duration_ns(entry.step, f"{where}.step")
+        every, rest = divmod(step_ns, rig.step_ns)
+        if every < 1 or rest:
+            raise InputError(
+                f"{where}.step: {entry.step!r} is not a multiple of the rig's {rig.file.step!r}"
+            )
+    timeout_s = _timeout_s(entry, f"{where}.timeout")
+    try:
+        instance, sha256, code = _instance(entry, name, rig.folder, engine, timeout_s, once)
+    except InputError as error:
+        raise InputError(f"{where}.fmu: {error}") from None
+    return Part(name, entry.fmu, instance, sha256, code, every)
+
+
+def _timeout_s(entry: ComponentEntry, where: str) -> float:
+    """Return the longest wall time of one call of a component, if it is isolated."""
+    if entry.timeout is None:
+        return _TIMEOUT_S
+    timeout_ns = duration_ns(entry.timeout, where)
+    if timeout_ns <= 0:
+        raise InputError(f"{where}: must be positive, found {entry.timeout!r}")
+    return seconds(timeout_ns)
+
+
+def _instance(
+    entry: ComponentEntry,
+    name: str,
+    folder: Path,
+    engine: Engine,
+    timeout_s: float,
+    once: dict[str, str],
+) -> tuple[Instance, str, str]:
+    """Return an instance, the hash of its FMU file and the name of its code; see `Part`.
+
+    An isolated component is an FMU with either engine. ``once`` has, by their hashes, the names
+    of the components in this process whose FMU allows one instance only.
+    """
+    source = find_source(entry.fmu, folder)
+    in_process = engine == "direct" and not entry.isolated
+    if isinstance(source, Path):
+        if in_process:
+            raise InputError(
+                f"{source.name} can only run with the engine 'fmu', or with isolated = true"
+            )
+        loaded, code = load_fmu(source), ""
+    else:
+        code = bundled(source).script
+        if in_process:
+            return DirectInstance(source.component_class()(name)), "", code
+        loaded = load_fmu(cached_fmu(source, code))
+    if entry.isolated:
+        return IsolatedInstance(loaded, name, timeout_s), loaded.sha256, code
+    if loaded.description.coSimulation.canBeInstantiatedOnlyOncePerProcess:
+        if loaded.sha256 in once:
+            raise InputError(
+                f"{loaded.path.name} says that a process can have one instance of it only, and "
+                f"{once[loaded.sha256]} is that; isolated = true gives {name} a process of its own"
+            )
+        once[loaded.sha256] = name
+    return open_instance(loaded, name), loaded.sha256, code

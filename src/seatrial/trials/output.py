@@ -1,0 +1,51 @@
+"""Folders that commands claim for what they write, and JSON files in them."""
+
+from __future__ import annotations
+
+import datetime
+import itertools
+import json
+from pathlib import Path
+from typing import Any
+
+from ..errors import InputError
+
+
+def claim_folder(out: Path | None, name: str, index: str) -> Path:
+    """Create the folder of a run for this process alone, and return it.
+
+    None makes a new one, ``runs/NAME-DATE-TIME``; else ``out`` must not hold anything yet.
+    ``index`` is the file that claims the folder. Raises InputError.
+    """
+    try:
+        if out is None:
+            return _new_folder(name)
+        out.mkdir(parents=True, exist_ok=True)
+        if any(out.iterdir()):
+            raise FileExistsError
+        (out / index).open("x").close()
+    except (FileExistsError, NotADirectoryError):
+        message = f"{out} exists and is not an empty folder; name another with --out"
+        raise InputError(message) from None
+    except OSError as error:
+        raise InputError(f"cannot create {out or 'runs'}: {error.strerror}") from None
+    return out
+
+
+def _new_folder(name: str) -> Path:
+    stamp = datetime.datetime.now().strftime("%Y%m%d-%H%M%S")
+    for count in itertools.count(1):
+        folder = Path("runs") / (f"{name}-{stamp}" + (f"-{count}" if count > 1 else ""))
+        try:
+            folder.mkdir(parents=True)
+        except FileExistsError:
+            continue
+        return folder
+    raise AssertionError("unreachable")
+
+
+def write_json(path: Path, content: Any) -> None:
+    """Write a JSON file whole or not at all."""
+    temporary = path.with_suffix(".tmp")
+    temporary.write_text(json.dumps(content, indent=1, ensure_ascii=False) + "\n", "utf-8")
+    temporary.replace(path)

@@ -1,0 +1,77 @@
+"""A trial made ready: its rig assembled, everything set and checked, nothing written yet."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..cosim.assembly import assemble
+from ..cosim.master import Master
+from ..cosim.system import Engine, System
+from ..errors import InputError, SimulationError
+from .checks import check_criteria, check_events, check_plots, check_real_time
+from .hooks import Hooks
+from .trial import Trial
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A trial with its assembled rig."""
+
+    trial: Trial
+    engine: Engine
+    system: System
+    units: dict[str, str]
+    """Of every output, ``component.port``."""
+
+    def started(self) -> Master:
+        """Return a master with all components at the start time.
+
+        Raises InputError for a rig that cannot start.
+        """
+        trial = self.trial
+        master = Master(self.system, trial.start_ns, trial.stop_ns)
+        try:
+            master.initialise()
+        except SimulationError as error:
+            path = trial.rig.read_from.path
+            raise InputError(f"{path}: the rig cannot start: {error}") from None
+        return master
+
+    def loose_inputs(self) -> list[str]:
+        """Return a note on the inputs that neither connection nor event reaches, if any."""
+        moved = {event.key for event in self.trial.events()}
+        loose = [name for name in self.system.unconnected_inputs() if name not in moved]
+        said = f"inputs that nothing feeds keep their start values: {', '.join(loose)}"
+        return [said] if loose else []
+
+
+def prepare(trial: Trial, engine: Engine, hooks: Hooks) -> Prepared:
+    """Assemble the rig of a trial, set what the trial says, and check the rest against it.
+
+    Raises InputError for anything that does not fit, StoppedError.
+    """
+
+    def building(what: str) -> None:
+        hooks.refuse_if_stopped()
+        hooks.building(what)
+
+    system = assemble(
+        trial.rig,
+        engine,
+        variant=trial.file.variant,
+        seed=trial.file.seed,
+        progress=building,
+    )
+    try:
+        for key, written, origin in trial.settings():
+            system.set(key, written, origin)
+        for key, factor, origin in trial.scales:
+            system.scale(key, factor, origin)
+        units = check_criteria(trial, system)
+        check_plots(trial, system)
+        check_events(trial, system)
+        check_real_time(trial, system)
+    except BaseException:
+        system.free()
+        raise
+    return Prepared(trial, engine, system, units)

@@ -1,0 +1,175 @@
+"""A trial under way: events, records and steps, from the first manifest to the final one."""
+
+from __future__ import annotations
+
+import contextlib
+import datetime
+import time
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from ..component import seconds
+from ..cosim.master import Master
+from ..cosim.recorder import Recorder
+from ..cosim.values import from_written, port_scalars
+from ..errors import SimulationError
+from .hooks import Hooks
+from .manifest import manifest
+from .output import write_json
+from .pacing import Pace
+from .preparation import Prepared
+from .termination import TerminationConditions
+from .trial import Event
+from .verdict import Verdict
+
+_SHOWN_EVERY_S = 0.1
+"""Wall time between two calls of the progress hook."""
+_LOOKED_EVERY = 16
+"""Steps between two looks at the clock for it, in a run that no wall time paces."""
+
+
+class Run:
+    """One run of a prepared trial, in a folder of its own.
+
+    `simulate` runs it to its end, whatever ends it; ``status`` and ``error`` say what did.
+    ``wall`` takes the wall time of the simulation, s.
+    """
+
+    def __init__(
+        self, prepared: Prepared, master: Master, folder: Path, hooks: Hooks, wall: dict[str, float]
+    ) -> None:
+        self.prepared, self.folder, self.wall = prepared, folder, wall
+        self.status = "running"
+        """complete, ended (by a criterion), stopped or failed, once it is over."""
+        self.error: str | None = None
+        trial = prepared.trial
+        self._master, self._hooks = master, hooks
+        watched = set().union(*(criterion.signals for _, criterion in trial.criteria))
+        self._recorder = Recorder(
+            folder / "signals.csv",
+            master,
+            trial.file.record.signals,
+            trial.record_every,
+            sorted(watched),
+        )
+        self._termination = TerminationConditions(trial, master, prepared.units)
+        self._pace = Pace(trial.file.real_time, master) if trial.file.real_time else None
+        self._events = trial.events()
+        self._shown = time.perf_counter()
+
+    def simulate(self) -> None:
+        """Run to the end. Errors of the simulation and of the disk are kept in ``error``."""
+        content = manifest(self.prepared.trial, self._master.system, self.prepared.engine)
+        self._write_manifest(content)
+        self.status, self.error = "failed", "ended by an error of seatrial itself"
+        started = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
+        begun = time.perf_counter()
+        try:
+            with self._hooks.interruptible():
+                self.status, self.error = self._loop(), None
+        except SimulationError as problem:
+            self.error = str(problem)
+        except KeyboardInterrupt:
+            self.status, self.error = "stopped", None
+        except OSError as problem:
+            self.error = f"cannot write {self.folder / 'signals.csv'}: {problem.strerror}"
+        finally:
+            self.wall["run"] = time.perf_counter() - begun
+            with contextlib.suppress(OSError):  # the disk may be full: what was recorded stays
+                self._recorder.close()
+                write_json(self.folder / "timing.json", self._timing(started))
+                self._write_manifest(content)
+
+    def evaluate(self) -> list[tuple[str, str, Verdict]]:
+        """Evaluate the criteria on every communication step, however often rows were recorded."""
+        trial, (t, signals) = self.prepared.trial, self._recorder.watched()
+        verdicts = [
+            (name, entry.check, criterion.evaluate(t, signals, self.prepared.units))
+            for entry, (name, criterion) in zip(trial.file.criteria, trial.criteria, strict=True)
+        ]
+        rows = [{"name": name, "check": check, **asdict(of)} for name, check, of in verdicts]
+        write_json(self.folder / "verdicts.json", rows)
+        return verdicts
+
+    def notes(self) -> list[str]:
+        """Return what the user should know: of the rig, of the steps, of the pace."""
+        pace = [] if self._pace is None else [self._pace.pacer.note()]
+        return [*self.prepared.loose_inputs(), *self._master.notes(), *pace]
+
+    # ------------------------------------------------------------------ inside
+
+    def _loop(self) -> str:
+        """Step to the end; return the status."""
+        master, recorder, termination = self._master, self._recorder, self._termination
+        events, steps = self._events, self.prepared.trial.steps
+        stop_requested, pace = self._hooks.stop_requested, self._pace
+        if pace is not None:
+            pace.start()
+        while True:
+            while events and events[0].at_ns <= master.time_ns:
+                _apply(events.pop(0), master)
+            stopping, broken, over = stop_requested(), termination.broken(), master.steps >= steps
+            recorder.record(last=stopping or broken or over)
+            if broken or over:
+                break
+            if stopping:
+                return "stopped"
+            if pace is None:
+                master.step()
+            else:
+                pace.step(recorder, stop_requested)
+            if pace is not None or master.steps % _LOOKED_EVERY == 0:
+                self._show_progress()
+        self._hooks.progress(self._whole_s, self._whole_s)
+        master.terminate()
+        return "ended" if broken else "complete"
+
+    @property
+    def _whole_s(self) -> float:
+        trial = self.prepared.trial
+        return seconds(trial.stop_ns - trial.start_ns)
+
+    @property
+    def _simulated_s(self) -> float:
+        return seconds(self._master.time_ns - self._master.start_ns)
+
+    def _show_progress(self) -> None:
+        now = time.perf_counter()
+        if now - self._shown > _SHOWN_EVERY_S:
+            self._shown = now
+            self._hooks.progress(self._simulated_s, self._whole_s)
+
+    def _write_manifest(self, content: dict[str, Any]) -> None:
+        ending = {"status": self.status, "error": self.error}
+        write_json(self.folder / "manifest.json", {**content, **ending})
+
+    def _timing(self, started: str) -> dict[str, Any]:
+        """Return what depends on the machine's speed."""
+        times, pace = self._master.step_times, self._pace
+        content = {
+            "started": started,
+            "wall_s": self.wall,
+            "simulated_s": self._simulated_s,
+            "steps": self._master.steps,
+            "real_time_factor": self._simulated_s / self.wall["run"],
+            "step_times": {name: of.as_json() for name, of in times.items()},
+        }
+        return content if pace is None else {**content, "pacing": pace.pacer.as_json()}
+
+
+def _apply(event: Event, master: Master) -> None:
+    component, _, port = event.key.partition(".")
+    variables = master.system.parts[component].instance.variables
+    scalars = port_scalars(variables, port)
+    if event.action == "release":
+        for variable in scalars:
+            master.release(component, variable.name)
+        return
+    presets = master.system.parts[component].presets.get(port, {})
+    given = from_written(event.written, scalars, presets, f"event {event.key}")
+    if event.action == "set":
+        master.set(component, list(given), [g.value for g in given.values()])
+    else:
+        for name, value in given.items():
+            master.override(component, name, value.value)
