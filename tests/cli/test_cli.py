@@ -58,7 +58,7 @@ def test_a_criterion_that_fails_is_status_one(tmp_path: Path) -> None:
     done = seatrial("run", "hydrone-open-landing", "--engine", "direct", "--out", "x", cwd=tmp_path)
     assert done.returncode == 1
     assert "FAIL" in done.stdout
-    assert done.stderr == ""
+    assert "seatrial:" not in done.stderr  # nothing but progress
 
 
 @pytest.mark.parametrize(

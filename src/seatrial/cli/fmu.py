@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from fmpy.validation import validate_fmu
 from rich.markup import escape
 from rich.table import Table
 
@@ -32,7 +31,7 @@ Named = Annotated[str, typer.Argument(metavar="FMU", help="A shipped name, x.fmu
 def list_fmus() -> None:
     """List the FMUs that are shipped."""
     for name, source in shipped_sources().items():
-        console.print(f"{name:20} {escape(summary(source.component_class()))}", soft_wrap=True)
+        console.print(f"{name:20} {escape(source.title())}", soft_wrap=True)
 
 
 @fmu_app.command()
@@ -143,6 +142,8 @@ def _start_values(
 
 
 def _problems(name: str) -> list[str]:
+    from fmpy.validation import validate_fmu
+
     with tempfile.TemporaryDirectory() as folder:
         source = find_source(name, Path.cwd())
         path = source if isinstance(source, Path) else build_fmu(source, Path(folder) / "x.fmu")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import importlib.util
 import sys
 from collections.abc import Iterator
@@ -83,6 +84,20 @@ class ComponentSource:
         if not (isinstance(cls, type) and issubclass(cls, Component)):
             raise InputError(f"{self.origin}: {cls!r} is not a subclass of seatrial's Component")
         return cls
+
+    def title(self) -> str:
+        """Return the first line of the component's description, without importing it."""
+        for node in ast.parse(self.script).body:
+            if isinstance(node, ast.ImportFrom) and node.module != "seatrial.fmi.slave":
+                return _class_title(node.module or "", node.names[0].name)
+        return ""
+
+
+def _class_title(module: str, name: str) -> str:
+    spec = importlib.util.find_spec(module)
+    tree = ast.parse(Path(str(spec.origin)).read_bytes()) if spec else ast.Module([], [])
+    found = (n for n in tree.body if isinstance(n, ast.ClassDef) and n.name == name)
+    return next(((ast.get_docstring(n) or "").partition("\n")[0] for n in found), "")
 
 
 def find_source(text: str, relative_to: Path) -> ComponentSource | Path:
