@@ -28,6 +28,7 @@ _PREFIXED: dict[str, tuple[str, Known]] = {
     "Hz": ("kMG", (Fraction(1), {"s": -1})),
     "A": ("m", (Fraction(1), {"A": 1})),
     "V": ("m", (Fraction(1), {"kg": 1, "m": 2, "s": -3, "A": -1})),
+    "ohm": ("k", (Fraction(1), {"kg": 1, "m": 2, "s": -3, "A": -2})),
     "rad": ("m", (Fraction(1), {"rad": 1})),
     "g": ("km", (Fraction(1, 1000), {"kg": 1})),
 }
@@ -58,11 +59,24 @@ _TABLE: dict[str, Known] = {
 _FACTOR = re.compile(r"(^1/|^|(?!^)[./*·])([A-Za-z]+|%)(-?[1-9](?!\d))?")
 
 
-def known(text: str) -> Known | None:
-    """Return what ``text`` (``kg.m2/s``) is, None if it is no product of what the table has.
+_QUOTIENT = re.compile(r"([^()]+)/\(([^()]+)\)")
 
-    Like FMI and pint, a solidus holds for the next name alone: ``N/m.s`` is N s/m.
+
+def known(text: str) -> Known | None:
+    """Return what ``text`` (``kg.m2/s``, ``N/(m.s)``) is, None if the table has not all of it.
+
+    As in pint, a solidus without parentheses holds for the next name alone: ``N/m.s`` is N s/m.
     """
+    quotient = _QUOTIENT.fullmatch(text)
+    if quotient is None:
+        return _product(text)
+    above, below = _product(quotient[1]), _product(quotient[2])
+    if above is None or below is None:
+        return None
+    return above[0] / below[0], _sum(above[1], below[1], -1)
+
+
+def _product(text: str) -> Known | None:
     factor, exponents, end = Fraction(1), dict[str, int](), 0
     while end < len(text):
         found = _FACTOR.match(text, end)
@@ -70,8 +84,12 @@ def known(text: str) -> Known | None:
             return None
         power = int(found[3] or 1) * (-1 if found[1].endswith("/") else 1)
         scale, bases = _TABLE[found[2]]
-        factor *= Fraction(scale) ** power
-        for base, count in bases.items():
-            exponents[base] = exponents.get(base, 0) + count * power
+        factor, exponents = factor * scale**power, _sum(exponents, bases, power)
         end = found.end()
-    return factor, {base: count for base, count in exponents.items() if count}
+    return factor, exponents
+
+
+def _sum(a: dict[str, int], b: dict[str, int], power: int) -> dict[str, int]:
+    """Return the exponents of a product with the ``power`` of another unit."""
+    total = {base: a.get(base, 0) + power * b.get(base, 0) for base in a | b}
+    return {base: count for base, count in total.items() if count}

@@ -59,6 +59,22 @@ def test_one_over(text: str) -> None:
     assert known(text) == by_pint([(text[2:], 1, True)])
 
 
-@pytest.mark.parametrize("text", ["/s", "m/", "m//s", "m.1", "m10", "m0", "N/(m.s)", "kn", "m s"])
+@pytest.mark.parametrize("text", ["N.m/(rad.s)", "kN/(m/s)", "kg.m2/(s2.A)"])
+def test_parentheses(text: str) -> None:
+    above, below = text.rstrip(")").split("/(")
+    whole = registry().Quantity(Fraction(1), f"({to_pint(above)})/({to_pint(below)})")
+    base = whole.to_base_units()
+    powers = {PINT[name]: power for name, power in base.unit_items()}
+    assert known(text) == (base.magnitude, powers)
+
+
+def to_pint(text):
+    return text.replace(".", "*").replace("2", "**2")
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["/s", "m/", "m//s", "m.1", "m10", "m0", "N/(m)/(s)", "(N)", "N/()", "1/(s)", "kn", "m s"],
+)
 def test_what_is_left_to_the_registry(text: str) -> None:
     assert known(text) is None
