@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
-from plotly.offline import get_plotlyjs
 
 from ..errors import InputError
 from ..units import quantity
@@ -19,7 +18,8 @@ from .accuracy_section import accuracy_section
 from .convergence import load_convergence
 from .decks import deck, pads
 from .expressions import FloatArray
-from .plots import Line, Mark, Panel, deck_figure, figure_json, time_figure, track_figure
+from .plotly_js import plotly_js
+from .plots import MAX_POINTS, Line, Mark, Panel, deck_figure, time_figure, track_figure
 from .readable import from_si, number, person_scale
 from .run_folder import Run, load_run
 from .sailing import add_wind_and_marks
@@ -30,6 +30,8 @@ REPORT = "report.html"
 _MOTION = ("position", "attitude")
 _FORCE_UNITS = ("N", "N.m")
 _TEXT_ROWS = 20
+_POINTS = 100_000
+"""Points of all signals in a page, about, each at most twice: 11 bytes in a page for each."""
 
 
 @dataclass(frozen=True)
@@ -91,7 +93,7 @@ def write_report(folder: Path | str) -> Path:
 
 def render(template: str, **content: Any) -> str:
     """Return a page from a template of this package; ``content`` is escaped there."""
-    return _environment().get_template(template).render(plotly_js=get_plotlyjs(), **content)
+    return _environment().get_template(template).render(plotly_js=plotly_js(), **content)
 
 
 @cache
@@ -121,7 +123,7 @@ def _sections(run: Run) -> Iterator[Section]:
     if pads_found:
         points = [(pad.component, pad, run.passed) for pad in pads_found]
         figure = deck_figure([deck("", points)])
-        yield Section("The deck from above", figure_json(figure))
+        yield Section("The deck from above", figure.json())
     plots = run.manifest.get("plots", [])  # manifests of before have none
     if plots:
         shown_first = [
@@ -140,9 +142,9 @@ def _sections(run: Run) -> Iterator[Section]:
     if tracks:
         figure = track_figure(tracks)
         add_wind_and_marks(figure, run)
-        yield Section("Track from above", figure_json(figure))
+        yield Section("Track from above", figure.json())
     for name, shape in tether_figures(run):
-        yield Section(f"Shape of {name}", figure_json(shape))
+        yield Section(f"Shape of {name}", shape.json())
     if forces:
         columns = [
             [_panel(run, p, p.signals) for p in forces if units[p] == u] for u in _FORCE_UNITS
@@ -253,7 +255,8 @@ def _alike_craft(run: Run, ports: Iterable[Port]) -> list[list[str]]:
 
 def _over_time(run: Run, columns: Sequence[Sequence[Panel]]) -> str:
     events = [at for at in map(_event_time, run.manifest.get("events", [])) if at is not None]
-    return figure_json(time_figure(run.time, columns, events))
+    most_points = min(max(_POINTS // len(run.signals), 500), MAX_POINTS)
+    return time_figure(run.time, columns, events, most_points).json()
 
 
 def _tracks(run: Run, motion: Iterable[Port]) -> Iterator[tuple[str, Any, Any]]:
