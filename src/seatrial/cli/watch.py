@@ -41,27 +41,28 @@ class Watch:
 
     def building(self, what: str) -> None:
         """Show which component is being built or loaded."""
-        self._show(0.0, f"loading {what}")
+        self._display.load(what)
         self._started = self._clock()
 
     def progress(self, passed: float, whole: float) -> None:
         """Show how far the run is, simulated time in s."""
         elapsed = self._clock() - self._started
         factor = passed / elapsed if elapsed > 0 else 0.0
-        self._show(passed / whole, f"{passed:.1f} of {whole:g} s, {factor:.1f} x real time")
+        case = f" ({self._case + 1} of {self._cases})" if self._cases > 1 else ""
+        state = f"{passed:.1f} of {whole:g} s, {factor:.1f} x real time{case}"
+        self._display.show((self._case + passed / whole) / self._cases, state)
 
     def log(self, show: Callable[[], None]) -> None:
         """Print something above the bar, at the end of a case."""
         self._case += 1
         show()
 
-    def _show(self, share: float, state: str) -> None:
-        case = f" ({self._case + 1} of {self._cases})" if self._cases > 1 else ""
-        self._display.show((self._case + share) / self._cases, state + case)
-
 
 class _Display(Protocol):
     """Where progress is shown."""
+
+    def load(self, what: str) -> None:
+        """Show that a component is being built or loaded."""
 
     def show(self, share: float, state: str) -> None:
         """Show what has been done, as a share and in words."""
@@ -86,6 +87,9 @@ class _Bar:
         self._task = self._progress.add_task(escape(name), total=1.0, state="")
         self._progress.start()
 
+    def load(self, what: str) -> None:
+        self._progress.update(self._task, state=escape(f"loading {what}"))
+
     def show(self, share: float, state: str) -> None:
         self._progress.update(self._task, completed=share, state=escape(state))
 
@@ -99,6 +103,9 @@ class _Lines:
     def __init__(self, name: str, clock: Callable[[], float]) -> None:
         self._name, self._clock = name, clock
         self._next = clock() + PERIOD
+
+    def load(self, what: str) -> None:
+        """Leave that unsaid: what goes wrong then is one message."""
 
     def show(self, share: float, state: str) -> None:
         if self._clock() >= self._next:

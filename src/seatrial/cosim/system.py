@@ -10,7 +10,7 @@ from typing import Any, Literal
 
 from ..component import Noise, seconds
 from ..errors import InputError, unknown
-from ..fmi.bundle import bundle
+from ..fmi.bundle_name import bundle_name
 from ..fmi.direct import DirectInstance
 from ..fmi.export import cached_fmu
 from ..fmi.instance import Instance, Variable, Variables
@@ -251,7 +251,7 @@ def _instance(
             )
         loaded, code = load_fmu(source), ""
     else:
-        code = bundle(source.stem, source.script, source.folder).script
+        code = bundle_name(source.stem, source.script, source.folder)
         if in_process:
             return DirectInstance(source.component_class()(name)), "", code
         loaded = load_fmu(cached_fmu(source, code))
