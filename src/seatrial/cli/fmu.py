@@ -31,7 +31,7 @@ Named = Annotated[str, typer.Argument(metavar="FMU", help="A shipped name, x.fmu
 def list_fmus() -> None:
     """List the FMUs that are shipped."""
     for name, source in shipped_sources().items():
-        console.print(f"{name:20} {escape(source.title())}", soft_wrap=True)
+        console.print(f"{name:20} {escape(source.title)}", soft_wrap=True)
 
 
 @fmu_app.command()

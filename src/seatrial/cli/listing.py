@@ -25,7 +25,7 @@ def list_all() -> None:
     """List trials, campaigns, rigs, vehicles, profiles, experiments and FMUs by name."""
     for kind, folder in _KINDS.items():
         _print(kind, {name: _title(path) for name, path in available(folder).items()})
-    _print("FMUs", {name: source.title() for name, source in shipped_sources().items()})
+    _print("FMUs", {name: source.title for name, source in shipped_sources().items()})
 
 
 def _print(kind: str, titles: dict[str, str]) -> None:

@@ -85,6 +85,7 @@ class ComponentSource:
             raise InputError(f"{self.origin}: {cls!r} is not a subclass of seatrial's Component")
         return cls
 
+    @property
     def title(self) -> str:
         """Return the first line of the component's description, without importing it."""
         for node in ast.parse(self.script).body:

@@ -10,9 +10,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from jinja2 import Environment, FileSystemBytecodeCache, FileSystemLoader, StrictUndefined
 
 from ..errors import InputError
+from ..fmi.cache import cache_folder
 from ..units import quantity
 from .accuracy_section import accuracy_section
 from .convergence import load_convergence
@@ -100,7 +101,11 @@ def render(template: str, **content: Any) -> str:
 def _environment() -> Environment:
     loader = FileSystemLoader(Path(__file__).parent / "templates")
     environment = Environment(
-        loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True
+        loader=loader,
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        bytecode_cache=FileSystemBytecodeCache(str(cache_folder("pages"))),
     )
     environment.filters["number"] = number
     return environment
