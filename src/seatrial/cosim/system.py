@@ -12,10 +12,7 @@ from ..component import Noise, seconds
 from ..errors import InputError, unknown
 from ..fmi.bundle_name import bundle_name
 from ..fmi.direct import DirectInstance
-from ..fmi.export import cached_fmu
 from ..fmi.instance import Instance, Variable, Variables
-from ..fmi.isolated import IsolatedInstance
-from ..fmi.load import load_fmu, open_instance
 from ..fmi.source import find_source
 from ..units import conversion
 from .parameters import ParameterSet, load_vehicle, split_reference
@@ -244,17 +241,21 @@ def _instance(
     """
     source = find_source(entry.fmu, folder)
     in_process = engine == "direct" and not entry.isolated
-    if isinstance(source, Path):
-        if in_process:
+    code = (
+        "" if isinstance(source, Path) else bundle_name(source.stem, source.script, source.folder)
+    )
+    if in_process:
+        if isinstance(source, Path):
             raise InputError(
                 f"{source.name} can only run with the engine 'fmu', or with isolated = true"
             )
-        loaded, code = load_fmu(source), ""
-    else:
-        code = bundle_name(source.stem, source.script, source.folder)
-        if in_process:
-            return DirectInstance(source.component_class()(name)), "", code
-        loaded = load_fmu(cached_fmu(source, code))
+        return DirectInstance(source.component_class()(name)), "", code
+    # A run in process needs neither FMPy nor pythonfmu.
+    from ..fmi.export import cached_fmu
+    from ..fmi.isolated import IsolatedInstance
+    from ..fmi.load import load_fmu, open_instance
+
+    loaded = load_fmu(source if isinstance(source, Path) else cached_fmu(source, code))
     if entry.isolated:
         return IsolatedInstance(loaded, name, timeout_s), loaded.sha256, code
     if loaded.description.coSimulation.canBeInstantiatedOnlyOncePerProcess:
