@@ -32,7 +32,8 @@ _MOTION = ("position", "attitude")
 _FORCE_UNITS = ("N", "N.m")
 _TEXT_ROWS = 20
 _POINTS = 100_000
-"""Points of all signals in a page, about, each at most twice: 11 bytes in a page for each."""
+"""Points of all signals in a page, of 11 bytes each; those of the trial's plots come again."""
+_FEWEST_POINTS = 500
 
 
 @dataclass(frozen=True)
@@ -260,8 +261,12 @@ def _alike_craft(run: Run, ports: Iterable[Port]) -> list[list[str]]:
 
 def _over_time(run: Run, columns: Sequence[Sequence[Panel]]) -> str:
     events = [at for at in map(_event_time, run.manifest.get("events", [])) if at is not None]
-    most_points = min(max(_POINTS // len(run.signals), 500), MAX_POINTS)
-    return time_figure(run.time, columns, events, most_points).json()
+    return time_figure(run.time, columns, events, points_of_a_line(len(run.signals))).json()
+
+
+def points_of_a_line(signals: int) -> int:
+    """Return how many points a line may have in a page of so many signals."""
+    return min(max(_POINTS // max(signals, 1), _FEWEST_POINTS), MAX_POINTS)
 
 
 def _tracks(run: Run, motion: Iterable[Port]) -> Iterator[tuple[str, Any, Any]]:
