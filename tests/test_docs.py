@@ -406,10 +406,10 @@ def test_values_come_from_where_the_page_says(write: Any, tmp_path: Path) -> Non
 
 def test_exit_statuses_of_the_page(write: Any) -> None:
     """0 and 1 by the page's own commands; 2 and 3 here."""
-    main = importlib.import_module("seatrial.cli.main")
+    statuses = importlib.import_module("seatrial.cli.statuses")
     shown = {row[0]: row[1] for row in rows_after(RESULTS, "## Exit status")}
     assert list(shown) == ["0", "1", "2", "3"]
-    assert (main._FAILED, main._BAD_INPUT, main._BROKEN) == (1, 2, 3)
+    assert (statuses.FAILED, statuses.BAD_INPUT, statuses.BROKEN) == (1, 2, 3)
 
 
 # ---------------------------------------------------------------------- tables made from code

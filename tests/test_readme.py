@@ -56,7 +56,7 @@ LONG = ("seatrial run gloria-triangle", "seatrial run hydrone-pads")
 def test_commands_that_run_trials(line: str, tmp_path: Path) -> None:
     done = run(line, tmp_path)
     assert done.returncode in (0, 1), done.stderr
-    assert done.stderr == ""
+    assert "seatrial:" not in done.stderr  # nothing but progress
 
 
 def test_commands_for_other_tools(tmp_path: Path) -> None:

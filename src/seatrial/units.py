@@ -11,6 +11,7 @@ from functools import cache, lru_cache
 from typing import Any
 
 from .errors import InputError
+from .unit_table import known
 
 # FMI 2.0's base units, in the order of its BaseUnit element, with pint's names for them.
 _BASE = {
@@ -73,9 +74,20 @@ def unit(text: str) -> Unit:
 
     Raises InputError if it is not a unit, or not a linear one (dB).
     """
-    registry = _registry()
     if text.strip() in ("", "1"):
         return Unit("1", Fraction(1), Fraction(0), {})
+    usual = known(text)
+    factor, offset, exponents = (
+        _looked_up(text) if usual is None else (usual[0], Fraction(0), usual[1])
+    )
+    return Unit(
+        text, factor, offset, {base: exponents[base] for base in _BASE if base in exponents}
+    )
+
+
+def _looked_up(text: str) -> tuple[Fraction, Fraction, dict[str, int]]:
+    """Return factor, offset and exponents of a unit by pint's registry; see `unit`."""
+    registry = _registry()
     try:
         parsed = registry.Unit(_to_pint(text))
         # Logarithmic units fail here, for a fraction has no logarithm.
@@ -90,7 +102,7 @@ def unit(text: str) -> Unit:
         if name not in names or power != int(power):
             raise InputError(f"unit {text!r} cannot be written in FMI's base units")
         exponents[names[name]] = int(power)
-    return Unit(text, one.magnitude - zero.magnitude, zero.magnitude, exponents)
+    return one.magnitude - zero.magnitude, zero.magnitude, exponents
 
 
 def defined_unit(text: str, exponents: Mapping[str, int], factor: float, offset: float) -> Unit:

@@ -5,15 +5,19 @@ from __future__ import annotations
 import base64
 import json
 import re
+import zlib
 from html.parser import HTMLParser
+from pathlib import Path
 
 import numpy as np
+import plotly
 import pytest
 
 from seatrial.errors import InputError
 from seatrial.trials.campaign_report import write_campaign_report
+from seatrial.trials.plotly_js import plotly_js
 from seatrial.trials.plots import MAX_POINTS, Line, Panel, decimate, time_figure
-from seatrial.trials.report import write_report
+from seatrial.trials.report import points_of_a_line, write_report
 
 from .conftest import PADS, write_run_folder
 
@@ -405,3 +409,27 @@ def test_not_a_campaign(tmp_path):
     (tmp_path / "campaign.json").write_text('{"name": "x"}')
     with pytest.raises(InputError, match="lacks 'cases'"):
         write_campaign_report(tmp_path)
+
+
+# ---------------------------------------------------------------------- size and order
+
+
+def test_a_long_run_with_many_signals_stays_small():
+    time, count = np.linspace(0.0, 600.0, 60_001), 90
+    noise = np.random.default_rng(1).standard_normal((count, len(time)))
+    panels = [Panel(f"thrust {i}", "N", [Line("thrust", noise[i])]) for i in range(count)]
+    figure = time_figure(time, [panels], most_points=points_of_a_line(count))
+    assert len(figure.json()) + len(plotly_js()) < 3.4e6
+
+
+def test_plots_come_before_the_tables_of_connections(write_run):
+    text = Page(write_report(write_run())).text
+    order = ["Verdicts", "Motion of hull", "What was simulated", "Parameters"]
+    assert sorted(order, key=text.index) == order
+
+
+def test_the_page_carries_the_library_whole(write_run):
+    page = write_report(write_run()).read_text(encoding="utf-8")
+    packed = re.search(r'<script type="text/plain" id="plotly">(.*?)</script>', page)[1]
+    library = Path(plotly.__file__).with_name("package_data") / "plotly.min.js"
+    assert zlib.decompress(base64.b64decode(packed)) == library.read_bytes()

@@ -20,19 +20,20 @@ def test_from_the_side_is_the_plane_of_the_ends_at_the_end() -> None:
     down = np.array([[0.0, 0.0, 0.0], [1.0, 2.0, 3.0], [4.0, 5.0, 6.0]])
     figure = shape_figure(TIME, north, east, down)
     side, above = (
-        [t for t in figure.data if t.name == "2 s" and t.xaxis == axis] for axis in ("x", "x2")
+        [t for t in figure.data if t["name"] == "2 s" and t["xaxis"] == axis]
+        for axis in ("x", "x2")
     )
-    assert side[0].x == pytest.approx([0.0, 2.5, 5.0])
-    assert side[0].y == pytest.approx([0.0, 3.0, 6.0])
-    assert (list(above[0].x), list(above[0].y)) == ([1.0, 3.0, 5.0], [1.0, 2.5, 4.0])
-    assert figure.layout.yaxis.autorange == "reversed"
-    assert [t.name for t in figure.data if t.xaxis == "x"] == ["0 s", "1 s", "2 s"]
+    assert side[0]["x"] == pytest.approx([0.0, 2.5, 5.0])
+    assert side[0]["y"] == pytest.approx([0.0, 3.0, 6.0])
+    assert (list(above[0]["x"]), list(above[0]["y"])) == ([1.0, 3.0, 5.0], [1.0, 2.5, 4.0])
+    assert figure.layout["yaxis"]["autorange"] == "reversed"
+    assert [t["name"] for t in figure.data if t["xaxis"] == "x"] == ["0 s", "1 s", "2 s"]
 
 
 def test_a_tether_that_hangs_straight_down_is_drawn() -> None:
     still = np.zeros((3, 3))
     figure = shape_figure(TIME, still, still, np.outer([0.0, 1.0, 2.0], np.ones(3)))
-    assert all(np.isfinite(np.array(t.x, dtype=float)).all() for t in figure.data)
+    assert all(np.isfinite(np.array(t["x"], dtype=float)).all() for t in figure.data)
 
 
 @pytest.mark.parametrize("recorded", [True, False])

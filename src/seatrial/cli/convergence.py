@@ -1,18 +1,62 @@
-"""What the terminal shows of step halving."""
+"""``seatrial convergence``: a trial at halved communication steps."""
 
 from __future__ import annotations
 
+from typing import Annotated
+
+import typer
 from rich.box import SIMPLE
 from rich.markup import escape
 from rich.table import Table
 
+from ..errors import InputError
 from ..trials.accuracy import Accuracy, by_port, order_text, spread_text
-from ..trials.convergence import Convergence
+from ..trials.convergence import Convergence, run_convergence
 from ..trials.readable import number, person_scale
-from .show import console
+from ..trials.report import write_report
+from ..trials.run import Hooks, Result
+from ..trials.trial import load_trial
+from .options import EngineName, Out, Settings, engine_named, is_campaign, setting
+from .show import console, print_notes
+from .statuses import FAILED
+from .stopping import stoppable
+from .watch import Watch
 
 
-def print_convergence(found: Convergence) -> None:
+def convergence(
+    trial: Annotated[str, typer.Argument(help="A trial: a name, a .toml or an .ssp file.")],
+    halvings: Annotated[int, typer.Option(help="How often the step is halved, at least 2.")] = 2,
+    settings: Settings = None,
+    engine: EngineName = "fmu",
+    out: Out = None,
+) -> None:
+    """Halve a trial's communication step: order and error of each output; status 1 if erratic."""
+    chosen = engine_named(engine)
+    changes = dict(setting(text) for text in settings or [])
+    if is_campaign(trial):
+        raise InputError(f"convergence works with a trial; {trial} is a campaign")
+    loaded = load_trial(trial, changes=changes, origin="--set")
+    print_notes(loaded.notes)
+    with stoppable() as stop:
+        with Watch(loaded.name) as watch:
+
+            def done(result: Result) -> None:
+                watch.log(lambda: None)
+                write_report(result.folder)
+
+            hooks = Hooks(watch.building, watch.progress, stop.requested, stop.interruptible)
+            watch.expect(halvings + 1)
+            folder, found = run_convergence(
+                loaded, out, halvings=halvings, engine=chosen, hooks=hooks, done=done
+            )
+        page = write_report(folder)
+    _print(found)
+    console.print(f"report: {page}", soft_wrap=True)
+    if not found.converges:
+        raise typer.Exit(FAILED)
+
+
+def _print(found: Convergence) -> None:
     """Print the worst output of each port, and what does not converge, differs or is exact."""
     own, half = (f"{number(step * 1e3, 9)} ms" for step in found.steps[:2])
     rows = [worst for worst in by_port(found.outputs) if worst.behaviour != "exact"]

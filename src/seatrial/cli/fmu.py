@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from fmpy.validation import validate_fmu
 from rich.markup import escape
 from rich.table import Table
 
@@ -144,6 +143,8 @@ def _start_values(
 
 
 def _problems(name: str) -> list[str]:
+    from fmpy.validation import validate_fmu
+
     with tempfile.TemporaryDirectory() as folder:
         source = find_source(name, Path.cwd())
         path = source if isinstance(source, Path) else build_fmu(source, Path(folder) / "x.fmu")

@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from ..errors import InputError, unknown
-from ..shipped import shipped_folder
+from ..shipped import available, searched_folders, shipped_folder
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -62,22 +62,6 @@ def _beside(kind: str, naming: Path | None) -> list[Path]:
             folder = parent / below if top == "harness" else parent.parent / kind
             return [folder] if folder.is_dir() else []
     return []
-
-
-def searched_folders(kind: str) -> list[Path]:
-    """Return the folders where files of ``kind`` are looked for, in order."""
-    top, _, below = kind.partition("/")
-    shipped = shipped_folder(top) / below if below else shipped_folder(top)
-    return [p for p in dict.fromkeys([Path.cwd() / kind, shipped]) if p.is_dir()]
-
-
-def available(kind: str) -> dict[str, Path]:
-    """Return the files of ``kind`` by name, the ones that `find_file` would return."""
-    found: dict[str, Path] = {}
-    for folder in searched_folders(kind):
-        for path in sorted(folder.glob("*.toml")):
-            found.setdefault(path.stem, path)
-    return dict(sorted(found.items()))
 
 
 def read_toml(path: Path) -> tuple[dict[str, Any], Source]:

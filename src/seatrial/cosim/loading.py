@@ -6,12 +6,9 @@ from pathlib import Path
 
 from ..component import seconds
 from ..errors import InputError
-from ..fmi.bundle import bundled
+from ..fmi.bundle_name import bundle_name
 from ..fmi.direct import DirectInstance
-from ..fmi.export import cached_fmu
 from ..fmi.instance import Instance
-from ..fmi.isolated import IsolatedInstance
-from ..fmi.load import load_fmu, open_instance
 from ..fmi.source import find_source
 from .rig import ComponentEntry, Rig, duration_ns
 from .system import Engine, Part
@@ -69,17 +66,19 @@ def _instance(
     """
     source = find_source(entry.fmu, folder)
     in_process = engine == "direct" and not entry.isolated
-    if isinstance(source, Path):
-        if in_process:
+    code = "" if isinstance(source, Path) else bundle_name(source)
+    if in_process:
+        if isinstance(source, Path):
             raise InputError(
                 f"{source.name} can only run with the engine 'fmu', or with isolated = true"
             )
-        loaded, code = load_fmu(source), ""
-    else:
-        code = bundled(source).script
-        if in_process:
-            return DirectInstance(source.component_class()(name)), "", code
-        loaded = load_fmu(cached_fmu(source, code))
+        return DirectInstance(source.component_class()(name)), "", code
+    # A run in process needs neither FMPy nor pythonfmu.
+    from ..fmi.export import cached_fmu
+    from ..fmi.isolated import IsolatedInstance
+    from ..fmi.load import load_fmu, open_instance
+
+    loaded = load_fmu(source if isinstance(source, Path) else cached_fmu(source, code))
     if entry.isolated:
         return IsolatedInstance(loaded, name, timeout_s), loaded.sha256, code
     if loaded.description.coSimulation.canBeInstantiatedOnlyOncePerProcess:

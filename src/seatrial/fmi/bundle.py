@@ -38,6 +38,8 @@ class Bundle:
     script: str
     requirements: tuple[str, ...]
     """Third-party distributions that the files import, as pip requirements."""
+    read: tuple[Path, ...]
+    """The modules and data files that it is made of, as they lie on disk."""
     write: Callable[[], dict[str, bytes]]
 
     @cached_property
@@ -65,12 +67,14 @@ def bundle(stem: str, source: bytes, folder: Path | None, package: str | None = 
     modules, third_party = _closure(source, f"{stem}.py", local)
     digest = hashlib.sha256()
     data: dict[str, bytes] = {}
+    read = [path for path, _ in modules.values()]
     for name, (path, text) in sorted(modules.items()):
         digest.update(f"{name}\0{path.name}\0".encode() + text + b"\0")
         package = name if path.name == "__init__.py" else name.rpartition(".")[0]
         for file, content in _data_files(path, text):
             digest.update(f"{file}\0{len(content)}\0".encode() + content)
             data["/".join([*package.split("."), file] if package else [file])] = content
+            read.append(path.with_name(file))
     needed = {name: _requirement(name) for name in sorted(third_party)}
     requirements = tuple(needed.values())
     digest.update(stem.encode() + b"\0" + source + "\0".join(requirements).encode())
@@ -92,7 +96,7 @@ def bundle(stem: str, source: bytes, folder: Path | None, package: str | None = 
         files["requirements.txt"] = "".join(f"{r}\n" for r in requirements).encode()
         return files
 
-    return Bundle(f"{stem}_{tag}", requirements, write)
+    return Bundle(f"{stem}_{tag}", requirements, tuple(read), write)
 
 
 class _Local:

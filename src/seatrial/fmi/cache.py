@@ -1,4 +1,4 @@
-"""Folders for built and unpacked FMUs."""
+"""Folders for built and unpacked FMUs, and files written whole."""
 
 from __future__ import annotations
 
@@ -68,3 +68,17 @@ def _temporary() -> Path:
         )
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
     return folder
+
+
+def write_whole(path: Path, content: bytes) -> None:
+    """Write a file whole or not at all."""
+    try:
+        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=".building-")
+    except OSError as error:
+        raise InputError(f"cannot write {path}: {error.strerror}") from None
+    with os.fdopen(handle, "wb") as file:
+        file.write(content)
+        file.flush()
+        os.fsync(file.fileno())
+    os.chmod(temporary, 0o644)  # mkstemp's files are private
+    os.replace(temporary, path)

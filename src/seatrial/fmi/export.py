@@ -5,8 +5,6 @@ from __future__ import annotations
 import hashlib
 import io
 import json
-import os
-import tempfile
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path
@@ -16,9 +14,8 @@ from xml.etree.ElementTree import indent, tostring
 import pythonfmu
 
 from .. import __version__
-from ..errors import InputError
 from .bundle import Bundle, bundled
-from .cache import cache_folder
+from .cache import cache_folder, write_whole
 from .description import describe
 from .slave import START_VALUES
 from .source import ComponentSource
@@ -104,17 +101,3 @@ def _tool_tag() -> str:
     """Return a tag of what besides the bundle decides an FMU's bytes."""
     text = f"{__version__} {pythonfmu.__version__}"
     return hashlib.sha256(text.encode()).hexdigest()[:8]
-
-
-def write_whole(path: Path, content: bytes) -> None:
-    """Write a file whole or not at all."""
-    try:
-        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=".building-")
-    except OSError as error:
-        raise InputError(f"cannot write {path}: {error.strerror}") from None
-    with os.fdopen(handle, "wb") as file:
-        file.write(content)
-        file.flush()
-        os.fsync(file.fileno())
-    os.chmod(temporary, 0o644)  # mkstemp's files are private
-    os.replace(temporary, path)

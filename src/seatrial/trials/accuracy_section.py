@@ -6,11 +6,10 @@ from dataclasses import dataclass
 from html import escape
 from typing import Any
 
-import plotly.graph_objects as go
-
 from .accuracy import Accuracy, by_port, order_text, spread_text
 from .convergence import Convergence
-from .plots import COLOURS, figure_json, layout
+from .figure import Figure
+from .plots import COLOURS, layout
 from .readable import number, person_scale
 
 _PLOTTED = 6
@@ -59,7 +58,7 @@ def accuracy_section(found: Convergence) -> AccuracySection:
             for one in found.discrete
         ],
         failed=sum(output.behaviour == "not converging" for output in moving),
-        figure=figure_json(_figure(found, moving)) if moving else None,
+        figure=_figure(found, moving).json() if moving else None,
     )
 
 
@@ -78,13 +77,14 @@ def _row(output: Accuracy) -> Row:
     )
 
 
-def _figure(found: Convergence, moving: list[Accuracy]) -> go.Figure:
+def _figure(found: Convergence, moving: list[Accuracy]) -> Figure:
     """Return how the worst outputs differ from their runs at half the step, over the step."""
-    figure = go.Figure()
+    figure = Figure()
     steps = [step * 1e3 for step in found.steps[:-1]]
     worst = [output for output in by_port(moving) if output.range][:_PLOTTED]
     for index, output in enumerate(worst):
-        figure.add_scatter(
+        figure.trace(
+            "scatter",
             x=steps,
             y=[d / output.range if d else None for d in output.differences],
             name=escape(output.signal),
@@ -94,7 +94,8 @@ def _figure(found: Convergence, moving: list[Accuracy]) -> go.Figure:
         )
     top = max((d / o.range for o in worst for d in o.differences), default=1.0)
     for order, dash in ((1, "dash"), (2, "dot")):
-        figure.add_scatter(
+        figure.trace(
+            "scatter",
             x=steps,
             y=[2 * top * (step / steps[0]) ** order for step in steps],
             name=f"slope {order}",
@@ -102,8 +103,8 @@ def _figure(found: Convergence, moving: list[Accuracy]) -> go.Figure:
             line={"width": 1.2, "color": "#5b6770", "dash": dash},
             hoverinfo="skip",
         )
-    figure.update_layout(height=380, showlegend=True, **layout())
+    figure.lay_out(height=380, showlegend=True, **layout())
     ticks: dict[str, Any] = {"tickvals": steps, "ticktext": [number(s, 6) for s in steps]}
-    figure.update_xaxes(type="log", title_text="communication step, ms", **ticks)
-    figure.update_yaxes(type="log", dtick="D2", title_text="difference, share of the range")
+    figure.x_axis(type="log", title={"text": "communication step, ms"}, **ticks)
+    figure.y_axis(type="log", dtick="D2", title={"text": "difference, share of the range"})
     return figure

@@ -10,7 +10,7 @@ from urllib.parse import quote
 
 from ..errors import InputError
 from .decks import Pad, deck, pads
-from .plots import deck_figure, figure_json
+from .plots import deck_figure
 from .readable import quantity_text
 from .report import REPORT, render
 from .run_folder import load_run, read_json, read_manifest
@@ -106,7 +106,7 @@ def _deck(cases: list[Case]) -> str | None:
     phases = list(dict.fromkeys(case.phase for case in cases if case.pads))
     if not phases:
         return None
-    return figure_json(deck_figure([deck(phase, _landings(cases, phase)) for phase in phases]))
+    return deck_figure([deck(phase, _landings(cases, phase)) for phase in phases]).json()
 
 
 def _landings(cases: list[Case], phase: str) -> Iterator[tuple[str, Pad, bool | None]]:
@@ -119,7 +119,7 @@ def _landings(cases: list[Case], phase: str) -> Iterator[tuple[str, Pad, bool | 
 def _polar(cases: list[Case]) -> str | None:
     """Return a polar diagram of the runs, or None if they say too little of one."""
     figure = polar_figure([case.polar for case in cases if case.polar])
-    return None if figure is None else figure_json(figure)
+    return None if figure is None else figure.json()
 
 
 def _polar_point(run: Path, entry: dict[str, Any]) -> PolarPoint | None:

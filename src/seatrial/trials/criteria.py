@@ -24,6 +24,7 @@ final value is the last row's, so let the trial run until the signal rests.
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache
@@ -34,6 +35,7 @@ from lark import Lark, Token, Transformer, UnexpectedInput, v_args
 from lark.exceptions import UnexpectedCharacters, UnexpectedToken
 
 from ..errors import InputError, unknown
+from ..fmi.cache import cache_folder
 from ..units import unit
 from . import expressions as ex
 from .expressions import Comparison, Condition, Expression, FloatArray, Limit, Logic, Units
@@ -207,7 +209,9 @@ def parse(text: str) -> Criterion:
 
 @cache
 def _parser() -> Lark:
-    return Lark(GRAMMAR, parser="lalr", transformer=_Builder())
+    # The tables made of a grammar are kept: lark makes them again for another grammar or version.
+    kept = cache_folder("grammars") / f"criteria-{sys.implementation.cache_tag}"
+    return Lark(GRAMMAR, parser="lalr", transformer=_Builder(), cache=str(kept))
 
 
 def _syntax(text: str, error: UnexpectedInput) -> str:

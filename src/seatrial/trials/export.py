@@ -6,11 +6,12 @@ from pathlib import Path
 
 from ..component import seconds
 from ..cosim.assembly import assemble
-from ..cosim.files import available, find_file, read_toml
+from ..cosim.files import find_file, read_toml
 from ..cosim.rig import load_rig
 from ..cosim.ssp.writing import Experiment, write_ssp
 from ..cosim.system import System
 from ..errors import InputError, unknown
+from ..shipped import available
 from .trial import Trial, load_trial
 
 _USUAL_STOP = 10.0

@@ -7,12 +7,11 @@ from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
-import plotly.graph_objects as go
-from plotly.subplots import make_subplots
 
+from .figure import Figure
 from .heading_design import GAINS, Gain, HeadingDesign, Locus, least_damping
 from .output import claim_folder
-from .plots import COLOURS, figure_json, layout
+from .plots import COLOURS, layout
 from .readable import number
 from .report import REPORT, render
 
@@ -49,8 +48,8 @@ def write_design(design: HeadingDesign, out: Path | None) -> Path:
         zeta=number(design.damping_ratio, 5),
         rows=rows(design),
         stability=[(_time(locus), stability(locus)) for locus in design.loci],
-        loci=figure_json(_loci_figure(design)),
-        damping=figure_json(_damping_figure(design)),
+        loci=_loci_figure(design).json(),
+        damping=_damping_figure(design).json(),
     )
     path = folder / REPORT
     path.write_text(page, encoding="utf-8")
@@ -99,56 +98,56 @@ def _pole_text(pole: complex) -> str:
     return real if pole.imag == 0.0 else f"{real} ± {number(pole.imag, 6)}i"
 
 
-def _loci_figure(design: HeadingDesign) -> go.Figure:
-    count = len(design.loci)
+def _loci_figure(design: HeadingDesign) -> Figure:
     titles = [f"<b>T<sub>d</sub> = {_time(locus)} L/U</b>" for locus in design.loci]
-    figure = make_subplots(rows=1, cols=count, subplot_titles=titles, horizontal_spacing=0.07)
+    figure = Figure(titles, gap=0.07)
     edge = _WINDOW * np.array([-design.damping_ratio, np.sqrt(1.0 - design.damping_ratio**2)])
     for col, locus in enumerate(design.loci, start=1):
         poles, gains = locus.poles.ravel(), np.repeat(GAINS, locus.poles.shape[1])
         near = np.abs(poles) < 2.0 * _WINDOW
-        figure.add_scatter(
+        figure.trace(
+            "scatter",
             x=poles.real[near],
             y=poles.imag[near],
             customdata=gains[near],
             mode="markers",
             marker={"size": 3.5, "color": np.log10(gains[near]), "colorscale": "Viridis"},
             hovertemplate="K = %{customdata:.4g}<br>%{x:.4f} + %{y:.4f} i",
-            row=1,
-            col=col,
+            column=col,
         )
         for sign in (1.0, -1.0):
-            figure.add_scatter(
+            figure.trace(
+                "scatter",
                 x=[0.0, edge[0]],
                 y=[0.0, sign * edge[1]],
                 mode="lines",
                 line={**_LINE, "dash": "dot"},
                 hoverinfo="skip",
-                row=1,
-                col=col,
+                column=col,
             )
         for gain in [*locus.wanted, *locus.limits]:
-            figure.add_scatter(
+            figure.trace(
+                "scatter",
                 x=gain.poles.real,
                 y=gain.poles.imag,
                 mode="markers",
                 marker={"size": 11, "symbol": "x-thin", "line": {"width": 2, "color": "#1d2730"}},
                 hovertemplate=f"K = {number(gain.K, 9)}<br>%{{x:.4f}} + %{{y:.4f}} i",
-                row=1,
-                col=col,
+                column=col,
             )
-        figure.add_vline(x=0.0, line=_LINE, row=1, col=col)
-        figure.update_xaxes(title_text="real part, U/L", range=[-_WINDOW, 1.0], row=1, col=col)
-        figure.update_yaxes(range=[-2.0, 2.0], row=1, col=col)
-    figure.update_yaxes(title_text="imaginary part, U/L", row=1, col=1)
-    figure.update_layout(height=480, showlegend=False, **layout(hovermode="closest"))
+        figure.vertical(0.0, line=_LINE, column=col)
+        figure.x_axis(title={"text": "real part, U/L"}, range=[-_WINDOW, 1.0], column=col)
+        figure.y_axis(range=[-2.0, 2.0], column=col)
+    figure.y_axis(title={"text": "imaginary part, U/L"}, column=1)
+    figure.lay_out(height=480, showlegend=False, **layout(hovermode="closest"))
     return figure
 
 
-def _damping_figure(design: HeadingDesign) -> go.Figure:
-    figure = go.Figure()
+def _damping_figure(design: HeadingDesign) -> Figure:
+    figure = Figure()
     for index, locus in enumerate(design.loci):
-        figure.add_scatter(
+        figure.trace(
+            "scatter",
             x=GAINS,
             y=[least_damping(poles) for poles in locus.poles],
             name=f"T<sub>d</sub> = {_time(locus)} L/U",
@@ -156,9 +155,9 @@ def _damping_figure(design: HeadingDesign) -> go.Figure:
             line={"width": 1.8, "color": COLOURS[index % len(COLOURS)]},
             hovertemplate="K = %{x:.4g}: %{y:.4f}",
         )
-    figure.add_hline(y=design.damping_ratio, line={**_LINE, "dash": "dot"})
-    figure.add_hline(y=0.0, line=_LINE)
-    figure.update_xaxes(title_text="gain K", type="log")
-    figure.update_yaxes(title_text="least damping ratio")
-    figure.update_layout(height=400, showlegend=True, **layout(hovermode="closest"))
+    figure.horizontal(design.damping_ratio, line={**_LINE, "dash": "dot"})
+    figure.horizontal(0.0, line=_LINE)
+    figure.x_axis(title={"text": "gain K"}, type="log")
+    figure.y_axis(title={"text": "least damping ratio"})
+    figure.lay_out(height=400, showlegend=True, **layout(hovermode="closest"))
     return figure

@@ -9,10 +9,9 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-import plotly.graph_objects as go
-from plotly.subplots import make_subplots
 
 from .expressions import FloatArray
+from .figure import Figure
 
 MAX_POINTS = 5000
 COLOURS = ("#0b6ea8", "#d1690e", "#3a8f5c", "#8a4fa3", "#8c6d31", "#4a5a68")
@@ -22,7 +21,7 @@ _PANEL_HEIGHT = 165
 _GUTTER = 0.09
 _GRID = "#e6eaee"
 _EVENT = {"color": "#9aa5af", "width": 1, "dash": "dot"}
-_TITLE = {
+_TITLE: dict[str, Any] = {
     "x": 0,
     "y": 1,
     "xanchor": "left",
@@ -82,11 +81,13 @@ class Deck:
     beam: float
 
 
-def decimate(time: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return at most `MAX_POINTS` points that keep the least and greatest value of each stretch."""
-    if len(time) <= MAX_POINTS:
+def decimate(
+    time: FloatArray, values: FloatArray, most_points: int = MAX_POINTS
+) -> tuple[FloatArray, FloatArray]:
+    """Return at most so many points that keep the least and greatest value of each stretch."""
+    if len(time) <= most_points:
         return time, values
-    edges = np.linspace(0, len(time), (MAX_POINTS - 2) // 2 + 1).astype(int)
+    edges = np.linspace(0, len(time), (most_points - 2) // 2 + 1).astype(int)
     kept = {0, len(time) - 1}
     low, high = (
         np.where(np.isnan(values), np.inf, values),
@@ -100,40 +101,30 @@ def decimate(time: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArr
 
 
 def time_figure(
-    time: FloatArray, columns: Sequence[Sequence[Panel]], events: Sequence[float] = ()
-) -> go.Figure:
+    time: FloatArray,
+    columns: Sequence[Sequence[Panel]],
+    events: Sequence[float] = (),
+    most_points: int = MAX_POINTS,
+) -> Figure:
     """Return panels in columns, all over the same time, with events as vertical lines."""
     height = _PANEL_HEIGHT * max(len(column) for column in columns) + 70
-    traces: list[dict[str, Any]] = []
-    axes: dict[str, Any] = {}
-    titles, events_drawn = [], []
+    figure = Figure()
     for number, (panel, across, along, is_last) in enumerate(_placed(columns, height), start=1):
         x, y = (axis if number == 1 else f"{axis}{number}" for axis in "xy")
-        traces += [{**trace, "xaxis": x, "yaxis": y} for trace in _traces(time, panel)]
-        axes[f"xaxis{number}"] = {"anchor": y, "domain": across, "showticklabels": is_last}
-        axes[f"yaxis{number}"] = {"anchor": x, "domain": along}
+        for trace in _traces(time, panel, most_points):
+            figure.trace("scatter", number, **trace)
+        figure.x_axis(number, anchor=y, domain=across, showticklabels=is_last)
+        figure.y_axis(number, anchor=x, domain=along)
         if number > 1:
-            axes[f"xaxis{number}"]["matches"] = "x"
+            figure.x_axis(number, matches="x")
         if is_last:
-            axes[f"xaxis{number}"]["title"] = {"text": "time, s"}
-        place = {"xref": f"{x} domain", "yref": f"{y} domain"}
-        titles.append({"text": _panel_title(panel), **place, **_TITLE})
-        ends = {"xref": x, "yref": f"{y} domain", "y0": 0, "y1": 1}
-        events_drawn += [
-            {"type": "line", "x0": at, "x1": at, "line": _EVENT, **ends} for at in events
-        ]
-    # All at once: whatever is added later has the whole figure checked again.
-    return go.Figure(
-        traces,
-        {
-            **axes,
-            "annotations": titles,
-            "shapes": events_drawn,
-            "height": height,
-            "showlegend": False,
-            **layout(),
-        },
-    )
+            figure.x_axis(number, title={"text": "time, s"})
+        place: dict[str, Any] = {"xref": f"{x} domain", "yref": f"{y} domain", **_TITLE}
+        figure.annotate(text=_panel_title(panel), **place)
+        for at in events:
+            figure.vertical(at, _EVENT, number)
+    figure.lay_out(height=height, showlegend=False, **layout())
+    return figure
 
 
 def _placed(
@@ -164,11 +155,11 @@ def _panel_title(panel: Panel) -> str:
     return title
 
 
-def _traces(time: FloatArray, panel: Panel) -> Iterator[dict[str, Any]]:
+def _traces(time: FloatArray, panel: Panel, most_points: int) -> Iterator[dict[str, Any]]:
     unit = escape(panel.unit) if panel.unit not in ("", "1") else ""
-    shown = {"type": "scatter", "hovertemplate": f"%{{y:.5g}} {unit}"}
+    shown = {"hovertemplate": f"%{{y:.5g}} {unit}"}
     for index, line in enumerate(panel.lines):
-        x, y = decimate(time, line.values)
+        x, y = decimate(time, line.values, most_points)
         yield {
             **shown,
             "x": x,
@@ -188,14 +179,15 @@ def _traces(time: FloatArray, panel: Panel) -> Iterator[dict[str, Any]]:
         }
 
 
-def track_figure(tracks: Sequence[tuple[str, FloatArray, FloatArray]]) -> go.Figure:
+def track_figure(tracks: Sequence[tuple[str, FloatArray, FloatArray]]) -> Figure:
     """Return the tracks (name, north, east; m) seen from above, north up, in equal axes."""
-    figure = go.Figure()
+    figure = Figure()
     for index, (name, north, east) in enumerate(tracks):
         colour = COLOURS[index % len(COLOURS)]
         step = max(1, -(-len(north) // MAX_POINTS))
         rows = np.unique(np.append(np.arange(0, len(north), step), len(north) - 1))
-        figure.add_scatter(
+        figure.trace(
+            "scatter",
             x=east[rows],
             y=north[rows],
             name=escape(name),
@@ -204,7 +196,8 @@ def track_figure(tracks: Sequence[tuple[str, FloatArray, FloatArray]]) -> go.Fig
             hovertemplate="north %{y:.4g} m, east %{x:.4g} m",
         )
         for row, symbol, label in ((0, "circle-open", "start"), (-1, "square", "end")):
-            figure.add_scatter(
+            figure.trace(
+                "scatter",
                 x=[east[row]],
                 y=[north[row]],
                 mode="markers+text",
@@ -214,19 +207,19 @@ def track_figure(tracks: Sequence[tuple[str, FloatArray, FloatArray]]) -> go.Fig
                 marker={"size": 9, "color": colour, "symbol": symbol},
                 hovertemplate="north %{y:.4g} m, east %{x:.4g} m",
             )
-    figure.update_layout(height=460, showlegend=False, **layout(hovermode="closest"))
-    figure.update_xaxes(title_text="east, m")
-    figure.update_yaxes(title_text="north, m", scaleanchor="x", scaleratio=1)
+    figure.lay_out(height=460, showlegend=False, **layout(hovermode="closest"))
+    figure.x_axis(title={"text": "east, m"})
+    figure.y_axis(title={"text": "north, m"}, scaleanchor="x", scaleratio=1)
     return figure
 
 
-def deck_figure(decks: Sequence[Deck]) -> go.Figure:
+def deck_figure(decks: Sequence[Deck]) -> Figure:
     """Return decks seen from above, bow up, with their landing points coloured by verdict."""
     titles = [f"<b>{escape(deck.title)}</b>" for deck in decks]
-    figure = make_subplots(rows=1, cols=len(decks), subplot_titles=titles)
+    figure = Figure(titles)
     for col, deck in enumerate(decks, start=1):
         half_beam, half_length = deck.beam / 2, deck.length / 2
-        figure.add_shape(
+        figure.shape(
             type="rect",
             x0=-half_beam,
             x1=half_beam,
@@ -235,57 +228,54 @@ def deck_figure(decks: Sequence[Deck]) -> go.Figure:
             line={"color": "#4a5a68", "width": 1.5},
             fillcolor="#f1f4f7",
             layer="between",
-            row=1,
-            col=col,
+            column=col,
         )
-        figure.add_annotation(
+        figure.annotate(
             x=0,
             y=half_length,
             text="bow ▲",
             showarrow=False,
             yshift=10,
-            font_size=12,
-            row=1,
-            col=col,
+            font={"size": 12},
+            column=col,
         )
-        figure.add_scatter(
+        figure.trace(
+            "scatter",
             x=[0],
             y=[0],
             mode="markers",
             name="body origin",
             hovertemplate="body origin",
             marker={"symbol": "cross-thin", "size": 14, "line": {"width": 1.5, "color": "#4a5a68"}},
-            row=1,
-            col=col,
+            column=col,
         )
         for point in deck.points:
             _draw_pad(figure, point, col)
         margin = 0.16 * max(deck.length, deck.beam)
         x_anchor = "x" if col == 1 else f"x{col}"
-        figure.update_xaxes(
-            title_text="starboard, m",
+        figure.x_axis(
+            title={"text": "starboard, m"},
             range=[-half_beam - margin, half_beam + margin],
             constrain="domain",
-            row=1,
-            col=col,
+            column=col,
         )
-        figure.update_yaxes(
-            title_text="forward, m",
+        figure.y_axis(
+            title={"text": "forward, m"},
             range=[-half_length - margin, half_length + margin],
             constrain="domain",
             scaleanchor=x_anchor,
             scaleratio=1,
-            row=1,
-            col=col,
+            column=col,
         )
-    figure.update_layout(height=560, showlegend=False, **layout(hovermode="closest"))
+    figure.lay_out(height=560, showlegend=False, **layout(hovermode="closest"))
     return figure
 
 
-def _draw_pad(figure: go.Figure, point: PadPoint, col: int) -> None:
+def _draw_pad(figure: Figure, point: PadPoint, col: int) -> None:
     colour, symbol, verdict = _verdict_style(point)
     label = "<br>".join(escape(label) for label in point.labels)
-    figure.add_scatter(
+    figure.trace(
+        "scatter",
         x=[point.starboard],
         y=[point.forward],
         mode="markers+text",
@@ -300,8 +290,7 @@ def _draw_pad(figure: go.Figure, point: PadPoint, col: int) -> None:
             "line": {"width": 1, "color": "#fff"},
         },
         hovertemplate=f"{label}<br>%{{y:.3f}} m forward, %{{x:.3f}} m starboard",
-        row=1,
-        col=col,
+        column=col,
     )
 
 
@@ -315,14 +304,8 @@ def _verdict_style(point: PadPoint) -> tuple[str, str, str]:
     return MIXED, "diamond", f"{point.passed} of {point.evaluated} passed"
 
 
-def figure_json(figure: go.Figure) -> str:
-    """Return a figure as JSON that may stand inside a script element."""
-    text: str = figure.to_json()
-    return text.replace("<", "\\u003c")
-
-
 def layout(hovermode: str = "x") -> dict[str, Any]:
-    """Return what all figures share, for ``update_layout``."""
+    """Return what all figures share, for `Figure.lay_out`."""
     axis = {
         "gridcolor": _GRID,
         "zerolinecolor": "#c9d1d8",
@@ -331,11 +314,10 @@ def layout(hovermode: str = "x") -> dict[str, Any]:
         "tickcolor": "#9aa5af",
         "automargin": True,
         "exponentformat": "power",
-        "title_standoff": 6,
+        "title": {"standoff": 6},
     }
-    template = go.layout.Template(layout={"xaxis": axis, "yaxis": axis})
     return {
-        "template": template,
+        "template": {"layout": {"xaxis": axis, "yaxis": axis}},
         "hovermode": hovermode,
         "font": {"family": "system-ui, -apple-system, 'Segoe UI', sans-serif", "size": 12},
         "paper_bgcolor": "rgba(0,0,0,0)",

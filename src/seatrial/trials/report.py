@@ -10,16 +10,17 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
-from plotly.offline import get_plotlyjs
+from jinja2 import Environment, FileSystemBytecodeCache, FileSystemLoader, StrictUndefined
 
 from ..errors import InputError
+from ..fmi.cache import cache_folder
 from ..units import quantity
 from .accuracy_section import accuracy_section
 from .convergence import load_convergence
 from .decks import deck, pads
 from .expressions import FloatArray
-from .plots import Line, Mark, Panel, deck_figure, figure_json, time_figure, track_figure
+from .plotly_js import plotly_js
+from .plots import MAX_POINTS, Line, Mark, Panel, deck_figure, time_figure, track_figure
 from .readable import from_si, number, person_scale
 from .run_folder import Run, load_run
 from .sailing import add_wind_and_marks
@@ -30,6 +31,9 @@ REPORT = "report.html"
 _MOTION = ("position", "attitude")
 _FORCE_UNITS = ("N", "N.m")
 _TEXT_ROWS = 20
+_POINTS = 100_000
+"""Points of all signals in a page, of 11 bytes each; those of the trial's plots come again."""
+_FEWEST_POINTS = 500
 
 
 @dataclass(frozen=True)
@@ -91,14 +95,18 @@ def write_report(folder: Path | str) -> Path:
 
 def render(template: str, **content: Any) -> str:
     """Return a page from a template of this package; ``content`` is escaped there."""
-    return _environment().get_template(template).render(plotly_js=get_plotlyjs(), **content)
+    return _environment().get_template(template).render(plotly_js=plotly_js(), **content)
 
 
 @cache
 def _environment() -> Environment:
     loader = FileSystemLoader(Path(__file__).parent / "templates")
     environment = Environment(
-        loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True
+        loader=loader,
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        bytecode_cache=FileSystemBytecodeCache(str(cache_folder("pages"))),
     )
     environment.filters["number"] = number
     return environment
@@ -121,7 +129,7 @@ def _sections(run: Run) -> Iterator[Section]:
     if pads_found:
         points = [(pad.component, pad, run.passed) for pad in pads_found]
         figure = deck_figure([deck("", points)])
-        yield Section("The deck from above", figure_json(figure))
+        yield Section("The deck from above", figure.json())
     plots = run.manifest.get("plots", [])  # manifests of before have none
     if plots:
         shown_first = [
@@ -140,9 +148,9 @@ def _sections(run: Run) -> Iterator[Section]:
     if tracks:
         figure = track_figure(tracks)
         add_wind_and_marks(figure, run)
-        yield Section("Track from above", figure_json(figure))
+        yield Section("Track from above", figure.json())
     for name, shape in tether_figures(run):
-        yield Section(f"Shape of {name}", figure_json(shape))
+        yield Section(f"Shape of {name}", shape.json())
     if forces:
         columns = [
             [_panel(run, p, p.signals) for p in forces if units[p] == u] for u in _FORCE_UNITS
@@ -253,7 +261,12 @@ def _alike_craft(run: Run, ports: Iterable[Port]) -> list[list[str]]:
 
 def _over_time(run: Run, columns: Sequence[Sequence[Panel]]) -> str:
     events = [at for at in map(_event_time, run.manifest.get("events", [])) if at is not None]
-    return figure_json(time_figure(run.time, columns, events))
+    return time_figure(run.time, columns, events, points_of_a_line(len(run.signals))).json()
+
+
+def points_of_a_line(signals: int) -> int:
+    """Return how many points a line may have in a page of so many signals."""
+    return min(max(_POINTS // max(signals, 1), _FEWEST_POINTS), MAX_POINTS)
 
 
 def _tracks(run: Run, motion: Iterable[Port]) -> Iterator[tuple[str, Any, Any]]:

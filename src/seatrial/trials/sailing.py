@@ -8,8 +8,8 @@ from html import escape
 from typing import Any
 
 import numpy as np
-import plotly.graph_objects as go
 
+from .figure import Figure
 from .plots import COLOURS, layout
 from .run_folder import Run
 
@@ -28,7 +28,7 @@ class PolarPoint:
     speed: float
 
 
-def add_wind_and_marks(figure: go.Figure, run: Run) -> None:
+def add_wind_and_marks(figure: Figure, run: Run) -> None:
     """Draw the run's mean wind as an arrow, and the marks of its course, into a track."""
     for name in _of_kind(run, "course"):
         _draw_marks(figure, run.manifest["components"][name]["parameters"])
@@ -37,10 +37,11 @@ def add_wind_and_marks(figure: go.Figure, run: Run) -> None:
         _draw_wind(figure, wind)
 
 
-def _draw_marks(figure: go.Figure, parameters: Mapping[str, Any]) -> None:
+def _draw_marks(figure: Figure, parameters: Mapping[str, Any]) -> None:
     for number in range(1, int(parameters["count"]["value"]) + 1):
         north, east = (parameters[f"waypoint_{number}.{a}"]["value"] for a in ("north", "east"))
-        figure.add_scatter(
+        figure.trace(
+            "scatter",
             x=[east],
             y=[north],
             mode="markers+text",
@@ -72,14 +73,15 @@ def polar_point(run: Run, label: str, series: str) -> PolarPoint | None:
     return PolarPoint(label, series, angle, float(speed.mean()))
 
 
-def polar_figure(points: Sequence[PolarPoint]) -> go.Figure | None:
+def polar_figure(points: Sequence[PolarPoint]) -> Figure | None:
     """Return speed over the angle off the wind, or None if the points lie in few directions."""
     if len({round(np.degrees(p.angle) / 5.0) for p in points}) < _DIRECTIONS:
         return None
-    figure = go.Figure()
+    figure = Figure()
     for index, series in enumerate(dict.fromkeys(p.series for p in points)):
         own = sorted((p for p in points if p.series == series), key=lambda p: p.angle)
-        figure.add_scatterpolar(
+        figure.trace(
+            "scatterpolar",
             theta=[float(np.degrees(p.angle)) for p in own],
             r=[p.speed for p in own],
             mode="lines+markers",
@@ -88,8 +90,8 @@ def polar_figure(points: Sequence[PolarPoint]) -> go.Figure | None:
             text=[escape(p.label) for p in own],
             hovertemplate="%{text}<br>%{theta:.1f}° off the wind, %{r:.3g} m/s",
         )
-    figure.update_layout(height=560, **layout(hovermode="closest"))
-    figure.update_layout(
+    figure.lay_out(height=560, **layout(hovermode="closest"))
+    figure.lay_out(
         polar={
             "sector": [-90, 90],
             "bgcolor": "#ffffff",
@@ -121,13 +123,13 @@ def _mean_wind(run: Run) -> tuple[float, float] | None:
     return float(north), float(east)
 
 
-def _draw_wind(figure: go.Figure, wind: tuple[float, float]) -> None:
+def _draw_wind(figure: Figure, wind: tuple[float, float]) -> None:
     """Draw an arrow of fixed length in the upper left corner, where the wind blows to."""
     north, east = wind
     speed = float(np.hypot(north, east))
     if speed == 0.0:
         return
-    figure.add_annotation(
+    figure.annotate(
         x=0.07,
         y=0.86,
         xref="paper",
@@ -139,7 +141,7 @@ def _draw_wind(figure: go.Figure, wind: tuple[float, float]) -> None:
         arrowcolor=_WIND,
         text="",
     )
-    figure.add_annotation(
+    figure.annotate(
         x=0.07,
         y=0.86,
         xref="paper",

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from html import escape
 from typing import Any
 
-import plotly.graph_objects as go
-
-from .plots import COLOURS, figure_json, layout
+from .figure import Figure
+from .plots import COLOURS, layout
 from .readable import number
 
 _UNITS = ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns"))
@@ -68,7 +67,7 @@ def duration_text(value: float) -> str:
 
 def _distribution(found: Mapping[str, Mapping[str, Any]]) -> Distribution:
     rows = [_durations(name, entry) for name, entry in found.items()]
-    return Distribution(rows, figure_json(_histogram({n: e["bins"] for n, e in found.items()})))
+    return Distribution(rows, _histogram({n: e["bins"] for n, e in found.items()}).json())
 
 
 def _durations(name: str, entry: Mapping[str, Any]) -> Durations:
@@ -85,30 +84,32 @@ def _durations(name: str, entry: Mapping[str, Any]) -> Durations:
     )
 
 
-def _histogram(bins: Mapping[str, list[int]]) -> go.Figure:
+def _histogram(bins: Mapping[str, list[int]]) -> Figure:
     """Return grouped bars, one group for each duration from 2^(b-1) to 2^b ns."""
     used = [b for counts in bins.values() for b, count in enumerate(counts) if count]
     shown = range(min(used, default=0), max(used, default=-1) + 1)
     labels = [f"< {duration_text((1 << b) * 1e-9)}" for b in shown]
-    figure = go.Figure()
+    figure = Figure()
     for index, (name, counts) in enumerate(bins.items()):
-        figure.add_bar(
+        figure.trace(
+            "bar",
             x=labels,
             y=[counts[b] if b < len(counts) else 0 for b in shown],
             name=escape(name.partition(":")[0]),
-            marker_color=COLOURS[index % len(COLOURS)],
-            marker_pattern_shape=_PATTERNS[index // len(COLOURS) % len(_PATTERNS)],
+            marker={
+                "color": COLOURS[index % len(COLOURS)],
+                "pattern": {"shape": _PATTERNS[index // len(COLOURS) % len(_PATTERNS)]},
+            },
             hovertemplate="%{y} steps",
         )
-    figure.update_layout(
+    figure.lay_out(
         height=280,
         barmode="group",
         bargap=0.15,
         showlegend=True,
-        legend_orientation="h",
+        legend={"orientation": "h", "y": 1.15},
         **layout(),
     )
-    figure.update_layout(legend={"y": 1.15})
-    figure.update_xaxes(title_text="duration", type="category")
-    figure.update_yaxes(title_text="steps")
+    figure.x_axis(title={"text": "duration"}, type="category")
+    figure.y_axis(title={"text": "steps"})
     return figure

@@ -13,7 +13,6 @@ from pydantic_core import PydanticCustomError
 from ..cosim.clock import OverrunPolicy
 from ..cosim.files import FileModel, Source, find_file, read_toml, validated
 from ..cosim.rig import Rig, duration_ns, load_rig
-from ..cosim.ssp.reading import read_ssp
 from ..errors import InputError, unknown
 from .criteria import Criterion, parse
 from .verdict import WHOLE
@@ -212,6 +211,8 @@ def load_trial(
 
 def _package(name: str, relative_to: Path | None, changes: Mapping[str, Any]) -> Trial:
     path = ((relative_to or Path.cwd()) / name).resolve()
+    from ..cosim.ssp.reading import read_ssp  # needs an XML library and FMPy
+
     package = read_ssp(path, changes.get("step"))
     stop = package.stop or changes.get("stop")
     if stop is None:

@@ -13,7 +13,8 @@ from lxml import etree
 from ... import __version__
 from ...component import seconds
 from ...errors import InputError
-from ...fmi.export import fmu_bytes, write_whole, zipped
+from ...fmi.cache import write_whole
+from ...fmi.export import fmu_bytes, zipped
 from ...fmi.instance import Variable
 from ...fmi.source import find_source
 from ...units import Unit, conversion, unit

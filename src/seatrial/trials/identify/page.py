@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import plotly.graph_objects as go
 
 from ..expressions import FloatArray
-from ..plots import COLOURS, Line, Panel, figure_json, layout, time_figure
+from ..figure import Figure
+from ..plots import COLOURS, Line, Panel, layout, time_figure
 from ..readable import number, person_scale
 from ..report import REPORT, render
 from .study import Study
@@ -63,10 +63,10 @@ def write_page(study: Study, folder: Path, parameters: str | None) -> Path:
         free_run_fit=f"{100.0 * study.free_run_fit:.1f} %",
         outside=f"{study.whiteness.outside} of {len(study.whiteness.correlation)}",
         ratio=number(_correlation_factor(study), 2),
-        fitted=figure_json(_time_figure(study, held_out=False)),
-        held_out_figure=figure_json(_time_figure(study, held_out=True)),
-        autocorrelation=figure_json(_autocorrelation_figure(study)),
-        delays=figure_json(_delay_figure(study)),
+        fitted=_time_figure(study, held_out=False).json(),
+        held_out_figure=_time_figure(study, held_out=True).json(),
+        autocorrelation=_autocorrelation_figure(study).json(),
+        delays=_delay_figure(study).json(),
     )
     path = folder / REPORT
     path.write_text(page, encoding="utf-8")
@@ -131,7 +131,7 @@ def _correlation_factor(study: Study) -> float:
     return float(np.sqrt((coloured[known] / white[known]).max(initial=0.0)))
 
 
-def _time_figure(study: Study, *, held_out: bool) -> go.Figure:
+def _time_figure(study: Study, *, held_out: bool) -> Figure:
     log = study.test if held_out else study.fitted
     residual = log.measured - study.free_run if held_out else study.estimate.residual
     if log.reading == "acceleration":
@@ -156,37 +156,39 @@ def _time_figure(study: Study, *, held_out: bool) -> go.Figure:
     return time_figure(time, [panels])
 
 
-def _autocorrelation_figure(study: Study) -> go.Figure:
+def _autocorrelation_figure(study: Study) -> Figure:
     found = study.whiteness
     lags = [lag * study.fitted.period for lag in range(1, len(found.correlation) + 1)]
-    figure = go.Figure()
-    figure.add_bar(
+    figure = Figure()
+    figure.trace(
+        "bar",
         x=lags,
         y=found.correlation,
-        marker_color=COLOURS[0],
+        marker={"color": COLOURS[0]},
         hovertemplate="%{x:.3g} s: %{y:.3f}",
     )
     for sign in (1.0, -1.0):
-        figure.add_hline(y=sign * found.bound, line=_BAND)
-    figure.update_xaxes(title_text="lag, s")
-    figure.update_yaxes(title_text="autocorrelation")
-    figure.update_layout(height=300, showlegend=False, **layout(hovermode="closest"))
+        figure.horizontal(sign * found.bound, line=_BAND)
+    figure.x_axis(title={"text": "lag, s"})
+    figure.y_axis(title={"text": "autocorrelation"})
+    figure.lay_out(height=300, showlegend=False, **layout(hovermode="closest"))
     return figure
 
 
-def _delay_figure(study: Study) -> go.Figure:
+def _delay_figure(study: Study) -> Figure:
     errors = study.estimate.errors
     unit = "m/s2" if study.fitted.reading == "acceleration" else "m"
     factor, shown = person_scale("rad" if study.experiment.rotation else unit)
-    figure = go.Figure()
-    figure.add_scatter(
+    figure = Figure()
+    figure.trace(
+        "scatter",
         x=[delay * study.fitted.period for delay in errors],
         y=[factor * error for error in errors.values()],
         mode="lines+markers",
         line={"width": 1.6, "color": COLOURS[0]},
         hovertemplate="%{x:.3g} s: %{y:.4g} " + shown,
     )
-    figure.update_xaxes(title_text="delay, s")
-    figure.update_yaxes(title_text=f"rms residual, {shown}", rangemode="tozero")
-    figure.update_layout(height=300, showlegend=False, **layout(hovermode="closest"))
+    figure.x_axis(title={"text": "delay, s"})
+    figure.y_axis(title={"text": f"rms residual, {shown}"}, rangemode="tozero")
+    figure.lay_out(height=300, showlegend=False, **layout(hovermode="closest"))
     return figure

@@ -11,7 +11,7 @@ from typing import Any
 
 from ... import __version__
 from ...errors import InputError
-from ...fmi.export import write_whole
+from ...fmi.cache import write_whole
 from ..run_folder import MANIFEST, Run
 from .record import Column, columns, nanoseconds
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import InputError
-from ...fmi.export import write_whole
+from ...fmi.cache import write_whole
 from ..run_folder import Run
 from .record import columns, nanoseconds
 

@@ -1,0 +1,41 @@
+"""``seatrial list``: what can be named on the command line and in files."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+
+from rich.markup import escape
+
+from ..fmi.source import named_sources
+from ..shipped import available
+from .show import console
+
+_KINDS = {
+    "trials": "harness/trials",
+    "campaigns": "harness/campaigns",
+    "rigs": "harness/rigs",
+    "vehicles": "vehicles",
+    "profiles": "hil_profiles",
+    "experiments": "harness/identification",
+}
+
+
+def list_all() -> None:
+    """List trials, campaigns, rigs, vehicles, profiles, experiments and FMUs by name."""
+    for kind, folder in _KINDS.items():
+        _print(kind, {name: _title(path) for name, path in available(folder).items()})
+    _print("FMUs", {name: source.title for name, source in named_sources().items()})
+
+
+def _print(kind: str, titles: dict[str, str]) -> None:
+    console.print(f"[bold]{kind}[/bold]")
+    for name, title in titles.items():
+        console.print(f"  {name:28} [dim]{escape(title)}[/dim]", soft_wrap=True)
+
+
+def _title(path: Path) -> str:
+    try:
+        return str(tomllib.loads(path.read_text("utf-8")).get("title", ""))
+    except (tomllib.TOMLDecodeError, OSError, UnicodeDecodeError):
+        return "(cannot be read)"

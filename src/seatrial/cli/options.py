@@ -1,0 +1,62 @@
+"""Options that several commands share, and what is made of them."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from ..errors import InputError
+from ..shipped import available
+
+if TYPE_CHECKING:
+    from ..cosim.system import Engine
+
+Settings = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Set component.port, or a trial's key."),
+]
+EngineName = Annotated[
+    str, typer.Option("--engine", help="'fmu': every component is an FMU; 'direct': in process.")
+]
+Out = Annotated[
+    Path | None, typer.Option("--out", help="Folder of the run (default: runs/NAME-DATE-TIME).")
+]
+
+
+def engine_named(name: str) -> Engine:
+    """Return the engine that ``--engine`` names. Raises InputError."""
+    if name not in ("fmu", "direct"):
+        raise InputError(f"--engine: 'fmu' or 'direct' is needed, found {name!r}")
+    return "direct" if name == "direct" else "fmu"
+
+
+def setting(text: str) -> tuple[str, Any]:
+    """Return ``KEY=VALUE`` parsed: a number, a list, true or false as in TOML; else a text."""
+    key, equals, value = text.partition("=")
+    if not equals or not key:
+        raise InputError(f"--set: KEY=VALUE is needed, found {text!r}")
+    plain = value.strip()
+    if plain.lstrip("+-") in ("nan", "inf"):  # TOML takes these words for numbers
+        return key.strip(), plain
+    try:
+        return key.strip(), tomllib.loads(f"x = {value}")["x"]
+    except tomllib.TOMLDecodeError:
+        return key.strip(), plain
+
+
+def is_campaign(name: str) -> bool:
+    """Say if ``name`` is a campaign: a name, or a file that lists trials."""
+    if name.endswith(".toml"):
+        path = Path(name)
+        return path.is_file() and "trials" in _top_keys(path)
+    return name in available("harness/campaigns") and name not in available("harness/trials")
+
+
+def _top_keys(path: Path) -> set[str]:
+    try:
+        return set(tomllib.loads(path.read_text("utf-8")))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError, OSError):
+        return set()  # the reader of the trial will say what is wrong

@@ -1,0 +1,21 @@
+"""``seatrial report``: the report of a run made again."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ..trials.campaign_report import CAMPAIGN, write_campaign_report
+from ..trials.report import write_report
+from .show import console
+
+
+def report(
+    folder: Annotated[Path, typer.Argument(metavar="RUN", help="Folder of a run or campaign.")],
+) -> None:
+    """Write the report of a run again."""
+    is_campaign = (folder / CAMPAIGN).is_file()
+    page = write_campaign_report(folder) if is_campaign else write_report(folder)
+    console.print(f"report: {page}", soft_wrap=True)

@@ -1,0 +1,118 @@
+"""``seatrial run``: a trial, or a campaign of trials."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from ..cosim.system import Engine
+from ..errors import InputError, SimulationError
+from ..links.hardware import allow as allow_hardware
+from ..trials.campaign import Campaign, Case, load_campaign, run_campaign
+from ..trials.campaign_report import write_campaign_report
+from ..trials.report import write_report
+from ..trials.run import Hooks, Result, run_trial
+from ..trials.trial import Trial, load_trial
+from .options import EngineName, Out, Settings, engine_named, is_campaign, setting
+from .show import console, print_case, print_notes, print_reachable, print_verdicts
+from .statuses import FAILED
+from .stopping import stoppable
+from .watch import Watch
+
+
+def run(
+    trial: Annotated[
+        str, typer.Argument(help="A trial or campaign: a name, a .toml or an .ssp file.")
+    ],
+    settings: Settings = None,
+    engine: EngineName = "fmu",
+    out: Out = None,
+    real_time: Annotated[
+        float | None,
+        typer.Option(metavar="FACTOR", help="Simulated seconds per second of wall time."),
+    ] = None,
+    in_real_time: Annotated[
+        bool, typer.Option("--realtime", help="In real time: as the trial says, or factor 1.")
+    ] = False,
+    overrun: Annotated[
+        str | None,
+        typer.Option(metavar="POLICY", help="In real time: 'catch-up', 'slip' or 'abort'."),
+    ] = None,
+    hardware: Annotated[
+        bool, typer.Option("--hardware", help="Allow real ports; what is behind them may move.")
+    ] = False,
+) -> None:
+    """Run a trial, or a campaign of trials, and say what holds."""
+    chosen = engine_named(engine)
+    if hardware:
+        allow_hardware()
+    changes = dict(setting(text) for text in settings or [])
+    pace = {"factor": real_time, "overrun": overrun}
+    pace = {key: value for key, value in pace.items() if value is not None}
+    if is_campaign(trial):
+        campaign = load_campaign(trial)
+        if changes:
+            raise InputError("--set works with a trial; a campaign sets its own parameters")
+        if pace:
+            raise InputError("--real-time and --overrun work with a trial, not with a campaign")
+        if in_real_time:
+            raise InputError("--realtime works with a trial, not with a campaign")
+        _run_campaign(campaign, out, chosen)
+        return
+    loaded = load_trial(trial, changes=changes, origin="--set")
+    if in_real_time and loaded.file.real_time is None:
+        pace.setdefault("factor", 1.0)
+    loaded = _paced(loaded, pace)
+    print_notes(loaded.notes)
+    with stoppable() as stop:
+        with Watch(loaded.name) as watch:
+            hooks = Hooks(
+                watch.building, watch.progress, stop.requested, stop.interruptible, print_reachable
+            )
+            result = run_trial(loaded, out, engine=chosen, hooks=hooks)
+        print_verdicts(result)
+        report_page = write_report(result.folder)
+    console.print(f"report: {report_page}", soft_wrap=True)
+    _exit_with([result])
+
+
+def _run_campaign(campaign: Campaign, out: Path | None, engine: Engine) -> None:
+    cases = campaign.cases()
+    with stoppable() as stop:
+        with Watch(campaign.read_from.name) as watch:
+
+            def done(case: Case, result: Result) -> None:
+                watch.log(lambda: print_case(case, result))
+                write_report(result.folder)
+
+            hooks = Hooks(watch.building, watch.progress, stop.requested, stop.interruptible)
+            watch.expect(len(cases))
+            folder, finished = run_campaign(campaign, out, engine=engine, hooks=hooks, done=done)
+        page = write_campaign_report(folder)
+    passed = sum(result.passed for _, result in finished)
+    console.print(f"{passed} of {len(cases)} cases pass")
+    console.print(f"report: {page}", soft_wrap=True)
+    if len(finished) < len(cases):
+        raise SimulationError(f"stopped; {len(finished)} of {len(cases)} cases are on disk")
+    _exit_with([result for _, result in finished])
+
+
+def _paced(trial: Trial, pace: dict[str, Any]) -> Trial:
+    """Return the trial with what the command line says of real time."""
+    if not pace:
+        return trial
+    if "factor" not in pace and trial.file.real_time is None:
+        raise InputError("--overrun needs --real-time, or real_time in the trial")
+    return trial.in_real_time(pace, "command line: real_time")
+
+
+def _exit_with(results: list[Result]) -> None:
+    if any(result.status == "failed" for result in results):
+        first = next(result.error for result in results if result.status == "failed")
+        raise SimulationError(str(first))
+    if any(result.status == "stopped" for result in results):
+        raise SimulationError("stopped; the signals recorded so far are on disk")
+    if not all(result.passed for result in results):
+        raise typer.Exit(FAILED)

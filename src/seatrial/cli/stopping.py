@@ -1,0 +1,58 @@
+"""Signals that ask a run to stop."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from ..errors import SimulationError
+
+
+class Stop:
+    """Counts the signals that ask a run to stop.
+
+    The second one and later ones raise KeyboardInterrupt, but only where a component may hang:
+    what is being written then, or made of what was written, gets finished. They often come
+    twice: ``timeout`` and service managers signal a process and its group, people press twice.
+    """
+
+    def __init__(self) -> None:
+        self._asked = 0
+        self._may_hang = False
+
+    def ask(self, _number: int, _frame: object) -> None:
+        """Handle a signal."""
+        self._asked += 1
+        if self._asked > 1 and self._may_hang:
+            raise KeyboardInterrupt
+
+    def requested(self) -> bool:
+        """Say if there was one."""
+        return self._asked > 0
+
+    @contextmanager
+    def interruptible(self) -> Iterator[None]:
+        """Let a second signal end what is done inside."""
+        self._may_hang = True
+        try:
+            yield
+        finally:
+            self._may_hang = False
+
+
+@contextmanager
+def stoppable() -> Iterator[Stop]:
+    """Make Ctrl-C and a termination signal end the run after the current step.
+
+    A second one ends it at once, if a component hangs.
+    """
+    stop, numbers = Stop(), (signal.SIGINT, signal.SIGTERM)
+    before = {number: signal.signal(number, stop.ask) for number in numbers}
+    try:
+        yield stop
+    except KeyboardInterrupt:
+        raise SimulationError("stopped") from None
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

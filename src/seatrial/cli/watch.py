@@ -1,0 +1,116 @@
+"""Progress of runs: a bar on a terminal, else a plain line on stderr every few seconds."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable
+from types import TracebackType
+from typing import Protocol
+
+from rich.markup import escape
+
+from .show import console
+
+PERIOD = 5.0
+"""Wall time before the first plain line, and from one to the next, s."""
+
+
+class Watch:
+    """How far a run is, or several one after the other: simulated time, share and rate."""
+
+    def __init__(self, name: str, clock: Callable[[], float] = time.perf_counter) -> None:
+        self._cases, self._case = 1, 0
+        self._clock, self._started = clock, clock()
+        self._display: _Display = _Bar(name) if console.is_terminal else _Lines(name, clock)
+
+    def __enter__(self) -> Watch:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._display.close()
+
+    def expect(self, cases: int) -> None:
+        """Say how many runs there will be."""
+        self._cases = cases
+
+    def building(self, what: str) -> None:
+        """Show which component is being built or loaded."""
+        self._display.load(what)
+        self._started = self._clock()
+
+    def progress(self, passed: float, whole: float) -> None:
+        """Show how far the run is, simulated time in s."""
+        elapsed = self._clock() - self._started
+        factor = passed / elapsed if elapsed > 0 else 0.0
+        case = f" ({self._case + 1} of {self._cases})" if self._cases > 1 else ""
+        state = f"{passed:.1f} of {whole:g} s, {factor:.1f} x real time{case}"
+        self._display.show((self._case + passed / whole) / self._cases, state)
+
+    def log(self, show: Callable[[], None]) -> None:
+        """Print something above the bar, at the end of a case."""
+        self._case += 1
+        show()
+
+
+class _Display(Protocol):
+    """Where progress is shown."""
+
+    def load(self, what: str) -> None:
+        """Show that a component is being built or loaded."""
+
+    def show(self, share: float, state: str) -> None:
+        """Show what has been done, as a share and in words."""
+
+    def close(self) -> None:
+        """Show no more."""
+
+
+class _Bar:
+    """A bar on the terminal, gone at the end."""
+
+    def __init__(self, name: str) -> None:
+        from rich.progress import BarColumn, Progress, TextColumn
+
+        self._progress = Progress(
+            TextColumn("{task.description}"),
+            BarColumn(),
+            TextColumn("{task.fields[state]}"),
+            console=console,
+            transient=True,
+        )
+        self._task = self._progress.add_task(escape(name), total=1.0, state="")
+        self._progress.start()
+
+    def load(self, what: str) -> None:
+        self._progress.update(self._task, state=escape(f"loading {what}"))
+
+    def show(self, share: float, state: str) -> None:
+        self._progress.update(self._task, completed=share, state=escape(state))
+
+    def close(self) -> None:
+        self._progress.stop()
+
+
+class _Lines:
+    """Lines for a file or a pipe: NAME: 21 %, 12.6 of 60 s, 4.5 x real time."""
+
+    def __init__(self, name: str, clock: Callable[[], float]) -> None:
+        self._name, self._clock = name, clock
+        self._next = clock() + PERIOD
+
+    def load(self, what: str) -> None:
+        """Leave that unsaid: what goes wrong then is one message."""
+
+    def show(self, share: float, state: str) -> None:
+        if self._clock() >= self._next:
+            self._next = self._clock() + PERIOD
+            print(f"{self._name}: {100 * share:.0f} %, {state}", file=sys.stderr, flush=True)
+
+    def close(self) -> None:
+        """Leave the lines as they are."""
