@@ -248,6 +248,42 @@ class Network:
             for writes in node.writes:
                 writes.previous = None
 
+    def values(self, component: str, names: Sequence[str]) -> list[Any]:
+        """Return current values of a component's variables, whatever their causality.
+
+        A connected input has what arrives now; overrides count.
+        """
+        arriving = {
+            wire.target[1]: value
+            for writes in self.nodes[component].writes
+            if any(wire.target[1] in names for wire in writes.wires)
+            for wire, value in zip(writes.wires, writes.values(self.signals), strict=True)
+        }
+        instance, found = self.system.parts[component].instance, []
+        for name in names:
+            if (component, name) in self.places:
+                found.append(self.signals[self.places[component, name]])
+            elif name in arriving:
+                found.append(arriving[name])
+            else:
+                found.append(instance.reader([name])()[0])
+        return found
+
+    def override_memory(self) -> Any:
+        """Return which overrides there are, for `restore_overrides`."""
+        places = [list(w.places) for node in self.nodes.values() for w in node.writes]
+        return {place: pin.value for place, pin in self._pins.items()}, places
+
+    def restore_overrides(self, memory: Any) -> None:
+        """Restore what `override_memory` returned, before `restore` of the same instant."""
+        values, places = memory
+        self._pins = {place: _Pin(value, None) for place, value in values.items()}
+        writes = [w for node in self.nodes.values() for w in node.writes]
+        for one, before in zip(writes, places, strict=True):
+            if one.places != before:
+                one.places = list(before)
+                self._bind(one)
+
     # ------------------------------------------------------------------ rollback
 
     def memory(self) -> Any:

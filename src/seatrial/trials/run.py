@@ -14,16 +14,16 @@ from pathlib import Path
 from typing import Any
 
 from ..component import Logging, Reachable, seconds
+from ..cosim.actions import action
 from ..cosim.master import Master
 from ..cosim.recorder import Recorder
 from ..cosim.system import Engine, System, assemble
-from ..cosim.values import from_written, port_scalars
 from ..errors import InputError, SimulationError
 from .checks import check_criteria, check_events, check_plots, check_real_time
 from .endings import Endings
 from .manifest import manifest
 from .pacing import Pace
-from .trial import Event, Trial
+from .trial import Trial
 from .verdict import Verdict
 
 Progress = Callable[[float, float], None]
@@ -296,7 +296,9 @@ def _loop(
         pace.start()
     while True:
         while events and events[0].at_ns <= master.time_ns:
-            _apply(events.pop(0), master)
+            event = events.pop(0)
+            where = f"event {event.key}"
+            action(master.system, event.action, event.key, event.written, where).apply(master)
         stopping, broken = hooks.stop_requested(), endings.broken()
         recorder.record(last=stopping or broken or master.steps >= steps)
         if broken:
@@ -316,23 +318,6 @@ def _loop(
     hooks.progress(whole, whole)
     master.terminate()
     return status
-
-
-def _apply(event: Event, master: Master) -> None:
-    component, _, port = event.key.partition(".")
-    variables = master.system.parts[component].instance.variables
-    scalars = port_scalars(variables, port)
-    if event.action == "release":
-        for variable in scalars:
-            master.release(component, variable.name)
-        return
-    presets = master.system.parts[component].presets.get(port, {})
-    given = from_written(event.written, scalars, presets, f"event {event.key}")
-    if event.action == "set":
-        master.set(component, list(given), [g.value for g in given.values()])
-    else:
-        for name, value in given.items():
-            master.override(component, name, value.value)
 
 
 def _judge(

@@ -21,6 +21,7 @@ import socket
 from collections.abc import Callable
 
 from ...errors import InputError, unknown
+from ..hardware import refuse_other_host
 from .endpoint import Endpoint
 from .pseudo_terminal import PseudoTerminal
 from .serial_port import SerialEndpoint
@@ -50,6 +51,7 @@ def open_endpoint(url: str) -> Endpoint:
     if kind == "pty":
         return PseudoTerminal(place)
     address = _resolved(url, place, number)
+    refuse_other_host(f"link {url!r}", address[0])
     opened: dict[str, Callable[[tuple[str, int]], Endpoint]] = {
         "udpout": UdpSender,
         "udpin": UdpListener,
