@@ -77,7 +77,7 @@ class CampaignResult:
         """
         from .signals import needed
 
-        pandas = needed("pandas", "to_pandas")
+        library = needed("pandas", "to_pandas")
         rows = []
         for case in self.cases:
             row = {"trial": case.trial, "status": case.status, "passed": case.passed, **case.set}
@@ -85,8 +85,8 @@ class CampaignResult:
                 row[verdict.name] = verdict.passed
                 row[f"{verdict.name} [{verdict.unit}]"] = verdict.worst
             rows.append(row)
-        names = pandas.Index([case.name for case in self.cases], name="case")
-        table: pandas.DataFrame = pandas.DataFrame(rows, index=names)
+        names = library.Index([case.name for case in self.cases], name="case")
+        table: pandas.DataFrame = library.DataFrame(rows, index=names)
         return table
 
     def __repr__(self) -> str:

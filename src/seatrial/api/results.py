@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..errors import SimulationError
+from ..errors import InputError, SimulationError
 from .written import as_engine, as_settings
 
 if TYPE_CHECKING:
@@ -142,12 +142,18 @@ def run_trial(
     that could not go on, and KeyboardInterrupt for one that was interrupted; its folder holds
     what was recorded so far, for `load_result`.
     """
+    from ..cosim.files import available
     from ..links.hardware import confined
     from ..trials.run import Hooks
     from ..trials.run import run_trial as run
     from ..trials.trial import load_trial
 
-    loaded = load_trial(str(trial), changes=as_settings(set), origin="set")
+    try:
+        loaded = load_trial(str(trial), changes=as_settings(set), origin="set")
+    except InputError as error:
+        if trial in available("harness/campaigns") and trial not in available("harness/trials"):
+            raise InputError(f"{trial} is a campaign: run_campaign runs it; {error}") from None
+        raise
     hooks = Hooks() if progress is None else Hooks(progress=progress)
     with confined():
         folder = None if out is None else Path(out)

@@ -6,6 +6,8 @@ import importlib
 from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ..errors import InputError, unknown
 from .arrays import SignalArray
 
@@ -64,10 +66,10 @@ class Signals(Mapping[str, SignalArray]):
         ``table.attrs["units"]`` has the units by name. Raises InputError if pandas is not
         installed.
         """
-        pandas = needed("pandas", "to_pandas")
-        index = pandas.Index(self.t.copy(), name="time")
-        table: pandas.DataFrame = pandas.DataFrame(
-            {name: self[name].copy() for name in self}, index=index
+        library = needed("pandas", "to_pandas")
+        index = library.Index(np.array(self.t), name="time")
+        table: pandas.DataFrame = library.DataFrame(
+            {name: np.array(self[name]) for name in self}, index=index
         )
         table.attrs["units"] = self.units
         return table
@@ -78,15 +80,13 @@ class Signals(Mapping[str, SignalArray]):
         Attributes ``units`` and ``long_name`` are those of the CF conventions. Raises InputError
         if xarray is not installed.
         """
-        xarray = needed("xarray", "to_xarray")
-        columns = {name: ("time", self[name].copy(), _attributes(self[name])) for name in self}
-        times = ("time", self.t.copy(), _attributes(self.t))
-        dataset: xarray.Dataset = xarray.Dataset(columns, coords={"time": times})
+        library = needed("xarray", "to_xarray")
+        columns = {name: ("time", np.array(self[name]), _attributes(self[name])) for name in self}
+        times = ("time", np.array(self.t), _attributes(self.t))
+        dataset: xarray.Dataset = library.Dataset(columns, coords={"time": times})
         return dataset
 
     def _array(self, name: str) -> SignalArray:
-        import numpy as np
-
         if name in self._names:
             return self._column(name)
         elements = [n for n in self._names if n.startswith((f"{name}.", f"{name}["))]
