@@ -173,6 +173,7 @@ def run_commands(block: Block) -> None:
         DOCS / "dronecan.md",
         DOCS / "nmea0183.md",
         DOCS / "nmea2000.md",
+        DOCS / "python.md",
         DOCS / "videoray-stream.md",
     ],
     ids=lambda page: page.stem,

@@ -102,7 +102,7 @@ def test_a_mapping_of_signals_keeps_to_its_contract(trial: str, tmp_path: Path) 
     assert signals.get("lag.yy") is None
     assert "types.echo" in signals
     assert len(signals) == len(list(signals)) == 12
-    with pytest.raises(InputError, match="did you mean 'types.echo'"):
+    with pytest.raises(InputError, match=r"did you mean 'types\.echo'"):
         signals["types.ecko"]
     with pytest.raises(InputError, match="unknown signal 'types'"):
         signals["types"]
