@@ -91,6 +91,41 @@ class Types(Component):
         self.echo = self.place
 
 
+class Overshoot(Component):
+    """y after a step is -1.5 u: in a loop with itself it swings from step to step, and grows."""
+
+    u = Input("N", "force")
+    y = Output("N", "the next one")
+
+    def start(self, t):
+        self._y = 1e-3
+
+    def step(self, t, h):
+        self._y = -1.5 * self.u
+
+    def outputs(self, t):
+        self.y = self._y
+
+
+class Careful(Component):
+    """Refuses long steps after a second; counts what it takes, in s."""
+
+    y = Output("s", "length of all steps")
+    halves = Output("1", "short steps", type=int)
+
+    def start(self, t):
+        self._y, self._halves = 0.0, 0
+
+    def step(self, t, h):
+        if t > 0.99 and h > 0.06:
+            raise ValueError("that is too long")
+        self._y += h
+        self._halves += h < 0.06
+
+    def outputs(self, t):
+        self.y, self.halves = self._y, self._halves
+
+
 class Outside(Component):
     """Has a world of its own."""
 
@@ -143,11 +178,14 @@ check = "abs(body.x) < 200 cm"
 def rig(tmp_path: Path) -> Callable[..., str]:
     """Return a function that writes the components and a rig, and returns its path."""
 
-    def write(algorithm: str = "jacobi", slow: str = "", more: str = "") -> str:
+    def write(
+        algorithm: str = "jacobi", slow: str = "", more: str = "", connection: str = ""
+    ) -> str:
         (tmp_path / "parts.py").write_text(COMPONENTS, "utf-8")
         text = RIG.format(algorithm=algorithm, slow=slow)
         path = tmp_path / "rig.toml"
-        path.write_text(text.replace("[connections]", f"{more}\n[connections]"), "utf-8")
+        text = text.replace("[connections]", f"{more}\n[connections]") + connection
+        path.write_text(text, "utf-8")
         return str(path)
 
     return write

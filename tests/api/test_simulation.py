@@ -219,23 +219,53 @@ def test_noise_and_overrides_of_a_shipped_rig_are_restored() -> None:
         assert signals[name][1:101].tolist() == signals[name][again : again + 100].tolist(), name
 
 
+def test_an_override_that_was_restored_ends_with_the_outputs_own_value(rig: Rig) -> None:
+    with Simulation(rig()) as sim:
+        sim.override("body.x", 0.25)
+        sim.step(3)
+        state = sim.save()
+        sim.release("body.x")
+        own = sim.get("body.x")
+        sim.step()
+        sim.restore(state)
+        assert sim.get("body.x") == 0.25
+        sim.release("body.x")
+        assert sim.get("body.x") == own != 0.25
+
+
 def test_divergence_is_watched_after_a_restore_as_without(rig: Rig) -> None:
     """The watch counts blocks of steps: it would forget, or count those of another course."""
+    path = rig(more='over = { fmu = "parts.py:Overshoot" }', connection='"over.y" = "over.u"\n')
 
     def ends(simulation: Simulation) -> str:
-        with pytest.raises(SimulationError, match="diverges") as caught:
-            simulation.step(4000)
+        with pytest.raises(SimulationError, match="swings from step to step") as caught:
+            simulation.step(200)
         return str(caught.value)
 
-    unstable = {"spring.stiffness": 450.0}  # beyond (2 / h)²
-    with Simulation(rig(), set=unstable) as sim:
-        sim.step(13)
+    with Simulation(path) as sim:
+        sim.step(30)
         state = sim.save()
         first = ends(sim)
         with pytest.raises(SimulationError, match=r"ended at t = .*diverges"):
             sim.step()
         sim.restore(state)
         assert ends(sim) == first
+
+
+def test_steps_that_are_refused_are_split_after_a_restore_too(rig: Rig) -> None:
+    """They are repeated from states that the master saved, which must be of the same course."""
+    with Simulation(rig(more='careful = { fmu = "parts.py:Careful" }')) as sim:
+        sim.step(5)
+        early = sim.save()
+        sim.step(2)
+        sim.set("source.level", 5.0)  # the master saves its states after this
+        sim.step(3)
+        assert sim.get("careful.halves") == 0
+        sim.restore(early)
+        sim.run("1.3 s")
+        assert sim.get("careful.halves") == 6
+        assert sim.get("careful.y") == pytest.approx(1.3, rel=1e-12)
+        assert sim.get("lag.y") == pytest.approx(1.0 - math.exp(-2.6), rel=1e-12)
 
 
 def test_a_simulation_goes_on_from_a_restored_state_after_a_failure(rig: Rig) -> None:
