@@ -21,19 +21,19 @@ from tests.command import seatrial as command
 def test_a_run_is_that_of_the_command(trial: str, tmp_path: Path) -> None:
     sets = ["--set", "stop=2.5 s", "--set", "source.level=1.5"]
     done = command("run", trial, "--engine", "direct", "--out", "a", *sets, cwd=tmp_path)
-    told: list[tuple[float, float]] = []
+    calls: list[tuple[float, float]] = []
     result = seatrial.run_trial(
         trial,
         set={"stop": 2.5, "source.level": np.float64(1.5)},
         out=tmp_path / "b",
-        progress=lambda passed, whole: told.append((passed, whole)),
+        progress=lambda passed, whole: calls.append((passed, whole)),
     )
     a, b = tmp_path / "a", tmp_path / "b"
     for name in ("signals.csv", "verdicts.json"):
         assert (a / name).read_bytes() == (b / name).read_bytes()
     assert result.manifest == json.loads((b / "manifest.json").read_text("utf-8"))
     assert (result.passed, done.returncode, result.status) == (False, 1, "complete")
-    assert told[-1] == (2.5, 2.5)
+    assert calls[-1] == (2.5, 2.5)
     assert not (b / "report.html").exists()
     assert result.report() == b / "report.html"
     assert "the lag stays low" in (b / "report.html").read_text("utf-8")
@@ -211,13 +211,13 @@ def campaign(trial: str, tmp_path: Path) -> str:
 
 def test_a_campaign_is_that_of_the_command(campaign: str, tmp_path: Path) -> None:
     command("run", campaign, "--engine", "direct", "--out", "a", cwd=tmp_path)
-    told: list[tuple[int, int]] = []
+    calls: list[tuple[int, int]] = []
     result = seatrial.run_campaign(
-        campaign, out=tmp_path / "b", progress=lambda done, count: told.append((done, count))
+        campaign, out=tmp_path / "b", progress=lambda done, count: calls.append((done, count))
     )
     a, b = tmp_path / "a", tmp_path / "b"
     assert (a / "campaign.json").read_bytes() == (b / "campaign.json").read_bytes()
-    assert told == [(1, 4), (2, 4), (3, 4), (4, 4)]
+    assert calls == [(1, 4), (2, 4), (3, 4), (4, 4)]
     assert [(c.status, c.passed) for c in result.cases] == [
         ("failed", False),
         ("complete", False),
