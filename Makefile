@@ -2,7 +2,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 INSTALLED := .venv/.installed
-JUDGES := tests/peers/node/node_modules/.installed
+REFERENCE_TOOLS := tests/interop/node/node_modules/.installed
 
 .PHONY: demo test test-long lint fmus benchmark clean
 
@@ -13,7 +13,7 @@ $(INSTALLED): pyproject.toml
 		{ echo "Python's venv is missing; on Debian: apt install python3-venv"; exit 1; }
 	$(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
-	@# MAVProxy, a judge of the MAVLink link, without what its windows need (OpenCV, VTK, Matplotlib):
+	@# MAVProxy, a reference tool for the MAVLink link, without what its windows need (OpenCV, VTK, Matplotlib):
 	@# no extra can leave that out, and its other modules need nothing that is not here.
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps 'MAVProxy>=1.8.75,<1.9'
 	@touch $@
@@ -27,15 +27,15 @@ demo: $(INSTALLED)
 	@$(BIN)/seatrial run hydrone-pads || test $$? -eq 1
 	@echo "Open the two reports in a browser."
 
-# canboat, a judge of the NMEA 2000 nodes; where it cannot be installed its tests are skipped.
-$(JUDGES): tests/peers/node/package-lock.json
+# canboat, a reference tool for the NMEA 2000 nodes; where it cannot be installed its tests are skipped.
+$(REFERENCE_TOOLS): tests/interop/node/package-lock.json
 	@if npm ci --prefix $(<D) --no-audit --no-fund --ignore-scripts; then touch $@; \
 		else echo "no canboat: npm is missing, or did not reach its registry"; fi
 
-test: $(INSTALLED) $(JUDGES)
+test: $(INSTALLED) $(REFERENCE_TOOLS)
 	$(BIN)/python -m pytest -n auto --dist worksteal -m "not long"
 
-test-long: $(INSTALLED) $(JUDGES)
+test-long: $(INSTALLED) $(REFERENCE_TOOLS)
 	$(BIN)/python -m pytest -n auto --dist worksteal
 
 lint: $(INSTALLED)

@@ -82,7 +82,7 @@ class _Pace:
         signals = self._network.signals
         self._rows.append([signals[place] for place in self._places])
         if len(self._rows) == _LOOKED_AT:
-            self._judge(np.array(self._rows, float))
+            self._evaluate(np.array(self._rows, float))
 
     def memory(self) -> Any:
         """Return what it has seen: rows are added, arrays replaced, so references do."""
@@ -93,7 +93,7 @@ class _Pace:
         rows, self._last, self._first, self._jump, self._growing = memory
         self._rows = list(rows)
 
-    def _judge(self, rows: NDArray[np.float64]) -> None:
+    def _evaluate(self, rows: NDArray[np.float64]) -> None:
         with np.errstate(all="ignore"):
             change = np.abs(np.diff(rows, axis=0)).max(axis=0)
             swing = np.abs(np.diff(rows, 2, axis=0)).max(axis=0)

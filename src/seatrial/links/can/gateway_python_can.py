@@ -1,0 +1,86 @@
+"""Any bus that python-can has: its virtual one, or hardware."""
+
+from __future__ import annotations
+
+import contextlib
+from typing import Any
+
+import can
+
+from ...errors import InputError
+from ..hardware import is_allowed, is_simulated_port, permission
+from .frame import Frame
+from .gateway import MOST_FRAMES, Gateway
+from .messages import error_message, frame_of, message
+from .operations import Error
+
+
+class PythonCanGateway(Gateway):
+    """A bus of python-can's; its nodes are one client.
+
+    Times of what is sent are simulated, as far as the interface carries them: ``virtual`` does.
+
+    Raises InputError for a bus that cannot be opened, and for a real one if hardware was not
+    allowed: whoever listens there may drive thrusters.
+    """
+
+    def __init__(self, url: str, interface: str, channel: str, bitrate: int | None) -> None:
+        if not (_is_simulated(interface, channel) or is_allowed()):
+            raise InputError(f"gateway {url!r} is a real bus; {permission()}")
+        options: dict[str, Any] = {} if bitrate is None else {"bitrate": bitrate}
+        if interface == "virtual":
+            options["preserve_timestamps"] = True
+        try:
+            self._bus = can.Bus(channel, interface, ignore_config=True, **options)
+        except (can.CanError, NotImplementedError, OSError, TypeError, ValueError) as error:
+            raise InputError(f"cannot open the gateway {url!r}: {error}") from None
+        self._is_simulated = interface == "virtual"
+        self.reached_at = url
+
+    @property
+    def clients(self) -> int:
+        """Return 1: who else is there is not known."""
+        return 1
+
+    def poll(self) -> list[tuple[int, Frame]]:
+        """Return frames that have arrived; others than ISO 11898-1 has are passed over."""
+        found: list[tuple[int, Frame]] = []
+        while len(found) < MOST_FRAMES:
+            try:
+                received = self._bus.recv(0.0)
+            except can.CanError:
+                break
+            if received is None:
+                break
+            with contextlib.suppress(InputError):
+                frame = frame_of(received)
+                if frame is not None:
+                    found.append((0, frame))
+        return found
+
+    def send(self, time_ns: int, frame: Frame, sender: int | None = None) -> None:
+        """Send a frame, unless it came from there."""
+        if sender is None:
+            self._put(message(frame, time_ns / 1e9))
+
+    def send_error(self, time_ns: int, error: Error) -> None:
+        """Send an error frame to a simulated bus; a real one makes its own."""
+        if self._is_simulated:
+            self._put(error_message(error, time_ns / 1e9))
+
+    def close(self) -> None:
+        """Leave the bus."""
+        with contextlib.suppress(can.CanError, OSError):
+            self._bus.shutdown()
+
+    def _put(self, sent: can.Message) -> None:
+        with contextlib.suppress(can.CanError, OSError):  # full, or nobody there: it is lost
+            self._bus.send(sent, timeout=0)
+
+
+def _is_simulated(interface: str, channel: str) -> bool:
+    """Say if there is no more than a program behind a bus."""
+    if interface in ("slcan", "serial"):
+        loopback = channel.startswith(("socket://127.0.0.1:", "socket://localhost:"))
+        return loopback or is_simulated_port(channel)
+    return interface == "virtual" or (interface == "socketcan" and channel.startswith("vcan"))

@@ -1,0 +1,109 @@
+"""Gateways by URL.
+
+======================================== ====================================================
+``socketcand:HOST:PORT``                 a server that speaks as socketcand does
+``slcan-tcp:HOST:PORT``                  a server that speaks as serial adapters do (LAWICEL)
+``slcan-pty``                            the same at a pseudo-terminal
+``yd-raw-tcp:HOST:PORT``                 a server that speaks as Yacht Devices' gateways do
+``yd-raw-udp:HOST:PORT``                 the same, to one address
+``dronecan-multicast:BUS``               DroneCAN's bus over UDP multicast, of this machine alone
+``virtual:CHANNEL``                      python-can's bus within this process
+``python-can:INTERFACE:CHANNEL:BITRATE`` anything that python-can has; ``:BITRATE`` if it needs
+                                         one; real buses only if hardware is allowed
+======================================== ====================================================
+
+HOST is a name or an IPv4 address: of this machine for servers, whose PORT 0 is any free one.
+BUS is 0 to 255.
+"""
+
+from __future__ import annotations
+
+import re
+import socket
+from collections.abc import Callable
+
+from ...errors import InputError, unknown
+from ..endpoints.pseudo_terminal import PseudoTerminal
+from ..endpoints.tcp import TcpServer
+from ..endpoints.udp import UdpSender
+from ..hardware import refuse_other_host
+from .dronecan_multicast import DroneCanMulticastGateway
+from .gateway import Gateway
+from .gateway_python_can import PythonCanGateway
+from .gateway_slcan import SlcanGateway
+from .gateway_socketcand import SocketcandGateway
+from .gateway_yd_raw import YdRawGateway
+
+_FORMS = {
+    "socketcand": "socketcand:127.0.0.1:29536",
+    "slcan-tcp": "slcan-tcp:127.0.0.1:29537",
+    "slcan-pty": "slcan-pty",
+    "yd-raw-tcp": "yd-raw-tcp:127.0.0.1:1457",
+    "yd-raw-udp": "yd-raw-udp:127.0.0.1:2002",
+    "dronecan-multicast": "dronecan-multicast:0",
+    "virtual": "virtual:can0",
+    "python-can": "python-can:socketcan:can0:250000",
+}
+_SHAPES = {
+    "socketcand": r"(?P<host>[^:/]+):(?P<port>\d{1,5})",
+    "slcan-tcp": r"(?P<host>[^:/]+):(?P<port>\d{1,5})",
+    "slcan-pty": r"",
+    "yd-raw-tcp": r"(?P<host>[^:/]+):(?P<port>\d{1,5})",
+    "yd-raw-udp": r"(?P<host>[^:/]+):(?P<port>\d{1,5})",
+    "dronecan-multicast": r"(?P<bus>25[0-5]|2[0-4]\d|1?\d?\d)",
+    "virtual": r"(?P<channel>.+)",
+    "python-can": r"(?P<interface>[a-z_0-9]+):"
+    r"(?P<channel>socket://[^:]+:\d+|[^:]+)(?::(?P<bitrate>\d{4,7}))?",
+}
+
+
+def check_link(url: str) -> None:
+    """Raise InputError for a URL that is malformed."""
+    _parts(url)
+
+
+def open_gateway(url: str) -> Gateway:
+    """Open the gateway ``url``.
+
+    Raises InputError, with the URL, for one that is malformed or cannot be opened (a port in
+    use, no such bus, hardware that nobody allowed).
+    """
+    kind, parts = _parts(url)
+    if kind in ("virtual", "python-can"):
+        bitrate = int(parts["bitrate"]) if parts.get("bitrate") else None
+        return PythonCanGateway(url, parts.get("interface", "virtual"), parts["channel"], bitrate)
+    if kind == "slcan-pty":
+        return SlcanGateway(PseudoTerminal())
+    return _networked(url, kind, parts)
+
+
+def _networked(url: str, kind: str, parts: dict[str, str]) -> Gateway:
+    try:
+        if kind == "dronecan-multicast":
+            return DroneCanMulticastGateway(int(parts["bus"]))
+        found = socket.getaddrinfo(parts["host"], None, socket.AF_INET, socket.SOCK_STREAM)
+        address = (str(found[0][4][0]), int(parts["port"]))
+        refuse_other_host(f"gateway {url!r}", address[0])
+        if kind == "yd-raw-udp":
+            return YdRawGateway(UdpSender(address))
+        return _SERVERS[kind](TcpServer(address))
+    except (OSError, OverflowError, UnicodeError) as error:
+        cause = getattr(error, "strerror", None) or error
+        raise InputError(f"cannot open the gateway {url!r}: {cause}") from None
+
+
+_SERVERS: dict[str, Callable[[TcpServer], Gateway]] = {
+    "socketcand": SocketcandGateway,
+    "slcan-tcp": SlcanGateway,
+    "yd-raw-tcp": YdRawGateway,
+}
+
+
+def _parts(url: str) -> tuple[str, dict[str, str]]:
+    kind, _, rest = url.partition(":")
+    if kind not in _FORMS:
+        raise InputError(f"gateway {url!r}: {unknown('kind of gateway', kind, _FORMS)}")
+    match = re.fullmatch(_SHAPES[kind], rest)
+    if match is None:
+        raise InputError(f"gateway {url!r} is not of the form {_FORMS[kind]!r}")
+    return kind, match.groupdict()

@@ -1,0 +1,117 @@
+"""All links of a vehicle: who is there, what has come, what goes out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+from ..endpoints.endpoint import Channel, Endpoint
+from .codec import Codec, Message
+from .signing import Signing
+from .tlog import TelemetryLog
+
+
+@dataclass(frozen=True, eq=False)
+class Link:
+    """One peer and the codec that speaks with it; ``number`` is never used again."""
+
+    number: int
+    channel: Channel
+    codec: Codec
+
+
+@dataclass(frozen=True)
+class Sender:
+    """Who sent a message, and over which link."""
+
+    system: int
+    component: int
+    link: int
+    """Number of the link; answers go back over it."""
+
+
+class Transport(Protocol):
+    """What services need to be received."""
+
+    def links(self) -> Sequence[int]:
+        """Return the numbers of the links that there are now."""
+
+    def send(self, link: int, message: Message) -> None:
+        """Send to one link; nothing happens if it is gone."""
+
+    def broadcast(self, message: Message) -> None:
+        """Send to all links."""
+
+
+class EndpointTransport:
+    """Endpoints, and a `Link` for each of their peers; ``log`` gets every frame."""
+
+    def __init__(
+        self,
+        endpoints: Sequence[Endpoint],
+        system: int,
+        component: int,
+        signing: Signing | None,
+        log: TelemetryLog,
+    ) -> None:
+        self.endpoints = list(endpoints)
+        self._system, self._component, self._signing = system, component, signing
+        self._log = log
+        self._links: dict[Channel, Link] = {}
+        self._made = 0
+
+    def links(self) -> Sequence[int]:
+        """Return the numbers of the links that there are now."""
+        return [link.number for link in self._links.values()]
+
+    def poll(self) -> list[tuple[Message, Sender]]:
+        """Return the messages that have arrived, in order per link."""
+        arrived = []
+        for endpoint in self.endpoints:
+            for channel, data in endpoint.poll():
+                link = self._link(channel)
+                for message in link.codec.decode(data):
+                    self._log.write(message.get_msgbuf())
+                    arrived.append((message, _sender(message, link)))
+        self._reconcile()
+        return arrived
+
+    def send(self, link: int, message: Message) -> None:
+        """Send to one link; nothing happens if it is gone."""
+        for one in self._links.values():
+            if one.number == link:
+                self._transmit(one, message)
+
+    def broadcast(self, message: Message) -> None:
+        """Send to all links."""
+        for link in self._links.values():
+            self._transmit(link, message)
+
+    def close(self) -> None:
+        """Close everything; the newest timestamp of signatures is kept."""
+        for endpoint in self.endpoints:
+            endpoint.close()
+        if self._signing is not None:
+            self._signing.save()
+
+    def _transmit(self, link: Link, message: Message) -> None:
+        frame = link.codec.encode(message)
+        self._log.write(frame)
+        link.channel.send(frame)
+
+    def _reconcile(self) -> None:
+        """Know the peers that have not sent anything, forget those that are gone."""
+        there = [channel for endpoint in self.endpoints for channel in endpoint.channels()]
+        self._links = {channel: self._link(channel) for channel in there}
+
+    def _link(self, channel: Channel) -> Link:
+        if channel not in self._links:
+            codec = Codec(self._system, self._component, self._made, self._signing)
+            self._links[channel] = Link(self._made, channel, codec)
+            self._made += 1
+        return self._links[channel]
+
+
+def _sender(message: Message, link: Link) -> Sender:
+    return Sender(message.get_srcSystem(), message.get_srcComponent(), link.number)
