@@ -28,7 +28,7 @@ def test_the_wheel_alone_runs_a_trial(downloads: bool, tmp_path: Path) -> None:
         "hil_profiles/hydrone.toml",
     ):
         assert f"seatrial/_shipped/{shipped}" in names
-    for name in ("vehicles/hydrone.toml", "vehicles/gloria.toml", "sail_naca0015.csv"):
+    for name in ("py.typed", "vehicles/hydrone.toml", "vehicles/gloria.toml", "sail_naca0015.csv"):
         assert f"seatrial/{name}" in names
     environment = tmp_path / "environment"
     subprocess.run([sys.executable, "-m", "venv", str(environment)], check=True)

@@ -46,6 +46,15 @@ class DivergenceWatch:
             if steps % pace.every == 0:
                 pace.look(steps // pace.every)
 
+    def save(self) -> list[Any]:
+        """Return what it has seen, for `restore`."""
+        return [pace.save() for pace in self._paces]
+
+    def restore(self, memory: list[Any]) -> None:
+        """Restore what `memory` returned."""
+        for pace, seen in zip(self._paces, memory, strict=True):
+            pace.restore(seen)
+
 
 class _Pace:
     """The connections whose values come every so many communication steps."""
@@ -74,6 +83,15 @@ class _Pace:
         self._rows.append([signals[place] for place in self._places])
         if len(self._rows) == _LOOKED_AT:
             self._evaluate(np.array(self._rows, float))
+
+    def save(self) -> Any:
+        """Return what it has seen: rows are added, arrays replaced, so references do."""
+        return list(self._rows), self._last, self._first, self._jump, self._growing
+
+    def restore(self, memory: Any) -> None:
+        """Restore what `memory` returned."""
+        rows, self._last, self._first, self._jump, self._growing = memory
+        self._rows = list(rows)
 
     def _evaluate(self, rows: NDArray[np.float64]) -> None:
         with np.errstate(all="ignore"):

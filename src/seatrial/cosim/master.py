@@ -7,7 +7,9 @@ everything over one step, and `Rollback` repeats a discarded step in smaller one
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from ..component import NS
@@ -17,19 +19,30 @@ from .divergence import DivergenceWatch
 from .feedthrough import Feedthrough
 from .network import Name, Network
 from .registry import ALGORITHMS
-from .rollback import Rollback
+from .rollback import Checkpoint, Rollback
 from .system import System
 from .timing import StepTimes
 
 
+@dataclass(frozen=True)
+class Snapshot:
+    """The whole state of a run at a communication point; `Master.save` makes one."""
+
+    time: float
+    """Simulated time, s."""
+    checkpoint: Checkpoint
+    overrides: Any
+    watch: Any
+
+
 class Master:
-    """Runs an assembled system.
+    """Runs an assembled system; without ``stop_ns`` the components are given no stop time.
 
     ``signals`` holds the current value of every output; ``names`` says which is which. A value
     is valid at ``time``.
     """
 
-    def __init__(self, system: System, start_ns: int = 0, stop_ns: int = 0) -> None:
+    def __init__(self, system: System, start_ns: int = 0, stop_ns: int | None = None) -> None:
         self.system = system
         self.step_ns = system.rig.step_ns
         self.start_ns, self.stop_ns = start_ns, stop_ns
@@ -69,10 +82,11 @@ class Master:
         InputError if the rig's algorithm cannot step its components.
         """
         instances = [part.instance for part in self.system.parts.values()]
+        stop = math.inf if self.stop_ns is None else self.stop_ns / NS
         for part in self.system.parts.values():
             part.instance.set_start({name: given.value for name, given in part.given.items()})
         for instance in instances:
-            instance.initialise(self.start_ns / NS, self.stop_ns / NS)
+            instance.initialise(self.start_ns / NS, stop)
         self._feedthrough = Feedthrough(self._network)
         self._settle()
         for instance in instances:
@@ -109,6 +123,45 @@ class Master:
         """End an override: the connection carries its own value again."""
         self._network.override(component, name, None)
         self._changed()
+
+    def values(self, component: str, names: Sequence[str]) -> list[Any]:
+        """Return current values of outputs, inputs or parameters of a component, by name.
+
+        A connected input has what arrives now. Raises SimulationError.
+        """
+        return self._network.values(component, names)
+
+    def save(self) -> Snapshot:
+        """Return the whole state, overrides included; `free` it when it is of no more use.
+
+        Raises InputError naming the components that cannot save and restore theirs,
+        SimulationError if one cannot after all.
+        """
+        parts = self.system.parts.items()
+        stuck = [name for name, part in parts if not part.instance.rolls_back]
+        if stuck:
+            raise InputError(
+                f"the state of {', '.join(stuck)} cannot be saved and restored: what is outside "
+                "the simulation does not go back, and some FMUs say that they cannot"
+            )
+        return Snapshot(
+            self.time,
+            self._rollback.save(self.steps),
+            self._network.save_overrides(),
+            self._watch.save(),
+        )
+
+    def restore(self, snapshot: Snapshot) -> None:
+        """Return to a state that `save` returned; it stays valid. Raises SimulationError."""
+        self._rollback.forget()
+        self._network.restore_overrides(snapshot.overrides)
+        self._rollback.restore(snapshot.checkpoint)
+        self._watch.restore(snapshot.watch)
+        self.steps = snapshot.checkpoint.steps
+
+    def free(self, snapshot: Snapshot) -> None:
+        """Release a state."""
+        self._rollback.free(snapshot.checkpoint)
 
     def terminate(self) -> None:
         """Tell every component that the run has ended. Raises SimulationError."""

@@ -250,6 +250,44 @@ class Network:
                 override.own = self.signals[place]
                 self.signals[place] = override.value
 
+    def values(self, component: str, names: Sequence[str]) -> list[Any]:
+        """Return current values of a component's variables, whatever their causality.
+
+        A connected input has what arrives now, overrides included.
+        """
+        arriving = {
+            connection.target[1]: value
+            for writes in self.nodes[component].writes
+            if any(connection.target[1] in names for connection in writes.connections)
+            for connection, value in zip(
+                writes.connections, writes.values(self.signals), strict=True
+            )
+        }
+        instance, found = self.system.parts[component].instance, []
+        for name in names:
+            if (component, name) in self.places:
+                found.append(self.signals[self.places[component, name]])
+            elif name in arriving:
+                found.append(arriving[name])
+            else:
+                found.append(instance.reader([name])()[0])
+        return found
+
+    def save_overrides(self) -> Any:
+        """Return which overrides there are, for `restore_overrides`."""
+        places = [list(w.places) for node in self.nodes.values() for w in node.writes]
+        return {place: override.value for place, override in self._overrides.items()}, places
+
+    def restore_overrides(self, memory: Any) -> None:
+        """Restore what `save_overrides` returned, before `restore` of the same instant."""
+        values, places = memory
+        self._overrides = {place: _Override(value, None) for place, value in values.items()}
+        writes = [w for node in self.nodes.values() for w in node.writes]
+        for one, before in zip(writes, places, strict=True):
+            if one.places != before:
+                one.places = list(before)
+                self._bind(one)
+
     # ------------------------------------------------------------------ rollback
 
     def save(self) -> Any:

@@ -22,7 +22,9 @@ _HALVINGS = 6
 
 
 @dataclass
-class _Checkpoint:
+class Checkpoint:
+    """Everything that steps change, at one communication point."""
+
     steps: int
     states: list[Any]
     network: Any
@@ -39,7 +41,7 @@ class Rollback:
         self._network, self._feedthrough = network, feedthrough
         self.algorithm = algorithm
         self._instances = [node.part.instance for node in network.nodes.values()]
-        self._checkpoint: _Checkpoint | None = None
+        self._checkpoint: Checkpoint | None = None
         self._obstacle = _obstacle(network)
         self.splits = 0
         """Steps that were split."""
@@ -62,8 +64,39 @@ class Rollback:
     def forget(self) -> None:
         """Say that something was changed from outside: the steps before cannot be run again."""
         if self._checkpoint is not None:
-            self._release(self._checkpoint)
+            self.free(self._checkpoint)
             self._checkpoint = None
+
+    def save(self, steps: int) -> Checkpoint:
+        """Return everything that steps change. Raises SimulationError."""
+        states: list[Any] = []
+        try:
+            for instance in self._instances:
+                states.append(instance.get_state())
+        except SimulationError:
+            self._free(states)
+            raise
+        return Checkpoint(
+            steps,
+            states,
+            self._network.save(),
+            self._feedthrough.save(),
+            self.algorithm.save(),
+            self._network.independent(),
+        )
+
+    def restore(self, checkpoint: Checkpoint) -> None:
+        """Return to a checkpoint, which stays valid. Raises SimulationError."""
+        for instance, state in zip(self._instances, checkpoint.states, strict=True):
+            instance.set_state(state)
+        self._network.restore(checkpoint.network)
+        self._feedthrough.restore(checkpoint.feedthrough)
+        self.algorithm.restore(checkpoint.algorithm)
+        self._network.refuse_unrestored(checkpoint.independent)
+
+    def free(self, checkpoint: Checkpoint) -> None:
+        """Release a checkpoint."""
+        self._free(checkpoint.states)
 
     # ------------------------------------------------------------------ inside
 
@@ -71,7 +104,7 @@ class Rollback:
         """Return to the beginning of a discarded step, and take it in parts."""
         checkpoint = self._checkpoint
         assert checkpoint is not None
-        self._restore(checkpoint)
+        self.restore(checkpoint)
         for k in range(checkpoint.steps, steps):
             self.algorithm.advance(k, t_ns - (steps - k) * h_ns, h_ns)
         self._split(steps, t_ns, h_ns, 1, error)
@@ -102,41 +135,20 @@ class Rollback:
             return True
         if self._checkpoint is None:
             raise SimulationError(f"{refused}\n({self._obstacle})")
-        self._restore(self._checkpoint)
+        self.restore(self._checkpoint)
         return False
 
     def _save(self, steps: int) -> None:
         self.forget()
-        states: list[Any] = []
         try:
-            for instance in self._instances:
-                states.append(instance.get_state())
+            self._checkpoint = self.save(steps)
         except FatalError:
             raise
         except SimulationError as error:  # it says it can, but it cannot: the run may go on
             self._obstacle = str(error)
-            for instance, state in zip(self._instances, states, strict=False):
-                instance.free_state(state)
-            return
-        self._checkpoint = _Checkpoint(
-            steps,
-            states,
-            self._network.save(),
-            self._feedthrough.save(),
-            self.algorithm.save(),
-            self._network.independent(),
-        )
 
-    def _restore(self, checkpoint: _Checkpoint) -> None:
-        for instance, state in zip(self._instances, checkpoint.states, strict=True):
-            instance.set_state(state)
-        self._network.restore(checkpoint.network)
-        self._feedthrough.restore(checkpoint.feedthrough)
-        self.algorithm.restore(checkpoint.algorithm)
-        self._network.refuse_unrestored(checkpoint.independent)
-
-    def _release(self, checkpoint: _Checkpoint) -> None:
-        for instance, state in zip(self._instances, checkpoint.states, strict=True):
+    def _free(self, states: list[Any]) -> None:
+        for instance, state in zip(self._instances, states, strict=False):
             instance.free_state(state)
 
 

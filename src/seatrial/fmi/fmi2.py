@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import math
 from collections.abc import Sequence
 from typing import Any, ClassVar
 
@@ -38,7 +39,8 @@ class Fmi2Instance(FmuInstance):
 
     def initialise(self, start_time: float, stop_time: float) -> None:
         """Start at ``start_time``."""
-        self._call("SetupExperiment", 0, 0.0, start_time, 1, stop_time)
+        stops = math.isfinite(stop_time)
+        self._call("SetupExperiment", 0, 0.0, start_time, int(stops), stop_time if stops else 0.0)
         self._call("EnterInitializationMode")
         self._refuse_logged_errors("EnterInitializationMode")
 

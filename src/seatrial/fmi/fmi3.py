@@ -58,7 +58,9 @@ class Fmi3Instance(FmuInstance):
 
     def initialise(self, start_time: float, stop_time: float) -> None:
         """Start at ``start_time``."""
-        self._call("EnterInitializationMode", False, 0.0, start_time, True, stop_time)
+        stops = math.isfinite(stop_time)
+        stop = stop_time if stops else 0.0
+        self._call("EnterInitializationMode", False, 0.0, start_time, stops, stop)
         self._messages.forward()
 
     def begin(self) -> None:

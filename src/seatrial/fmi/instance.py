@@ -126,7 +126,10 @@ class Instance(Protocol):
         """Set parameters and start values by variable name, before `initialise`."""
 
     def initialise(self, start_time: float, stop_time: float) -> None:
-        """Start at ``start_time``; outputs can be read and inputs written from now on."""
+        """Start at ``start_time``; outputs can be read and inputs written from now on.
+
+        A ``stop_time`` of infinity is none.
+        """
 
     def begin(self) -> None:
         """End the initialisation."""

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from ..component import seconds
+from ..cosim.actions import action
 from ..cosim.recorder import matching
-from ..cosim.system import System, settable
-from ..cosim.values import from_written, port_scalars
+from ..cosim.system import System
 from ..errors import InputError, unknown
 from ..fmi.instance import Variable
 from .trial import Trial
@@ -15,27 +15,9 @@ from .trial import Trial
 
 def check_events(trial: Trial, system: System) -> None:
     """Raise InputError for an event that could not be applied when its time comes."""
-    fed = {connection.target for connection in system.connections}
     for event in trial.events():
         where = f"{trial.read_from.path}: event at {seconds(event.at_ns):g} s: {event.action}"
-        component, _, port = event.key.partition(".")
-        if component not in system.parts:
-            raise InputError(f"{where}: {unknown('component', component, system.parts)}")
-        part = system.parts[component]
-        scalars = port_scalars(part.instance.variables, port)
-        connected = [(component, v.name) in fed for v in scalars]
-        if event.action == "set":
-            scalars = settable(part.instance.variables, port, f"{where}: {component}")
-            if any(connected):
-                raise InputError(f"{where}: {event.key} is fed by a connection; use override")
-            if scalars[0].causality == "parameter" and scalars[0].variability != "tunable":
-                raise InputError(f"{where}: {event.key} is fixed and cannot change during a run")
-        elif not scalars or not (all(connected) or scalars[0].causality == "output"):
-            raise InputError(
-                f"{where}: {event.key} is neither an output nor an input that is wholly connected"
-            )
-        if event.action != "release":
-            from_written(event.written, scalars, part.presets.get(port, {}), where)
+        action(system, event.action, event.key, event.written, where)
 
 
 def _outputs(system: System) -> dict[str, Variable]:

@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from ..component import seconds
+from ..cosim.actions import action
 from ..cosim.master import Master
 from ..cosim.recorder import Recorder
-from ..cosim.values import from_written, port_scalars
 from ..errors import SimulationError
 from .hooks import Hooks
 from .manifest import manifest
@@ -20,7 +20,6 @@ from .output import write_json
 from .pacing import Pace
 from .preparation import Prepared
 from .termination import TerminationConditions
-from .trial import Event
 from .verdict import Verdict
 
 _SHOWN_EVERY_S = 0.1
@@ -108,7 +107,9 @@ class Run:
             pace.start()
         while True:
             while events and events[0].at_ns <= master.time_ns:
-                _apply(events.pop(0), master)
+                event = events.pop(0)
+                where = f"event {event.key}"
+                action(master.system, event.action, event.key, event.written, where).apply(master)
             stopping, broken, over = stop_requested(), termination.broken(), master.steps >= steps
             recorder.record(last=stopping or broken or over)
             if broken or over:
@@ -156,20 +157,3 @@ class Run:
             "step_times": {name: of.as_json() for name, of in times.items()},
         }
         return content if pace is None else {**content, "pacing": pace.pacer.as_json()}
-
-
-def _apply(event: Event, master: Master) -> None:
-    component, _, port = event.key.partition(".")
-    variables = master.system.parts[component].instance.variables
-    scalars = port_scalars(variables, port)
-    if event.action == "release":
-        for variable in scalars:
-            master.release(component, variable.name)
-        return
-    presets = master.system.parts[component].presets.get(port, {})
-    given = from_written(event.written, scalars, presets, f"event {event.key}")
-    if event.action == "set":
-        master.set(component, list(given), [g.value for g in given.values()])
-    else:
-        for name, value in given.items():
-            master.override(component, name, value.value)

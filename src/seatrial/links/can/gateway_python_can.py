@@ -8,7 +8,7 @@ from typing import Any
 import can
 
 from ...errors import InputError
-from ..hardware import ALLOWED, is_allowed, is_simulated_port
+from ..hardware import is_allowed, is_simulated_port, permission
 from .frame import Frame
 from .gateway import MOST_FRAMES, Gateway
 from .messages import error_message, frame_of, message
@@ -26,10 +26,7 @@ class PythonCanGateway(Gateway):
 
     def __init__(self, url: str, interface: str, channel: str, bitrate: int | None) -> None:
         if not (_is_simulated(interface, channel) or is_allowed()):
-            raise InputError(
-                f"gateway {url!r} is a real bus; allow it with --hardware (or {ALLOWED}=1 in the "
-                "environment) if nothing on it can do harm"
-            )
+            raise InputError(f"gateway {url!r} is a real bus; {permission()}")
         options: dict[str, Any] = {} if bitrate is None else {"bitrate": bitrate}
         if interface == "virtual":
             options["preserve_timestamps"] = True

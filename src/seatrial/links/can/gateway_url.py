@@ -26,6 +26,7 @@ from ...errors import InputError, unknown
 from ..endpoints.pseudo_terminal import PseudoTerminal
 from ..endpoints.tcp import TcpServer
 from ..endpoints.udp import UdpSender
+from ..hardware import refuse_other_host
 from .dronecan_multicast import DroneCanMulticastGateway
 from .gateway import Gateway
 from .gateway_python_can import PythonCanGateway
@@ -82,6 +83,7 @@ def _networked(url: str, kind: str, parts: dict[str, str]) -> Gateway:
             return DroneCanMulticastGateway(int(parts["bus"]))
         found = socket.getaddrinfo(parts["host"], None, socket.AF_INET, socket.SOCK_STREAM)
         address = (str(found[0][4][0]), int(parts["port"]))
+        refuse_other_host(f"gateway {url!r}", address[0])
         if kind == "yd-raw-udp":
             return YdRawGateway(UdpSender(address))
         return _SERVERS[kind](TcpServer(address))

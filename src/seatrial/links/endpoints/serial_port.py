@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import serial
 
 from ...errors import InputError
-from ..hardware import ALLOWED, is_allowed, is_simulated_port
+from ..hardware import is_allowed, is_simulated_port, permission
 from .descriptor import DescriptorChannel
 from .endpoint import LARGEST_DATAGRAM, Channel, Endpoint
 
@@ -24,10 +24,7 @@ class SerialEndpoint(Endpoint):
 
     def __init__(self, url: str, device: str, baud: int) -> None:
         if not (is_simulated_port(device) or is_allowed()):
-            raise InputError(
-                f"link {url!r} is a real port; allow it with --hardware (or {ALLOWED}=1 in the "
-                "environment) if nothing behind it can do harm"
-            )
+            raise InputError(f"link {url!r} is a real port; {permission()}")
         try:
             self._serial = serial.Serial(device, baud, timeout=0, write_timeout=0, exclusive=True)
         except (OSError, ValueError) as error:

@@ -23,6 +23,7 @@ from collections.abc import Callable
 
 from ...errors import InputError
 from ...plugins import Registry
+from ..hardware import refuse_other_host
 from .endpoint import Endpoint
 from .pseudo_terminal import PseudoTerminal
 from .serial_port import SerialEndpoint
@@ -65,6 +66,7 @@ def opened(url: str) -> Endpoint:
     if kind == "pty":
         return PseudoTerminal(place)
     address = _resolved(url, place, number)
+    refuse_other_host(f"link {url!r}", address[0])
     by_address: dict[str, Callable[[tuple[str, int]], Endpoint]] = {
         "udpout": UdpSender,
         "udpin": UdpListener,

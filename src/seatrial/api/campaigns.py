@@ -1,0 +1,148 @@
+"""Campaigns run whole: a result per case."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..errors import InputError
+from .results import TrialResult
+from .written import as_engine
+
+if TYPE_CHECKING:
+    import pandas
+
+_INDEX = "campaign.json"
+
+
+@dataclass(frozen=True)
+class CaseResult:
+    """One run of a campaign."""
+
+    name: str
+    trial: str
+    """Name of its trial."""
+    set: dict[str, Any]
+    """What the campaign set, as written: ``component.port`` or a key of the trial."""
+    folder: Path
+    status: str
+    passed: bool
+
+    @cached_property
+    def result(self) -> TrialResult:
+        """The run. Raises InputError if its folder cannot be read."""
+        return TrialResult(self.folder)
+
+
+class CampaignResult:
+    """The cases of a campaign: a view of its folder. Raises InputError for another folder."""
+
+    def __init__(self, folder: Path | str) -> None:
+        from ..trials.run_folder import read_json
+
+        self.folder = Path(folder)
+        """The campaign's folder: ``campaign.json``, and the run folder of each case."""
+        if not (self.folder / _INDEX).is_file():
+            raise InputError(f"{self.folder} is not a campaign folder: it has no {_INDEX}")
+        index = read_json(self.folder / _INDEX, dict)
+        try:
+            self.name = str(index["name"])
+            self.cases = [self._case(entry) for entry in index["cases"]]
+            """In the order of the campaign."""
+        except KeyError as error:
+            raise InputError(f"{self.folder / _INDEX} lacks {error}") from None
+
+    @property
+    def passed(self) -> bool:
+        """True if every case is complete and every criterion holds."""
+        return all(case.passed for case in self.cases)
+
+    def report(self) -> Path:
+        """Write the pages of all cases and of the campaign; return the path of the latter."""
+        from ..trials.campaign_report import write_campaign_report
+
+        for case in self.cases:
+            case.result.report()
+        return write_campaign_report(self.folder)
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """Return a table with a row per case, indexed by its name.
+
+        Columns: ``trial``, ``status``, ``passed``, what was set, and of each criterion by its
+        name whether it holds, and as ``NAME [UNIT]`` its worst value. Raises InputError if
+        pandas is not installed.
+        """
+        from .signals import needed
+
+        library = needed("pandas", "to_pandas")
+        rows = []
+        for case in self.cases:
+            row = {"trial": case.trial, "status": case.status, "passed": case.passed, **case.set}
+            for verdict in case.result.verdicts:
+                row[verdict.name] = verdict.passed
+                row[f"{verdict.name} [{verdict.unit}]"] = verdict.worst
+            rows.append(row)
+        names = library.Index([case.name for case in self.cases], name="case")
+        table: pandas.DataFrame = library.DataFrame(rows, index=names)
+        return table
+
+    def __repr__(self) -> str:
+        passed = sum(case.passed for case in self.cases)
+        return f"<{self.name}: {passed} of {len(self.cases)} cases pass; {self.folder}>"
+
+    def _case(self, entry: dict[str, Any]) -> CaseResult:
+        return CaseResult(
+            entry["name"],
+            entry["trial"],
+            entry["set"],
+            self.folder / entry["folder"],
+            entry["status"],
+            entry["passed"],
+        )
+
+
+def run_campaign(
+    campaign: str | Path,
+    *,
+    out: str | Path | None = None,
+    engine: str = "direct",
+    progress: Callable[[int, int], None] | None = None,
+) -> CampaignResult:
+    """Run every case of a campaign, as ``seatrial run`` does, and return what they left.
+
+    ``campaign`` is a name or the path of a ``.toml`` file; ``out`` and ``engine`` are as for
+    `run_trial`. ``progress`` is called after each case with how many are done, and of how many.
+    A case that could not go on has the status ``failed`` and does not end the campaign.
+
+    Raises InputError for bad input in any case, before the first one runs; KeyboardInterrupt for
+    a campaign that was interrupted: its folder holds the cases so far, for
+    `load_campaign_result`.
+    """
+    from ..links.hardware import confined
+    from ..trials.campaign import Case, load_campaign
+    from ..trials.campaign import run_campaign as run
+    from ..trials.run import Result
+
+    loaded = load_campaign(str(campaign))
+    count, finished = len(loaded.cases()), 0
+
+    def done(_case: Case, _result: Result) -> None:
+        nonlocal finished
+        finished += 1
+        if progress is not None:
+            progress(finished, count)
+
+    with confined():
+        target = None if out is None else Path(out)
+        folder, results = run(loaded, target, engine=as_engine(engine), done=done)
+    if any(result.status == "stopped" for _, result in results):
+        raise KeyboardInterrupt
+    return CampaignResult(folder)
+
+
+def load_campaign_result(folder: str | Path) -> CampaignResult:
+    """Read the folder that a campaign left. Raises InputError for another folder."""
+    return CampaignResult(folder)

@@ -1,0 +1,170 @@
+"""Trials run whole: what a run leaves, in Python."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..errors import InputError, SimulationError
+from .written import as_engine, as_settings
+
+if TYPE_CHECKING:
+    from ..trials.run_folder import Run
+    from .signals import Signals
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What became of a criterion in a run."""
+
+    name: str
+    check: str
+    """The condition, as the trial has it."""
+    passed: bool
+    detail: str
+    """For a person: the worst value, when, and what was allowed; or why there is none."""
+    worst: float | None
+    """The value nearest to the limit or furthest beyond it; the settling time of ``settles``."""
+    unit: str
+    """Unit of ``worst``."""
+    time: float | None
+    """When that was, s."""
+
+
+class TrialResult:
+    """A finished run: a view of its folder, which `run_trial` and `load_result` return.
+
+    Raises InputError for a folder that is not a run.
+    """
+
+    def __init__(self, folder: Path | str, notes: tuple[str, ...] = ()) -> None:
+        from ..trials.run_folder import VERDICTS, read_json, read_manifest
+
+        self.folder = Path(folder)
+        """The run folder: signals, manifest, verdicts and timing."""
+        self.manifest: dict[str, Any] = read_manifest(self.folder)
+        """Everything that decides the signals: versions, hashes, seeds, parameters, sources."""
+        self.notes = notes
+        """What the user should know of the rig and of the steps; of a run read again, nothing."""
+        path = self.folder / VERDICTS
+        entries = read_json(path, list) if path.is_file() else []
+        self.verdicts: list[Verdict] = [
+            Verdict(**{key: entry[key] for key in Verdict.__dataclass_fields__})
+            for entry in entries
+        ]
+        """One per criterion, in the trial's order; empty if the run failed."""
+
+    @property
+    def name(self) -> str:
+        """Name of the trial."""
+        return str(self.manifest["trial"]["name"])
+
+    @property
+    def status(self) -> str:
+        """``complete``; ``ended`` by a criterion; ``stopped``, ``failed`` or still ``running``."""
+        return str(self.manifest["status"])
+
+    @property
+    def passed(self) -> bool:
+        """True if the run is complete and every criterion holds: exit status 0 of the command."""
+        counted = len(self.verdicts) == len(self.manifest["criteria"])
+        return self.status == "complete" and counted and all(v.passed for v in self.verdicts)
+
+    @cached_property
+    def signals(self) -> Signals:
+        """The recorded signals, read from ``signals.csv`` when first asked for.
+
+        Raises InputError for a record that cannot be read.
+        """
+        import numpy as np
+
+        from .arrays import SignalArray
+        from .signals import Signals
+
+        described, run = self.manifest["signals"], self._run
+        types = {"Real": np.float64, "Integer": np.int64, "Boolean": np.bool_}
+
+        def column(name: str) -> SignalArray:
+            entry, values = described[name], run.signals[name]
+            kind = types.get(entry.get("type", "Real"), np.object_)
+            return SignalArray(np.array(values, dtype=kind), entry["unit"], entry["description"])
+
+        return Signals(list(run.signals), SignalArray(run.time, "s", "simulated time"), column)
+
+    def report(self) -> Path:
+        """Write ``report.html`` into the folder and return its path."""
+        from ..trials.report import write_report
+
+        return write_report(self.folder)
+
+    @cached_property
+    def _run(self) -> Run:
+        from ..trials.run_folder import load_run
+
+        return load_run(self.folder)
+
+    def __repr__(self) -> str:
+        failed = [verdict.name for verdict in self.verdicts if not verdict.passed]
+        said = f"{len(failed)} of {len(self.verdicts)} criteria do not hold" if failed else "passed"
+        if self.status != "complete" and not failed:
+            said = "not passed"
+        return f"<{self.name}: {self.status}, {said}; {self.folder}>"
+
+
+def run_trial(
+    trial: str | Path,
+    *,
+    set: Mapping[str, Any] | None = None,
+    out: str | Path | None = None,
+    engine: str = "direct",
+    progress: Callable[[float, float], None] | None = None,
+) -> TrialResult:
+    """Run a trial as ``seatrial run`` does, and return what it left.
+
+    ``trial`` is a name, or a path of a ``.toml`` or ``.ssp`` file. ``set`` changes it as
+    ``--set`` does: ``component.port`` or ``variant``, ``seed``, ``start``, ``stop``, ``step``,
+    ``algorithm``; numbers in the port's unit (SI; s), text with a unit (``"10 deg"``), sequences
+    and arrays with one element per axis.
+
+    The run leaves a folder, because a result without its manifest cannot be repeated: ``out``,
+    which must not hold anything yet, or else a new one, ``runs/NAME-DATE-TIME``, below the
+    current folder. The report is written when `TrialResult.report` is called.
+
+    ``engine`` is ``"direct"``, components in process, or ``"fmu"``, each as an FMU: the same
+    numbers; rigs with ``.fmu`` files need the latter. ``progress`` is called some ten times a
+    second with the simulated time that has passed and that of the whole run, s. No device is
+    opened and no other host reached; ``seatrial run`` can.
+
+    Raises InputError for bad input, before anything is written. Raises SimulationError for a run
+    that could not go on, and KeyboardInterrupt for one that was interrupted; its folder holds
+    what was recorded so far, for `load_result`.
+    """
+    from ..links.hardware import confined
+    from ..shipped import available
+    from ..trials.run import Hooks
+    from ..trials.run import run_trial as run
+    from ..trials.trial import load_trial
+
+    try:
+        loaded = load_trial(str(trial), changes=as_settings(set), origin="set")
+    except InputError as error:
+        if trial in available("harness/campaigns") and trial not in available("harness/trials"):
+            raise InputError(f"{trial} is a campaign: run_campaign runs it; {error}") from None
+        raise
+    hooks = Hooks() if progress is None else Hooks(progress=progress)
+    with confined():
+        folder = None if out is None else Path(out)
+        result = run(loaded, folder, engine=as_engine(engine), hooks=hooks)
+    if result.status == "stopped":
+        raise KeyboardInterrupt
+    if result.status == "failed":
+        raise SimulationError(f"{result.error}\n(what was recorded: {result.folder})")
+    return TrialResult(result.folder, (*loaded.notes, *result.notes))
+
+
+def load_result(folder: str | Path) -> TrialResult:
+    """Read the folder that a run left, whoever made it. Raises InputError for another folder."""
+    return TrialResult(folder)

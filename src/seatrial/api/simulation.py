@@ -1,0 +1,395 @@
+"""Simulations that the caller steps."""
+
+from __future__ import annotations
+
+import contextlib
+import weakref
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from ..errors import InputError, SimulationError, unknown
+from .written import as_duration, as_engine, as_settings, as_written
+
+if TYPE_CHECKING:
+    from ..cosim.actions import ActionKind
+    from ..cosim.master import Master, Snapshot
+    from ..cosim.rig import Rig
+    from ..cosim.system import System
+    from ..fmi.instance import Variable
+    from .recording import Recording
+
+Observer = TypeVar("Observer", bound=Callable[..., object])
+
+
+@dataclass(frozen=True)
+class Signal:
+    """One scalar of a rig: an output, an input or a parameter."""
+
+    name: str
+    """``component.port``, with its axis: ``hull.position.x``."""
+    unit: str
+    """As FMI writes it: ``m/s``, ``rad``, ``1``; empty if it has none."""
+    description: str
+    type: type
+    """float, int, bool, str or bytes."""
+    minimum: float | None
+    maximum: float | None
+    tunable: bool
+    """A parameter that may be set during a run, or an input that nothing feeds."""
+    feeder: str
+    """The output that feeds this input or parameter; empty if none does."""
+
+
+class State:
+    """The whole state of a simulation at one communication point; `Simulation.save` makes one."""
+
+    def __init__(self, simulation: Simulation, snapshot: Snapshot) -> None:
+        self.time = snapshot.time
+        """Simulated time, s."""
+        self.simulation = simulation
+        """The simulation that saved it, and that alone can restore it."""
+        self.snapshot = snapshot
+        """What the master keeps."""
+
+
+class Simulation:
+    """A rig that the caller steps, in the caller's process.
+
+    ``rig`` is the name of a rig (not of a trial: `run_trial` runs those, with their events and
+    criteria), or the path of a ``.toml`` or ``.ssp`` file. ``set`` gives parameters, and start
+    values of inputs, by ``component.port`` as a rig's file does: numbers in the port's unit (SI),
+    text with a unit (``"10 deg"``) or the name of a preset, sequences and arrays with one element
+    per axis. ``seed`` is what all noise derives from, ``variant`` one of the vehicle's,
+    ``engine`` as for `run_trial`, ``step`` the communication step in s or as text in place of
+    the rig's. Time starts at 0.
+
+    The simulation is at a communication point between any two calls. The same calls give the
+    same numbers, those of a trial with events at the same times.
+
+    A component that crashes, such as a native FMU, ends the process, unless the rig says
+    ``isolated = true`` for it. No device is opened and no other host reached: a rig whose links
+    need one is refused. Use it from one thread, and close it, or use it as a context manager.
+
+    Raises InputError for bad input, or a rig that cannot start with it.
+    """
+
+    def __init__(
+        self,
+        rig: str | Path,
+        *,
+        set: Mapping[str, Any] | None = None,
+        seed: int = 1,
+        variant: str | None = None,
+        engine: str = "direct",
+        step: float | str | None = None,
+    ) -> None:
+        from ..cosim.assembly import assemble
+        from ..links.hardware import confined
+
+        self._observers: list[Callable[[Simulation], object]] = []
+        self._error = ""
+        loaded, chosen = _loaded_rig(str(rig), as_duration(step)), as_engine(engine)
+        with confined():
+            system = assemble(loaded, chosen, variant=variant, seed=int(seed))
+            try:
+                for key, written in as_settings(set).items():
+                    system.set(key, written, "set")
+                self._master = _started(system)
+            except BaseException:
+                system.free()
+                raise
+        self._free = weakref.finalize(self, system.free)
+
+    # ------------------------------------------------------------------ time
+
+    @property
+    def time(self) -> float:
+        """Simulated time, s."""
+        return self._master.time
+
+    @property
+    def step_size(self) -> float:
+        """Communication step, s."""
+        return self._master.step_ns / 1e9
+
+    def step(self, count: int = 1) -> None:
+        """Take ``count`` communication steps, calling the observers after each.
+
+        Raises SimulationError if a component cannot go on; the simulation can only be restored
+        or closed then.
+        """
+        if count < 0:
+            raise InputError(f"step: the count is {count}, it cannot be negative")
+        for _ in range(count):
+            self._refuse_ended()
+            try:
+                self._master.step()
+            except BaseException as error:  # an interrupted step ends at no communication point
+                self._error = str(error) or type(error).__name__
+                raise
+            for observer in tuple(self._observers):
+                observer(self)
+
+    def run(self, until: float | str) -> None:
+        """Step until the simulated time ``until``, s or text such as ``"10 s"``.
+
+        Raises InputError for a time that has passed or is not a whole number of communication
+        steps away; SimulationError as `step` does.
+        """
+        from ..cosim.rig import duration_ns
+
+        ahead = duration_ns(str(as_duration(until)), "run") - self._master.time_ns
+        count, rest = divmod(ahead, self._master.step_ns)
+        if rest or count < 0:
+            raise InputError(
+                f"run: {until!r} is not a whole number of communication steps of "
+                f"{self.step_size!r} s from {self.time!r} s on"
+            )
+        self.step(count)
+
+    # ------------------------------------------------------------------ values
+
+    @cached_property
+    def signals(self) -> dict[str, Signal]:
+        """All outputs by name, in the order of the rig: what a record holds."""
+        return self._described("output")
+
+    @cached_property
+    def inputs(self) -> dict[str, Signal]:
+        """All inputs by name."""
+        return self._described("input")
+
+    @cached_property
+    def parameters(self) -> dict[str, Signal]:
+        """All parameters by name."""
+        return self._described("parameter")
+
+    def get(self, name: str) -> Any:
+        """Return the present value of an output, an input or a parameter, in its own unit.
+
+        One scalar (``hull.position.x``) as a float, int, bool, str or bytes; a whole port
+        (``hull.position``) as an array of shape (n,), its elements in the order of declaration.
+        An input that is connected has what arrives now; overrides count. Raises InputError.
+        """
+        import numpy as np
+
+        self._refuse_closed()
+        component, variables = self._variables(name)
+        values = self._master.values(component, [v.name for v in variables])
+        if f"{component}.{variables[0].name}" == name:
+            return values[0]
+        return np.array(values, dtype=object if variables[0].type in (str, bytes) else None)
+
+    def set(self, name: str, value: Any) -> None:
+        """Set an input that nothing feeds, or a tunable parameter, from now on.
+
+        ``value`` as in the constructor; outputs that depend on it at once follow. As a ``set``
+        event of a trial at this time. Raises InputError.
+        """
+        self._act("set", name, value)
+
+    def override(self, name: str, value: Any) -> None:
+        """Replace an output for all its readers, or a connected input, until `release`.
+
+        As an ``override`` event of a trial at this time. Raises InputError.
+        """
+        self._act("override", name, value)
+
+    def release(self, name: str) -> None:
+        """End an override. Raises InputError."""
+        self._act("release", name, None)
+
+    # ------------------------------------------------------------------ observers
+
+    def observe(self, observer: Observer) -> Observer:
+        """Call ``observer`` with this simulation after every communication step; return it.
+
+        It may read, set, override and save, and raise to end a `run`.
+        """
+        self._observers.append(observer)
+        return observer
+
+    def unobserve(self, observer: Callable[..., object]) -> None:
+        """Call an observer no more. Raises InputError for one that was not there."""
+        if observer not in self._observers:
+            raise InputError(f"unobserve: {observer!r} does not observe this simulation")
+        self._observers.remove(observer)
+
+    def record(self, *patterns: str) -> Recording:
+        """Record the outputs that match a pattern (``hull.*``; default: all), from now on.
+
+        The first row is of the present, then there is one after every communication step.
+        Raises InputError for a pattern that matches nothing.
+        """
+        from .recording import Recording
+
+        wanted = {name for pattern in patterns or ("*",) for name in self._matching(pattern)}
+        described = [signal for name, signal in self.signals.items() if name in wanted]
+        places = {".".join(name): place for place, name in enumerate(self._master.names)}
+        chosen, values = [places[signal.name] for signal in described], self._master.signals
+        recording = Recording(described, lambda: [values[place] for place in chosen])
+        recording(self)
+        return self.observe(recording)
+
+    # ------------------------------------------------------------------ states
+
+    def save(self) -> State:
+        """Return the whole state: time, components with their noise, overrides.
+
+        Observers are no part of it. It is released when nothing refers to it any more. Raises
+        InputError naming the components that cannot save and restore theirs: links to the
+        outside, and some FMUs.
+        """
+        self._refuse_ended()
+        state = State(self, self._master.save())
+        weakref.finalize(state, self._release, state.snapshot).atexit = False
+        return state
+
+    def restore(self, state: State) -> None:
+        """Return to a state that this simulation saved, as often as needed.
+
+        Also after a step that failed. Raises InputError for the state of another simulation,
+        SimulationError if a component cannot restore it.
+        """
+        self._refuse_closed()
+        if state.simulation is not self:
+            raise InputError("restore: this is the state of another simulation")
+        self._error = "its state was not restored"
+        self._master.restore(state.snapshot)
+        self._error = ""
+
+    # ------------------------------------------------------------------ the end
+
+    def close(self) -> None:
+        """End the components and release them; more than once does nothing.
+
+        Raises SimulationError if a component cannot end.
+        """
+        if self._free.alive:
+            try:
+                if not self._error:
+                    self._master.terminate()
+            finally:
+                self._free()
+
+    def __enter__(self) -> Simulation:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def __repr__(self) -> str:
+        name = self._master.system.rig.read_from.name
+        return (
+            f"<Simulation of {name} at t = {self.time!r} s{'' if self._free.alive else ', closed'}>"
+        )
+
+    # ------------------------------------------------------------------ inside
+
+    def _refuse_closed(self) -> None:
+        if not self._free.alive:
+            raise InputError("this simulation is closed")
+
+    def _refuse_ended(self) -> None:
+        self._refuse_closed()
+        if self._error:
+            raise SimulationError(f"this simulation ended at t = {self.time!r} s: {self._error}")
+
+    def _act(self, kind: ActionKind, name: str, value: Any) -> None:
+        from ..cosim.actions import action
+
+        self._refuse_ended()
+        action(self._master.system, kind, name, as_written(value), kind).apply(self._master)
+
+    def _release(self, snapshot: Snapshot) -> None:
+        if self._free.alive:
+            with contextlib.suppress(SimulationError):  # of a component that is broken
+                self._master.free(snapshot)
+
+    def _variables(self, name: str) -> tuple[str, Sequence[Variable]]:
+        """Return the component and the scalars that a name means."""
+        from ..cosim.values import port_names, port_scalars
+
+        component, _, port = name.partition(".")
+        parts = self._master.system.parts
+        if component not in parts:
+            raise InputError(f"{name}: {unknown('component', component, parts)}")
+        variables = parts[component].instance.variables
+        scalars = port_scalars(variables, port)
+        if not scalars:
+            raise InputError(f"{component}: {unknown('port', port, port_names(variables))}")
+        return component, scalars
+
+    def _matching(self, pattern: str) -> list[str]:
+        """Return the outputs that a pattern or the name of a port means."""
+        from ..cosim.recorder import matching
+
+        if "*" in pattern or "?" in pattern:
+            return matching(list(self.signals), [pattern])
+        component, scalars = self._variables(pattern)
+        names = [f"{component}.{variable.name}" for variable in scalars]
+        if names[0] not in self.signals:
+            raise InputError(f"record: {pattern} is no output; outputs alone are recorded")
+        return names
+
+    def _described(self, causality: str) -> dict[str, Signal]:
+        system = self._master.system
+        described = {}
+        for component, part in system.parts.items():
+            feeders = system.feeders(component)
+            for variable in part.instance.variables.values():
+                if variable.causality == causality:
+                    name, feeder = f"{component}.{variable.name}", feeders.get(variable.name, "")
+                    described[name] = _signal(name, variable, feeder)
+        return described
+
+
+def _signal(name: str, variable: Variable, feeder: str) -> Signal:
+    settable = variable.causality == "input" or variable.variability == "tunable"
+    return Signal(
+        name=name,
+        unit=variable.unit,
+        description=variable.description,
+        type=variable.type,
+        minimum=variable.minimum,
+        maximum=variable.maximum,
+        tunable=settable and variable.causality != "output" and not feeder,
+        feeder=feeder,
+    )
+
+
+def _loaded_rig(name: str, step: Any) -> Rig:
+    from ..cosim.rig import load_rig
+    from ..cosim.ssp.reading import read_ssp
+    from ..shipped import available
+
+    if name.endswith(".ssp"):
+        rig = read_ssp(Path(name).resolve(), step).rig
+    else:
+        try:
+            rig = load_rig(name)
+        except InputError as error:
+            if name in available("harness/trials"):
+                raise InputError(f"{name!r} is a trial: run_trial runs it; {error}") from None
+            raise
+    return rig if step is None else rig.changed({"step": step})
+
+
+def _started(system: System) -> Master:
+    from ..cosim.master import Master
+
+    master = Master(system)
+    try:
+        master.initialise()
+    except SimulationError as error:
+        raise InputError(f"{system.rig.read_from.path}: the rig cannot start: {error}") from None
+    return master
