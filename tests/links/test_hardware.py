@@ -18,11 +18,11 @@ mavlink = { fmu = "mavlink", set = { links = "serial:/dev/null:57600" } }
 
 
 @pytest.mark.parametrize(
-    ("flags", "sent"),
+    ("flags", "expected"),
     [([], "is a real port; allow it with --hardware"), (["--hardware"], "cannot open the link")],
 )
 @pytest.mark.parametrize("isolated", ["false", "true"])
-def test_a_real_port_is_opened_only_if_allowed(flags, sent, isolated, write, tmp_path):
+def test_a_real_port_is_opened_only_if_allowed(flags, expected, isolated, write, tmp_path):
     write("rig.toml", RIG.replace("set =", f"isolated = {isolated}, set ="))
     trial = write("trial.toml", 'rig = "rig.toml"\nstop = "1 s"\n')
     environment = {name: value for name, value in os.environ.items() if name != ALLOWED}
@@ -31,7 +31,7 @@ def test_a_real_port_is_opened_only_if_allowed(flags, sent, isolated, write, tmp
         cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=120,
     )  # fmt: skip
     assert run.returncode == 2
-    assert sent in " ".join(run.stderr.split())
+    assert expected in " ".join(run.stderr.split())
     assert not (tmp_path / "runs").exists()
 
 

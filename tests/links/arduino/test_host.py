@@ -98,7 +98,7 @@ void loop() { delay(20); while (Serial1.available()) Serial.write(Serial1.read()
 
 
 @pytest.mark.parametrize(
-    ("source", "sent"),
+    ("source", "expected"),
     [
         (
             "void setup() {\n  TCCR1A = 0;\n}\nvoid loop() {}\n",
@@ -121,13 +121,13 @@ void loop() { delay(20); while (Serial1.available()) Serial.write(Serial1.read()
         ("void setup() {\n  int x = y;\n}\nvoid loop() {}\n", r"one\.ino:2:.*'y' was not declared"),
     ],
 )
-def test_what_cannot_be_is_refused_with_its_line(tmp_path, source, sent):
-    with pytest.raises(InputError, match=sent):
+def test_what_cannot_be_is_refused_with_its_line(tmp_path, source, expected):
+    with pytest.raises(InputError, match=expected):
         running(tmp_path, source)
 
 
 @pytest.mark.parametrize(
-    ("source", "sent"),
+    ("source", "expected"),
     [
         ("void setup() {}\nvoid loop() { for (;;) {} }\n", "endless loop"),
         (
@@ -146,10 +146,10 @@ def test_what_cannot_be_is_refused_with_its_line(tmp_path, source, sent):
         ),
     ],
 )
-def test_a_sketch_that_goes_wrong_ends_its_component_only(tmp_path, source, sent):
+def test_a_sketch_that_goes_wrong_ends_its_component_only(tmp_path, source, expected):
     with (
         running(tmp_path, source, patience=0.5) as bench,
-        pytest.raises(SimulationError, match=f"(?s)mega: at .* s of its time .*{sent}"),
+        pytest.raises(SimulationError, match=f"(?s)mega: at .* s of its time .*{expected}"),
     ):
         bench.run(2.0)
 
@@ -168,7 +168,7 @@ def test_its_state_cannot_be_saved(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("values", "sent"),
+    ("values", "expected"),
     [
         ({"wires": "9 serbo 1"}, "did you mean 'servo'"),
         ({"wires": "99 servo 1"}, "pin '99': the Mega has 0 to 69"),
@@ -179,8 +179,8 @@ def test_its_state_cannot_be_saved(tmp_path):
         ({"backend": "board", "links": ""}, "UART=URL"),
     ],
 )
-def test_wrong_parameters_are_named(tmp_path, values, sent):
-    with pytest.raises(InputError, match=sent):
+def test_wrong_parameters_are_named(tmp_path, values, expected):
+    with pytest.raises(InputError, match=expected):
         running(tmp_path, NOTHING, **values)
 
 
@@ -240,7 +240,7 @@ def test_a_monitor_receives_and_types_beside_what_is_connected(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("text", "sent"),
+    ("text", "expected"),
     [
         ("pty:/tmp/a", "not UART=URL"),
         ("4=pty:/tmp/a", "not UART=URL"),
@@ -248,8 +248,8 @@ def test_a_monitor_receives_and_types_beside_what_is_connected(tmp_path):
         ("0=tty:/tmp/a", "unknown kind of link 'tty'"),
     ],
 )
-def test_a_monitor_that_cannot_be(text, sent):
+def test_a_monitor_that_cannot_be(text, expected):
     one = Arduino("mega")
     one.set("monitors", text)
-    with pytest.raises(InputError, match=rf"monitors.*{sent}"):
+    with pytest.raises(InputError, match=rf"monitors.*{expected}"):
         one.initialise()

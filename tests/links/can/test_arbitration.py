@@ -126,7 +126,7 @@ def test_a_node_that_does_not_wait_is_notified_of_a_lost_arbitration():
     ]
     assert [identifier for _, _, identifier in bench.times] == [0, 0x200]
     node = bench.nodes[1]
-    assert (node.requested, node.sent, node.dropped) == (2, 1, 1)
+    assert (node.asked, node.sent, node.dropped) == (2, 1, 1)
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -177,8 +177,8 @@ def test_what_is_requested_is_sent_dropped_or_waits(requested, mailboxes, queue,
         assert busy <= bench.bus.busy_ps / US <= until
         for node, controller in enumerate(bench.nodes):
             due = sum(1 for when, n, *_ in requested if n == node and when < until)
-            assert controller.requested == due
-            assert controller.requested == controller.sent + controller.dropped + controller.waiting
+            assert controller.asked == due
+            assert controller.asked == controller.sent + controller.dropped + controller.waiting
     for sent in bench.sent:
         assert sent.requested_ps <= sent.start_ps
         bits = length(sent.frame)

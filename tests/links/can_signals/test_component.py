@@ -177,7 +177,7 @@ SENDS = "ThrusterCommand.PortPulse 1100 1900 us"
 
 
 @pytest.mark.parametrize(
-    ("change", "sends", "sent"),
+    ("change", "sends", "expected"),
     [
         (("", ""), "ThrusterCommand.PortPuls", ["sends", "did you mean 'PortPulse'"]),
         (("", ""), "ThrusterComand.PortPulse", ["did you mean 'ThrusterCommand'"]),
@@ -198,16 +198,16 @@ SENDS = "ThrusterCommand.PortPulse 1100 1900 us"
         (('"us"', '"parsec2000"'), SENDS, ["PortPulse", "'parsec2000' is not a unit"]),
     ],
 )
-def test_mistakes_name_the_file(tmp_path, change, sends, sent):
+def test_mistakes_name_the_file(tmp_path, change, sends, expected):
     file = tmp_path / "bus.dbc"
     file.write_text(TEXT.replace(*change) if change[0] else TEXT, "utf-8")
     with pytest.raises(InputError) as caught:
         signals(file, sends=sends)
-    for part in sent:
+    for part in expected:
         assert part in str(caught.value)
     named = re.match(r"node: (sends|database): ", str(caught.value))
     assert named, str(caught.value)
-    if "named twice" not in sent[0] and "is not MESSAGE" not in sent[0]:
+    if "named twice" not in expected[0] and "is not MESSAGE" not in expected[0]:
         assert str(file) in str(caught.value)
 
 

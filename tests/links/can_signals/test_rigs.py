@@ -46,15 +46,15 @@ def test_thrusters_on_a_bus(tmp_path):
     # The command line tool reads the log as candump's.
     with (result.folder / "can.log").open(encoding="utf-8") as log:
         head = "".join(next(log) for _ in range(30))
-    sent = subprocess.run(
+    decoded = subprocess.run(
         [sys.executable, "-m", "cantools", "decode", str(PROFILES / "hydrone.dbc")],
         input=head,
         capture_output=True,
         text=True,
         check=True,
     ).stdout
-    assert re.findall(r"PortPulse: ([\d.]+) us", sent)[0] == str(sent[0])
-    assert "StarboardCurrent" in sent
+    assert re.findall(r"PortPulse: ([\d.]+) us", decoded)[0] == str(sent[0])
+    assert "StarboardCurrent" in decoded
 
 
 def test_servos_on_a_disturbed_bus(tmp_path):
@@ -84,20 +84,20 @@ def test_a_profile_names_the_file_beside_it(profiles):
 
 
 @pytest.mark.parametrize(
-    ("change", "dbc", "sent"),
+    ("change", "dbc", "expected"),
     [
         (("ThrusterCommand.PortPulse 1100", "ThrusterCommand.PortPuls 1100"), ("", ""), "did you mean 'PortPulse'"),
         (("PortPulse 1100 1900 us", "PortPulse 1100 7000 us"), ("", ""), "carries 0 to 2500 us"),
         (("", ""), ("BO_ 386 ", "BO_ 385 "), "PortStatus and StarboardStatus"),
     ],
 )  # fmt: skip
-def test_a_profile_with_a_mistake_is_refused_with_file_and_key(profiles, change, dbc, sent):
+def test_a_profile_with_a_mistake_is_refused_with_file_and_key(profiles, change, dbc, expected):
     text = (PROFILES / "hydrone.toml").read_text("utf-8")
     (profiles / "boat.toml").write_text(text.replace(*change, 1), "utf-8")
     text = (PROFILES / "hydrone.dbc").read_text("utf-8")
     (profiles / "hydrone.dbc").write_text(text.replace(*dbc), "utf-8")
     with pytest.raises(InputError) as caught:
         load_profile(profiles / "boat.toml")
-    assert sent in str(caught.value)
+    assert expected in str(caught.value)
     key = "sends" if change[0] else "database"
     assert f"boat.toml: links.autopilot_node: {key}: " in str(caught.value)

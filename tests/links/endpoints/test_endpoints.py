@@ -243,7 +243,7 @@ def test_a_real_port_needs_permission(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("url", "sent"),
+    ("url", "expected"),
     [
         ("upd:127.0.0.1:14550", "unknown kind of link 'upd'"),
         ("udpinn:127.0.0.1:14550", "did you mean 'udpin'"),
@@ -262,8 +262,8 @@ def test_a_real_port_needs_permission(monkeypatch):
         ("udpin:192.0.2.1:0", "cannot open the link 'udpin:192.0.2.1:0': "),
     ],
 )
-def test_a_bad_url_is_refused_with_the_url(url, sent):
-    with pytest.raises(InputError, match=re.escape(sent)) as caught:
+def test_a_bad_url_is_refused_with_the_url(url, expected):
+    with pytest.raises(InputError, match=re.escape(expected)) as caught:
         open_endpoint(url)
     assert repr(url) in str(caught.value)
 

@@ -261,7 +261,7 @@ def test_a_parameter_set_late_opens_the_links_again(started):
 
 
 @pytest.mark.parametrize(
-    ("values", "sent"),
+    ("values", "expected"),
     [
         ({"links": "udpin:127.0.0.1:0 upd:x:1"}, "unknown kind of link 'upd'"),
         ({"firmware_version": "one"}, "firmware_version is 'one'"),
@@ -280,11 +280,11 @@ def test_a_parameter_set_late_opens_the_links_again(started):
         ({"signing_key_file": "/no/such", "state_file": "/no/state"}, "signing key file /no/such"),
     ],
 )
-def test_what_cannot_be_is_refused_at_the_start(values, sent):
+def test_what_cannot_be_is_refused_at_the_start(values, expected):
     component = made(**values)
     with pytest.raises(InputError) as caught:
         component.initialise()
-    assert sent in str(caught.value)
+    assert expected in str(caught.value)
     assert component.urls == []  # and nothing stays open
 
 

@@ -161,7 +161,7 @@ def test_what_is_set_is_sent_to_all(bench: ParameterBench) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "value", "error", "sent"),
+    ("name", "value", "error", "expected"),
     [
         (
             "REAL",
@@ -175,7 +175,7 @@ def test_what_is_set_is_sent_to_all(bench: ParameterBench) -> None:
     ],
 )
 def test_what_is_refused_is_sent_to_the_sender_alone(
-    bench: ParameterBench, name, value, error, sent
+    bench: ParameterBench, name, value, error, expected
 ) -> None:
     before = bench.table[name]
     bench.set(name, value, sender=OTHER_STATION)
@@ -184,7 +184,7 @@ def test_what_is_refused_is_sent_to_the_sender_alone(
     assert (value_sent.get_type(), value_sent.param_value) == ("PARAM_VALUE", before)
     assert (refusal.get_type(), refusal.param_id, refusal.error) == ("PARAM_ERROR", name, error)
     (text,) = bench.vehicle.texts
-    assert text.text.startswith(sent)
+    assert text.text.startswith(expected)
 
 
 # ------------------------------------------------------------------ integers

@@ -160,21 +160,22 @@ def test_the_key_is_that_of_the_pass_phrase(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("content", "sent"), [(None, "No such file"), (b"\nx", "is empty"), (b"\xff\xfe", "not UTF-8")]
+    ("content", "expected"),
+    [(None, "No such file"), (b"\nx", "is empty"), (b"\xff\xfe", "not UTF-8")],
 )
-def test_a_bad_key_file_is_refused(tmp_path, content, sent):
+def test_a_bad_key_file_is_refused(tmp_path, content, expected):
     path = tmp_path / "key"
     if content is not None:
         path.write_bytes(content)
-    with pytest.raises(InputError, match=f"signing key file {path}.*{sent}"):
+    with pytest.raises(InputError, match=f"signing key file {path}.*{expected}"):
         read_key(path)
 
 
-@pytest.mark.parametrize(("content", "sent"), [("{", "not JSON"), ("[]", "a JSON object")])
-def test_a_bad_state_file_is_refused(tmp_path, content, sent):
+@pytest.mark.parametrize(("content", "expected"), [("{", "not JSON"), ("[]", "a JSON object")])
+def test_a_bad_state_file_is_refused(tmp_path, content, expected):
     path = tmp_path / "state.json"
     path.write_text(content)
-    with pytest.raises(InputError, match=f"state file {path}: {sent}"):
+    with pytest.raises(InputError, match=f"state file {path}: {expected}"):
         StateFile(path)
 
 

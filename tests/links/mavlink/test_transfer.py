@@ -70,7 +70,7 @@ def acks(bench, sender=STATION):
     return [m.type for m in bench.transport.take("MISSION_ACK", sender.link)]
 
 
-def sent(bench):
+def texts(bench):
     """Return the status texts: pieces of a sentence joined, and all sentences too."""
     return "".join(bench.texts())
 
@@ -192,7 +192,7 @@ def test_an_upload_without_items_ends_and_nothing_is_changed(bench):
     assert acks(bench) == []
     bench.wait(0.01)
     assert acks(bench) == [CANCELLED]
-    assert "Mission: upload timed out, nothing is changed" in sent(bench)
+    assert "Mission: upload timed out, nothing is changed" in texts(bench)
     bench.transport.take()
     bench.receive(MISSION_ITEMS[1])
     bench.wait(20.0)
@@ -267,7 +267,7 @@ def test_an_upload_is_cancelled_by_its_sender(bench):
     bench.receive(mavlink.MAVLink_mission_ack_message(7, 1, CANCELLED, MISSION))
     bench.wait(20.0)
     assert requested(bench) == []
-    assert "Mission: upload cancelled, nothing is changed" in sent(bench)
+    assert "Mission: upload cancelled, nothing is changed" in texts(bench)
     assert same(download(bench), MISSION_ITEMS, first=1)
 
 
@@ -288,7 +288,7 @@ def test_a_second_station_is_denied_while_one_uploads(bench, attempt):
     bench.receive(MISSION_ITEMS[0])
     bench.receive(attempt, OTHER_STATION)
     assert acks(bench, OTHER_STATION) == [DENIED]
-    assert "another ground station is uploading" in sent(bench)
+    assert "another ground station is uploading" in texts(bench)
     bench.receive(MISSION_ITEMS[1], OTHER_STATION)
     for message in MISSION_ITEMS[1:]:
         bench.receive(message)
@@ -402,7 +402,7 @@ def test_too_many_items(bench):
 def test_bad_lists_are_refused_with_the_item_and_the_old_one_stays(bench, kind, items, result):
     upload(bench, LISTS[kind], kind)
     assert upload(bench, listed(*items, kind=kind), kind) == result
-    assert "refused: item " in sent(bench)
+    assert "refused: item " in texts(bench)
     assert same(download(bench, kind), LISTS[kind], first=kind == MISSION)
 
 

@@ -162,7 +162,7 @@ def test_rates_do_not_depend_on_the_step():
 
 
 @pytest.mark.parametrize(
-    ("values", "sent"),
+    ("values", "expected"),
     [
         ({"sentences": "GPRMV 1"}, "unknown sentence 'RMV'; did you mean 'RMC'"),
         ({"sentences": "GPMWV 1"}, "did you mean 'MWV-T' or 'MWV-R'"),
@@ -175,10 +175,10 @@ def test_rates_do_not_depend_on_the_step():
         ({"links": "serial:/dev/nowhere:4800"}, "'serial:/dev/nowhere:4800'"),
     ],
 )
-def test_mistakes(values, sent):
+def test_mistakes(values, expected):
     with pytest.raises(InputError) as caught:
         Bench(**values)
-    assert sent in str(caught.value)
+    assert expected in str(caught.value)
     assert str(caught.value).startswith("nmea")
 
 

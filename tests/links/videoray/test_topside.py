@@ -149,7 +149,7 @@ def test_nmea_sentences_are_read_by_somebody_elses_parser():
         block(line)
     chunks = Inbox({}).take(line["nmea_tx"])
     lines = chunks[0][1].split(b"\r\n")
-    depth, heading, temperature = (pynmeagps.NMEAReader.parse(line + b"\r\n") for line in lines[:3])
+    depth, heading, temperature = (pynmeagps.NMEAReader.parse(each + b"\r\n") for each in lines[:3])
     assert (depth.talker, depth.msgID, depth.depth) == ("VR", "DPT", -10.3)
     assert (heading.msgID, heading.headingM) == ("HDG", 49.3)
     assert (temperature.msgID, temperature.temp) == ("MTW", 11.1)

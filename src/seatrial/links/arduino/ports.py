@@ -43,7 +43,7 @@ class ArduinoPorts(Reachable, Component):
         "UART=URL where programs listen in and type, as 0=pty:/tmp/uart0",
         check=read_monitors,
     )
-    safe_state = Parameter("", "1", "board: bytes that make the sketch let go, hexadecimal")
+    safe_state = Parameter("", "1", "board: safe-state bytes, hexadecimal")
     timeout = Parameter(
         2.0,
         "s",
