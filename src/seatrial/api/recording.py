@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 from .arrays import SignalArray
+from .signal import Signal
 from .signals import Signals
 
-if TYPE_CHECKING:
-    from .simulation import Signal, Simulation
+
+class _Timed(Protocol):
+    """What is recorded: it knows its simulated time, s."""
+
+    @property
+    def time(self) -> float: ...
 
 
 class Recording:
@@ -25,7 +30,7 @@ class Recording:
         self._rows: list[list[Any]] = []
         self._read = read
 
-    def __call__(self, simulation: Simulation) -> None:
+    def __call__(self, simulation: _Timed) -> None:
         """Append a row."""
         self._times.append(simulation.time)
         self._rows.append(self._read())

@@ -5,13 +5,13 @@ from __future__ import annotations
 import contextlib
 import weakref
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from ..errors import InputError, SimulationError, unknown
+from .signal import Signal
 from .written import as_duration, as_engine, as_settings, as_written
 
 if TYPE_CHECKING:
@@ -23,25 +23,6 @@ if TYPE_CHECKING:
     from .recording import Recording
 
 Observer = TypeVar("Observer", bound=Callable[..., object])
-
-
-@dataclass(frozen=True)
-class Signal:
-    """One scalar of a rig: an output, an input or a parameter."""
-
-    name: str
-    """``component.port``, with its axis: ``hull.position.x``."""
-    unit: str
-    """As FMI writes it: ``m/s``, ``rad``, ``1``; empty if it has none."""
-    description: str
-    type: type
-    """float, int, bool, str or bytes."""
-    minimum: float | None
-    maximum: float | None
-    tunable: bool
-    """A parameter that may be set during a run, or an input that nothing feeds."""
-    feeder: str
-    """The output that feeds this input or parameter; empty if none does."""
 
 
 class State:
