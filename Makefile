@@ -2,7 +2,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 INSTALLED := .venv/.installed
-JUDGES := tests/peers/node/node_modules/.installed
+JUDGES := tests/interop/node/node_modules/.installed
 
 .PHONY: demo test test-long lint fmus benchmark clean
 
@@ -28,7 +28,7 @@ demo: $(INSTALLED)
 	@echo "Open the two reports in a browser."
 
 # canboat, a judge of the NMEA 2000 nodes; where it cannot be installed its tests are skipped.
-$(JUDGES): tests/peers/node/package-lock.json
+$(JUDGES): tests/interop/node/package-lock.json
 	@if npm ci --prefix $(<D) --no-audit --no-fund --ignore-scripts; then touch $@; \
 		else echo "no canboat: npm is missing, or did not reach its registry"; fi
 

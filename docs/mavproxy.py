@@ -14,7 +14,7 @@ from rich.text import Text
 DOCS = Path(__file__).resolve().parent
 sys.path.insert(0, str(DOCS.parent))  # the tests, which hold the same session
 
-from tests.peers.mavproxy_page import follow, session  # noqa: E402
+from tests.interop.mavproxy_page import follow, session  # noqa: E402
 
 WIDTH = 84
 _NOISE = re.compile(r"^(?:[A-Z]+> )+| t=.*$")

@@ -31,7 +31,7 @@ from seatrial.trials.run_folder import load_run
 from seatrial.trials.trial import load_trial
 from seatrial.units import quantity
 from tests.command import seatrial
-from tests.peers.running import HOST, free_port, running, wait_for
+from tests.interop.running import HOST, free_port, running, wait_for
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"

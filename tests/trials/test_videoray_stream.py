@@ -15,7 +15,7 @@ from seatrial.links.videoray.topside import Pro4Topside
 from seatrial.trials.run import Hooks, run_trial
 from seatrial.trials.run_folder import load_run
 from seatrial.trials.trial import load_trial
-from tests.peers.running import running, wait_for
+from tests.interop.running import running, wait_for
 
 WAIT_S = 120.0
 REPLAY = """

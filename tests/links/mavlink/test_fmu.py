@@ -131,7 +131,7 @@ def test_libcosim_runs_it(fmu, station):
     watch = [["link", [reference["home.north"]]]]
     job = {"slaves": [slave], "wires": [], "step": 0.01, "steps": 150, "watch": watch}
     subprocess.run(
-        [sys.executable, "-m", "tests.peers.libcosim_run"],
+        [sys.executable, "-m", "tests.interop.libcosim_run"],
         input=json.dumps(job), text=True, capture_output=True, check=True, timeout=120,
         cwd=Path(__file__).parents[3],
     )  # fmt: skip

@@ -35,7 +35,7 @@ def flown(module: str, trial: str, flavour: str, folder: Path) -> tuple[Run, dic
     sets = {f"mavlink__{name}": value for name, value in given.items()}
     with running(trial, folder, factor=FACTOR, stop="6000 s", **sets) as started:
         wait_for(lambda: started.is_running, "the trial runs")
-        name = f"tests.peers.{module}"
+        name = f"tests.interop.{module}"
         command = [sys.executable, "-m", name, flavour, f"udpin://{HOST}:{port}", str(log)]
         with said.open("wb") as output:
             flight = subprocess.Popen(command, cwd=ROOT, stdout=output, stderr=subprocess.STDOUT)

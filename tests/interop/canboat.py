@@ -16,7 +16,7 @@ from seatrial.links.can.frame import Frame
 NODE = Path(__file__).with_name("node")
 needed = pytest.mark.skipif(
     shutil.which("node") is None or not (NODE / "node_modules/@canboat/canboatjs").is_dir(),
-    reason="canboatjs is not installed: make tests/peers/node/node_modules/.installed needs npm",
+    reason="canboatjs is not installed: make tests/interop/node/node_modules/.installed needs npm",
 )
 _WAIT_S = 120.0
 

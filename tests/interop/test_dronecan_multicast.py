@@ -25,7 +25,7 @@ def can_be_alone() -> bool:
 
 @pytest.mark.skipif(not can_be_alone(), reason="no network of one's own here")
 def test_the_packages_driver_meets_our_node():
-    command = f"exec {sys.executable} -m tests.peers.dronecan_multicast"
+    command = f"exec {sys.executable} -m tests.interop.dronecan_multicast"
     ended = subprocess.run(alone(command), cwd=ROOT, capture_output=True, text=True, timeout=120)
     assert ended.returncode == 0, ended.stderr
     found = json.loads(ended.stdout.splitlines()[-1])

@@ -140,7 +140,7 @@ def test_mavproxy_gets_and_gives_all(vehicle: int, tmp_path: Path) -> None:
 def test_mavsdk_gets_and_gives_all(vehicle: int) -> None:
     places = [[m.x, m.y] for m in mission()]
     with bad_link(vehicle, 4) as link:
-        module = "tests.peers.mavsdk_transfer"
+        module = "tests.interop.mavsdk_transfer"
         url = f"udpout://{HOST}:{link.port}"
         done = subprocess.run(
             [sys.executable, "-m", module, url, json.dumps(places)],

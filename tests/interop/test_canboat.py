@@ -16,7 +16,7 @@ from seatrial.links.nmea2000.codec import Message
 from seatrial.trials.run import run_trial
 from seatrial.trials.trial import load_trial
 from tests.links.nmea2000.network import Network
-from tests.peers import canboat
+from tests.interop import canboat
 
 pytestmark = canboat.needed
 

@@ -46,7 +46,7 @@ class Libcosim:
         watch = {kind: [["link", number[n]] for n in names] for kind, names in WATCHED.items()}
         job = {"slaves": [slave], "wires": [], "step": 0.01, "watch": watch, "port": port}
         self.process = subprocess.Popen(
-            [sys.executable, "-m", "tests.peers.libcosim_live"],
+            [sys.executable, "-m", "tests.interop.libcosim_live"],
             cwd=ROOT, text=True, bufsize=1, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
         )  # fmt: skip
         self.tell(json.dumps(job))

@@ -19,8 +19,8 @@ from mavsdk.plugins.offboard.offboard import VelocityBodyYawspeed
 from mavsdk.plugins.telemetry.telemetry import FlightMode
 from mavsdk.vehicle import Vehicle
 
-from tests.peers import mavsdk_stages as stages
-from tests.peers.mavsdk_station import MANOEUVRE_S, Station, answered, connected, refused
+from tests.interop import mavsdk_stages as stages
+from tests.interop.mavsdk_station import MANOEUVRE_S, Station, answered, connected, refused
 
 COURSE = ((2.0, 0.0, 1.5), (2.0, 2.0, 2.5))
 """Waypoints: m north, east and below the origin."""

@@ -166,7 +166,7 @@ def test_mavsdk_injects_failures(flavour: str, tmp_path: Path) -> None:
     with running("hydrone-mission", tmp_path, factor=None, **sets) as trial:
         wait_for(lambda: trial.is_running, "the trial runs")
         done = subprocess.run(
-            [sys.executable, "-m", "tests.peers.mavsdk_failures", f"udpin://{HOST}:{port}", flavour],
+            [sys.executable, "-m", "tests.interop.mavsdk_failures", f"udpin://{HOST}:{port}", flavour],
             cwd=ROOT, capture_output=True, text=True, timeout=4 * WAIT_S,
         )  # fmt: skip
         assert done.returncode == 0, done.stdout + done.stderr

@@ -1,6 +1,6 @@
 """One flight of a boat by the real MAVSDK; a program of its own, for a hang must not hang us.
 
-``python -m tests.peers.mavsdk_flight FLAVOUR URL LOG`` flies and writes what the judge needs to
+``python -m tests.interop.mavsdk_flight FLAVOUR URL LOG`` flies and writes what the judge needs to
 the file LOG. What MAVSDK answers is checked here, what the boat really did by the judge.
 """
 
@@ -22,8 +22,8 @@ from mavsdk.plugins.mission_raw.mission_raw import MissionItem as RawItem
 from mavsdk.plugins.telemetry.telemetry import FlightMode
 
 from tests.links.mavlink.ground import north_of
-from tests.peers import mavsdk_stages as stages
-from tests.peers.mavsdk_station import Station, answered, connected, refused
+from tests.interop import mavsdk_stages as stages
+from tests.interop.mavsdk_station import Station, answered, connected, refused
 
 COURSE = ((20.0, 0.0), (20.0, 20.0), (0.0, 20.0), (0.0, 0.0))
 """Waypoints, m north and east of the origin."""

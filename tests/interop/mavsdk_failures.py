@@ -1,4 +1,4 @@
-"""MAVSDK's failure plugin at a vehicle: ``python -m tests.peers.mavsdk_failures URL FLAVOUR``."""
+"""MAVSDK's failure plugin at a vehicle: ``python -m tests.interop.mavsdk_failures URL FLAVOUR``."""
 
 from __future__ import annotations
 

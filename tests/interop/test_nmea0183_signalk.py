@@ -16,7 +16,7 @@ WAIT_S = 120.0
 
 pytestmark = pytest.mark.skipif(
     shutil.which("node") is None or not (NODE / "node_modules/@signalk/nmea0183-signalk").is_dir(),
-    reason="Signal K's parser is not installed: make tests/peers/node/node_modules/.installed",
+    reason="Signal K's parser is not installed: make tests/interop/node/node_modules/.installed",
 )
 
 
