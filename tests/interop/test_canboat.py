@@ -15,8 +15,8 @@ from seatrial.links.can.messages import frame_of
 from seatrial.links.nmea2000.codec import Message
 from seatrial.trials.run import run_trial
 from seatrial.trials.trial import load_trial
-from tests.links.nmea2000.network import Network
 from tests.interop import canboat
+from tests.links.nmea2000.network import Network
 
 pytestmark = canboat.needed
 
