@@ -18,7 +18,7 @@ def snapshot(root: Any, but: frozenset[str] = frozenset()) -> dict[str, Any]:
     Of what is not from seatrial or tests (compiled functions, parsers of libraries) only the type.
     """
     found: dict[str, Any] = {}
-    seen: set[int] = set()
+    above: set[int] = set()
 
     def walk(path: str, value: Any) -> None:
         if isinstance(value, _OPAQUE) or callable(value):
@@ -27,11 +27,12 @@ def snapshot(root: Any, but: frozenset[str] = frozenset()) -> dict[str, Any]:
             found[path] = bytes(value) if isinstance(value, bytearray) else value
         elif isinstance(value, np.ndarray):
             found[path] = value.tobytes()
-        elif id(value) not in seen:
-            seen.add(id(value))
+        elif id(value) not in above:
+            above.add(id(value))
             for name, part in _parts(value):
                 if name not in but:
                     walk(f"{path}.{name}", part)
+            above.remove(id(value))
             found[path] = type(value).__name__
 
     walk("", root)

@@ -44,6 +44,7 @@ from seatrial.devices.thruster import Thruster
 from seatrial.environment.step_disturbance import StepDisturbance
 from seatrial.identification.excitation import Excitation
 from seatrial.units import unit
+from tests.snapshot import changed, snapshot
 
 from .running import run, started
 
@@ -190,9 +191,10 @@ def test_restored_state_goes_on_identically(cls):
         return some_inputs(cls, t_ms)
 
     run(component, outputs, 433, 1, inputs)
-    state = component.get_state()
+    state, saved = component.get_state(), snapshot(component, cls.transient)
     went_on = run(component, outputs, 1433, 10, inputs, first_ms=433)
     component.set_state(state)
+    assert changed(saved, snapshot(component, cls.transient)) == set()
     again = run(component, outputs, 1433, 10, inputs, first_ms=433)
     other = cls(cls.__name__)
     other.set_state(state)
