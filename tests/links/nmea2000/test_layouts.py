@@ -196,6 +196,46 @@ def test_a_node_hears_each_field_from_its_place(reader, name):
     assert found == pytest.approx(HEARD[name], rel=2e-4, abs=2e-3)
 
 
+def sent_field(pgn, first, width, **inputs):
+    """Return a field, as a whole number, of what a node with these inputs sends."""
+    network = Network({"node": {**inputs, "sends": str(pgn)}})
+    network.run(1.5)
+    return int.from_bytes(payloads(network.frames)[pgn], "little") >> first & (1 << width) - 1
+
+
+@pytest.mark.parametrize("turns", [-1, 0, 1])
+def test_angles_are_sent_within_their_circle(turns):
+    circle = round(math.tau * 1e4)
+    for angle in (-3.0, -0.5, 0.5, 3.0):
+        turned = angle + turns * math.tau
+        whole = round(angle % math.tau * 1e4)
+        assert sent_field(127250, 8, 16, heading=turned) == whole < circle
+        yaw = sent_field(127257, 8, 16, attitude=[0.0, 0.0, turned])
+        assert yaw == round(angle * 1e4) % (1 << 16)  # from -pi to pi, two's complement
+
+
+def heard_angle(pgn, fields, name):
+    """Return what a node makes of a message whose raw fields are (first bit, bits, number)."""
+    bits = (1 << 64) - 1
+    for first, width, raw in fields:
+        bits = bits & ~(((1 << width) - 1) << first) | raw << first
+    network = Network({"node": {}})
+    network.run(1.0)
+    network.send(Frame(3 << 26 | pgn << 8 | 77, bits.to_bytes(8, "little"), extended=True))
+    network.run(0.1)
+    return network.nodes["node"].get(name)
+
+
+def test_angles_that_are_heard_are_within_their_circle():
+    # A magnetic heading of 6.2 rad and a variation of 0.2 rad east lead across north.
+    magnetic = [(8, 16, 62000), (40, 16, 2000), (56, 2, 1)]
+    assert heard_angle(127250, magnetic, "bus_heading") == pytest.approx(6.4 - math.tau, abs=1e-4)
+    # Wind from 0.5 rad blows to the other side, wind from 6 rad too: -pi to pi.
+    for from_, to in ((0.5, 0.5 - math.pi), (6.0, 6.0 - math.pi), (3.2, 3.2 - math.pi)):
+        wind = [(8, 16, 500), (24, 16, round(from_ * 1e4)), (40, 3, 2)]
+        assert heard_angle(130306, wind, "bus_wind_angle") == pytest.approx(to, abs=1e-4)
+
+
 def test_a_request_has_the_pgn_in_three_bytes():
     network = Network({"node": {"sends": "127250", "heading": 1.0}})
     network.run(1.0)
