@@ -173,6 +173,7 @@ print(hashlib.sha256((folder / "signals.csv").read_bytes()).hexdigest())
 """
 
 
+@pytest.mark.interop
 @pytest.mark.parametrize("trial", ["videoray-tethered-taut", "videoray-tethered-station"])
 def test_a_run_is_the_same_on_another_processor(trial, tmp_path):
     """The processor decides which kernels OpenBLAS takes; those of AVX-512 round differently."""
