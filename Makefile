@@ -15,7 +15,7 @@ $(INSTALLED): pyproject.toml
 		{ echo "Python's venv is missing; on Debian: apt install python3-venv"; exit 1; }
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
-	@# MAVProxy, a judge of the MAVLink link, without what its windows need (OpenCV, VTK, Matplotlib):
+	@# MAVProxy, a reference tool for the MAVLink link, without what its windows need (OpenCV, VTK, Matplotlib):
 	@# no extra can leave that out, and its other modules need nothing that is not here.
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps 'MAVProxy>=1.8.75,<1.9'
 	@touch $@

@@ -16,7 +16,7 @@ from seatrial.links.videoray.topside import Pro4Topside
 
 PICTURE = Path(__file__).resolve().parent / "images" / "drive.svg"
 STEP = 0.01
-STICKS = (0.3, -0.2, 0.0)
+MANUAL_AXES = (0.3, -0.2, 0.0)
 
 
 def main() -> None:
@@ -30,16 +30,16 @@ def main() -> None:
     rov.set("attitude", [math.radians(6.0), math.radians(-4.0), math.radians(312.0)])
     rov.set("depth", 12.4)
     for number in range(200):
-        said, heard = topside.get("tx"), rov.get("tx")
+        said, received = topside.get("tx"), rov.get("tx")
         rov.set("rx", said)
-        topside.set("rx", heard)
+        topside.set("rx", received)
         for end in ends:
             end.advance(number * STEP, STEP)
     pilot = Pilot(armed=True, lights=0.6, camera_tilt=math.radians(-20.0))
     pilot.hold_heading, pilot.heading_wanted = True, math.radians(325.0)
     pilot.hold_depth, pilot.depth_wanted = True, 12.5
     console = Console(width=80, record=True, force_terminal=True, file=io.StringIO())
-    console.print(picture(topside, pilot, STICKS))
+    console.print(picture(topside, pilot, MANUAL_AXES))
     console.save_svg(str(PICTURE), title="seatrial drive")
 
 

@@ -1,7 +1,7 @@
 """can-gateway: a CAN bus's door to programs and hardware outside."""
 
 from seatrial.fmi.slave import Slave
-from seatrial.links.can.gateway import CanGateway
+from seatrial.links.can.component_gateway import CanGateway
 
 
 class CanGatewayFmu(Slave):

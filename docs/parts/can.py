@@ -8,7 +8,7 @@ from parts import part
 from parts.markdown import shown_unit, table
 from seatrial.component import Component
 from seatrial.links.can.component import CanBus
-from seatrial.links.can.gateway import CanGateway
+from seatrial.links.can.component_gateway import CanGateway
 from seatrial.links.can.traffic import CanTraffic
 from seatrial.ports import Parameter, Port
 

@@ -7,7 +7,7 @@ from pymavlink.dialects.v20 import all as mavlink
 from parts import part
 from parts.markdown import shown_number, table
 from seatrial.links.mavlink import node  # noqa: F401  brings all services
-from seatrial.links.mavlink.modes import flavour
+from seatrial.links.mavlink.modes import dialect
 from seatrial.links.mavlink.service import Service
 
 
@@ -30,10 +30,10 @@ def streams() -> str:
 def modes() -> str:
     """Return the modes, and what each kind of vehicle calls them."""
     kinds = {
-        "boat": flavour("ardupilotmega", submerged=False),
-        "submarine": flavour("ardupilotmega", submerged=True),
-        "boat, PX4": flavour("px4", submerged=False),
-        "submarine, PX4": flavour("px4", submerged=True),
+        "boat": dialect("ardupilotmega", submerged=False),
+        "submarine": dialect("ardupilotmega", submerged=True),
+        "boat, PX4": dialect("px4", submerged=False),
+        "submarine, PX4": dialect("px4", submerged=True),
     }
     names = dict.fromkeys(mode.name for kind in kinds.values() for mode in kind.modes)
     rows = []

@@ -51,9 +51,9 @@ def fields() -> str:
                 continue
             resolution, unit = _field(pgn, each.name)
             said = f"`{each.said}`" if each.said else ""
-            heard = f"`{each.heard}`" if each.heard else ""
+            received = f"`{each.received}`" if each.received else ""
             name = f"`{each.name}`"
-            rows.append((str(pgn.number), name, said, heard, resolution, unit, each.sense))
+            rows.append((str(pgn.number), name, said, received, resolution, unit, each.sense))
     return table(("PGN", "field", "from", "to", "resolution", "unit", "sense"), rows)
 
 

@@ -28,8 +28,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from .errors import InputError, SimulationError, unknown
-from .plain import copied, is_c_text
 from .ports import Input, Output, Parameter, Port, Scalar, ScalarPort, lay_out
+from .serialisation import copied, is_c_text
 
 __all__ = ["NS", "Component", "Input", "Logging", "Noise", "Output", "Parameter", "seconds"]
 

@@ -116,8 +116,8 @@ def test_a_key_expires_and_sticks_keep_within_their_ends():
     pilot.press("w", 10.0)
     pilot.press("right", 10.0)
     pilot.gamepad[0] = 0.5
-    assert pilot.sticks(10.0 + 0.9 * KEY_LASTS) == (1.0, 1.0, 0.0)
-    assert pilot.sticks(10.0 + 1.1 * KEY_LASTS) == (0.5, 0.0, 0.0)
+    assert pilot.manual(10.0 + 0.9 * KEY_LASTS) == (1.0, 1.0, 0.0)
+    assert pilot.manual(10.0 + 1.1 * KEY_LASTS) == (0.5, 0.0, 0.0)
 
 
 def test_disarming_lets_go_of_all():
@@ -127,7 +127,7 @@ def test_disarming_lets_go_of_all():
     assert (pilot.armed, pilot.hold_depth, pilot.depth_wanted) == (True, True, 2.0)
     pilot.press("m", 0.0)
     assert (pilot.armed, pilot.hold_depth, pilot.hold_heading) == (False, False, False)
-    assert pilot.sticks(0.0) == (0.0, 0.0, 0.0)
+    assert pilot.manual(0.0) == (0.0, 0.0, 0.0)
 
 
 def test_a_heading_that_is_held_is_turned_across_north():
@@ -175,11 +175,11 @@ def test_a_gamepad_drives_and_disarms_when_it_is_gone(tmp_path):
     event(1000, 2, 4)  # near its middle
     event(1, 1, 0)
     event(1, 1, 2)
-    assert pilot.sticks(0.0) == pytest.approx((1.0, 0.5, 0.0), abs=1e-4)
+    assert pilot.manual(0.0) == pytest.approx((1.0, 0.5, 0.0), abs=1e-4)
     assert (pilot.armed, pilot.hold_depth, pilot.depth_wanted) == (True, True, 4.0)
     os.close(writer)
     pad.poll(pilot)
-    assert (pilot.armed, pilot.hold_depth, pilot.sticks(0.0)) == (False, False, (0.0, 0.0, 0.0))
+    assert (pilot.armed, pilot.hold_depth, pilot.manual(0.0)) == (False, False, (0.0, 0.0, 0.0))
     pad.poll(pilot)
     with pytest.raises(InputError, match="--gamepad"):
         Gamepad(tmp_path / "js1")

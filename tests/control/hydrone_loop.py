@@ -88,9 +88,9 @@ def held(
         set_all(imu, {"attitude": truth["attitude"], "rates": truth["rates"]})
         imu.set("acceleration", craft.get("acceleration"))
         compass.set("attitude", truth["attitude"])
-        heard = {name: gnss.get(name) for name in ("position_n", "velocity_n")}
+        received = {name: gnss.get(name) for name in ("position_n", "velocity_n")}
         valid = {"position_valid": gnss.get("valid"), "heading_valid": compass.get("valid")}
-        set_all(keeper, heard | valid | {"heading": compass.get("heading")})
+        set_all(keeper, received | valid | {"heading": compass.get("heading")})
         keeper.set("yaw_rate", imu.get("gyro.z"))
         port.set("pulse", keeper.get("pulse_port"))
         starboard.set("pulse", keeper.get("pulse_starboard"))

@@ -296,20 +296,20 @@ def test_the_sticks_are_for_manual_alone():
         assert found.get("direct") == [0.0] * 4
 
 
-STICKS = [0.5, -0.5, 0.25, -1.0]
+MANUAL_AXES = [0.5, -0.5, 0.25, -1.0]
 
 
 @pytest.mark.parametrize(
     ("mode", "engaged", "direct"),
     [
-        ("manual", [False, False, False], STICKS),
+        ("manual", [False, False, False], MANUAL_AXES),
         ("stabilize", [False, True, False], [0.5, -0.5, 0.0, -1.0]),
         ("depth-hold", [False, True, True], [0.5, -0.5, 0.0, 0.0]),
         ("hold", [True, True, True], [0.0, 0.0, 0.0, 0.0]),
     ],
 )
 def test_the_sticks_act_where_no_autopilot_does(mode, engaged, direct):
-    found = guidance(depth=5.0, mode=mode, heading=1.0, manual=STICKS, depth_control="on")
+    found = guidance(depth=5.0, mode=mode, heading=1.0, manual=MANUAL_AXES, depth_control="on")
     for k in range(10):
         found.advance(0.1 * k, 0.1)
     assert (found.get("engaged"), found.get("direct")) == (engaged, direct)

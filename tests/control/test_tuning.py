@@ -114,11 +114,11 @@ def test_engaged_the_reference_begins_where_the_craft_is():
 
 
 def test_the_rudder_is_the_autopilots_or_the_persons():
-    helm = started(RudderHelm, rudder_limit=0.5, stick=1.0, rudder_held=0.1, engaged=True)
+    helm = started(RudderHelm, rudder_limit=0.5, manual=1.0, rudder_held=0.1, engaged=True)
     assert helm.get("rudder") == 0.1
     helm.set("engaged", False)
     assert helm.get("rudder") == -0.5  # to starboard
-    helm.set("stick", 3.0)
+    helm.set("manual", 3.0)
     assert helm.get("rudder") == -0.5
-    helm.set("stick", 0.0)
+    helm.set("manual", 0.0)
     assert math.copysign(1.0, helm.get("rudder")) * helm.get("rudder") == 0.0

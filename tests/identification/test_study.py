@@ -47,7 +47,7 @@ def test_held_out_data_is_not_seen(pool, surge):
     assert not other.accepted
 
 
-def test_a_second_log_judges(pool, surge):
+def test_a_second_log_checks(pool, surge):
     text = EXPERIMENT.replace('log = "pool.csv"', 'log = "pool.csv"\ntest_log = "other.csv"')
     path = pool(text=text)
     log = synthetic(CASES[1], 12).log

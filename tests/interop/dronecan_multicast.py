@@ -8,7 +8,7 @@ import dronecan
 from dronecan import uavcan
 
 from seatrial.links.can.component import CanBus
-from seatrial.links.can.gateway import CanGateway
+from seatrial.links.can.component_gateway import CanGateway
 from seatrial.links.dronecan.peripheral import DroneCanPeripheral
 from tests.links.dronecan.bench import made
 
@@ -16,16 +16,16 @@ STEP = 0.002
 DEADLINE_S = 60.0
 
 
-def simulate(node, door, bus, stop):
+def simulate(node, gateway, bus, stop):
     """Step in real time, about."""
     now_ns = 0
     while not stop.is_set():
-        texts = [node.get("tx"), door.get("tx")]
+        texts = [node.get("tx"), gateway.get("tx")]
         node.set("rx", bus.get("rx.n1"))
-        door.set("rx", bus.get("rx.n2"))
+        gateway.set("rx", bus.get("rx.n2"))
         bus.set("tx.n1", texts[0])
         bus.set("tx.n2", texts[1])
-        for each in (node, door, bus):
+        for each in (node, gateway, bus):
             each.advance(now_ns / 1e9, STEP)
         now_ns += round(STEP * 1e9)
         time.sleep(STEP)
@@ -33,15 +33,15 @@ def simulate(node, door, bus, stop):
 
 def main() -> None:
     node = made(DroneCanPeripheral, "esc", node_id=10.0)
-    door = made(CanGateway, "door", door="dronecan-multicast:0")
-    bus = made(CanBus, "can", nodes="esc door", bit_rate=1e6)
-    for each in (node, door, bus):
+    gateway = made(CanGateway, "link", gateway="dronecan-multicast:0")
+    bus = made(CanBus, "can", nodes="esc gateway", bit_rate=1e6)
+    for each in (node, gateway, bus):
         each.setup(0.0)
         each.initialise()
         each.begin()
     stop = threading.Event()
     peer = dronecan.make_node("mcast:0", node_id=100)
-    thread = threading.Thread(target=simulate, args=(node, door, bus, stop))
+    thread = threading.Thread(target=simulate, args=(node, gateway, bus, stop))
     thread.start()
     found = {"names": [], "health": []}
     end = time.monotonic() + DEADLINE_S
@@ -66,9 +66,9 @@ def main() -> None:
     finally:
         stop.set()
         thread.join()
-        door.close()
+        gateway.close()
         peer.can_driver.proc.terminate()
-    print(json.dumps({**found, "clients": door.get("clients"), "at": door.get("reached_at")}))
+    print(json.dumps({**found, "clients": gateway.get("clients"), "at": gateway.get("reached_at")}))
 
 
 if __name__ == "__main__":

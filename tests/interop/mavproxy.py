@@ -75,7 +75,7 @@ class MavProxy:
         return self.ask(line, pattern, each_s)
 
     def newest(self, message: str, field: str) -> float:
-        """Return a field of the newest message of a kind that it has heard of."""
+        """Return a field of the newest message of a kind that it has received of."""
         pattern = rf"\b\d+: {message} .*\b{field} : (\S+?)[,}}]"
         end = time.monotonic() + ANSWER_S
         while True:

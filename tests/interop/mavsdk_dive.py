@@ -85,7 +85,7 @@ def _down(station: Station) -> float:
     return float(station.last("position_velocity_ned")["position.down_m"])
 
 
-async def fly(flavour: str, url: str, log: Path) -> None:
+async def fly(dialect: str, url: str, log: Path) -> None:
     async with connected(url) as station:
         assert await station.system.vehicle_type() == Vehicle.SUBMARINE
         await station.hears("health_all_ok", "the vehicle is well", value=True)
@@ -93,13 +93,13 @@ async def fly(flavour: str, url: str, log: Path) -> None:
         places = Places(origin.latitude_deg, origin.longitude_deg, origin.altitude_m)
         await station.hears("armed", "it starts disarmed", value=False)
         await stages.arm(station)
-        await {"ardupilotmega": dive_ardupilot, "px4": dive_px4}[flavour](station, places)
+        await {"ardupilotmega": dive_ardupilot, "px4": dive_px4}[dialect](station, places)
         async with station.stage("surface"):
             await answered(station.action.land())
             await station.until(lambda: _down(station) < 0.4, "it comes up", MANOEUVRE_S)
         await stages.disarm(station)
-        heard = {"samples": station.samples, "marks": station.marks, "notes": station.notes}
-    log.write_text(json.dumps(heard), "utf-8")
+        received = {"samples": station.samples, "marks": station.marks, "notes": station.notes}
+    log.write_text(json.dumps(received), "utf-8")
 
 
 if __name__ == "__main__":

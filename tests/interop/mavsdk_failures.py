@@ -14,7 +14,7 @@ from .mavsdk_station import answered, connected, refused
 NO_FIX, FIX_3D = 1, 3
 
 
-async def main(url: str, flavour: str) -> None:
+async def main(url: str, dialect: str) -> None:
     """Break and mend, see it, and be refused what there is not."""
     async with connected(url) as station:
         failure, parameters = FailureAsync(station.system), ParamAsync(station.system)
@@ -26,7 +26,7 @@ async def main(url: str, flavour: str) -> None:
         await station.reads("Failure: motor2 stuck")
         vio = failure.inject(FailureUnit.SENSOR_VIO, FailureType.OFF, 0)
         assert await refused(vio) == "UNSUPPORTED"
-        if flavour == "px4":
+        if dialect == "px4":
             await answered(parameters.set_param_int("SYS_FAILURE_EN", 0))
             off = failure.inject(FailureUnit.SENSOR_GPS, FailureType.OFF, 0)
             assert await refused(off) in ("DISABLED", "DENIED")

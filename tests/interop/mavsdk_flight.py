@@ -1,7 +1,7 @@
 """One flight of a boat by the real MAVSDK; a program of its own, for a hang must not hang us.
 
-``python -m tests.interop.mavsdk_flight FLAVOUR URL LOG`` flies and writes what the judge needs to
-the file LOG. What MAVSDK answers is checked here, what the boat really did by the judge.
+``python -m tests.interop.mavsdk_flight FLAVOUR URL LOG`` flies and writes what the reference tool needs to
+the file LOG. What MAVSDK answers is checked here, what the boat really did by the reference tool.
 """
 
 from __future__ import annotations
@@ -94,7 +94,7 @@ async def ardupilot(station: Station) -> None:
     station.ignore_all_but(*stages.ESSENTIAL)
     await stages.goto(station, FlightMode.OFFBOARD)
     await stages.offboard(station, FlightMode.OFFBOARD)
-    await stages.sticks(station, mode=0, y=0.3, z=0.6)
+    await stages.manual(station, mode=0, y=0.3, z=0.6)
     await stages.home_again(station)
     await stages.refusals(
         station,
@@ -153,7 +153,7 @@ async def px4(station: Station) -> None:
     station.ignore_all_but(*stages.ESSENTIAL)
     await stages.goto(station, FlightMode.HOLD)
     await stages.offboard(station, FlightMode.OFFBOARD)
-    await stages.sticks(station, mode=1, y=0.3, z=0.8)
+    await stages.manual(station, mode=1, y=0.3, z=0.8)
     await stages.home_again(station)
     await stages.refusals(
         station,
@@ -170,7 +170,7 @@ async def px4(station: Station) -> None:
 # ---------------------------------------------------------------------- both
 
 
-async def fly(flavour: str, url: str, log: Path) -> None:
+async def fly(dialect: str, url: str, log: Path) -> None:
     async with connected(url) as station:
         await stages.health(station)
         await stages.identity(station)
@@ -178,9 +178,9 @@ async def fly(flavour: str, url: str, log: Path) -> None:
         async with station.stage("at rest"):
             await station.passes(5.0)
         await stages.latency(station)
-        await {"ardupilotmega": ardupilot, "px4": px4}[flavour](station)
-        heard = {"samples": station.samples, "marks": station.marks, "notes": station.notes}
-    log.write_text(json.dumps(heard), "utf-8")
+        await {"ardupilotmega": ardupilot, "px4": px4}[dialect](station)
+        received = {"samples": station.samples, "marks": station.marks, "notes": station.notes}
+    log.write_text(json.dumps(received), "utf-8")
 
 
 if __name__ == "__main__":

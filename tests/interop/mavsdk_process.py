@@ -18,7 +18,7 @@ FLIGHT_S = 900.0
 """Wall time in which a flight must be over; the long one takes 70 s on an idle machine."""
 
 
-def flown(module: str, trial: str, flavour: str, folder: Path) -> tuple[Run, dict[str, Any]]:
+def flown(module: str, trial: str, dialect: str, folder: Path) -> tuple[Run, dict[str, Any]]:
     """Return the record, and what the program ``module`` wrote into its log.
 
     The times for which sticks and set-points count are simulated, ``FACTOR`` times shorter to
@@ -27,16 +27,16 @@ def flown(module: str, trial: str, flavour: str, folder: Path) -> tuple[Run, dic
     port, log, said = free_port(), folder / "log.json", folder / "flight.txt"
     given = {
         "links": f"udpout:{HOST}:{port}",
-        "autopilot_type": flavour,
+        "autopilot_type": dialect,
         "station_timeout": "30 s",
-        "stick_timeout": "5 s",
+        "manual_timeout": "5 s",
         "target_timeout": "10 s",
     }
     sets = {f"mavlink__{name}": value for name, value in given.items()}
     with running(trial, folder, factor=FACTOR, stop="6000 s", **sets) as started:
         wait_for(lambda: started.is_running, "the trial runs")
         name = f"tests.interop.{module}"
-        command = [sys.executable, "-m", name, flavour, f"udpin://{HOST}:{port}", str(log)]
+        command = [sys.executable, "-m", name, dialect, f"udpin://{HOST}:{port}", str(log)]
         with said.open("wb") as output:
             flight = subprocess.Popen(command, cwd=ROOT, stdout=output, stderr=subprocess.STDOUT)
             try:

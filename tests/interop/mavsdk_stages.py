@@ -221,13 +221,13 @@ async def _for_a_while(station: Station, name: str) -> None:
         await station.passes(5.0)
 
 
-async def sticks(station: Station, mode: int, y: float, z: float) -> None:
+async def manual(station: Station, mode: int, y: float, z: float) -> None:
     """Take the helm: ahead and to starboard; then let go, which is a failsafe."""
     manual = ManualControlAsync(station.system)
     assert await station.command(DO_SET_MODE, CUSTOM_MODE, mode) == 0
     await station.hears("flight_mode", "manual", value=int(FlightMode.MANUAL))
     helm = asyncio.create_task(_hold(manual, y, z))
-    async with station.stage("sticks"):
+    async with station.stage("manual"):
         await station.passes(8.0)
     helm.cancel()
     await station.reads("Failsafe: sticks lost, hold")

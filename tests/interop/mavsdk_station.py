@@ -60,26 +60,26 @@ class Station:
         self.marks: dict[str, list[float]] = {}
         """Simulated time at which a stage began and ended, s."""
         self.notes: dict[str, Any] = {}
-        """What else the judge must know."""
+        """What else the reference tool must know."""
         self.clock = 0.0
         self._handles: dict[str, Any] = {}
         # The callbacks, not the generators: these have a queue each, which loses the order.
-        self._heard = Telemetry(system._system)
+        self._received = Telemetry(system._system)
 
     # ------------------------------------------------------------------ listening
 
     def listen(self) -> None:
         """Subscribe to all streams."""
-        for method in dir(self._heard):
+        for method in dir(self._received):
             stream = method.removeprefix("subscribe_")
             if stream != method:
                 callback = partial(self._keep, stream)
-                self._handles[stream] = getattr(self._heard, method)(callback)
+                self._handles[stream] = getattr(self._received, method)(callback)
 
     def ignore_all_but(self, *streams: str) -> None:
         """End the other subscriptions."""
         for stream in set(self._handles) - set(streams):
-            getattr(self._heard, f"unsubscribe_{stream}")(self._handles.pop(stream))
+            getattr(self._received, f"unsubscribe_{stream}")(self._handles.pop(stream))
 
     def _keep(self, stream: str, value: Any, _: Any) -> None:
         if stream == "attitude_euler":
@@ -110,8 +110,8 @@ class Station:
         """Wait until the newest value of a stream has these fields."""
 
         def said() -> bool:
-            heard = self.samples[stream]
-            return bool(heard) and wanted.items() <= heard[-1][1].items()
+            received = self.samples[stream]
+            return bool(received) and wanted.items() <= received[-1][1].items()
 
         await self.until(said, f"{what}: {stream} {wanted}")
 

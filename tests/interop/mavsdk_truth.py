@@ -1,4 +1,4 @@
-"""What the boat really did, to compare with what MAVSDK heard of it."""
+"""What the boat really did, to compare with what MAVSDK received of it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""NMEA 2000 nodes, with canboat's two implementations as judges: in JavaScript, and in Rust.
+"""NMEA 2000 nodes, with canboat's two implementations as reference tools: in JavaScript, and in Rust.
 
 The second is the Python package's, on which the nodes are built; the first is somebody else's.
 """

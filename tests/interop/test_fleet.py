@@ -27,7 +27,7 @@ class Station:
             mavutil.mavlink_connection(url, source_system=system, source_component=190)
             for url in urls
         ]
-        self.heard = {}
+        self.received = {}
         self.trips = []
         self._beat = 0.0
         self._pings = {}
@@ -45,12 +45,12 @@ class Station:
         for link in self.links:
             while (message := link.recv_match()) is not None:
                 kind, system = message.get_type(), message.get_srcSystem()
-                self.heard[kind, system] = message
+                self.received[kind, system] = message
                 if kind == "PING" and message.target_system == self.system:
                     self.trips.append(time.monotonic() - self._pings[message.seq])
 
     def systems(self):
-        return {system for kind, system in self.heard if kind == "HEARTBEAT"}
+        return {system for kind, system in self.received if kind == "HEARTBEAT"}
 
     def command(self, system, number, *parameters):
         for link in self.links:
@@ -94,12 +94,12 @@ def ordered(stations, system, number, *parameters, done):
 
 
 def is_armed(station, system):
-    beat = station.heard.get(("HEARTBEAT", system))
+    beat = station.received.get(("HEARTBEAT", system))
     return bool(beat and beat.base_mode & mavutil.mavlink.MAV_MODE_FLAG_SAFETY_ARMED)
 
 
 def mode_of(station, system):
-    return station.heard["HEARTBEAT", system].custom_mode
+    return station.received["HEARTBEAT", system].custom_mode
 
 
 def test_two_stations_see_three_vehicles_and_each_obeys_its_own_orders(tmp_path, record_property):
@@ -164,7 +164,7 @@ def test_two_stations_see_three_vehicles_and_each_obeys_its_own_orders(tmp_path,
 
 def trial_time(station):
     """Return the simulated time that the Hydrone's attitude was sent at, s."""
-    return station.heard["ATTITUDE", HYDRONE].time_boot_ms * 1e-3
+    return station.received["ATTITUDE", HYDRONE].time_boot_ms * 1e-3
 
 
 def wrapped(degrees):

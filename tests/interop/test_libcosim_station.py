@@ -88,8 +88,8 @@ def test_a_station_commands_it_and_libcosim_sees_it() -> None:
         station = mavutil.mavlink_connection(f"udpout:{HOST}:{port}", dialect="all")
         beat = lambda: station.mav.heartbeat_send(6, 8, 0, 0, 4)  # noqa: E731
         until(libcosim, beat, lambda v: v["ground_stations"] == 1)
-        heard = station.recv_match(type="HEARTBEAT", blocking=True, timeout=WAIT_S)
-        assert (heard.type, heard.autopilot) == (mavlink.MAV_TYPE_SURFACE_BOAT, 3)
+        received = station.recv_match(type="HEARTBEAT", blocking=True, timeout=WAIT_S)
+        assert (received.type, received.autopilot) == (mavlink.MAV_TYPE_SURFACE_BOAT, 3)
 
         station.mav.param_request_list_send(1, 1)
         names, count = set(), None

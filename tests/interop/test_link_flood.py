@@ -109,8 +109,8 @@ class Clock:
         self._link.mav.heartbeat_send(6, 8, 0, 0, 4)
         while self._link.recv_msg() is not None:
             pass  # older ones
-        heard = self._link.recv_match(type="ATTITUDE", blocking=True, timeout=PATIENCE_S)
-        return float(heard.time_boot_ms) / 1e3
+        received = self._link.recv_match(type="ATTITUDE", blocking=True, timeout=PATIENCE_S)
+        return float(received.time_boot_ms) / 1e3
 
 
 def received(log: Path) -> Iterator[bytes]:

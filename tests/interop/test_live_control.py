@@ -46,13 +46,13 @@ class Station:
         raise TimeoutError(f"no such {kind} within {WAIT_S:g} s")
 
     def during(self, seconds: float) -> list[Any]:
-        """Return all that is heard from now on, for so long."""
+        """Return all that is received from now on, for so long."""
         while self.link.recv_match() is not None:
             pass
-        end, heard = time.monotonic() + seconds, []
+        end, received = time.monotonic() + seconds, []
         while time.monotonic() < end:
-            heard.append(self.listen())
-        return [message for message in heard if message is not None]
+            received.append(self.listen())
+        return [message for message in received if message is not None]
 
     def speed_up(self, factor: float) -> None:
         self.link.mav.param_set_send(1, 1, SPEEDUP.encode(), factor, mavlink.MAV_PARAM_TYPE_REAL32)
@@ -159,14 +159,14 @@ def test_a_pause_that_nobody_can_end_is_over(station: Station, tmp_path: Path) -
     assert run.timing["pacing"]["paused_s"] >= 2.0
 
 
-@pytest.mark.parametrize("flavour", ["ardupilotmega", "px4"])
-def test_mavsdk_injects_failures(flavour: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("dialect", ["ardupilotmega", "px4"])
+def test_mavsdk_injects_failures(dialect: str, tmp_path: Path) -> None:
     port = free_port()
-    sets = {"mavlink__links": f"udpout:{HOST}:{port}", "mavlink__autopilot_type": flavour}
+    sets = {"mavlink__links": f"udpout:{HOST}:{port}", "mavlink__autopilot_type": dialect}
     with running("hydrone-mission", tmp_path, factor=None, **sets) as trial:
         wait_for(lambda: trial.is_running, "the trial runs")
         done = subprocess.run(
-            [sys.executable, "-m", "tests.interop.mavsdk_failures", f"udpin://{HOST}:{port}", flavour],
+            [sys.executable, "-m", "tests.interop.mavsdk_failures", f"udpin://{HOST}:{port}", dialect],
             cwd=ROOT, capture_output=True, text=True, timeout=4 * WAIT_S,
         )  # fmt: skip
         assert done.returncode == 0, done.stdout + done.stderr

@@ -1,4 +1,4 @@
-"""MAVSDK as a judge: one long flight of the Hydrone with each kind of autopilot."""
+"""MAVSDK as a reference tool: one long flight of the Hydrone with each kind of autopilot."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ GNSS = 0.1
 
 @dataclass
 class Flight:
-    """What MAVSDK heard, and what was true."""
+    """What MAVSDK received, and what was true."""
 
-    flavour: str
+    dialect: str
     truth: Truth
     samples: dict[str, list[Any]]
     marks: dict[str, list[float]]
@@ -40,12 +40,12 @@ class Flight:
         return self.truth[name][self.truth.window(began, ended)]
 
 
-def fly(flavour: str, folder: Path) -> Flight:
-    run, heard = flown("mavsdk_flight", "hydrone-mission", flavour, folder)
-    return Flight(flavour, Truth(run), heard["samples"], heard["marks"], heard["notes"])
+def fly(dialect: str, folder: Path) -> Flight:
+    run, received = flown("mavsdk_flight", "hydrone-mission", dialect, folder)
+    return Flight(dialect, Truth(run), received["samples"], received["marks"], received["notes"])
 
 
-# ---------------------------------------------------------------------- judgements
+# ---------------------------------------------------------------------- assessments
 
 
 def streams_are_true(flight: Flight) -> None:
@@ -111,18 +111,18 @@ def the_mission_is_followed(flight: Flight) -> None:
     rms = float(np.sqrt(np.mean(np.concatenate(errors) ** 2)))
     flight.notes["cross-track RMS"] = rms
     assert rms <= 2.0, rms
-    for leg, speed in speeds(flight.flavour).items():
+    for leg, speed in speeds(flight.dialect).items():
         first, last = [start, *rows][leg], rows[leg]
         middle = truth["speed"][first + (last - first) // 2 : last]
         assert np.median(middle) == pytest.approx(speed, abs=0.05), f"leg {leg}"
 
 
-def speeds(flavour: str) -> dict[int, float]:
+def speeds(dialect: str) -> dict[int, float]:
     """Return the speed of legs; a Mission's speed counts after its waypoint."""
     first, then = SPEEDS
     return (
         {0: first, 2: then, 3: then}
-        if flavour == "ardupilotmega"
+        if dialect == "ardupilotmega"
         else {0: CRUISE, 1: first, 3: then}
     )
 
@@ -178,13 +178,13 @@ def it_is_steered(flight: Flight) -> None:
 
 
 def it_has_the_helm(flight: Flight) -> None:
-    rows = flight.truth.window(*flight.marks["sticks"])
+    rows = flight.truth.window(*flight.marks["manual"])
     surge, yaw = (flight.truth.run.signals[f"mavlink.manual.{a}"] for a in ("surge", "yaw"))
     later = slice(rows.start + 20, rows.stop - 5)
     assert surge[later] == pytest.approx(0.6, abs=1e-3)
     assert yaw[later] == pytest.approx(0.3, abs=1e-3)
-    assert flight.during("sticks", "u", 3.0).min() > 0.3
-    assert flight.during("sticks", "r", 3.0).min() > 0.02
+    assert flight.during("manual", "u", 3.0).min() > 0.3
+    assert flight.during("manual", "r", 3.0).min() > 0.02
 
 
 def it_goes_slower(flight: Flight) -> None:
@@ -204,12 +204,12 @@ JUDGEMENTS = {
     "hold": lambda flight: it_stays(flight, "hold"),
     "return": lambda flight: it_goes_to(flight, "return", *flight.notes["return"]),
     "set-points": it_is_steered,
-    "sticks": it_has_the_helm,
+    "manual": it_has_the_helm,
 }
 
 
-def judge(flavour: str, folder: Path, subtests: pytest.Subtests) -> None:
-    flight = fly(flavour, folder)
+def judge(dialect: str, folder: Path, subtests: pytest.Subtests) -> None:
+    flight = fly(dialect, folder)
     for name, holds in JUDGEMENTS.items():
         with subtests.test(name):
             holds(flight)
@@ -217,17 +217,17 @@ def judge(flavour: str, folder: Path, subtests: pytest.Subtests) -> None:
 
 # As PX4 a vehicle is flown in every run too: it dives, in test_mavsdk_submarine.py.
 @pytest.mark.parametrize(
-    "flavour", [FLAVOURS[0], pytest.param(FLAVOURS[1], marks=pytest.mark.long)]
+    "dialect", [FLAVOURS[0], pytest.param(FLAVOURS[1], marks=pytest.mark.long)]
 )
-def test_a_flight(flavour: str, tmp_path: Path, subtests: pytest.Subtests) -> None:
-    judge(flavour, tmp_path, subtests)
+def test_a_flight(dialect: str, tmp_path: Path, subtests: pytest.Subtests) -> None:
+    judge(dialect, tmp_path, subtests)
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("again", range(1, 20))
-@pytest.mark.parametrize("flavour", FLAVOURS)
+@pytest.mark.parametrize("dialect", FLAVOURS)
 def test_the_same_flight_again(
-    flavour: str, again: int, tmp_path: Path, subtests: pytest.Subtests
+    dialect: str, again: int, tmp_path: Path, subtests: pytest.Subtests
 ) -> None:
     """With `test_a_flight`, twenty in a row."""
-    judge(flavour, tmp_path, subtests)
+    judge(dialect, tmp_path, subtests)

@@ -1,4 +1,4 @@
-"""MAVSDK as a judge: a dive of the VideoRay with each kind of autopilot."""
+"""MAVSDK as a reference tool: a dive of the VideoRay with each kind of autopilot."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from .mavsdk_dive import COURSE
 from .mavsdk_process import flown
 
 
-@pytest.mark.parametrize("flavour", ["ardupilotmega", "px4"])
-def test_a_dive(flavour: str, tmp_path: Path, subtests: pytest.Subtests) -> None:
-    run, heard = flown("mavsdk_dive", "videoray-mission", flavour, tmp_path)
+@pytest.mark.parametrize("dialect", ["ardupilotmega", "px4"])
+def test_a_dive(dialect: str, tmp_path: Path, subtests: pytest.Subtests) -> None:
+    run, received = flown("mavsdk_dive", "videoray-mission", dialect, tmp_path)
     x, y, z = (run.signals[f"vehicle.position.{axis}"] for axis in "xyz")
 
     def stage(name: str, tail_s: float = np.inf) -> slice:
-        began, ended = heard["marks"][name]
+        began, ended = received["marks"][name]
         first, last = np.searchsorted(run.time, [max(began, ended - tail_s), ended])
         return slice(int(first), int(last))
 
@@ -30,7 +30,7 @@ def test_a_dive(flavour: str, tmp_path: Path, subtests: pytest.Subtests) -> None
     with subtests.test("surface"):
         assert set(run.signals["mavlink.mode"][stage("surface")][3:-1]) == {"surface"}
         assert z[stage("surface")][-1] < 0.5
-    if flavour == "px4":
+    if dialect == "px4":
         with subtests.test("goto"):
             assert z[stage("goto")][-1] == pytest.approx(1.0, abs=0.15)
             assert np.hypot(x[stage("goto")][-1] - 2.0, y[stage("goto")][-1] - 2.0) < 0.6

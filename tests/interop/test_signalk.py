@@ -1,6 +1,6 @@
 """A Signal K server reads a running trial through the gateway, and says so over HTTP.
 
-It is not installed with the other judges: 600 packages. Where it is, SIGNALK_SERVER names the folder
+It is not installed with the other reference tools: 600 packages. Where it is, SIGNALK_SERVER names the folder
 whose node_modules have it (npm install --ignore-scripts signalk-server).
 """
 
@@ -63,10 +63,10 @@ def test_the_server_shows_the_ship(tmp_path):
     config = tmp_path / "config"
     config.mkdir()
     configured(config, port, gateway)
-    door = f"yd-raw-tcp:{HOST}:{gateway}"
+    gateway = f"yd-raw-tcp:{HOST}:{gateway}"
     environment = {**os.environ, "SIGNALK_NODE_CONFIG_DIR": str(config), "NODE_ENV": "production"}
     with (
-        running("mariner-nmea2000-live", tmp_path, door__door=door) as trial,
+        running("mariner-nmea2000-live", tmp_path, door__gateway=gateway) as trial,
         (tmp_path / "server.txt").open("wb") as log,
     ):
         wait_for(lambda: trial.is_running, "the trial runs", 180.0)

@@ -69,7 +69,7 @@ def at_sea(craft, folder, items=(), **settings):
 def completes(v, craft, at_most):
     v.arm()
     v.enter(craft.modes["auto"])
-    v.until(lambda: v.heard["MISSION_CURRENT"].mission_state == COMPLETE, "the end", at_most)
+    v.until(lambda: v.received["MISSION_CURRENT"].mission_state == COMPLETE, "the end", at_most)
 
 
 # ---------------------------------------------------------------------- missions
@@ -82,7 +82,7 @@ def test_a_mission_leads_through_its_waypoints(craft, tmp_path):
         assert v.passed(craft.places, craft.radius * FIX)
         assert 0.0 < v.signal("guidance.cross_track_rms") <= craft.rms
         assert v.position[2] == pytest.approx(craft.places[-1][2], abs=0.35)
-        assert v.heard["HEARTBEAT"].custom_mode == craft.modes["auto"]
+        assert v.received["HEARTBEAT"].custom_mode == craft.modes["auto"]
 
 
 def test_jumps_turns_and_the_way_home_of_a_mission(tmp_path):
@@ -131,7 +131,7 @@ def test_the_hydrone_goes_returns_and_is_held_when_the_station_is_lost(tmp_path)
         v.enter(craft.modes["auto"])
         v.wait(8)
         v.silent = True
-        v.until(lambda: v.heard["HEARTBEAT"].custom_mode == craft.modes["hold"], "failsafe", 10)
+        v.until(lambda: v.received["HEARTBEAT"].custom_mode == craft.modes["hold"], "failsafe", 10)
         north, east, _ = v.position
         v.wait(20)
         assert v.away(north, east) < 3.0

@@ -257,7 +257,7 @@ def test_a_run_that_did_not_end_well(write_run, status):
     assert "output z is nan" in page.text
     assert "verdicts.json is missing" in page.text
     assert "the last line of signals.csv is cut" in page.text
-    assert "The run was not judged" in page.text
+    assert "The run was not evaluated" in page.text
 
 
 def test_an_empty_record(write_run):

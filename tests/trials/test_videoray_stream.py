@@ -65,7 +65,7 @@ def test_the_captured_gains_oscillate(tmp_path):
 
 def test_a_recorded_stream_drives_the_vehicle_the_same_way_again(tmp_path):
     recorded = ["vehicle.*", "stream.command.*"]
-    trial = load_trial("videoray-stream-sticks")
+    trial = load_trial("videoray-stream-manual")
     record = trial.file.record.model_copy(update={"signals": recorded})
     trial = replace(trial, file=trial.file.model_copy(update={"record": record}))
     first = run_trial(trial, tmp_path / "first", engine="direct").folder
@@ -73,11 +73,11 @@ def test_a_recorded_stream_drives_the_vehicle_the_same_way_again(tmp_path):
     assert (first / "signals.csv").read_bytes() == (again / "signals.csv").read_bytes()
     assert (first / "topside.stream").read_bytes() == (again / "topside.stream").read_bytes()
     # What one end says, is what the other hears: but for the last step's, at the same times.
-    heard, said = (
+    received, said = (
         [line for line in (first / f"{name}.stream").read_text().splitlines() if " > " in line]
         for name in ("stream", "topside")
     )
-    assert heard == said
+    assert received == said
     (tmp_path / "replay.toml").write_text(
         REPLAY.format(stop="30 s", file=(first / "topside.stream").as_posix())
     )
@@ -154,8 +154,8 @@ def drive(links, seconds):
     begun, steps, trips = time.monotonic(), 0, []
     asked, answered = 0.0, 0
     while time.monotonic() < begun + seconds:
-        said, heard = topside.get("tx"), gateway.get("tx")
-        topside.set("rx", heard)
+        said, received = topside.get("tx"), gateway.get("tx")
+        topside.set("rx", received)
         gateway.set("rx", said)
         if topside.get("cycles") > answered:
             asked, answered = time.monotonic(), topside.get("cycles")
@@ -167,7 +167,7 @@ def drive(links, seconds):
         steps += 1
         time.sleep(max(begun + steps * 0.01 - time.monotonic(), 0.0))
     missed = topside.get("missed")
-    gateway.close()  # as if it had died: without a farewell
+    gateway.close()  # as if it had died: without safe-state bytes
     return trips, missed
 
 

@@ -45,7 +45,7 @@ class Voyage:
         )
         self.link.target_system, self.link.target_component = self._system_id, 1
         self.track = []
-        self.heard = {}
+        self.received = {}
         self.texts = []
         self.silent = False
 
@@ -86,7 +86,7 @@ class Voyage:
             self.master.step()
         self.track.append((self.time, *self.position))
         while (message := self.link.recv_match()) is not None:
-            self.heard[message.get_type()] = message
+            self.received[message.get_type()] = message
             if message.get_type() == "STATUSTEXT":
                 self.texts.append(message.text)
 
@@ -95,35 +95,35 @@ class Voyage:
     def command(self, number, *parameters):
         """Give a command until it is answered; fail unless it is accepted."""
         given = [*parameters, *[0.0] * (7 - len(parameters))]
-        self.heard.pop("COMMAND_ACK", None)
+        self.received.pop("COMMAND_ACK", None)
         self.link.mav.command_long_send(self._system_id, 1, number, 0, *given)
-        self.until(lambda: "COMMAND_ACK" in self.heard, f"answer to command {number}", 5)
-        answer = self.heard["COMMAND_ACK"]
+        self.until(lambda: "COMMAND_ACK" in self.received, f"answer to command {number}", 5)
+        answer = self.received["COMMAND_ACK"]
         assert (answer.command, answer.result) == (number, 0), (answer, self.texts[-3:])
 
     def enter(self, mode):
         """Change the mode, by ArduPilot's number."""
         self.command(mavutil.mavlink.MAV_CMD_DO_SET_MODE, 1, mode)
-        self.until(lambda: self.heard["HEARTBEAT"].custom_mode == mode, f"mode {mode}", 3)
+        self.until(lambda: self.received["HEARTBEAT"].custom_mode == mode, f"mode {mode}", 3)
 
     def arm(self):
         """Arm, once there is a position."""
-        self.until(lambda: self.heard.get("GLOBAL_POSITION_INT"), "a position", 10)
+        self.until(lambda: self.received.get("GLOBAL_POSITION_INT"), "a position", 10)
         self.command(mavutil.mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
 
     def go_to(self, north, east, down=0.0):
         """Order a position, as a click on the map does."""
         latitude, longitude, altitude = self.origin.geodetic((north, east, down))
-        self.heard.pop("COMMAND_ACK", None)
+        self.received.pop("COMMAND_ACK", None)
         self.link.mav.command_int_send(
             *(self._system_id, 1, _RELATIVE, mavutil.mavlink.MAV_CMD_DO_REPOSITION, 0, 0),
             *(-1, 1, 0, math.nan, round(latitude * 1e7), round(longitude * 1e7)),
             altitude - self.origin.altitude,
         )
-        self.until(lambda: "COMMAND_ACK" in self.heard, "answer to DO_REPOSITION", 5)
-        assert self.heard["COMMAND_ACK"].result == 0
+        self.until(lambda: "COMMAND_ACK" in self.received, "answer to DO_REPOSITION", 5)
+        assert self.received["COMMAND_ACK"].result == 0
 
-    # ------------------------------------------------------------------ judgement
+    # ------------------------------------------------------------------ assessment
 
     def away(self, north, east):
         """Return the true horizontal distance to a place, m."""

@@ -80,7 +80,7 @@ def _run(topside: Pro4Topside, gateway: SerialGateway, pilot: Pilot, pad: Gamepa
             if pad is not None:
                 pad.poll(pilot)
             pilot.depth, pilot.heading = topside.get("depth"), topside.get("attitude")[2]
-            sticks = pilot.sticks(now) if pilot.armed else (0.0, 0.0, 0.0)
+            sticks = pilot.manual(now) if pilot.armed else (0.0, 0.0, 0.0)
             _order(topside, pilot, sticks)
             connected = topside.get("connected")
             exchange(topside, gateway, steps * _STEP)
@@ -97,8 +97,8 @@ def _run(topside: Pro4Topside, gateway: SerialGateway, pilot: Pilot, pad: Gamepa
 
 def exchange(topside: Component, gateway: Component, t: float) -> None:
     """Step topside and gateway, wired to each other, from ``t`` on."""
-    said, heard = topside.get("tx"), gateway.get("tx")
-    topside.set("rx", heard)
+    said, received = topside.get("tx"), gateway.get("tx")
+    topside.set("rx", received)
     gateway.set("rx", said)
     topside.advance(t, _STEP)
     gateway.advance(t, _STEP)
@@ -106,7 +106,7 @@ def exchange(topside: Component, gateway: Component, t: float) -> None:
 
 def _order(topside: Pro4Topside, pilot: Pilot, sticks: tuple[float, float, float]) -> None:
     topside.set("armed", pilot.armed)
-    topside.set("sticks", list(sticks))
+    topside.set("manual", list(sticks))
     for name in ("lights", "camera_tilt", "manipulator", "hold_depth", "hold_heading"):
         topside.set(name, getattr(pilot, name))
     topside.set("depth_wanted", pilot.depth_wanted)

@@ -27,7 +27,7 @@ HELP = (
 )
 """Keys and what they do."""
 
-_STICKS = {
+_MANUAL_AXES = {
     "w": (0, 1.0),
     "s": (0, -1.0),
     "up": (0, 1.0),
@@ -66,7 +66,7 @@ class Pilot:
     """Its sticks: surge, yaw, heave."""
     _pressed: dict[int, tuple[float, float]] = field(default_factory=dict)
 
-    def sticks(self, now: float) -> tuple[float, float, float]:
+    def manual(self, now: float) -> tuple[float, float, float]:
         """Return surge, yaw and heave, -1 to 1; keys that were pressed too long ago are let go."""
         axes = list(self.gamepad)
         for axis, (sign, until) in self._pressed.items():
@@ -76,8 +76,8 @@ class Pilot:
 
     def press(self, key: str, now: float) -> None:
         """Take a key; others than those of `HELP` do nothing."""
-        if key in _STICKS:
-            axis, sign = _STICKS[key]
+        if key in _MANUAL_AXES:
+            axis, sign = _MANUAL_AXES[key]
             self._pressed[axis] = (sign, now + KEY_LASTS)
         elif key in _ACTIONS:
             _ACTIONS[key](self)

@@ -8,7 +8,7 @@ from typing import ClassVar, NamedTuple
 from ..component import Input, Output, Parameter
 from ..errors import InputError
 from .guidance_motion import MANUAL, NEUTRAL, STEER, Command, Goal, Law
-from .guidance_orders import STICKS, Decision, GuidanceOrders, Task
+from .guidance_orders import MANUAL_AXES, Decision, GuidanceOrders, Task
 from .guidance_path import Point
 
 PILOTED = {"manual": (False, False), "stabilize": (True, False), "depth-hold": (True, True)}
@@ -119,7 +119,7 @@ class Guidance(GuidanceOrders):
     depth_valid = Input("1", "whether the depth is valid", type=bool, start=True)
 
     engaged = Output("1", "which autopilots act", type=bool, axes=("speed", "heading", "depth"))
-    direct = Output("1", "sticks where none acts, -1 to 1", axes=STICKS)
+    direct = Output("1", "sticks where none acts, -1 to 1", axes=MANUAL_AXES)
     speed_wanted = Output("m/s", "speed wanted over ground along the bow")
     depth_wanted = Output("m", "depth wanted, positive down")
     speed = Output("m/s", "measured speed over ground along the bow")
@@ -166,7 +166,7 @@ class Guidance(GuidanceOrders):
         self.speed = self._speed()
 
     def update(self, t: float, k: int) -> None:
-        """Remember the goal, how far it is met, and the age of what was heard."""
+        """Remember the goal, how far it is met, and the age of what was received."""
         guided = self._decide()
         wanted = guided.decision.command
         turning, sinking = self._rates(guided)

@@ -15,7 +15,7 @@ from .guidance_path import Point
 TARGETS = ("position", "velocity", "heading")
 """Values of the input ``target_kind``."""
 
-STICKS = ("surge", "sway", "yaw", "heave")
+MANUAL_AXES = ("surge", "sway", "yaw", "heave")
 """Axes of a person's sticks."""
 
 NED = ("north", "east", "down")
@@ -68,7 +68,7 @@ class GuidanceOrders(Sampled):
     mode = Input("1", "what to do: one of its modes", type=str, start="hold")
     armed = Input("1", "whether to act", type=bool)
     manual = Input(
-        "1", "sticks, -1 to 1: ahead, to starboard, turn to starboard, down", axes=STICKS
+        "1", "sticks, -1 to 1: ahead, to starboard, turn to starboard, down", axes=MANUAL_AXES
     )
     target_kind = Input("1", f"guided: one of {', '.join(TARGETS)}", type=str, start="position")
     target_valid = Input("1", "guided: whether there is a set-point", type=bool, start=True)
@@ -106,7 +106,7 @@ class GuidanceOrders(Sampled):
                 f"{self.name}: capture_radius ({self.capture_radius!r} m) must be less than "
                 f"drift_limit ({self.drift_limit!r} m)"
             )
-        # Nothing has been heard yet: lost until first valid.
+        # Nothing has been received yet: lost until first valid.
         self._missed = [math.inf] * len(self._valid())
         self._task: Task = ()
         self._start: Point = (0.0, 0.0, 0.0)
@@ -114,7 +114,7 @@ class GuidanceOrders(Sampled):
         self._squares, self._instants = 0.0, 0
 
     def _remember(self, decision: Decision) -> None:
-        """Remember the task, how far it is met, and the age of what was heard."""
+        """Remember the task, how far it is met, and the age of what was received."""
         wanted = decision.command
         if wanted.motion == FOLLOW:
             self._squares += wanted.across**2

@@ -24,14 +24,14 @@ class RudderHelm(Component):
     )
 
     engaged = Input("1", "whether the autopilot steers", type=bool)
-    stick = Input("1", "turn to starboard, -1 to 1")
+    manual = Input("1", "turn to starboard, -1 to 1")
     rudder_held = Input("rad", "rudder of the autopilot, positive to turn to port")
 
     rudder = Output("rad", "rudder wanted, positive to turn to port")
 
-    feedthrough: ClassVar = {"rudder": ("engaged", "stick", "rudder_held")}
+    feedthrough: ClassVar = {"rudder": ("engaged", "manual", "rudder_held")}
 
     def outputs(self, t: float) -> None:
         """Choose."""
-        steered = -min(max(self.stick, -1.0), 1.0) * self.rudder_limit
+        steered = -min(max(self.manual, -1.0), 1.0) * self.rudder_limit
         self.rudder = self.rudder_held if self.engaged else steered

@@ -134,7 +134,7 @@ class StationKeeping(Sampled, TwinThrusters):
         self._check_pulses()
         self._mode, self._backwards = IDLE, False
         self._integral_ne, self._integral_yaw = [0.0, 0.0], 0.0
-        # Nothing has been heard yet: lost until first valid.
+        # Nothing has been received yet: lost until first valid.
         self._position_missed = self._heading_missed = math.inf
         self._command(0.0, 0.0)
         self.distance, self.mode = 0.0, IDLE
@@ -146,7 +146,7 @@ class StationKeeping(Sampled, TwinThrusters):
         self.distance, self.mode = self._distance(), decision.mode
 
     def update(self, t: float, k: int) -> None:
-        """Remember mode, integrals and the age of what was heard."""
+        """Remember mode, integrals and the age of what was received."""
         decision = self._decide()
         self._integrate(decision)
         self._mode, self._backwards = decision.mode, decision.backwards

@@ -73,9 +73,9 @@ class _Pace:
         signals = self._network.signals
         self._rows.append([signals[place] for place in self._places])
         if len(self._rows) == _LOOKED_AT:
-            self._judge(np.array(self._rows, float))
+            self._evaluate(np.array(self._rows, float))
 
-    def _judge(self, rows: NDArray[np.float64]) -> None:
+    def _evaluate(self, rows: NDArray[np.float64]) -> None:
         with np.errstate(all="ignore"):
             change = np.abs(np.diff(rows, axis=0)).max(axis=0)
             swing = np.abs(np.diff(rows, 2, axis=0)).max(axis=0)

@@ -108,12 +108,12 @@ class Master:
 
     def override(self, component: str, name: str, value: Any) -> None:
         """Replace an output for all its readers, or one connected input, until `release`."""
-        self._network.pin(component, name, value)
+        self._network.override(component, name, value)
         self._changed()
 
     def release(self, component: str, name: str) -> None:
         """End an override: the wire carries its own value again."""
-        self._network.pin(component, name, None)
+        self._network.override(component, name, None)
         self._changed()
 
     def terminate(self) -> None:

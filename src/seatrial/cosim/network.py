@@ -81,7 +81,7 @@ class Node:
 
 
 @dataclass
-class _Pin:
+class _Override:
     """An overridden output: what its readers get, and what it last was by itself."""
 
     value: Any
@@ -98,7 +98,7 @@ class Network:
         self.places: dict[Name, int] = {}
         self.nodes = {n: Node(part, every=part.every) for n, part in system.parts.items()}
         self.time_ns = 0
-        self._pins: dict[int, _Pin] = {}
+        self._overrides: dict[int, _Override] = {}
         self._sources = {wire.source for wire in system.wires}
 
     # ------------------------------------------------------------------ preparation
@@ -171,8 +171,8 @@ class Network:
                     if not -limit <= values[i] <= limit:
                         self._refuse_excess(chunk, values)
             self.signals[chunk.start : chunk.stop] = values
-            if self._pins:
-                self._keep_pinned(chunk.start, chunk.stop)
+            if self._overrides:
+                self._keep_overridden(chunk.start, chunk.stop)
 
     def write(self, node: Node) -> None:
         """Move the current signals to a node's inputs."""
@@ -216,14 +216,16 @@ class Network:
 
     # ------------------------------------------------------------------ overrides
 
-    def pin(self, component: str, name: str, value: Any) -> None:
+    def override(self, component: str, name: str, value: Any) -> None:
         """Replace an output for all its readers, or one connected input; None ends that."""
         if (component, name) in self.places:
             place = self.places[component, name]
-            own = self._pins.pop(place).own if place in self._pins else self.signals[place]
+            own = (
+                self._overrides.pop(place).own if place in self._overrides else self.signals[place]
+            )
             self.signals[place] = own
             if value is not None:
-                self._pins[place] = _Pin(value, own)
+                self._overrides[place] = _Override(value, own)
                 self.signals[place] = value
             return
         for writes in self.nodes[component].writes:
@@ -236,11 +238,11 @@ class Network:
                         self.signals.append(value)
             self._bind(writes)
 
-    def _keep_pinned(self, start: int, stop: int) -> None:
-        for place, pin in self._pins.items():
+    def _keep_overridden(self, start: int, stop: int) -> None:
+        for place, override in self._overrides.items():
             if start <= place < stop:
-                pin.own = self.signals[place]
-                self.signals[place] = pin.value
+                override.own = self.signals[place]
+                self.signals[place] = override.value
 
     def forget_previous(self) -> None:
         """Forget what algorithms remember of earlier points: a value jumps, or a step differs."""
@@ -253,15 +255,15 @@ class Network:
     def memory(self) -> Any:
         """Return a copy of everything here that a step changes."""
         previous = [w.previous for node in self.nodes.values() for w in node.writes]
-        pins = {place: pin.own for place, pin in self._pins.items()}
-        return self.time_ns, list(self.signals), pins, previous
+        overrides = {place: override.own for place, override in self._overrides.items()}
+        return self.time_ns, list(self.signals), overrides, previous
 
     def restore(self, memory: Any) -> None:
-        """Restore what `memory` returned; no pin may have come or gone since."""
-        self.time_ns, signals, pins, previous = memory
+        """Restore what `memory` returned; no override may have come or gone since."""
+        self.time_ns, signals, overrides, previous = memory
         self.signals[:] = signals
-        for place, own in pins.items():
-            self._pins[place].own = own
+        for place, own in overrides.items():
+            self._overrides[place].own = own
         writes = [w for node in self.nodes.values() for w in node.writes]
         for one, before in zip(writes, previous, strict=True):
             one.previous = before

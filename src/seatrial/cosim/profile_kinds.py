@@ -29,7 +29,7 @@ KINDS: dict[str, dict[str, str]] = {
     },
     "links": {
         "arduino": "links.arduino.component:Arduino",
-        "can-gateway": "links.can.gateway:CanGateway",
+        "can-gateway": "links.can.component_gateway:CanGateway",
         "can-signals": "links.can_signals.component:CanSignals",
         "canbus": "links.can.component:CanBus",
         "dronecan-autopilot": "links.dronecan.autopilot:DroneCanAutopilot",

@@ -9,8 +9,8 @@ from typing import Any
 
 from ..errors import InputError, unknown
 from ..fmi.instance import Value, Variable, Variables
-from ..plain import is_c_text
 from ..ports import Scalar
+from ..serialisation import is_c_text
 from ..units import conversion, quantity
 from .parameters import Entry
 

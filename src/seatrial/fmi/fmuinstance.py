@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from ..errors import INTERRUPTED, DiscardError, FatalError, InputError, SimulationError
-from ..plain import is_c_text
+from ..serialisation import is_c_text
 from .instance import ByType, Value, Variable
 from .messages import DISCARD, FATAL, WARNING, Messages, word
 

@@ -16,7 +16,7 @@ def check_hex(text: str) -> None:
     try:
         bytes.fromhex(text)
     except ValueError:
-        raise InputError(f"farewell: {text!r} is not bytes such as 'FAAF 0100'") from None
+        raise InputError(f"safe_state: {text!r} is not bytes such as 'FAAF 0100'") from None
 
 
 class SerialGateway(Logging, Reachable, Component):
@@ -28,7 +28,7 @@ class SerialGateway(Logging, Reachable, Component):
     Whoever is there gets all. Bytes leave in the step that has them, at whatever baud rate the
     other end reckons with.
 
-    ``farewell`` is sent when it closes, however the run ends: for a real vehicle the request
+    ``safe_state`` is sent when it closes, however the run ends: for a real vehicle the request
     that stops its thrusters.
 
     It cannot be rolled back. Raises InputError at the start for a link that is malformed or
@@ -43,7 +43,7 @@ class SerialGateway(Logging, Reachable, Component):
     links = Parameter(
         "tcpin:127.0.0.1:0", "1", "URLs of the other ends, separated by spaces", check=check_urls
     )
-    farewell = Parameter("", "1", "bytes sent at the end, hexadecimal", check=check_hex)
+    safe_state = Parameter("", "1", "bytes sent at the end, hexadecimal", check=check_hex)
 
     rx = Input("1", "bytes for the other end", type=str, optional=True)
 
@@ -87,9 +87,9 @@ class SerialGateway(Logging, Reachable, Component):
         self.reached_at = " ".join(other_end(endpoint.url) for endpoint in self._endpoints)
 
     def close(self) -> None:
-        """Say farewell and close the links."""
-        if self.farewell:
-            self._send(bytes.fromhex(self.farewell))
+        """Send the safe-state bytes and close the links."""
+        if self.safe_state:
+            self._send(bytes.fromhex(self.safe_state))
         for endpoint in self._endpoints:
             endpoint.close()
         self._endpoints = []

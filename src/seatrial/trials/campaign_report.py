@@ -70,17 +70,17 @@ def _case(folder: Path, entry: dict[str, Any]) -> Case:
     run = folder / entry["folder"]
     try:
         manifest = read_manifest(run)
-        note, found, judged = "", pads(manifest), bool(manifest["criteria"])
+        note, found, evaluated = "", pads(manifest), bool(manifest["criteria"])
         trial = str(manifest["trial"].get("title") or manifest["trial"]["name"])
     except InputError:
-        note, found, judged, trial = f"no readable run in {entry['folder']}", [], True, ""
+        note, found, evaluated, trial = f"no readable run in {entry['folder']}", [], True, ""
     verdicts = {verdict["name"]: verdict for verdict in entry["verdicts"]}
     has_report = (run / REPORT).is_file()
     return Case(
         name=entry["name"],
         link=quote(f"{entry['folder']}/{REPORT}") if has_report else None,
         status=entry["status"],
-        passed=entry["passed"] if judged or not entry["passed"] else None,
+        passed=entry["passed"] if evaluated or not entry["passed"] else None,
         settings=entry["set"],
         verdicts=verdicts,
         pads=found,

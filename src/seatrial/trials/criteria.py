@@ -37,7 +37,7 @@ from ..errors import InputError, unknown
 from ..units import unit
 from . import expressions as ex
 from .expressions import Comparison, Condition, Expression, FloatArray, Limit, Logic, Units
-from .verdict import WHOLE, Span, Verdict, judge_condition, judge_settling
+from .verdict import WHOLE, Span, Verdict, evaluate_condition, evaluate_settling
 
 __all__ = ["Criterion", "Limit", "Verdict", "parse"]
 
@@ -166,9 +166,9 @@ class Criterion:
         with np.errstate(all="ignore"):
             if isinstance(subject, (Comparison, Logic)):
                 assert self.form != "settles"
-                verdict = judge_condition(self.form, subject, span, time, values, units)
+                verdict = evaluate_condition(self.form, subject, span, time, values, units)
                 return replace(verdict, limits=tuple(subject.limits()))
-            return judge_settling(subject, self.band, span, time, values, units)
+            return evaluate_settling(subject, self.band, span, time, values, units)
 
     def _column(
         self, name: str, signals: Mapping[str, Any], units: Units, length: int

@@ -42,7 +42,7 @@ def deck(title: str, runs: Iterable[tuple[str, Pad, bool | None]]) -> Deck:
         places.setdefault((pad.forward, pad.starboard), []).append((label, passed))
     points = []
     for (forward, starboard), cases in places.items():
-        judged = [passed for _, passed in cases if passed is not None]
+        evaluated = [passed for _, passed in cases if passed is not None]
         labels = tuple(label for label, _ in cases)
-        points.append(PadPoint(forward, starboard, labels, sum(judged), len(judged)))
+        points.append(PadPoint(forward, starboard, labels, sum(evaluated), len(evaluated)))
     return Deck(title, points, DECK_LENGTH, DECK_BEAM)

@@ -68,8 +68,8 @@ class PadPoint:
     labels: Sequence[str]
     """The runs that land there."""
     passed: int
-    """How many of the ``judged`` ones among them passed."""
-    judged: int
+    """How many of the ``evaluated`` ones among them passed."""
+    evaluated: int
 
 
 @dataclass(frozen=True)
@@ -306,13 +306,13 @@ def _draw_pad(figure: go.Figure, point: PadPoint, col: int) -> None:
 
 
 def _verdict_style(point: PadPoint) -> tuple[str, str, str]:
-    if not point.judged:
-        return UNJUDGED, "circle-open", "not judged"
-    if point.passed == point.judged:
-        return PASSED, "circle", "passed" if point.judged == 1 else f"{point.judged} passed"
+    if not point.evaluated:
+        return UNJUDGED, "circle-open", "not evaluated"
+    if point.passed == point.evaluated:
+        return PASSED, "circle", "passed" if point.evaluated == 1 else f"{point.evaluated} passed"
     if not point.passed:
-        return FAILED, "x", "FAILED" if point.judged == 1 else f"{point.judged} FAILED"
-    return MIXED, "diamond", f"{point.passed} of {point.judged} passed"
+        return FAILED, "x", "FAILED" if point.evaluated == 1 else f"{point.evaluated} FAILED"
+    return MIXED, "diamond", f"{point.passed} of {point.evaluated} passed"
 
 
 def figure_json(figure: go.Figure) -> str:

@@ -20,9 +20,9 @@ from ..cosim.system import Engine, System, assemble
 from ..cosim.values import from_written, port_scalars
 from ..errors import InputError, SimulationError
 from .checks import check_criteria, check_events, check_plots, check_real_time
-from .endings import Endings
 from .manifest import manifest
 from .pacing import Pace
+from .termination import TerminationConditions
 from .trial import Event, Trial
 from .verdict import Verdict
 
@@ -98,15 +98,17 @@ def run_trial(
             trial.record_every,
             sorted(set().union(*(criterion.signals for _, criterion in trial.criteria))),
         )
-        entry, endings = trial.file.real_time, Endings(trial, master, units)
+        entry, termination = trial.file.real_time, TerminationConditions(trial, master, units)
         pace = None if entry is None else Pace(entry, master)
         if pace is not None:
             _tell_reachable(master, hooks)
-        status, error = _simulate(trial, master, recorder, endings, pace, out, engine, hooks, wall)
+        status, error = _simulate(
+            trial, master, recorder, termination, pace, out, engine, hooks, wall
+        )
     finally:
         with contextlib.suppress(KeyboardInterrupt), hooks.interruptible():
             system.free()  # nothing of the run depends on it any more
-    verdicts = [] if status == "failed" else _judge(trial, recorder, out, units)
+    verdicts = [] if status == "failed" else _evaluate(trial, recorder, out, units)
     notes = [*_loose_inputs(trial, system), *master.notes()]
     if pace is not None:
         notes.append(pace.pacer.note())
@@ -235,7 +237,7 @@ def _simulate(
     trial: Trial,
     master: Master,
     recorder: Recorder,
-    endings: Endings,
+    termination: TerminationConditions,
     pace: Pace | None,
     out: Path,
     engine: Engine,
@@ -250,7 +252,7 @@ def _simulate(
     error: str | None = "ended by an error of seatrial itself"
     try:
         with hooks.interruptible():
-            status, error = _loop(trial, master, recorder, endings, pace, hooks), None
+            status, error = _loop(trial, master, recorder, termination, pace, hooks), None
     except SimulationError as problem:
         error = str(problem)
     except KeyboardInterrupt:
@@ -285,7 +287,7 @@ def _loop(
     trial: Trial,
     master: Master,
     recorder: Recorder,
-    endings: Endings,
+    termination: TerminationConditions,
     pace: Pace | None,
     hooks: Hooks,
 ) -> str:
@@ -297,7 +299,7 @@ def _loop(
     while True:
         while events and events[0].at_ns <= master.time_ns:
             _apply(events.pop(0), master)
-        stopping, broken = hooks.stop_requested(), endings.broken()
+        stopping, broken = hooks.stop_requested(), termination.broken()
         recorder.record(last=stopping or broken or master.steps >= steps)
         if broken:
             status = "ended"
@@ -335,10 +337,10 @@ def _apply(event: Event, master: Master) -> None:
             master.override(component, name, value.value)
 
 
-def _judge(
+def _evaluate(
     trial: Trial, recorder: Recorder, out: Path, units: dict[str, str]
 ) -> list[tuple[str, str, Verdict]]:
-    """Judge every communication step, however often rows were recorded."""
+    """Evaluate every communication step, however often rows were recorded."""
     t, signals = recorder.watched()
     verdicts = []
     for entry, (name, criterion) in zip(trial.file.criteria, trial.criteria, strict=True):

@@ -1,4 +1,4 @@
-"""Verdicts: a record held against a condition, or judged for when it settles."""
+"""Verdicts: a record held against a condition, or evaluated for when it settles."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ class Verdict:
     """Bounds on single signals, for plots."""
 
 
-def judge_condition(
+def evaluate_condition(
     form: ConditionForm,
     condition: Condition,
     span: Span,
@@ -109,7 +109,7 @@ def judge_condition(
     return Verdict(passed, detail, measured, unit, float(time[row]))
 
 
-def judge_settling(
+def evaluate_settling(
     subject: Expression,
     band: float,
     span: Span,
@@ -155,7 +155,7 @@ def judge_settling(
 
 
 def _flaw(time: FloatArray, values: Values) -> str:
-    """Return why a record cannot be judged, or nothing."""
+    """Return why a record cannot be evaluated, or nothing."""
     if not len(time):
         return "the record is empty"
     for name, column in sorted(values.items()):

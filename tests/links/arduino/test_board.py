@@ -55,14 +55,14 @@ def read(descriptor: int) -> bytes:
         return b""
 
 
-def test_bytes_go_both_ways_and_a_farewell(line):
+def test_bytes_go_both_ways_and_a_safe_state(line):
     own, device = line
-    board = started(links=f"1=serial:{device}:38400", farewell="580A")
+    board = started(links=f"1=serial:{device}:38400", safe_state="580A")
     os.write(own, b"from the board")
     board.set("rx.uart1", encode(1, [(0, b"to the board")]))
-    heard, said, seen, now = b"", b"", 0, 0.0
+    received, said, seen, now = b"", b"", 0, 0.0
     deadline = time.monotonic() + WAIT_S
-    while (heard, said) != (b"to the board", b"from the board"):
+    while (received, said) != (b"to the board", b"from the board"):
         assert time.monotonic() < deadline
         board.advance(now, 0.02)
         now += 0.02
@@ -70,7 +70,7 @@ def test_bytes_go_both_ways_and_a_farewell(line):
         if number != seen:
             seen = number
             said += b"".join(data for _, data in chunks)
-        heard += read(own)
+        received += read(own)
     board.close()
     while not (last := read(own)):
         assert time.monotonic() < deadline
@@ -79,49 +79,49 @@ def test_bytes_go_both_ways_and_a_farewell(line):
 
 def step(board, start, count, descriptor):
     """Step by 20 ms from a step on; return what the descriptor got of each, and the next step."""
-    heard = []
+    received = []
     for k in range(start, start + count):
         board.advance(k * 0.02, 0.02)
         time.sleep(0.005)  # of a pseudo-terminal
-        heard.append(read(descriptor))
-    return heard, start + count
+        received.append(read(descriptor))
+    return received, start + count
 
 
-def test_a_stale_input_is_told_farewell_once_and_may_come_again(line):
+def test_a_stale_input_is_told_safe_state_once_and_may_come_again(line):
     own, device = line
-    board = started(links=f"1=serial:{device}:38400", farewell="580A", timeout=0.2)
-    heard, now = step(board, 0, 20, own)
-    assert b"".join(heard) == b""  # nothing was there that could be stale
+    board = started(links=f"1=serial:{device}:38400", safe_state="580A", timeout=0.2)
+    received, now = step(board, 0, 20, own)
+    assert b"".join(received) == b""  # nothing was there that could be stale
     for number in (1, 2):
         board.set("rx.uart1", encode(number, [(0, b"go")]))
-        heard, now = step(board, now, 20, own)
-        assert b"".join(heard) == b"goX\n"
-        assert b"".join(heard[:11]) == b"go"  # for 0.2 s
+        received, now = step(board, now, 20, own)
+        assert b"".join(received) == b"goX\n"
+        assert b"".join(received[:11]) == b"go"  # for 0.2 s
     board.close()
 
 
 def test_a_lost_link_stops_the_others_until_it_is_back(lines):
     (told, device), (telling, second) = lines
     links = f"0=serial:{device}:38400 1=serial:{second}:38400"
-    board = started(links=links, farewell="580A", timeout=0.2)
+    board = started(links=links, safe_state="580A", timeout=0.2)
     now, number = 0, 0
 
     def feed(count):
         nonlocal now, number
-        heard = []
+        received = []
         for _ in range(count):
             number += 1
             board.set("rx.uart0", encode(number, [(0, b"go ")]))
             more, now = step(board, now, 1, told)
-            heard += more
-        return heard
+            received += more
+        return received
 
     def feed_until(connected):
-        heard, deadline = [], time.monotonic() + WAIT_S
+        received, deadline = [], time.monotonic() + WAIT_S
         while board.get("connected") != connected:
             assert time.monotonic() < deadline
-            heard += feed(1)
-        return b"".join(heard + feed(5))
+            received += feed(1)
+        return b"".join(received + feed(5))
 
     assert b"X" not in b"".join(feed(15))  # one that never spoke is not missed
     os.write(telling, b"alive")

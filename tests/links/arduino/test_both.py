@@ -1,4 +1,4 @@
-"""The same sketch in both back ends: the firmware on an emulated AVR is the judge of the host's."""
+"""The same sketch in both back ends: the firmware on an emulated AVR is the reference tool of the host's."""
 
 import re
 from pathlib import Path
@@ -165,21 +165,21 @@ def test_bytes_leave_at_the_baud_rate(tmp_path, backend):
         assert len(bench.said[0]) == pytest.approx(9600 / bits, rel=0.02)
 
 
-HEARD = {
+RECEIVED = {
     "library": b"noise$-12.75,42,abc*xyz rest\nq",
     "language": b"noise$-12.75,42,abc*xyz rest\nq",
     "avrlibc": b"noise$$H 2123456789.5,x-1,234.75z abbbd*x;q",
 }
 
 
-@pytest.mark.parametrize("name", HEARD)
+@pytest.mark.parametrize("name", RECEIVED)
 def test_they_print_the_same(name):
-    """Firmware of Debian's core and avr-libc is the judge of what the host's API says."""
+    """Firmware of Debian's core and avr-libc is the reference tool of what the host's API says."""
     printed = []
     for backend in ("host", "simavr"):
         with Bench(SKETCHES / name, backend, uarts="0 57600", wires="0x68 mpu6050") as bench:
             bench.run(0.8)
-            bench.hear(0, HEARD[name])
+            bench.hear(0, RECEIVED[name])
             bench.run(2.6)
             printed.append(bench.said[0].decode().splitlines())
     assert printed[0] == printed[1]

@@ -32,7 +32,7 @@ WIRES = "4 soft_rx 1; 3 soft_tx 1"
 NMEA = b"$GPRMC,123519,A,4807.038,N,01131.000,E,022.4,084.4,230394,003.1,W*6A\r\n"
 
 
-def heard(backend, sketch, **values):
+def received(backend, sketch, **values):
     """What the sketch says at its UART and at its pins, and when the latter."""
     with Bench(sketch, backend, **values) as bench:
         bench.run(0.1)
@@ -46,7 +46,7 @@ def heard(backend, sketch, **values):
 def test_both_back_ends_hear_and_say_the_same_at_two_pins(tmp_path):
     sketch = write_sketch(tmp_path, SKETCH)
     uno = {"mcu": "atmega328p", "uarts": "0 57600; 1 9600", "wires": WIRES}
-    host, simavr = (heard(each, sketch, **uno) for each in ("host", "simavr"))
+    host, simavr = (received(each, sketch, **uno) for each in ("host", "simavr"))
     lines = simavr[0].split(b"\n")
     assert lines[0] == b"10\r"
     assert lines[1] == NMEA[: NMEA.index(b"*") + 1]  # what came while it said "got" is lost
@@ -58,7 +58,7 @@ def test_both_back_ends_hear_and_say_the_same_at_two_pins(tmp_path):
 def test_pins_of_a_mega_take_the_line_of_its_uart(tmp_path):
     sketch = write_sketch(tmp_path, SKETCH.replace("gps(4, 3)", "gps(10, 11)"))
     mega = {"uarts": "0 57600; 1 9600", "wires": "10 soft_rx 1; 11 soft_tx 1"}
-    host, simavr = (heard(each, sketch, **mega) for each in ("host", "simavr"))
+    host, simavr = (received(each, sketch, **mega) for each in ("host", "simavr"))
     assert simavr[1].startswith(b"hello 42\r\n")
     assert host[:2] == simavr[:2]
 

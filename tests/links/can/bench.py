@@ -19,7 +19,7 @@ class Bench:
         *,
         queue: int = 100,
         mailboxes: int = 3,
-        fate: Callable = lambda *_: None,
+        error_injector: Callable = lambda *_: None,
         rate: int = 1_000_000,
         **options: object,
     ) -> None:
@@ -33,7 +33,7 @@ class Bench:
             self.nodes,
             rate,
             2_000_000,
-            fate,
+            error_injector,
             self.sent.append,
             self.broken.append,
             self.given_up.append,

@@ -21,7 +21,7 @@ class Scripted:
         self.bus, self.asked, self.events = bus, sorted(asked, key=lambda a: a[0]), events or {}
         self.now, self.next = 0, 0
         self.memories: list[dict] = [{} for _ in range(NODES)]
-        self.heard: list[list[tuple[int, Operation]]] = [[] for _ in range(NODES)]
+        self.operations: list[list[tuple[int, Operation]]] = [[] for _ in range(NODES)]
         self.told_at: list[list[int]] = [[] for _ in range(NODES)]
 
     def run(self, until_ns: int, step_ns: int) -> None:
@@ -31,7 +31,7 @@ class Scripted:
             nodes = [CanNode(memory) for memory in self.memories]
             for number, text in enumerate(self.bus.get("rx")):
                 new = nodes[number].hear(text)
-                self.heard[number] += new
+                self.operations[number] += new
                 self.told_at[number] += [self.now] * len(new)
             while self.next < len(self.asked) and self.asked[self.next][0] <= self.now + step_ns:
                 when, number, frame = self.asked[self.next]
@@ -42,10 +42,12 @@ class Scripted:
             self.now += step_ns
 
     def received(self, number: int) -> list[tuple[int, Frame]]:
-        return [(t, each.frame) for t, each in self.heard[number] if isinstance(each, Transmit)]
+        return [
+            (t, each.frame) for t, each in self.operations[number] if isinstance(each, Transmit)
+        ]
 
     def confirmed(self, number: int) -> list[tuple[int, int]]:
-        return [(t, e.identifier) for t, e in self.heard[number] if isinstance(e, Confirm)]
+        return [(t, e.identifier) for t, e in self.operations[number] if isinstance(e, Confirm)]
 
 
 def bus(**values: Any) -> CanBus:

@@ -5,8 +5,8 @@ import time
 from collections.abc import Callable
 
 from seatrial.links.can.component import CanBus
+from seatrial.links.can.component_gateway import CanGateway
 from seatrial.links.can.frame import Frame
-from seatrial.links.can.gateway import CanGateway
 from seatrial.links.can.node import CanNode
 from seatrial.links.can.operations import Transmit
 
@@ -15,18 +15,18 @@ STEP_NS = 2_000_000
 
 
 class Served:
-    """Nodes: ``peer``, scripted; ``door``, a gateway. 1 Mbit/s.
+    """Nodes: ``peer``, scripted; ``gateway``, a gateway. 1 Mbit/s.
 
-    ``peer`` sends what `send` was given, at its times, and keeps what it hears in ``heard``.
+    ``peer`` sends what `send` was given, at its times, and keeps what it hears in ``received``.
     """
 
-    def __init__(self, door: str, **values: object) -> None:
-        self.gateway = CanGateway("door")
-        self.gateway.set("door", door)
+    def __init__(self, gateway: str, **values: object) -> None:
+        self.gateway = CanGateway("gateway")
+        self.gateway.set("link", gateway)
         self.bus = CanBus("can")
         # With more mailboxes frames of one node overtake each other.
         given = {
-            "nodes": "peer door",
+            "nodes": "peer gateway",
             "bit_rate": 1e6,
             "queue_length": 1000.0,
             "mailboxes": 1.0,
@@ -37,7 +37,7 @@ class Served:
         for each in (self.gateway, self.bus):
             each.initialise()
             each.begin()
-        self.heard: list[tuple[int, Frame]] = []
+        self.received: list[tuple[int, Frame]] = []
         self.at = self.gateway.get("reached_at")
         self.now = 0
         self._to_send: list[Frame] = []
@@ -80,16 +80,16 @@ class Served:
 
     def _step(self) -> None:
         peer = CanNode(self._can)
-        rx, door_says = self.bus.get("rx"), self.gateway.get("tx")
+        rx, gateway_says = self.bus.get("rx"), self.gateway.get("tx")
         for when, operation in peer.hear(rx[0]):
             if isinstance(operation, Transmit):
-                self.heard.append((when, operation.frame))
+                self.received.append((when, operation.frame))
         for frame in self._to_send[:2]:
             peer.send(self.now, frame)
         del self._to_send[:2]
         self.gateway.set("rx", rx[1])
         self.bus.set("tx.n1", peer.flush())
-        self.bus.set("tx.n2", door_says)
+        self.bus.set("tx.n2", gateway_says)
         for each in (self.bus, self.gateway):
             each.advance(self.now / 1e9, STEP_NS / 1e9)
         self.now += STEP_NS

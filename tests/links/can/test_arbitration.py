@@ -162,13 +162,13 @@ requests = st.lists(
 def test_what_is_asked_for_is_sent_dropped_or_waits(asked, mailboxes, queue, rate):
     """Conservation, causality and an exclusive bus, with errors at every 1/rate-th bit."""
 
-    def fate(attempt, node, frame, bits):
+    def error_injector(attempt, node, frame, bits):
         from seatrial.links.can.simulated_bus import Disturbance
 
         hit = int(attempt * bits * rate) - int((attempt - 1) * bits * rate)
         return Disturbance(attempt * 7919 % bits) if hit else None
 
-    bench = Bench(4, mailboxes=mailboxes, queue=queue, fate=fate)
+    bench = Bench(4, mailboxes=mailboxes, queue=queue, error_injector=error_injector)
     for when, node, identifier, extended, data in asked:
         bench.ask(when, node, Frame(identifier, data, extended))
     for until in (5_000, 12_000, 15_000, 40_000):

@@ -72,13 +72,13 @@ def test_the_step_does_not_change_what_is_on_the_bus(step, tmp_path):
         files = sorted(folder.iterdir())
         logs.append(([each.read_bytes() for each in files], scripted.received(0)))
         assert [each.name for each in files] == ["can.blf", "can.json", "can.log"]
-    (first, heard), (second, other) = logs
+    (first, received), (second, other) = logs
     assert first[0] == second[0]
     assert first[2] == second[2]
     assert len(first[2].splitlines()) > 200
-    shorter = min(len(heard), len(other))
+    shorter = min(len(received), len(other))
     assert shorter > 100
-    assert heard[:shorter] == other[:shorter]
+    assert received[:shorter] == other[:shorter]
 
 
 def test_a_fault_acts_from_its_time_on():
@@ -89,7 +89,7 @@ def test_a_fault_acts_from_its_time_on():
     scripted.run(30 * MS, MS)
     assert [t for t, _ in scripted.received(1)] == [20_200_000]
     # Cut at 10 ms = bit 25: six recessive bits, flag, delimiter: 20 x 4 us.
-    assert [(t, e.error) for t, e in scripted.heard[1] if isinstance(e, BusError)] == [
+    assert [(t, e.error) for t, e in scripted.operations[1] if isinstance(e, BusError)] == [
         (10_080_000, Error.STUFF)
     ]
     assert made.get("dropped")[0] == 2
@@ -129,7 +129,7 @@ def test_seeds_decide():
         made = bus(bit_error_rate=1e-3, seed=seed)
         scripted = Scripted(made, busy())
         scripted.run(200 * MS, MS)
-        return scripted.heard
+        return scripted.operations
 
     assert run(1.0) == run(1.0)
     assert run(1.0) != run(2.0)
@@ -149,16 +149,16 @@ def test_a_saved_state_continues_as_if_nothing_had_been(stop):
     state = json.loads(json.dumps(made.get_state()))
     memories, place = json.loads(json.dumps(scripted.memories)), scripted.next
     scripted.run(150 * MS, MS)
-    whole, ended = [list(each) for each in scripted.heard], made.get_state()
+    whole, ended = [list(each) for each in scripted.operations], made.get_state()
 
     other = bus(bit_error_rate=5e-4, loss=0.02, queue_length=4.0, load_window=0.05)
     other.set_state(state)
     again = Scripted(other, busy(), events)
     again.now, again.next, again.memories = stop * MS, place, memories
     again.run(150 * MS, MS)
-    for before, after in zip(whole, again.heard, strict=True):
+    for before, after in zip(whole, again.operations, strict=True):
         assert after == before[len(before) - len(after) :]
-    assert sum(map(len, again.heard)) > 50
+    assert sum(map(len, again.operations)) > 50
     assert json.dumps(other.get_state()) == json.dumps(ended)
 
 
@@ -196,10 +196,10 @@ def test_load_is_what_is_offered_until_the_bus_is_full(offered):
     loads = []
     for k in range(150):
         texts = [*(node.get("tx") for node in nodes), *[""] * 10]
-        heard = made.get("rx")
+        received = made.get("rx")
         made.set("tx", texts)
         for number, node in enumerate(nodes):
-            node.set("rx", heard[number])
+            node.set("rx", received[number])
         for each in (made, *nodes):
             each.advance(k / 100, 0.01)
         loads.append(made.get("load"))
@@ -233,7 +233,9 @@ def told(made, *operations, node=0):
     made.advance(0.002, 0.002)
     scripted.now = 4 * MS
     scripted.run(5 * MS, MS)
-    return [each for _, each in scripted.heard[0]], [each for _, each in scripted.heard[1]]
+    return [each for _, each in scripted.operations[0]], [
+        each for _, each in scripted.operations[1]
+    ]
 
 
 def test_what_is_no_operation_is_answered():

@@ -26,7 +26,7 @@ def broken_of(node, bit=FIRST_DATA_BIT, receiver=None):
 def test_a_broken_frame_is_sent_again():
     """Bits 0 to 19, 6 of flag and 8 of delimiter end at 34; it starts again 3 later."""
     once = iter([Disturbance(19)])
-    bench = Bench(2, fate=lambda *_: next(once, None))
+    bench = Bench(2, error_injector=lambda *_: next(once, None))
     bench.ask(0, 0, DATA)
     bench.run(400)
     (sent,) = bench.times
@@ -38,7 +38,7 @@ def test_a_broken_frame_is_sent_again():
 
 def test_the_last_bit_before_an_error_may_be_of_the_data_phase():
     """FD with a switch: 16 bits, then BRS and ESI at 2 Mbit/s: 17 us; + 14."""
-    bench = Bench(2, fate=lambda attempt, *_: Disturbance(17) if attempt == 1 else None)
+    bench = Bench(2, error_injector=lambda attempt, *_: Disturbance(17) if attempt == 1 else None)
     # 0x555 has no stuff bit there.
     bench.ask(0, 0, Frame(0x555, fd=True, bit_rate_switch=True))
     bench.run(400)
@@ -52,7 +52,7 @@ def test_bus_off_and_back():
     37 k, then at 16 x 37 + 8 = 600 and every 45. The 32nd, at 1275, takes it to 256: bus-off at its end,
     1309. From the end of the intermission at 1312 it counts 128 x 11 bits on an idle bus: 2720.
     """
-    bench = Bench(2, fate=broken_of(0))
+    bench = Bench(2, error_injector=broken_of(0))
     bench.ask(0, 0, DATA)
     bench.ask(1, 0, DATA)
     a, b = bench.nodes
@@ -66,7 +66,7 @@ def test_bus_off_and_back():
     assert (a.state, a.tec, a.waiting, a.dropped) == (State.BUS_OFF, 256, 0, 2)
     starts = [37 * k for k in range(16)] + [600 + 45 * k for k in range(16)]
     assert bench.failed_at == [start + 34 for start in starts]
-    bench.bus.fate = lambda *_: None
+    bench.bus.error_injector = lambda *_: None
     bench.ask(2719, 0, ZERO)
     bench.ask(2720, 0, ZERO)
     bench.run(2719.5)
@@ -78,7 +78,7 @@ def test_bus_off_and_back():
 
 def test_off_the_bus_a_busy_bus_counts_one_sequence_per_frame():
     """b sends without a pause: 128 frames later a is back, not before."""
-    bench = Bench(3, queue=1000, fate=broken_of(0))
+    bench = Bench(3, queue=1000, error_injector=broken_of(0))
     bench.ask(0, 0, DATA)
     bench.run(1312)
     for _ in range(140):
@@ -91,7 +91,7 @@ def test_off_the_bus_a_busy_bus_counts_one_sequence_per_frame():
 
 
 def test_without_recovery_it_stays_off():
-    bench = Bench(2, fate=broken_of(0), recovers=False)
+    bench = Bench(2, error_injector=broken_of(0), recovers=False)
     bench.ask(0, 0, DATA)
     bench.run(1_000_000)
     assert bench.nodes[0].state is State.BUS_OFF
@@ -191,7 +191,9 @@ def test_two_senders_of_the_same_frame_send_it_once():
 
 def test_an_error_that_one_receiver_sees_is_signalled_by_it_and_then_by_all():
     """Bit 30, then 12 bits of flag and 8 of delimiter: 51. The first has + 8 for a flag of its own."""
-    bench = Bench(4, fate=lambda attempt, *_: Disturbance(30, 2) if attempt == 1 else None)
+    bench = Bench(
+        4, error_injector=lambda attempt, *_: Disturbance(30, 2) if attempt == 1 else None
+    )
     bench.ask(0, 0, ZERO)
     bench.run(53)
     assert bench.failed_at == [51]
@@ -202,7 +204,9 @@ def test_an_error_that_one_receiver_sees_is_signalled_by_it_and_then_by_all():
 
 
 def test_a_passive_receiver_only_loses_the_frame():
-    bench = Bench(3, fate=lambda attempt, *_: Disturbance(30, 2) if attempt == 1 else None)
+    bench = Bench(
+        3, error_injector=lambda attempt, *_: Disturbance(30, 2) if attempt == 1 else None
+    )
     bench.nodes[2].rec = 130
     bench.ask(0, 0, ZERO)
     bench.run(200)
@@ -238,7 +242,7 @@ def test_a_babbling_node_keeps_the_bus_to_itself():
 
 def test_a_babbling_node_comes_back_from_bus_off_by_itself():
     """Off with its 32nd error frame, as above; the next one comes 3 + 128 x 11 bits later."""
-    one, other = Bench(2, fate=broken_of(0)), Bench(2, fate=broken_of(0))
+    one, other = Bench(2, error_injector=broken_of(0)), Bench(2, error_injector=broken_of(0))
     for bench in (one, other):
         bench.nodes[0].babbles = True
     one.run(10_000)

@@ -1,4 +1,4 @@
-"""The doors of the gateway with the programs that are to come through them."""
+"""The gateways of the gateway with the programs that are to come through them."""
 
 import logging
 import socket
@@ -13,10 +13,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from seatrial.errors import InputError
-from seatrial.links.can.door_slcan import SlcanDoor
-from seatrial.links.can.door_socketcand import SocketcandDoor
+from seatrial.links.can.component_gateway import CanGateway
 from seatrial.links.can.frame import Frame
-from seatrial.links.can.gateway import CanGateway
+from seatrial.links.can.gateway_slcan import SlcanGateway
+from seatrial.links.can.gateway_socketcand import SocketcandGateway
 from seatrial.links.can.messages import frame_of, message
 from seatrial.links.endpoints.endpoint import Channel, Endpoint
 from seatrial.links.hardware import ALLOWED
@@ -40,7 +40,7 @@ def _quiet():
 
 
 def open_bus(served, **options):
-    """Return python-can's bus at a door."""
+    """Return python-can's bus at a gateway."""
     kind, _, place = served.at.partition(":")
     if kind == "socketcand":
         host, _, port = place.partition(":")
@@ -62,12 +62,12 @@ def read(bus, count):
     return found
 
 
-DOORS = ["socketcand:127.0.0.1:0", "slcan-tcp:127.0.0.1:0", "slcan-pty", "virtual:gateway-{}"]
+GATEWAYS = ["socketcand:127.0.0.1:0", "slcan-tcp:127.0.0.1:0", "slcan-pty", "virtual:gateway-{}"]
 
 
-@pytest.mark.parametrize("door", DOORS)
-def test_nothing_is_lost_either_way_at_a_thousand_frames_a_second(door, request):
-    with Served(door.format(request.node.name)) as served, open_bus(served) as bus:
+@pytest.mark.parametrize("gateway", GATEWAYS)
+def test_nothing_is_lost_either_way_at_a_thousand_frames_a_second(gateway, request):
+    with Served(gateway.format(request.node.name)) as served, open_bus(served) as bus:
         served.wait(lambda: served.gateway.get("clients") == 1)
         served.send(Frame(0x7F0))
         while bus.recv(1.0) is None:  # it is attached
@@ -77,17 +77,17 @@ def test_nothing_is_lost_either_way_at_a_thousand_frames_a_second(door, request)
         sender.start()
         arrived = read(bus, COUNT)
         sender.join(WAIT_S)
-        served.wait(lambda: len(served.heard) == COUNT)
-        assert [frame for _, frame in served.heard] == THEIRS
+        served.wait(lambda: len(served.received) == COUNT)
+        assert [frame for _, frame in served.received] == THEIRS
         assert [frame_of(each) for each in arrived] == OURS
         assert served.gateway.get("frames_in") == COUNT
         assert served.gateway.get("forgotten") == 0
 
 
-@pytest.mark.parametrize("door", ["socketcand:127.0.0.1:0", "virtual:gateway-{}"])
-def test_times_are_simulated(door, request):
+@pytest.mark.parametrize("gateway", ["socketcand:127.0.0.1:0", "virtual:gateway-{}"])
+def test_times_are_simulated(gateway, request):
     """An extended frame of 8 bytes lasts 131 to 143 us, and its peer asked at a whole 2 ms."""
-    with Served(door.format(request.node.name)) as served, open_bus(served) as bus:
+    with Served(gateway.format(request.node.name)) as served, open_bus(served) as bus:
         served.wait(lambda: served.now > 500_000_000)
         served.send(Frame(0x18FF0000, b"12345678", True))
         (found,) = read(bus, 1)
@@ -95,23 +95,23 @@ def test_times_are_simulated(door, request):
         assert 118e-6 <= found.timestamp % 0.002 <= 143e-6
 
 
-@pytest.mark.parametrize("door", ["slcan-tcp:127.0.0.1:0", "virtual:gateway-{}"])
-def test_remote_and_fd_frames(door, request):
+@pytest.mark.parametrize("gateway", ["slcan-tcp:127.0.0.1:0", "virtual:gateway-{}"])
+def test_remote_and_fd_frames(gateway, request):
     frames = [
         Frame(0x321, remote=True, requested=5),
         Frame(0x1ABCDEF0, extended=True, remote=True, requested=8),
         Frame(0x222, bytes(range(24)), fd=True),
         Frame(0x1ABCDEF0, bytes(range(64)), True, fd=True, bit_rate_switch=True),
     ]
-    with Served(door.format(request.node.name)) as served, open_bus(served) as bus:
+    with Served(gateway.format(request.node.name)) as served, open_bus(served) as bus:
         served.send(Frame(0x7F0))
         read(bus, 1)
         served.send(*frames)
         assert [frame_of(each) for each in read(bus, 4)] == frames
         for frame in frames:
             bus.send(message(frame, 0.0))
-        served.wait(lambda: len(served.heard) == 4)
-        assert [frame for _, frame in served.heard] == frames
+        served.wait(lambda: len(served.received) == 4)
+        assert [frame for _, frame in served.received] == frames
 
 
 def test_socketcands_clients_hear_each_other_and_not_themselves():
@@ -127,7 +127,7 @@ def test_socketcands_clients_hear_each_other_and_not_themselves():
         assert frame_of(read(one, 1)[0]) == Frame(0x200, b"two")
         served.send(Frame(0x300))
         assert [frame_of(read(each, 1)[0]) for each in (one, two)] == [Frame(0x300)] * 2
-    assert [frame for _, frame in served.heard] == [Frame(0x100, b"one"), Frame(0x200, b"two")]
+    assert [frame for _, frame in served.received] == [Frame(0x100, b"one"), Frame(0x200, b"two")]
 
 
 def test_what_a_client_says_before_it_goes_arrives():
@@ -136,7 +136,7 @@ def test_what_a_client_says_before_it_goes_arrives():
             with open_bus(served) as bus:
                 for _ in range(20):
                     bus.send(message(Frame(number), 0.0))
-        served.wait(lambda: len(served.heard) == 200)
+        served.wait(lambda: len(served.received) == 200)
 
 
 def test_error_frames_reach_socketcands_clients():
@@ -185,7 +185,7 @@ def test_socketcands_words_that_python_can_does_not_have():
             assert until(file, b">") == "< echo >"
             file.write(b"< fdsend 123 01 12 1 2 3 4 5 6 7 8 9 a b c >< send 1AAAAAAA 2 1 F1 >")
             file.write(b"< sendrtr 1F334455 3 >")
-            served.wait(lambda: len(served.heard) == 3)
+            served.wait(lambda: len(served.received) == 3)
             served.send(Frame(0x7FF, bytes(12), fd=True, bit_rate_switch=True))
             assert until(file, b">").startswith("< fdframe 7FF 01 ")
             served.send(Frame(0x7FF, remote=True, requested=2))
@@ -200,7 +200,7 @@ def test_socketcands_words_that_python_can_does_not_have():
                 file.write(wrong.encode())
                 assert until(file, b">") == "< error unknown command >"
         fd = Frame(0x123, bytes(range(1, 13)), fd=True, bit_rate_switch=True)
-        assert [frame for _, frame in served.heard] == [
+        assert [frame for _, frame in served.received] == [
             fd,
             Frame(0x1AAAAAAA, b"\x01\xf1", True),
             Frame(0x1F334455, extended=True, remote=True, requested=3),
@@ -246,7 +246,7 @@ def test_an_adapter_answers_every_command():
             assert 0 <= int(line[7:11], 16) < 60_000
             assert answer("L") == "\r"
             assert answer("t1230") == "\a"  # it only listens
-        assert [frame for _, frame in served.heard] == [Frame(0x123, b"\x11\x22")]
+        assert [frame for _, frame in served.received] == [Frame(0x123, b"\x11\x22")]
 
 
 def test_dronecans_slcan_driver_at_a_pseudo_terminal():
@@ -254,31 +254,31 @@ def test_dronecans_slcan_driver_at_a_pseudo_terminal():
         driver = SLCAN(served.at, bitrate=1_000_000)
         try:
             driver.send(0x1401557F, b"\x01\x02", extended=True)
-            served.wait(lambda: len(served.heard) == 1)
+            served.wait(lambda: len(served.received) == 1)
             served.send(*(Frame(0x1401557F + n, bytes([n]), True) for n in range(100)))
             found = [driver.receive(WAIT_S) for _ in range(100)]
         finally:
             driver.close()
-        assert served.heard[0][1] == Frame(0x1401557F, b"\x01\x02", True)
+        assert served.received[0][1] == Frame(0x1401557F, b"\x01\x02", True)
         assert [(f.id, f.data, f.extended) for f in found] == [
             (0x1401557F + n, bytes([n]), True) for n in range(100)
         ]
 
 
-def gateway(door):
-    made = CanGateway("door")
-    made.set("door", door)
+def gateway(gateway):
+    made = CanGateway("gateway")
+    made.set("link", gateway)
     made.initialise()
     return made
 
 
 @pytest.mark.parametrize(
-    ("door", "what"),
+    ("gateway", "what"),
     [
         ("socketcnd:127.0.0.1:1", "did you mean 'socketcand'"),
         ("socketcand:127.0.0.1", "of the form 'socketcand:127.0.0.1:29536'"),
-        ("socketcand:127.0.0.1:99999", "cannot open the door"),
-        ("slcan-tcp:no.such.host.invalid:1", "cannot open the door"),
+        ("socketcand:127.0.0.1:99999", "cannot open the gateway"),
+        ("slcan-tcp:no.such.host.invalid:1", "cannot open the gateway"),
         ("slcan-pty:7", "of the form 'slcan-pty'"),
         ("virtual:", "of the form 'virtual:can0'"),
         ("python-can:socketcan:can0", "is a real bus; allow it with --hardware"),
@@ -287,15 +287,15 @@ def gateway(door):
         ("python-can:nosuchbus:x", "is a real bus"),
     ],
 )
-def test_doors_that_cannot_be_are_named(door, what, monkeypatch):
+def test_gateways_that_cannot_be_are_named(gateway, what, monkeypatch):
     monkeypatch.delenv(ALLOWED, raising=False)
     with pytest.raises(InputError, match=what):
-        gateway(door)
+        gateway(gateway)
 
 
 def test_an_unknown_bus_is_named_where_hardware_is_allowed(monkeypatch):
     monkeypatch.setenv(ALLOWED, "1")
-    with pytest.raises(InputError, match="cannot open the door 'python-can:nosuchbus:x'"):
+    with pytest.raises(InputError, match="cannot open the gateway 'python-can:nosuchbus:x'"):
         gateway("python-can:nosuchbus:x")
 
 
@@ -307,15 +307,15 @@ def test_a_port_in_use_is_named():
     gateway(first.get("reached_at")).close()
 
 
-def test_a_real_adapters_program_is_a_door_too(monkeypatch):
+def test_a_real_adapters_program_is_a_gateway_too(monkeypatch):
     """python-can's slcan interface at this side of a pseudo-terminal, an adapter at the other."""
     monkeypatch.delenv(ALLOWED, raising=False)
     with Served("slcan-pty") as adapter, Served(f"python-can:slcan:{adapter.at}:1000000") as served:
         adapter.send(Frame(0x7F0))
-        served.wait(lambda: len(served.heard) == 1)
+        served.wait(lambda: len(served.received) == 1)
         served.send(Frame(0x111, b"there"))
-        adapter.wait(lambda: len(adapter.heard) == 1)
-        assert adapter.heard[0][1] == Frame(0x111, b"there")
+        adapter.wait(lambda: len(adapter.received) == 1)
+        assert adapter.received[0][1] == Frame(0x111, b"there")
 
 
 class Deaf(Channel):
@@ -345,12 +345,12 @@ class Fed(Endpoint):
         pass
 
 
-@pytest.mark.parametrize("kind", [SocketcandDoor, SlcanDoor])
+@pytest.mark.parametrize("kind", [SocketcandGateway, SlcanGateway])
 @settings(deadline=None)
 @given(data=st.data())
-def test_no_text_whatsoever_breaks_a_door(kind, data):
+def test_no_text_whatsoever_breaks_a_gateway(kind, data):
     endpoint = Fed()
-    door = kind(endpoint)
+    gateway = kind(endpoint)
     words = [
         b"< ",
         b" >",
@@ -369,5 +369,5 @@ def test_no_text_whatsoever_breaks_a_door(kind, data):
     part = st.one_of(st.sampled_from(words), st.binary(max_size=12))
     for _ in range(3):
         endpoint.next = [b"".join(data.draw(st.lists(part, max_size=12)))]
-        for _, frame in door.poll():
-            door.send(0, frame)
+        for _, frame in gateway.poll():
+            gateway.send(0, frame)

@@ -26,7 +26,7 @@ class Listener(Component):
     tx = Output("1", "what it tells the bus", type=str)
     earliest = Output("s", "of all frames")
     latest = Output("s", "of all frames")
-    heard = Output("1", "frames", type=int)
+    received = Output("1", "frames", type=int)
 
     def start(self, t):
         self._can, self._late = {}, []
@@ -37,7 +37,7 @@ class Listener(Component):
                 self._late.append(t - when / 1e9)
 
     def outputs(self, t):
-        self.heard = len(self._late)
+        self.received = len(self._late)
         self.earliest = min(self._late, default=0.0)
         self.latest = max(self._late, default=0.0)
 '''
@@ -88,10 +88,10 @@ def run(folder, name, *, order, algorithm="jacobi", step="1 ms", engine="direct"
         ("gauss-seidel", (LISTENS, TALKER, CAN), 1),
     ],
 )
-def test_a_frame_is_heard_so_many_steps_after_its_end(tmp_path, algorithm, order, steps):
+def test_a_frame_is_received_so_many_steps_after_its_end(tmp_path, algorithm, order, steps):
     """More than ``steps`` of 1 ms, and less than one more; the bus itself is never wrong."""
     last, log = run(tmp_path, "run", order=order, algorithm=algorithm)
-    assert int(last["listener.heard"]) > 500
+    assert int(last["listener.received"]) > 500
     assert float(last["listener.earliest"]) == pytest.approx(steps * 1e-3, abs=5e-5)
     assert float(last["listener.latest"]) == pytest.approx((steps + 1) * 1e-3, abs=5e-5)
     _, reference = run(tmp_path, "reference", order=(CAN, TALKER, LISTENS))
@@ -163,34 +163,34 @@ source    = "invented"
 
 [links.bus]
 kind = "can-gateway"
-door = "{door}"
+link = "{gateway}"
 """
 DOOR = """
 step = "1 ms"
 profile = "boat"
 
 [components]
-can  = { fmu = "canbus", set = { nodes = "node door", bit_rate = 500000 } }
+can  = { fmu = "canbus", set = { nodes = "node gateway", bit_rate = 500000 } }
 node = { fmu = "can-traffic", set = { messages = "0x123 0.01 2" } }
-door = { fmu = "can-gateway", profile = "links.bus" }
+gateway = { fmu = "can-gateway", profile = "links.bus" }
 
 [connections]
 "node.tx"   = "can.tx.n1"
-"door.tx"   = "can.tx.n2"
+"gateway.tx"   = "can.tx.n2"
 "can.rx.n1" = "node.rx"
-"can.rx.n2" = "door.rx"
+"can.rx.n2" = "gateway.rx"
 """
 
 
-def through(folder, door):
+def through(folder, gateway):
     for name, text in (
-        ("hil_profiles/boat.toml", PROFILE.format(door=door)),
-        ("harness/rigs/door.toml", DOOR),
-        ("harness/trials/door.toml", 'rig = "door"\nstop = "100 ms"\n'),
+        ("hil_profiles/boat.toml", PROFILE.format(gateway=gateway)),
+        ("harness/rigs/gateway.toml", DOOR),
+        ("harness/trials/gateway.toml", 'rig = "gateway"\nstop = "100 ms"\n'),
     ):
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text(text, "utf-8")
-    trial = load_trial(str(folder / "harness/trials/door.toml"))
+    trial = load_trial(str(folder / "harness/trials/gateway.toml"))
     return run_trial(trial, folder / "run", engine="direct")
 
 

@@ -25,8 +25,8 @@ def asked(made, until_ms, step_ms=1, begin_ms=0, memory=None):
     memory, found = memory if memory is not None else {}, []
     for k in range(begin_ms, until_ms, step_ms):
         made.advance(k / 1e3, step_ms / 1e3)
-        heard = CanNode(memory).hear(made.get("tx"))
-        found += [(when, each.frame) for when, each in heard if isinstance(each, Transmit)]
+        received = CanNode(memory).hear(made.get("tx"))
+        found += [(when, each.frame) for when, each in received if isinstance(each, Transmit)]
     return found
 
 

@@ -7,9 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from seatrial.errors import InputError
-from seatrial.links.can.door_url import check_door, open_door
-from seatrial.links.can.door_yd_raw import read_line, written_line
 from seatrial.links.can.frame import Frame
+from seatrial.links.can.gateway_url import check_link, open_gateway
+from seatrial.links.can.gateway_yd_raw import read_line, written_line
 
 from .served import WAIT_S, Served
 
@@ -46,7 +46,7 @@ def test_a_program_reads_the_bus_and_sends_to_it():
         with socket.create_connection((host, int(port)), timeout=WAIT_S) as connection:
             file = connection.makefile("rwb", buffering=0)
             file.write(b"nonsense\r\n19F51323 01 2F 30 70 00 2F 30 70\r\n")
-            served.wait(lambda: [frame for _, frame in served.heard] == [FRAME])
+            served.wait(lambda: [frame for _, frame in served.received] == [FRAME])
             other = Frame(0x09F80123, bytes(8), True)
             served.send(Frame(0x123, b"base"), other)  # the first has no line
             line = file.readline().decode()
@@ -64,11 +64,11 @@ def test_everything_goes_to_one_address_by_udp():
             data, address = listener.recvfrom(1000)
             assert read_line(data.decode()) == FRAME
             listener.sendto(b"09F80123 01\r\n", address)
-            served.wait(lambda: [f for _, f in served.heard] == [Frame(0x09F80123, b"\1", True)])
+            served.wait(lambda: [f for _, f in served.received] == [Frame(0x09F80123, b"\1", True)])
 
 
 def test_mistakes_are_named():
     with pytest.raises(InputError, match=r"is not of the form 'yd-raw-tcp:127\.0\.0\.1:1457'"):
-        check_door("yd-raw-tcp:here")
+        check_link("yd-raw-tcp:here")
     with pytest.raises(InputError, match="did you mean"):
-        open_door("yd-raw:127.0.0.1:0")
+        open_gateway("yd-raw:127.0.0.1:0")

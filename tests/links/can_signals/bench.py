@@ -17,13 +17,13 @@ class Peer(Component):
     def __init__(self) -> None:
         super().__init__("peer")
         self.memory: dict = {}
-        self.heard: list[tuple[int, Frame]] = []
+        self.received: list[tuple[int, Frame]] = []
 
     def exchange(self, rx: str, now_ns: int, frames: Sequence[Frame]) -> str:
         node = CanNode(self.memory)
         for when, operation in node.hear(rx):
             if isinstance(operation, Transmit):
-                self.heard.append((when, operation.frame))
+                self.received.append((when, operation.frame))
         for frame in frames:
             node.send(now_ns, frame)
         return node.flush()

@@ -1,4 +1,4 @@
-"""Ports to frames and back, judged by canmatrix, which reads DBCs itself."""
+"""Ports to frames and back, evaluated by canmatrix, which reads DBCs itself."""
 
 import math
 import re
@@ -41,13 +41,13 @@ def test_all_layouts_are_as_another_reader_has_them():
         node.set("send", [big * rpm, across + 273.15, exact, share / 100.0, *[0.0] * 12])
         bench = Bench(node)
         bench.run(0.2)
-        mixed = [frame for _, frame in bench.peer.heard if frame.identifier == 291][-1]
+        mixed = [frame for _, frame in bench.peer.received if frame.identifier == 291][-1]
         found = decoded(ODD, mixed)
         assert found["Big"] == pytest.approx(big, abs=0.126)
         assert found["Across"] == pytest.approx(across, abs=0.251)
         assert found["Exact"] == pytest.approx(exact, rel=1e-6)
         assert found["Spare"] == 9.0
-        long = [frame for _, frame in bench.peer.heard if frame.extended][-1]
+        long = [frame for _, frame in bench.peer.received if frame.extended][-1]
         assert long.identifier == 2566844926 - 2**31
         assert decoded(ODD, long)["Share"] == pytest.approx(share)
         node = signals(
@@ -83,11 +83,11 @@ def test_cycles_are_those_of_the_dbc_whatever_the_step():
         node = signals(GLORIA, sends="ServoCommand.Rudder")
         bench = Bench(node, step_ns=step_ns)
         bench.run(0.5)
-        bits = bench.peer.heard[0][0]  # the first begins at the start of the run
+        bits = bench.peer.received[0][0]  # the first begins at the start of the run
         assert 80_000 < bits < 260_000
-        for number, (when, _) in enumerate(bench.peer.heard):
+        for number, (when, _) in enumerate(bench.peer.received):
             assert when - bits == number * 20_000_000
-        assert len(bench.peer.heard) in (23, 24, 25)
+        assert len(bench.peer.received) in (23, 24, 25)
 
 
 def test_a_message_without_cycle_goes_out_when_it_changes():
@@ -100,7 +100,7 @@ def test_a_message_without_cycle_goes_out_when_it_changes():
     bench.run(0.1)
     node.set("send.s1", 0.9)
     bench.run(0.1)
-    assert [frame.data[0] for _, frame in bench.peer.heard] == [0, 100, 180]
+    assert [frame.data[0] for _, frame in bench.peer.received] == [0, 100, 180]
     assert node.get("frames_sent") == 3
 
 
@@ -109,7 +109,7 @@ def test_values_beyond_the_limits_are_limited_and_counted():
     node.set("send", [-20.0 * DEG, 12.0 * DEG, *[0.0] * 14])
     bench = Bench(node)
     bench.run(0.1)
-    found = decoded(GLORIA, bench.peer.heard[-1][1])
+    found = decoded(GLORIA, bench.peer.received[-1][1])
     assert (found["Rudder"], found["Flap"], found["Sail"]) == (-12.0, 12.0, 90.0)
     assert node.get("limited") == node.get("frames_sent") == 5
     node.set("send", [12.0 * DEG, 30.0 * DEG, *[0.0] * 14])  # the very limits are none beyond
@@ -117,7 +117,7 @@ def test_values_beyond_the_limits_are_limited_and_counted():
     assert node.get("limited") == 5
 
 
-def test_what_is_not_heard_for_three_cycles_is_lost():
+def test_what_is_not_received_for_three_cycles_is_lost():
     node = signals(HYDRONE, receives="ThrusterCommand.PortPulse 1100 1900 us")
     bench = Bench(node, step_ns=1_000_000)
     command = Frame(256, (15000).to_bytes(2, "little") * 2)

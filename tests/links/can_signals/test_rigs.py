@@ -30,7 +30,7 @@ def test_thrusters_on_a_bus(tmp_path):
 
     with (result.folder / "signals.csv").open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
-    heard = [
+    received = [
         float(row["port_node.received.s1"]) for row in rows if row["port_node.valid.s1"] == "1"
     ]
     matrix = canmatrix.formats.loadp_flat(str(PROFILES / "hydrone.dbc"))
@@ -41,7 +41,9 @@ def test_thrusters_on_a_bus(tmp_path):
             for each in log
             if each.arbitration_id == 0x100
         ]
-    assert sorted({round(pulse * 1e6, 1) for pulse in heard}) == sorted(set(sent[: len(heard)]))
+    assert sorted({round(pulse * 1e6, 1) for pulse in received}) == sorted(
+        set(sent[: len(received)])
+    )
 
     # The command line tool reads the log as candump's.
     with (result.folder / "can.log").open(encoding="utf-8") as log:

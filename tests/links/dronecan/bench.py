@@ -34,12 +34,12 @@ class Driver(AbstractDriver):
 
     def __init__(self) -> None:
         super().__init__()
-        self.heard: list[CANFrame] = []
+        self.received: list[CANFrame] = []
         self.said: list[Frame] = []
 
     def receive(self, timeout=None):
         del timeout
-        return self.heard.pop(0) if self.heard else None
+        return self.received.pop(0) if self.received else None
 
     def send_frame(self, frame):
         self.said.append(Frame(frame.id, bytes(frame.data), frame.extended))
@@ -90,10 +90,10 @@ class Bench:
             if isinstance(operation, Transmit):
                 frame = operation.frame
                 self.frames.append((when, frame))
-                heard = CANFrame(
+                received = CANFrame(
                     frame.identifier, bytearray(frame.data), frame.extended, when / 1e9, when / 1e9
                 )
-                self.driver.heard.append(heard)
+                self.driver.received.append(received)
         self.peer.spin(0)
         for place, text in enumerate([*said, view.text]):
             self.bus.set(f"tx.n{place + 1}", text)

@@ -91,7 +91,7 @@ def test_a_wrong_checksum_is_malformed(hearer):
     assert hearer.transfers.malformed == 1
 
 
-def test_services_of_others_are_not_heard(hearer):
+def test_services_of_others_are_not_received(hearer):
     # GetNodeInfo, a request without data, from 9 to 5.
     frame = Frame((20 << 24) | (1 << 16) | 0x8000 | (5 << 8) | 0x80 | 9, b"\xc0", True)
     assert len(hearer.hear(frame)) == 1

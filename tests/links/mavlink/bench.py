@@ -6,10 +6,10 @@ from dataclasses import replace
 from pymavlink.dialects.v20 import all as mavlink
 
 from seatrial.links.geodesy import Origin
-from seatrial.links.mavlink.modes import flavour
+from seatrial.links.mavlink.modes import dialect
 from seatrial.links.mavlink.node import Node, Settings
 from seatrial.links.mavlink.parameters import vehicle_parameters
-from seatrial.links.mavlink.radio import Sender
+from seatrial.links.mavlink.transport import Sender
 from seatrial.links.mavlink.vehicle import Estimates, Identity, Vehicle
 
 ORIGIN = Origin(math.radians(-31.78), math.radians(-52.26), 2.0)
@@ -61,17 +61,17 @@ class Bench:
         failures=(),
         **settings,
     ):
-        kind = flavour(autopilot, submerged=submerged)
+        kind = dialect(autopilot, submerged=submerged)
         types = (mavlink.MAV_TYPE_SURFACE_BOAT, mavlink.MAV_TYPE_SUBMARINE)
         identity = Identity(7, 1, types[submerged], submerged, "4.5.1-beta", 12345, 10**15)
         self.vehicle = Vehicle(identity, kind, ORIGIN, kind.mode("hold"))
         self.vehicle.estimates = Estimates(position_valid=valid, heading_valid=valid)
-        self.air = WrittenDown()
+        self.transport = WrittenDown()
         self.settings = Settings(**settings)
         self.parameters = vehicle_parameters(self.vehicle, self.settings)
         self.ticks, self.pace = 0, 1.0
         self.node = Node(
-            *(self.vehicle, self.air, self.settings, self.parameters, plans),
+            *(self.vehicle, self.transport, self.settings, self.parameters, plans),
             clock=lambda: self.now / self.pace,
             failures=failures,
         )
@@ -97,7 +97,7 @@ class Bench:
 
     def command(self, number, *parameters, sender=STATION, system=7, component=1):
         """Give a COMMAND_LONG and return the result of its one answer, None without an answer."""
-        self.air.take("COMMAND_ACK")
+        self.transport.take("COMMAND_ACK")
         given = [*parameters, *[0.0] * (7 - len(parameters))]
         self.hear(
             mavlink.MAVLink_command_long_message(system, component, number, 0, *given), sender
@@ -105,7 +105,7 @@ class Bench:
         return self._answer(number, sender)
 
     def command_int(self, number, *parameters, frame, x, y, z, sender=STATION):
-        self.air.take("COMMAND_ACK")
+        self.transport.take("COMMAND_ACK")
         given = [*parameters, *[0.0] * (4 - len(parameters))]
         self.hear(
             mavlink.MAVLink_command_int_message(7, 1, frame, number, 0, 0, *given, x, y, z), sender
@@ -113,7 +113,7 @@ class Bench:
         return self._answer(number, sender)
 
     def _answer(self, number, sender):
-        answers = self.air.take("COMMAND_ACK")
+        answers = self.transport.take("COMMAND_ACK")
         if not answers:
             return None
         (answer,) = answers
@@ -123,7 +123,7 @@ class Bench:
 
     def enter(self, name):
         """Change the mode as a ground station does, and check that it is entered."""
-        mode = self.vehicle.flavour.mode(name)
+        mode = self.vehicle.dialect.mode(name)
         self.hear(mavlink.MAVLink_set_mode_message(7, 1, mode.custom_mode))
         assert self.vehicle.mode is mode
 
@@ -136,14 +136,14 @@ class Bench:
     def texts(self):
         """Return and forget what was said to people, whole sentences."""
         self.tick()
-        return [m.text for m in self.air.take("STATUSTEXT")]
+        return [m.text for m in self.transport.take("STATUSTEXT")]
 
     def request(self, number):
         """Ask for one message, and return the copies that came."""
-        self.air.take()
+        self.transport.take()
         result = self.command(mavlink.MAV_CMD_REQUEST_MESSAGE, number)
         kind = mavlink.mavlink_map[number].msgname
-        return result, self.air.take(kind, STATION.link)
+        return result, self.transport.take(kind, STATION.link)
 
     def one(self, number):
         """Ask for one message and return it."""

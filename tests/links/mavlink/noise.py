@@ -6,7 +6,7 @@ import struct
 from pymavlink.dialects.v20 import all as mavlink
 
 # What a vehicle listens to is tried more often than the rest of the dialect.
-HEARD = [
+RECEIVED = [
     mavlink.mavlink_map[number]
     for number in (
         *(0, 4, 11, 20, 21, 23, 39, 40, 41, 43, 44, 45, 47, 48, 51, 66, 69, 70, 73, 75, 76, 82, 84),
@@ -42,7 +42,7 @@ def value(random, kind):
 
 def message(random, system=None):
     """Return any message with any content, meant for ``system`` or for anybody."""
-    cls = random.choice(HEARD if random.random() < 0.7 else ALL)
+    cls = random.choice(RECEIVED if random.random() < 0.7 else ALL)
     # Lengths are given in the order of the frame.
     lengths = dict(zip(cls.ordered_fieldnames, cls.array_lengths, strict=True))
     fields = []
@@ -69,7 +69,7 @@ def _field(random, cls, name, kind, length, system):
 
 def sized(random, mav):
     """Return a frame of MAVLink 1 or 2 with a good checksum, and a payload of any length."""
-    cls = random.choice(HEARD if random.random() < 0.7 else ALL)
+    cls = random.choice(RECEIVED if random.random() < 0.7 else ALL)
     payload = random.randbytes(random.randint(0, _LONGEST))
     sequence, system, component = random.randrange(256), mav.srcSystem, mav.srcComponent
     if cls.id < 256 and random.random() < 0.3:

@@ -4,7 +4,7 @@ import pytest
 from pymavlink.dialects.v20 import all as mavlink
 from pymavlink.mavftp_op import FTP_OP, OP_Nack
 
-from seatrial.links.mavlink.radio import Sender
+from seatrial.links.mavlink.transport import Sender
 
 from .bench import STATION, Bench
 
@@ -43,7 +43,7 @@ def test_the_answer_goes_over_the_link_of_the_command():
     assert link == 1
 
 
-def test_what_seems_to_come_from_ourselves_is_not_heard():
+def test_what_seems_to_come_from_ourselves_is_not_received():
     bench = Bench()
     assert bench.command(ARM, 1, sender=Sender(7, 1, 0)) is None
     assert not bench.vehicle.armed
@@ -233,7 +233,7 @@ def test_all_modes_are_listed(submerged):
     bench = Bench(submerged=submerged)
     result, listed = bench.request(mavlink.MAVLINK_MSG_ID_AVAILABLE_MODES)
     assert result == OK
-    modes = bench.vehicle.flavour.modes
+    modes = bench.vehicle.dialect.modes
     assert [m.mode_index for m in listed] == list(range(1, len(modes) + 1))
     assert {m.number_modes for m in listed} == {len(modes)}
     assert [m.mode_name for m in listed] == [mode.shown for mode in modes]

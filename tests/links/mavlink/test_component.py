@@ -75,7 +75,7 @@ def until(component, wanted):
     return None
 
 
-def heard(component, station, kind, accept=lambda m: True):
+def received(component, station, kind, accept=lambda m: True):
     """Step until the ground station hears such a message, and return it."""
 
     def found():
@@ -89,11 +89,11 @@ def heard(component, station, kind, accept=lambda m: True):
 def test_a_ground_station_sees_arms_and_drives_it(started, connect, link):
     boat = started(links=link)
     station = connect(boat.urls[0])
-    heartbeat = heard(boat, station, "HEARTBEAT")
+    heartbeat = received(boat, station, "HEARTBEAT")
     assert (heartbeat.type, heartbeat.autopilot) == (11, 3)
     assert station.target_system == 1
     station.mav.command_long_send(1, 1, 400, 0, 1, 0, 0, 0, 0, 0, 0)
-    assert heard(boat, station, "COMMAND_ACK").result == mavlink.MAV_RESULT_ACCEPTED
+    assert received(boat, station, "COMMAND_ACK").result == mavlink.MAV_RESULT_ACCEPTED
     station.set_mode("MANUAL")
     until(boat, lambda: boat.get("mode") == "manual")
     assert boat.get("armed")
@@ -109,7 +109,7 @@ def test_it_calls_a_ground_station_that_listens(started):
     try:
         port = station.port.getsockname()[1]
         boat = started(links=f"udpout:127.0.0.1:{port}")
-        assert heard(boat, station, "HEARTBEAT").get_srcSystem() == 1
+        assert received(boat, station, "HEARTBEAT").get_srcSystem() == 1
         station.mav.heartbeat_send(6, 8, 0, 0, 4)
         until(boat, lambda: boat.get("ground_stations") == 1)
     finally:
@@ -122,9 +122,9 @@ def test_two_ground_stations_at_once(started, connect):
     until(boat, lambda: boat.get("ground_stations") == 2)
     one.mav.command_long_send(1, 1, 519, 0, 1, 0, 0, 0, 0, 0, 0)
     other.mav.command_long_send(1, 1, 512, 0, 148, 0, 0, 0, 0, 0, 0)
-    assert heard(boat, one, "COMMAND_ACK").command == 519
-    assert heard(boat, other, "AUTOPILOT_VERSION")
-    assert heard(boat, other, "COMMAND_ACK").command == 512
+    assert received(boat, one, "COMMAND_ACK").command == 519
+    assert received(boat, other, "AUTOPILOT_VERSION")
+    assert received(boat, other, "COMMAND_ACK").command == 512
     # No frame is lost on the way to either, whoever gets which.
     assert (one.mav_loss, other.mav_loss) == (0, 0)
 
@@ -135,8 +135,8 @@ def test_a_second_ground_station_on_the_same_endpoint_loses_nothing(started, con
     until(boat, lambda: boat.get("ground_stations") == 2)
     for _ in range(20):
         one.mav.command_long_send(1, 1, 512, 0, 148, 0, 0, 0, 0, 0, 0)
-        assert heard(boat, one, "AUTOPILOT_VERSION")
-    heard(boat, other, "HEARTBEAT")
+        assert received(boat, one, "AUTOPILOT_VERSION")
+    received(boat, other, "HEARTBEAT")
     assert (one.mav_loss, other.mav_loss) == (0, 0)
 
 
@@ -169,12 +169,12 @@ def test_truth_goes_out_beside_the_estimates(started, connect):
     boat.set("true_attitude", [math.pi / 2, 0.0, 0.0])
     boat.set("true_velocity", [1.0, 2.0, 0.0])
     station = connect(boat.urls[0])
-    truth = heard(boat, station, "SIM_STATE")
+    truth = received(boat, station, "SIM_STATE")
     assert (truth.lat_int, truth.alt) == (0, -4.0)
     # On its starboard side, what is abeam points down, and the weight acts to starboard.
     assert (truth.vn, truth.vd) == (pytest.approx(1.0), pytest.approx(2.0))
     assert (truth.yacc, truth.zacc) == (pytest.approx(-9.80665), pytest.approx(0.0, abs=1e-6))
-    assert heard(boat, station, "LOCAL_POSITION_NED").z == 3.0
+    assert received(boat, station, "LOCAL_POSITION_NED").z == 3.0
 
 
 def test_named_values_and_battery_come_from_ports(started, connect):
@@ -182,8 +182,8 @@ def test_named_values_and_battery_come_from_ports(started, connect):
     boat.set("named", [0.25, -0.5, 9, 9, 9, 9, 9, 9])
     boat.set("voltage", 15.5)
     station = connect(boat.urls[0])
-    assert heard(boat, station, "NAMED_VALUE_FLOAT", lambda m: m.name == "sail").value == -0.5
-    assert heard(boat, station, "BATTERY_STATUS").voltages[0] == 15500
+    assert received(boat, station, "NAMED_VALUE_FLOAT", lambda m: m.name == "sail").value == -0.5
+    assert received(boat, station, "BATTERY_STATUS").voltages[0] == 15500
 
 
 def test_signatures(started, connect, tmp_path):
@@ -204,7 +204,7 @@ def test_signatures(started, connect, tmp_path):
     assert not boat.get("armed")
     owner.mav.command_long_send(*arm)
     until(boat, lambda: boat.get("armed"))
-    assert heard(boat, owner, "COMMAND_ACK")._signed
+    assert received(boat, owner, "COMMAND_ACK")._signed
     boat.close()
     assert "signing_timestamp" in state.read_text()
 
@@ -226,7 +226,7 @@ def test_times_count_from_the_start_of_the_run(started, connect):
     boat.begin()
     try:
         station = connect(boat.urls[0])
-        clock = heard(boat, station, "SYSTEM_TIME")
+        clock = received(boat, station, "SYSTEM_TIME")
         assert clock.time_boot_ms < 60_000
         midnight = 1_770_249_600  # 2026-02-05 00:00 UTC, Unix time
         assert clock.time_unix_usec == midnight * 10**6 + clock.time_boot_ms * 1000
@@ -292,7 +292,7 @@ def test_the_profile_says_who_it_is(started, connect):
     parameters = load_profile("hydrone").parameters("links.ground")
     boat = started(**{**parameters, "links": "udpin:127.0.0.1:0"})
     station = connect(boat.urls[0])
-    heartbeat = heard(boat, station, "HEARTBEAT")
+    heartbeat = received(boat, station, "HEARTBEAT")
     assert (heartbeat.get_srcSystem(), heartbeat.type, heartbeat.autopilot) == (1, 11, 3)
-    home = heard(boat, station, "HOME_POSITION")
+    home = received(boat, station, "HOME_POSITION")
     assert (home.latitude, home.longitude) == (-317800000, -522600000)

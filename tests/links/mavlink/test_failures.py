@@ -10,7 +10,7 @@ from seatrial.errors import InputError
 from seatrial.links.mavlink.service_failures import UNITS, failing_units
 
 from .bench import Bench
-from .test_component import connect, heard, started, until  # noqa: F401  fixtures
+from .test_component import connect, received, started, until  # noqa: F401  fixtures
 
 INJECT = mavlink.MAV_CMD_INJECT_FAILURE
 ACCEPTED, DENIED = mavlink.MAV_RESULT_ACCEPTED, mavlink.MAV_RESULT_DENIED
@@ -130,10 +130,10 @@ def test_they_come_out_at_ports_and_back_in_telemetry(started, connect):  # noqa
         # As the receiver does it.
         boat.set("position_valid", name == "none")
         fix = mavlink.GPS_FIX_TYPE_3D_FIX if name == "none" else mavlink.GPS_FIX_TYPE_NO_FIX
-        heard(boat, station, "GPS_RAW_INT", lambda m, fix=fix: m.fix_type == fix)
+        received(boat, station, "GPS_RAW_INT", lambda m, fix=fix: m.fix_type == fix)
     boat.set("imu_valid", False)
     bits = mavlink.MAV_SYS_STATUS_SENSOR_3D_GYRO | mavlink.MAV_SYS_STATUS_SENSOR_3D_ACCEL
-    status = heard(
+    status = received(
         *(boat, station, "SYS_STATUS"), lambda m: not m.onboard_control_sensors_health & bits
     )
     assert status.onboard_control_sensors_present & bits == bits

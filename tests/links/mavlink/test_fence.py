@@ -109,7 +109,7 @@ class Fenced(Bench):
         super().__init__(**bench)
         assert upload(self, items, FENCE) == 0
         self.tick()
-        self.air.take()
+        self.transport.take()
 
     def be(self, north, east=0.0, down=0.0):
         self.measure(position_n=(north, east, down))

@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from pymavlink.dialects.v20 import all as mavlink
 
 from seatrial.links.mavlink.codec import Codec
-from seatrial.links.mavlink.radio import Sender
 from seatrial.links.mavlink.signing import EPOCH, UNIT_S, Signing
 from seatrial.links.mavlink.state_file import StateFile
+from seatrial.links.mavlink.transport import Sender
 
 from .bench import Bench
 from .ground import FENCE, MISSION, RALLY, content, download
@@ -46,9 +46,9 @@ def some_bench(random):
 
 
 def deliver(bench, codec, data):
-    for heard in codec.decode(data):
-        sender = Sender(heard.get_srcSystem(), heard.get_srcComponent(), 0)
-        bench.node.receive(heard, sender, bench.now)
+    for received in codec.decode(data):
+        sender = Sender(received.get_srcSystem(), received.get_srcComponent(), 0)
+        bench.node.receive(received, sender, bench.now)
     bench.tick()
 
 
@@ -62,7 +62,7 @@ def what_was_told(bench):
 
 def is_sane(bench):
     v = bench.vehicle
-    assert v.flavour.mode(v.mode.name) is v.mode
+    assert v.dialect.mode(v.mode.name) is v.mode
     assert all(-1.0 <= stick <= 1.0 for stick in v.sticks)
     assert all(abs(x) <= 1e6 for x in v.home_n)
     assert v.target is None or all(abs(x) <= 1e6 for x in v.target.position)
@@ -72,83 +72,83 @@ def is_sane(bench):
 
 
 def bytes_change_nothing(random):
-    bench, heard = some_bench(random), codec()
+    bench, received = some_bench(random), codec()
     before = what_was_told(bench)
     for _ in range(random.randint(1, 10)):
-        deliver(bench, heard, random.randbytes(random.randint(0, 300)))
+        deliver(bench, received, random.randbytes(random.randint(0, 300)))
     assert what_was_told(bench) == before
 
 
 def messages_leave_it_sane(random):
-    bench, heard, sender = some_bench(random), codec(), peer()
+    bench, received, sender = some_bench(random), codec(), peer()
     for _ in range(random.randint(1, MOST_MESSAGES)):
-        deliver(bench, heard, message(random).pack(sender))
+        deliver(bench, received, message(random).pack(sender))
     bench.wait(0.05)
     is_sane(bench)
 
 
 def signed_messages_leave_it_sane(random):
-    bench, heard, sender = some_bench(random), codec(KEY), peer(KEY)
+    bench, received, sender = some_bench(random), codec(KEY), peer(KEY)
     for _ in range(random.randint(1, MOST_MESSAGES)):
-        deliver(bench, heard, message(random).pack(sender))
-    assert heard.refused == 0
+        deliver(bench, received, message(random).pack(sender))
+    assert received.refused == 0
     is_sane(bench)
 
 
 def lengths_leave_it_sane(random):
-    bench, heard, sender = some_bench(random), codec(), peer()
+    bench, received, sender = some_bench(random), codec(), peer()
     for _ in range(random.randint(1, MOST_MESSAGES)):
         frame = bytearray(sized(random, sender))
         if random.random() < 0.3:  # another length, or other flags
             frame[random.randrange(3)] ^= 1 << random.randrange(8)
-        deliver(bench, heard, bytes(frame))
+        deliver(bench, received, bytes(frame))
     is_sane(bench)
 
 
 def broken_frames_change_nothing(random):
-    bench, heard, sender = some_bench(random), codec(), peer()
+    bench, received, sender = some_bench(random), codec(), peer()
     before = what_was_told(bench)
     for _ in range(random.randint(1, MOST_MESSAGES)):
         frame = bytearray(message(random).pack(sender))
         # A checksum finds each single error, but for those in the length and the flags: they make
         # it another frame.
         frame[random.randrange(3, len(frame))] ^= 1 << random.randrange(8)
-        deliver(bench, heard, bytes(frame))
+        deliver(bench, received, bytes(frame))
     assert what_was_told(bench) == before
 
 
 def a_stranger_changes_nothing(random):
-    bench, heard = some_bench(random), codec(KEY)
+    bench, received = some_bench(random), codec(KEY)
     strangers = [peer(), peer(OTHER_KEY)]
     before = what_was_told(bench)
     for _ in range(random.randint(1, MOST_MESSAGES)):
         stranger = random.choice(strangers)
         data = message(random).pack(stranger) if random.random() < 0.8 else sized(random, stranger)
-        deliver(bench, heard, data)
+        deliver(bench, received, data)
     assert bench.air.take("COMMAND_ACK") == []
     assert what_was_told(bench) == before
 
 
 def what_is_replayed_changes_nothing(random):
-    bench, heard, owner = some_bench(random), codec(KEY), peer(KEY)
+    bench, received, owner = some_bench(random), codec(KEY), peer(KEY)
     frames = [message(random).pack(owner) for _ in range(random.randint(1, MOST_MESSAGES))]
     for frame in frames:
-        heard.decode(frame)
+        received.decode(frame)
     before = what_was_told(bench)
     for frame in frames:
-        deliver(bench, heard, frame)
-    assert heard.refused == len(frames)
+        deliver(bench, received, frame)
+    assert received.refused == len(frames)
     assert what_was_told(bench) == before
 
 
 def what_is_for_another_changes_nothing(random):
     key = random.choice([None, KEY])
-    bench, heard, sender = some_bench(random), codec(key), peer(key)
+    bench, received, sender = some_bench(random), codec(key), peer(key)
     before = what_was_told(bench)
     for _ in range(random.randint(1, MOST_MESSAGES)):
         said = message(random, system=OTHER)
         if hasattr(said, "target_system") or hasattr(said, "target"):
-            deliver(bench, heard, said.pack(sender))
+            deliver(bench, received, said.pack(sender))
     assert bench.air.take("COMMAND_ACK") == []
     assert what_was_told(bench) == before
 
@@ -182,9 +182,9 @@ def test_the_cases_reach_what_they_are_about():
     obeyed = 0
     for seed in range(60):
         drawn = random.Random(seed)
-        bench, heard, sender = some_bench(drawn), codec(), peer()
+        bench, received, sender = some_bench(drawn), codec(), peer()
         before = what_was_told(bench)
         for _ in range(MOST_MESSAGES):
-            deliver(bench, heard, message(drawn).pack(sender))
+            deliver(bench, received, message(drawn).pack(sender))
         obeyed += what_was_told(bench) != before
     assert obeyed > 15

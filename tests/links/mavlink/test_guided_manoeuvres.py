@@ -112,7 +112,7 @@ def test_a_speed_counts_for_places_until_the_mode_ends():
 
 def test_a_px4_shows_hold_while_it_goes_elsewhere():
     boat = Bench(autopilot="px4")
-    hold = boat.vehicle.flavour.mode("hold")
+    hold = boat.vehicle.dialect.mode("hold")
     assert boat.command_int(REPOSITION, -1.0, 0, **place()) == DENIED
     assert boat.command_int(REPOSITION, -1.0, 1, **place()) == OK
     assert boat.vehicle.mode.name == "guided"  # to guidance

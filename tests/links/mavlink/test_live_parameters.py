@@ -17,7 +17,7 @@ def put(bench: Bench, name: str, value: float) -> None:
 
 
 def guided_alone(bench: Bench) -> None:
-    """Arm, go into guided mode, and let a ground station be heard once."""
+    """Arm, go into guided mode, and let a ground station be received once."""
     bench.enter("guided")
     bench.arm()
     bench.heartbeat()
@@ -52,7 +52,7 @@ def test_fs_gcs_enable_switches_it_off() -> None:
 
 @pytest.mark.parametrize(("enabled", "mode"), [(1, "hold"), (0, "manual")])
 def test_fs_timeout_and_fs_thr_enable_are_for_the_sticks(enabled: int, mode: str) -> None:
-    bench = Bench(stick_timeout=30.0)
+    bench = Bench(manual_timeout=30.0)
     bench.enter("manual")
     bench.arm()
     put(bench, "FS_TIMEOUT", 0.5)

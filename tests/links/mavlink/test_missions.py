@@ -52,7 +52,7 @@ class Mission(Bench):
         assert upload(self, items) == 0
         self.measure(position_n=HERE)
         self.tick()
-        self.air.take()
+        self.transport.take()
 
     @property
     def leg(self):
@@ -73,12 +73,12 @@ class Mission(Bench):
 
     def reached(self):
         """Return and forget the items that were told to be reached."""
-        return [m.seq for m in self.air.take("MISSION_ITEM_REACHED", None)]
+        return [m.seq for m in self.transport.take("MISSION_ITEM_REACHED", None)]
 
     def current(self):
-        self.air.take("MISSION_CURRENT")
+        self.transport.take("MISSION_CURRENT")
         assert self.command(mavlink.MAV_CMD_REQUEST_MESSAGE, 42) == OK
-        (m,) = self.air.take("MISSION_CURRENT", STATION.link)
+        (m,) = self.transport.take("MISSION_CURRENT", STATION.link)
         return m.seq, m.mission_state
 
     def ends(self, most=20):

@@ -2,7 +2,7 @@ import pytest
 from pymavlink import mavutil
 from pymavlink.dialects.v20 import all as mavlink
 
-from seatrial.links.mavlink.modes import flavour
+from seatrial.links.mavlink.modes import dialect
 
 from .bench import STATION, Bench
 
@@ -12,7 +12,7 @@ from .bench import STATION, Bench
     [(False, mavutil.mode_mapping_rover), (True, mavutil.mode_mapping_sub)],
 )
 def test_ardupilot_numbers_are_those_of_ground_stations(submerged, numbers):
-    modes = flavour("ardupilotmega", submerged=submerged).modes
+    modes = dialect("ardupilotmega", submerged=submerged).modes
     assert {mode.custom_mode: mode.shown for mode in modes}.items() <= numbers.items()
 
 
@@ -31,7 +31,7 @@ PX4_NAMES = {
 
 @pytest.mark.parametrize("submerged", [False, True])
 def test_px4_numbers_are_those_of_ground_stations(submerged):
-    for mode in flavour("px4", submerged=submerged).modes:
+    for mode in dialect("px4", submerged=submerged).modes:
         flags = 0x51 if mode.name == "manual" else 0x1D
         assert mavutil.interpret_px4_mode(flags, mode.custom_mode) == PX4_NAMES[mode.name]
 
@@ -39,7 +39,7 @@ def test_px4_numbers_are_those_of_ground_stations(submerged):
 @pytest.mark.parametrize("autopilot", ["ardupilotmega", "px4"])
 @pytest.mark.parametrize("submerged", [False, True])
 def test_numbers_and_names_are_unique_and_found(autopilot, submerged):
-    kind = flavour(autopilot, submerged=submerged)
+    kind = dialect(autopilot, submerged=submerged)
     for mode in kind.modes:
         assert kind.mode(mode.name) is mode
         assert kind.by_custom_mode(mode.custom_mode) is mode
@@ -48,7 +48,7 @@ def test_numbers_and_names_are_unique_and_found(autopilot, submerged):
 @pytest.mark.parametrize("autopilot", ["ardupilotmega", "px4"])
 def test_modes_are_told_one_by_one_or_all_at_once(autopilot):
     bench = Bench(autopilot=autopilot, submerged=True)
-    number, modes = mavlink.MAVLINK_MSG_ID_AVAILABLE_MODES, bench.vehicle.flavour.modes
+    number, modes = mavlink.MAVLINK_MSG_ID_AVAILABLE_MODES, bench.vehicle.dialect.modes
 
     def told(index):
         bench.air.take()
@@ -71,8 +71,8 @@ NAN, INF = float("nan"), float("inf")
 
 @pytest.mark.parametrize("sub", [0.0, NAN])
 def test_ardupilot_reads_one_number(sub):
-    assert flavour("ardupilotmega", submerged=False).by_command(15.0, sub).name == "guided"
-    assert flavour("ardupilotmega", submerged=True).by_command(19.0, sub).name == "manual"
+    assert dialect("ardupilotmega", submerged=False).by_command(15.0, sub).name == "guided"
+    assert dialect("ardupilotmega", submerged=True).by_command(19.0, sub).name == "manual"
 
 
 @pytest.mark.parametrize(
@@ -86,10 +86,10 @@ def test_ardupilot_reads_one_number(sub):
     ],
 )
 def test_px4_reads_main_and_sub_mode(main, sub, name):
-    assert flavour("px4", submerged=False).by_command(main, sub).name == name
+    assert dialect("px4", submerged=False).by_command(main, sub).name == name
 
 
 @pytest.mark.parametrize("autopilot", ["ardupilotmega", "px4"])
 @pytest.mark.parametrize("main", [NAN, INF, -INF, -1.0, 99.0, 1e30, 2.0**32])
 def test_what_is_no_mode_is_none(autopilot, main):
-    assert flavour(autopilot, submerged=False).by_command(main, 0.0) is None
+    assert dialect(autopilot, submerged=False).by_command(main, 0.0) is None

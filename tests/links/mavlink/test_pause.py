@@ -14,7 +14,7 @@ from seatrial.links.mavlink.pause import POLL_S, Interruption, stand_still
 
 from .bench import Bench
 from .ground import WAYPOINT, item
-from .test_component import connect, heard, made, started, until  # noqa: F401  fixtures
+from .test_component import connect, made, received, started, until  # noqa: F401  fixtures
 
 SPEEDUP = "SIM_SPEEDUP"
 
@@ -57,11 +57,11 @@ class Standing:
         self.said += [(self.wall, m) for m in self.bench.air.take()]
         return bool(due)
 
-    def heard(self, kind):
+    def received(self, kind):
         return [(at, m) for at, m in self.said if m.get_type() == kind]
 
     def texts(self):
-        return [m.text for _, m in self.heard("STATUSTEXT")]
+        return [m.text for _, m in self.received("STATUSTEXT")]
 
 
 def beats(until_s):
@@ -102,7 +102,7 @@ def test_heartbeats_go_on_and_everything_else_stands_still():
     bench.air.take()
     standing = Standing([*beats(60), (60.0, put(SPEEDUP, 1.0))], bench)
     standing.run()
-    ours = [at for at, _ in standing.heard("HEARTBEAT")]
+    ours = [at for at, _ in standing.received("HEARTBEAT")]
     # To both links.
     assert len(ours) == pytest.approx(2 * 60, abs=2)
     others = {m.get_type() for _, m in standing.said} - {"HEARTBEAT"}
@@ -118,7 +118,7 @@ def test_parameters_are_listed_read_and_set():
     script = [(1.0, request), (9.0, put("WP_RADIUS", 5.0)), *beats(20), (20.0, put(SPEEDUP, 1.0))]
     standing = Standing(script)
     standing.run()
-    values = [(at, m) for at, m in standing.heard("PARAM_VALUE") if at < 9.0 and at > 0.9]
+    values = [(at, m) for at, m in standing.received("PARAM_VALUE") if at < 9.0 and at > 0.9]
     count = len(standing.table.names)
     assert [m.param_index for _, m in values] == list(range(count))
     # 100 a second.
@@ -135,8 +135,8 @@ def test_commands_are_carried_out_and_time_sync_stands_still():
     standing = Standing(script, bench)
     standing.run()
     assert bench.vehicle.armed
-    assert [m.result for _, m in standing.heard("COMMAND_ACK")] == [mavlink.MAV_RESULT_ACCEPTED]
-    assert [m.tc1 for _, m in standing.heard("TIMESYNC")] == [3_000_000_000] * 2
+    assert [m.result for _, m in standing.received("COMMAND_ACK")] == [mavlink.MAV_RESULT_ACCEPTED]
+    assert [m.tc1 for _, m in standing.received("TIMESYNC")] == [3_000_000_000] * 2
 
 
 def test_a_mission_is_uploaded_with_requests_again_where_one_was_lost():
@@ -145,9 +145,9 @@ def test_a_mission_is_uploaded_with_requests_again_where_one_was_lost():
     items = [(3.5, item(0)), (3.8, item(1, WAYPOINT))]
     standing = Standing([(1.0, count), *items, *beats(6), (6.0, put(SPEEDUP, 1.0))])
     standing.run()
-    asked = [(round(at), m.seq) for at, m in standing.heard("MISSION_REQUEST_INT")]
+    asked = [(round(at), m.seq) for at, m in standing.received("MISSION_REQUEST_INT")]
     assert asked == [(1, 0), (2, 0), (3, 0), (4, 1)]
-    assert [m.type for _, m in standing.heard("MISSION_ACK")] == [0]
+    assert [m.type for _, m in standing.received("MISSION_ACK")] == [0]
 
 
 def test_nobody_is_missed_because_of_a_pause():

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pymavlink.dialects.v20 import all as mavlink
 
-from seatrial.links.mavlink.modes import flavour
+from seatrial.links.mavlink.modes import dialect
 from seatrial.links.mavlink.parameter_definition import INT8, INT16, INT32, REAL32, Definition
 from seatrial.links.mavlink.parameter_table import ParameterTable
 from seatrial.links.mavlink.service_parameters import RATE, ParameterService
@@ -35,11 +35,11 @@ class ParameterBench:
     """The service alone; time passes in steps of 10 ms."""
 
     def __init__(self, autopilot: str = "ardupilotmega") -> None:
-        kind = flavour(autopilot, submerged=False)
+        kind = dialect(autopilot, submerged=False)
         self.vehicle = Vehicle(BOAT, kind, ORIGIN, kind.mode("hold"))
-        self.air = WrittenDown()
+        self.transport = WrittenDown()
         self.table = ParameterTable(DEFINITIONS, Settings())
-        self.service = ParameterService(self.vehicle, self.air, self.table)
+        self.service = ParameterService(self.vehicle, self.transport, self.table)
         self.ticks = 0
 
     def hear(self, message, sender=STATION) -> None:
@@ -55,7 +55,7 @@ class ParameterBench:
 
     def read(self, name: str = "", index: int = -1, sender=STATION) -> list:
         self.hear(mavlink.MAVLink_param_request_read_message(7, 1, name.encode(), index), sender)
-        return self.air.take(link=sender.link)
+        return self.transport.take(link=sender.link)
 
     def set(self, name: str, value: float, kind: int = REAL32, sender=STATION) -> None:
         self.hear(mavlink.MAVLink_param_set_message(7, 1, name.encode(), value, kind), sender)

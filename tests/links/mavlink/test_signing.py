@@ -63,7 +63,7 @@ def test_all_links_sign_with_their_own_number_and_rising_timestamps():
     assert all(reader.parse_buffer(f)[0]._signed for f in frames)
 
 
-def test_signed_commands_are_heard(guarded):
+def test_signed_commands_are_received(guarded):
     sender = station()
     assert [m.command for m in guarded.decode(ARM.pack(sender) + ARM.pack(sender))] == [400, 400]
 
@@ -79,14 +79,14 @@ def test_commands_with_a_wrong_signature_are_not(guarded):
     assert guarded.refused == 1
 
 
-def test_a_frame_is_heard_once(guarded):
+def test_a_frame_is_received_once(guarded):
     frame = ARM.pack(station())
     assert len(guarded.decode(frame)) == 1
     assert guarded.decode(frame) == []
     assert guarded.refused == 1
 
 
-def test_a_frame_heard_over_one_link_is_not_heard_over_another():
+def test_a_frame_heard_over_one_link_is_not_received_over_another():
     shared = signing()
     frame = ARM.pack(station())
     assert len(Codec(7, 1, 0, shared).decode(frame)) == 1
@@ -131,7 +131,7 @@ def test_frames_of_an_earlier_run_are_refused(tmp_path):
     # The clock has not moved: nothing but the file tells that this frame is old.
     again = Codec(7, 1, 0, signing(path))
     assert again.decode(frame) == []
-    # The owner hears us, takes our time and is heard again.
+    # The owner hears us, takes our time and is received again.
     sender.parse_buffer(again.encode(HEARTBEAT))
     assert len(again.decode(ARM.pack(sender))) == 1
 

@@ -2,7 +2,7 @@ import pytest
 from pymavlink.dialects.v20 import all as mavlink
 
 from seatrial.errors import InputError
-from seatrial.links.mavlink.radio import Sender
+from seatrial.links.mavlink.transport import Sender
 
 from .bench import OTHER_STATION, STATION, Bench
 

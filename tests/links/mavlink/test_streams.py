@@ -26,8 +26,8 @@ def test_what_a_ground_station_needs_comes_unasked():
     bench = Bench()
     bench.measure(voltage=16.0, pressure=101_325.0)
     bench.wait(4.0)
-    heard = {m.get_type() for m in bench.air.take(link=0)}
-    assert heard >= {
+    received = {m.get_type() for m in bench.air.take(link=0)}
+    assert received >= {
         *("HEARTBEAT", "SYS_STATUS", "SYSTEM_TIME", "GLOBAL_POSITION_INT", "LOCAL_POSITION_NED"),
         *("ATTITUDE", "ATTITUDE_QUATERNION", "GPS_RAW_INT", "VFR_HUD", "RC_CHANNELS", "ALTITUDE"),
         *("SERVO_OUTPUT_RAW", "BATTERY_STATUS", "HOME_POSITION", "EXTENDED_SYS_STATE"),

@@ -409,7 +409,7 @@ def test_frames_of_submarines():
     assert upload(bench, listed(one(z=-2e6))) == BAD_X
 
 
-# ---------------------------------------------------------------------- bad air
+# ---------------------------------------------------------------------- bad transport
 
 
 @pytest.mark.parametrize("seed", range(12))

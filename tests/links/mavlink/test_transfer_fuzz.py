@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pymavlink.dialects.v20 import all as mavlink
 
-from seatrial.links.mavlink.radio import Sender
+from seatrial.links.mavlink.transport import Sender
 
 from .bench import OTHER_STATION, STATION, Bench
 from .ground import ALL, FENCE, MISSION, RALLY, content, download, item, north_of, upload

@@ -55,7 +55,7 @@ def test_datagrams_are_sentences():
             until(bench, lambda: commanded(bench))
 
 
-def test_clients_of_a_server_hear_and_are_heard():
+def test_clients_of_a_server_hear_and_are_received():
     with talking("tcpin:127.0.0.1:0") as bench:
         where = bench.one.get("reached_at").removeprefix("tcp:").split(":")
         peers = [socket.create_connection((where[0], int(where[1])), WAIT_S) for _ in range(2)]

@@ -1,4 +1,4 @@
-"""What is heard: sentences that pynmea2 wrote, sentences as plotters send them, and noise."""
+"""What is received: sentences that pynmea2 wrote, sentences as plotters send them, and noise."""
 
 import random
 
@@ -30,7 +30,7 @@ def rmb(status="A", arrived="V"):
     )
 
 
-def heard(*sentences, **values):
+def received(*sentences, **values):
     bench = Bench(**{**HOME, "sentences": "", **values})
     bench.hear(*sentences)
     bench.run(0.2)
@@ -38,32 +38,32 @@ def heard(*sentences, **values):
 
 
 def test_a_heading_is_commanded():
-    bench = heard(said("HSC", "123.5", "T", "", "M"))
+    bench = received(said("HSC", "123.5", "T", "", "M"))
     assert bench.one.get("target_valid")
     assert bench.one.get("target_kind") == "heading"
     assert bench.one.get("target_heading") == pytest.approx(123.5 * DEG)
-    magnetic = heard(said("HSC", "", "T", "10.0", "M"))
+    magnetic = received(said("HSC", "", "T", "10.0", "M"))
     assert magnetic.one.get("target_heading") == pytest.approx(347.0 * DEG)
-    report = heard(said("HSC", "123.5", "T", "", "M", "R"))
+    report = received(said("HSC", "123.5", "T", "", "M", "R"))
     assert (report.one.get("lines_refused"), report.one.get("sentences_received")) == (0, 1)
     assert not report.one.get("target_valid")
 
 
 def test_an_autopilot_is_steered():
-    bench = heard(apb())
+    bench = received(apb())
     assert bench.one.get("target_heading") == pytest.approx(45.0 * DEG)
     assert bench.one.get("cross_track") == pytest.approx(185.2)  # to starboard: it is to go left
     assert bench.one.get("waypoint") == "MARK"
-    assert heard(apb(side="R")).one.get("cross_track") == pytest.approx(-185.2)
-    assert heard(apb("45.0", "M")).one.get("target_heading") == pytest.approx(22.0 * DEG)
-    assert not heard(apb(gps="V")).one.get("target_valid")
-    both = heard(said("HSC", "123.5", "T", "", "M"), apb())
+    assert received(apb(side="R")).one.get("cross_track") == pytest.approx(-185.2)
+    assert received(apb("45.0", "M")).one.get("target_heading") == pytest.approx(22.0 * DEG)
+    assert not received(apb(gps="V")).one.get("target_valid")
+    both = received(said("HSC", "123.5", "T", "", "M"), apb())
     assert both.one.get("target_heading") == pytest.approx(123.5 * DEG)
     assert both.one.get("cross_track") == pytest.approx(185.2)
 
 
 def test_a_waypoint_is_named():
-    bench = heard(rmb())
+    bench = received(rmb())
     assert bench.one.get("target_kind") == "position"
     north, east, down = bench.one.get("target_position")
     assert north == pytest.approx(0.012 * 60.0 * 1852.0, rel=5e-3)
@@ -71,13 +71,13 @@ def test_a_waypoint_is_named():
     assert down == 0.0
     assert bench.one.get("cross_track") == pytest.approx(-92.6)
     assert not bench.one.get("arrived")
-    assert heard(rmb(arrived="A")).one.get("arrived")
-    assert not heard(rmb(status="V")).one.get("target_valid")
-    assert heard(rmb(), apb()).one.get("target_kind") == "heading"
+    assert received(rmb(arrived="A")).one.get("arrived")
+    assert not received(rmb(status="V")).one.get("target_valid")
+    assert received(rmb(), apb()).one.get("target_kind") == "heading"
 
 
 def test_orders_count_for_their_time():
-    bench = heard(apb(), order_timeout=2.0)
+    bench = received(apb(), order_timeout=2.0)
     bench.run(1.7)
     assert bench.one.get("target_valid")
     bench.run(0.3)
@@ -90,7 +90,7 @@ def test_orders_count_for_their_time():
 
 def test_sentences_of_plotters():
     """As the manuals and logs of others have them; other sentences and AIS are no mistakes."""
-    bench = heard(
+    bench = received(
         b"$GPAPB,A,A,0.10,R,N,V,V,011,M,DEST,011,M,011,M*3C\r\n",
         b"$GPRMB,A,0.66,L,003,004,4917.24,N,12309.57,W,001.3,052.5,000.5,V*20\r\n",
         b"$GPGGA,123519,4807.038,N,01131.000,E,1,08,0.9,545.4,M,46.9,M,,*47\r\n",
@@ -105,7 +105,7 @@ def test_sentences_of_plotters():
 
 def test_pieces_and_wrong_lines():
     whole = apb()
-    bench = heard(whole[:10], whole[10:40])
+    bench = received(whole[:10], whole[10:40])
     assert bench.one.get("sentences_received") == 0
     bench.hear(whole[40:])
     bench.run(0.1)
@@ -120,10 +120,10 @@ def test_pieces_and_wrong_lines():
         said("HSC", "x", "T", "", "M"),
         said("RMB", "A", "0.05", "R", "A", "M\0"),  # a right checksum
     )
-    bench = heard(*wrong)
+    bench = received(*wrong)
     assert bench.one.get("lines_refused") == len(wrong)
     assert not bench.one.get("target_valid")
-    garbled = heard(b"$GPGGA,1235" + whole)  # a line that was cut by another
+    garbled = received(b"$GPGGA,1235" + whole)  # a line that was cut by another
     assert garbled.one.get("target_valid")
 
 

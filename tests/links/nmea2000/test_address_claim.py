@@ -127,7 +127,7 @@ def test_the_lower_name_defends_what_it_has():
     low, high = Ours(100, 35), Ours(200, 35)
     said = settle([low, high], start_ms={1: 1000})
     assert (low.address, high.address) == (35, 36)
-    # The newcomer has heard nothing before it claims; it is told, and goes.
+    # The newcomer has received nothing before it claims; it is told, and goes.
     assert [(name, source) for _, name, source in said] == [
         *((100, 35), (200, 35), (100, 35), (200, 36))
     ]
@@ -224,7 +224,7 @@ def test_a_node_with_no_free_address_cannot_claim():
     assert [source for _, source in other.claim.take()] == [34]
 
 
-def test_addresses_that_were_only_heard_sending_are_left_alone():
+def test_addresses_that_were_only_received_sending_are_left_alone():
     node = Ours(1000, 35)
     node.start(0)
     node.claim.hear_source(36)

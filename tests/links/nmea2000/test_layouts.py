@@ -101,7 +101,7 @@ LAYOUTS = {
         (40, 3, False, 1, 2),
     ],
 }
-HEARD = {
+RECEIVED = {
     "bus_heading": 1.2345 - 0.0123 + 0.0456,
     "bus_rate_of_turn": -0.02,
     "bus_attitude": [0.11, -0.22, 0.33],
@@ -189,11 +189,11 @@ def reader():
     return network.nodes["node"]
 
 
-@pytest.mark.parametrize("name", HEARD)
+@pytest.mark.parametrize("name", RECEIVED)
 def test_a_node_hears_each_field_from_its_place(reader, name):
     found = reader.get(name)
-    found = found[: len(HEARD[name])] if isinstance(HEARD[name], list) else found
-    assert found == pytest.approx(HEARD[name], rel=2e-4, abs=2e-3)
+    found = found[: len(RECEIVED[name])] if isinstance(RECEIVED[name], list) else found
+    assert found == pytest.approx(RECEIVED[name], rel=2e-4, abs=2e-3)
 
 
 def sent_field(pgn, first, width, **inputs):
@@ -214,7 +214,7 @@ def test_angles_are_sent_within_their_circle(turns):
         assert yaw == round(angle * 1e4) % (1 << 16)  # from -pi to pi, two's complement
 
 
-def heard_angle(pgn, fields, name):
+def received_angle(pgn, fields, name):
     """Return what a node makes of a message whose raw fields are (first bit, bits, number)."""
     bits = (1 << 64) - 1
     for first, width, raw in fields:
@@ -226,14 +226,16 @@ def heard_angle(pgn, fields, name):
     return network.nodes["node"].get(name)
 
 
-def test_angles_that_are_heard_are_within_their_circle():
+def test_angles_that_are_received_are_within_their_circle():
     # A magnetic heading of 6.2 rad and a variation of 0.2 rad east lead across north.
     magnetic = [(8, 16, 62000), (40, 16, 2000), (56, 2, 1)]
-    assert heard_angle(127250, magnetic, "bus_heading") == pytest.approx(6.4 - math.tau, abs=1e-4)
+    assert received_angle(127250, magnetic, "bus_heading") == pytest.approx(
+        6.4 - math.tau, abs=1e-4
+    )
     # Wind from 0.5 rad blows to the other side, wind from 6 rad too: -pi to pi.
     for from_, to in ((0.5, 0.5 - math.pi), (6.0, 6.0 - math.pi), (3.2, 3.2 - math.pi)):
         wind = [(8, 16, 500), (24, 16, round(from_ * 1e4)), (40, 3, 2)]
-        assert heard_angle(130306, wind, "bus_wind_angle") == pytest.approx(to, abs=1e-4)
+        assert received_angle(130306, wind, "bus_wind_angle") == pytest.approx(to, abs=1e-4)
 
 
 def test_a_request_has_the_pgn_in_three_bytes():

@@ -69,8 +69,10 @@ def test_a_chart_plotter_turns_the_ship_as_without_a_bus(tmp_path):
     check(one, other)
     # What the pilot hears is what the plant does, an interval and three steps before.
     late = np.interp(one["time"] - 0.15, one["time"], one["ship.attitude.psi"])
-    heard = np.remainder(one["pilot.bus_heading"] + math.pi, math.tau) - math.pi
-    assert np.max(np.abs(heard[4:] - late[4:])) < 1e-4 + 0.15 * np.max(np.abs(one["ship.rates.r"]))
+    received = np.remainder(one["pilot.bus_heading"] + math.pi, math.tau) - math.pi
+    assert np.max(np.abs(received[4:] - late[4:])) < 1e-4 + 0.15 * np.max(
+        np.abs(one["ship.rates.r"])
+    )
     rudder = np.interp(one["time"] - 0.15, one["time"], one["machine.angle"])
     assert np.max(np.abs(one["pilot.bus_rudder"] + rudder)[4:]) < 1e-4 + 0.15 * 0.0873
 

@@ -70,13 +70,13 @@ class Wired:
 
     def step(self, count=1):
         """Step and return (time ns, bytes) of what was said."""
-        heard = []
+        received = []
         for _ in range(count):
             self.component.set("rx", Outbox(self._out).flush())
             self.component.advance(self.now / 1e9, STEP)
             self.steps += 1
-            heard += Inbox(self._in).take(self.component.get("tx"))
-        return heard
+            received += Inbox(self._in).take(self.component.get("tx"))
+        return received
 
     def ask(self, frame, steps=5, dialect=PRO4):
         """Say a request and return the frames that come back."""

@@ -50,8 +50,8 @@ class LiveRov:
         begun, steps = time.monotonic(), 0
         try:
             while not self._stop.is_set():
-                said, heard = self.rov.get("tx"), self.gateway.get("tx")
-                self.rov.set("rx", heard)
+                said, received = self.rov.get("tx"), self.gateway.get("tx")
+                self.rov.set("rx", received)
                 self.gateway.set("rx", said)
                 for component in (self.rov, self.gateway):
                     component.advance(steps * STEP, STEP)

@@ -58,8 +58,8 @@ def cycles(topside, gateway, seconds):
     """Run a topside in real time; return the round trips of its cycles in wall time, s."""
     begun, steps, trips, asked, answered = time.monotonic(), 0, [], 0.0, 0
     while steps * STEP < seconds:
-        said, heard = topside.get("tx"), gateway.get("tx")
-        topside.set("rx", heard)
+        said, received = topside.get("tx"), gateway.get("tx")
+        topside.set("rx", received)
         gateway.set("rx", said)
         before = topside.get("cycles")
         for component in (topside, gateway):
@@ -77,28 +77,28 @@ def cycles(topside, gateway, seconds):
 
 def test_the_topside_drives_a_vehicle_over_a_terminal(tmp_path):
     with LiveRov(f"pty:{tmp_path}/rov") as live:
-        topside = started(Pro4Topside, stick_limit=0.5, timeout=5.0)
+        topside = started(Pro4Topside, manual_limit=0.5, timeout=5.0)
         gateway = started(
-            SerialGateway, links=f"serial:{live.at}:115200", farewell=encode(NEUTRAL).hex()
+            SerialGateway, links=f"serial:{live.at}:115200", safe_state=encode(NEUTRAL).hex()
         )
         try:
             topside.set("armed", True)
-            topside.set("sticks", [1.0, 0.0, 0.0])
+            topside.set("manual", [1.0, 0.0, 0.0])
             cycles(topside, gateway, 2.0)
             live.wait(lambda: live.rov.get("commanded"))
             assert topside.get("connected")
             assert topside.get("depth") == pytest.approx(3.0, abs=0.01)
             assert live.rov.get("duty")[0] > 0.38
         finally:
-            gateway.close()  # the farewell
+            gateway.close()  # the safe-state bytes
         live.wait(lambda: live.rov.get("duty") == [0.0, 0.0, 0.0])
 
 
-def test_the_farewell_of_the_profile_stops_the_thrusters():
+def test_the_safe_state_of_the_profile_stops_the_thrusters():
     from seatrial.cosim.profile import load_profile
 
-    farewell = load_profile("videoray").parameters("links.topside-port")["farewell"]
-    assert bytes.fromhex(farewell) == encode(NEUTRAL)
+    safe_state = load_profile("videoray").parameters("links.topside-port")["safe_state"]
+    assert bytes.fromhex(safe_state) == encode(NEUTRAL)
     wired = Wired(Pro4Topside)
     assert request(payload=Orders().block()) == NEUTRAL
     assert wired["connected"] is False
@@ -114,7 +114,7 @@ def test_a_real_port_needs_leave(monkeypatch):
     ("parameters", "message"),
     [
         ({"links": "tcp:1"}, "kind of link 'tcp'"),
-        ({"farewell": "FAA"}, "is not bytes such as"),
+        ({"safe_state": "FAA"}, "is not bytes such as"),
     ],
 )
 def test_mistakes_are_told(parameters, message):

@@ -89,7 +89,7 @@ def survives(pieces):
 
 @given(broken_streams())
 @CASES
-def test_after_the_time_out_the_next_frame_is_heard_whatever_was_before(pieces):
+def test_after_the_time_out_the_next_frame_is_received_whatever_was_before(pieces):
     survives(pieces)
 
 
@@ -111,7 +111,7 @@ def test_one_flipped_bit_never_gives_a_frame(dialect, data):
 
 
 @pytest.mark.parametrize("place", [6, 8, 22], ids=["header", "payload", "total"])
-def test_a_wrong_checksum_is_counted_once_and_the_next_frame_is_heard_at_once(place):
+def test_a_wrong_checksum_is_counted_once_and_the_next_frame_is_received_at_once(place):
     data = bytearray(encode(GOOD))
     data[place] ^= 0x10
     parser = Parser(TIMEOUT_NS)
@@ -125,7 +125,7 @@ def test_bytes_between_frames_are_no_errors():
     assert (parser.checksum_errors, parser.skipped) == (0, 8)
 
 
-def test_a_frame_inside_a_cut_one_is_heard():
+def test_a_frame_inside_a_cut_one_is_received():
     whole = encode(Frame(False, 1, 0, 0, bytes(60)))
     parser = Parser(TIMEOUT_NS)
     found = parser.feed(whole[:20] + encode(GOOD) * 3, 0)
@@ -144,13 +144,13 @@ def test_a_false_length_of_64_kb_swallows_no_more_than_until_the_time_out():
     assert parser.broken_off == 1
 
 
-@pytest.mark.parametrize(("gap", "heard"), [(0.9, 1), (1.1, 0)])
-def test_a_gap_longer_than_the_time_out_ends_a_frame(gap, heard):
+@pytest.mark.parametrize(("gap", "received"), [(0.9, 1), (1.1, 0)])
+def test_a_gap_longer_than_the_time_out_ends_a_frame(gap, received):
     data, parser = encode(GOOD), Parser(TIMEOUT_NS)
     parser.feed(data[:9], 0)
     found = parser.feed(data[9:], round(gap * TIMEOUT_NS))
-    assert len(found) == heard
-    assert parser.broken_off == 1 - heard
+    assert len(found) == received
+    assert parser.broken_off == 1 - received
 
 
 def test_times_are_those_of_the_last_byte():

@@ -55,7 +55,7 @@ def test_an_answer_waits_until_the_line_is_free():
 
 
 @pytest.mark.parametrize("baud", [9600, 115_200])
-def test_a_request_is_heard_when_its_last_byte_is(baud):
+def test_a_request_is_received_when_its_last_byte_is(baud):
     wired = Wired(Pro4Rov, baud=float(baud))
     wired.say(PACKETS[6])
     steps = math.ceil(23 * 10 / baud / STEP - 1e-9)

@@ -99,12 +99,12 @@ def test_the_player_says_it_at_the_same_times(recorded, direction, first):
         def step(self, count=1):
             from seatrial.links.text import Inbox
 
-            heard = []
+            received = []
             for _ in range(count):
                 self.component.advance(self.now / 1e9, 0.01)
                 self.steps += 1
-                heard += Inbox(self._in).take(self.component.get("tx"))
-            return heard
+                received += Inbox(self._in).take(self.component.get("tx"))
+            return received
 
     playing = Playing(StreamPlayer, file=str(recorded), direction=direction)
     assert playing.step(60) == [(p.time_ns, p.data) for p in PIECES[first::2]]

@@ -68,7 +68,7 @@ def test_headings_in_halves_are_those_of_the_full_circle():
 
 def test_disarmed_it_commands_nothing_but_lights_and_camera():
     wired = driven()
-    wired.component.set("sticks", [1.0, 0.5, -1.0])
+    wired.component.set("manual", [1.0, 0.5, -1.0])
     wired.component.set("hold_depth", True)
     wired.component.set("hold_heading", True)
     wired.component.set("lights", 0.5)
@@ -81,7 +81,7 @@ def test_disarmed_it_commands_nothing_but_lights_and_camera():
 
 
 @pytest.mark.parametrize(
-    ("sticks", "thrust"),
+    ("manual", "thrust"),
     [
         ([0.5, 0.0, 0.0], (0.5, 0.5, 0.0)),
         ([0.0, 0.3, 0.0], (0.3, -0.3, 0.0)),
@@ -89,19 +89,19 @@ def test_disarmed_it_commands_nothing_but_lights_and_camera():
         ([1.0, 1.0, -9.0], (1.0, 0.0, 1.0)),
     ],
 )
-def test_sticks(sticks, thrust):
+def test_manual_control(sticks, thrust):
     wired = driven()
     wired.component.set("armed", True)
-    wired.component.set("sticks", sticks)
+    wired.component.set("manual", sticks)
     values = block(wired)
     found = [values[f"{name}_target"] for name in ("port", "starboard", "vertical")]
     assert found == pytest.approx(thrust)
 
 
 def test_sticks_have_a_limit():
-    wired = driven(stick_limit=0.2, vertical_ahead="down")
+    wired = driven(manual_limit=0.2, vertical_ahead="down")
     wired.component.set("armed", True)
-    wired.component.set("sticks", [1.0, 0.0, 1.0])
+    wired.component.set("manual", [1.0, 0.0, 1.0])
     values = block(wired)
     assert values["port_target"] == values["vertical_target"] == pytest.approx(0.2)
 
@@ -133,7 +133,7 @@ def test_the_gripper():
 def test_a_lost_vehicle_is_looked_for_and_not_commanded():
     wired = driven(timeout=0.5)
     wired.component.set("armed", True)
-    wired.component.set("sticks", [1.0, 0.0, 0.0])
+    wired.component.set("manual", [1.0, 0.0, 0.0])
     said = [frames(data)[0] for _, data in wired.step(100)]
     assert wired["connected"] is False
     assert wired["missed"] == 9
@@ -161,9 +161,9 @@ def test_both_ends_in_simulated_time_miss_nothing():
     rov.set("depth", 7.0)
     topside.set("armed", True)
     for number in range(300):
-        said, heard = topside.get("tx"), rov.get("tx")
+        said, received = topside.get("tx"), rov.get("tx")
         rov.set("rx", said)
-        topside.set("rx", heard)
+        topside.set("rx", received)
         for component in (rov, topside):
             component.advance(number * STEP, STEP)
     assert topside.get("cycles") == 30
@@ -180,7 +180,7 @@ def test_restored_state_goes_on_identically():
     other.set_state(state)
     for component in (wired.component, other):
         component.set("armed", True)
-        component.set("sticks", [0.2, 0.1, 0.0])
+        component.set("manual", [0.2, 0.1, 0.0])
     first, second = [], []
     for number in range(30):
         for component, found in ((wired.component, first), (other, second)):

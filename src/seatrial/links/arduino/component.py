@@ -137,7 +137,9 @@ class Arduino(ArduinoPorts):
     def _begin(self) -> None:
         mcu = MCUS[self.mcu]
         if self.backend == "board":
-            self._board = RealBoard(self.name, self.links, self.farewell, self.timeout, self._wires)
+            self._board = RealBoard(
+                self.name, self.links, self.safe_state, self.timeout, self._wires
+            )
             return
         if not self.sketch and not self.firmware:
             return

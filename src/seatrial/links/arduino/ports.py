@@ -41,11 +41,11 @@ class ArduinoPorts(Reachable, Component):
         "UART=URL where programs listen in and type, as 0=pty:/tmp/uart0",
         check=read_monitors,
     )
-    farewell = Parameter("", "1", "board: bytes that make the sketch let go, hexadecimal")
+    safe_state = Parameter("", "1", "board: bytes that make the sketch let go, hexadecimal")
     timeout = Parameter(
         2.0,
         "s",
-        "board: silence after which an input is stale, or a link lost; farewell is sent then",
+        "board: silence after which an input is stale, or a link lost; safe-state bytes is sent then",
         min=1e-3,
     )
     patience = Parameter(

@@ -16,7 +16,7 @@ _INPUT = struct.Struct("<BBHd")
 class RealBoard:
     """Serial ports in the place of a simulated board's UARTs; ``links`` are ``UART=URL``.
 
-    ``farewell`` (hexadecimal) is what makes the sketch let go. It is sent to each at the end,
+    ``safe_state`` (hexadecimal) is what makes the sketch let go. It is sent to each at the end,
     however the run ends; to one whose input has become stale, that is silent for ``timeout``
     seconds after it was not; and to the others when one that spoke has been silent for as long:
     its link is lost, and until it speaks again nothing is sent to the others.
@@ -26,11 +26,11 @@ class RealBoard:
     """
 
     def __init__(
-        self, name: str, links: str, farewell: str, timeout: float, wires: list[Wire]
+        self, name: str, links: str, safe_state: str, timeout: float, wires: list[Wire]
     ) -> None:
         self.name, self._timeout = name, round(timeout * CLOCK)
         self._fed: dict[int, int] = {}
-        self._heard: dict[int, int] = {}
+        self._received: dict[int, int] = {}
         self._lost: set[int] = set()
         if wires:
             raise InputError(
@@ -38,9 +38,9 @@ class RealBoard:
                 "or connect the real device"
             )
         try:
-            self._farewell = bytes.fromhex(farewell)
+            self._safe_state = bytes.fromhex(safe_state)
         except ValueError:
-            raise InputError(f"farewell: {farewell!r} is not hexadecimal") from None
+            raise InputError(f"safe_state: {safe_state!r} is not hexadecimal") from None
         self._ports = open_links(links)
         if not self._ports:
             raise InputError("links: the back end 'board' needs UART=URL of a serial port")
@@ -59,31 +59,31 @@ class RealBoard:
         events: list[Event] = []
         for uart, port in self._ports.items():
             for _, data in port.poll():
-                self._heard[uart] = target
+                self._received[uart] = target
                 self._lost.discard(uart)
                 events += [(UART, uart, byte, target) for byte in data]
         self._watch(target)
         return events
 
     def _watch(self, now: int) -> None:
-        """Say farewell where an input is stale or a link is lost."""
+        """Send the safe-state bytes where an input is stale or a link is lost."""
         for uart, when in list(self._fed.items()):
             if now - when > self._timeout:
                 del self._fed[uart]
-                self._send(uart, self._farewell)
-        for uart, when in self._heard.items():
+                self._send(uart, self._safe_state)
+        for uart, when in self._received.items():
             if uart not in self._lost and now - when > self._timeout:
                 self._lost.add(uart)
                 for other in self._ports.keys() - {uart}:
-                    self._send(other, self._farewell)
+                    self._send(other, self._safe_state)
 
     def _send(self, uart: int, data: bytes) -> None:
         for channel in self._ports[uart].channels():
             channel.send(data)
 
     def close(self) -> None:
-        """Say farewell and close the ports. Harmless when repeated."""
+        """Send the safe-state bytes and close the ports. Harmless when repeated."""
         for uart, port in self._ports.items():
-            self._send(uart, self._farewell)
+            self._send(uart, self._safe_state)
             port.close()
         self._ports = {}

@@ -12,7 +12,6 @@ from .bus_state import restore, saved
 from .controller import Controller
 from .disturbances import Disturbances
 from .frame import Frame
-from .journal import Journal
 from .operations import (
     ArbitrationLost,
     BitRate,
@@ -27,6 +26,7 @@ from .operations import (
     decode,
     encode,
 )
+from .run_log import RunLog
 from .simulated_bus import PS, Broken, GivenUp, Sent, SimulatedBus
 
 NODES = 12
@@ -70,7 +70,7 @@ class CanBus(Logging, Noise, Component):
     29 bits if there are more than three digits): the longest of those that ended since the step
     before, or else the last.
 
-    In ``run_folder`` it leaves ``NAME.blf``, ``NAME.log`` and ``NAME.json`` (`Journal`).
+    In ``run_folder`` it leaves ``NAME.blf``, ``NAME.log`` and ``NAME.json`` (`RunLog`).
 
     Not modelled: CAN XL, sleep, propagation and clock tolerance, overload frames, the 6 to 12
     bits of superposed flags in between.
@@ -78,7 +78,7 @@ class CanBus(Logging, Noise, Component):
     Raises InputError at the start for nodes and identifiers that cannot be.
     """
 
-    transient = Component.transient | {"_bus", "_wrong", "_journal", "_ports"}
+    transient = Component.transient | {"_bus", "_wrong", "_run_log", "_ports"}
 
     nodes = Parameter("n1 n2", "1", "names of the nodes, separated by spaces")
     bit_rate = Parameter(250_000.0, "1/s", "bit rate", min=1000.0, max=1e6)
@@ -139,7 +139,7 @@ class CanBus(Logging, Noise, Component):
 
     def __init__(self, name: str = "component") -> None:
         super().__init__(name)
-        self._journal: Journal | None = None
+        self._run_log: RunLog | None = None
 
     # ------------------------------------------------------------------ running
 
@@ -160,8 +160,8 @@ class CanBus(Logging, Noise, Component):
 
     def step(self, t: float, h: float) -> None:
         """Take in what nodes have asked for, and let the bus live until ``t``."""
-        if self._journal is not None:
-            self._journal.open(self.run_folder)
+        if self._run_log is not None:
+            self._run_log.open(self.run_folder)
         for node, (inbox, text) in enumerate(zip(self._inboxes, self.tx, strict=False)):
             for when, data in Inbox(inbox).take(text):
                 self._hear(node, when, data)
@@ -201,8 +201,8 @@ class CanBus(Logging, Noise, Component):
 
     def close(self) -> None:
         """End the logs."""
-        if self._journal is not None:
-            self._journal.close(self._bus, self._begun_ns * _PS_PER_NS)
+        if self._run_log is not None:
+            self._run_log.close(self._bus, self._begun_ns * _PS_PER_NS)
 
     def get_state(self) -> dict[str, Any]:
         """Return a copy of the whole state, the bus's included, as plain data."""
@@ -235,7 +235,7 @@ class CanBus(Logging, Noise, Component):
             counted_ps=self.now_ns * _PS_PER_NS,
         )
         self._ports = [Outbox(memory) for memory in self._outboxes]
-        self._journal = Journal(self.name)
+        self._run_log = RunLog(self.name)
 
     # ------------------------------------------------------------------ nodes
 
@@ -284,8 +284,8 @@ class CanBus(Logging, Noise, Component):
         if key in self._keys:
             place = self._keys.index(key)
             self._longest[place] = max(self._longest[place], latency / PS)
-        if self._journal is not None:
-            self._journal.sent(attempt, sent, latency)
+        if self._run_log is not None:
+            self._run_log.sent(attempt, sent, latency)
         when = _rounded_up(sent.end_ps)
         for node in sent.senders:
             self._say(node, when, Confirm(frame.identifier))
@@ -309,8 +309,8 @@ class CanBus(Logging, Noise, Component):
 
     def _was_broken(self, broken: Broken) -> None:
         self._error_frames += 1
-        if self._journal is not None:
-            self._journal.broken(self._bus.attempts, broken)
+        if self._run_log is not None:
+            self._run_log.broken(self._bus.attempts, broken)
         for node, each in enumerate(self._bus.controllers):
             if each.plugged and not each.listens_only:
                 first, sender = node == broken.first, node in broken.senders

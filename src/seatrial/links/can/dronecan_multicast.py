@@ -14,8 +14,8 @@ import struct
 import sys
 
 from ...errors import InputError
-from .door import MOST_FRAMES, Door
 from .frame import Frame
+from .gateway import MOST_FRAMES, Gateway
 
 GROUP, PORT = "239.65.82.{}", 57732
 MAGIC = 0x2934
@@ -56,7 +56,7 @@ def unpacked(datagram: bytes) -> Frame | None:
         return None
 
 
-class DroneCanMulticastDoor(Door):
+class DroneCanMulticastGateway(Gateway):
     """A bus of this machine's programs; they hear each other without it.
 
     It joins and sends on the loopback interface alone. Programs that leave the choice to the
@@ -69,13 +69,13 @@ class DroneCanMulticastDoor(Door):
         self._group = GROUP.format(bus)
         self.reached_at = f"mcast:{bus}"
         self._senders: dict[tuple[str, int], int] = {}
-        self._heard, self._said = _socket(), _socket()
+        self._received, self._said = _socket(), _socket()
         try:
-            self._heard.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            self._received.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             # Bound to the group, a socket hears nothing else; Windows cannot.
-            self._heard.bind((LOOPBACK if sys.platform == "win32" else self._group, PORT))
+            self._received.bind((LOOPBACK if sys.platform == "win32" else self._group, PORT))
             member = socket.inet_aton(self._group) + socket.inet_aton(LOOPBACK)
-            self._heard.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, member)
+            self._received.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, member)
             interface = socket.inet_aton(LOOPBACK)
             self._said.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, interface)
             self._said.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 0)
@@ -95,7 +95,7 @@ class DroneCanMulticastDoor(Door):
         own = self._said.getsockname()
         while len(found) < MOST_FRAMES:
             try:
-                datagram, sender = self._heard.recvfrom(_LONGEST)
+                datagram, sender = self._received.recvfrom(_LONGEST)
             except OSError:
                 break
             frame = unpacked(datagram) if sender != own else None
@@ -112,7 +112,7 @@ class DroneCanMulticastDoor(Door):
 
     def close(self) -> None:
         """Leave the bus."""
-        self._heard.close()
+        self._received.close()
         self._said.close()
 
 

@@ -1,138 +1,42 @@
-"""A node of a simulated bus that is a door for programs and buses outside."""
+"""A gateway: where programs outside meet a simulated bus."""
 
 from __future__ import annotations
 
-from collections import deque
-from typing import Any, ClassVar
+from abc import ABC, abstractmethod
 
-from ...component import NS, Component, Input, Output, Parameter, Reachable
-from ...errors import InputError
-from .door import Door
-from .door_url import check_door, open_door
 from .frame import Frame
-from .node import CanNode
-from .operations import BusError, Confirm, Transmit
+from .operations import Error
 
-MOST_ASKED = 64
-"""Frames asked for and not yet confirmed: fewer than a controller's queue holds."""
-MOST_WAITING = 1000
-"""Frames from outside in store; while there are more, nothing is read there."""
-FORGOTTEN_NS = 5 * NS
-"""Frames not confirmed after so long are taken for lost."""
+MOST_FRAMES = 1000
+"""Frames taken in by one poll, about: a flood must not stop the simulation."""
 
 
-class CanGateway(Reachable, Component):
-    """Frames of a simulated bus out to programs and hardware, and theirs in.
+class Gateway(ABC):
+    """Polled once a step, never waited for. What is lost outside is no error here.
 
-    ``door`` says where they meet (`door_url`). Every step it takes in what has arrived, and asks
-    the bus to send it at the time of the beginning of that step; what it hears, goes out with
-    the simulated time at which it was on the bus. So tools see the bus as it is in a run in
-    real time; one that runs as fast as it can is over before they have answered.
-
-    **Who acknowledges**: to the simulated bus the gateway is one more node, which acknowledges
-    all that it receives, whether anybody is connected or not. Outside, frames have been sent
-    once the door has taken them: what the simulated bus makes of them later (arbitration, loss,
-    bus-off), is not told. Error frames are, where the protocol has them. On a real bus, the
-    adapter acknowledges.
-
-    **Clients** hear each other: a frame of one goes to the others of the same door when the
-    simulated bus has confirmed it. Frames are asked for in the order in which they came, 64 at
-    most ahead of their confirmation; the rest waits, and from 1000 on nothing is read, so that
-    a client has to wait too.
-
-    ``clients`` counts who is connected, ``frames_in`` what came in, ``frames_out`` what went
-    out, ``forgotten`` what came in and was not confirmed in 5 s: the node is off the bus, or
-    never gets its turn.
-
-    It cannot be rolled back: what was said has been said. Raises InputError at the start for a
-    door that is malformed or cannot be opened, or is hardware that nobody allowed.
+    Whoever is behind it is known by a number: several clients hear each other too.
     """
 
-    feedthrough: ClassVar = {}
-    discrete = True
-    rolls_back = False
-    transient = Component.transient | {"_door"}
+    reached_at: str
+    """What the other side opens, as it is bound: with the port's number where 0 was asked for."""
 
-    door = Parameter(
-        "socketcand:127.0.0.1:29536", "1", "where programs outside connect to", check=check_door
-    )
+    @property
+    @abstractmethod
+    def clients(self) -> int:
+        """How many are connected."""
 
-    rx = Input("1", "what the bus tells", type=str)
+    @abstractmethod
+    def poll(self) -> list[tuple[int, Frame]]:
+        """Return frames that have arrived, and who sent each; accept and answer on the way."""
 
-    tx = Output("1", "what it tells the bus", type=str)
-    clients = Output("1", "who is connected", type=int)
-    frames_in = Output("1", "frames from outside", type=int)
-    frames_out = Output("1", "frames to the outside", type=int)
-    forgotten = Output("1", "frames from outside that were never confirmed", type=int)
+    @abstractmethod
+    def send(self, time_ns: int, frame: Frame, sender: int | None = None) -> None:
+        """Tell all but ``sender`` of a frame that was on the bus at a simulated time."""
 
-    def __init__(self, name: str = "component") -> None:
-        super().__init__(name)
-        self._door: Door | None = None
+    def send_error(self, time_ns: int, error: Error) -> None:
+        """Tell all of an error frame, where the protocol has a word for it."""
+        del time_ns, error
 
-    # ------------------------------------------------------------------ running
-
-    def start(self, t: float) -> None:
-        """Open the door."""
-        self.close()
-        try:
-            self._door = open_door(self.door)
-        except InputError as error:
-            raise InputError(f"{self.name}: {error}") from None
-        self._can: dict[str, Any] = {}
-        self._waiting: deque[tuple[int, Frame]] = deque()
-        self._asked: list[tuple[int, int, Frame]] = []
-        self._in = self._out = self._forgotten = 0
-
-    def step(self, t: float, h: float) -> None:
-        """Carry frames out and in."""
-        assert self._door is not None
-        node = CanNode(self._can)
-        for when, operation in node.hear(self.rx):
-            if isinstance(operation, Transmit):
-                self._door.send(when, operation.frame)
-                self._out += 1
-            elif isinstance(operation, Confirm):
-                self._confirmed(when, operation.identifier)
-            elif isinstance(operation, BusError):
-                self._door.send_error(when, operation.error)
-        if len(self._waiting) < MOST_WAITING:
-            arrived = self._door.poll()
-            self._waiting.extend(arrived)
-            self._in += len(arrived)
-        self._forget()
-        while self._waiting and len(self._asked) < MOST_ASKED:
-            sender, frame = self._waiting.popleft()
-            self._asked.append((self.now_ns, sender, frame))
-            node.send(self.now_ns, frame)
-        node.flush()
-
-    def outputs(self, t: float) -> None:
-        """Publish what is said, and counts."""
-        assert self._door is not None
-        self.tx = CanNode(self._can).text
-        self.clients, self.reached_at = self._door.clients, self._door.reached_at
-        self.frames_in, self.frames_out = self._in, self._out
-        self.forgotten = self._forgotten
-
+    @abstractmethod
     def close(self) -> None:
-        """Close the door."""
-        if self._door is not None:
-            self._door.close()
-        self._door = None
-
-    # ------------------------------------------------------------------ inside
-
-    def _confirmed(self, when: int, identifier: int) -> None:
-        """Tell the other clients of a frame of one of them."""
-        assert self._door is not None
-        for place, (_, sender, frame) in enumerate(self._asked):
-            if frame.identifier == identifier:
-                del self._asked[place]
-                self._door.send(when, frame, sender)
-                return
-
-    def _forget(self) -> None:
-        late = self.now_ns - FORGOTTEN_NS
-        kept = [entry for entry in self._asked if entry[0] >= late]
-        self._forgotten += len(self._asked) - len(kept)
-        self._asked = kept
+        """Let go of sockets, ports and buses."""

@@ -67,7 +67,7 @@ class Disturbance(NamedTuple):
     receiver: int | None = None
 
 
-Fate = Callable[[int, int, Frame, int], Disturbance | None]
+ErrorInjector = Callable[[int, int, Frame, int], Disturbance | None]
 """Of attempt number, sender, frame and bits: what goes wrong, or None."""
 
 
@@ -124,7 +124,7 @@ class SimulatedBus:
     """bit/s."""
     data_rate: int
     """bit/s, of the data phase of CAN FD frames that switch."""
-    fate: Fate = lambda *_: None
+    error_injector: ErrorInjector = lambda *_: None
     on_sent: Callable[[Sent], None] = lambda _: None
     on_broken: Callable[[Broken], None] = lambda _: None
     on_given_up: Callable[[GivenUp], None] = lambda _: None
@@ -261,7 +261,7 @@ class SimulatedBus:
         if bit is not None:
             self._fail(attempt, Disturbance(bit), Error.BIT, LONGEST_FLAG)
         elif not self._disturbed(attempt, sum(bits)):
-            if self._is_heard(attempt):
+            if self._is_received(attempt):
                 attempt.end_ps = start + bits.nominal * self._bit + bits.data * self._data_bit
             else:
                 unheard = Disturbance(sum(bits) - ACKNOWLEDGED_BEFORE_END)
@@ -286,7 +286,7 @@ class SimulatedBus:
 
     def _disturbed(self, attempt: Attempt, bits: int) -> bool:
         """Ask what goes wrong; say if that ends the frame."""
-        wrong = self.fate(self.attempts, attempt.senders[0], attempt.frame, bits)
+        wrong = self.error_injector(self.attempts, attempt.senders[0], attempt.frame, bits)
         if wrong is None:
             return False
         if wrong.receiver is None:
@@ -299,7 +299,7 @@ class SimulatedBus:
         attempt.deaf = wrong.receiver
         return False
 
-    def _is_heard(self, attempt: Attempt) -> bool:
+    def _is_received(self, attempt: Attempt) -> bool:
         """Say if anybody acknowledges the frame."""
         silent = (*attempt.senders, *attempt.gave_way, attempt.deaf)
         for node, each in enumerate(self.controllers):

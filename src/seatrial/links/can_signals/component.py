@@ -40,7 +40,7 @@ class CanSignals(Component):
     (GenSigStartValue, or physical 0).
 
     **Receiving.** A signal keeps its last value. Before the first, and when its message was not
-    heard for ``lost_after`` of its cycles, it is at its start value and not ``valid``. One
+    received for ``lost_after`` of its cycles, it is at its start value and not ``valid``. One
     without a cycle time is never lost. A frame of the wrong length, or a remote one, changes
     nothing; ``frames_refused`` counts them.
 
@@ -84,18 +84,18 @@ class CanSignals(Component):
         self._read_database()
 
     def start(self, t: float) -> None:
-        """Start with nothing sent and nothing heard."""
+        """Start with nothing sent and nothing received."""
         self._begun_ns = self.now_ns
         self._counts = [0] * len(self._sent)
         self._last = [""] * len(self._sent)
-        self._heard: dict[str, int] = {}
+        self._received: dict[str, int] = {}
         self._values = [mapped.start for mapped in self._receives]
         self._frames = [0, 0, 0]
         self._limited = 0
         self._can: dict[str, Any] = {}
 
     def step(self, t: float, h: float) -> None:
-        """Read what was heard, and send what is due from ``t`` to before ``t + h``."""
+        """Read what was received, and send what is due from ``t`` to before ``t + h``."""
         node = CanNode(self._can)
         for when, operation in node.hear(self.rx):
             if isinstance(operation, Transmit):
@@ -114,7 +114,7 @@ class CanSignals(Component):
         self.tx = CanNode(self._can).text
         rest = SIGNALS - len(self._values)
         received = (*self._values, *(0.0,) * rest)
-        valid = [mapped.message.name in self._heard for mapped in self._receives]
+        valid = [mapped.message.name in self._received for mapped in self._receives]
         if self.received != received:  # mostly they are the same, and quicker read than set
             self.received = received
         if self.valid[: len(valid)] != tuple(valid):
@@ -208,7 +208,7 @@ class CanSignals(Component):
             self._frames[2] += 1
             return
         self._frames[1] += 1
-        self._heard[message.name] = when
+        self._received[message.name] = when
         for place, mapped in enumerate(self._receives):
             if mapped.message is message and mapped.signal.name in values:
                 self._values[place] = mapped.to_si(float(values[mapped.signal.name]))
@@ -217,11 +217,11 @@ class CanSignals(Component):
         """Forget messages that have not come for too long."""
         for message in self._known.values():
             cycle_ns = round((message.cycle_time or 0) * _MS)
-            last = self._heard.get(message.name)
+            last = self._received.get(message.name)
             limit = self.lost_after * cycle_ns
             if not limit or last is None or now_ns - last <= limit:
                 continue
-            del self._heard[message.name]
+            del self._received[message.name]
             for place, mapped in enumerate(self._receives):
                 if mapped.message is message:
                     self._values[place] = mapped.start

@@ -102,7 +102,7 @@ class DroneCanAutopilot(DroneCanNode):
         """Return what it says again and again."""
         return (Task("commands", self.setting("COMMAND_PERIOD"), self._say_commands, False),)
 
-    def heard(self, time_ns: int, transfer: Transfer) -> None:
+    def received(self, time_ns: int, transfer: Transfer) -> None:
         """Take in what another node says."""
         message = transfer.payload
         if message._type is NodeStatus:

@@ -80,14 +80,14 @@ class DroneCanNode(Noise, Component):
 
     **Time** is simulated: what is due from t to before t + h is asked for at its very time, with
     the inputs as of t; requests are answered at the beginning of the step in which they are
-    heard.
+    received.
 
     **Parameters over the bus** are `settings`; they begin as the component's own and change at
     once, but for ``NODE_ID`` and ``CHANNELS``, which wait for a restart. A restart forgets what was
     not saved, counts time and transfers anew, and is over at once.
 
     Whoever writes one declares ``messages``, the message types that it takes in, and overrides
-    `begin`, `settings`, `tasks`, `heard` and `attention`; it sends with `say`.
+    `begin`, `settings`, `tasks`, `received` and `attention`; it sends with `say`.
     """
 
     feedthrough: ClassVar = {}
@@ -111,7 +111,7 @@ class DroneCanNode(Noise, Component):
 
     tx = Output("1", "what it tells the bus", type=str)
     own_id = Output("1", "node ID that it has, 0 while it has none", type=int)
-    malformed = Output("1", "transfers heard that could not be understood", type=int)
+    malformed = Output("1", "transfers received that could not be understood", type=int)
 
     # ------------------------------------------------------------------ written by nodes
 
@@ -126,7 +126,7 @@ class DroneCanNode(Noise, Component):
         """Return what is done again and again."""
         return ()
 
-    def heard(self, time_ns: int, transfer: Transfer) -> None:
+    def received(self, time_ns: int, transfer: Transfer) -> None:
         """Take in a message of `messages`, which was on the bus at ``time_ns``."""
 
     def attention(self) -> bool:
@@ -148,7 +148,7 @@ class DroneCanNode(Noise, Component):
         self._boot()
 
     def step(self, t: float, h: float) -> None:
-        """Take in what was heard, and say what is due from ``t`` to before ``t + h``."""
+        """Take in what was received, and say what is due from ``t`` to before ``t + h``."""
         wanted = self._wanted if self._id else _ALLOCATION
         restarts = False
         for when, transfer in self._transfers.hear(self.rx, wanted, self._id):
@@ -157,7 +157,7 @@ class DroneCanNode(Noise, Component):
             elif transfer.service_not_message:
                 restarts |= self._serve(transfer)
             else:
-                self.heard(when, transfer)
+                self.received(when, transfer)
         if restarts:
             self._boot()
         self._do_what_is_due(self.now_ns + round(h * NS))

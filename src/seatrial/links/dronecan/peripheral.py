@@ -10,7 +10,7 @@ from dronecan.transport import Transfer
 from ...component import NS, Input, Output, Parameter
 from ...errors import InputError, unknown
 from ..geodesy import Origin
-from ..given import midnight_us
+from ..parameter_validation import midnight_us
 from .channels import AXES, MOST_CHANNELS, channels_of
 from .commands import ArrayCommand, RawCommand, RPMCommand, commanded
 from .navigation import Motion, fix, solution
@@ -39,7 +39,7 @@ class DroneCanPeripheral(DroneCanNode):
     1), ``:position``, ``:force``, ``:speed`` (SI), ``:pwm`` (a pulse, s). ``pulse`` is the servo
     pulse of those with a command from -1 to 1, by ``pulse_min``, ``pulse_neutral``,
     ``pulse_max``, and of pwm; of others it is neutral. Commands act at the end of the step in
-    which they are heard.
+    which they are received.
 
     **Failsafe.** A channel that has had no command for ``command_timeout`` is neutral: 0, or the
     neutral pulse. So is one that has not had any yet. 0: it keeps the last one for ever.
@@ -146,7 +146,7 @@ class DroneCanPeripheral(DroneCanNode):
             Task("ahrs", self.setting("AHRS_PERIOD"), self._say_attitude, False),
         )
 
-    def heard(self, time_ns: int, transfer: Transfer) -> None:
+    def received(self, time_ns: int, transfer: Transfer) -> None:
         """Take in a command."""
         for place, value in commanded(self._channels, transfer.payload):
             self._commands[place], self._commanded_ns[place] = value, time_ns

@@ -45,7 +45,7 @@ class Transfers:
 
     @property
     def malformed(self) -> int:
-        """Transfers heard that could not be understood."""
+        """Transfers received that could not be understood."""
         count: int = self._memory["malformed"]
         return count
 

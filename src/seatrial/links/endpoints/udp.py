@@ -76,7 +76,7 @@ class UdpListener(Endpoint):
         host, port = self._socket.getsockname()
         self.url = f"udpin:{host}:{port}"
         self._peers: dict[_Address, _UdpPeer] = {}
-        """The last one is the one heard last."""
+        """The last one is the one received last."""
 
     def channels(self) -> Sequence[Channel]:
         """Return the peers that are answered."""

@@ -10,8 +10,8 @@ from ...sampled import Sampled
 from ..endpoints.endpoint import Endpoint
 from ..endpoints.url import open_endpoint, other_end
 from ..geodesy import Origin
-from ..given import midnight_us, serial_number, value_names, version, whole_number
-from .modes import MANUAL_MODES, flavour
+from ..parameter_validation import midnight_us, serial_number, value_names, version, whole_number
+from .modes import MANUAL_MODES, dialect
 from .node import Node
 from .parameter_file import ParameterFile
 from .parameter_table import ParameterTable
@@ -19,15 +19,15 @@ from .parameters import vehicle_parameters
 from .parameters_tunable import MOST_TUNABLES, tunable_parameters
 from .pause import stand_still
 from .ports import NAMED_VALUES, VEHICLE_TYPES, MavlinkPorts
-from .radio import Radio
 from .scaling import STANDARD_GRAVITY
 from .service_failures import UNITS, failing_units
 from .settings import Settings
 from .signing import Signing, read_key
 from .state_file import StateFile
 from .tlog import TelemetryLog
+from .transport import EndpointTransport
 from .vehicle import (
-    STICKS_RELEASED,
+    MANUAL_RELEASED,
     Estimates,
     Identity,
     Target,
@@ -68,7 +68,7 @@ class Mavlink(MavlinkPorts):
 
     **Left alone** it carries out ``failsafe`` if it is armed: when all ground stations were
     silent for ``station_timeout``, and in a manual mode when the sticks were for
-    ``stick_timeout``. Set-points count for ``target_timeout``. See `Failsafe`.
+    ``manual_timeout``. Set-points count for ``target_timeout``. See `Failsafe`.
 
     **Live**: stations set the ``speedup``, which a trial may pace its run by, and inject failures:
     ``failure`` goes to the input ``fault`` of devices, for the units that ``failures`` lists
@@ -93,12 +93,12 @@ class Mavlink(MavlinkPorts):
     """
 
     rolls_back = False
-    transient = Sampled.transient | {"_node", "_radio", "_log", "_parameters", "_settings"}
+    transient = Sampled.transient | {"_node", "_transport", "_log", "_parameters", "_settings"}
 
     def __init__(self, name: str = "component") -> None:
         super().__init__(name)
         self._node: Node | None = None
-        self._radio: Radio | None = None
+        self._transport: EndpointTransport | None = None
         self._log = TelemetryLog(0)
 
     # ------------------------------------------------------------------ running
@@ -108,7 +108,7 @@ class Mavlink(MavlinkPorts):
         self.close()
         try:
             identity = self._identity()
-            kind = flavour(self.autopilot_type, submerged=identity.submerged)
+            kind = dialect(self.autopilot_type, submerged=identity.submerged)
             mode = kind.mode("hold")
             assert mode is not None
             origin = Origin(self.latitude, self.longitude, self.altitude)
@@ -116,14 +116,14 @@ class Mavlink(MavlinkPorts):
             self._value_names = value_names(self.names, NAMED_VALUES)
             self._begun = t
             self._log = TelemetryLog(identity.boot_unix_us)
-            self._radio = self._opened(identity)
+            self._transport = self._opened(identity)
             plans = Path(self.plan_folder) if self.plan_folder else None
             settings = self._made_settings()
             self._parameters = self._table(vehicle, settings)
             self._settings = settings
             self._failing: dict[str, str] = {}
             self._node = Node(
-                *(vehicle, self._radio, settings, self._parameters, plans),
+                *(vehicle, self._transport, settings, self._parameters, plans),
                 failures=failing_units(self.failures),
             )
         except InputError as error:
@@ -135,7 +135,7 @@ class Mavlink(MavlinkPorts):
         vehicle = self._vehicle
         self.mode, self.armed = vehicle.mode.name, vehicle.armed
         driven = vehicle.armed and vehicle.mode.name in MANUAL_MODES
-        self.manual = vehicle.sticks if driven else STICKS_RELEASED
+        self.manual = vehicle.sticks if driven else MANUAL_RELEASED
         target = vehicle.target
         self.target_valid = target is not None
         shown = target or Target("position")
@@ -160,7 +160,7 @@ class Mavlink(MavlinkPorts):
 
     def update(self, t: float, k: int) -> None:
         """Take in what has arrived, and send what is due."""
-        assert self._radio is not None
+        assert self._transport is not None
         assert self._node is not None
         now = self._log.now = t - self._begun
         if self.run_folder and not self._log.is_open:
@@ -178,15 +178,15 @@ class Mavlink(MavlinkPorts):
 
     def close(self) -> None:
         """Close the links."""
-        if self._radio is not None:
-            self._radio.close()
-        self._radio = self._node = None
+        if self._transport is not None:
+            self._transport.close()
+        self._transport = self._node = None
         self._log.close()
 
     @property
     def urls(self) -> list[str]:
         """URLs of the links as they are bound: with a port's number where 0 was asked for."""
-        return [] if self._radio is None else [link.url for link in self._radio.endpoints]
+        return [] if self._transport is None else [link.url for link in self._transport.endpoints]
 
     # ------------------------------------------------------------------ inside
 
@@ -197,9 +197,9 @@ class Mavlink(MavlinkPorts):
 
     def _exchange(self, now: float) -> bool:
         """Take in what has arrived, and send what is due; say if anything has arrived."""
-        assert self._radio is not None
+        assert self._transport is not None
         assert self._node is not None
-        arrived = self._radio.poll()
+        arrived = self._transport.poll()
         for message, sender in arrived:
             self._node.receive(message, sender, now)
         self._node.tick(now)
@@ -220,7 +220,7 @@ class Mavlink(MavlinkPorts):
         return Settings(
             self.failsafe,
             self.station_timeout,
-            self.stick_timeout,
+            self.manual_timeout,
             self.target_timeout,
             self.full_speed,
             cruise_speed=self.cruise_speed,
@@ -237,7 +237,7 @@ class Mavlink(MavlinkPorts):
         self._tunable_names = [one.name for one in tunable_parameters(self.tunables)]
         return table
 
-    def _opened(self, identity: Identity) -> Radio:
+    def _opened(self, identity: Identity) -> EndpointTransport:
         state = StateFile(Path(self.state_file) if self.state_file else None)
         signing = None
         if self.signing_key_file:
@@ -255,7 +255,7 @@ class Mavlink(MavlinkPorts):
             for endpoint in endpoints:
                 endpoint.close()
             raise
-        return Radio(endpoints, identity.system, identity.component, signing, self._log)
+        return EndpointTransport(endpoints, identity.system, identity.component, signing, self._log)
 
     def _estimates(self) -> Estimates:
         measured = self.voltage > 0.0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ...errors import InputError, unknown
-from .modes import Flavour
+from .modes import Dialect
 from .service import CRITICAL
 from .service_arming import ArmingService
 from .service_modes import ModeService
@@ -23,7 +23,7 @@ class Failsafe:
     def __init__(
         self, vehicle: Vehicle, modes: ModeService, arming: ArmingService, settings: Settings
     ) -> None:
-        check_action(vehicle.flavour, settings.failsafe)
+        check_action(vehicle.dialect, settings.failsafe)
         self._vehicle, self._modes, self._arming = vehicle, modes, arming
         self._settings = settings
         self._reasons: set[str] = set()
@@ -40,7 +40,7 @@ class Failsafe:
             self._vehicle.say(CRITICAL, reason)
             return
         self._vehicle.say(CRITICAL, f"Failsafe: {reason}, {action}")
-        mode = self._vehicle.flavour.mode(action)
+        mode = self._vehicle.dialect.mode(action)
         if mode is None:
             self._arming.disarm()
             return
@@ -56,8 +56,8 @@ class Failsafe:
         self._vehicle.say(CRITICAL, news)
 
 
-def check_action(flavour: Flavour, action: str) -> None:
-    """Raise InputError for an action that vehicles of this flavour cannot carry out."""
-    allowed = [name for name in ACTIONS if name in ("none", "disarm") or flavour.mode(name)]
+def check_action(dialect: Dialect, action: str) -> None:
+    """Raise InputError for an action that vehicles of this dialect cannot carry out."""
+    allowed = [name for name in ACTIONS if name in ("none", "disarm") or dialect.mode(name)]
     if action not in allowed:
         raise InputError(unknown("failsafe of this vehicle", action, allowed))

@@ -71,7 +71,7 @@ _PX4_SUBMERGED = (
 
 
 @dataclass(frozen=True)
-class Flavour:
+class Dialect:
     """How one autopilot numbers things: what a ground station expects of its kind."""
 
     name: str
@@ -109,13 +109,13 @@ class Flavour:
         return self.by_custom_mode(_px4(round(main), low)) if main < 256.0 else None
 
 
-def flavour(autopilot_type: str, *, submerged: bool) -> Flavour:
-    """Return the flavour of ``ardupilotmega`` or ``px4`` for a boat or a submarine."""
+def dialect(autopilot_type: str, *, submerged: bool) -> Dialect:
+    """Return the dialect of ``ardupilotmega`` or ``px4`` for a boat or a submarine."""
     modes: dict[bool, tuple[Mode, ...]]
     if autopilot_type == "px4":
         modes = {False: _PX4_SURFACE, True: _PX4_SUBMERGED}
         number = mavlink.MAV_AUTOPILOT_PX4
-        return Flavour("px4", number, modes[submerged], True, True, False, _PX4_REPOSITION)
+        return Dialect("px4", number, modes[submerged], True, True, False, _PX4_REPOSITION)
     modes = {False: _ROVER, True: _SUB}
     number = mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA
-    return Flavour("ardupilot", number, modes[submerged], False, False, True, None)
+    return Dialect("ardupilot", number, modes[submerged], False, False, True, None)

@@ -13,7 +13,6 @@ from .codec import Message
 from .failsafe import Failsafe
 from .parameter_table import ParameterTable
 from .plan import Plans
-from .radio import Air, Sender
 from .service import Builder, Handler, Service
 from .service_arming import ArmingService
 from .service_clock import ClockService
@@ -23,6 +22,7 @@ from .service_fence import FenceService
 from .service_files import FileService
 from .service_guided import GuidedService
 from .service_home import HomeService
+from .service_manual_control import ManualControlService
 from .service_missions import MissionService
 from .service_modes import ModeService
 from .service_parameters import ParameterService
@@ -30,7 +30,6 @@ from .service_presence import PresenceService
 from .service_rally import RallyService
 from .service_refusals import RefusalService
 from .service_stations import StationService
-from .service_sticks import StickService
 from .service_streams import StreamService
 from .service_transfer import TransferService
 from .settings import Settings
@@ -39,6 +38,7 @@ from .telemetry_navigation import NavigationTelemetry
 from .telemetry_odometry import OdometryTelemetry
 from .telemetry_sensors import SensorTelemetry
 from .telemetry_system import SystemTelemetry
+from .transport import Sender, Transport
 from .vehicle import Vehicle
 
 
@@ -46,7 +46,7 @@ class Node:
     """All services of one vehicle.
 
     `receive` takes messages one by one, `tick` lets time pass; answers and streams go to
-    ``air``. Messages of the vehicle itself, and those meant for another system or component,
+    ``transport``. Messages of the vehicle itself, and those meant for another system or component,
     are nobody's business here. Missions, fence and rally points are kept in ``plans``, a folder.
     ``clock`` is wall time, s, by which ground stations live. ``failures`` are the units that can
     fail.
@@ -56,7 +56,7 @@ class Node:
     def __init__(
         self,
         vehicle: Vehicle,
-        air: Air,
+        transport: Transport,
         settings: Settings,
         parameters: ParameterTable,
         plans: Path | None = None,
@@ -67,47 +67,47 @@ class Node:
         handlers: dict[int, Handler] = {}
         builders: dict[int, Builder] = {}
         intervals: dict[int, float] = {}
-        modes, arming = ModeService(vehicle, air), ArmingService(vehicle, air, settings)
+        modes, arming = ModeService(vehicle, transport), ArmingService(vehicle, transport, settings)
         failsafe = Failsafe(vehicle, modes, arming, settings)
-        home = HomeService(vehicle, air)
+        home = HomeService(vehicle, transport)
         lists = Plans(vehicle, plans)
-        rally = RallyService(vehicle, air, lists.rally)
-        fence = FenceService(vehicle, air, lists.fence, settings, failsafe)
+        rally = RallyService(vehicle, transport, lists.rally)
+        fence = FenceService(vehicle, transport, lists.fence, settings, failsafe)
         arming.checks.append(fence.check)
-        guided = GuidedService(vehicle, air, modes, settings)
+        guided = GuidedService(vehicle, transport, modes, settings)
         self.missions = MissionService(
-            *(vehicle, air, lists.mission, settings, modes),
+            *(vehicle, transport, lists.mission, settings, modes),
             home.commands[mavlink.MAV_CMD_DO_SET_HOME],
             lambda: rally.refuge,
             guided.change_speed,
         )
         self.rally = rally
-        self.failures = FailureService(vehicle, air, settings, failures)
+        self.failures = FailureService(vehicle, transport, settings, failures)
         self.services: list[Service] = [
-            CommandService(vehicle, air, handlers),
+            CommandService(vehicle, transport, handlers),
             arming,
             modes,
-            StationService(vehicle, air, failsafe, settings, clock),
-            StickService(vehicle, air, failsafe, settings),
+            StationService(vehicle, transport, failsafe, settings, clock),
+            ManualControlService(vehicle, transport, failsafe, settings),
             guided,
             home,
-            TransferService(vehicle, air, lists),
+            TransferService(vehicle, transport, lists),
             fence,
             rally,
             self.missions,
-            ParameterService(vehicle, air, parameters),
+            ParameterService(vehicle, transport, parameters),
             self.failures,
-            ClockService(vehicle, air),
-            FileService(vehicle, air),
-            RefusalService(vehicle, air),
-            MotionTelemetry(vehicle, air),
-            OdometryTelemetry(vehicle, air),
-            SensorTelemetry(vehicle, air),
-            SystemTelemetry(vehicle, air),
-            NavigationTelemetry(vehicle, air, lambda: self.goal),
+            ClockService(vehicle, transport),
+            FileService(vehicle, transport),
+            RefusalService(vehicle, transport),
+            MotionTelemetry(vehicle, transport),
+            OdometryTelemetry(vehicle, transport),
+            SensorTelemetry(vehicle, transport),
+            SystemTelemetry(vehicle, transport),
+            NavigationTelemetry(vehicle, transport, lambda: self.goal),
             # What the others changed is told last.
-            PresenceService(vehicle, air),
-            StreamService(vehicle, air, builders, intervals),
+            PresenceService(vehicle, transport),
+            StreamService(vehicle, transport, builders, intervals),
         ]
         for service in self.services:
             handlers.update(service.commands)

@@ -24,7 +24,7 @@ def vehicle_parameters(
 
     ``actuators`` as in `read_servos`, ``tunables`` as in `tunable_parameters`. Raises InputError.
     """
-    is_px4 = vehicle.flavour.name == "px4"
+    is_px4 = vehicle.dialect.name == "px4"
     if is_px4:
         definitions = px4_parameters(vehicle.identity, settings)
     else:

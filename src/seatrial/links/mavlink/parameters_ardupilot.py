@@ -35,7 +35,7 @@ _SUB_ACTIONS = {1: "none", 0: "none", 2: "disarm", 3: "hold", 4: "surface", 5: "
 _SUB_FENCE_ACTIONS = {0: "none", 1: "surface", 2: "hold", 3: "disarm", 4: "loiter"}
 _SWITCH = {0: False, 1: True}
 
-_STICKS = "the sticks' channels are always the same"
+_MANUAL_AXES = "the sticks' channels are always the same"
 _NO_SWITCH = "no channel chooses modes"
 _TRUE_NORTH = "the vehicle is given its true heading"
 
@@ -73,7 +73,7 @@ def ardupilot_parameters(
         fixed("BATT_MONITOR", INT8, 4),
         fixed("MODE_CH", INT8, 0, _NO_SWITCH),
         *(fixed(f"MODE{n}", INT8, 0, _NO_SWITCH) for n in range(1, 7)),
-        *_sticks(submerged),
+        *_manual_control(submerged),
         *(one for n in channels for one in _servo(n, servos, submerged)),
         *_compass(),
     ]
@@ -94,8 +94,8 @@ def _rover(settings: Settings) -> list[Definition]:
         real("WP_SPEED", "waypoint_speed", settings),
         real("WP_RADIUS", "waypoint_radius", settings),
         choice("FS_ACTION", "failsafe", settings, _ROVER_ACTIONS),
-        real("FS_TIMEOUT", "stick_timeout", settings),
-        choice("FS_THR_ENABLE", "watches_sticks", settings, _SWITCH),
+        real("FS_TIMEOUT", "manual_timeout", settings),
+        choice("FS_THR_ENABLE", "watches_manual_control", settings, _SWITCH),
         choice("FS_GCS_ENABLE", "watches_stations", settings, _SWITCH),
         real("FS_GCS_TIMEOUT", "station_timeout", settings),
         real("GUID_TIMEOUT", "target_timeout", settings),
@@ -110,22 +110,22 @@ def _sub(settings: Settings) -> list[Definition]:
         real("WPNAV_RADIUS", "waypoint_radius", settings, scale=0.01),
         choice("FS_GCS_ENABLE", "failsafe", settings, _SUB_ACTIONS),
         real("FS_GCS_TIMEOUT", "station_timeout", settings),
-        real("FS_PILOT_TIMEOUT", "stick_timeout", settings),
+        real("FS_PILOT_TIMEOUT", "manual_timeout", settings),
         real("CIRCLE_RADIUS", "loiter_radius", settings, 10.0, scale=0.01),
         choice("FENCE_ACTION", "fence_action", settings, _SUB_FENCE_ACTIONS),
         real("FENCE_DEPTH_MAX", "fence_depth", settings),
     ]
 
 
-def _sticks(submerged: bool) -> list[Definition]:
+def _manual_control(submerged: bool) -> list[Definition]:
     axes = {"ROLL": 1, "PITCH": 2, "THROTTLE": 3, "YAW": 4}
     if submerged:
         axes |= {"FORWARD": 5, "LATERAL": 6}
     pulses = {"MIN": 1100, "TRIM": 1500, "MAX": 1900, "REVERSED": 0}
     return [
-        *(fixed(f"RCMAP_{axis}", INT8, channel, _STICKS) for axis, channel in axes.items()),
+        *(fixed(f"RCMAP_{axis}", INT8, channel, _MANUAL_AXES) for axis, channel in axes.items()),
         *(
-            fixed(f"RC{n}_{what}", INT16, value, _STICKS)
+            fixed(f"RC{n}_{what}", INT16, value, _MANUAL_AXES)
             for n in range(1, _LISTED_CHANNELS + 1)
             for what, value in pulses.items()
         ),

@@ -27,7 +27,7 @@ def px4_parameters(identity: Identity, settings: Settings) -> list[Definition]:
         fixed("MAV_TYPE", INT32, identity.vehicle_type),
         choice("NAV_DLL_ACT", "failsafe", settings, actions, INT32),
         whole("COM_DL_LOSS_T", "station_timeout", settings, 0, 2**31 - 1),
-        real("COM_RC_LOSS_T", "stick_timeout", settings),
+        real("COM_RC_LOSS_T", "manual_timeout", settings),
         real("COM_OF_LOSS_T", "target_timeout", settings),
         choice("COM_ARM_WO_GPS", "arming_check", settings, _WITHOUT_POSITION, INT32),
         choice("GF_ACTION", "fence_action", settings, fence_actions, INT32),

@@ -65,15 +65,15 @@ def stand_still(
     vehicle = node.vehicle
     vehicle.say(NOTICE, f"Paused: {SPEEDUP} above 0 goes on")
     begun, before = clock(), vehicle.paused_s
-    heard = begun
+    received = begun
     with Interruption() as interruption:
         while settings.paused and not interruption.asked:
             sleep(POLL_S)
             now = clock()
             vehicle.paused_s = before + now - begun
             if exchange():
-                heard = now
-            elif now - heard > settings.station_timeout:
+                received = now
+            elif now - received > settings.station_timeout:
                 parameters.put(SPEEDUP, settings.speedup)
                 vehicle.say(WARNING, "Nobody is left who could end the pause")
     if not settings.paused:

@@ -45,7 +45,7 @@ class Plan:
     def told(self) -> tuple[Item, ...]:
         """Return the items as they are told: item 0 of ArduPilot's missions is home as it is."""
         home_first = self.kind == mavlink.MAV_MISSION_TYPE_MISSION
-        if self._items and home_first and self._vehicle.flavour.home_is_item_0:
+        if self._items and home_first and self._vehicle.dialect.home_is_item_0:
             return (home_item(self._vehicle), *self._items[1:])
         return self._items
 

@@ -41,7 +41,7 @@ Check = Callable[[Sequence[Item], Vehicle], Refusal | None]
 
 def first_item(vehicle: Vehicle) -> int:
     """Return the number of a mission's first item: 1 where item 0 is home."""
-    return int(vehicle.flavour.home_is_item_0)
+    return int(vehicle.dialect.home_is_item_0)
 
 
 def check_mission(items: Sequence[Item], vehicle: Vehicle) -> Refusal | None:

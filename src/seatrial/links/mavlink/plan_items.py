@@ -10,8 +10,8 @@ from pymavlink.dialects.v20 import all as mavlink
 from ..geodesy import Ned
 from .codec import Message
 from .frames import GLOBAL_FRAMES, global_position
-from .radio import Sender
 from .scaling import deg_e7, int32
+from .transport import Sender
 from .vehicle import Vehicle
 
 NOT_GIVEN = 0x7FFFFFFF

@@ -50,7 +50,7 @@ class MavlinkPorts(Logging, Reachable, Sampled):
     date = Parameter("2026-01-01", "1", "day on which the run starts, at midnight UTC")
     failsafe = Parameter("hold", "1", "what it does when left alone", choices=ACTIONS)
     station_timeout = Parameter(5.0, "s", "silence after which a ground station is lost", min=0.0)
-    stick_timeout = Parameter(3.0, "s", "time for which sticks count", min=0.0)
+    manual_timeout = Parameter(3.0, "s", "time for which sticks count", min=0.0)
     target_timeout = Parameter(3.0, "s", "time for which a set-point counts", min=0.0)
     full_speed = Parameter(1.0, "m/s", "speed of full thrust in an attitude set-point", min=0.0)
     truth = Parameter("off", "1", "whether the truth is sent", choices=("off", "on"))

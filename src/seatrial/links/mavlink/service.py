@@ -10,7 +10,7 @@ from typing import ClassVar
 from pymavlink.dialects.v20 import all as mavlink
 
 from .codec import Message
-from .radio import Air, Sender
+from .transport import Sender, Transport
 from .vehicle import Vehicle
 
 
@@ -37,7 +37,7 @@ class Service:
 
     A service sees every message that is meant for this vehicle (`handle`) and every instant
     (`tick`), offers ``commands`` by MAV_CMD and ``messages`` by number to whoever asks for them
-    or streams them, and speaks through ``air``. Times are simulated, s, and never run backwards.
+    or streams them, and speaks through ``transport``. Times are simulated, s, and never run backwards.
     """
 
     capabilities: ClassVar[int] = 0
@@ -45,8 +45,8 @@ class Service:
     streams: ClassVar[Mapping[int, float]] = {}
     """Messages that every link gets unless it asks for something else: interval, s."""
 
-    def __init__(self, vehicle: Vehicle, air: Air) -> None:
-        self.vehicle, self.air = vehicle, air
+    def __init__(self, vehicle: Vehicle, transport: Transport) -> None:
+        self.vehicle, self.transport = vehicle, transport
 
     @property
     def commands(self) -> Mapping[int, Handler]:

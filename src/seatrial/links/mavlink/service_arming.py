@@ -6,9 +6,9 @@ from collections.abc import Callable, Mapping
 
 from pymavlink.dialects.v20 import all as mavlink
 
-from .radio import Air, Sender
 from .service import ACCEPTED, CRITICAL, DENIED, FAILED, INFO, WARNING, Command, Handler, Service
 from .settings import COMPASS_CHECK, GPS_CHECK, Settings
+from .transport import Sender, Transport
 from .vehicle import Vehicle
 
 FORCE = 21196.0
@@ -26,8 +26,8 @@ class ArmingService(Service):
     said. Disarming always works, and so does arming by `FORCE`, which says so.
     """
 
-    def __init__(self, vehicle: Vehicle, air: Air, settings: Settings) -> None:
-        super().__init__(vehicle, air)
+    def __init__(self, vehicle: Vehicle, transport: Transport, settings: Settings) -> None:
+        super().__init__(vehicle, transport)
         self._settings = settings
         self.checks: list[Check] = [self._needs_position, self._needs_heading]
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pymavlink.dialects.v20 import all as mavlink
 
 from .codec import Message
-from .radio import Sender
 from .scaling import microseconds
 from .service import Service
+from .transport import Sender
 
 
 class ClockService(Service):
@@ -23,10 +23,10 @@ class ClockService(Service):
             case "TIMESYNC":
                 if message.tc1 == 0:
                     answer = mavlink.MAVLink_timesync_message(round(now * 1e9), message.ts1)
-                    self.air.send(sender.link, answer)
+                    self.transport.send(sender.link, answer)
             case "PING":
                 if message.target_system == 0 and message.target_component == 0:
                     answer = mavlink.MAVLink_ping_message(
                         microseconds(now), message.seq, sender.system, sender.component
                     )
-                    self.air.send(sender.link, answer)
+                    self.transport.send(sender.link, answer)

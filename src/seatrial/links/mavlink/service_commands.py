@@ -8,8 +8,8 @@ from pymavlink.dialects.v20 import all as mavlink
 
 from .codec import Message
 from .frames import GLOBAL_FRAMES, LOCAL_FRAMES
-from .radio import Air, Sender
 from .service import UNSUPPORTED, Command, Handler, Service
+from .transport import Sender, Transport
 from .vehicle import Vehicle
 
 _NOT_GIVEN = 0x7FFFFFFF
@@ -25,8 +25,10 @@ class CommandService(Service):
 
     capabilities = mavlink.MAV_PROTOCOL_CAPABILITY_COMMAND_INT
 
-    def __init__(self, vehicle: Vehicle, air: Air, handlers: Mapping[int, Handler]) -> None:
-        super().__init__(vehicle, air)
+    def __init__(
+        self, vehicle: Vehicle, transport: Transport, handlers: Mapping[int, Handler]
+    ) -> None:
+        super().__init__(vehicle, transport)
         self._handlers = handlers
 
     def handle(self, message: Message, sender: Sender, now: float) -> None:
@@ -40,7 +42,7 @@ class CommandService(Service):
         answer = mavlink.MAVLink_command_ack_message(
             command.number, result, 0, 0, sender.system, sender.component
         )
-        self.air.send(sender.link, answer)
+        self.transport.send(sender.link, answer)
 
 
 def _of_long(m: Message) -> Command:

@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 from pymavlink.dialects.v20 import all as mavlink
 
 from ...errors import InputError, unknown
-from .radio import Air, Sender
 from .service import (
     ACCEPTED,
     DENIED,
@@ -20,6 +19,7 @@ from .service import (
     whole,
 )
 from .settings import Settings
+from .transport import Sender, Transport
 from .vehicle import Vehicle
 
 _MOST = 8
@@ -78,9 +78,9 @@ class FailureService(Service):
     """
 
     def __init__(
-        self, vehicle: Vehicle, air: Air, settings: Settings, units: Sequence[str] = ()
+        self, vehicle: Vehicle, transport: Transport, settings: Settings, units: Sequence[str] = ()
     ) -> None:
-        super().__init__(vehicle, air)
+        super().__init__(vehicle, transport)
         self._settings = settings
         self.failing = dict.fromkeys(units, "none")
 

@@ -13,10 +13,10 @@ from .failsafe import Failsafe, check_action
 from .fence_zones import Zone, is_allowed, zones_of
 from .plan import Plan
 from .plan_items import Item
-from .radio import Air, Sender
 from .scaling import milliseconds
 from .service import ACCEPTED, DENIED, NOTICE, Builder, Command, Handler, Service
 from .settings import Settings
+from .transport import Sender, Transport
 from .vehicle import Vehicle
 
 INSIDE_S = 1.0
@@ -43,10 +43,15 @@ class FenceService(Service):
     streams: ClassVar = {mavlink.MAVLINK_MSG_ID_FENCE_STATUS: 1.0}
 
     def __init__(
-        self, vehicle: Vehicle, air: Air, plan: Plan, settings: Settings, failsafe: Failsafe
+        self,
+        vehicle: Vehicle,
+        transport: Transport,
+        plan: Plan,
+        settings: Settings,
+        failsafe: Failsafe,
     ) -> None:
-        super().__init__(vehicle, air)
-        check_action(vehicle.flavour, settings.fence_action)
+        super().__init__(vehicle, transport)
+        check_action(vehicle.dialect, settings.fence_action)
         self._plan, self._settings, self._failsafe = plan, settings, failsafe
         self._enabled = True
         self._items: tuple[Item, ...] = ()
@@ -83,13 +88,13 @@ class FenceService(Service):
             self._inside_since = min(self._inside_since, now)
             if now - self._inside_since >= INSIDE_S:
                 self._end()
-                self.air.broadcast(self._status(now)[0])
+                self.transport.broadcast(self._status(now)[0])
 
     def _begin(self, breach: str, now: float) -> None:
         self._breach, self._at, self._count = breach, now, self._count + 1
         self.vehicle.fence_breached = True
         self._failsafe.act(breach, self._settings.fence_action)
-        self.air.broadcast(self._status(now)[0])
+        self.transport.broadcast(self._status(now)[0])
 
     def _end(self) -> None:
         if self._breach is not None:

@@ -7,8 +7,8 @@ import struct
 from pymavlink.dialects.v20 import all as mavlink
 
 from .codec import Message
-from .radio import Sender
 from .service import Service
+from .transport import Sender
 
 # Sequence, session, opcode, size, requested opcode, burst complete, padding, offset; then data.
 _HEADER = struct.Struct("<HBBBBBxI")
@@ -33,7 +33,7 @@ class FileService(Service):
             return
         header = _HEADER.pack((number + 1) % (1 << 16), session, _NAK, 1, opcode, 0, 0)
         payload = bytes([*header, _UNKNOWN_COMMAND]).ljust(_PAYLOAD_BYTES, b"\0")
-        self.air.send(
+        self.transport.send(
             sender.link,
             mavlink.MAVLink_file_transfer_protocol_message(
                 0, sender.system, sender.component, list(payload)

@@ -12,7 +12,6 @@ from ..geodesy import Ned
 from .codec import Message
 from .frames import GLOBAL_FRAMES, LOCAL_FRAMES, global_position, is_near
 from .mission_runner import FASTEST, OWN_SPEED
-from .radio import Air, Sender
 from .scaling import milliseconds, turned, yaw
 from .service import (
     ACCEPTED,
@@ -27,6 +26,7 @@ from .service import (
 )
 from .service_modes import ModeService
 from .settings import Settings
+from .transport import Sender, Transport
 from .vehicle import Target, Vehicle
 
 _IGNORE_XY, _IGNORE_Z = 0x3, 0x4
@@ -62,8 +62,10 @@ class GuidedService(Service):
         | mavlink.MAV_PROTOCOL_CAPABILITY_SET_ATTITUDE_TARGET
     )
 
-    def __init__(self, vehicle: Vehicle, air: Air, modes: ModeService, settings: Settings) -> None:
-        super().__init__(vehicle, air)
+    def __init__(
+        self, vehicle: Vehicle, transport: Transport, modes: ModeService, settings: Settings
+    ) -> None:
+        super().__init__(vehicle, transport)
         self._modes, self._settings = modes, settings
         self._before = 0.0
 
@@ -79,7 +81,7 @@ class GuidedService(Service):
 
     def handle(self, message: Message, sender: Sender, now: float) -> None:
         """Take a set-point."""
-        if self.vehicle.mode != self.vehicle.flavour.mode("guided"):
+        if self.vehicle.mode != self.vehicle.dialect.mode("guided"):
             return
         match message.get_type():
             case "SET_POSITION_TARGET_LOCAL_NED":
@@ -199,7 +201,7 @@ class GuidedService(Service):
         position = global_position(self.vehicle, command.frame, latitude, longitude, altitude)
         if position is None:
             return DENIED
-        mode = self.vehicle.flavour.reposition or self.vehicle.flavour.mode("guided")
+        mode = self.vehicle.dialect.reposition or self.vehicle.dialect.mode("guided")
         if mode is None or self.vehicle.mode != mode:
             if not flags & mavlink.MAV_DO_REPOSITION_FLAGS_CHANGE_MODE:
                 self.vehicle.say(WARNING, "Not in guided mode")

@@ -11,9 +11,9 @@ from pymavlink.dialects.v20 import all as mavlink
 from ..geodesy import Ned
 from .codec import Message
 from .frames import GLOBAL_FRAMES, is_near
-from .radio import Sender
 from .scaling import deg_e7, int32, microseconds
 from .service import ACCEPTED, DENIED, FAILED, WARNING, Builder, Command, Handler, Service
+from .transport import Sender
 
 
 class HomeService(Service):
@@ -51,7 +51,7 @@ class HomeService(Service):
                 )
             case "SET_GPS_GLOBAL_ORIGIN":
                 self.vehicle.say(WARNING, "The origin stays: it belongs to the trial")
-                self.air.send(sender.link, self._origin(now)[0])
+                self.transport.send(sender.link, self._origin(now)[0])
 
     def _set_home(self, command: Command, sender: Sender, now: float) -> int:
         if command.parameters[0] == 1.0:
@@ -75,10 +75,10 @@ class HomeService(Service):
 
     def _moved(self, position: Ned, now: float) -> None:
         self.vehicle.home_n = position
-        self.air.broadcast(self._home(now)[0])
+        self.transport.broadcast(self._home(now)[0])
 
     def _tell_home(self, command: Command, sender: Sender, now: float) -> int:
-        self.air.send(sender.link, self._home(now)[0])
+        self.transport.send(sender.link, self._home(now)[0])
         return ACCEPTED
 
     def _home(self, now: float) -> list[Message]:

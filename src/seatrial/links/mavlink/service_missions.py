@@ -15,7 +15,6 @@ from .modes import Mode
 from .plan import Plan
 from .plan_checks import check_place
 from .plan_items import Item, from_message
-from .radio import Air, Sender
 from .service import (
     ACCEPTED,
     DENIED,
@@ -29,6 +28,7 @@ from .service import (
 )
 from .service_modes import ModeService
 from .settings import Settings
+from .transport import Sender, Transport
 from .vehicle import Target, Vehicle
 
 _NO_MISSION = 0xFFFF
@@ -55,7 +55,7 @@ class MissionService(Service):
     def __init__(
         self,
         vehicle: Vehicle,
-        air: Air,
+        transport: Transport,
         plan: Plan,
         settings: Settings,
         modes: ModeService,
@@ -63,7 +63,7 @@ class MissionService(Service):
         refuge: Callable[[], Ned],
         change_guided_speed: Callable[[float], None],
     ) -> None:
-        super().__init__(vehicle, air)
+        super().__init__(vehicle, transport)
         self._plan, self._modes, self._set_home = plan, modes, set_home
         self._change_guided_speed = change_guided_speed
         self._runner = MissionRunner(vehicle, plan, settings, self._move_home, refuge)
@@ -104,18 +104,18 @@ class MissionService(Service):
                 result = self._guide(from_message(message))
                 target = (sender.system, sender.component)
                 answer = mavlink.MAVLink_mission_ack_message(*target, result, self._plan.kind)
-                self.air.send(sender.link, answer)
+                self.transport.send(sender.link, answer)
 
     def tick(self, now: float) -> None:
         """Go on with the mission, and tell what has changed."""
         self._runner.tick(now, self.reached)
         for sequence in self._runner.passed:
-            self.air.broadcast(mavlink.MAVLink_mission_item_reached_message(sequence))
+            self.transport.broadcast(mavlink.MAVLink_mission_item_reached_message(sequence))
         self._runner.passed.clear()
         current = self._current(now)[0]
         if self._asked or current.to_dict() != self._told:
             self._asked, self._told = False, current.to_dict()
-            self.air.broadcast(current)
+            self.transport.broadcast(current)
 
     # ------------------------------------------------------------------ commands
 
@@ -124,7 +124,7 @@ class MissionService(Service):
         sequence, count = whole(first), len(self._plan.items)
         if sequence is None or sequence not in range(max(count, 1)) or last not in (0, count - 1):
             return DENIED
-        mode = self.vehicle.flavour.mode("auto")
+        mode = self.vehicle.dialect.mode("auto")
         reason = "there is no such mode" if mode is None else self._modes.enter(mode)
         if reason is not None:
             self.vehicle.say(WARNING, f"Mission not started: {reason}")

@@ -9,7 +9,6 @@ from pymavlink.dialects.v20 import all as mavlink
 
 from .codec import Message
 from .modes import POSITION_MODES, Mode
-from .radio import Air, Sender
 from .service import (
     ACCEPTED,
     DENIED,
@@ -22,6 +21,7 @@ from .service import (
     Handler,
     Service,
 )
+from .transport import Sender, Transport
 from .vehicle import Vehicle
 
 Requirement = Callable[[Mode], str | None]
@@ -38,8 +38,8 @@ class ModeService(Service):
 
     streams: ClassVar = {mavlink.MAVLINK_MSG_ID_CURRENT_MODE: 1.0}
 
-    def __init__(self, vehicle: Vehicle, air: Air) -> None:
-        super().__init__(vehicle, air)
+    def __init__(self, vehicle: Vehicle, transport: Transport) -> None:
+        super().__init__(vehicle, transport)
         self.requirements: list[Requirement] = [self._needs_position]
 
     @property
@@ -75,7 +75,7 @@ class ModeService(Service):
         if message.get_type() != "SET_MODE":
             return
         if message.base_mode & mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED:
-            mode = self.vehicle.flavour.by_custom_mode(message.custom_mode)
+            mode = self.vehicle.dialect.by_custom_mode(message.custom_mode)
             self._entered(mode, message.custom_mode)
 
     def _set_mode(self, command: Command, sender: Sender, now: float) -> int:
@@ -83,7 +83,7 @@ class ModeService(Service):
         custom = mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED
         if not (0.0 <= base < 256.0 and int(base) & custom):
             return DENIED
-        return self._entered(self.vehicle.flavour.by_command(main, sub), main)
+        return self._entered(self.vehicle.dialect.by_command(main, sub), main)
 
     def _return(self, command: Command, sender: Sender, now: float) -> int:
         return self._entered_if_any("return")
@@ -92,7 +92,7 @@ class ModeService(Service):
         return self._entered_if_any("surface")
 
     def _entered_if_any(self, name: str) -> int:
-        mode = self.vehicle.flavour.mode(name)
+        mode = self.vehicle.dialect.mode(name)
         return UNSUPPORTED if mode is None else self._entered(mode, mode.custom_mode)
 
     def _entered(self, mode: Mode | None, asked: float) -> int:
@@ -116,7 +116,7 @@ class ModeService(Service):
         ]
 
     def _available(self, now: float) -> list[Message]:
-        modes = self.vehicle.flavour.modes
+        modes = self.vehicle.dialect.modes
         return [
             mavlink.MAVLink_available_modes_message(
                 len(modes), index, mode.standard, mode.custom_mode, 0, mode.shown.encode()

@@ -11,8 +11,8 @@ from pymavlink.dialects.v20 import all as mavlink
 from .codec import Message
 from .parameter_definition import INT8, INT16, INT32, REAL32
 from .parameter_table import ParameterTable
-from .radio import Air, Sender
 from .service import WARNING, Service
+from .transport import Sender, Transport
 from .vehicle import Vehicle
 
 RATE = 100.0
@@ -52,11 +52,11 @@ class ParameterService(Service):
     Not here: the extended protocol, and PX4's hash of all parameters.
     """
 
-    def __init__(self, vehicle: Vehicle, air: Air, table: ParameterTable) -> None:
-        super().__init__(vehicle, air)
+    def __init__(self, vehicle: Vehicle, transport: Transport, table: ParameterTable) -> None:
+        super().__init__(vehicle, transport)
         self.table = table
         self._listings: dict[int, _Listing] = {}
-        self._bytewise = vehicle.flavour.bytewise_parameters
+        self._bytewise = vehicle.dialect.bytewise_parameters
         vehicle.capabilities |= (
             mavlink.MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_BYTEWISE
             if self._bytewise
@@ -78,11 +78,11 @@ class ParameterService(Service):
 
     def tick(self, now: float) -> None:
         """Send what is due of the lists, and forget those of links that are gone."""
-        links, now = set(self.air.links()), self.vehicle.link_time(now)
+        links, now = set(self.transport.links()), self.vehicle.link_time(now)
         self._listings = {k: v for k, v in self._listings.items() if v.left and k in links}
         for link, listing in self._listings.items():
             while listing.left and now >= listing.due - _SLACK_S:
-                self.air.send(link, self._value(self.table.names[listing.index]))
+                self.transport.send(link, self._value(self.table.names[listing.index]))
                 listing.index = (listing.index + 1) % len(self.table.names)
                 listing.left -= 1
                 listing.due += 1.0 / RATE
@@ -92,7 +92,7 @@ class ParameterService(Service):
             known = 0 <= index < len(self.table.names)
             name = self.table.names[index] if known else ""
         if name in self.table:
-            self.air.send(sender.link, self._value(name))
+            self.transport.send(sender.link, self._value(name))
         else:
             self._refuse(name, index, mavlink.MAV_PARAM_ERROR_DOES_NOT_EXIST, sender)
 
@@ -107,19 +107,19 @@ class ParameterService(Service):
         else:
             refusal = self.table.put(name, self._decoded(message.param_value, kind))
             if refusal is None:
-                self.air.broadcast(self._value(name))
+                self.transport.broadcast(self._value(name))
                 return
             error, reason = refusal.error, refusal.reason
         # The error first: who knows it does not take the old value for a lost message.
         self._refuse(name, self.table.index(name), error, sender)
-        self.air.send(sender.link, self._value(name))
+        self.transport.send(sender.link, self._value(name))
         self.vehicle.say(WARNING, f"{name} stays {self.table[name]:g}: {reason}")
 
     def _refuse(self, name: str, index: int, error: int, sender: Sender) -> None:
         answer = mavlink.MAVLink_param_error_message(
             sender.system, sender.component, _identifier(name), index, error
         )
-        self.air.send(sender.link, answer)
+        self.transport.send(sender.link, answer)
 
     def _value(self, name: str) -> Message:
         kind = self.table.kind(name)

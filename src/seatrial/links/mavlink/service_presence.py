@@ -9,8 +9,8 @@ from pymavlink.dialects.v20 import all as mavlink
 
 from .codec import Message
 from .modes import MANUAL_MODES
-from .radio import Air, Sender
 from .service import ACCEPTED, Builder, Command, Handler, Service
+from .transport import Sender, Transport
 from .vehicle import Vehicle
 
 INTERVAL_S = 1.0
@@ -37,8 +37,8 @@ class PresenceService(Service):
     )
     streams: ClassVar = {mavlink.MAVLINK_MSG_ID_HEARTBEAT: INTERVAL_S}
 
-    def __init__(self, vehicle: Vehicle, air: Air) -> None:
-        super().__init__(vehicle, air)
+    def __init__(self, vehicle: Vehicle, transport: Transport) -> None:
+        super().__init__(vehicle, transport)
         self._told = (vehicle.mode, vehicle.armed, vehicle.failsafe)
         self._text_id = 0
 
@@ -60,10 +60,10 @@ class PresenceService(Service):
         state = (self.vehicle.mode, self.vehicle.armed, self.vehicle.failsafe)
         if state != self._told:
             self._told = state
-            self.air.broadcast(self._heartbeat(now)[0])
+            self.transport.broadcast(self._heartbeat(now)[0])
         for text in self.vehicle.texts:
             for message in self._pieces(text.severity, text.text.encode()):
-                self.air.broadcast(message)
+                self.transport.broadcast(message)
         self.vehicle.texts.clear()
 
     def _heartbeat(self, now: float) -> list[Message]:
@@ -81,7 +81,7 @@ class PresenceService(Service):
         return [
             mavlink.MAVLink_heartbeat_message(
                 vehicle.identity.vehicle_type,
-                vehicle.flavour.autopilot,
+                vehicle.dialect.autopilot,
                 flags,
                 vehicle.mode.custom_mode,
                 mavlink.MAV_STATE_CRITICAL if vehicle.failsafe else status,
@@ -103,7 +103,7 @@ class PresenceService(Service):
         ]
 
     def _tell_version(self, command: Command, sender: Sender, now: float) -> int:
-        self.air.send(sender.link, self._version(now)[0])
+        self.transport.send(sender.link, self._version(now)[0])
         return ACCEPTED
 
     def _pieces(self, severity: int, text: bytes) -> list[Message]:

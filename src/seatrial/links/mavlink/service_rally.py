@@ -6,8 +6,8 @@ import math
 
 from ..geodesy import Ned
 from .plan import Plan
-from .radio import Air
 from .service import Service
+from .transport import Transport
 from .vehicle import Vehicle
 
 
@@ -19,8 +19,8 @@ class RallyService(Service):
     obeyed.
     """
 
-    def __init__(self, vehicle: Vehicle, air: Air, plan: Plan) -> None:
-        super().__init__(vehicle, air)
+    def __init__(self, vehicle: Vehicle, transport: Transport, plan: Plan) -> None:
+        super().__init__(vehicle, transport)
         self._plan = plan
         self._known: tuple[object, object] | None = None
         self._points: list[Ned] = []

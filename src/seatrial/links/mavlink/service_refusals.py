@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from pymavlink.dialects.v20 import all as mavlink
 
 from .codec import Message
-from .radio import Sender
 from .service import DENIED, WARNING, Command, Handler, Service
+from .transport import Sender
 
 _REASONS: Mapping[int, str] = {
     mavlink.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN: (

@@ -10,9 +10,9 @@ from pymavlink.dialects.v20 import all as mavlink
 
 from .codec import Message
 from .failsafe import Failsafe
-from .radio import Air, Sender
 from .service import INFO, Service
 from .settings import Settings
+from .transport import Sender, Transport
 from .vehicle import Vehicle
 
 _MOST = 32
@@ -23,7 +23,7 @@ _LOST = "all ground stations lost"
 
 @dataclass
 class _Station:
-    """When a station was heard last, s: simulated time, and wall time."""
+    """When a station was received last, s: simulated time, and wall time."""
 
     at: float
     wall_at: float
@@ -56,12 +56,12 @@ class StationService(Service):
     def __init__(
         self,
         vehicle: Vehicle,
-        air: Air,
+        transport: Transport,
         failsafe: Failsafe,
         settings: Settings,
         clock: Callable[[], float],
     ) -> None:
-        super().__init__(vehicle, air)
+        super().__init__(vehicle, transport)
         self._failsafe, self._settings, self._clock = failsafe, settings, clock
         self._there: dict[tuple[int, int], _Station] = {}
         """By system and component."""

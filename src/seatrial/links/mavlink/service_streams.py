@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from pymavlink.dialects.v20 import all as mavlink
 
 from .codec import Message
-from .radio import Air, Sender
 from .service import ACCEPTED, DENIED, UNSUPPORTED, Builder, Command, Handler, Service, whole
+from .transport import Sender, Transport
 from .vehicle import Vehicle
 
 _FIXED = (mavlink.MAVLINK_MSG_ID_HEARTBEAT,)
@@ -79,11 +79,11 @@ class StreamService(Service):
     def __init__(
         self,
         vehicle: Vehicle,
-        air: Air,
+        transport: Transport,
         builders: Mapping[int, Builder],
         defaults: Mapping[int, float],
     ) -> None:
-        super().__init__(vehicle, air)
+        super().__init__(vehicle, transport)
         self._builders, self._defaults = builders, defaults
         self._schedules: dict[int, _Schedule] = {}
 
@@ -109,7 +109,7 @@ class StreamService(Service):
 
     def tick(self, now: float) -> None:
         """Send what is due, and forget the links that are gone."""
-        links = self.air.links()
+        links = self.transport.links()
         self._schedules = {link: self._schedule(link) for link in links}
         for link, schedule in self._schedules.items():
             for number, interval in schedule.intervals.items():
@@ -118,7 +118,7 @@ class StreamService(Service):
                 if at >= due - _SLACK_S:
                     schedule.due[number] = max(due + interval, at)
                     for message in self._builders[number](now):
-                        self.air.send(link, message)
+                        self.transport.send(link, message)
 
     def _schedule(self, link: int) -> _Schedule:
         if link not in self._schedules:
@@ -151,7 +151,9 @@ class StreamService(Service):
         interval = self._schedule(sender.link).intervals.get(number)
         stopped = -1 if number in self._builders else 0
         interval_us = stopped if interval is None else round(interval * 1e6)
-        self.air.send(sender.link, mavlink.MAVLink_message_interval_message(number, interval_us))
+        self.transport.send(
+            sender.link, mavlink.MAVLink_message_interval_message(number, interval_us)
+        )
         return ACCEPTED
 
     def _send_once(self, command: Command, sender: Sender, now: float) -> int:
@@ -162,5 +164,5 @@ class StreamService(Service):
         if number in _NUMBERED and index != 0:
             built = built[index - 1 : index] if index > 0 else []
         for message in built:
-            self.air.send(sender.link, message)
+            self.transport.send(sender.link, message)
         return ACCEPTED if built else DENIED

@@ -10,8 +10,8 @@ from pymavlink.dialects.v20 import all as mavlink
 from .codec import Message
 from .plan import MOST_ITEMS, Plan, Plans
 from .plan_items import Item, from_message, to_message
-from .radio import Air, Sender
 from .service import WARNING, Service
+from .transport import Sender, Transport
 from .vehicle import Vehicle
 
 RETRY_S = 1.0
@@ -74,8 +74,8 @@ class TransferService(Service):
         | mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_RALLY
     )
 
-    def __init__(self, vehicle: Vehicle, air: Air, plans: Plans) -> None:
-        super().__init__(vehicle, air)
+    def __init__(self, vehicle: Vehicle, transport: Transport, plans: Plans) -> None:
+        super().__init__(vehicle, transport)
         self._plans = plans
         self._upload: _Upload | None = None
         self._ended: tuple[tuple[Sender, int, int], int] | None = None
@@ -159,7 +159,7 @@ class TransferService(Service):
             request = mavlink.MAVLink_mission_request_message
         target = (upload.sender.system, upload.sender.component)
         message = request(*target, len(upload.items), upload.plan.kind)
-        self.air.send(upload.sender.link, message)
+        self.transport.send(upload.sender.link, message)
 
     def _replace(self, plan: Plan, items: list[Item], sender: Sender) -> None:
         result = self._replaced(plan, items)
@@ -207,7 +207,7 @@ class TransferService(Service):
         items = plan.told()
         self._offers[sender, plan.kind] = _Offer(items, now + _OFFER_S)
         target = (sender.system, sender.component)
-        self.air.send(
+        self.transport.send(
             sender.link, mavlink.MAVLink_mission_count_message(*target, len(items), plan.kind)
         )
 
@@ -222,7 +222,7 @@ class TransferService(Service):
         if message.seq >= len(items):
             self._answer(sender, plan.kind, mavlink.MAV_MISSION_INVALID_SEQUENCE)
             return
-        self.air.send(
+        self.transport.send(
             sender.link,
             to_message(items[message.seq], plan.kind, message.seq, sender, integers=integers),
         )
@@ -256,7 +256,7 @@ class TransferService(Service):
 
     def _answer(self, sender: Sender, kind: int, result: int) -> None:
         target = (sender.system, sender.component)
-        self.air.send(sender.link, mavlink.MAVLink_mission_ack_message(*target, result, kind))
+        self.transport.send(sender.link, mavlink.MAVLink_mission_ack_message(*target, result, kind))
 
     def _say_why(self, plan: Plan, why: str) -> None:
         self.vehicle.say(WARNING, f"{plan.name} refused: {why}")

@@ -17,7 +17,7 @@ class Settings:
 
     failsafe: str = "hold"
     station_timeout: float = 5.0
-    stick_timeout: float = 3.0
+    manual_timeout: float = 3.0
     target_timeout: float = 3.0
     full_speed: float = 1.0
     """Speed of full thrust in SET_ATTITUDE_TARGET, m/s."""
@@ -34,7 +34,7 @@ class Settings:
     """Depth of the fence's floor, m; 0 for none."""
     watches_stations: bool = True
     """Whether the failsafe acts when all ground stations are lost."""
-    watches_sticks: bool = True
+    watches_manual_control: bool = True
     """Whether the failsafe acts when the sticks are lost."""
     arming_check: int = ALL_CHECKS
     speedup: float = 1.0

@@ -42,7 +42,7 @@ class Signing(mavlink.MAVLinkSigning):  # type: ignore[misc]
     """Key, clock and memory of a vehicle that signs, shared by all its links.
 
     A signed frame is accepted if its signature is SHA-256 of key and frame, and its timestamp
-    is later than the last of the same (link, system, component); of one that was not heard
+    is later than the last of the same (link, system, component); of one that was not received
     before, later than all of earlier runs and not more than a minute behind ours. Nothing is
     remembered of a frame whose signature is wrong: a forger could lock the owner out.
 

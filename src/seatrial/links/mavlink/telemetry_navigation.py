@@ -10,9 +10,9 @@ from pymavlink.dialects.v20 import all as mavlink
 
 from ..geodesy import Ned
 from .codec import Message
-from .radio import Air
 from .scaling import int16, uint16
 from .service import Builder, Service
+from .transport import Transport
 from .vehicle import Vehicle
 
 
@@ -27,8 +27,10 @@ class NavigationTelemetry(Service):
 
     streams: ClassVar = {mavlink.MAVLINK_MSG_ID_NAV_CONTROLLER_OUTPUT: 0.5}
 
-    def __init__(self, vehicle: Vehicle, air: Air, goal: Callable[[], Ned | None]) -> None:
-        super().__init__(vehicle, air)
+    def __init__(
+        self, vehicle: Vehicle, transport: Transport, goal: Callable[[], Ned | None]
+    ) -> None:
+        super().__init__(vehicle, transport)
         self._goal = goal
 
     @property

@@ -36,7 +36,7 @@ class TelemetryLog:
             raise _failed(str(path), error) from None
 
     def write(self, frame: bytes) -> None:
-        """Write a frame that was heard or sent."""
+        """Write a frame that was received or sent."""
         if self._file is None:
             return
         stamp = (self._boot + microseconds(self.now)).to_bytes(8, "big")

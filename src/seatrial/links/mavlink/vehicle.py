@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from ..geodesy import Ned, Origin
-from .modes import Flavour, Mode
+from .modes import Dialect, Mode
 
 CHANNELS = 16
 """Servo outputs of a vehicle."""
 
-STICKS_RELEASED = (0.0, 0.0, 0.0, 0.0)
+MANUAL_RELEASED = (0.0, 0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ class Estimates:
     imu_valid: bool = True
     """Whether rates and specific force are valid."""
     pressure: float | None = None
-    """Absolute, of the air, or in a submarine of the water."""
+    """Absolute, of the transport, or in a submarine of the water."""
     ground_distance: float | None = None
     """To the ground below."""
     apparent_wind: tuple[float, float] | None = None
@@ -114,7 +114,7 @@ class Vehicle:
     """State of the vehicle that services read and change. Times are simulated, s."""
 
     identity: Identity
-    flavour: Flavour
+    dialect: Dialect
     origin: Origin
     mode: Mode
     armed: bool = False
@@ -124,7 +124,7 @@ class Vehicle:
     target: Target | None = None
     guided_speed: float = 0.0
     """Speed to guided positions that name none, m/s; 0 is the vehicle's own."""
-    sticks: tuple[float, float, float, float] = STICKS_RELEASED
+    sticks: tuple[float, float, float, float] = MANUAL_RELEASED
     """Surge, sway, yaw, heave, -1 to 1: ahead, to starboard, turn to starboard, down."""
     channels: list[int] = field(default_factory=lambda: [0] * 18)
     """RC channels as overridden, us; 0 is one that nobody overrides."""

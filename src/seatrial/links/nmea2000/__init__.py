@@ -2,6 +2,6 @@
 
 `component` is one node. `codec` turns messages into frames and back, with the package nmea2000,
 which has canboat's tables; `catalogue` says which messages a node sends and reads, `measurements`
-and `heard` what their fields mean, `address_claim`, `services` and `group_functions` are the
+and `received` what their fields mean, `address_claim`, `services` and `group_functions` are the
 network's protocols: they see messages and simulated time and nothing else.
 """

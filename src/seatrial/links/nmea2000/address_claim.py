@@ -23,7 +23,7 @@ class AddressClaim:
 
     Another node's claim of the same address: the lower NAME keeps it. If that is ours, the claim
     is repeated. If not, a node that is ``arbitrary`` claims the next address, upwards and round,
-    that nobody has been heard on, and is without one for another 250 ms. One that is not, or finds
+    that nobody has been received on, and is without one for another 250 ms. One that is not, or finds
     none free, says 'cannot claim' after a random delay (a claim with source 254), and stays silent.
 
     A request for claims is answered with the claim, or 'cannot claim' after a delay. A claim with

@@ -18,7 +18,7 @@ class Field:
     name: str
     said: str = ""
     """Input or parameter that it comes from."""
-    heard: str = ""
+    received: str = ""
     """Output that it goes to."""
     sense: str = ""
 
@@ -216,7 +216,7 @@ NETWORK = {
 
 ALL = {**DATA, **NETWORK}
 
-HEARD = tuple(number for number, pgn in DATA.items() if any(f.heard for f in pgn.fields))
+RECEIVED = tuple(number for number, pgn in DATA.items() if any(f.received for f in pgn.fields))
 """Messages about the vessel that a node reads."""
 
 

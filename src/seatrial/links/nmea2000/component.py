@@ -11,15 +11,15 @@ from ...errors import InputError
 from ..can.node import CanNode
 from ..can.operations import Transmit
 from ..geodesy import Ned, Origin
-from ..given import serial_number, whole_number
+from ..parameter_validation import serial_number, whole_number
 from .address_claim import AddressClaim
 from .catalogue import DATA, intervals, sends
 from .codec import GLOBAL, Decoder, Encoder, Message, header
 from .group_functions import serve
-from .heard import Heard
 from .measurements import day_of, messages
 from .name import Identity, name_of
 from .ports import ENGINES, Nmea2000Ports
+from .received import Received
 from .services import HEARTBEAT_S, answer, heartbeat
 
 _SIDS = 253
@@ -43,8 +43,8 @@ class Nmea2000(Nmea2000Ports):
     value that its field cannot hold. Messages of one instant have one SID. Engines that are not
     wired send nothing. ``silent`` stops the data.
 
-    **Reads** the PGNs of `catalogue.HEARD` from all other nodes: the outputs ``bus_...``, with
-    whether they count (`Heard`). A magnetic heading counts if its message has the variation.
+    **Reads** the PGNs of `catalogue.RECEIVED` from all other nodes: the outputs ``bus_...``, with
+    whether they count (`Received`). A magnetic heading counts if its message has the variation.
 
     **Answers** ISO requests (`services.answer`) and group functions (`group_functions.serve`):
     other nodes may change its intervals, and command fields of 127237 and 127245.
@@ -56,7 +56,7 @@ class Nmea2000(Nmea2000Ports):
     Position in {n} from the origin (``latitude``, ``longitude``, ``altitude``). UTC is midnight of
     ``date`` plus simulated time.
 
-    **Time.** What ended on the bus by t is heard in the step from t, and on the outputs at its
+    **Time.** What ended on the bus by t is received in the step from t, and on the outputs at its
     end; replies begin at t.
 
     Not here: commanded addresses (65240), ISO transport protocol, alerts, proprietary messages.
@@ -66,7 +66,7 @@ class Nmea2000(Nmea2000Ports):
 
     feedthrough: ClassVar = {}
     discrete = True
-    transient = Component.transient | {"_identity", "_claim", "_encoder", "_decoder", "_heard"}
+    transient = Component.transient | {"_identity", "_claim", "_encoder", "_decoder", "_readings"}
 
     # ------------------------------------------------------------------ running
 
@@ -120,12 +120,12 @@ class Nmea2000(Nmea2000Ports):
         self.tx = node.flush()
         # Mostly little is new, and all of it is asked for often.
         expired = self._changes <= end
-        names = self._heard.names() if expired else dict.fromkeys(self._news)
+        names = self._readings.names() if expired else dict.fromkeys(self._news)
         for name in names:
             self._publish(name, end)
         if names or expired or queue:
             self._publish_network()
-            self._changes = min(self._heard.expires(end), self._claim.changes_ns)
+            self._changes = min(self._readings.expires(end), self._claim.changes_ns)
         self._news = []
 
     def set_state(self, state: Mapping[str, Any]) -> None:
@@ -144,7 +144,7 @@ class Nmea2000(Nmea2000Ports):
 
     def _publish(self, name: str, now: int) -> None:
         """Set the outputs of a quantity to what counts at ``now``."""
-        values, counts = self._heard.get(name, now)
+        values, counts = self._readings.get(name, now)
         assert values is not None
         if name in _PUBLISHED:
             setattr(self, f"bus_{name}", values[0])
@@ -166,14 +166,14 @@ class Nmea2000(Nmea2000Ports):
             self._publish_engines(now)
 
     def _publish_position(self, now: int) -> None:
-        place, self.bus_position_valid = self._heard.get("place", now)
-        altitude, _ = self._heard.get("altitude", now)
+        place, self.bus_position_valid = self._readings.get("place", now)
+        altitude, _ = self._readings.get("altitude", now)
         if place is not None:
             height = self.altitude if altitude is None else altitude[0]
             self.bus_position_n = _position(self._origin(), place[0], place[1], height)
 
     def _publish_engines(self, now: int) -> None:
-        engines = [self._heard.get(f"engine {number}", now) for number in range(ENGINES)]
+        engines = [self._readings.get(f"engine {number}", now) for number in range(ENGINES)]
         self.bus_engine_speed = [
             values[0] if values is not None and counts else 0.0 for values, counts in engines
         ]
@@ -188,7 +188,7 @@ class Nmea2000(Nmea2000Ports):
         self._claim = AddressClaim(self._claiming, self._name, first, arbitrary, self._delay)
         self._encoder, self._decoder = Encoder(self._sequences), Decoder(self._unfinished)
         rudder = whole_number("rudder_instance", self.rudder_instance)
-        self._heard = Heard(self._values, round(self.timeout * NS), rudder)
+        self._readings = Received(self._values, round(self.timeout * NS), rudder)
 
     def _delay(self, number: int) -> float:
         return float(self.generator(number, self._name % _STREAMS).random())
@@ -203,7 +203,7 @@ class Nmea2000(Nmea2000Ports):
         if said.destination not in (GLOBAL, own):
             return []
         if said.pgn not in _NETWORK:
-            self._news += self._heard.take(when, said)
+            self._news += self._readings.take(when, said)
             return []
         if said.pgn == 59904 and said.fields.get("pgn") == 60928:
             self._claim.hear_request(self.now_ns)
@@ -216,7 +216,7 @@ class Nmea2000(Nmea2000Ports):
             found, due, commanded = serve(said, self._sends, self._change)
             found += [each for pgn in due for each in self._now(pgn)]
             if commanded is not None:
-                self._news += self._heard.take(when, commanded)
+                self._news += self._readings.take(when, commanded)
         return [self._from(own, each) for each in found]
 
     def _now(self, pgn: int) -> list[Message]:

@@ -27,8 +27,8 @@ def _valid(what: str) -> Input:
     return Input("1", f"whether {what} is valid", type=bool, start=True, optional=True)
 
 
-def _heard(what: str) -> Output:
-    return Output("1", f"whether {what} has been heard lately", type=bool)
+def _received(what: str) -> Output:
+    return Output("1", f"whether {what} has been received lately", type=bool)
 
 
 class Nmea2000Ports(Noise, Component):
@@ -69,7 +69,7 @@ class Nmea2000Ports(Noise, Component):
     )
     rudder_instance = Parameter(0.0, "1", "which rudder it sends and reads", min=0.0, max=252.0)
     timeout = Parameter(
-        1.0, "s", "time for which what was heard counts, at least 3 intervals", min=0.0
+        1.0, "s", "time for which what was received counts, at least 3 intervals", min=0.0
     )
 
     rx = Input("1", "what the bus tells", type=str)
@@ -122,32 +122,32 @@ class Nmea2000Ports(Noise, Component):
     sent = Output("1", "messages sent", type=int)
     received = Output("1", "messages understood", type=int)
     bus_heading = Output("rad", "true heading, clockwise from north")
-    bus_heading_valid = _heard("a true heading")
+    bus_heading_valid = _received("a true heading")
     bus_rate_of_turn = Output("rad/s", "rate of turn, to starboard")
-    bus_rate_of_turn_valid = _heard("a rate of turn")
+    bus_rate_of_turn_valid = _received("a rate of turn")
     bus_attitude = Output("rad", "Euler angles, ZYX", axes=_EULER)
-    bus_attitude_valid = _heard("an attitude")
+    bus_attitude_valid = _received("an attitude")
     bus_rudder = Output("rad", "angle of the rudder, positive to turn to starboard")
-    bus_rudder_valid = _heard("an angle of the rudder")
+    bus_rudder_valid = _received("an angle of the rudder")
     bus_rudder_order = Output("rad", "angle asked of the rudder, positive to turn to starboard")
-    bus_rudder_order_valid = _heard("an angle asked of the rudder")
+    bus_rudder_order_valid = _received("an angle asked of the rudder")
     bus_rudder_direction = Output("1", "way the rudder is to move: 1 starboard, -1 port", type=int)
     bus_water_speed = Output("m/s", "speed through the water, ahead")
-    bus_water_speed_valid = _heard("a speed through the water")
+    bus_water_speed_valid = _received("a speed through the water")
     bus_depth = Output("m", "depth of the water below the transducer")
-    bus_depth_valid = _heard("a depth")
+    bus_depth_valid = _received("a depth")
     bus_position_n = Output("m", "position, north-east-down", axes=_NED)
-    bus_position_valid = _heard("a position")
+    bus_position_valid = _received("a position")
     bus_velocity_n = Output("m/s", "velocity over ground, north-east-down", axes=_NED)
-    bus_velocity_valid = _heard("a velocity over ground")
+    bus_velocity_valid = _received("a velocity over ground")
     bus_wind_speed = Output("m/s", "speed of the apparent wind")
     bus_wind_angle = Output("rad", "where the apparent wind blows to from the bow, to starboard")
-    bus_wind_valid = _heard("an apparent wind")
-    bus_engine_speed = Output("rad/s", "speeds of the engines, 0 if not heard", axes=_ENGINES)
+    bus_wind_valid = _received("an apparent wind")
+    bus_engine_speed = Output("rad/s", "speeds of the engines, 0 if not received", axes=_ENGINES)
     bus_steering_mode = Output("1", "as `steering_mode`, -1 for none", type=int, start=-1)
     bus_heading_to_steer = Output("rad", "heading to steer, clockwise from north")
-    bus_heading_to_steer_valid = _heard("a heading to steer")
+    bus_heading_to_steer_valid = _received("a heading to steer")
     bus_track = Output("rad", "track to keep, clockwise from north")
-    bus_track_valid = _heard("a track to keep")
+    bus_track_valid = _received("a track to keep")
     bus_commanded_rudder = Output("rad", "rudder commanded, positive to turn to starboard")
-    bus_commanded_rudder_valid = _heard("a commanded rudder")
+    bus_commanded_rudder_valid = _received("a commanded rudder")

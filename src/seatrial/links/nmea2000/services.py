@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from .catalogue import HEARD, NETWORK
+from .catalogue import NETWORK, RECEIVED
 from .codec import GLOBAL, Message
 from .name import Identity
 
@@ -39,7 +39,7 @@ def answer(
         to = request.source
         return [
             _listed(_TRANSMIT, to, [*NETWORK, *sends]),
-            _listed(_RECEIVE, to, [59392, 59904, 60928, 126208, *HEARD]),
+            _listed(_RECEIVE, to, [59392, 59904, 60928, 126208, *RECEIVED]),
         ]
     if wanted == 126993:
         return [heartbeat(beats)]

@@ -26,7 +26,7 @@ class HalfDuplex:
         self.free_ns = 0
         """Time from which on the line is free."""
 
-    def heard(self, begin_ns: int, count: int) -> int:
+    def received(self, begin_ns: int, count: int) -> int:
         """Take note of bytes that begin to arrive; return when their last one ends."""
         end = begin_ns + count * self.byte_ns
         self.free_ns = max(self.free_ns, end)

@@ -85,7 +85,7 @@ class M5Thrusters(Logging, Component):
         self._speed = [0.0] * count
         self._warmth = [self.water_temperature] * count
         self._tripped = [0] * count
-        self._heard_ns = [-1] * count
+        self._received_ns = [-1] * count
         self._waiting: list[list[Any]] = []
         self._rx: dict[str, Any] = {}
         self._tx: dict[str, Any] = {}
@@ -97,7 +97,7 @@ class M5Thrusters(Logging, Component):
         found = self._parser.expire(self.now_ns)
         for when, data in Inbox(self._rx).take(self.rx):
             self._log.write(when, TO_DEVICE, data)
-            self._line.heard(when, len(data))
+            self._line.received(when, len(data))
             found += self._parser.feed(data, when, self._line.byte_ns)
         self._waiting += [
             [when, f.is_response, f.id, f.flags, f.address, f.payload.hex()] for when, f in found
@@ -167,7 +167,7 @@ class M5Thrusters(Logging, Component):
             answer = node.handle(request)
             if node.requested:
                 node.requested = False
-                self._heard_ns[number] = when
+                self._received_ns[number] = when
             if answer is not None:
                 data = encode(answer, VRCSR)
                 begin = self._line.speak(when, len(data))
@@ -186,8 +186,8 @@ class M5Thrusters(Logging, Component):
         voltage, limit = self._voltage(currents), round(self.watchdog * NS)
         kept, warm = math.exp(-h / self.time_constant), math.exp(-h / self.thermal_time)
         for number, node in enumerate(self._nodes):
-            heard = self._heard_ns[number]
-            alive = heard >= 0 and (not limit or end - heard < limit)
+            received = self._received_ns[number]
+            alive = received >= 0 and (not limit or end - received < limit)
             goal = node.power if alive and not self._fault(number) else 0.0
             self._speed[number] = goal + (self._speed[number] - goal) * kept
             heat = self.thermal_resistance * voltage * currents[number]

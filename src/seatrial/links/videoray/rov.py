@@ -34,7 +34,7 @@ class Pro4Rov(Pro4RovPorts):
 
     **Time.** In the step from t to t + h it hears what ``rx`` has, each byte at its time at
     ``baud``, 10 bits each, and answers what is complete before t + h: the first byte of an answer
-    begins ``turnaround`` after the last that it heard (`HalfDuplex`), and is on ``tx`` with that
+    begins ``turnaround`` after the last that it received (`HalfDuplex`), and is on ``tx`` with that
     time at t + h. A cycle of 23 and 42 bytes takes 5.64 ms.
 
     **Control** runs every ``loop_period`` from the start on, with what the inputs are then:
@@ -76,14 +76,14 @@ class Pro4Rov(Pro4RovPorts):
     # ------------------------------------------------------------------ running
 
     def start(self, t: float) -> None:
-        """Start as after a reboot, with nothing heard."""
+        """Start as after a reboot, with nothing received."""
         self._log.close()
         self._log = StreamLog()
         self._build()
         self._began_ns = self._next_ns = self.now_ns
         self._waiting: list[list[Any]] = []
         self._driven = False
-        self._heard_ns = 0
+        self._received_ns = 0
         self._changes, self._published = 0, -1
         self._down_until_ns = -1
         self._errors_before = self._counted = 0
@@ -205,7 +205,7 @@ class Pro4Rov(Pro4RovPorts):
             if self.cut:
                 continue
             self._log.write(when, TO_DEVICE, data)
-            self._line.heard(when, len(data))
+            self._line.received(when, len(data))
             found += self._parser.feed(data, when, self._line.byte_ns)
         self._waiting += [
             [when, f.is_response, f.id, f.flags, f.address, f.payload.hex()] for when, f in found
@@ -223,7 +223,7 @@ class Pro4Rov(Pro4RovPorts):
         answer = node.handle(request)
         if node.was_commanded:
             node.was_commanded = False
-            self._heard_ns, self._driven = when, True
+            self._received_ns, self._driven = when, True
         for relayed in node.relayed:
             Outbox(self._accessory).put(when, encode(relayed))
         node.relayed.clear()
@@ -245,7 +245,7 @@ class Pro4Rov(Pro4RovPorts):
 
     def _commanded(self, now_ns: int) -> bool:
         limit = round(self.watchdog * NS)
-        return not limit or now_ns - self._heard_ns < limit
+        return not limit or now_ns - self._received_ns < limit
 
     def _control(self, now_ns: int) -> None:
         node = self._node

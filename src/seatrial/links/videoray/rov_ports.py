@@ -95,7 +95,7 @@ class Pro4RovPorts(Logging, Component):
     manipulator = Output("1", "1 opens, -1 closes, 0 stands still", type=int)
     auto_depth = Output("1", "whether it holds its depth", type=bool)
     auto_heading = Output("1", "whether it holds its heading", type=bool)
-    commanded = Output("1", "whether it has heard commands lately", type=bool)
+    commanded = Output("1", "whether it has received commands lately", type=bool)
     node_id = Output("1", "its node id", type=int)
     requests = Output("1", "requests that it has carried out", type=int)
     communication_errors = Output("1", "wrong checksums and broken frames", type=int)

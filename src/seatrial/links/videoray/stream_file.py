@@ -1,4 +1,4 @@
-"""Recorded streams: what a serial port heard and said, with the times.
+"""Recorded streams: what a serial port received and said, with the times.
 
     # seatrial stream 1
     0.100000000 > FAAF010100005500

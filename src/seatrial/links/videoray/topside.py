@@ -28,7 +28,7 @@ class Pro4Topside(Pro4TopsidePorts):
     (`seatrial.links.text`), at ``baud``: join them to `Pro4Rov`, or by `SerialGateway` to a real
     vehicle.
 
-    **Sticks**, -1 to 1, times ``stick_limit``, and 0 unless ``armed``: port = surge + yaw,
+    **Sticks**, -1 to 1, times ``manual_limit``, and 0 unless ``armed``: port = surge + yaw,
     starboard = surge - yaw, held within +-1, vertical = heave, positive downwards, whatever
     ``vertical_ahead`` is on the wire. They count for the whole cycle. ``hold_depth`` and
     ``hold_heading`` ask the vehicle to hold ``depth_wanted`` (as its pressure sensor has it,
@@ -82,7 +82,7 @@ class Pro4Topside(Pro4TopsidePorts):
         self._text = text
         for when, data in chunks:
             self._log.write(when, FROM_DEVICE, data)
-            self._line.heard(when, len(data))
+            self._line.received(when, len(data))
             found += self._parser.feed(data, when, self._line.byte_ns)
         for when, frame in found:
             self._station.hear(when, frame)
@@ -178,7 +178,7 @@ class Pro4Topside(Pro4TopsidePorts):
         )
         if not self.armed:
             return orders
-        surge, yaw, heave = (self.stick_limit * min(max(x, -1.0), 1.0) for x in self.sticks)
+        surge, yaw, heave = (self.manual_limit * min(max(x, -1.0), 1.0) for x in self.manual)
         down = -1.0 if self.vertical_ahead == "up" else 1.0
         orders.thrust = (surge + yaw, surge - yaw, down * heave)
         if self.hold_depth:

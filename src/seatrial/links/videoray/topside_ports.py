@@ -17,7 +17,7 @@ class Pro4TopsidePorts(Logging, Component):
     baud = Parameter(115_200.0, "1/s", "baud rate", min=300.0, max=1e7)
     byte_timeout = Parameter(0.05, "s", "gap after which a frame is given up", min=1e-4)
     timeout = Parameter(1.0, "s", "silence after which the vehicle is lost", min=0.0)
-    stick_limit = Parameter(1.0, "1", "thrust at full stick", min=0.0, max=1.0)
+    manual_limit = Parameter(1.0, "1", "thrust at full stick", min=0.0, max=1.0)
     vertical_ahead = Parameter(
         "up",
         "1",
@@ -31,7 +31,7 @@ class Pro4TopsidePorts(Logging, Component):
 
     rx = Input("1", "bytes that it hears", type=str, optional=True)
     armed = Input("1", "whether sticks and holds count", type=bool, optional=True)
-    sticks = Input(
+    manual = Input(
         "1",
         "-1 to 1: ahead, turn to starboard, down",
         axes=("surge", "yaw", "heave"),

@@ -1,4 +1,4 @@
-"""What is done with an experiment: fitted by output error, judged on data held out."""
+"""What is done with an experiment: fitted by output error, evaluated on data held out."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ...errors import InputError
-from ...identification.judgement import Verdict, Whiteness, fit, verdicts, whiteness
+from ...identification.assessment import Verdict, Whiteness, fit, verdicts, whiteness
 from ...identification.output_error import AxisLog, Estimate, output_error, simulated
 from ...identification.source_method import SourceEstimate, source_method
 from ..expressions import FloatArray
@@ -85,8 +85,8 @@ class Study:
 def study(experiment: Experiment, log: Path | None = None) -> Study:
     """Identify an experiment's axis from its log, or from ``log``. Raises InputError.
 
-    The fit sees the first part of the log; the rest, ``held_out``, judges it. With a
-    ``test_log`` the fit sees the whole log, and the other one judges it.
+    The fit sees the first part of the log; the rest, ``held_out``, evaluates it. With a
+    ``test_log`` the fit sees the whole log, and the other one evaluates it.
     """
     file = experiment.file
     log_path = experiment.log_path(log)

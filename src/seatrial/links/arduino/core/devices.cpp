@@ -69,7 +69,7 @@ int16_t SoftwareSerial::available() { charge(24); return isListening() && line_ 
 int16_t SoftwareSerial::read() { charge(30); return isListening() && line_ >= 0 ? (int16_t)machine::take((uint8_t)line_, false) : (int16_t)-1; }
 int16_t SoftwareSerial::peek() { charge(24); return isListening() && line_ >= 0 ? (int16_t)machine::take((uint8_t)line_, true) : (int16_t)-1; }
 
-/* Bit by bit, with interrupts off: what comes meanwhile is not heard. */
+/* Bit by bit, with interrupts off: what comes meanwhile is not received. */
 size_t SoftwareSerial::write(uint8_t data)
 {
     if (!byte_us_)

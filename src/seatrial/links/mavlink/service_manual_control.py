@@ -7,10 +7,10 @@ import math
 from .codec import Message
 from .failsafe import Failsafe
 from .modes import MANUAL_MODES
-from .radio import Air, Sender
 from .service import Service
 from .settings import Settings
-from .vehicle import STICKS_RELEASED, Vehicle
+from .transport import Sender, Transport
+from .vehicle import MANUAL_RELEASED, Vehicle
 
 _MIDDLE_US, _TRAVEL_US = 1500, 400
 _IGNORE, _RELEASE = 0xFFFF, 0
@@ -25,7 +25,7 @@ _BOAT_CHANNELS = (3, 0, 1, 0)
 _SUB_CHANNELS = (5, 6, 4, 3)
 
 
-class StickService(Service):
+class ManualControlService(Service):
     """Axes of a person's sticks, -1 to 1, from the newest of two messages.
 
     MANUAL_CONTROL: a boat steers with y and drives with z, -1000 to 1000 (PX4: z from 0 to
@@ -39,8 +39,10 @@ class StickService(Service):
     let go on purpose.
     """
 
-    def __init__(self, vehicle: Vehicle, air: Air, failsafe: Failsafe, settings: Settings) -> None:
-        super().__init__(vehicle, air)
+    def __init__(
+        self, vehicle: Vehicle, transport: Transport, failsafe: Failsafe, settings: Settings
+    ) -> None:
+        super().__init__(vehicle, transport)
         self._failsafe, self._settings = failsafe, settings
         self._held_until = math.inf
         self._let_go = False
@@ -58,7 +60,7 @@ class StickService(Service):
                 self.vehicle.sticks = self._from_channels()
             case _:
                 return
-        self._held_until = now + self._settings.stick_timeout
+        self._held_until = now + self._settings.manual_timeout
         if self._let_go:
             self._let_go = False
             self._failsafe.end(_LOST, "Sticks are back")
@@ -69,23 +71,23 @@ class StickService(Service):
             return
         self._release()
         steered = self.vehicle.armed and self.vehicle.mode.name in MANUAL_MODES
-        if steered and self._settings.watches_sticks:
+        if steered and self._settings.watches_manual_control:
             self._let_go = True
             self._failsafe.act(_LOST)
 
     def _release(self) -> None:
         self._held_until = math.inf
-        self.vehicle.sticks = STICKS_RELEASED
+        self.vehicle.sticks = MANUAL_RELEASED
         self.vehicle.channels = [0] * len(self.vehicle.channels)
 
     def _axes(self, m: Message) -> tuple[float, float, float, float]:
         x, y, z, r = (None if axis == _UNUSED else axis / 1e3 for axis in (m.x, m.y, m.z, m.r))
-        from_zero = self.vehicle.identity.submerged or self.vehicle.flavour.main_and_sub
+        from_zero = self.vehicle.identity.submerged or self.vehicle.dialect.main_and_sub
         if z is not None and from_zero:
             z = 2.0 * z - 1.0
         if self.vehicle.identity.submerged:
-            return _stick(x), _stick(y), _stick(r), -_stick(z)
-        return _stick(z), 0.0, _stick(y), 0.0
+            return _manual_axis(x), _manual_axis(y), _manual_axis(r), -_manual_axis(z)
+        return _manual_axis(z), 0.0, _manual_axis(y), 0.0
 
     def _override(self, message: Message) -> None:
         for number in range(1, len(self.vehicle.channels) + 1):
@@ -103,8 +105,8 @@ class StickService(Service):
 
     def _channel(self, number: int) -> float:
         width = self.vehicle.channels[number - 1] if number else 0
-        return _stick((width - _MIDDLE_US) / _TRAVEL_US) if width else 0.0
+        return _manual_axis((width - _MIDDLE_US) / _TRAVEL_US) if width else 0.0
 
 
-def _stick(value: float | None) -> float:
+def _manual_axis(value: float | None) -> float:
     return 0.0 if value is None else min(max(value, -1.0), 1.0)

@@ -9,13 +9,13 @@ import can
 
 from ...errors import InputError
 from ..hardware import ALLOWED, is_allowed, is_simulated_port
-from .door import MOST_FRAMES, Door
 from .frame import Frame
+from .gateway import MOST_FRAMES, Gateway
 from .messages import error_message, frame_of, message
 from .operations import Error
 
 
-class PythonCanDoor(Door):
+class PythonCanGateway(Gateway):
     """A bus of python-can's; its nodes are one client.
 
     Times of what is sent are simulated, as far as the interface carries them: ``virtual`` does.
@@ -27,7 +27,7 @@ class PythonCanDoor(Door):
     def __init__(self, url: str, interface: str, channel: str, bitrate: int | None) -> None:
         if not (_is_simulated(interface, channel) or is_allowed()):
             raise InputError(
-                f"door {url!r} is a real bus; allow it with --hardware (or {ALLOWED}=1 in the "
+                f"gateway {url!r} is a real bus; allow it with --hardware (or {ALLOWED}=1 in the "
                 "environment) if nothing on it can do harm"
             )
         options: dict[str, Any] = {} if bitrate is None else {"bitrate": bitrate}
@@ -36,7 +36,7 @@ class PythonCanDoor(Door):
         try:
             self._bus = can.Bus(channel, interface, ignore_config=True, **options)
         except (can.CanError, NotImplementedError, OSError, TypeError, ValueError) as error:
-            raise InputError(f"cannot open the door {url!r}: {error}") from None
+            raise InputError(f"cannot open the gateway {url!r}: {error}") from None
         self._is_simulated = interface == "virtual"
         self.reached_at = url
 

@@ -12,7 +12,7 @@ from .expressions import Comparison, FloatArray, Logic
 from .trial import Trial
 
 
-class Endings:
+class TerminationConditions:
     """Looks at every communication point whether a criterion with ``ends`` is broken."""
 
     def __init__(self, trial: Trial, master: Master, units: Mapping[str, str]) -> None:

@@ -31,8 +31,8 @@ class Sender:
     """Number of the link; answers go back over it."""
 
 
-class Air(Protocol):
-    """What services need to be heard."""
+class Transport(Protocol):
+    """What services need to be received."""
 
     def links(self) -> Sequence[int]:
         """Return the numbers of the links that there are now."""
@@ -44,7 +44,7 @@ class Air(Protocol):
         """Send to all links."""
 
 
-class Radio:
+class EndpointTransport:
     """Endpoints, and a `Link` for each of their peers; ``log`` gets every frame."""
 
     def __init__(

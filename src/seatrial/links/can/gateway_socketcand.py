@@ -11,8 +11,8 @@ import time
 
 from ..endpoints.endpoint import Channel
 from ..endpoints.tcp import TcpServer
-from .door_clients import Client, ClientsDoor
 from .frame import Frame
+from .gateway_clients import Client, ClientsGateway
 from .messages import error_class
 from .operations import Error
 
@@ -25,8 +25,8 @@ _SWITCH, _ERROR_STATE = 0x01, 0x02
 """Flags of an FD frame (linux/can.h)."""
 
 
-class SocketcandDoor(ClientsDoor):
-    """Any number of socketcand's clients; see `ClientsDoor`."""
+class SocketcandGateway(ClientsGateway):
+    """Any number of socketcand's clients; see `ClientsGateway`."""
 
     def __init__(self, server: TcpServer) -> None:
         super().__init__(server, _Client)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from seatrial.identification.judgement import fit, verdicts, whiteness
+from seatrial.identification.assessment import fit, verdicts, whiteness
 from seatrial.identification.output_error import Estimate, Structure
 from seatrial.identification.prediction import UNKNOWNS
 

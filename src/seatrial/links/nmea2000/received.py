@@ -1,4 +1,4 @@
-"""What a node has heard of the vessel: values by quantity, from whom, and until when they count."""
+"""What a node has received of the vessel: values by quantity, from whom, and until when they count."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ _FAR_NS = 1 << 62
 Values = dict[str, tuple[float, ...] | None]
 
 
-class Heard:
+class Received:
     """Values by quantity; ``memory`` is a dict of plain data, the caller's.
 
-    Of several nodes that send the same quantity the one is listened to that was heard first, until
+    Of several nodes that send the same quantity the one is listened to that was received first, until
     it says that it is not available, or nothing in time; then the next. A value counts for
     ``timeout_ns``, and for three standard intervals of its PGN at least.
     """
@@ -56,7 +56,7 @@ class Heard:
         return changed
 
     def names(self) -> list[str]:
-        """Return the quantities that have been heard of."""
+        """Return the quantities that have been received of."""
         return list(self._memory)
 
     def get(self, name: str, now_ns: int) -> tuple[list[float] | None, bool]:

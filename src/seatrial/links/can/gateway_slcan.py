@@ -8,8 +8,8 @@ not: some programs wait for that. Bit rates are accepted and not used: the bus h
 from __future__ import annotations
 
 from ..endpoints.endpoint import Channel, Endpoint
-from .door_clients import Client, ClientsDoor
 from .frame import FD_LENGTHS, Frame
+from .gateway_clients import Client, ClientsGateway
 
 _ANSWERS = {"V": "V1010", "v": "vSTDC", "N": "NSIMU", "F": "F00"}
 _SETTINGS = "SsYMmWXUQ"
@@ -18,8 +18,8 @@ _TIMESTAMP_MS = 60_000
 """Times of frames are counted in ms, and begin again at 0 after a minute."""
 
 
-class SlcanDoor(ClientsDoor):
-    """Adapters at one endpoint, one per peer; see `ClientsDoor`."""
+class SlcanGateway(ClientsGateway):
+    """Adapters at one endpoint, one per peer; see `ClientsGateway`."""
 
     def __init__(self, endpoint: Endpoint) -> None:
         super().__init__(endpoint, _Adapter)

@@ -1,4 +1,4 @@
-"""A door with clients who speak a protocol of text: each has a state of its own."""
+"""A gateway with clients who speak a protocol of text: each has a state of its own."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from collections.abc import Callable, Sequence
 
 from ...errors import InputError
 from ..endpoints.endpoint import Channel, Endpoint
-from .door import Door
 from .frame import Frame
+from .gateway import Gateway
 from .operations import Error
 
 LONGEST_LINE = 1000
@@ -65,7 +65,7 @@ class Client(ABC):
         """Do what is due by wall time."""
 
 
-class ClientsDoor(Door):
+class ClientsGateway(Gateway):
     """Serves the peers of an endpoint, each as a ``client`` of its own."""
 
     def __init__(self, endpoint: Endpoint, client: Callable[[Channel], Client]) -> None:

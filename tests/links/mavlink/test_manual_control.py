@@ -19,7 +19,7 @@ def override(system=7, **channels):
 
 
 @pytest.mark.parametrize(
-    ("options", "message", "sticks"),
+    ("options", "message", "manual"),
     [
         ({}, manual(z=1000), (1.0, 0.0, 0.0, 0.0)),
         ({}, manual(z=-500, y=250), (-0.5, 0.0, 0.25, 0.0)),
@@ -40,7 +40,7 @@ def test_axes_of_manual_control(options, message, sticks):
 
 
 @pytest.mark.parametrize(
-    ("options", "message", "sticks"),
+    ("options", "message", "manual"),
     [
         ({}, override(c3=1900), (1.0, 0.0, 0.0, 0.0)),
         ({}, override(c1=1100, c3=1700), (0.5, 0.0, -1.0, 0.0)),
@@ -78,7 +78,7 @@ def test_sticks_for_another_vehicle_are_not_ours():
 
 @pytest.mark.parametrize("message", [manual(z=1000), override(c3=1900)])
 def test_sticks_that_nobody_holds_let_go_and_the_failsafe_acts(message):
-    bench = Bench(stick_timeout=2.0)
+    bench = Bench(manual_timeout=2.0)
     bench.enter("manual")
     bench.arm()
     for _ in range(5):
@@ -97,7 +97,7 @@ def test_sticks_that_nobody_holds_let_go_and_the_failsafe_acts(message):
 
 
 def test_what_is_said_of_lost_sticks():
-    bench = Bench(stick_timeout=1.0)
+    bench = Bench(manual_timeout=1.0)
     bench.enter("manual")
     bench.arm()
     bench.hear(manual(z=1))

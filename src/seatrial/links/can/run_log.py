@@ -13,7 +13,7 @@ from .statistics import Statistics
 _PS_PER_NS = 1000
 
 
-class Journal:
+class RunLog:
     """The logs of `BusLog`, and at the end ``NAME.json`` (`Statistics`); nothing without a folder.
 
     Each attempt to send is entered once: a step that is repeated after a rollback brings the

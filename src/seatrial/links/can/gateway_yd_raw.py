@@ -8,13 +8,13 @@ without time and direction. Extended data frames only: NMEA 2000 has no others.
 from __future__ import annotations
 
 from ..endpoints.endpoint import Endpoint
-from .door_clients import Client, ClientsDoor
 from .frame import Frame
+from .gateway_clients import Client, ClientsGateway
 
 _DAY_MS = 86_400_000
 
 
-class YdRawDoor(ClientsDoor):
+class YdRawGateway(ClientsGateway):
     """The gateway at one endpoint: a server, or one address that everything is sent to."""
 
     def __init__(self, endpoint: Endpoint) -> None:

@@ -1,4 +1,4 @@
-"""Doors by URL.
+"""Gateways by URL.
 
 ======================================== ====================================================
 ``socketcand:HOST:PORT``                 a server that speaks as socketcand does
@@ -26,12 +26,12 @@ from ...errors import InputError, unknown
 from ..endpoints.pseudo_terminal import PseudoTerminal
 from ..endpoints.tcp import TcpServer
 from ..endpoints.udp import UdpSender
-from .door import Door
-from .door_python_can import PythonCanDoor
-from .door_slcan import SlcanDoor
-from .door_socketcand import SocketcandDoor
-from .door_yd_raw import YdRawDoor
-from .dronecan_multicast import DroneCanMulticastDoor
+from .dronecan_multicast import DroneCanMulticastGateway
+from .gateway import Gateway
+from .gateway_python_can import PythonCanGateway
+from .gateway_slcan import SlcanGateway
+from .gateway_socketcand import SocketcandGateway
+from .gateway_yd_raw import YdRawGateway
 
 _FORMS = {
     "socketcand": "socketcand:127.0.0.1:29536",
@@ -56,13 +56,13 @@ _SHAPES = {
 }
 
 
-def check_door(url: str) -> None:
+def check_link(url: str) -> None:
     """Raise InputError for a URL that is malformed."""
     _parts(url)
 
 
-def open_door(url: str) -> Door:
-    """Open the door ``url``.
+def open_gateway(url: str) -> Gateway:
+    """Open the gateway ``url``.
 
     Raises InputError, with the URL, for one that is malformed or cannot be opened (a port in
     use, no such bus, hardware that nobody allowed).
@@ -70,38 +70,38 @@ def open_door(url: str) -> Door:
     kind, parts = _parts(url)
     if kind in ("virtual", "python-can"):
         bitrate = int(parts["bitrate"]) if parts.get("bitrate") else None
-        return PythonCanDoor(url, parts.get("interface", "virtual"), parts["channel"], bitrate)
+        return PythonCanGateway(url, parts.get("interface", "virtual"), parts["channel"], bitrate)
     if kind == "slcan-pty":
-        return SlcanDoor(PseudoTerminal())
+        return SlcanGateway(PseudoTerminal())
     return _networked(url, kind, parts)
 
 
-def _networked(url: str, kind: str, parts: dict[str, str]) -> Door:
+def _networked(url: str, kind: str, parts: dict[str, str]) -> Gateway:
     try:
         if kind == "dronecan-multicast":
-            return DroneCanMulticastDoor(int(parts["bus"]))
+            return DroneCanMulticastGateway(int(parts["bus"]))
         found = socket.getaddrinfo(parts["host"], None, socket.AF_INET, socket.SOCK_STREAM)
         address = (str(found[0][4][0]), int(parts["port"]))
         if kind == "yd-raw-udp":
-            return YdRawDoor(UdpSender(address))
+            return YdRawGateway(UdpSender(address))
         return _SERVERS[kind](TcpServer(address))
     except (OSError, OverflowError, UnicodeError) as error:
         cause = getattr(error, "strerror", None) or error
-        raise InputError(f"cannot open the door {url!r}: {cause}") from None
+        raise InputError(f"cannot open the gateway {url!r}: {cause}") from None
 
 
-_SERVERS: dict[str, Callable[[TcpServer], Door]] = {
-    "socketcand": SocketcandDoor,
-    "slcan-tcp": SlcanDoor,
-    "yd-raw-tcp": YdRawDoor,
+_SERVERS: dict[str, Callable[[TcpServer], Gateway]] = {
+    "socketcand": SocketcandGateway,
+    "slcan-tcp": SlcanGateway,
+    "yd-raw-tcp": YdRawGateway,
 }
 
 
 def _parts(url: str) -> tuple[str, dict[str, str]]:
     kind, _, rest = url.partition(":")
     if kind not in _FORMS:
-        raise InputError(f"door {url!r}: {unknown('kind of door', kind, _FORMS)}")
+        raise InputError(f"gateway {url!r}: {unknown('kind of gateway', kind, _FORMS)}")
     match = re.fullmatch(_SHAPES[kind], rest)
     if match is None:
-        raise InputError(f"door {url!r} is not of the form {_FORMS[kind]!r}")
+        raise InputError(f"gateway {url!r} is not of the form {_FORMS[kind]!r}")
     return kind, match.groupdict()

@@ -1,0 +1,138 @@
+"""A node of a simulated bus that is a gateway for programs and buses outside."""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import Any, ClassVar
+
+from ...component import NS, Component, Input, Output, Parameter, Reachable
+from ...errors import InputError
+from .frame import Frame
+from .gateway import Gateway
+from .gateway_url import check_link, open_gateway
+from .node import CanNode
+from .operations import BusError, Confirm, Transmit
+
+MOST_ASKED = 64
+"""Frames asked for and not yet confirmed: fewer than a controller's queue holds."""
+MOST_WAITING = 1000
+"""Frames from outside in store; while there are more, nothing is read there."""
+FORGOTTEN_NS = 5 * NS
+"""Frames not confirmed after so long are taken for lost."""
+
+
+class CanGateway(Reachable, Component):
+    """Frames of a simulated bus out to programs and hardware, and theirs in.
+
+    ``link`` says where they meet (`gateway_url`). Every step it takes in what has arrived, and asks
+    the bus to send it at the time of the beginning of that step; what it hears, goes out with
+    the simulated time at which it was on the bus. So tools see the bus as it is in a run in
+    real time; one that runs as fast as it can is over before they have answered.
+
+    **Who acknowledges**: to the simulated bus the gateway is one more node, which acknowledges
+    all that it receives, whether anybody is connected or not. Outside, frames have been sent
+    once the gateway has taken them: what the simulated bus makes of them later (arbitration, loss,
+    bus-off), is not told. Error frames are, where the protocol has them. On a real bus, the
+    adapter acknowledges.
+
+    **Clients** hear each other: a frame of one goes to the others of the same gateway when the
+    simulated bus has confirmed it. Frames are asked for in the order in which they came, 64 at
+    most ahead of their confirmation; the rest waits, and from 1000 on nothing is read, so that
+    a client has to wait too.
+
+    ``clients`` counts who is connected, ``frames_in`` what came in, ``frames_out`` what went
+    out, ``forgotten`` what came in and was not confirmed in 5 s: the node is off the bus, or
+    never gets its turn.
+
+    It cannot be rolled back: what was said has been said. Raises InputError at the start for a
+    gateway that is malformed or cannot be opened, or is hardware that nobody allowed.
+    """
+
+    feedthrough: ClassVar = {}
+    discrete = True
+    rolls_back = False
+    transient = Component.transient | {"_gateway"}
+
+    link = Parameter(
+        "socketcand:127.0.0.1:29536", "1", "where programs outside connect to", check=check_link
+    )
+
+    rx = Input("1", "what the bus tells", type=str)
+
+    tx = Output("1", "what it tells the bus", type=str)
+    clients = Output("1", "who is connected", type=int)
+    frames_in = Output("1", "frames from outside", type=int)
+    frames_out = Output("1", "frames to the outside", type=int)
+    forgotten = Output("1", "frames from outside that were never confirmed", type=int)
+
+    def __init__(self, name: str = "component") -> None:
+        super().__init__(name)
+        self._gateway: Gateway | None = None
+
+    # ------------------------------------------------------------------ running
+
+    def start(self, t: float) -> None:
+        """Open the gateway."""
+        self.close()
+        try:
+            self._gateway = open_gateway(self.link)
+        except InputError as error:
+            raise InputError(f"{self.name}: {error}") from None
+        self._can: dict[str, Any] = {}
+        self._waiting: deque[tuple[int, Frame]] = deque()
+        self._asked: list[tuple[int, int, Frame]] = []
+        self._in = self._out = self._forgotten = 0
+
+    def step(self, t: float, h: float) -> None:
+        """Carry frames out and in."""
+        assert self._gateway is not None
+        node = CanNode(self._can)
+        for when, operation in node.hear(self.rx):
+            if isinstance(operation, Transmit):
+                self._gateway.send(when, operation.frame)
+                self._out += 1
+            elif isinstance(operation, Confirm):
+                self._confirmed(when, operation.identifier)
+            elif isinstance(operation, BusError):
+                self._gateway.send_error(when, operation.error)
+        if len(self._waiting) < MOST_WAITING:
+            arrived = self._gateway.poll()
+            self._waiting.extend(arrived)
+            self._in += len(arrived)
+        self._forget()
+        while self._waiting and len(self._asked) < MOST_ASKED:
+            sender, frame = self._waiting.popleft()
+            self._asked.append((self.now_ns, sender, frame))
+            node.send(self.now_ns, frame)
+        node.flush()
+
+    def outputs(self, t: float) -> None:
+        """Publish what is said, and counts."""
+        assert self._gateway is not None
+        self.tx = CanNode(self._can).text
+        self.clients, self.reached_at = self._gateway.clients, self._gateway.reached_at
+        self.frames_in, self.frames_out = self._in, self._out
+        self.forgotten = self._forgotten
+
+    def close(self) -> None:
+        """Close the gateway."""
+        if self._gateway is not None:
+            self._gateway.close()
+        self._gateway = None
+
+    # ------------------------------------------------------------------ inside
+
+    def _confirmed(self, when: int, identifier: int) -> None:
+        """Tell the other clients of a frame of one of them."""
+        assert self._gateway is not None
+        for place, (_, sender, frame) in enumerate(self._asked):
+            if frame.identifier == identifier:
+                del self._asked[place]
+                self._gateway.send(when, frame, sender)
+                return
+
+    def _forget(self) -> None:
+        late = self.now_ns - FORGOTTEN_NS
+        kept = [entry for entry in self._asked if entry[0] >= late]
+        self._forgotten += len(self._asked) - len(kept)
+        self._asked = kept
