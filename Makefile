@@ -1,18 +1,20 @@
 # Two commands do everything on a fresh machine: make demo, make test.
 PYTHON ?= python3
-BIN := .venv/bin
-INSTALLED := .venv/.installed
-DOCS := .venv/.docs-installed
-REFERENCE_TOOLS := tests/interop/node/node_modules/.installed
+VENV ?= .venv
+BIN := $(VENV)/bin
+INSTALLED := $(VENV)/.installed
+DOCS := $(VENV)/.docs-installed
+NODE_TOOLS := tests/interop/node/node_modules/.installed
+PYTEST := $(BIN)/python -m pytest -n auto --dist worksteal
 
-.PHONY: demo test test-long lint docs fmus benchmark clean
+.PHONY: demo test test-interop test-long lint docs fmus benchmark clean
 
 $(INSTALLED): pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 		{ echo "Python 3.11 or newer is needed; say which one with: make PYTHON=python3.12 ..."; exit 1; }
 	@$(PYTHON) -c 'import ensurepip' || \
 		{ echo "Python's venv is missing; on Debian: apt install python3-venv"; exit 1; }
-	$(PYTHON) -m venv .venv
+	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
 	@# MAVProxy, a reference tool for the MAVLink link, without what its windows need (OpenCV, VTK, Matplotlib):
 	@# no extra can leave that out, and its other modules need nothing that is not here.
@@ -28,16 +30,21 @@ demo: $(INSTALLED)
 	@$(BIN)/seatrial run hydrone-pads || test $$? -eq 1
 	@echo "Open the two reports in a browser."
 
-# canboat, a reference tool for the NMEA 2000 nodes; where it cannot be installed its tests are skipped.
-$(REFERENCE_TOOLS): tests/interop/node/package-lock.json
+# canboat, a reference for the NMEA 2000 nodes; where it cannot be installed its tests are skipped.
+$(NODE_TOOLS): tests/interop/node/package-lock.json
 	@if npm ci --prefix $(<D) --no-audit --no-fund --ignore-scripts; then touch $@; \
 		else echo "no canboat: npm is missing, or did not reach its registry"; fi
 
-test: $(INSTALLED) $(REFERENCE_TOOLS)
-	$(BIN)/python -m pytest -n auto --dist worksteal -m "not long"
+# All modules, a trial of every rig: minutes. With other people's tools, docs and whole voyages: a
+# quarter of an hour. What takes longer still.
+test: $(INSTALLED)
+	$(PYTEST) -m "not interop and not long"
 
-test-long: $(INSTALLED) $(REFERENCE_TOOLS)
-	$(BIN)/python -m pytest -n auto --dist worksteal
+test-interop: $(INSTALLED) $(NODE_TOOLS)
+	$(PYTEST) -m "interop and not long"
+
+test-long: $(INSTALLED) $(NODE_TOOLS)
+	$(PYTEST) -m long
 
 lint: $(INSTALLED)
 	$(BIN)/ruff check .
@@ -65,4 +72,4 @@ fmus: $(INSTALLED)
 	$(BIN)/seatrial fmu build --out build/fmus
 
 clean:
-	rm -rf .venv build dist runs
+	rm -rf .venv .venv-* build dist runs

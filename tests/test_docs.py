@@ -33,6 +33,8 @@ from seatrial.units import quantity
 from tests.command import seatrial
 from tests.interop.running import HOST, free_port, running, wait_for
 
+pytestmark = pytest.mark.interop
+
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
 DESIGN = DOCS / "design.md"

@@ -12,6 +12,8 @@ import pytest
 
 from tests.command import Done, seatrial
 
+pytestmark = pytest.mark.interop
+
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text("utf-8")
 

@@ -1,5 +1,6 @@
 """`seatrial drive` in a terminal: pyte renders what it draws, keys go in as a person's would."""
 
+import math
 import os
 import pty
 import re
@@ -127,6 +128,14 @@ def test_disarming_lets_go_of_all():
     pilot.press("m", 0.0)
     assert (pilot.armed, pilot.hold_depth, pilot.hold_heading) == (False, False, False)
     assert pilot.manual(0.0) == (0.0, 0.0, 0.0)
+
+
+def test_a_heading_that_is_held_is_turned_across_north():
+    pilot = Pilot(heading=0.1)
+    pilot.toggle_heading()
+    for degrees, wanted in ((-20.0, 0.1 - math.radians(20.0) + math.tau), (20.0, 0.1)):
+        pilot.turn(degrees)
+        assert pilot.heading_wanted == pytest.approx(wanted)
 
 
 def test_every_key_of_the_help_does_something():

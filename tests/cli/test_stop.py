@@ -111,8 +111,7 @@ def assert_whole(folder: Path, rows: int) -> None:
     assert "run stopped" in (folder / "report.html").read_text("utf-8")
 
 
-@pytest.mark.parametrize("engine", ["fmu", "direct"])
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize(("number", "engine"), [(signal.SIGINT, "fmu"), (signal.SIGTERM, "direct")])
 def test_a_signal_leaves_a_whole_record(number: int, engine: str, start, tmp_path: Path) -> None:
     process = start("run", "trial.toml", "--out", "run", "--engine", engine)
     wait_for(lambda: has_status(tmp_path / "run"))
@@ -122,14 +121,13 @@ def test_a_signal_leaves_a_whole_record(number: int, engine: str, start, tmp_pat
     assert_whole(tmp_path / "run", 10)
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_ends_a_wait(number: int, start, tmp_path: Path) -> None:
+def test_a_signal_ends_a_wait(start, tmp_path: Path) -> None:
     pace = ("--real-time", "0.0001")  # 100 s of waiting for each step
     process = start("run", "trial.toml", "--out", "run", "--engine", "direct", *pace)
     wait_for(lambda: has_status(tmp_path / "run"))
     time.sleep(0.3)
     sent = time.monotonic()
-    process.send_signal(number)
+    process.send_signal(signal.SIGTERM)
     stopped(process)
     assert time.monotonic() - sent < 30
     assert_whole(tmp_path / "run", 1)
@@ -158,7 +156,7 @@ def test_a_signal_during_initialisation_leaves_no_run(name: str, start, tmp_path
     assert (tmp_path / "run").exists() == (name == "campaign.toml")
 
 
-@pytest.mark.parametrize("engine", ["fmu", "direct"])
+@pytest.mark.parametrize("engine", ["fmu", pytest.param("direct", marks=pytest.mark.interop)])
 def test_a_second_signal_ends_a_component_that_hangs(engine, start, tmp_path: Path) -> None:
     hang = ("--set", "boat.hangs_at=0.045")
     process = start("run", "trial.toml", "--out", "run", "--engine", engine, *hang)
@@ -174,8 +172,14 @@ def test_a_second_signal_ends_a_component_that_hangs(engine, start, tmp_path: Pa
     assert "run stopped" in (tmp_path / "run" / "report.html").read_text("utf-8")
 
 
-@pytest.mark.parametrize("isolated", ["false", "true"])
-@pytest.mark.parametrize("gap_s", [0.0, 0.003, 0.03])
+@pytest.mark.parametrize(
+    ("gap_s", "isolated"),
+    [
+        (0.003, "true"),
+        *(pytest.param(gap, "true", marks=pytest.mark.interop) for gap in (0.0, 0.03)),
+        *(pytest.param(gap, "false", marks=pytest.mark.interop) for gap in (0.0, 0.003, 0.03)),
+    ],
+)
 def test_two_signals_leave_a_whole_record_too(
     gap_s: float, isolated: str, start, tmp_path: Path
 ) -> None:

@@ -41,7 +41,7 @@ def test_comes_onto_a_leg_as_the_closed_form_says(offset):
         turning_speed=1.0,
         period=2e-3,
     )
-    rows = np.array(drive(found, 20.0))
+    rows = np.array(drive(found, 8.0))
     t, e = rows[:, 0], rows[:, 2]
     assert np.sign(e).tolist() == [math.copysign(1.0, offset)] * len(e)
     # Headings held for 2 ms: an error of U period / lookahead of the way.

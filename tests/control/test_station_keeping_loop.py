@@ -13,7 +13,7 @@ DEG = math.radians(1.0)
 
 
 def test_settles_from_3_m_and_40_degrees_against_a_steady_push():
-    rows = held(60, position=(-3, 0), heading=40 * DEG, force=(-3, 0), moment=0.8)
+    rows = held(40, position=(-3, 0), heading=40 * DEG, force=(-3, 0), moment=0.8)
     t, north, east, psi, mode = rows.T
     distance = np.hypot(north, east)
     assert north.max() < 0.15  # overshoot
@@ -25,6 +25,7 @@ def test_settles_from_3_m_and_40_degrees_against_a_steady_push():
     assert abs(psi[-1]) < 0.01 * DEG
 
 
+@pytest.mark.interop
 def test_holds_with_the_profiles_sensors():
     rows = held(90, position=(-3, 0), heading=40 * DEG, force=(-3, 0), moment=0.8, ideal=False)
     t, north, east, psi, mode = rows.T
@@ -35,10 +36,8 @@ def test_holds_with_the_profiles_sensors():
     assert (mode[late] == HOLD).all()
 
 
-@pytest.mark.parametrize(
-    "heading",
-    [pytest.param(0.0, marks=pytest.mark.long), 143.0, pytest.param(-90.0, marks=pytest.mark.long)],
-)
+@pytest.mark.interop
+@pytest.mark.parametrize("heading", [0.0, 143.0, -90.0])
 def test_comes_back_from_far(heading):
     rows = held(90, position=(-20, 15), heading=heading * DEG, ideal=False)
     t, north, east, psi, _ = rows.T
@@ -46,6 +45,7 @@ def test_comes_back_from_far(heading):
     assert np.abs(psi[t > 85]).max() < 3 * DEG
 
 
+@pytest.mark.interop
 def test_steady_force_abeam_is_a_cycle_about_the_hold_radius():
     t, north, east, _, mode = held(150, force=(0, 2), ideal=False).T
     assert np.hypot(north, east).max() < 1.3
@@ -54,6 +54,7 @@ def test_steady_force_abeam_is_a_cycle_about_the_hold_radius():
     assert 3 <= entries <= 10
 
 
+@pytest.mark.interop
 def test_holds_in_a_current():
     _, north, east, _, _ = held(150, current=(-0.2, 0.1, 0), ideal=False).T
     assert np.hypot(north, east).max() < 1.4

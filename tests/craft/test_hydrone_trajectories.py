@@ -46,7 +46,9 @@ def peak(values, first=0):
     return values[k], k
 
 
-@pytest.mark.parametrize("pad", CSV_PADS)
+@pytest.mark.parametrize(
+    "pad", ["diagonal-fore", *(pytest.param(p, marks=pytest.mark.interop) for p in CSV_PADS[:-1])]
+)
 @pytest.mark.parametrize("phase", PHASES)
 @pytest.mark.parametrize("variant", VARIANTS)
 def test_trajectory(hydrone, variant, phase, pad):
@@ -92,6 +94,7 @@ def settling_time(z, phase, first, event):
     return outside[-1] / 100
 
 
+@pytest.mark.interop
 @pytest.mark.parametrize(
     "row",
     table("hydrone_summary.csv"),
@@ -106,6 +109,7 @@ def test_summary(hydrone, row):
         assert value == pytest.approx(float(row[name]), rel=1e-6, abs=1e-9), name
 
 
+@pytest.mark.interop
 @pytest.mark.parametrize(
     "row",
     table("hydrone_sensitivity.csv"),
@@ -262,6 +266,7 @@ def exact_peaks(hydrone, variant, H):
     return np.degrees(np.abs(angles[:, :: round(100 * H)]).max(axis=1))
 
 
+@pytest.mark.interop
 @pytest.mark.parametrize(
     ("H", "delay", "roll", "pitch"),
     [
@@ -277,6 +282,7 @@ def test_error_of_coupling_by_held_loads(hydrone, H, delay, roll, pitch):
     assert error[1] < pitch
 
 
+@pytest.mark.interop
 def test_error_of_coupling_is_of_first_order(hydrone):
     errors = [
         coupled_peaks(hydrone, "consistent", H, False)[0] - exact_peaks(hydrone, "consistent", H)[0]

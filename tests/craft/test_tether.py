@@ -324,15 +324,18 @@ def recorded(rig, steps, names):
     return np.array(rows)
 
 
+def when(few: bool, usual: bool):
+    """Return the marks of a case of the coupling."""
+    if few or usual:
+        return () if few and usual else pytest.mark.interop
+    return pytest.mark.long
+
+
 @pytest.mark.parametrize(
     ("segments", "algorithm"),
     [
-        # In CI each algorithm and each number, in the long run all together.
-        pytest.param(
-            segments,
-            algorithm,
-            marks=() if segments == 20 or algorithm == "jacobi" else pytest.mark.long,
-        )
+        # At once the default alone, in CI each algorithm and each number, then all together.
+        pytest.param(segments, algorithm, marks=when(segments == 20, algorithm == "jacobi"))
         for segments in (20, 50, 200)
         for algorithm in ("jacobi", "gauss-seidel", "plain-jacobi", "extrapolated", "iterated")
     ],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -10,7 +11,8 @@ import pytest
 from fmpy import extract, read_model_description
 from fmpy.fmi2 import FMU2Slave
 
-from seatrial.fmi.export import build_fmu
+from seatrial.fmi.bundle import bundle
+from seatrial.fmi.export import cached_fmu
 from seatrial.fmi.source import ComponentSource, find_source
 
 from . import boats
@@ -21,6 +23,12 @@ def source(path: Path, name: str) -> ComponentSource:
     found = find_source(f"{path.name}:{name}", path.parent)
     assert isinstance(found, ComponentSource)
     return found
+
+
+def built_once(component: ComponentSource, path: Path) -> Path:
+    """Return a copy, at ``path``, of a component's FMU, which is built once a session."""
+    code = bundle(component.stem, component.script, component.folder).script
+    return Path(shutil.copyfile(cached_fmu(component, code), path))
 
 
 class Raw:
@@ -62,7 +70,7 @@ def counter(write) -> ComponentSource:
 
 @pytest.fixture
 def counter_fmu(counter: ComponentSource, tmp_path: Path) -> Path:
-    return build_fmu(counter, tmp_path / "counter.fmu")
+    return built_once(counter, tmp_path / "counter.fmu")
 
 
 @pytest.fixture

@@ -11,6 +11,8 @@ from seatrial.trials.run import run_trial
 from seatrial.trials.run_folder import load_run
 from seatrial.trials.trial import load_trial
 
+pytestmark = pytest.mark.interop
+
 TRIALS = sorted(path.stem for path in (shipped_folder("harness") / "trials").glob("*-course-*"))
 TRIALS = [name for name in TRIALS if name.startswith(("hydrone", "videoray"))]
 TRACKED = {"hydrone-course-square", "videoray-course-box", "hydrone-course-current"}

@@ -15,6 +15,8 @@ from seatrial.trials.trial import load_trial
 
 from .test_shipped_trials import TRIALS
 
+pytestmark = pytest.mark.interop
+
 REFERENCE = Path(__file__).parents[1] / "reference"
 CONTROLLERS = {"pidfix": "fixed", "pid": "pid", "bs": "backstepping"}
 COLUMNS = {

@@ -19,6 +19,8 @@ from seatrial.trials.run import run_trial
 from seatrial.trials.run_folder import load_run
 from seatrial.trials.trial import load_trial
 
+pytestmark = pytest.mark.interop
+
 REFERENCE = Path(__file__).parents[1] / "reference"
 PADS = ("nominal", "longitudinal", "transversal", "diagonal-aft", "diagonal-fore")
 DEG = np.degrees

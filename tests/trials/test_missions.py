@@ -9,6 +9,8 @@ import pytest
 
 from .voyage import JUMP, LOITER_TURNS, RETURN, WAYPOINT, mission_file, origin_of, voyage
 
+pytestmark = pytest.mark.interop
+
 ROVER = {"manual": 0, "hold": 4, "loiter": 5, "auto": 10, "return": 11, "guided": 15}
 SUB = {"depth-hold": 2, "auto": 3, "guided": 4, "loiter": 7, "hold": 16, "manual": 19}
 COMPLETE = 5

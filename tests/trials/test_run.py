@@ -95,16 +95,6 @@ def test_both_carriers_and_a_rerun_give_the_same_bytes(bench, tmp_path: Path) ->
     assert manifests[0] == manifests[1]
 
 
-@pytest.mark.parametrize("name", ["hydrone-landing", "hydrone-open-takeoff"])
-def test_a_shipped_trial_gives_the_same_bytes_in_both_carriers(name: str, tmp_path: Path) -> None:
-    trial = load_trial(name)
-    for engine in ("fmu", "direct"):
-        run_trial(trial, tmp_path / engine, engine=engine)
-    record = (tmp_path / "fmu" / "signals.csv").read_bytes()
-    assert record == (tmp_path / "direct" / "signals.csv").read_bytes()
-    assert record.count(b"\n") == 2002
-
-
 def test_seeds_give_each_instance_its_own_noise(bench, tmp_path: Path) -> None:
     def column(seed: int, name: str) -> list[str]:
         folder = tmp_path / f"{seed}-{name}-{len(list(tmp_path.iterdir()))}"

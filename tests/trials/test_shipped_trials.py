@@ -1,8 +1,10 @@
 """Every shipped trial runs, and as FMUs and in process leaves the same bytes."""
 
 import itertools
+import tomllib
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -13,12 +15,26 @@ from seatrial.trials.run import Hooks, run_trial
 from seatrial.trials.trial import load_trial
 from tests.links.arduino.bench import need
 
-NAMES = sorted(path.stem for path in (shipped_folder("harness") / "trials").glob("*.toml"))
-PACED = [name for name in NAMES if load_trial(name).file.real_time]
+FILES = {
+    path.stem: tomllib.loads(path.read_text("utf-8"))
+    for path in sorted((shipped_folder("harness") / "trials").glob("*.toml"))
+}
+NAMES = list(FILES)
+PACED = [name for name, file in FILES.items() if "real_time" in file]
 """Trials in real time, for whoever connects."""
 TRIALS = [name for name in NAMES if name not in PACED]
-COMPARED_S = 5
+COMPARED_S = 1
 """How a trial begins shows how it goes on; to the end they run in their vehicles' tests, or here."""
+
+
+def one_per_rig(names: list[str]) -> list[Any]:
+    """Return trials as parameters: the first of each rig at once, the others in their time."""
+    rigs, parameters = set(), []
+    for name in names:
+        rig = FILES[name]["rig"]
+        parameters.append(pytest.param(name, marks=pytest.mark.interop if rig in rigs else ()))
+        rigs.add(rig)
+    return parameters
 
 
 def test_every_shipped_trial_can_be_named() -> None:
@@ -44,7 +60,7 @@ def begun(name: str, engine: str, folder: Path) -> list[bytes]:
     return (result.folder / "signals.csv").read_bytes().splitlines()
 
 
-@pytest.mark.parametrize("name", TRIALS)
+@pytest.mark.parametrize("name", one_per_rig(TRIALS))
 def test_fmus_and_components_in_process_leave_the_same_bytes(name: str, tmp_path: Path) -> None:
     rows = begun(name, "fmu", tmp_path / "fmu")
     assert len(rows) > 2
@@ -58,12 +74,12 @@ def test_whole_trials_as_fmus(name: str, tmp_path: Path) -> None:
     assert result.status == "complete", result.error
 
 
-@pytest.mark.parametrize("name", PACED)
+@pytest.mark.parametrize("name", one_per_rig(PACED))
 def test_with_nobody_connected_they_leave_the_same_bytes_too(name: str, tmp_path: Path) -> None:
     trial = load_trial(name)
     components = trial.rig.file.components.items()
     links = [c for c, entry in components if entry.fmu in ("mavlink", "nmea0183", "serial-gateway")]
-    trial = trial.changed({"stop": "2 s", **{f"{c}.links": "" for c in links}}, "test")
+    trial = trial.changed({"stop": f"{COMPARED_S} s", **{f"{c}.links": "" for c in links}}, "test")
     trial = replace(trial, file=trial.file.model_copy(update={"real_time": None}))
     signals = []
     for engine in ("fmu", "direct"):

@@ -19,6 +19,8 @@ from seatrial.trials.trial import load_trial
 
 from .test_shipped_trials import TRIALS
 
+pytestmark = pytest.mark.interop
+
 REFERENCE = Path(__file__).parents[1] / "reference"
 SHIPS = [name for name in TRIALS if name.startswith(("mariner", "thruster-ship"))]
 

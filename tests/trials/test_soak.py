@@ -11,6 +11,8 @@ import pytest
 from seatrial.trials.run import Hooks, run_trial
 from seatrial.trials.trial import load_trial
 
+pytestmark = pytest.mark.interop
+
 RIG = """
 step = "10 ms"
 

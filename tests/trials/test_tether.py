@@ -8,6 +8,8 @@ from seatrial.trials.trial import load_trial
 
 from .test_shipped_trials import TRIALS
 
+pytestmark = pytest.mark.interop
+
 TETHER = [name for name in TRIALS if name.startswith("tether-")]
 
 

@@ -9,6 +9,8 @@ from seatrial.trials.run import run_trial
 from seatrial.trials.run_folder import load_run
 from seatrial.trials.trial import load_trial
 
+pytestmark = pytest.mark.interop
+
 OPEN = [f"videoray-open-{name}" for name in ("surge", "heave", "yaw", "ascent")]
 
 

@@ -17,6 +17,8 @@ from seatrial.trials.run_folder import load_run
 from seatrial.trials.trial import load_trial
 from tests.interop.running import running, wait_for
 
+pytestmark = pytest.mark.interop
+
 WAIT_S = 120.0
 REPLAY = """
 title = "again"

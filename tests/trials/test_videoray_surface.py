@@ -13,6 +13,8 @@ from tests.control.vessel_loop import table
 
 from .test_shipped_trials import TRIALS
 
+pytestmark = pytest.mark.interop
+
 # Without integral action, and with the source's law, a load is not rejected: that they show.
 FAILING = {"videoray-surface-step-p", "videoray-surface-step-flat"}
 HOLDING = [n for n in TRIALS if n.startswith(("videoray-surface", "videoray-hold"))]

@@ -7,6 +7,8 @@ import pytest
 
 from .bench import Bench, write_sketch
 
+pytestmark = pytest.mark.interop
+
 BACKENDS = ("host", "simavr")
 SKETCHES = Path(__file__).parent / "sketches"
 

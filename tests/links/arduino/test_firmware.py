@@ -13,6 +13,8 @@ from seatrial.links.arduino.sketch import find_sketch
 
 from .bench import Bench, need, write_sketch
 
+pytestmark = pytest.mark.interop
+
 SOURCE = (
     "void setup() { Serial.begin(9600); }\nvoid loop() { Serial.println(millis()); delay(50); }\n"
 )

@@ -14,6 +14,8 @@ from seatrial.trials.trial import load_trial
 
 from .bench import need, write_sketch
 
+pytestmark = pytest.mark.interop
+
 
 def sailed(name: str, folder: Path, backend: str = "host", **changes: object):
     need(backend)

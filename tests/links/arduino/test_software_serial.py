@@ -6,6 +6,8 @@ from seatrial.errors import SimulationError
 
 from .bench import Bench, write_sketch
 
+pytestmark = pytest.mark.interop
+
 SKETCH = """
 #include <SoftwareSerial.h>
 SoftwareSerial gps(4, 3), other(7, 8);

@@ -10,6 +10,8 @@ from seatrial.links.hardware import ALLOWED
 from seatrial.trials.run import run_trial
 from seatrial.trials.trial import load_trial
 
+pytestmark = pytest.mark.interop
+
 LISTENER = '''
 from seatrial.component import Component, Input, Output
 from seatrial.links.can.node import CanNode

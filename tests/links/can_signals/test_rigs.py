@@ -15,6 +15,8 @@ from seatrial.shipped import shipped_folder
 from seatrial.trials.run import run_trial
 from seatrial.trials.trial import load_trial
 
+pytestmark = pytest.mark.interop
+
 PROFILES = shipped_folder("hil_profiles")
 
 

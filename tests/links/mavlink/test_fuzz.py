@@ -165,7 +165,7 @@ CASES = [
 ]
 
 
-@pytest.mark.parametrize("total", [1_000, pytest.param(100_000, marks=pytest.mark.long)])
+@pytest.mark.parametrize("total", [400, pytest.param(100_000, marks=pytest.mark.long)])
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.__name__)
 def test_whatever_comes(case, total):
     # One number per example: fields drawn one by one take fifty times as long.
@@ -180,11 +180,11 @@ def test_whatever_comes(case, total):
 def test_the_cases_reach_what_they_are_about():
     """Of unsigned messages to a vehicle without a key many are obeyed: the cases can fail."""
     obeyed = 0
-    for seed in range(200):
+    for seed in range(60):
         drawn = random.Random(seed)
         bench, received, sender = some_bench(drawn), codec(), peer()
         before = reported_state(bench)
         for _ in range(MOST_MESSAGES):
             deliver(bench, received, message(drawn).pack(sender))
         obeyed += reported_state(bench) != before
-    assert obeyed > 50
+    assert obeyed > 15

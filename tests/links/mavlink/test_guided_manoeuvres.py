@@ -60,6 +60,21 @@ def test_a_yaw_rate_turns_the_heading_as_far_as_the_craft_follows():
     assert boat.vehicle.target is None
 
 
+@pytest.mark.parametrize("heading", [0.1, -0.1, math.pi - 0.05, -math.pi + 0.05])
+@pytest.mark.parametrize("rate", [0.2, -0.2])
+def test_a_yaw_rate_turns_on_across_north_and_south(heading, rate):
+    boat = guided()
+    boat.measure(attitude=(0.0, 0.0, heading))
+    for seconds in range(1, 4):
+        boat.hear(ahead(0.6, rate))
+        boat.wait(1.0)
+        wanted = heading + rate * seconds
+        assert math.remainder(boat.vehicle.target.heading - wanted, math.tau) == pytest.approx(0.0)
+        boat.measure(attitude=(0.0, 0.0, math.remainder(wanted, math.tau)))
+        told = boat.one(mavlink.MAVLINK_MSG_ID_POSITION_TARGET_LOCAL_NED)
+        assert told.yaw == pytest.approx(math.remainder(wanted, math.tau))
+
+
 def test_a_submarine_dives_on_the_way_and_a_boat_does_not():
     for kind, down in (({"submerged": True}, 5.3), ({}, 5.0)):
         craft = guided(**kind)

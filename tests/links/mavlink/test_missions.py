@@ -210,7 +210,7 @@ def test_loiter_unlimited(radius, circle):
     boat.go()
     assert (boat.leg.circle, boat.leg.radius, boat.leg.wait) == (circle, abs(circle) + 3.0, 0.0)
     boat.arrive()
-    boat.wait(100.0)
+    boat.wait(20.0)
     assert boat.current() == (1, ACTIVE)
 
 

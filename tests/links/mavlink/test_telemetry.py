@@ -98,6 +98,17 @@ def test_quaternions(phi, theta, psi):
     assert (m.rollspeed, m.pitchspeed, m.yawspeed) == (0.1, 0.2, 0.3)
 
 
+@pytest.mark.parametrize("psi", [-3.0, -0.1, 0.1, 3.0])
+@pytest.mark.parametrize("turns", [-1, 1])
+def test_a_quaternion_does_not_change_its_sign_with_a_whole_turn(psi, turns):
+    q = []
+    for angle in (psi, psi + turns * math.tau):
+        m = sent("ATTITUDE_QUATERNION", attitude=(0.1, 0.2, angle))
+        q.append((m.q1, m.q2, m.q3, m.q4))
+    assert q[0] == pytest.approx(q[1], abs=1e-6)
+    assert q[0][0] > 0.0
+
+
 def test_inertia():
     measured = {"specific_force": (0.0, 9.80665, -19.6133), "rates": (0.5, -1.0, 0.0015)}
     m = sent("SCALED_IMU", **measured)

@@ -1,7 +1,6 @@
 """Fuzzing of mission messages: no crash, and a list is never half replaced."""
 
 import math
-import os
 import random
 
 from hypothesis import given, settings
@@ -13,7 +12,7 @@ from seatrial.links.mavlink.transport import Sender
 from .bench import OTHER_STATION, STATION, Bench
 from .ground import ALL, FENCE, MISSION, RALLY, content, download, item, north_of, upload
 
-CASES = 1000 if os.environ.get("CI") else 200
+CASES = 40
 
 kinds = st.sampled_from([MISSION, MISSION, MISSION, FENCE, RALLY, ALL, 3])
 counts = st.sampled_from([0, 1, 2, 3, 4, 1001, 0xFFFF])
@@ -113,7 +112,7 @@ def test_a_list_is_the_old_one_or_the_new_one(order, noise):
 
 def test_lists_of_every_length_survive_an_upload_that_breaks_off():
     generator = random.Random(5)
-    for _ in range(15):
+    for _ in range(5):
         bench = Bench()
         old = [item(n, at=north_of(n)) for n in range(generator.randint(1, 6))]
         new = [item(n, at=north_of(50 + n)) for n in range(generator.randint(2, 6))]

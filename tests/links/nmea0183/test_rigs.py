@@ -13,6 +13,8 @@ from seatrial.shipped import shipped_folder
 from seatrial.trials.run import run_trial
 from seatrial.trials.trial import load_trial
 
+pytestmark = pytest.mark.interop
+
 PLOTTER = '''
 import pynmea2
 

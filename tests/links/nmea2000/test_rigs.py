@@ -10,7 +10,10 @@ import pytest
 from seatrial.trials.run import run_trial
 from seatrial.trials.trial import load_trial
 
-pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the gateway's tests are POSIX's")
+pytestmark = [
+    pytest.mark.interop,
+    pytest.mark.skipif(sys.platform == "win32", reason="the gateway's tests are POSIX's"),
+]
 
 TRIAL = """
 rig  = "{rig}"

@@ -7,8 +7,6 @@ from seatrial.links.videoray import registers as csr
 
 from .bench import PACKETS, exchange, frames, make_node, request
 
-every = pytest.mark.parametrize("register", csr.REGISTERS, ids=lambda r: r.name)
-
 # VideoRay's map, its columns "read only" and "non-volatile", and what the device itself measures.
 READ_ONLY = [
     0x13,
@@ -28,28 +26,21 @@ def test_registers_do_not_overlap_and_lie_below_the_special_ones():
     assert max(places) == csr.TOP - 1
 
 
-@every
-def test_every_raw_number_round_trips_through_value_and_memory(register):
+def test_raw_numbers_round_trip_through_value_and_memory():
     memory = csr.factory_memory()
-    count = register.highest - register.lowest
-    some = {
-        register.lowest,
-        register.highest,
-        0,
-        1,
-        *range(register.lowest, register.highest, count // 97 + 1),
-    }
-    for raw in some:
-        csr.put(memory, register.name, raw)
-        assert register.raw_in(memory) == raw
-        assert register.clipped(csr.value(memory, register.name)) == raw
+    for register in csr.REGISTERS:
+        low, high = register.lowest, register.highest
+        for raw in {low, high, 0, 1, *range(low, high, (high - low) // 97 + 1)}:
+            csr.put(memory, register.name, raw)
+            assert register.raw_in(memory) == raw, register.name
+            assert register.clipped(csr.value(memory, register.name)) == raw, register.name
 
 
-@every
-def test_what_does_not_fit_is_refused(register):
-    for raw in (register.lowest - 1, register.highest + 1):
-        with pytest.raises(InputError, match=register.name):
-            register.bytes_of(raw)
+def test_what_does_not_fit_is_refused():
+    for register in csr.REGISTERS:
+        for raw in (register.lowest - 1, register.highest + 1):
+            with pytest.raises(InputError, match=register.name):
+                register.bytes_of(raw)
 
 
 def test_captured_configuration_is_that_of_a_new_vehicle():
@@ -57,19 +48,18 @@ def test_captured_configuration_is_that_of_a_new_vehicle():
     assert csr.factory_memory()[:0x5A] == captured[:0x5A]
 
 
-@pytest.mark.parametrize("place", range(csr.TOP))
-def test_each_byte_is_written_or_not_as_the_map_says(place):
-    node = make_node()
-    before = bytes(node.memory)
-    written = exchange(node, flags=0x81, address=place, payload=bytes((before[place] ^ 0x55,)))
-    if place in (csr.COMMIT, csr.COMMIT + 1):
-        assert written == b"\0"
-    elif place in READ_ONLY:
-        assert written == before[place : place + 1]
-    else:
-        assert written == bytes((before[place] ^ 0x55,))
-    others = [a for a in range(csr.TOP) if a != place]
-    assert [node.memory[a] for a in others] == [before[a] for a in others]
+def test_each_byte_is_written_or_not_as_the_map_says():
+    for place in range(csr.TOP):
+        node = make_node()
+        before = bytes(node.memory)
+        new = bytes((before[place] ^ 0x55,))
+        expected = before[place : place + 1] if place in READ_ONLY else new
+        if place in (csr.COMMIT, csr.COMMIT + 1):
+            expected = b"\0"
+        where = f"0x{place:02X}"
+        assert exchange(node, flags=0x81, address=place, payload=new) == expected, where
+        others = [a for a in range(csr.TOP) if a != place]
+        assert [node.memory[a] for a in others] == [before[a] for a in others], where
 
 
 @pytest.mark.parametrize("commits", [False, True])
