@@ -183,7 +183,7 @@ def run_commands(block: Block) -> None:
         else:
             program = [sys.executable, *words[1:]]
             done = subprocess.run(program, capture_output=True, text=True, check=False)
-        got = done.stdout + done.stderr
+        got = done.stdout + re.sub(r"(?m)^.*: \d+ %, .* x real time\b.*\n", "", done.stderr)
         matches = doctest.OutputChecker().check_output(shown, got, doctest.ELLIPSIS)
         assert matches or (not shown and done.returncode == 0), f"{line}\n{got}"
 
