@@ -37,6 +37,20 @@ NS = 1_000_000_000
 """Nanoseconds in a second: time is counted in whole nanoseconds everywhere."""
 
 
+VIEWS = {
+    "landing-point": ("place", "phase"),
+    "line": ("north", "east", "down"),
+    "waypoints": ("count", "place"),
+    "wind": ("velocity",),
+}
+"""Kinds of views and the ports that each names.
+
+landing-point: parameters, the place on a deck (x forward, y to starboard of the body origin, m)
+and the name of the manoeuvre. line: outputs with one axis per point, its coordinates in {n}, m.
+waypoints: parameters, how many there are and the port of each, whose name ends in ``_1`` and so
+on (north and east in {n}, m). wind: an output, velocity of the air (north and east in {n}, m/s).
+"""
+
 _LATEST = 2e6  # s: up to 2**51 ns, a double of seconds gives its nanoseconds back
 
 _INT32 = 2**31
@@ -65,12 +79,18 @@ class Component:
     ``discrete = True``. ``feedthrough`` declares, per output port, the input ports that act
     on it at the same instant.
 
+    ``views`` says what reports draw of it: by kind of view (`VIEWS`), the ports that it takes.
+    ``exercised`` has values by port with which everything in it acts, where the start values do
+    not do: tests run the component with them.
+
     Times are seconds, already snapped to the grid of the communication step.
     """
 
     feedthrough: ClassVar[Mapping[str, Sequence[str]]] = {}
     rolls_back: ClassVar[bool] = True
     discrete: ClassVar[bool] = False
+    views: ClassVar[Mapping[str, Mapping[str, str]]] = {}
+    exercised: ClassVar[Mapping[str, Any]] = {}
     transient: ClassVar[frozenset[str]] = frozenset({"name"})
 
     ports: ClassVar[dict[str, Port]] = {}
@@ -92,6 +112,7 @@ class Component:
             setattr(cls, name, port)
         cls.scalar_by_name = {scalar.name: scalar for scalar in cls.scalars}
         _check_feedthrough(cls)
+        _check_views(cls)
         for kind in (float, int, bool, str):
             of_type = [s for s in cls.scalars if s.port.type is kind]
             # A dict of its own per class: a shared one would mix the classes.
@@ -393,6 +414,12 @@ class Reachable:
     reached_at = Output(
         "1", "what others connect to, separated by spaces", type=str, role="address"
     )
+
+
+def _check_views(cls: type[Component]) -> None:
+    for kind, ports in cls.views.items():
+        if kind not in VIEWS or set(ports) != set(VIEWS[kind]):
+            raise TypeError(f"{cls.__name__}.views: {kind!r} is none of {VIEWS}, with its ports")
 
 
 def _is_fixed(port: Port) -> bool:

@@ -5,131 +5,21 @@ import random
 import pytest
 
 from seatrial.component import Component
-from seatrial.control.computed_torque import ComputedTorque
-from seatrial.control.course import Course
-from seatrial.control.depth_hold import DepthHold
-from seatrial.control.dynamic_positioning import DynamicPositioning
-from seatrial.control.flat_tracking import FlatTracking
-from seatrial.control.guidance import Guidance
 from seatrial.control.guidance_orders import TARGETS
-from seatrial.control.heading_autopilot import HeadingAutopilot
-from seatrial.control.heading_hold import HeadingHold
-from seatrial.control.helm import Helm
-from seatrial.control.nominal_trajectory import NominalTrajectory
-from seatrial.control.pulse_allocation import PulseAllocation
-from seatrial.control.reference_filter import HeadingReference
-from seatrial.control.rudder_helm import RudderHelm
-from seatrial.control.sail_control import SailControl
 from seatrial.control.sailing_guidance import SailingGuidance
-from seatrial.control.sailing_heading_backstepping import SailingHeadingBackstepping
-from seatrial.control.sailing_heading_pid import SailingHeadingPid
-from seatrial.control.sailing_navigation import SailingNavigation
-from seatrial.control.speed_hold import SpeedHold
-from seatrial.control.station_keeping import StationKeeping
-from seatrial.control.thruster_allocation import ThrusterAllocation
-from seatrial.devices.ahrs import Ahrs
-from seatrial.devices.anemometer import Anemometer
-from seatrial.devices.angle_servo import AngleServo
-from seatrial.devices.compass import Compass
-from seatrial.devices.depth import Depth
 from seatrial.devices.fault import FAULTS
-from seatrial.devices.force_actuator import ForceActuator
-from seatrial.devices.gnss import Gnss
-from seatrial.devices.imu import Imu
-from seatrial.devices.linear_thruster import LinearThruster
-from seatrial.devices.propulsion import Propulsion
-from seatrial.devices.rudder_machine import RudderMachine
-from seatrial.devices.servo import Servo
-from seatrial.devices.thruster import Thruster
-from seatrial.environment.step_disturbance import StepDisturbance
-from seatrial.identification.excitation import Excitation
+from seatrial.fmi.source import shipped_sources
 from seatrial.units import unit
 from tests.snapshot import changed, snapshot
 
 from .running import run, started
 
-# With settings that bring everything to life.
-CLASSES = {
-    Excitation: {"rest": 0.1},
-    Thruster: {},
-    Propulsion: {"direction_1": [1, 0, 0], "position_1": [-0.45, -0.4, 0.15]},
-    LinearThruster: {"delay": 0.013, "dead_band": 0.1},
-    Servo: {},
-    Imu: {"delay": 0.013, "dropout": 0.2},
-    Ahrs: {"delay": 0.13, "dropout": 0.2},
-    Compass: {"delay": 0.03, "dropout": 0.2},
-    Gnss: {"dropout": 0.2, "antenna": [0.2, 0.1, -0.3]},
-    Depth: {"dropout": 0.2, "place": [0.2, 0.1, 0.3]},
-    RudderMachine: {},
-    AngleServo: {},
-    Anemometer: {"dropout": 0.2, "place": [0.2, 0.1, -0.9]},
-    SailControl: {"roll_limit": "on"},
-    SailingHeadingPid: {"rudder_limit": 100.0},
-    SailingHeadingBackstepping: {
-        "rudder_limit": 100.0,
-        "sail_area": 0.9,
-        "sail_arm": 0.2,
-        "keel_area": 0.07,
-        "sail_start": 0.7,
-        "Y_vdot": -20.0,
-        "N_r": -48.0,
-    },
-    SailingNavigation: {},
-    SailingGuidance: {
-        "armed": True,
-        "position_valid": True,
-        "heading_valid": True,
-        "target_valid": True,
-        "leg_wait": 0.0,
-        "leg_radius": 4.0,
-        "leg_circle": 0.0,
-        "lookahead": 2.0,
-        "acceptance_radius": 2.0,
-        "drift_limit": 3.0,
-        "capture_radius": 2.0,
-        "loiter_radius": 4.0,
-        "steerage": 0.1,
-        "turn_rate": 1e3,
-        "lead": 3.0,
-        "wearing_loss": 0.0,
-    },
-    RudderHelm: {},
-    ForceActuator: {"capacity": [2.0, 2.0, 2.0]},
-    HeadingAutopilot: {"rudder_limit": 100.0, "integral_gain": 0.1},
-    HeadingReference: {},
-    DynamicPositioning: {"capacity": [1e12, 1e12, 1e12], "thruster_time_constant": 5.0},
-    NominalTrajectory: {"surge_profile": "polynomial", "duration": 1.0},
-    FlatTracking: {"surge_profile": "polynomial", "duration": 1.0, "command_limit": 1e9},
-    ComputedTorque: {"mass": [8.44, 12.55, 0.133], "command_limit": 1e9},
-    DepthHold: {"capacity": 1e12, "rate_limit": 1e9},
-    HeadingHold: {"capacity": 1e12, "rate_limit": 1e9},
-    ThrusterAllocation: {},
-    Guidance: {
-        "armed": True,
-        "position_valid": True,
-        "heading_valid": True,
-        "depth_valid": True,
-        "depth_control": "on",
-        "depth_tolerance": 1.5,
-        "staying": "circle",
-        "leg_wait": 0.0,
-        "acceleration": 1e9,
-        "turning_speed": 0.1,
-        "leg_radius": 4.0,
-    },
-    Course: {"count": 3.0, "waypoint_1": [1.0, 2.0, 3.0]},
-    SpeedHold: {"capacity": 1e12},
-    Helm: {"sway_limit": 3.0, "heave_limit": 4.0},
-    PulseAllocation: {},
-    StepDisturbance: {"step_size": 1.0, "begin_time": 0.2, "end_time": 0.7},
-    StationKeeping: {
-        "enabled": True,
-        "hold_radius": 2.0,
-        "surge_gain": 40.0,
-        "surge_limit": 200.0,
-        "moment_limit": 100.0,
-    },
-}
+CLASSES = [
+    source.component_class()
+    for source in shipped_sources().values()
+    if source.module.split(".")[1] in ("control", "devices", "environment", "identification")
+]
+"""Those of the index; each declares the values that bring everything in it to life."""
 TEXTS = {"fault": ("none", *FAULTS), "target_kind": TARGETS}
 SELDOM = {
     SailingGuidance: {
@@ -184,7 +74,7 @@ def test_every_port_says_what_it_is(cls):
 
 @every
 def test_restored_state_goes_on_identically(cls):
-    component = started(cls, **CLASSES[cls])
+    component = started(cls, **cls.exercised)
     outputs = names(cls, "output")
 
     def inputs(t_ms):
@@ -206,7 +96,7 @@ def test_restored_state_goes_on_identically(cls):
 def test_two_runs_are_identical(cls):
     outputs = names(cls, "output")
     runs = [
-        run(started(cls, **CLASSES[cls]), outputs, 1000, 10, lambda t: some_inputs(cls, t))
+        run(started(cls, **cls.exercised), outputs, 1000, 10, lambda t: some_inputs(cls, t))
         for _ in range(2)
     ]
     assert runs[0] == runs[1]
@@ -214,7 +104,7 @@ def test_two_runs_are_identical(cls):
 
 @every
 def test_reading_twice_changes_nothing(cls):
-    component = started(cls, **CLASSES[cls])
+    component = started(cls, **cls.exercised)
     inputs = some_inputs(cls, 1)
     for name, value in inputs.items():
         component.set(name, value)
@@ -231,7 +121,7 @@ def test_reading_twice_changes_nothing(cls):
 def ideal(cls):
     """Return settings without delay and dropout: feed-through is as direct as it can be."""
     none = {name: 0.0 for name in ("delay", "dropout") if name in cls.ports}
-    return {**CLASSES[cls], **none}
+    return {**cls.exercised, **none}
 
 
 @every
@@ -258,4 +148,4 @@ def test_only_declared_inputs_act_at_once(cls):
 
 def some_inputs_but(cls, seed):
     """Return inputs, apart from those that the settings fix."""
-    return {k: v for k, v in some_inputs(cls, seed).items() if k not in CLASSES[cls]}
+    return {k: v for k, v in some_inputs(cls, seed).items() if k not in cls.exercised}

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
@@ -24,6 +26,11 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return folder
 
 
+def source(folder: Path) -> Any:
+    """A component's source, with a script of its own."""
+    return SimpleNamespace(stem="script", script=SOURCE, folder=folder, package=None)
+
+
 def made_anew(folder: Path) -> str:
     return bundle("script", SOURCE, folder).script
 
@@ -36,14 +43,14 @@ def no_bundle(*_: object) -> None:
 def kept(folder: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     """A name that is kept, as if all files were old."""
     monkeypatch.setattr(module, "_SETTLED_NS", -(10**18))
-    name = bundle_name("script", SOURCE, folder)
+    name = bundle_name(source(folder))
     assert name == made_anew(folder)
     return name
 
 
 def test_a_kept_name_is_not_made_again(folder, kept, monkeypatch) -> None:
-    monkeypatch.setattr(module, "bundle", no_bundle)
-    assert bundle_name("script", SOURCE, folder) == kept
+    monkeypatch.setattr(module, "bundled", no_bundle)
+    assert bundle_name(source(folder)) == kept
 
 
 def edit(path: Path, text: str) -> None:
@@ -60,31 +67,31 @@ def edit(path: Path, text: str) -> None:
 )
 def test_an_edit_that_leaves_size_and_time(folder, kept, file: str, text: str) -> None:
     edit(folder / file, text)
-    assert bundle_name("script", SOURCE, folder) == made_anew(folder) != kept
+    assert bundle_name(source(folder)) == made_anew(folder) != kept
 
 
 def test_a_module_that_takes_the_place_of_another(folder, kept) -> None:
     (folder / "colorsys.py").write_text("x = 1\n")
-    assert bundle_name("script", SOURCE, folder) == made_anew(folder) != kept
+    assert bundle_name(source(folder)) == made_anew(folder) != kept
 
 
 def test_a_file_that_is_gone(folder, kept) -> None:
     (folder / "boat.py").rename(folder / "ship.py")
     (folder / "boat").mkdir()
     (folder / "boat" / "__init__.py").write_text("mass = 1\n")
-    assert bundle_name("script", SOURCE, folder) == made_anew(folder) != kept
+    assert bundle_name(source(folder)) == made_anew(folder) != kept
 
 
 def test_what_was_just_written_is_not_kept(folder, monkeypatch) -> None:
     """It may be written again before the clock of its stamps goes on."""
-    bundle_name("script", SOURCE, folder)
-    monkeypatch.setattr(module, "bundle", no_bundle)
+    bundle_name(source(folder))
+    monkeypatch.setattr(module, "bundled", no_bundle)
     with pytest.raises(AssertionError, match="made anew"):
-        bundle_name("script", SOURCE, folder)
+        bundle_name(source(folder))
 
 
 def test_a_damaged_cache_is_made_anew(folder, kept, tmp_path) -> None:
     (file,) = (tmp_path / "cache" / "bundles").iterdir()
     for text in ("", "[]", "{}", '{"name": 1, "stamps": 2}'):
         file.write_text(text)
-        assert bundle_name("script", SOURCE, folder) == kept
+        assert bundle_name(source(folder)) == kept

@@ -105,6 +105,8 @@ def _manifest(phase: str, scenario: str, signals: Mapping[str, str]) -> dict[str
                     "mass": _parameter(10.0, "kg", source="004, text under table 8", **stated),
                     **{f"pad.{axis}": _parameter(value, "m") for axis, value in pad.items()},
                 },
+                "views": {"landing-point": {"place": "pad", "phase": "phase"}},
+                "outline": {"length": 1.276, "beam": 1.0},
             },
         },
         "connections": [

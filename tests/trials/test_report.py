@@ -433,3 +433,16 @@ def test_the_page_carries_the_library_whole(write_run):
     packed = re.search(r'<script type="text/plain" id="plotly">(.*?)</script>', page)[1]
     library = Path(plotly.__file__).with_name("package_data") / "plotly.min.js"
     assert zlib.decompress(base64.b64decode(packed)) == library.read_bytes()
+
+
+def test_a_deck_of_unknown_size_shows_its_points_alone(write_run) -> None:
+    """Views are the component's, the outline is of its vehicle's file."""
+    known, unknown = write_run(), write_run(name="other")
+    path = unknown / "manifest.json"
+    manifest = json.loads(path.read_text("utf-8"))
+    del manifest["components"]["downwash"]["outline"]
+    manifest["components"]["downwash"]["fmu"] = "somebody_elses.fmu"
+    path.write_text(json.dumps(manifest))
+    decks = [Page(write_report(folder)).figures[0]["layout"] for folder in (known, unknown)]
+    assert [len(deck.get("shapes", [])) for deck in decks] == [1, 0]
+    assert decks[0]["shapes"][0]["y1"] == pytest.approx(0.638)

@@ -40,7 +40,8 @@ def test_a_tether_that_hangs_straight_down_is_drawn() -> None:
 def test_a_report_shows_it_if_all_of_it_was_recorded(recorded: bool, write_run) -> None:
     ports = ("north", "east", "down") if recorded else ("north", "east")
     names = [f"cable.{port}.s{n}" for port in ports for n in range(3)]
-    cable = {"fmu": "tether", "sha256": "4" * 64, "step": 0.01, "parameters": {}}
+    views = {"line": {"north": "north", "east": "east", "down": "down"}}
+    cable = {"fmu": "x.fmu", "sha256": "4" * 64, "step": 0.01, "parameters": {}, "views": views}
     folder = write_run(
         changes={
             "components": {"cable": cable},

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from ..component import Parameter
 from .vessel_tracking import VesselTracking
 
@@ -24,6 +26,8 @@ class ComputedTorque(VesselTracking):
     is believed: v enters the product m22 v r, and an error of 1 m/s in it makes a light
     vehicle run away.
     """
+
+    exercised: ClassVar = {"mass": [8.44, 12.55, 0.133], "command_limit": 1e9}
 
     kp = Parameter(2.0, "1/s", "rate against the error", min=0.0)
     ki = Parameter(1.0, "1/s2", "rate against its integral, 0 for none", min=0.0)

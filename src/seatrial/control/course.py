@@ -26,6 +26,8 @@ class Course(Sampled):
     Raises InputError at the start for a number of waypoints that is not whole.
     """
 
+    exercised: ClassVar = {"count": 3.0, "waypoint_1": [1.0, 2.0, 3.0]}
+
     period = Parameter(0.1, "s", "sample period", min=1e-6)
     count = Parameter(1.0, "1", "number of waypoints", min=1.0, max=float(_WAYPOINTS))
     start_point = Parameter(0.0, "m", "where the first leg begins", axes=_NED)
@@ -51,6 +53,7 @@ class Course(Sampled):
     leg_wait = Output("s", "time to stay at its end")
     passed = Output("1", "number of legs done", type=int)
 
+    views: ClassVar = {"waypoints": {"count": "count", "place": "waypoint"}}
     feedthrough: ClassVar = {}
 
     def reset(self, t: float) -> None:

@@ -18,6 +18,8 @@ class DepthHold(AxisHold):
     Defaults: mass with added mass of the VideoRay Pro 4, and four fifths of its vertical thrust.
     """
 
+    exercised: ClassVar = {"capacity": 1e12, "rate_limit": 1e9}
+
     mass = Parameter(10.45, "kg", "mass with added mass in heave", min=1e-9)
     capacity = Parameter(20.0, "N", "largest force", min=0.0, tunable=True)
     rate_limit = Parameter(0.3, "m/s", "largest rate of the target", min=1e-9, tunable=True)

@@ -49,6 +49,8 @@ class DynamicPositioning(Sampled):
     capacity. Coupling of sway and yaw, Coriolis forces and wave filtering are left out.
     """
 
+    exercised: ClassVar = {"capacity": [1e12, 1e12, 1e12], "thruster_time_constant": 5.0}
+
     period = Parameter(0.1, "s", "sample period", min=1e-6)
     mass = Parameter(
         (7.88e6, 1.364e7, 4.31e9),

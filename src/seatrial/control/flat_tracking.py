@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, ClassVar
 
 import casadi as ca
 import numpy as np
@@ -46,6 +46,8 @@ class FlatTracking(VesselTracking):
 
     Raises InputError at the start if l U m11 - R m33 is zero or changes sign.
     """
+
+    exercised: ClassVar = {"surge_profile": "polynomial", "duration": 1.0, "command_limit": 1e9}
 
     transient = VesselTracking.transient | {"_gains"}
 

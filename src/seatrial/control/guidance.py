@@ -91,6 +91,20 @@ class Guidance(GuidanceOrders):
     radius 0, and in a run for a mode or kind of target that is none.
     """
 
+    exercised: ClassVar = {
+        "armed": True,
+        "position_valid": True,
+        "heading_valid": True,
+        "depth_valid": True,
+        "depth_control": "on",
+        "depth_tolerance": 1.5,
+        "staying": "circle",
+        "leg_wait": 0.0,
+        "acceleration": 1e9,
+        "turning_speed": 0.1,
+        "leg_radius": 4.0,
+    }
+
     modes = MODES
 
     cruise_speed = Parameter(1.0, "m/s", "speed but for legs and set-points", min=0.0, tunable=True)

@@ -28,6 +28,8 @@ class HeadingAutopilot(Sampled):
     T_d = 1.25379 with the rudder's effect in B as it must be (docs/vehicles/mariner.md).
     """
 
+    exercised: ClassVar = {"rudder_limit": 100.0, "integral_gain": 0.1}
+
     period = Parameter(0.1, "s", "sample period", min=1e-6)
     proportional_gain = Parameter(0.860783, "1", "Kp", min=1e-9, tunable=True)
     derivative_gain = Parameter(22.504992, "s", "Kd", tunable=True)

@@ -19,6 +19,8 @@ class HeadingHold(AxisHold):
     thrusters have.
     """
 
+    exercised: ClassVar = {"capacity": 1e12, "rate_limit": 1e9}
+
     natural_frequency = Parameter(1.6, "rad/s", "w", min=1e-9, tunable=True)
     damping_ratio = Parameter(0.8, "1", "zeta", min=0.0, tunable=True)
     integral_pole = Parameter(0.2, "rad/s", "sigma", min=0.0, tunable=True)

@@ -23,6 +23,8 @@ class Helm(Component):
     Defaults: the Hydrone catamaran, which has no sway and no heave.
     """
 
+    exercised: ClassVar = {"sway_limit": 3.0, "heave_limit": 4.0}
+
     surge_limit = Parameter(30.0, "N", "surge force of full deflection", min=0.0, tunable=True)
     sway_limit = Parameter(0.0, "N", "sway force of full deflection", min=0.0, tunable=True)
     moment_limit = Parameter(12.0, "N.m", "yaw moment of full deflection", min=0.0, tunable=True)

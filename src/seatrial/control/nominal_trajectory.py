@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, ClassVar
 
 from ..component import Output, Parameter
 from ..errors import InputError
@@ -39,6 +39,8 @@ class NominalTrajectory(Sampled):
     Raises InputError at the start without damping of sway, for a full thrust of 0, a sign
     other than 1 and -1, or a trajectory of more than 500000 samples.
     """
+
+    exercised: ClassVar = {"surge_profile": "polynomial", "duration": 1.0}
 
     transient = Sampled.transient | {"_rows"}
 

@@ -57,6 +57,8 @@ class SailControl(Sampled):
     not more than the design heel.
     """
 
+    exercised: ClassVar = {"roll_limit": "on"}
+
     period = Parameter(0.02, "s", "sample period", min=1e-6)
     sail_limit = Parameter(90.0 * _DEG, "rad", "greatest angle of the sail", min=0.0)
     upwind_threshold = Parameter(

@@ -79,6 +79,25 @@ class SailingGuidance(GuidanceOrders):
     a mode or kind of target that is none.
     """
 
+    exercised: ClassVar = {
+        "armed": True,
+        "position_valid": True,
+        "heading_valid": True,
+        "target_valid": True,
+        "leg_wait": 0.0,
+        "leg_radius": 4.0,
+        "leg_circle": 0.0,
+        "lookahead": 2.0,
+        "acceptance_radius": 2.0,
+        "drift_limit": 3.0,
+        "capture_radius": 2.0,
+        "loiter_radius": 4.0,
+        "steerage": 0.1,
+        "turn_rate": 1e3,
+        "lead": 3.0,
+        "wearing_loss": 0.0,
+    }
+
     modes = MODES
 
     lookahead = Parameter(20.0, "m", "lookahead distance", min=1e-3, tunable=True)

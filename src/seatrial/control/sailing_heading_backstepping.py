@@ -35,6 +35,16 @@ class SailingHeadingBackstepping(SailingHeading):
     direction it blows to from the bow, to starboard positive.
     """
 
+    exercised: ClassVar = {
+        "rudder_limit": 100.0,
+        "sail_area": 0.9,
+        "sail_arm": 0.2,
+        "keel_area": 0.07,
+        "sail_start": 0.7,
+        "Y_vdot": -20.0,
+        "N_r": -48.0,
+    }
+
     K_p = Parameter(0.2, "1/s", "gain of z2", tunable=True)
     K_i = Parameter(0.001, "1/s", "gain of z1", tunable=True)
     K_d = Parameter(0.07, "1/s", "gain of z3", tunable=True)

@@ -25,6 +25,8 @@ class SailingHeadingPid(SailingHeading):
     rudder is at its limit afterwards the freeze keeps it so: the boat turns on.
     """
 
+    exercised: ClassVar = {"rudder_limit": 100.0}
+
     K_p = Parameter(20.2, "N.m/rad", "moment per heading error", tunable=True)
     K_i = Parameter(2.3, "N.m/(rad.s)", "rate of the integral term", tunable=True)
     K_d = Parameter(30.0, "N.m.s/rad", "moment against the rate of the heading", tunable=True)

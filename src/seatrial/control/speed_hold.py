@@ -25,6 +25,8 @@ class SpeedHold(Sampled):
     of its thrust.
     """
 
+    exercised: ClassVar = {"capacity": 1e12}
+
     period = Parameter(0.1, "s", "sample period", min=1e-6)
     natural_frequency = Parameter(0.4, "rad/s", "w", min=1e-9, tunable=True)
     damping_ratio = Parameter(1.0, "1", "zeta", min=1e-9, tunable=True)

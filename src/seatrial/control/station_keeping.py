@@ -73,6 +73,14 @@ class StationKeeping(Sampled, TwinThrusters):
     pulses do not rise.
     """
 
+    exercised: ClassVar = {
+        "enabled": True,
+        "hold_radius": 2.0,
+        "surge_gain": 40.0,
+        "surge_limit": 200.0,
+        "moment_limit": 100.0,
+    }
+
     period = Parameter(0.05, "s", "sample period", min=1e-6)
     hold_radius = Parameter(1.0, "m", "distance at which it starts to return", tunable=True)
     capture_radius = Parameter(0.3, "m", "distance at which it has returned", tunable=True)

@@ -26,12 +26,22 @@ class Entry(FileModel):
     mark: Mark
 
 
+class Outline(FileModel):
+    """A vehicle seen from above, about its body origin: overall length and beam, m."""
+
+    length: float = Field(gt=0.0, allow_inf_nan=False)
+    beam: float = Field(gt=0.0, allow_inf_nan=False)
+    source: str
+
+
 class VehicleFile(FileModel):
     """A vehicle's parameter file; its other tables are one per component."""
 
     title: str
     source: str
     default: str | None = None
+    outline: Outline | None = None
+    """Drawn by reports; the components have no such parameters."""
     variants: dict[str, dict[str, dict[str, Entry]]] = Field(default_factory=dict)
     presets: dict[str, dict[str, dict[str, Entry]]] = Field(default_factory=dict)
     components: dict[str, dict[str, Entry]] = Field(default_factory=dict)
@@ -44,6 +54,7 @@ class ParameterSet:
     values: dict[str, Entry] = field(default_factory=dict)
     presets: dict[str, dict[str, Entry]] = field(default_factory=dict)
     origin: str = ""
+    outline: Outline | None = None
 
 
 @dataclass(frozen=True)
@@ -68,7 +79,7 @@ class Vehicle:
         values = {**file.components.get(table, {}), **changes}
         suffix = f", variant {chosen}" if chosen else ""
         origin = f"vehicles/{path.name} [{table}]{suffix}"
-        return ParameterSet(values, file.presets.get(table, {}), origin)
+        return ParameterSet(values, file.presets.get(table, {}), origin, file.outline)
 
 
 def split_reference(written: str, fmu: str) -> tuple[str, str]:
@@ -88,7 +99,7 @@ def load_vehicle(name: str, relative_to: Path | None = None) -> Vehicle:
     """Read the vehicle file ``name`` (shipped, or a path). Raises InputError."""
     path = find_file("vehicles", name, relative_to)
     content, read_from = read_toml(path)
-    known = {"title", "source", "default", "variants", "presets"}
+    known = {"title", "source", "default", "outline", "variants", "presets"}
     components = {key: value for key, value in content.items() if key not in known}
     top: dict[str, Any] = {key: value for key, value in content.items() if key in known}
     for key, value in components.items():

@@ -8,6 +8,7 @@ from typing import Any, Literal
 
 from ..errors import InputError, unknown
 from ..fmi.instance import Instance, Variable, Variables
+from .parameters import Outline
 from .rig import Rig
 from .values import Given, from_written, port_names, port_scalars
 
@@ -29,6 +30,8 @@ class Part:
     """It steps once in so many communication steps."""
     given: dict[str, Given] = field(default_factory=dict)
     """Values set by the rig's user, by variable name; the others keep the FMU's start values."""
+    outline: Outline | None = None
+    """Of the vehicle whose parameters it has, if its file has one."""
     presets: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
 
 

@@ -104,6 +104,7 @@ class Tether(Component):
 
     # Positions are taken at instants, forces hold for a step: a master must not extrapolate them.
     discrete = True
+    views: ClassVar = {"line": {"north": "north", "east": "east", "down": "down"}}
     feedthrough: ClassVar = dict.fromkeys(
         ("force", "surface_force"),
         ("top_position", "top_velocity", "bottom_position", "bottom_velocity", "current"),

@@ -40,6 +40,8 @@ class Ahrs(Sensor):
     Raises InputError at the start if ``acc_sign`` is neither -1 nor 1.
     """
 
+    exercised: ClassVar = {"delay": 0.13, "dropout": 0.2}
+
     period = Parameter(0.1, "s", "sample period", min=1e-6)
     gravity = Parameter(9.81, "m/s2", "acceleration of gravity", min=0.0)
     acc_sign = Parameter(

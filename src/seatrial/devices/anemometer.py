@@ -30,6 +30,8 @@ class Anemometer(Sensor):
     Not modelled: inertia of cups and vane, least speed at which they turn, upwash of the sail.
     """
 
+    exercised: ClassVar = {"dropout": 0.2, "place": [0.2, 0.1, -0.9]}
+
     period = Parameter(0.1, "s", "sample period", min=1e-6)
     place = Parameter(0.0, "m", "sensor from the body origin, body axes", axes="xyz")
 

@@ -28,6 +28,8 @@ class Compass(Sensor):
     rms, resolution 0.1 degree, 20 Hz.
     """
 
+    exercised: ClassVar = {"delay": 0.03, "dropout": 0.2}
+
     period = Parameter(0.05, "s", "sample period", min=1e-6)
     variation = Parameter(0.0, "rad", "magnetic variation left in the heading, positive east")
     deviation = Parameter(

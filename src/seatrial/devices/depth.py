@@ -25,6 +25,8 @@ class Depth(Sensor):
     Not modelled: waves, dynamic pressure, temperature.
     """
 
+    exercised: ClassVar = {"dropout": 0.2, "place": [0.2, 0.1, 0.3]}
+
     period = Parameter(0.05, "s", "sample period", min=1e-6)
     delay = Parameter(0.02, "s", "time from measurement to output", min=0.0)
     density = Parameter(1025.0, "kg/m3", "density of the water", min=0.0)

@@ -30,6 +30,8 @@ class ForceActuator(Actuator):
     axis does not depend on what the others use.
     """
 
+    exercised: ClassVar = {"capacity": [2.0, 2.0, 2.0]}
+
     time_constant = Parameter(0.0, "s", "lag of forces behind demands, 0 for none", min=0.0)
     capacity = Parameter(
         (2.5e5, 2.5e5, 1e7), ("N", "N", "N.m"), "largest forces and moment", axes="XYN", min=0.0

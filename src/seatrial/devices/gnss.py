@@ -28,6 +28,8 @@ class Gnss(Sensor):
     velocity 0.05 m/s; 5 Hz; delay 0.15 s (assumed, usual for such receivers).
     """
 
+    exercised: ClassVar = {"dropout": 0.2, "antenna": [0.2, 0.1, -0.3]}
+
     period = Parameter(0.2, "s", "sample period", min=1e-6)
     delay = Parameter(0.15, "s", "time from measurement to output", min=0.0)
     correlation_time = Parameter(600.0, "s", "correlation time of the varying bias", min=1e-6)

@@ -33,6 +33,8 @@ class Imu(Sensor):
     solution is truth with errors, not a filter that accelerations could mislead.
     """
 
+    exercised: ClassVar = {"delay": 0.013, "dropout": 0.2}
+
     period = Parameter(0.01, "s", "sample period", min=1e-6)
     gravity = Parameter(9.81, "m/s2", "acceleration of gravity", min=0.0)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import ClassVar
 
 from ..component import NS, Input, Output, Parameter
 from .actuator import Actuator
@@ -30,6 +31,8 @@ class LinearThruster(Actuator):
     Not modelled: loss of thrust with the speed of the water through the propeller, thrust that
     differs between ahead and astern, supply voltage, a limit on how fast the command may change.
     """
+
+    exercised: ClassVar = {"delay": 0.013, "dead_band": 0.1}
 
     full_thrust = Parameter(1.0, "N", "thrust at command 1", min=0.0)
     dead_band = Parameter(0.0, "1", "largest command without thrust", min=0.0, max=1.0)

@@ -27,6 +27,8 @@ class Propulsion(Component):
     1e-6.
     """
 
+    exercised: ClassVar = {"direction_1": [1, 0, 0], "position_1": [-0.45, -0.4, 0.15]}
+
     position_1 = Parameter(0.0, "m", "position of thruster 1 from the body origin", axes="xyz")
     position_2 = Parameter(0.0, "m", "position of thruster 2 from the body origin", axes="xyz")
     position_3 = Parameter(0.0, "m", "position of thruster 3 from the body origin", axes="xyz")

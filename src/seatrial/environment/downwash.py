@@ -66,6 +66,7 @@ class Downwash(Component):
     height = Output("m", "height of the rotors above the deck")
     on_deck = Output("1", "the HUAUV stands on the deck", type=bool)
 
+    views: ClassVar = {"landing-point": {"place": "pad", "phase": "phase"}}
     feedthrough: ClassVar = {"force": ("attitude",), "moment": ("attitude",)}
 
     def start(self, t: float) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from ..component import Component, Output, Parameter
 from ..errors import InputError
 
@@ -18,6 +20,8 @@ class StepDisturbance(Component):
 
     Raises InputError at the start if ``end_time`` is not after ``begin_time``.
     """
+
+    exercised: ClassVar = {"step_size": 1.0, "begin_time": 0.2, "end_time": 0.7}
 
     discrete = True
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import ClassVar
 
 from ..component import Noise, Output, Parameter
 from ..sampled import Sampled
@@ -31,6 +32,8 @@ class Wind(Noise, Sampled):
 
     Not modelled: shear with height, wind that differs from place to place, gusts that travel.
     """
+
+    views: ClassVar = {"wind": {"velocity": "velocity"}}
 
     period = Parameter(0.1, "s", "time between two values of the gusts", min=1e-6)
     mean_speed = Parameter(5.0, "m/s", "mean speed", min=0.0)

@@ -52,11 +52,23 @@ def describe(cls: type[Component], name: str, start_values: Mapping[str, Any]) -
         _complete_variable(component, scalar, element[0])
         _annotate(element, scalar.port)
     _insert_units(root, component)
+    _insert_views(root, cls)
     structure = root.find("ModelStructure")
     assert structure is not None
     structure.clear()
     _add_unknowns(structure, component)
     return root
+
+
+def _insert_views(root: Element, cls: type[Component]) -> None:
+    """Write the views as annotations of the vendor, where `variables` reads them."""
+    if cls.views:
+        annotations = Element("VendorAnnotations")
+        tool = SubElement(annotations, "Tool", {"name": "seatrial"})
+        for kind, ports in cls.views.items():
+            SubElement(tool, "view", {"kind": kind, **ports})
+        places = [child.tag for child in root]
+        root.insert(places.index("ModelVariables"), annotations)
 
 
 def _annotate(element: Element, port: Port) -> None:

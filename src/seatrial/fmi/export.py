@@ -99,5 +99,7 @@ def zipped(files: Mapping[str, bytes]) -> bytes:
 
 def _tool_tag() -> str:
     """Return a tag of what besides the bundle decides an FMU's bytes."""
-    text = f"{__version__} {pythonfmu.__version__}"
-    return hashlib.sha256(text.encode()).hexdigest()[:8]
+    digest = hashlib.sha256(f"{__version__} {pythonfmu.__version__}".encode())
+    for module in ("description.py", "export.py"):
+        digest.update(Path(__file__).with_name(module).read_bytes())
+    return digest.hexdigest()[:8]

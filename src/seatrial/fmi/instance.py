@@ -122,6 +122,10 @@ class Instance(Protocol):
     def feedthrough(self) -> Mapping[str, Sequence[str]]:
         """Per output, the inputs that act on it at the same instant."""
 
+    @property
+    def views(self) -> Mapping[str, Mapping[str, str]]:
+        """What reports draw of it: ports by kind of view, of `component.VIEWS`."""
+
     def set_start(self, values: Mapping[str, Value]) -> None:
         """Set parameters and start values by variable name, before `initialise`."""
 

@@ -15,7 +15,7 @@ from .fmi2 import Fmi2Instance
 from .fmi3 import Fmi3Instance
 from .instance import Instance
 from .loaded import LoadedFmu
-from .variables import described
+from .variables import described, views_of
 from .xmlfile import read_xml
 
 _NEEDED = "co-simulation of FMI 2.0 or 3.0 is needed"
@@ -76,6 +76,7 @@ def _load(path: Path, _stamp: tuple[int, int]) -> LoadedFmu:
         content.variables,
         content.arrays,
         content.feedthrough,
+        views_of(root),
         content.notes,
     )
 

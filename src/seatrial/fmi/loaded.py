@@ -24,5 +24,7 @@ class LoadedFmu:
     arrays: Mapping[int, Array]
     """What each value reference of an FMI 3 FMU stands for."""
     feedthrough: Mapping[str, Sequence[str]]
+    views: Mapping[str, Mapping[str, str]]
+    """What reports draw of it; see `component.VIEWS`."""
     notes: tuple[str, ...]
     """What this FMU has that cannot be used here, for its user."""

@@ -11,6 +11,7 @@ from typing import Any
 
 from fmpy.model_description import ModelDescription
 
+from ..component import VIEWS
 from ..errors import InputError
 from ..units import Unit, defined_unit
 from .instance import Value, Variable, Variables
@@ -227,3 +228,14 @@ def _notes(clocked: list[str]) -> tuple[str, ...]:
         return ()
     shown = ", ".join(clocked[:10]) + (", ..." if len(clocked) > 10 else "")
     return (f"clocks, and variables that belong to one, are no signals here: {shown}",)
+
+
+def views_of(root: Any) -> dict[str, dict[str, str]]:
+    """Return the views that a model description declares, without those unknown here."""
+    found = {}
+    for element in root.iterfind("VendorAnnotations/Tool[@name='seatrial']/view"):
+        ports = {str(key): str(value) for key, value in element.attrib.items()}
+        kind = ports.pop("kind", "")
+        if set(ports) == set(VIEWS.get(kind, ())):
+            found[kind] = ports
+    return found

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from ..component import Noise, Output, Parameter
 from ..sampled import Sampled
 
@@ -23,6 +25,8 @@ class Excitation(Noise, Sampled):
 
     Until ``rest`` has passed all commands are 0.
     """
+
+    exercised: ClassVar = {"rest": 0.1}
 
     period = Parameter(1.0, "s", "how long each amplitude is held", min=1e-6)
     amplitude = Parameter(0.3, "1", "largest command", min=0.0, max=1.0)

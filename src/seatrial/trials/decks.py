@@ -7,9 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from .plots import Deck, PadPoint
-
-DECK_LENGTH, DECK_BEAM = 1.276, 1.0
-"""Overall length and beam of the catamaran, m: no component has them as a parameter."""
+from .run_folder import viewed
 
 
 @dataclass(frozen=True)
@@ -21,28 +19,33 @@ class Pad:
     starboard: float
     phase: str
     """Manoeuvre there, if the component has one."""
+    outline: tuple[float, float] | None
+    """Overall length and beam of the vehicle, m, if its file has them."""
 
 
 def pads(manifest: dict[str, Any]) -> list[Pad]:
-    """Return the landing points of a run: the pads of its ``downwash`` components."""
+    """Return the landing points of a run, of the components with such a view."""
     found = []
-    for name, component in manifest["components"].items():
+    for name, component, ports in viewed(manifest, "landing-point"):
         parameters = component["parameters"]
-        if component["fmu"] == "downwash":
-            x, y = (float(parameters[f"pad.{axis}"]["value"]) for axis in "xy")
-            phase = parameters.get("phase", {}).get("value", "")
-            found.append(Pad(name, x, y, str(phase)))
+        x, y = (float(parameters[f"{ports['place']}.{axis}"]["value"]) for axis in "xy")
+        phase = parameters.get(ports["phase"], {}).get("value", "")
+        outline = component.get("outline")
+        size = None if outline is None else (outline["length"], outline["beam"])
+        found.append(Pad(name, x, y, str(phase), size))
     return found
 
 
 def deck(title: str, runs: Iterable[tuple[str, Pad, bool | None]]) -> Deck:
     """Return a deck with the points of runs (label, pad, passed); one point for each place."""
     places: dict[tuple[float, float], list[tuple[str, bool | None]]] = {}
+    size = None
     for label, pad, passed in runs:
         places.setdefault((pad.forward, pad.starboard), []).append((label, passed))
+        size = pad.outline or size
     points = []
     for (forward, starboard), cases in places.items():
         evaluated = [passed for _, passed in cases if passed is not None]
         labels = tuple(label for label, _ in cases)
         points.append(PadPoint(forward, starboard, labels, sum(evaluated), len(evaluated)))
-    return Deck(title, points, DECK_LENGTH, DECK_BEAM)
+    return Deck(title, points, size)

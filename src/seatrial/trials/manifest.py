@@ -95,12 +95,18 @@ def _component(part: Part, feeders: Mapping[str, str], step: float) -> dict[str,
             "source": "" if given is None else given.source,
             "mark": "" if given is None else given.mark,
         }
+    shown: dict[str, Any] = {}
+    if part.instance.views:
+        shown["views"] = {kind: dict(ports) for kind, ports in part.instance.views.items()}
+    if part.outline is not None:
+        shown["outline"] = {"length": part.outline.length, "beam": part.outline.beam}
     return {
         "fmu": part.fmu,
         "sha256": part.sha256,
         "code": part.code,
         "step": step,
         "parameters": parameters,
+        **shown,
     }
 
 

@@ -73,12 +73,12 @@ class PadPoint:
 
 @dataclass(frozen=True)
 class Deck:
-    """A deck with landing points, and its overall length and beam, m."""
+    """A deck with landing points."""
 
     title: str
     points: Sequence[PadPoint]
-    length: float
-    beam: float
+    size: tuple[float, float] | None
+    """Overall length and beam, m; None: not known, only the points are drawn."""
 
 
 def decimate(
@@ -218,18 +218,19 @@ def deck_figure(decks: Sequence[Deck]) -> Figure:
     titles = [f"<b>{escape(deck.title)}</b>" for deck in decks]
     figure = Figure(titles)
     for col, deck in enumerate(decks, start=1):
-        half_beam, half_length = deck.beam / 2, deck.length / 2
-        figure.shape(
-            type="rect",
-            x0=-half_beam,
-            x1=half_beam,
-            y0=-half_length,
-            y1=half_length,
-            line={"color": "#4a5a68", "width": 1.5},
-            fillcolor="#f1f4f7",
-            layer="between",
-            column=col,
-        )
+        half_length, half_beam = _half_size(deck)
+        if deck.size is not None:
+            figure.shape(
+                type="rect",
+                x0=-half_beam,
+                x1=half_beam,
+                y0=-half_length,
+                y1=half_length,
+                line={"color": "#4a5a68", "width": 1.5},
+                fillcolor="#f1f4f7",
+                layer="between",
+                column=col,
+            )
         figure.annotate(
             x=0,
             y=half_length,
@@ -251,7 +252,7 @@ def deck_figure(decks: Sequence[Deck]) -> Figure:
         )
         for point in deck.points:
             _draw_pad(figure, point, col)
-        margin = 0.16 * max(deck.length, deck.beam)
+        margin = 0.32 * max(half_length, half_beam)
         x_anchor = "x" if col == 1 else f"x{col}"
         figure.x_axis(
             title={"text": "starboard, m"},
@@ -269,6 +270,15 @@ def deck_figure(decks: Sequence[Deck]) -> Figure:
         )
     figure.lay_out(height=560, showlegend=False, **layout(hovermode="closest"))
     return figure
+
+
+def _half_size(deck: Deck) -> tuple[float, float]:
+    """Return half of what is shown, ahead and to starboard, m: the deck, or round the points."""
+    if deck.size is not None:
+        length, beam = deck.size
+        return length / 2, beam / 2
+    reach = max((max(abs(p.forward), abs(p.starboard)) for p in deck.points), default=0.0) or 1.0
+    return reach, reach
 
 
 def _draw_pad(figure: Figure, point: PadPoint, col: int) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
@@ -58,6 +58,16 @@ class Run:
         if not self.manifest["criteria"]:
             return None
         return bool(self.verdicts) and all(verdict["passed"] for verdict in self.verdicts)
+
+
+def viewed(
+    manifest: Mapping[str, Any], kind: str
+) -> Iterator[tuple[str, dict[str, Any], dict[str, str]]]:
+    """Yield name, entry and ports of the components that have a view (`component.VIEWS`)."""
+    for name, component in manifest["components"].items():
+        ports = component.get("views", {}).get(kind)
+        if ports is not None:
+            yield name, component, ports
 
 
 def load_run(folder: Path | str) -> Run:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 from typing import Any
@@ -11,7 +11,7 @@ import numpy as np
 
 from .figure import Figure
 from .plots import COLOURS, layout
-from .run_folder import Run
+from .run_folder import Run, viewed
 
 _STEADY = 0.25  # share of a run, at its end, that a point of the polar diagram is the mean of
 _DIRECTIONS = 5  # a polar diagram needs at least so many different angles off the wind
@@ -30,16 +30,17 @@ class PolarPoint:
 
 def add_wind_and_marks(figure: Figure, run: Run) -> None:
     """Draw the run's mean wind as an arrow, and the marks of its course, into a track."""
-    for name in _of_kind(run, "course"):
-        _draw_marks(figure, run.manifest["components"][name]["parameters"])
+    for _, component, ports in viewed(run.manifest, "waypoints"):
+        _draw_marks(figure, component["parameters"], ports)
     wind = _mean_wind(run)
     if wind is not None:
         _draw_wind(figure, wind)
 
 
-def _draw_marks(figure: Figure, parameters: Mapping[str, Any]) -> None:
-    for number in range(1, int(parameters["count"]["value"]) + 1):
-        north, east = (parameters[f"waypoint_{number}.{a}"]["value"] for a in ("north", "east"))
+def _draw_marks(figure: Figure, parameters: Mapping[str, Any], ports: Mapping[str, str]) -> None:
+    for number in range(1, int(parameters[ports["count"]]["value"]) + 1):
+        place = f"{ports['place']}_{number}"
+        north, east = (parameters[f"{place}.{axis}"]["value"] for axis in ("north", "east"))
         figure.trace(
             "scatter",
             x=[east],
@@ -59,14 +60,14 @@ def polar_point(run: Run, label: str, series: str) -> PolarPoint | None:
     None without a recorded wind and one craft with velocity and heading, or if the run is not
     complete.
     """
-    wind, psi = _wind_name(run), ".attitude.psi"
+    wind, psi = _wind_signals(run), ".attitude.psi"
     craft = [name.removesuffix(psi) for name in run.signals if name.endswith(psi)]
     needed = [f"{name}.velocity.{axis}" for name in craft for axis in ("u", "v")]
     complete = run.manifest["status"] == "complete" and set(needed) <= set(run.signals)
     if wind is None or len(craft) != 1 or not complete:
         return None
     last = run.time >= run.time[-1] - _STEADY * (run.time[-1] - run.time[0])
-    north, east = (run.signals[f"{wind}.velocity.{axis}"][last] for axis in ("north", "east"))
+    north, east = (run.signals[name][last] for name in wind)
     off = run.signals[craft[0] + psi][last] - np.arctan2(-east, -north)
     speed = np.hypot(*(run.signals[name][last] for name in needed))
     angle = abs(float(np.angle(np.exp(1j * off).mean())))
@@ -102,24 +103,21 @@ def polar_figure(points: Sequence[PolarPoint]) -> Figure | None:
     return figure
 
 
-def _of_kind(run: Run, fmu: str) -> Iterable[str]:
-    return (n for n, component in run.manifest["components"].items() if component["fmu"] == fmu)
-
-
-def _wind_name(run: Run) -> str | None:
-    """Return the component that makes the wind, if its velocity was recorded."""
-    for name in _of_kind(run, "wind"):
-        if {f"{name}.velocity.{axis}" for axis in ("north", "east")} <= set(run.signals):
-            return name
+def _wind_signals(run: Run) -> tuple[str, str] | None:
+    """Return the signals of the wind's velocity, north and east, if they were recorded."""
+    for name, _, ports in viewed(run.manifest, "wind"):
+        north, east = (f"{name}.{ports['velocity']}.{axis}" for axis in ("north", "east"))
+        if {north, east} <= set(run.signals):
+            return north, east
     return None
 
 
 def _mean_wind(run: Run) -> tuple[float, float] | None:
     """Return the mean velocity of the air, north and east, m/s."""
-    name = _wind_name(run)
-    if name is None or not len(run.time):
+    wind = _wind_signals(run)
+    if wind is None or not len(run.time):
         return None
-    north, east = (run.signals[f"{name}.velocity.{axis}"].mean() for axis in ("north", "east"))
+    north, east = (run.signals[name].mean() for name in wind)
     return float(north), float(east)
 
 

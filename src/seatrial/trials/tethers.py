@@ -9,7 +9,7 @@ import numpy as np
 from .expressions import FloatArray
 from .figure import Figure
 from .plots import layout
-from .run_folder import Run
+from .run_folder import Run, viewed
 
 _INSTANTS = 6
 _VIRIDIS = bytes.fromhex("440154 482878 3e4989 31688e 26828e 1f9e89 35b779 6ece58 b5de2b fde725")
@@ -17,12 +17,13 @@ _AXES = ("north", "east", "down")
 
 
 def tether_figures(run: Run) -> Iterator[tuple[str, Figure]]:
-    """Yield the name of each tether whose whole shape was recorded, and its figure."""
-    for name, component in run.manifest["components"].items():
-        stations = [s for s in run.signals if s.startswith(f"{name}.north.")]
-        signals = [[s.replace(".north.", f".{axis}.") for s in stations] for axis in _AXES]
+    """Yield the name of each line whose whole shape was recorded, and its figure."""
+    for name, _, ports in viewed(run.manifest, "line"):
+        first = f"{name}.{ports['north']}."
+        stations = [s.removeprefix(first) for s in run.signals if s.startswith(first)]
+        signals = [[f"{name}.{ports[axis]}.{s}" for s in stations] for axis in _AXES]
         whole = all(s in run.signals for axis in signals for s in axis)
-        if component["fmu"] == "tether" and len(stations) > 1 and whole and len(run.time):
+        if len(stations) > 1 and whole and len(run.time):
             shape = [np.stack([run.signals[s] for s in axis]) for axis in signals]
             yield name, shape_figure(run.time, *shape)
 
