@@ -268,7 +268,7 @@ def test_a_tunable_parameter_on_a_connection_keeps_to_its_limits(bench: Bench) -
         ),
         ('a = { fmu = "users.py:Odd", set = { how = 3 } }', "", "a text is needed"),
         ('a = { fmu = "users.py:Add", step = "150 ms" }', "", "not a multiple"),
-        ('a = { fmu = "users.py:Ad" }', "", "cannot import name 'Ad'"),
+        ('a = { fmu = "users.py:Ad" }', "", "did you mean 'Add'"),
         ('a = { fmu = "users.py:Add", set = { gain = 1 } }', "", "unknown port 'gain'"),
         ('a = { fmu = "users.py:Add", set = { y = 1 } }', "", "output and cannot be set"),
         ('a = { fmu = "users.py:Scale", set = { bias = "3 kg" } }', "", "'kg' cannot be converted"),

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import pytest
 
-from seatrial.cosim.profile import load_profile
+from seatrial.cosim.profile import check_profile, load_profile
 from seatrial.errors import InputError
 from seatrial.links.can.frame import Frame
 from seatrial.links.nmea2000.catalogue import ALL, DATA, NETWORK
@@ -368,4 +368,4 @@ def test_a_profile_with_an_unknown_pgn_is_refused_with_near_misses(tmp_path):
     path = tmp_path / "boat.toml"
     path.write_text(PROFILE.format(sends="128276"), "utf-8")
     with pytest.raises(InputError, match=r"links\.sounder\.sends.*'128276'; did you mean '128267'"):
-        load_profile(path)
+        check_profile(path)

@@ -209,11 +209,11 @@ def _add_connection(connections: Any, system: System, connection: Connection) ->
     # Not every tool converts units: the transformation says all, for all of them.
     if not plain or _unlike(system, connection):
         attributes["suppressUnitConversion"] = "true"
-    connection = _add(connections, "ssd", "Connection", **attributes)
+    element = _add(connections, "ssd", "Connection", **attributes)
     if plain:
         return
     numbers = {"factor": repr(connection.factor), "offset": repr(connection.offset)}
-    _add(connection, "ssc", "LinearTransformation", **numbers)
+    _add(element, "ssc", "LinearTransformation", **numbers)
 
 
 def _add(parent: Any, prefix: str, element: str, /, **attributes: str) -> Any:
