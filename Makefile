@@ -5,7 +5,9 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 DOCS := $(VENV)/.docs-installed
 NODE_TOOLS := tests/interop/node/node_modules/.installed
-PYTEST := $(BIN)/python -m pytest -n auto --dist worksteal
+# One thread of BLAS for each worker: they share the processors. Compiled modules are kept, whatever
+# the environment says: hundreds of tests start processes.
+PYTEST := OPENBLAS_NUM_THREADS=1 PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -n auto --dist worksteal
 
 .PHONY: demo test test-interop test-long lint docs fmus benchmark clean
 

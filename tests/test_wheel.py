@@ -14,6 +14,7 @@ import pytest
 ROOT = Path(__file__).parents[1]
 
 
+@pytest.mark.interop
 @pytest.mark.parametrize("downloads", [False, pytest.param(True, marks=pytest.mark.long)])
 def test_the_wheel_alone_runs_a_trial(downloads: bool, tmp_path: Path) -> None:
     """Its requirements are those of this environment, or as a user's pip finds them."""

@@ -143,7 +143,9 @@ def test_a_signal_ends_a_campaign_in_its_case(start, tmp_path: Path) -> None:
     assert (tmp_path / "all" / "report.html").is_file()
 
 
-@pytest.mark.parametrize("name", ["trial.toml", "campaign.toml"])
+@pytest.mark.parametrize(
+    "name", ["campaign.toml", pytest.param("trial.toml", marks=pytest.mark.interop)]
+)
 def test_a_signal_during_initialisation_leaves_no_run(name: str, start, tmp_path: Path) -> None:
     rig = tmp_path / "rig.toml"
     rig.write_text(rig.read_text().replace('Slow"', 'Slow", set = { start_takes = 1.0 }'))
@@ -156,7 +158,8 @@ def test_a_signal_during_initialisation_leaves_no_run(name: str, start, tmp_path
     assert (tmp_path / "run").exists() == (name == "campaign.toml")
 
 
-@pytest.mark.parametrize("engine", ["fmu", pytest.param("direct", marks=pytest.mark.interop)])
+@pytest.mark.interop
+@pytest.mark.parametrize("engine", ["fmu", "direct"])
 def test_a_second_signal_ends_a_component_that_hangs(engine, start, tmp_path: Path) -> None:
     hang = ("--set", "boat.hangs_at=0.045")
     process = start("run", "trial.toml", "--out", "run", "--engine", engine, *hang)
@@ -172,14 +175,9 @@ def test_a_second_signal_ends_a_component_that_hangs(engine, start, tmp_path: Pa
     assert "run stopped" in (tmp_path / "run" / "report.html").read_text("utf-8")
 
 
-@pytest.mark.parametrize(
-    ("gap_s", "isolated"),
-    [
-        (0.003, "true"),
-        *(pytest.param(gap, "true", marks=pytest.mark.interop) for gap in (0.0, 0.03)),
-        *(pytest.param(gap, "false", marks=pytest.mark.interop) for gap in (0.0, 0.003, 0.03)),
-    ],
-)
+@pytest.mark.interop
+@pytest.mark.parametrize("isolated", ["false", "true"])
+@pytest.mark.parametrize("gap_s", [0.0, 0.003, 0.03])
 def test_two_signals_leave_a_whole_record_too(
     gap_s: float, isolated: str, start, tmp_path: Path
 ) -> None:
@@ -196,7 +194,13 @@ def test_two_signals_leave_a_whole_record_too(
     assert_whole(tmp_path / "run", 10)
 
 
-@pytest.mark.parametrize("pace", [[], ["--real-time", "0.0001"]], ids=["free", "waiting"])
+@pytest.mark.parametrize(
+    "pace",
+    [
+        pytest.param([], id="free"),
+        pytest.param(["--real-time", "0.0001"], id="waiting", marks=pytest.mark.interop),
+    ],
+)
 def test_a_killed_run_is_whole_up_to_its_last_flush(pace, start, tmp_path: Path) -> None:
     process = start("run", "trial.toml", "--out", "run", "--engine", "direct", *pace)
     signals = tmp_path / "run" / "signals.csv"

@@ -116,7 +116,7 @@ def held(load, stop, time_constant=0.0, share=1.0, station=(0.0, 0.0, 0.0)):
 
 
 @pytest.mark.parametrize("time_constant", [0.0, 5.0])
-@pytest.mark.parametrize("share", [1.0, 5.0])
+@pytest.mark.parametrize("share", [1.0, pytest.param(5.0, marks=pytest.mark.interop)])
 def test_a_fifth_of_the_capacity_moves_it_by_less_than_a_metre(share, time_constant):
     eta = np.abs(held(0.2 * share * CAPACITY, 400.0, time_constant, share))
     assert eta[:, :2].max() < 1.0

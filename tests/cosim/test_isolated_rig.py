@@ -57,7 +57,10 @@ def manifest(folder: Path) -> dict[str, Any]:
     return json.loads((folder / "manifest.json").read_text())
 
 
-@pytest.mark.parametrize(("engine", "counts"), [("fmu", (0, 99)), ("direct", (0, 3))])
+@pytest.mark.parametrize(
+    ("engine", "counts"),
+    [pytest.param("fmu", (0, 99), marks=pytest.mark.interop), ("direct", (0, 1))],
+)
 def test_the_record_is_the_same_whoever_is_isolated(engine, counts, tmp_path: Path) -> None:
     shipped = load_trial("hydrone-landing").changed({"stop": "0.3 s"}, "the test")
     entries = shipped.rig.file.components
@@ -81,10 +84,11 @@ def test_the_record_is_the_same_whoever_is_isolated(engine, counts, tmp_path: Pa
     [
         ('set = { how = "segfault" }', "boat: its process was ended by SIGSEGV in step(t = 0.3 s"),
         ('set = { how = "exit" }', "boat: its process exited with status 3 in step(t = 0.3 s"),
-        (
+        pytest.param(
             'timeout = "4 s", set = { how = "spin" }',
             "boat: its process was ended for not answering within 4 s (the component's key "
             "'timeout') in step(t = 0.3 s",
+            marks=pytest.mark.interop,
         ),
     ],
 )
@@ -101,6 +105,7 @@ def test_an_end_in_the_middle_leaves_a_whole_record(keys, expected, trial, tmp_p
     assert json.loads((out / "timing.json").read_text())["steps"] == 3
 
 
+@pytest.mark.interop
 def test_a_native_fmu_that_crashes_ends_the_command_with_a_message(trial, tmp_path: Path) -> None:
     build_native_fmu("crash", tmp_path)
     trial(f"set = {{ how = {crashing.SEGFAULT} }}", "crash.fmu")
@@ -163,11 +168,14 @@ def test_a_limit_that_is_no_positive_time_is_refused(timeout: str, trial) -> Non
         assemble(rig)
 
 
+@pytest.mark.interop
 @pytest.mark.parametrize(
     "closed",
     [
+        "<&-",
+        "<&- >&-",
+        "<&- 2>&-",
         "<&- >&- 2>&-",
-        *(pytest.param(x, marks=pytest.mark.interop) for x in ("<&-", "<&- >&-", "<&- 2>&-")),
     ],
 )
 def test_a_command_without_standard_streams_runs_as_any(closed: str, trial, tmp_path: Path) -> None:
@@ -180,6 +188,7 @@ def test_a_command_without_standard_streams_runs_as_any(closed: str, trial, tmp_
     assert manifest(tmp_path / "run")["status"] == "complete"
 
 
+@pytest.mark.interop
 def test_what_a_component_prints_need_not_be_read(trial, tmp_path: Path) -> None:
     trial('set = { how = "print" }')
     process = subprocess.Popen(
@@ -223,6 +232,7 @@ def test_an_interrupt_stops_the_run_after_the_step(trial, tmp_path: Path) -> Non
     assert [int(row[1]) for row in record[1:]] == list(range(len(record) - 1))
 
 
+@pytest.mark.interop
 def test_a_second_interrupt_ends_the_wait_for_a_component_that_hangs(trial, tmp_path: Path) -> None:
     trial('timeout = "60 s"')
     _, record = interrupted(tmp_path, "sleep", 2)

@@ -8,7 +8,7 @@ import sys
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.sparse.csgraph import connected_components
 
@@ -39,7 +39,6 @@ def reach(graph: Graph) -> dict[str, set[str]]:
     return found
 
 
-@settings(max_examples=400)
 @given(graphs())
 def test_groups_are_the_strongly_connected_components(graph: Graph) -> None:
     depends = reach(graph)
@@ -49,7 +48,6 @@ def test_groups_are_the_strongly_connected_components(graph: Graph) -> None:
     assert {frozenset(group) for group in groups} == expected
 
 
-@settings(max_examples=400)
 @given(graphs())
 def test_dependencies_come_before_what_depends_on_them(graph: Graph) -> None:
     place = {n: i for i, group in enumerate(ordered_groups(graph)) for n in group}

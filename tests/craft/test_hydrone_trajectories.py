@@ -50,7 +50,9 @@ def peak(values, first=0):
     "pad", ["diagonal-fore", *(pytest.param(p, marks=pytest.mark.interop) for p in CSV_PADS[:-1])]
 )
 @pytest.mark.parametrize("phase", PHASES)
-@pytest.mark.parametrize("variant", VARIANTS)
+@pytest.mark.parametrize(
+    "variant", ["source", "physical", pytest.param("consistent", marks=pytest.mark.interop)]
+)
 def test_trajectory(hydrone, variant, phase, pad):
     name = f"hydrone_{variant}_{phase}_{pad.replace('-', '_')}.csv"
     expected = np.loadtxt(DATA / name, delimiter=",", skiprows=1)
@@ -132,6 +134,7 @@ def test_sensitivity(hydrone, row):
 ANGLE, HEIGHT, NOMINAL_PITCH, PEAK_TIME = 0.5, 0.006, 0.01, 0.3  # deg, m, deg, s
 
 
+@pytest.mark.interop
 @pytest.mark.parametrize(
     ("pad", "roll", "pitch"),
     [
@@ -148,6 +151,7 @@ def test_stated_angles_after_landing(hydrone, pad, roll, pitch):
     assert seen["heave"][1000] == pytest.approx(0.02, abs=HEIGHT)
 
 
+@pytest.mark.interop
 @pytest.mark.parametrize(
     ("pad", "roll", "pitch"),
     [
@@ -167,6 +171,7 @@ def test_stated_peaks_of_take_off(hydrone, pad, roll, pitch):
         assert k / 100 == pytest.approx(11.0, abs=PEAK_TIME)
 
 
+@pytest.mark.interop
 def test_stated_pitch_of_the_nominal_take_off(hydrone):
     pitch = history(hydrone.run("source", "takeoff", "nominal"))["pitch"][1000:1200]
     assert (pitch.min(), pitch.max()) == pytest.approx((-0.06, 0.04), abs=NOMINAL_PITCH)
@@ -178,6 +183,7 @@ def test_stated_downwash_compares_with_the_weight_of_the_craft(hydrone):
     assert downwash.load_at(10.2) / (21.987 * 9.81) == pytest.approx(1.0, abs=0.2)
 
 
+@pytest.mark.interop
 def test_stated_heave_does_not_depend_on_the_mass(hydrone):
     runs = [
         hydrone.run("source", "landing", "diagonal-aft", "mass", factor)
@@ -186,6 +192,7 @@ def test_stated_heave_does_not_depend_on_the_mass(hydrone):
     assert [run["position.z"][-1] for run in runs] == pytest.approx([0.0196] * 3, abs=1e-4)
 
 
+@pytest.mark.interop
 @pytest.mark.parametrize(
     ("phase", "pad", "roll_passes", "pitch_passes"),
     [
@@ -213,6 +220,7 @@ def test_verdicts_on_the_limits_of_the_source(hydrone, phase, pad, roll_passes, 
 # ---------------------------------------------------------------------- the other variants
 
 
+@pytest.mark.interop
 @pytest.mark.parametrize(
     ("phase", "pad", "roll", "pitch"),
     [
@@ -230,6 +238,7 @@ def test_physical_peaks(hydrone, phase, pad, roll, pitch):
         assert peak(seen["pitch"], 990)[0] == pytest.approx(pitch, abs=0.005)
 
 
+@pytest.mark.interop
 def test_physical_landing(hydrone):
     roll = history(hydrone.run("physical", "landing", "transversal"))["roll"]
     pitch = history(hydrone.run("physical", "landing", "longitudinal"))["pitch"]

@@ -197,7 +197,10 @@ def step(variant, degrees):
     return steered(variant, 600.0, lambda _t, x: KP * (x[2] - goal) + KD * x[5])
 
 
-@pytest.mark.parametrize(("variant", "file"), [("linear", "linS"), ("cubic", "nl")])
+@pytest.mark.parametrize(
+    ("variant", "file"),
+    [pytest.param("linear", "linS", marks=pytest.mark.interop), ("cubic", "nl")],
+)
 def test_step_of_5_degrees_with_rudder_machine(variant, file):
     expected = table(f"mariner_dim_step5deg_{file}.csv")
     t, x, command = step(variant, 5.0)
@@ -209,6 +212,7 @@ def test_step_of_5_degrees_with_rudder_machine(variant, file):
         assert np.abs(values[::20] - expected[name]).max() < bound, name
 
 
+@pytest.mark.interop
 @pytest.mark.parametrize(
     ("degrees", "overshoot", "rudder"), [(5, 5.569, 3.684), (20, 5.567, 14.41)]
 )
@@ -231,6 +235,7 @@ def test_propeller_turns_the_cubic_ship_off_its_course():
     assert np.degrees(np.abs(x[:, 6]).max()) == pytest.approx(3.52, abs=5e-3)
 
 
+@pytest.mark.interop
 @pytest.mark.parametrize(("variant", "mirrors"), [("linear", True), ("cubic", False)])
 def test_port_and_starboard_mirror_each_other_in_the_linear_model_only(variant, mirrors):
     sides = [step(variant, degrees)[1][:, 2] for degrees in (5.0, -5.0)]
@@ -240,6 +245,7 @@ def test_port_and_starboard_mirror_each_other_in_the_linear_model_only(variant, 
         assert np.abs(sides[0] + sides[1]).max() > np.radians(2.5)
 
 
+@pytest.mark.interop
 def test_turning_circle():
     """15 degrees to port at 100 s; the course is not straight before: the propeller turns it."""
 

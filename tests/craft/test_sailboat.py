@@ -167,7 +167,13 @@ def test_no_steady_state_is_an_error():
 
 
 # Best speed over sail (2.5 deg) and flap (5 deg), 5 m/s of wind: attached, rudder below 12 deg.
-@pytest.mark.parametrize(("wind_angle", "speed"), [(45, 1.09), (70, 1.84), (110, 2.84)])
+@pytest.mark.parametrize(
+    ("wind_angle", "speed"),
+    [
+        (110, 2.84),
+        *(pytest.param(*point, marks=pytest.mark.interop) for point in ((45, 1.09), (70, 1.84))),
+    ],
+)
 def test_points_of_the_polar(wind_angle, speed):
     boat, heading = gloria(wind=(5, 0)), math.radians(180 - wind_angle)
     best = 0.0

@@ -78,6 +78,7 @@ def test_forces_are_the_pull_of_a_straight_cable_and_cancel():
         run(one, 10)
 
 
+@pytest.mark.interop
 def test_it_settles_from_still_water_to_the_arc():
     one = tether(segments=20, **NEUTRAL_ARC)
     run(one, 1)
@@ -376,6 +377,7 @@ def exact_weight(segments, times, stiffness):
     return solved.y[n - 1]
 
 
+@pytest.mark.interop
 def test_coupling_converges_to_one_system_with_first_order(tmp_path):
     times = 0.02 * np.arange(1, 76)
     exact = exact_weight(10, times, 2e4)

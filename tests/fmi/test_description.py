@@ -15,6 +15,9 @@ from seatrial.fmi.source import shipped_sources
 
 from .conftest import built_once, source
 
+SOME = ("canbus", "gnss", "mavlink", "sailboat", "station-keeping", "tether")
+"""A link, a bus, a sensor, a controller, a hull and one with a step of its own."""
+
 
 def test_declarations_arrive_exactly(counter_fmu: Path) -> None:
     assert validate_fmu(str(counter_fmu)) == []
@@ -86,7 +89,13 @@ def test_what_cannot_be_described_is_refused(
     assert not (tmp_path / "odd.fmu").exists()
 
 
-@pytest.mark.parametrize("name", shipped_sources())
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=() if name in SOME else pytest.mark.interop)
+        for name in shipped_sources()
+    ],
+)
 def test_a_shipped_fmu_runs_alone_in_fmpy(name: str, tmp_path: Path) -> None:
     """FMPy finds no problem in it; with its defaults nothing of ours drives it."""
     path = built_once(shipped_sources()[name], tmp_path / f"{name}.fmu")

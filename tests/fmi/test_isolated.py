@@ -204,7 +204,10 @@ def test_a_crash_at_the_start_names_the_initialisation(opened: Opener, python_fm
         opened(python_fmu, how="at the start")
 
 
-@pytest.mark.parametrize("how", ["spin", "sleep", crashing.HANG])
+@pytest.mark.parametrize(
+    "how",
+    ["sleep", *(pytest.param(how, marks=pytest.mark.interop) for how in ("spin", crashing.HANG))],
+)
 def test_a_call_that_never_returns_is_ended(how, opened: Opener, request) -> None:
     native = isinstance(how, int)
     fmu = request.getfixturevalue("crash_fmu" if native else "python_fmu")

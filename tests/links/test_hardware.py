@@ -21,7 +21,7 @@ mavlink = { fmu = "mavlink", set = { links = "serial:/dev/null:57600" } }
     ("flags", "expected"),
     [([], "is a real port; allow it with --hardware"), (["--hardware"], "cannot open the link")],
 )
-@pytest.mark.parametrize("isolated", ["false", "true"])
+@pytest.mark.parametrize("isolated", ["false", pytest.param("true", marks=pytest.mark.interop)])
 def test_a_real_port_is_opened_only_if_allowed(flags, expected, isolated, write, tmp_path):
     write("rig.toml", RIG.replace("set =", f"isolated = {isolated}, set ="))
     trial = write("trial.toml", 'rig = "rig.toml"\nstop = "1 s"\n')

@@ -4,6 +4,7 @@ Figures of source 002 are those of its figures 6 to 8 and section 4.
 """
 
 import csv
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -25,6 +26,11 @@ def loci():
     return {locus.derivative_time: locus for locus in design.loci}
 
 
+@cache
+def designed(derivative_time):
+    return design_heading("mariner", "source", [derivative_time])
+
+
 def rows():
     with (DATA / "mariner_eigenvalues.csv").open() as file:
         return [{k: float(v or "nan") for k, v in row.items()} for row in csv.DictReader(file)]
@@ -32,7 +38,7 @@ def rows():
 
 @pytest.mark.parametrize("row", rows(), ids=lambda row: f"{row['Td']:g}-{row['K']:g}")
 def test_eigenvalues(row):
-    design = design_heading("mariner", "source", [row["Td"]])
+    design = designed(row["Td"])
     poles = np.linalg.eigvals(closed_loop(design.A, design.B, row["K"], row["Td"]))
     expected = [row[f"re{i}"] + 1j * row[f"im{i}"] for i in (1, 2, 3)]
     np.testing.assert_allclose(np.sort_complex(poles), np.sort_complex(expected), atol=1e-8)

@@ -61,6 +61,7 @@ def test_the_component_gives_what_guidance_takes(name):
     assert Mavlink.ports["leg_reached"].type is Guidance.ports["reached"].type
 
 
+@pytest.mark.interop
 def test_times_are_those_of_the_way():
     bench = mission(
         one(at=north_of(20)),
@@ -79,9 +80,10 @@ def test_times_are_those_of_the_way():
     assert bench.node.missions.leg.number == guided.get("reached")
 
 
+@pytest.mark.interop
 @pytest.mark.parametrize(
     ("radius", "turns", "seconds"),
-    [(-6.0, 1.0, 70.0), pytest.param(6.0, 2.0, 120.0, marks=pytest.mark.interop)],
+    [(6.0, 2.0, 120.0), (-8.0, 1.0, 90.0)],
 )
 def test_turns_take_the_time_of_their_length(radius, turns, seconds):
     bench = mission(one(at=north_of(10)), one(TURNS, turns, p3=radius, at=north_of(40)))
