@@ -13,7 +13,7 @@ from hypothesis import settings
 from tests.fmi.native import build_native_fmu
 
 # A busy machine is no failure; other examples are tried in every run.
-settings.register_profile("any-machine", settings(), deadline=None, max_examples=50)
+settings.register_profile("any-machine", settings(), deadline=None, max_examples=30)
 settings.load_profile("any-machine")
 
 

@@ -138,11 +138,12 @@ def test_two_runs_compare_equal_and_different(tmp_path: Path) -> None:
     assert seatrial("compare", "a", "c", cwd=tmp_path).returncode == 1
 
 
+@pytest.mark.interop
 @pytest.mark.parametrize(
     ("trial", "status", "expected"),
     [
         ("hydrone-open-landing", 0, "hull.position.y"),
-        pytest.param("hydrone-landing", 1, "outputs do not converge", marks=pytest.mark.interop),
+        ("hydrone-landing", 1, "outputs do not converge"),
     ],
 )
 def test_convergence_of_a_trial(trial: str, status: int, expected: str, tmp_path: Path) -> None:

@@ -49,6 +49,7 @@ def test_check_names_pins_that_have_no_line(tmp_path):
     )
 
 
+@pytest.mark.interop
 def test_build_and_run(tmp_path):
     need("host")
     sketch = write_sketch(tmp_path, "void setup() { Serial.begin(9600); }\nvoid loop() {}\n")

@@ -23,7 +23,7 @@ def wrapped(angle):
 # ---------------------------------------------------------------------- legs
 
 
-@pytest.mark.parametrize("offset", [20.0, -7.0, 0.5])
+@pytest.mark.parametrize("offset", [20.0, -7.0, pytest.param(0.5, marks=pytest.mark.interop)])
 def test_comes_onto_a_leg_as_the_closed_form_says(offset):
     """sqrt(D^2 + e^2) - D asinh(D / e) falls by U t, from e' = -U e / sqrt(D^2 + e^2)."""
     lookahead, speed = 5.0, 1.3

@@ -305,7 +305,7 @@ def test_a_zip_without_description_and_a_text_are_no_packages(tmp_path: Path) ->
 
 
 @settings(
-    max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+    max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
 )
 @given(
     names=st.lists(

@@ -146,7 +146,9 @@ def test_the_step_converges_with_first_order():
     assert errors[1] < 4e-3  # m, of 0.8 m of motion
 
 
-@pytest.mark.parametrize("stiffness", [2e4, 1e5, 1e7])
+@pytest.mark.parametrize(
+    "stiffness", [1e7, *(pytest.param(x, marks=pytest.mark.interop) for x in (2e4, 1e5))]
+)
 def test_any_stiffness_is_stable_at_10_ms(stiffness):
     """Explicit methods need less than 2 ms for 50 segments at 1e5 N."""
     one = cable(50, axial_stiffness=stiffness, tangential_drag=0.02)

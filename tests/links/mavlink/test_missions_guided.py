@@ -93,6 +93,7 @@ def test_turns_take_the_time_of_their_length(radius, turns, seconds):
     assert reached[2] - reached[1] == pytest.approx(20.0 + way, rel=0.08)
 
 
+@pytest.mark.interop
 def test_a_circle_for_a_time():
     bench = mission(one(LOITER_TIME, 30.0, p3=6.0, at=north_of(20)))
     reached, guided = sail(bench, 60.0)
