@@ -2,7 +2,7 @@
 
 Each command runs in a process of its own, in turn, for some rounds; user and system time are
 counted together. Ratios are those of one round; the median and the range are shown. ``--write``
-puts the table into docs/performance.md. The first round fills the caches and does not count.
+puts the table into docs/performance.md. The first round fills the caches and is left out.
 """
 
 from __future__ import annotations

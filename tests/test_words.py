@@ -67,8 +67,7 @@ BY_RIGHT = (
     Right("pin, pins, wire, wires, wiring", "*sketch*", "", "of a board"),
     Right("pin, wires", "docs/reference/*", r"PIN KIND|PROFILE:LINK", "of a board"),
     Right("wires, pin, pins", "hil_profiles/*", "", "of a board"),
-    Right("stick", "*", r"[Ll]eft stick|[Rr]ight stick|stick down and up", "of a gamepad"),
-    Right("counts as", "*/videoray/registers.py", r"measures or counts", "a count of things"),
+    Right("stick", "src/seatrial/cli/drive_keys.py", r"[Ll]eft stick|stick's way", "of a gamepad"),
 )
 
 

@@ -1,4 +1,4 @@
-"""What makes the generated parts of the pages; `part` registers a function that makes one."""
+"""Generated parts of the pages; `part` registers a function that makes one."""
 
 from __future__ import annotations
 

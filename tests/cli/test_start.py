@@ -1,4 +1,4 @@
-"""What commands import: a run costs what it uses."""
+"""Imports of commands: a run costs what it uses."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ back = { fmu = "users.py:Scale", set = { gain = 0.9 } }
 sum = { fmu = "users.py:Sum" }
 clock = { fmu = "users.py:Clock" }
 """
-WIRES = """
+CONNECTIONS = """
 "scale.y" = ["back.u", "clock.u"]
 "back.y" = "scale.u"
 "ramp.y" = "sum.u"
@@ -28,7 +28,7 @@ STATISTICS = frozenset({"times", "_checkpoint"})
 )
 def test_everything_is_as_it_was_saved(direct: Bench, algorithm: str) -> None:
     top = f'step = "100 ms"\nalgorithm = "{algorithm}"'
-    master = direct.master(PARTS, WIRES, top=top)
+    master = direct.master(PARTS, CONNECTIONS, top=top)
     master.step()
     master.override("ramp", "y", 7.0)  # what it is by itself is restored too
     master.step()
@@ -50,10 +50,10 @@ def test_everything_is_as_it_was_saved(direct: Bench, algorithm: str) -> None:
 def test_algorithms_that_remember_repeat_their_steps(direct: Bench, algorithm: str) -> None:
     """The steps after a checkpoint, once more from it, give the same bits."""
     top = f'step = "100 ms"\nalgorithm = "{algorithm}"'
-    wires = '"one.x" = "two.u"\n"two.x" = "one.u"'
+    connections = '"one.x" = "two.u"\n"two.x" = "one.u"'
     parts = 'one = { fmu = "users.py:Sum" }\ntwo = { fmu = "users.py:Sum", set = { rate = -3 } }'
     ramp = '\nramp = { fmu = "users.py:Ramp" }\nthree = { fmu = "users.py:Sum" }'
-    master = direct.master(parts + ramp, wires + '\n"ramp.y" = "three.u"', top=top)
+    master = direct.master(parts + ramp, connections + '\n"ramp.y" = "three.u"', top=top)
     rollback = master._rollback
     advance = rollback.algorithm.advance
     for k in range(3):

@@ -66,7 +66,7 @@ def test_the_server_shows_the_ship(tmp_path):
     gateway = f"yd-raw-tcp:{HOST}:{gateway}"
     environment = {**os.environ, "SIGNALK_NODE_CONFIG_DIR": str(config), "NODE_ENV": "production"}
     with (
-        running("mariner-nmea2000-live", tmp_path, door__gateway=gateway) as trial,
+        running("mariner-nmea2000-live", tmp_path, gateway__link=gateway) as trial,
         (tmp_path / "server.txt").open("wb") as log,
     ):
         wait_for(lambda: trial.is_running, "the trial runs", 180.0)

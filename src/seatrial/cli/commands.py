@@ -38,7 +38,7 @@ COMMANDS = {
     ),
     "doctor": Command(
         "doctor:doctor",
-        "Say what works on this machine, what is missing, and how to mend it.",
+        "Show what works on this machine, what is missing, and how to fix it.",
     ),
     "drive": Command(
         "drive:drive",

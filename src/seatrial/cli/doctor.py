@@ -20,7 +20,7 @@ _PLATFORMS = {("Linux", "x86_64"), ("Windows", "AMD64")}
 
 
 def doctor() -> None:
-    """Say what works on this machine, what is missing, and how to mend it."""
+    """Show what works on this machine, what is missing, and how to fix it."""
     checks: list[tuple[str, Callable[[], tuple[bool, str]]]] = [
         ("Python", _python),
         ("platform", _platform),

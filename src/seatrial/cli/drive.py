@@ -96,10 +96,10 @@ def _run(topside: Pro4Topside, gateway: SerialGateway, pilot: Pilot, pad: Gamepa
 
 
 def exchange(topside: Component, gateway: Component, t: float) -> None:
-    """Step topside and gateway, wired to each other, from ``t`` on."""
-    said, received = topside.get("tx"), gateway.get("tx")
+    """Step topside and gateway, connected to each other, from ``t`` on."""
+    sent, received = topside.get("tx"), gateway.get("tx")
     topside.set("rx", received)
-    gateway.set("rx", said)
+    gateway.set("rx", sent)
     topside.advance(t, _STEP)
     gateway.advance(t, _STEP)
 

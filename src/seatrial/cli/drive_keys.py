@@ -31,9 +31,9 @@ _EVENT = struct.Struct("IhBB")
 _BUTTON, _AXIS, _INITIAL = 1, 2, 0x80
 _FULL = 32767.0
 _DEAD = 0.08
-"""Share of a stick's way that counts as its middle."""
+"""Share of a stick's way that is regarded as its middle."""
 _AXES = {1: (0, -1.0), 0: (1, 1.0), 4: (2, 1.0)}
-"""Left stick ahead and to the side, right stick down: axis of the sticks, and sign."""
+"""Left stick ahead and to the side, right stick down: axis of manual control, and sign."""
 
 
 @contextmanager
@@ -92,7 +92,7 @@ class Gamepad:
         self._part = b""
 
     def poll(self, pilot: Pilot) -> None:
-        """Tell the pilot what has happened since the last call."""
+        """Apply to the pilot what has happened since the last call."""
         if self._descriptor is None:
             return
         try:
@@ -111,7 +111,7 @@ class Gamepad:
         whole = len(data) - len(data) % _EVENT.size
         self._part = data[whole:]
         for _, value, kind, number in _EVENT.iter_unpack(data[:whole]):
-            _tell(pilot, value, kind, number)
+            _apply(pilot, value, kind, number)
 
     def close(self) -> None:
         """Let go of the device."""
@@ -120,7 +120,7 @@ class Gamepad:
         self._descriptor = None
 
 
-def _tell(pilot: Pilot, value: int, kind: int, number: int) -> None:
+def _apply(pilot: Pilot, value: int, kind: int, number: int) -> None:
     if kind & ~_INITIAL == _AXIS and number in _AXES:
         axis, sign = _AXES[number]
         share = value / _FULL

@@ -1,4 +1,4 @@
-"""What a pilot wants: keys and gamepad to sticks, holds, lights and camera."""
+"""Pilot's orders: keys and gamepad to manual control, holds, lights and camera."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 KEY_LASTS = 0.7
-"""Seconds for which a stick's key counts: a terminal tells no release, and repeats after less."""
+"""Seconds for which a key of manual control lasts: a terminal reports no release, and repeats
+after less."""
 
 HELP = (
     ("m", "arm, disarm"),
@@ -50,7 +51,7 @@ class Pilot:
     """Orders as they stand. ``depth`` and ``heading`` are the vehicle's, to hold what it has."""
 
     share: float = 0.3
-    """Thrust of a stick's key."""
+    """Thrust of a key of manual control."""
     armed: bool = False
     lights: float = 0.0
     camera_tilt: float = 0.0
@@ -63,7 +64,7 @@ class Pilot:
     heading: float = 0.0
     quits: bool = False
     gamepad: list[float] = field(default_factory=lambda: [0.0, 0.0, 0.0])
-    """Its sticks: surge, yaw, heave."""
+    """Its manual control: surge, yaw, heave."""
     _pressed: dict[int, tuple[float, float]] = field(default_factory=dict)
 
     def manual(self, now: float) -> tuple[float, float, float]:
@@ -88,7 +89,7 @@ class Pilot:
         self.let_go()
 
     def let_go(self) -> None:
-        """Release the sticks and holds."""
+        """Release manual control and holds."""
         self._pressed.clear()
         self.hold_depth = self.hold_heading = False
 
@@ -118,7 +119,7 @@ class Pilot:
         self.camera_tilt = min(max(self.camera_tilt + degrees * _DEGREE, -most), most)
 
     def strengthen(self, share: float) -> None:
-        """Change what a stick's key makes."""
+        """Change the thrust of a key of manual control."""
         self.share = min(max(round(self.share + share, 2), 0.1), 1.0)
 
     def grip(self, direction: int) -> None:

@@ -108,7 +108,7 @@ def _values(topside: Component, pilot: Pilot, manual: tuple[float, float, float]
 
 
 def bar(share: float) -> str:
-    """Return a stick's deflection as a bar, -1 to 1."""
+    """Return a deflection as a bar, -1 to 1."""
     cells = ["·"] * 21
     cells[10] = "│"
     length = round(abs(share) * 10)

@@ -23,7 +23,7 @@ Named = Annotated[str, typer.Argument(metavar="PROFILE", help="A profile: a name
 
 @profile_app.command()
 def check(name: Named) -> None:
-    """Check a profile; every mistake is told with file and key (status 2)."""
+    """Check a profile; every mistake is reported with file and key (status 2)."""
     profile = check_profile(name)
     console.print(f"{escape(str(profile.read_from.path))}: no problem found", soft_wrap=True)
 

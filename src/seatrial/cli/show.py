@@ -1,4 +1,4 @@
-"""What the terminal shows: notes, addresses, verdicts."""
+"""Terminal output: notes, addresses, verdicts."""
 
 from __future__ import annotations
 

@@ -11,11 +11,11 @@ from ..component import Component, Input, Output, Parameter
 class RudderHelm(Component):
     """Switch between the autopilot's rudder, while it is ``engaged``, and manual control.
 
-        rudder = rudder_held   if engaged,   else -stick rudder_limit
+        rudder = rudder_held   if engaged,   else -manual rudder_limit
 
-    ``stick`` is positive to turn to starboard, and limited to +-1; a positive rudder turns to
-    port. ``engaged`` and ``stick`` are those of `Guidance` or `SailingGuidance`: of a craft that
-    is not armed nothing is engaged and ``stick`` is 0, so that the rudder is amidships. rad.
+    ``manual`` is positive to turn to starboard, and limited to +-1; a positive rudder turns to
+    port. ``engaged`` and ``manual`` are those of `Guidance` or `SailingGuidance`: of a craft that
+    is not armed nothing is engaged and ``manual`` is 0, so that the rudder is amidships. rad.
     Static.
     """
 

@@ -44,7 +44,7 @@ class Pacer:
         self.drift_ns = 0
         """By how much the last point came later than one of a run without any lateness."""
         self.paused_ns = 0
-        """Wall time that does not count."""
+        """Wall time that is left out."""
         self._now, self._sleep, self._spin_ns = now, sleep, spin_ns
         self._wall_start = self._time_start = 0
 

@@ -1,4 +1,4 @@
-"""In which order things that depend on each other come: strongly connected groups, sorted."""
+"""Dependency order: strongly connected groups, sorted."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ def ordered_groups(depends_on: Mapping[Node, Sequence[Node]]) -> list[list[Node]
     """Return the nodes in dependency order, those of one loop together in one group.
 
     ``depends_on`` maps each node to the nodes that must come before it; nodes that are only
-    named as dependencies count too. Equal inputs give equal orders.
+    named as dependencies are included. Equal inputs give equal orders.
     """
     nodes = list(dict.fromkeys([*depends_on, *(d for ds in depends_on.values() for d in ds)]))
     try:

@@ -1,4 +1,4 @@
-"""What an FMU carries: its script and the import closure of it, under names of their own.
+"""Bundle of an FMU: its script and the import closure of it, under names of their own.
 
 All FMUs of a process share one interpreter and one ``sys.modules``. So everything bundled lives
 in one package whose name carries the hash of its content, and the script's name carries it

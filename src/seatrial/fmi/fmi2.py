@@ -53,7 +53,7 @@ class Fmi2Instance(FmuInstance):
         """Advance from ``t`` to ``t + h``, s.
 
         Every discarded step may be tried in smaller ones: pythonfmu's binary says of each that
-        the FMU wants to end, so that cannot be told from an error.
+        the FMU wants to end, so that looks like an error.
         """
         status = self._do_step(self._c, t, h, self._never_back)
         if status > WARNING:

@@ -1,4 +1,4 @@
-"""What instances of FMI 2.0 and FMI 3.0 have in common: library, statuses, messages, life."""
+"""Base of instances of FMI 2.0 and FMI 3.0: library, statuses, messages, life."""
 
 from __future__ import annotations
 

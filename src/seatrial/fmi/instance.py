@@ -1,4 +1,4 @@
-"""What the master sees of a component, whichever way it runs: an instance and its variables."""
+"""Interface of the master to a component, whichever way it runs: instance and variables."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What FMU instances say: a status, and messages that explain an error or go to the log."""
+"""Messages of FMU instances: a status, and messages that explain an error or go to the log."""
 
 from __future__ import annotations
 

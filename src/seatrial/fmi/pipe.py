@@ -1,4 +1,4 @@
-"""What crosses the pipes to the process of an isolated component: frames, and values in them.
+"""Protocol of the pipes to the process of an isolated component: frames, and values in them.
 
 A frame is a header (length of the payload, code, number) and its payload. Nothing here can make
 its reader run code: values are packed by types that both sides know, the rest is JSON.

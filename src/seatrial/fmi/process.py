@@ -101,7 +101,7 @@ class WorkerProcess:
         return answer
 
     def wait(self) -> None:
-        """Let the process, which has been told to, end by itself; end it if it does not."""
+        """Let the process, whose end was requested, end by itself; end it if it does not."""
         self._close_requests()
         try:
             with contextlib.suppress(subprocess.TimeoutExpired):
@@ -215,7 +215,7 @@ class WorkerProcess:
 class _Output:
     """What a process prints: passed on to stderr, and its end kept for an error's message.
 
-    Of a short call it is passed on when that returns, so that a crash is told only once.
+    Of a short call it is passed on when that returns, so that a crash is reported only once.
     """
 
     def __init__(self) -> None:

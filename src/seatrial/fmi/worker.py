@@ -78,7 +78,7 @@ class Worker:
                 failure, self._failed_write = self._failed_write, None
                 raise failure
             answer = frame(RESULT, number, self._answer(code, number, payload))
-        except BaseException as error:  # SystemExit and KeyboardInterrupt are the parent's to judge
+        except BaseException as error:  # SystemExit, KeyboardInterrupt: the parent handles them
             if code == WRITE:
                 self._failed_write = error
                 return

@@ -1,4 +1,4 @@
-"""What a caller may watch or stop of a run."""
+"""Hooks of a run: its caller watches and stops it."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ from .figure import Figure
 
 MAX_POINTS = 5000
 COLOURS = ("#0b6ea8", "#d1690e", "#3a8f5c", "#8a4fa3", "#8c6d31", "#4a5a68")
-PASSED, FAILED, MIXED, UNJUDGED = "#1f7a4d", "#b3261e", "#a15c00", "#5b6770"
+PASSED, FAILED, MIXED, UNEVALUATED = "#1f7a4d", "#b3261e", "#a15c00", "#5b6770"
 _LIMIT = "#b3261e"
 _PANEL_HEIGHT = 165
 _GUTTER = 0.09
@@ -306,7 +306,7 @@ def _draw_pad(figure: Figure, point: PadPoint, col: int) -> None:
 
 def _verdict_style(point: PadPoint) -> tuple[str, str, str]:
     if not point.evaluated:
-        return UNJUDGED, "circle-open", "not evaluated"
+        return UNEVALUATED, "circle-open", "not evaluated"
     if point.passed == point.evaluated:
         return PASSED, "circle", "passed" if point.evaluated == 1 else f"{point.evaluated} passed"
     if not point.passed:

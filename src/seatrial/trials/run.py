@@ -62,10 +62,10 @@ def run_trial(
             master = prepared.started()
         hooks.refuse_if_stopped()
         folder = claim_folder(out, trial.name, "manifest.json")
-        _tell_folder(master, folder)
+        _set_run_folder(master, folder)
         run = Run(prepared, master, folder, hooks, wall)
         if trial.file.real_time is not None:
-            _tell_reachable(master, hooks)
+            _report_addresses(master, hooks)
         run.simulate()
     finally:
         with contextlib.suppress(KeyboardInterrupt), hooks.interruptible():
@@ -87,16 +87,16 @@ def _timed(wall: dict[str, float], what: str) -> Iterator[None]:
     wall[what] = time.perf_counter() - begun
 
 
-def _tell_folder(master: Master, out: Path) -> None:
-    """Say where the run's folder is to the components that keep logs and were told nothing."""
+def _set_run_folder(master: Master, out: Path) -> None:
+    """Set the run's folder as that of the logs, in components whose folder is not set."""
     for name, part in master.system.parts.items():
         for port in part.instance.variables.of_role("run-folder"):
             if port not in part.given:
                 master.set(name, [port], [str(out.resolve())])
 
 
-def _tell_reachable(master: Master, hooks: Hooks) -> None:
-    """Say which components programs outside connect to, and where."""
+def _report_addresses(master: Master, hooks: Hooks) -> None:
+    """Report which components programs outside connect to, and where."""
     for name, part in master.system.parts.items():
         for port in part.instance.variables.of_role("address"):
             (where,) = part.instance.reader([port])()

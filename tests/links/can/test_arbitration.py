@@ -91,7 +91,7 @@ def test_with_one_mailbox_an_urgent_frame_waits_behind_others():
 
 
 def test_a_full_queue_drops_and_a_mailbox_is_free_when_its_frame_has_ended():
-    """One mailbox, a queue of two: three have a place. The first ends at 50 and makes room."""
+    """One mailbox, a queue of two: three have a place. The first ends at 50 and leaves its place."""
     bench = Bench(2, mailboxes=1, queue=2)
     for _ in range(5):
         bench.request(0, 0, ZERO)

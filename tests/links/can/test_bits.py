@@ -130,7 +130,7 @@ def test_random_frames_of_eight_bytes(extended, least, mean, most):
 
 @settings(max_examples=50, deadline=None)
 @given(frames(), st.integers(0, 63))
-def test_the_first_difference_is_where_the_wires_part(frame, which):
+def test_the_first_difference_is_where_the_bits_part(frame, which):
     if not frame.data:
         return
     place, bit = divmod(which % (8 * len(frame.data)), 8)

@@ -91,7 +91,7 @@ def test_udp_in_answers_all_who_have_sent(opened, udp):
         assert polled(endpoint)[0][0] is next(c for c, data in arrived if data == b"one")
 
 
-def test_udp_in_makes_room_for_new_peers(opened):
+def test_udp_in_replaces_the_longest_silent_peers(opened):
     endpoint = opened("udpin:127.0.0.1:0")
     peers = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(MOST_PEERS + 3)]
     for number, peer in enumerate(peers):

@@ -66,13 +66,13 @@ def test_a_yaw_rate_turns_on_across_north_and_south(heading, rate):
     boat = guided()
     boat.measure(attitude=(0.0, 0.0, heading))
     for seconds in range(1, 4):
-        boat.hear(ahead(0.6, rate))
+        boat.receive(ahead(0.6, rate))
         boat.wait(1.0)
         wanted = heading + rate * seconds
         assert math.remainder(boat.vehicle.target.heading - wanted, math.tau) == pytest.approx(0.0)
         boat.measure(attitude=(0.0, 0.0, math.remainder(wanted, math.tau)))
-        told = boat.one(mavlink.MAVLINK_MSG_ID_POSITION_TARGET_LOCAL_NED)
-        assert told.yaw == pytest.approx(math.remainder(wanted, math.tau))
+        reported = boat.one(mavlink.MAVLINK_MSG_ID_POSITION_TARGET_LOCAL_NED)
+        assert reported.yaw == pytest.approx(math.remainder(wanted, math.tau))
 
 
 def test_a_submarine_dives_on_the_way_and_a_boat_does_not():

@@ -248,7 +248,7 @@ def test_turns_are_counted_from_the_arrival(way, turns, radius):
         boat.tick()
 
     degrees = 0
-    for _ in range(200):  # on the way to it turns do not count
+    for _ in range(200):  # on the way to it turns are not counted
         degrees += 3
         circle(math.radians(degrees))
     boat.node.missions.reached = boat.leg.number
@@ -583,7 +583,7 @@ def test_a_cleared_mission_stops():
     assert boat.current() == (0, NO_MISSION)
 
 
-def test_current_is_streamed_and_told_at_every_change():
+def test_current_is_streamed_and_sent_at_every_change():
     boat = Mission(square())
     boat.transport.take()
     boat.wait(10.0)

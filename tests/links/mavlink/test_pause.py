@@ -220,7 +220,7 @@ def test_handlers_of_the_host_stay_untouched_in_another_thread():
 
     def enter():
         with Interruption() as interruption:
-            found.append((signal.getsignal(signal.SIGTERM), interruption.asked))
+            found.append((signal.getsignal(signal.SIGTERM), interruption.requested))
 
     thread = threading.Thread(target=enter)
     thread.start()

@@ -82,7 +82,7 @@ def test_version_is_sent_on_request_to_the_requester(ask):
 def test_sentences_of_any_length_arrive(length):
     sentence = "".join(chr(33 + k % 90) for k in range(length))
     bench = Bench()
-    bench.vehicle.say(4, sentence)
+    bench.vehicle.report(4, sentence)
     bench.tick()
     sender, reader = mavlink.MAVLink(None, 7, 1), mavlink.MAVLink(None)
     pieces = [reader.parse_buffer(m.pack(sender))[0] for m in bench.transport.take("STATUSTEXT")]

@@ -1,4 +1,4 @@
-"""Messages bit by bit: what a node sends and hears, at offsets written out here a second time.
+"""Messages bit by bit: what a node sends and receives, at offsets written out here a second time.
 
 Source: canboat.json 6.2.0 (bit offsets from the first byte's lowest bit, resolutions). The package
 that writes and reads the messages is not used here, so that a field that is swapped on both ways
@@ -190,7 +190,7 @@ def reader():
 
 
 @pytest.mark.parametrize("name", RECEIVED)
-def test_a_node_hears_each_field_from_its_place(reader, name):
+def test_a_node_receives_each_field_from_its_place(reader, name):
     found = reader.get(name)
     found = found[: len(RECEIVED[name])] if isinstance(RECEIVED[name], list) else found
     assert found == pytest.approx(RECEIVED[name], rel=2e-4, abs=2e-3)

@@ -13,11 +13,11 @@ from seatrial.links.videoray import registers as csr
 from seatrial.links.videoray.frame import VRCSR, Frame, encode
 from seatrial.links.videoray.replies import payload, read, read_memory
 from seatrial.links.videoray.rov import Pro4Rov
-from seatrial.links.videoray.station import Orders
+from seatrial.links.videoray.station import Commands
 from seatrial.links.videoray.topside import Pro4Topside
 from seatrial.links.videoray.vrcsr import Health, ThrusterNode, propulsion_request, read_health
 
-from .bench import PACKETS, Wired, frames, request
+from .bench import PACKETS, Line, frames, request
 
 # Of a reply, after the type of device: offset, register, address in the map, unit of a count.
 HEAD = [
@@ -125,7 +125,7 @@ def test_memory_is_read_from_the_maps_addresses():
 
 def test_a_vehicle_puts_each_measurement_where_the_document_says():
     """Reply 5 of the component, its rates in mrad/s: yaw first, roll last."""
-    rov = Wired(Pro4Rov)
+    rov = Line(Pro4Rov)
     for name, value in {
         "attitude": [0.1, -0.2, 1.0],
         "rates": [0.101, 0.202, -0.303],
@@ -133,7 +133,7 @@ def test_a_vehicle_puts_each_measurement_where_the_document_says():
         "magnetometer": [11.0, -22.0, 33.0],
     }.items():
         rov.component.set(name, value)
-    (answer,) = rov.ask(request(flags=5))
+    (answer,) = rov.exchange(request(flags=5))
     words = struct.unpack_from("<16h", answer.payload, 1)
     assert words[:3] == (573, -115, 57)  # 57.3, -11.5 and 5.7 deg
     assert words[4:7] == (-303, 202, 101)
@@ -142,7 +142,7 @@ def test_a_vehicle_puts_each_measurement_where_the_document_says():
 
 
 def test_a_command_block_is_built_at_its_offsets():
-    orders = Orders(
+    commands = Commands(
         thrust=(0.11, -0.22, 0.33),
         lights=0.44,
         camera_tilt=-55.0,
@@ -153,17 +153,17 @@ def test_a_command_block_is_built_at_its_offsets():
         auto_heading=321.0,
     )
     raw = (11, -22, 33, 44, -55, 66, 2, 5, 1234, 321)
-    assert orders.block() == struct.pack("<hhhBbbBBHH", *raw)
-    values = read_memory(0, orders.block()).values
+    assert commands.block() == struct.pack("<hhhBbbBBHH", *raw)
+    values = read_memory(0, commands.block()).values
     for (_, _, name, unit), count in zip(COMMANDS, raw, strict=True):
         assert values[name] == pytest.approx(count * unit), name
 
 
 def test_a_topside_shows_what_a_captured_reply_has_at_its_offsets():
-    topside = Wired(Pro4Topside)
+    topside = Line(Pro4Topside)
     for answer in PACKETS[1], PACKETS[3], PACKETS[5], PACKETS[7]:
         topside.step(20)
-        topside.say(answer)
+        topside.send(answer)
     topside.step(20)
     (frame,) = frames(PACKETS[7])
     words = struct.unpack_from("<16h", frame.payload, 1)

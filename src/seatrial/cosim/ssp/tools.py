@@ -1,4 +1,4 @@
-"""What other tools reject, ignore or take otherwise in an SSP package."""
+"""Limits of other tools: what of an SSP package they reject, ignore or take otherwise."""
 
 from __future__ import annotations
 

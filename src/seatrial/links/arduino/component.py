@@ -65,7 +65,7 @@ class Arduino(ArduinoPorts):
     feedthrough: ClassVar = {}
     discrete = True
     rolls_back = False
-    transient = Component.transient | {"_board", "_monitors", "_pulses", "_told", "_wires"}
+    transient = Component.transient | {"_board", "_monitors", "_pulses", "_wires"}
 
     def __init__(self, name: str = "component") -> None:
         super().__init__(name)

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from .endpoint import LARGEST_DATAGRAM, MOST_READS, Channel, Endpoint
 
 MOST_PEERS = 16
-"""Senders that a listener answers; the one that was silent longest makes room for a new one."""
+"""Senders that a listener answers; a new one takes the place of the one silent longest."""
 
 _Address = tuple[str, int]
 

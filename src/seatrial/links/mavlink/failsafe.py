@@ -37,23 +37,23 @@ class Failsafe:
         self._reasons.add(reason)
         self._vehicle.failsafe = True
         if not self._vehicle.armed or action == "none":
-            self._vehicle.say(CRITICAL, reason)
+            self._vehicle.report(CRITICAL, reason)
             return
-        self._vehicle.say(CRITICAL, f"Failsafe: {reason}, {action}")
+        self._vehicle.report(CRITICAL, f"Failsafe: {reason}, {action}")
         mode = self._vehicle.dialect.mode(action)
         if mode is None:
             self._arming.disarm()
             return
         refused = self._modes.enter(mode)
         if refused is not None:
-            self._vehicle.say(CRITICAL, f"Failsafe: {action} impossible, {refused}")
+            self._vehicle.report(CRITICAL, f"Failsafe: {action} impossible, {refused}")
             self._arming.disarm()
 
     def end(self, reason: str, news: str) -> None:
         """Report that ``reason`` is over; the vehicle stays as it is."""
         self._reasons.discard(reason)
         self._vehicle.failsafe = bool(self._reasons)
-        self._vehicle.say(CRITICAL, news)
+        self._vehicle.report(CRITICAL, news)
 
 
 def check_action(dialect: Dialect, action: str) -> None:

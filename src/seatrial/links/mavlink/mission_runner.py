@@ -178,7 +178,7 @@ class MissionRunner:
                 sequence = self._after_jump(item)
                 continue
             if self._starts(item, now):
-                self._vehicle.say(INFO, f"Mission: item {sequence}, {item.name}")
+                self._vehicle.report(INFO, f"Mission: item {sequence}, {item.name}")
                 return
             self.passed.append(sequence)
             sequence += 1
@@ -187,7 +187,7 @@ class MissionRunner:
     def _finish(self, news: str) -> None:
         self.state = _COMPLETE
         self._rest()
-        self._vehicle.say(INFO, news)
+        self._vehicle.report(INFO, news)
 
     def _rest(self) -> None:
         """Stay at the end of the leg; on a circle, where the vehicle is."""
@@ -261,7 +261,7 @@ class MissionRunner:
         if self.current not in self._skipped:
             self._skipped.add(self.current)
             text = f"Mission: item {self.current}, {item.name}, {why}: skipped"
-            self._vehicle.say(WARNING, text)
+            self._vehicle.report(WARNING, text)
 
     def _is_over(self, now: float, reached: int) -> bool:
         item = self._items[self.current]

@@ -76,7 +76,11 @@ class Node:
         arming.checks.append(fence.check)
         guided = GuidedService(vehicle, transport, modes, settings)
         self.missions = MissionService(
-            *(vehicle, transport, lists.mission, settings, modes),
+            vehicle,
+            transport,
+            lists.mission,
+            settings,
+            modes,
             home.commands[mavlink.MAV_CMD_DO_SET_HOME],
             lambda: rally.refuge,
             guided.change_speed,

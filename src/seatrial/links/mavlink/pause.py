@@ -25,7 +25,7 @@ class Interruption:
     """
 
     def __init__(self) -> None:
-        self.asked = False
+        self.requested = False
         self._before: dict[int, Callable[[int, FrameType | None], Any]] = {}
 
     def __enter__(self) -> Interruption:
@@ -42,7 +42,7 @@ class Interruption:
             signal.signal(number, before)
 
     def _note(self, number: int, frame: FrameType | None) -> None:
-        self.asked = True
+        self.requested = True
         self._before[number](number, frame)
 
 
@@ -63,11 +63,11 @@ def stand_still(
     end. Then the run goes on at the speed before.
     """
     vehicle = node.vehicle
-    vehicle.say(NOTICE, f"Paused: {SPEEDUP} above 0 goes on")
+    vehicle.report(NOTICE, f"Paused: {SPEEDUP} above 0 goes on")
     begun, before = clock(), vehicle.paused_s
     received = begun
     with Interruption() as interruption:
-        while settings.paused and not interruption.asked:
+        while settings.paused and not interruption.requested:
             sleep(POLL_S)
             now = clock()
             vehicle.paused_s = before + now - begun
@@ -75,6 +75,6 @@ def stand_still(
                 received = now
             elif now - received > settings.station_timeout:
                 parameters.put(SPEEDUP, settings.speedup)
-                vehicle.say(WARNING, "No station is left to end the pause")
+                vehicle.report(WARNING, "No station is left to end the pause")
     if not settings.paused:
-        vehicle.say(NOTICE, f"Goes on at {SPEEDUP} {settings.speedup:g}")
+        vehicle.report(NOTICE, f"Goes on at {SPEEDUP} {settings.speedup:g}")

@@ -42,7 +42,7 @@ class Plan:
         """The items; another tuple whenever they were replaced."""
         return self._items
 
-    def told(self) -> tuple[Item, ...]:
+    def as_sent(self) -> tuple[Item, ...]:
         """Return the items as they are sent: item 0 of ArduPilot's missions is home as it is."""
         home_first = self.kind == mavlink.MAV_MISSION_TYPE_MISSION
         if self._items and home_first and self._vehicle.dialect.home_is_item_0:

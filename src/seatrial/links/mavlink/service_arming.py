@@ -43,7 +43,7 @@ class ArmingService(Service):
         """Disarm."""
         if self.vehicle.armed:
             self.vehicle.armed = False
-            self.vehicle.say(INFO, "Disarmed")
+            self.vehicle.report(INFO, "Disarmed")
 
     def tick(self, now: float) -> None:
         """Keep the health bit."""
@@ -62,26 +62,26 @@ class ArmingService(Service):
             return DENIED
         reasons = [] if self.vehicle.armed else self._reasons()
         if reasons and how != FORCE:
-            self._say(reasons)
+            self._report(reasons)
             return FAILED
         if not self.vehicle.armed:
             self.vehicle.armed = True
             forced = f" by force, against: {', '.join(reasons)}" if reasons else ""
-            self.vehicle.say(WARNING if forced else INFO, f"Armed{forced}")
+            self.vehicle.report(WARNING if forced else INFO, f"Armed{forced}")
         return ACCEPTED
 
     def _run_checks(self, command: Command, sender: Sender, now: float) -> int:
         if self.vehicle.armed:
             return FAILED
         reasons = self._reasons()
-        self._say(reasons)
+        self._report(reasons)
         if not reasons:
-            self.vehicle.say(INFO, "Ready to arm")
+            self.vehicle.report(INFO, "Ready to arm")
         return ACCEPTED
 
-    def _say(self, reasons: list[str]) -> None:
+    def _report(self, reasons: list[str]) -> None:
         for reason in reasons:
-            self.vehicle.say(CRITICAL, f"PreArm: {reason}")
+            self.vehicle.report(CRITICAL, f"PreArm: {reason}")
 
     def _needs_position(self) -> str | None:
         needed = self._settings.checks(GPS_CHECK) and not self.vehicle.identity.submerged

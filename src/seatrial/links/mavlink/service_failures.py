@@ -92,7 +92,7 @@ class FailureService(Service):
     def _inject(self, command: Command, sender: Sender, now: float) -> int:
         unit, kind, instance = (whole(value) for value in command.parameters[:3])
         if not self._settings.failures_allowed:
-            self.vehicle.say(WARNING, "No failure injected: SYS_FAILURE_EN is 0")
+            self.vehicle.report(WARNING, "No failure injected: SYS_FAILURE_EN is 0")
             return DENIED
         if kind not in _TYPES:
             return DENIED
@@ -101,7 +101,9 @@ class FailureService(Service):
             names = names[instance - 1 : instance] if instance > 0 else ()
         found = [name for name in names if name in self.failing]
         if not found:
-            self.vehicle.say(WARNING, "No failure injected: this vehicle has no such unit to fail")
+            self.vehicle.report(
+                WARNING, "No failure injected: this vehicle has no such unit to fail"
+            )
             return UNSUPPORTED
         self._fail(found, _TYPES[kind])
         return ACCEPTED
@@ -112,4 +114,4 @@ class FailureService(Service):
         if changed:
             listed = ", ".join(changed)
             news = f"Cleared: {listed}" if failure == "none" else f"Failure: {listed} {failure}"
-            self.vehicle.say(INFO if failure == "none" else WARNING, news)
+            self.vehicle.report(INFO if failure == "none" else WARNING, news)

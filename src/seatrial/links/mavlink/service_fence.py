@@ -84,7 +84,7 @@ class FenceService(Service):
             if found != self._breach:
                 self._end()
                 self._begin(found, now)
-        elif self._breach is not None and self._can_tell():
+        elif self._breach is not None and self._is_observable():
             self._inside_since = min(self._inside_since, now)
             if now - self._inside_since >= INSIDE_S:
                 self._end()
@@ -111,7 +111,7 @@ class FenceService(Service):
         outside = estimates.position_valid and not is_allowed(self._zones, estimates.position_n)
         return BREACH if outside else None
 
-    def _can_tell(self) -> bool:
+    def _is_observable(self) -> bool:
         """Return whether the breach could be seen if it lasted."""
         return self._breach != BREACH or self.vehicle.estimates.position_valid
 
@@ -120,7 +120,7 @@ class FenceService(Service):
         if wanted not in (0.0, 1.0):
             return DENIED
         self._enabled = wanted == 1.0
-        self.vehicle.say(NOTICE, f"Fence {'on' if self._enabled else 'off'}")
+        self.vehicle.report(NOTICE, f"Fence {'on' if self._enabled else 'off'}")
         return ACCEPTED
 
     def _status(self, now: float) -> list[Message]:
@@ -131,7 +131,10 @@ class FenceService(Service):
         count = min(self._count, 0xFFFF)
         return [
             mavlink.MAVLink_fence_status_message(
-                *(int(breach is not None), count, kind, milliseconds(self._at)),
+                int(breach is not None),
+                count,
+                kind,
+                milliseconds(self._at),
                 mavlink.FENCE_MITIGATE_NONE,
             )
         ]

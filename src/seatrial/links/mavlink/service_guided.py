@@ -113,7 +113,7 @@ class GuidedService(Service):
         self._before = now
         if target is not None and target.expires is not None and now > target.expires:
             self.vehicle.target = None
-            self.vehicle.say(WARNING, "Set-points have stopped, so does the vehicle")
+            self.vehicle.report(WARNING, "Set-points have stopped, so does the vehicle")
 
     def change_speed(self, speed: float) -> None:
         """Change the speed to positions until the mode ends, m/s; -2 is the vehicle's own."""
@@ -214,11 +214,11 @@ class GuidedService(Service):
         mode = self.vehicle.dialect.reposition or self.vehicle.dialect.mode("guided")
         if mode is None or self.vehicle.mode != mode:
             if not flags & mavlink.MAV_DO_REPOSITION_FLAGS_CHANGE_MODE:
-                self.vehicle.say(WARNING, "Not in guided mode")
+                self.vehicle.report(WARNING, "Not in guided mode")
                 return DENIED
             reason = "there is none" if mode is None else self._modes.enter(mode)
             if reason is not None:
-                self.vehicle.say(WARNING, f"Guided mode refused: {reason}")
+                self.vehicle.report(WARNING, f"Guided mode refused: {reason}")
                 return FAILED
         target = self._going(position)
         self.vehicle.target = replace(target, speed=speed) if 0.0 < speed <= FASTEST else target
@@ -236,7 +236,9 @@ class GuidedService(Service):
                 kinds[target.kind],
                 *target.position,
                 *target.velocity,
-                *(0.0, 0.0, 0.0),
+                0.0,
+                0.0,
+                0.0,
                 math.remainder(target.heading, math.tau),
                 0.0,
             )

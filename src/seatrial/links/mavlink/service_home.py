@@ -31,7 +31,7 @@ class HomeService(Service):
         """Commands that it carries out."""
         return {
             mavlink.MAV_CMD_DO_SET_HOME: self._set_home,
-            mavlink.MAV_CMD_GET_HOME_POSITION: self._tell_home,
+            mavlink.MAV_CMD_GET_HOME_POSITION: self._send_home,
         }
 
     @property
@@ -54,7 +54,7 @@ class HomeService(Service):
         self._move(message.latitude * 1e-7, message.longitude * 1e-7, message.altitude * 1e-3, now)
 
     def _refuse_origin(self, message: Message, sender: Sender, now: float) -> None:
-        self.vehicle.say(WARNING, "The origin stays: it belongs to the trial")
+        self.vehicle.report(WARNING, "The origin stays: it belongs to the trial")
         self.transport.send(sender.link, self._origin(now)[0])
 
     def _set_home(self, command: Command, sender: Sender, now: float) -> int:
@@ -81,7 +81,7 @@ class HomeService(Service):
         self.vehicle.home_n = position
         self.transport.broadcast(self._home(now)[0])
 
-    def _tell_home(self, command: Command, sender: Sender, now: float) -> int:
+    def _send_home(self, command: Command, sender: Sender, now: float) -> int:
         self.transport.send(sender.link, self._home(now)[0])
         return ACCEPTED
 
@@ -89,10 +89,14 @@ class HomeService(Service):
         latitude, longitude, altitude = self.vehicle.origin.geodetic(self.vehicle.home_n)
         return [
             mavlink.MAVLink_home_position_message(
-                *(deg_e7(latitude), deg_e7(longitude), int32(altitude * 1e3)),
+                deg_e7(latitude),
+                deg_e7(longitude),
+                int32(altitude * 1e3),
                 *self.vehicle.home_n,
                 [1.0, 0.0, 0.0, 0.0],
-                *(0.0, 0.0, 0.0),
+                0.0,
+                0.0,
+                0.0,
                 microseconds(now),
             )
         ]
@@ -101,6 +105,6 @@ class HomeService(Service):
         latitude, longitude, altitude = self.vehicle.origin.geodetic((0.0, 0.0, 0.0))
         return [
             mavlink.MAVLink_gps_global_origin_message(
-                *(deg_e7(latitude), deg_e7(longitude), int32(altitude * 1e3)), microseconds(now)
+                deg_e7(latitude), deg_e7(longitude), int32(altitude * 1e3), microseconds(now)
             )
         ]

@@ -71,8 +71,8 @@ class MissionService(Service):
         modes.requirements.append(self._needs_mission)
         self.reached = 0
         """Number of the leg that is done, by guidance; 0 for none."""
-        self._told: dict[str, Any] = {}
-        self._asked = False
+        self._sent: dict[str, Any] = {}
+        self._requested = False
 
     @property
     def leg(self) -> Leg:
@@ -105,8 +105,8 @@ class MissionService(Service):
 
     def _take_current(self, message: Message, sender: Sender, now: float) -> None:
         if not self._runner.set_current(message.seq):
-            self.vehicle.say(WARNING, f"There is no mission item {message.seq}")
-        self._asked = True
+            self.vehicle.report(WARNING, f"There is no mission item {message.seq}")
+        self._requested = True
 
     def _take_guided(self, message: Message, sender: Sender, now: float) -> None:
         """Go to a place in guided mode; items of a list are the transfer's."""
@@ -124,8 +124,8 @@ class MissionService(Service):
             self.transport.broadcast(mavlink.MAVLink_mission_item_reached_message(sequence))
         self._runner.passed.clear()
         current = self._current(now)[0]
-        if self._asked or current.to_dict() != self._told:
-            self._asked, self._told = False, current.to_dict()
+        if self._requested or current.to_dict() != self._sent:
+            self._requested, self._sent = False, current.to_dict()
             self.transport.broadcast(current)
 
     # ------------------------------------------------------------------ commands
@@ -138,7 +138,7 @@ class MissionService(Service):
         mode = self.vehicle.dialect.mode("auto")
         reason = "there is no such mode" if mode is None else self._modes.enter(mode)
         if reason is not None:
-            self.vehicle.say(WARNING, f"Mission not started: {reason}")
+            self.vehicle.report(WARNING, f"Mission not started: {reason}")
             return FAILED
         self._runner.paused = False
         if sequence:
@@ -160,12 +160,12 @@ class MissionService(Service):
             return FAILED
         if resets == 1:
             self._runner.forget_jumps()
-        self._asked = True
+        self._requested = True
         return ACCEPTED
 
     def _change_speed(self, command: Command, sender: Sender, now: float) -> int:
         if self.vehicle.mode.name not in ("auto", "guided"):
-            self.vehicle.say(WARNING, "Speeds change in a mission and in guided mode only")
+            self.vehicle.report(WARNING, "Speeds change in a mission and in guided mode only")
             return DENIED
         in_auto = self.vehicle.mode.name == "auto"
         change = self._runner.change_speed if in_auto else self._change_guided_speed
@@ -180,7 +180,7 @@ class MissionService(Service):
     def _guide(self, item: Item) -> int:
         """Go to an item's place; return MAV_MISSION_RESULT."""
         if self.vehicle.mode.name != "guided":
-            self.vehicle.say(WARNING, "Not in guided mode")
+            self.vehicle.report(WARNING, "Not in guided mode")
             return int(mavlink.MAV_MISSION_DENIED)
         place = item.place(self.vehicle)
         refusal = check_place(item, place)
@@ -194,7 +194,7 @@ class MissionService(Service):
         command = Command(item.command, (*item.parameters, *item.coordinates(), item.z), item.frame)
         ourselves = Sender(self.vehicle.identity.system, self.vehicle.identity.component, -1)
         if self._set_home(command, ourselves, now) != ACCEPTED:
-            self.vehicle.say(WARNING, "Mission: home cannot be moved there")
+            self.vehicle.report(WARNING, "Mission: home cannot be moved there")
 
     def _current(self, now: float) -> list[Message]:
         runner = self._runner
@@ -203,7 +203,7 @@ class MissionService(Service):
             state, sequence, total = mavlink.MISSION_STATE_NO_MISSION, 0, _NO_MISSION
         else:
             state, sequence = runner.state, runner.current
-            total = len(self._plan.items) - runner.first  # home does not count
+            total = len(self._plan.items) - runner.first  # without home
         return [
             mavlink.MAVLink_mission_current_message(sequence, total, state, 1 if in_auto else 2)
         ]

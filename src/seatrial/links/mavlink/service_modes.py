@@ -68,7 +68,7 @@ class ModeService(Service):
                 return reason
         if mode != self.vehicle.mode:
             self.vehicle.enter(mode)
-            self.vehicle.say(INFO, f"Mode {mode.shown}")
+            self.vehicle.report(INFO, f"Mode {mode.shown}")
         return None
 
     @property
@@ -100,14 +100,14 @@ class ModeService(Service):
         mode = self.vehicle.dialect.mode(name)
         return UNSUPPORTED if mode is None else self._entered(mode, mode.custom_mode)
 
-    def _entered(self, mode: Mode | None, asked: float) -> int:
+    def _entered(self, mode: Mode | None, number: float) -> int:
         if mode is None:
-            self.vehicle.say(WARNING, f"There is no mode {asked:g}")
+            self.vehicle.report(WARNING, f"There is no mode {number:g}")
             return DENIED
         reason = self.enter(mode)
         if reason is None:
             return ACCEPTED
-        self.vehicle.say(WARNING, f"Mode {mode.shown} refused: {reason}")
+        self.vehicle.report(WARNING, f"Mode {mode.shown} refused: {reason}")
         return FAILED
 
     def _needs_position(self, mode: Mode) -> str | None:

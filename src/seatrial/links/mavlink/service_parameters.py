@@ -116,7 +116,7 @@ class ParameterService(Service):
         # The error first: a station that knows it does not take the old value for a lost message.
         self._refuse(name, self.table.index(name), error, sender)
         self.transport.send(sender.link, self._value(name))
-        self.vehicle.say(WARNING, f"{name} stays {self.table[name]:g}: {reason}")
+        self.vehicle.report(WARNING, f"{name} stays {self.table[name]:g}: {reason}")
 
     def _refuse(self, name: str, index: int, error: int, sender: Sender) -> None:
         answer = mavlink.MAVLink_param_error_message(

@@ -39,13 +39,13 @@ class PresenceService(Service):
 
     def __init__(self, vehicle: Vehicle, transport: Transport) -> None:
         super().__init__(vehicle, transport)
-        self._told = (vehicle.mode, vehicle.armed, vehicle.failsafe)
+        self._reported = (vehicle.mode, vehicle.armed, vehicle.failsafe)
         self._text_id = 0
 
     @property
     def commands(self) -> Mapping[int, Handler]:
         """Commands that it carries out."""
-        return {mavlink.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES: self._tell_version}
+        return {mavlink.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES: self._send_version}
 
     @property
     def messages(self) -> Mapping[int, Builder]:
@@ -58,8 +58,8 @@ class PresenceService(Service):
     def tick(self, now: float) -> None:
         """Send at once what has changed, and the status texts."""
         state = (self.vehicle.mode, self.vehicle.armed, self.vehicle.failsafe)
-        if state != self._told:
-            self._told = state
+        if state != self._reported:
+            self._reported = state
             self.transport.broadcast(self._heartbeat(now)[0])
         for text in self.vehicle.texts:
             for message in self._pieces(text.severity, text.text.encode()):
@@ -95,14 +95,19 @@ class PresenceService(Service):
             mavlink.MAVLink_autopilot_version_message(
                 self.vehicle.capabilities,
                 firmware_number(identity.firmware_version),
-                *(0, 0, 0),
-                *([0] * 8, [0] * 8, [0] * 8),
-                *(0, 0),
+                0,
+                0,
+                0,
+                [0] * 8,
+                [0] * 8,
+                [0] * 8,
+                0,
+                0,
                 identity.uid,
             )
         ]
 
-    def _tell_version(self, command: Command, sender: Sender, now: float) -> int:
+    def _send_version(self, command: Command, sender: Sender, now: float) -> int:
         self.transport.send(sender.link, self._version(now)[0])
         return ACCEPTED
 

@@ -40,8 +40,8 @@ class RefusalService(Service):
         }
 
     def _refuse_key(self, message: Message, sender: Sender, now: float) -> None:
-        self.vehicle.say(WARNING, "No key is taken over a link: give it in signing_key_file")
+        self.vehicle.report(WARNING, "No key is taken over a link: give it in signing_key_file")
 
     def _refuse(self, command: Command, sender: Sender, now: float) -> int:
-        self.vehicle.say(WARNING, _REASONS[command.number])
+        self.vehicle.report(WARNING, _REASONS[command.number])
         return DENIED

@@ -82,7 +82,7 @@ class StationService(Service):
             self._there[who].beat(now, self._clock())
         elif len(self._there) < _MOST:
             self._there[who] = _Station(now, self._clock())
-            self.vehicle.say(INFO, f"Ground station {sender.system}:{sender.component}")
+            self.vehicle.report(INFO, f"Ground station {sender.system}:{sender.component}")
         else:
             return
         if self._left_alone:

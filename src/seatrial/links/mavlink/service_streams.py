@@ -102,7 +102,7 @@ class StreamService(Service):
         """Commands that it carries out."""
         return {
             mavlink.MAV_CMD_SET_MESSAGE_INTERVAL: self._set_interval,
-            mavlink.MAV_CMD_GET_MESSAGE_INTERVAL: self._tell_interval,
+            mavlink.MAV_CMD_GET_MESSAGE_INTERVAL: self._send_interval,
             mavlink.MAV_CMD_REQUEST_MESSAGE: self._send_once,
         }
 
@@ -158,7 +158,7 @@ class StreamService(Service):
         self._change(sender.link, number, interval)
         return ACCEPTED
 
-    def _tell_interval(self, command: Command, sender: Sender, now: float) -> int:
+    def _send_interval(self, command: Command, sender: Sender, now: float) -> int:
         number = whole(command.parameters[0])
         if number is None or not 0 <= number <= 0xFFFF:
             return DENIED

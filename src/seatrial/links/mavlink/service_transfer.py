@@ -36,7 +36,7 @@ class _Upload:
     count: int
     progress: float
     """When it last went on, s."""
-    asked: float = 0.0
+    requested: float = 0.0
     """When the next item was last requested, s."""
     unanswered: int = 0
     """How often the next item was requested without an answer."""
@@ -92,8 +92,8 @@ class TransferService(Service):
             mavlink.MAVLINK_MSG_ID_MISSION_ITEM: self._receive,
             mavlink.MAVLINK_MSG_ID_MISSION_ITEM_INT: self._receive,
             mavlink.MAVLINK_MSG_ID_MISSION_REQUEST_LIST: self._offer,
-            mavlink.MAVLINK_MSG_ID_MISSION_REQUEST: partial(self._tell, integers=False),
-            mavlink.MAVLINK_MSG_ID_MISSION_REQUEST_INT: partial(self._tell, integers=True),
+            mavlink.MAVLINK_MSG_ID_MISSION_REQUEST: partial(self._send_item, integers=False),
+            mavlink.MAVLINK_MSG_ID_MISSION_REQUEST_INT: partial(self._send_item, integers=True),
             mavlink.MAVLINK_MSG_ID_MISSION_ACK: self._end,
             mavlink.MAVLINK_MSG_ID_MISSION_CLEAR_ALL: self._clear,
             mavlink.MAVLINK_MSG_ID_MISSION_WRITE_PARTIAL_LIST: self._refuse_part,
@@ -113,11 +113,13 @@ class TransferService(Service):
             return
         if now - upload.progress >= GIVE_UP_S:
             self._upload = None
-            self.vehicle.say(WARNING, f"{upload.plan.name}: upload timed out, nothing is changed")
+            self.vehicle.report(
+                WARNING, f"{upload.plan.name}: upload timed out, nothing is changed"
+            )
             self._answer(upload.sender, upload.plan.kind, mavlink.MAV_MISSION_OPERATION_CANCELLED)
-        elif now - upload.asked >= RETRY_S:
+        elif now - upload.requested >= RETRY_S:
             upload.unanswered += 1
-            self._ask(upload, now)
+            self._request_next(upload, now)
 
     # ------------------------------------------------------------------ upload
 
@@ -127,13 +129,13 @@ class TransferService(Service):
             return
         self._upload = self._ended = None
         if message.count > MOST_ITEMS:
-            self._say_why(plan, f"{message.count} items, at most {MOST_ITEMS} fit")
+            self._report_refusal(plan, f"{message.count} items, at most {MOST_ITEMS} fit")
             self._answer(sender, plan.kind, mavlink.MAV_MISSION_NO_SPACE)
         elif message.count == 0:
             self._replace(plan, [], sender)
         else:
             self._upload = _Upload(sender, plan, message.count, now)
-            self._ask(self._upload, now)
+            self._request_next(self._upload, now)
 
     def _receive(self, message: Message, sender: Sender, now: float) -> None:
         if message.current > _CURRENT_ITEM:
@@ -144,19 +146,19 @@ class TransferService(Service):
         if upload is None or (sender, message.mission_type) != (upload.sender, upload.plan.kind):
             return
         if message.seq > len(upload.items):
-            self._ask(upload, now)
+            self._request_next(upload, now)
         elif message.seq == len(upload.items):
             upload.items.append(from_message(message))
             upload.progress, upload.unanswered = now, 0
             upload.knows_integers |= message.get_type() == "MISSION_ITEM_INT"
             if len(upload.items) < upload.count:
-                self._ask(upload, now)
+                self._request_next(upload, now)
             else:
                 self._upload = None
                 self._replace(upload.plan, upload.items, sender)
 
-    def _ask(self, upload: _Upload, now: float) -> None:
-        upload.asked = now
+    def _request_next(self, upload: _Upload, now: float) -> None:
+        upload.requested = now
         patience = 1 if upload.items else _PATIENCE
         request = mavlink.MAVLink_mission_request_int_message
         if upload.unanswered >= patience and not upload.knows_integers:
@@ -175,7 +177,7 @@ class TransferService(Service):
         refusal = plan.replace(items)
         if refusal is None:
             return int(mavlink.MAV_MISSION_ACCEPTED)
-        self._say_why(plan, refusal.text)
+        self._report_refusal(plan, refusal.text)
         return refusal.result
 
     def _clear(self, message: Message, sender: Sender, now: float) -> None:
@@ -195,7 +197,7 @@ class TransferService(Service):
         """Deny an upload while another station has one going."""
         if self._upload is None or self._upload.sender == sender:
             return False
-        self._say_why(plan, "another ground station is uploading")
+        self._report_refusal(plan, "another ground station is uploading")
         self._answer(sender, plan.kind, mavlink.MAV_MISSION_DENIED)
         return True
 
@@ -208,19 +210,19 @@ class TransferService(Service):
         self._offers.pop((sender, plan.kind), None)
         if len(self._offers) >= _MOST_OFFERS:
             del self._offers[next(iter(self._offers))]
-        items = plan.told()
+        items = plan.as_sent()
         self._offers[sender, plan.kind] = _Offer(items, now + _OFFER_S)
         target = (sender.system, sender.component)
         self.transport.send(
             sender.link, mavlink.MAVLink_mission_count_message(*target, len(items), plan.kind)
         )
 
-    def _tell(self, message: Message, sender: Sender, now: float, *, integers: bool) -> None:
+    def _send_item(self, message: Message, sender: Sender, now: float, *, integers: bool) -> None:
         plan = self._plan(message, sender)
         if plan is None:
             return
         offer = self._offers.get((sender, plan.kind))
-        items = plan.told()
+        items = plan.as_sent()
         if offer is not None:
             items, offer.expires = offer.items, now + _OFFER_S
         if message.seq >= len(items):
@@ -241,7 +243,9 @@ class TransferService(Service):
             and message.type != mavlink.MAV_MISSION_ACCEPTED
         ):
             self._upload = None
-            self.vehicle.say(WARNING, f"{upload.plan.name}: upload cancelled, nothing is changed")
+            self.vehicle.report(
+                WARNING, f"{upload.plan.name}: upload cancelled, nothing is changed"
+            )
 
     # ------------------------------------------------------------------ answers
 
@@ -255,12 +259,12 @@ class TransferService(Service):
     def _refuse_part(self, message: Message, sender: Sender, now: float) -> None:
         plan = self._plan(message, sender)
         if plan is not None:
-            self._say_why(plan, "lists in part are not supported, send the whole")
+            self._report_refusal(plan, "lists in part are not supported, send the whole")
             self._answer(sender, plan.kind, mavlink.MAV_MISSION_UNSUPPORTED)
 
     def _answer(self, sender: Sender, kind: int, result: int) -> None:
         target = (sender.system, sender.component)
         self.transport.send(sender.link, mavlink.MAVLink_mission_ack_message(*target, result, kind))
 
-    def _say_why(self, plan: Plan, why: str) -> None:
-        self.vehicle.say(WARNING, f"{plan.name} refused: {why}")
+    def _report_refusal(self, plan: Plan, why: str) -> None:
+        self.vehicle.report(WARNING, f"{plan.name} refused: {why}")

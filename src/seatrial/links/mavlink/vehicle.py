@@ -57,7 +57,7 @@ class Estimates:
     imu_valid: bool = True
     """Whether rates and specific force are valid."""
     pressure: float | None = None
-    """Absolute, of the transport, or in a submarine of the water."""
+    """Absolute, of the air, or in a submarine of the water."""
     ground_distance: float | None = None
     """To the ground below."""
     apparent_wind: tuple[float, float] | None = None
@@ -143,7 +143,7 @@ class Vehicle:
     texts: list[StatusText] = field(default_factory=list)
     """Status texts still to be sent."""
 
-    def say(self, severity: int, text: str) -> None:
+    def report(self, severity: int, text: str) -> None:
         """Send a status text to all ground stations, at the end of this instant."""
         self.texts.append(StatusText(severity, text))
 

@@ -1,7 +1,7 @@
 """CSR memory map of the Pro 4: addresses, scales, access.
 
 Source: VideoRay, PRO4_CSR_memory_map.xls, revision 3; lowest byte first, two's complement. Where
-it does not mark what the device itself measures or counts as read only (power manager, internal
+it does not mark as read only what the device itself measures or counts (power manager, internal
 temperatures, humidity, errors, run time, greatest values, terms of the controllers, magnetometer,
 sensor status, copy of the version), it is read only here.
 """
