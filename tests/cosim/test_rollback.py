@@ -41,7 +41,7 @@ def test_everything_is_as_it_was_saved(direct: Bench, algorithm: str) -> None:
     for group in master._feedthrough._groups:
         group.relaxation /= 2.0
     different = changed(saved, snapshot(rollback, STATISTICS))
-    rollback._restore(rollback._checkpoint)
+    rollback.restore(rollback._checkpoint)
     assert different
     assert changed(saved, snapshot(rollback, STATISTICS)) == set()
 
@@ -61,7 +61,7 @@ def test_algorithms_that_remember_repeat_their_steps(direct: Bench, algorithm: s
     rollback._save(3)
     runs = []
     for _ in range(2):
-        rollback._restore(rollback._checkpoint)
+        rollback.restore(rollback._checkpoint)
         for k in range(3, 6):
             advance(k, k * master.step_ns, master.step_ns)
         runs.append(list(master.signals))
