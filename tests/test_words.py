@@ -13,7 +13,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 PLACES = ("src", "tests", "docs", "harness", "hil_profiles", "fmus", "benchmarks")
-PAGES = ("README.md", "CONTRIBUTING.md", "Makefile")
+PAGES = ("README.md", "CONTRIBUTING.md", "Makefile", "pyproject.toml")
 SUFFIXES = {".py", ".md", ".toml", ".j2", ".c", ".cpp", ".h", ".ino", ".js", ".sh", ".yml"}
 LEFT_OUT = ("__pycache__", "node_modules", "tests/test_words.py")
 """This file lists the words."""
