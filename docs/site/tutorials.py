@@ -18,7 +18,7 @@ EXECUTED = Path("build/tutorials")
 SECONDS_PER_CELL = 300
 
 
-@event_priority(100)  # before mkdocs-jupyter, which reads the notebooks
+@event_priority(-100)  # after mkdocs-jupyter, whose own kind of file forgets an earlier path
 def on_files(files: Files, config: MkDocsConfig) -> Files:
     """Put the executed notebook in the place of each."""
     EXECUTED.mkdir(parents=True, exist_ok=True)
