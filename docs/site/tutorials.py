@@ -9,6 +9,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import nbformat
+from jupyter_client.manager import AsyncKernelManager
 from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.plugins import event_priority
 from mkdocs.structure.files import Files
@@ -33,7 +34,9 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
 def executed(path: Path) -> nbformat.NotebookNode:
     """Return a notebook with its outputs. Raises CellExecutionError where a cell fails."""
     book = nbformat.read(path, 4)
-    with TemporaryDirectory() as folder:
+    with TemporaryDirectory() as folder, TemporaryDirectory() as sockets:
+        # By sockets in a folder: no port is opened.
+        kernel = AsyncKernelManager(kernel_name="python3", transport="ipc", ip=f"{sockets}/k")
         resources = {"metadata": {"path": folder}}
-        NotebookClient(book, timeout=SECONDS_PER_CELL, resources=resources).execute()
+        NotebookClient(book, km=kernel, timeout=SECONDS_PER_CELL, resources=resources).execute()
     return book
