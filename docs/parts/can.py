@@ -12,7 +12,8 @@ from seatrial.links.can.component_gateway import CanGateway
 from seatrial.links.can.traffic import CanTraffic
 from seatrial.ports import Parameter, Port
 
-_HIDDEN = ("seed", "run_folder")
+_HIDDEN = ("seed", "run-folder")
+"""Roles: the master gives these."""
 
 
 def _start(port: Port) -> str:
@@ -38,8 +39,8 @@ def ports(component: type[Component]) -> str:
         ("port", "kind", "unit", "start", "meaning"),
         [
             (_name(port), _kind(port), shown_unit(port.unit), _start(port), port.description)
-            for name, port in component.ports.items()
-            if name not in _HIDDEN
+            for port in component.ports.values()
+            if port.role not in _HIDDEN
         ],
     )
 

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import re
-import subprocess
-import sys
-from pathlib import Path
-from tempfile import TemporaryDirectory
+
+import typer
+from typer.cli import get_docs_for_click
+from typer.core import TyperGroup
 
 from parts import part
 from parts.markdown import table
+from seatrial.cli.commands import COMMANDS, loaded
+from seatrial.cli.main import app
 from seatrial.fmi.source import shipped_sources
 
 
@@ -30,13 +32,11 @@ def component_list() -> str:
 @part("cli")
 def cli() -> str:
     """Every command with its arguments and options, as Typer documents them."""
-    with TemporaryDirectory() as folder:
-        page = Path(folder) / "cli.md"
-        typer = [sys.executable, "-m", "typer", "seatrial.cli.main", "utils", "docs"]
-        subprocess.run(
-            [*typer, "--name", "seatrial", "--output", page], check=True, capture_output=True
-        )
-        text = page.read_text("utf-8").replace("&#x27;", "'")
+    group = typer.main.get_command(app)
+    assert isinstance(group, TyperGroup)
+    group.commands = {name: loaded(name) for name in COMMANDS}  # with their options
+    text = get_docs_for_click(obj=group, ctx=typer.Context(group), name="seatrial")
+    text = text.strip().replace("&#x27;", "'")
     titles = dict(re.findall(r"^#+ `([\w ]+)`\n\n(.*?)\n\n", text, re.DOTALL | re.MULTILINE))
     lines, command = [], ""
     for line in text.splitlines():
