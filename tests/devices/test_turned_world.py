@@ -58,7 +58,7 @@ WITH_HEADING = [cls for cls in CLASSES if any(map(headings, ports(cls, "input"))
 
 def answers(cls, angle, seed):
     """Return the outputs of each sample in a world turned by ``angle``."""
-    settings = dict(CLASSES[cls])
+    settings = dict(cls.exercised)
     for port in ports(cls, "parameter"):
         if port.name.endswith(ERRORS):
             settings[port.name] = [0.0] * port.size if port.axes else 0.0
@@ -69,17 +69,18 @@ def answers(cls, angle, seed):
         component.set(name, value)
     component.initialise()
     component.begin()
+    period = getattr(component, "period", 0.1)
     for k in range(SAMPLES):
         for name, value in some_turned(cls, angle, 1000 * seed + k // 3).items():
             component.set(name, value)
         rows.append([component.get(port.name) for port in ports(cls, "output")])
-        component.advance(k * component.period, component.period)
+        component.advance(k * period, period)
     return rows
 
 
 def some_turned(cls, angle, seed):
     """Return inputs as they are in a world turned by ``angle``."""
-    values = {**some_inputs(cls, seed), **CLASSES[cls]}
+    values = {**some_inputs(cls, seed), **cls.exercised}
     values |= {name: value for name, value in KNOWN.items() if name in values}
     if values.get("mode") in ("hold", "loiter", "surface"):
         values["mode"] = "return"

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import zipfile
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
@@ -78,6 +79,19 @@ def test_builds_are_identical_whatever_the_folder_process_and_hash_seed(
     command = [sys.executable, "-c", code, str(there.parent), str(target)]
     subprocess.run(command, check=True, env=environment)
     assert target.read_bytes() == own
+
+
+def test_a_module_of_the_same_name_from_elsewhere_is_not_taken(
+    write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    constants = ModuleType("constants")
+    constants.NUMBER = 7.0
+    monkeypatch.setitem(sys.modules, "constants", constants)
+    write("mine/constants.py", "NUMBER = 1.0\n")
+    boat = source(write("mine/boat.py", boats.USES_HELPER), "Boat").component_class()("boat")
+    boat.initialise()
+    assert boat.get("value") == 1.0
+    assert sys.modules["constants"] is constants
 
 
 def test_building_leaves_the_process_as_it_was(write, tmp_path: Path) -> None:

@@ -26,7 +26,7 @@ def figures():
     time = np.linspace(0.0, 1.0, 11)
     panel = Panel("roll", "deg", [Line("a", time), Line("b", 2 * time)], [Mark("limit", 1.0)])
     yield time_figure(time, [[panel, panel], [panel]], events=[0.5])
-    yield deck_figure([Deck("landing", [PadPoint(0.1, 0.2, ["a"], 1, 1)], 2.0, 1.0)] * 2)
+    yield deck_figure([Deck("landing", [PadPoint(0.1, 0.2, ["a"], 1, 1)], (2.0, 1.0))] * 2)
 
 
 @pytest.mark.parametrize("figure", list(figures()))

@@ -66,6 +66,7 @@ class Downwash(Component):
     height = Output("m", "height of the rotors above the deck")
     on_deck = Output("1", "the HUAUV stands on the deck", type=bool)
 
+    exercised: ClassVar = {"direction": "vertical", "contact_time": 1e-3}
     views: ClassVar = {"landing-point": {"place": "pad", "phase": "phase"}}
     feedthrough: ClassVar = {"force": ("attitude",), "moment": ("attitude",)}
 

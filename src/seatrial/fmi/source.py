@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 from ..component import Component
@@ -145,9 +146,13 @@ def _is_component(value: Any) -> bool:
 def _importable(folder: Path) -> Iterator[None]:
     """Make modules in ``folder`` importable, and forget them again afterwards.
 
-    Another user's folder may hold files of the same names. No bytecode is left there: Python
-    takes it for current when a file is edited twice within a second.
+    Another folder may hold modules of the same names: those that are imported already step aside
+    meanwhile. No bytecode is left there: Python takes it for current when a file is edited twice
+    within a second.
     """
+    hidden = {name: module for name, module in sys.modules.items() if _hides(module, name, folder)}
+    for name in hidden:
+        del sys.modules[name]
     before = set(sys.modules)
     wrote = sys.dont_write_bytecode
     sys.dont_write_bytecode = True
@@ -159,6 +164,18 @@ def _importable(folder: Path) -> Iterator[None]:
         sys.dont_write_bytecode = wrote
         sys.path.remove(str(folder))
         for name in set(sys.modules) - before:
-            file = getattr(sys.modules[name], "__file__", None)
-            if file and Path(file).resolve().is_relative_to(folder.resolve()):
+            if _is_in(sys.modules[name], folder):
                 del sys.modules[name]
+        sys.modules.update(hidden)
+
+
+def _hides(module: ModuleType, name: str, folder: Path) -> bool:
+    """Return whether a module from elsewhere has the name of one in ``folder``."""
+    top = name.partition(".")[0]
+    there = (folder / f"{top}.py").is_file() or (folder / top / "__init__.py").is_file()
+    return there and top not in sys.stdlib_module_names and not _is_in(module, folder)
+
+
+def _is_in(module: ModuleType, folder: Path) -> bool:
+    file = getattr(module, "__file__", None)
+    return bool(file) and Path(str(file)).resolve().is_relative_to(folder.resolve())
