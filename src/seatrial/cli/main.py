@@ -18,6 +18,8 @@ app = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
+    context_settings={"max_content_width": 110},
+    rich_markup_mode=None,  # plain help: what draws boxes takes half of the time of a start
     help="Sea trials before the water: co-simulated trials of marine vehicles.",
 )
 
