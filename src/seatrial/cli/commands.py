@@ -76,7 +76,7 @@ def loaded(name: str) -> Any:
     """Return the command ``name`` with its options, imported."""
     module, _, attribute = COMMANDS[name].place.partition(":")
     found = getattr(import_module(f".{module}", __package__), attribute)
-    parent = typer.Typer()
+    parent = typer.Typer(rich_markup_mode=None)
     if isinstance(found, typer.Typer):
         parent.add_typer(found, name=name, help=COMMANDS[name].help)
     else:

@@ -10,9 +10,7 @@ import typer
 from ..links.videoray.decode import describe_stream
 from ..links.videoray.stream_file import read_stream
 
-decode_app = typer.Typer(
-    no_args_is_help=True, pretty_exceptions_enable=False, rich_markup_mode=None
-)
+decode_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
 
 
 @decode_app.callback()

@@ -23,7 +23,7 @@ from ..fmi.loaded import LoadedFmu
 from ..fmi.source import ComponentSource, find_source, named_sources, shipped_sources
 from .show import console
 
-fmu_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False, rich_markup_mode=None)
+fmu_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
 
 Named = Annotated[str, typer.Argument(metavar="FMU", help="A shipped name, x.fmu or my.py:Class.")]
 

@@ -15,9 +15,7 @@ from ..ports import Parameter
 from ..trials.readable import from_si, number, person_unit
 from .show import console
 
-profile_app = typer.Typer(
-    no_args_is_help=True, pretty_exceptions_enable=False, rich_markup_mode=None
-)
+profile_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
 
 Rows = Sequence[tuple[str, ...]]
 Named = Annotated[str, typer.Argument(metavar="PROFILE", help="A profile: a name or a .toml file.")]

@@ -20,9 +20,7 @@ from ..links.arduino.sketch import Sketch, find_sketch, read_source
 from ..links.arduino.unsupported import unsupported
 from ..links.arduino.wiring import PARTS, read_uarts, read_wires
 
-sketch_app = typer.Typer(
-    no_args_is_help=True, pretty_exceptions_enable=False, rich_markup_mode=None
-)
+sketch_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
 
 _STEP = 0.02
 _SOFT_SERIAL = re.compile(r"\bSoftwareSerial\s+\w+\s*[({]\s*(\d+)\s*,\s*(\d+)")

@@ -14,7 +14,7 @@ from ..errors import InputError, unknown
 from ..trials.export import export_ssp
 from .show import console, print_notes
 
-ssp_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False, rich_markup_mode=None)
+ssp_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
 
 
 @ssp_app.command()
