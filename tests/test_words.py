@@ -68,7 +68,7 @@ BY_RIGHT = (
     Right("pin, wires", "docs/reference/*", r"PIN KIND|PROFILE:LINK", "of a board"),
     Right("wires, pin, pins", "hil_profiles/*", "", "of a board"),
     Right("stick", "src/seatrial/cli/drive_keys.py", r"[Ll]eft stick|stick's way", "of a gamepad"),
-    Right("stick", "docs/links/videoray-stream.md", r"left stick|^stick down", "of a gamepad"),
+    Right("stick", "docs/links/videoray-stream.md", r"left stick|stick down", "of a gamepad"),
 )
 
 
