@@ -209,6 +209,7 @@ def campaign(trial: str, tmp_path: Path) -> str:
     return str(path)
 
 
+@pytest.mark.interop
 def test_a_campaign_is_that_of_the_command(campaign: str, tmp_path: Path) -> None:
     command("run", campaign, "--engine", "direct", "--out", "a", cwd=tmp_path)
     calls: list[tuple[int, int]] = []

@@ -230,7 +230,9 @@ def test_a_slow_component_diverges_with_a_name_too(
 PHASES = 12
 
 
-@pytest.mark.parametrize("period", [8.0, 16.0, 20.0, 32.0])
+@pytest.mark.parametrize(
+    "period", [8.0, *(pytest.param(p, marks=pytest.mark.interop) for p in (16.0, 20.0, 32.0))]
+)
 def test_growing_oscillations_that_a_step_resolves_are_no_divergence(
     direct: Bench, period: float
 ) -> None:
@@ -245,6 +247,7 @@ def test_growing_oscillations_that_a_step_resolves_are_no_divergence(
             master.step()
 
 
+@pytest.mark.interop
 def test_noise_that_is_switched_on_is_no_divergence(direct: Bench) -> None:
     for seed in range(20):
         master = direct.master(

@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.cosim.profile import check_profile, load_profile
+from seatrial.cosim.profile import Profiles, check_profile, load_profile
 from seatrial.devices.servo import Servo
 from seatrial.devices.thruster import Thruster
 from seatrial.errors import InputError
@@ -320,3 +320,13 @@ def test_shipped_profile_fits_its_components(path):
 
 def test_hydrone_is_shipped():
     assert load_profile("hydrone").sections()[:2] == ["actuators.port", "actuators.starboard"]
+
+
+def test_sections_are_found_in_the_rigs_profile_or_in_the_one_they_name(write):
+    profiles = Profiles("hydrone", write("rig.toml", "").parent)
+    own, section = profiles.find("sensors.gnss", "here")
+    assert (own.read_from.name, section) == ("hydrone", "sensors.gnss")
+    other, section = profiles.find("gloria:sensors.gnss", "here")
+    assert (other.read_from.name, section) == ("gloria", "sensors.gnss")
+    with pytest.raises(InputError, match="here: the rig names no profile"):
+        Profiles(None, write("rig.toml", "").parent).find("sensors.gnss", "here")

@@ -33,7 +33,7 @@ def simulate(node, gateway, bus, stop):
 
 def main() -> None:
     node = made(DroneCanPeripheral, "esc", node_id=10.0)
-    gateway = made(CanGateway, "link", gateway="dronecan-multicast:0")
+    gateway = made(CanGateway, "gateway", link="dronecan-multicast:0")
     bus = made(CanBus, "can", nodes="esc gateway", bit_rate=1e6)
     for each in (node, gateway, bus):
         each.setup(0.0)

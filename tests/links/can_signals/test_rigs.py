@@ -9,7 +9,7 @@ import can
 import canmatrix.formats
 import pytest
 
-from seatrial.cosim.profile import load_profile
+from seatrial.cosim.profile import check_profile, load_profile
 from seatrial.errors import InputError
 from seatrial.shipped import shipped_folder
 from seatrial.trials.run import run_trial
@@ -77,7 +77,7 @@ def test_a_profile_names_the_file_beside_it(profiles):
     text = (PROFILES / "hydrone.toml").read_text("utf-8")
     (profiles / "boat.toml").write_text(text, "utf-8")
     with pytest.raises(InputError) as caught:
-        load_profile(profiles / "boat.toml")
+        check_profile(profiles / "boat.toml")
     for part in ("boat.toml", "links.port_node.database", str(profiles / "hydrone.dbc")):
         assert part in str(caught.value)
     (profiles / "hydrone.dbc").write_bytes((PROFILES / "hydrone.dbc").read_bytes())
@@ -99,7 +99,7 @@ def test_a_profile_with_a_mistake_is_refused_with_file_and_key(profiles, change,
     text = (PROFILES / "hydrone.dbc").read_text("utf-8")
     (profiles / "hydrone.dbc").write_text(text.replace(*dbc), "utf-8")
     with pytest.raises(InputError) as caught:
-        load_profile(profiles / "boat.toml")
+        check_profile(profiles / "boat.toml")
     assert expected in str(caught.value)
     key = "sends" if change[0] else "database"
     assert f"boat.toml: links.autopilot_node: {key}: " in str(caught.value)
