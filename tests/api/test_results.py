@@ -233,6 +233,7 @@ def test_a_campaign_is_that_of_the_command(campaign: str, tmp_path: Path) -> Non
     assert (result.cases[1].folder / "report.html").is_file()
 
 
+@pytest.mark.interop
 def test_a_campaign_is_a_table(campaign: str, tmp_path: Path) -> None:
     seatrial.run_campaign(campaign, out=tmp_path / "run")
     result = seatrial.load_campaign_result(tmp_path / "run")

@@ -75,6 +75,7 @@ def test_orders_of_convergence_on_two_bodies(
     assert observed == pytest.approx([order] * 3, abs=0.25)
 
 
+@pytest.mark.interop
 def test_second_order_is_worth_it(direct: Bench) -> None:
     """At 10 ms extrapolation is some fifty times better than held inputs, iteration more."""
     held = errors(direct, "jacobi")[2]

@@ -43,9 +43,8 @@ LIMITS = reference_limits()
 BY_NAME = {case.name: case for case in CASES}
 
 
-@pytest.mark.parametrize(
-    "seed", [101, *(pytest.param(n, marks=pytest.mark.interop) for n in (102, 103))]
-)
+@pytest.mark.interop
+@pytest.mark.parametrize("seed", [101, 102, 103])
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_a_log(case, seed):
     """Within four times the medians' limit: about the worst of 20, of the weakest parameter."""

@@ -22,6 +22,7 @@ def running(tmp_path, source, **values):
     return Bench(**{"sketch": write_sketch(tmp_path, source), **values})
 
 
+@pytest.mark.interop
 def test_tabs_libraries_and_prototypes(tmp_path):
     main = """
 #include <Twice.h>
