@@ -36,6 +36,7 @@ def test_small_errors_decay_as_the_poles_say(zeta):
     np.testing.assert_allclose(wanted - speed, expected, atol=5e-3 * step)
 
 
+@pytest.mark.interop
 def test_a_steady_push_leaves_no_error():
     hold = started(SpeedHold, **CRAFT, enabled=True)
     _, speed, surge = run(hold, 0.8, 200.0, push=-4.0)

@@ -280,6 +280,7 @@ def test_entities_are_refused(
     assert "do not read" not in message
 
 
+@pytest.mark.interop
 def test_a_package_cut_off_anywhere_is_refused(yard: Yard, tmp_path: Path) -> None:
     whole = yard.package(tmp_path / "x.ssp").read_bytes()
     cut = tmp_path / "cut.ssp"

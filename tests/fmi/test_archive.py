@@ -180,6 +180,7 @@ def test_truncated_at_any_byte(cache: Path, tmp_path: Path) -> None:
         refused(path, "not an FMU")
 
 
+@pytest.mark.interop
 @settings(max_examples=300, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(place=st.integers(0, 499), value=st.integers(0, 255))
 def test_a_damaged_byte_is_refused_or_harmless(

@@ -141,6 +141,7 @@ def test_wrong_arrays(before: str, after: str, message: str | None, tmp_path: Pa
 ELEMENTS = [e for e in etree.fromstring(FMI2.encode()).iter() if e.attrib]
 
 
+@pytest.mark.interop
 @settings(
     max_examples=200, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
 )

@@ -160,6 +160,7 @@ def test_baked_start_values_are_defaults_and_in_the_description(
     slave.freeInstance()
 
 
+@pytest.mark.interop
 def test_two_hundred_lives_leave_nothing_behind(counter_fmu: Path, tmp_path: Path) -> None:
     raw = Raw(counter_fmu, tmp_path / "raw")
     path_before = list(sys.path)

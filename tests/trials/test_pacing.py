@@ -160,6 +160,7 @@ def test_the_factor_may_be_a_signal(bench, tmp_path: Path) -> None:
     assert timing["wall_s"]["run"] >= 0.1 + 0.1 / 0.1
 
 
+@pytest.mark.interop
 def test_a_pause_is_no_overrun(bench, tmp_path: Path) -> None:
     trial = bench(FOLLOWING.replace("[real_time]", "[real_time]\noverrun = 'abort'"))
     trial = trial.changed({"pace.stands": 2.0, "pace.later": 0.05}, "test")
