@@ -194,6 +194,19 @@ def test_two_signals_leave_a_whole_record_too(
     assert_whole(tmp_path / "run", 10)
 
 
+def test_signals_up_to_the_very_end_leave_status_and_message(start, tmp_path: Path) -> None:
+    # A late one must not kill the program between its message and its end.
+    process = start("run", "trial.toml", "--out", "run", "--engine", "direct")
+    signals = tmp_path / "run" / "signals.csv"
+    wait_for(lambda: signals.is_file() and signals.stat().st_size > 0)
+    deadline = time.monotonic() + 60
+    while process.poll() is None and time.monotonic() < deadline:
+        process.send_signal(signal.SIGTERM)
+        time.sleep(0.002)
+    stopped(process)
+    assert_whole(tmp_path / "run", 10)
+
+
 @pytest.mark.parametrize(
     "pace",
     [

@@ -45,7 +45,8 @@ class Stop:
 def stoppable() -> Iterator[Stop]:
     """Make Ctrl-C and a termination signal end the run after the current step.
 
-    A second one ends it at once, if a component hangs.
+    A second one ends it at once, if a component hangs. After a stop the signals stay ignored:
+    a late second one must not kill a program that is leaving with its message and its status.
     """
     stop, numbers = Stop(), (signal.SIGINT, signal.SIGTERM)
     before = {number: signal.signal(number, stop.ask) for number in numbers}
@@ -55,4 +56,4 @@ def stoppable() -> Iterator[Stop]:
         raise SimulationError("stopped") from None
     finally:
         for number, handler in before.items():
-            signal.signal(number, handler)
+            signal.signal(number, signal.SIG_IGN if stop.requested() else handler)
