@@ -27,29 +27,36 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from .declarations import (
+    check_feedthrough,
+    check_terminals,
+    check_views,
+    declared_ports,
+    declared_terms,
+)
 from .errors import InputError, SimulationError, unknown
 from .ports import Input, Output, Parameter, Port, Scalar, ScalarPort, lay_out
 from .serialisation import copied, is_c_text
+from .terminals import Terminal, terminal
+from .terms import Terms
 
-__all__ = ["NS", "Component", "Input", "Logging", "Noise", "Output", "Parameter", "seconds"]
+__all__ = [
+    "NS",
+    "Component",
+    "Input",
+    "Logging",
+    "Noise",
+    "Output",
+    "Parameter",
+    "Terminal",
+    "Terms",
+    "seconds",
+    "terminal",
+]
 
 NS = 1_000_000_000
 """Nanoseconds in a second: time is counted in whole nanoseconds everywhere."""
 
-
-VIEWS = {
-    "landing-point": ("place", "phase"),
-    "line": ("north", "east", "down"),
-    "waypoints": ("count", "place"),
-    "wind": ("velocity",),
-}
-"""Kinds of views and the ports that each names.
-
-landing-point: parameters, the place on a deck (x forward, y to starboard of the body origin, m)
-and the name of the manoeuvre. line: outputs with one axis per point, its coordinates in {n}, m.
-waypoints: parameters, how many there are and the port of each, whose name ends in ``_1`` and so
-on (north and east in {n}, m). wind: an output, velocity of the air (north and east in {n}, m/s).
-"""
 
 _LATEST = 2e6  # s: up to 2**51 ns, a double of seconds gives its nanoseconds back
 
@@ -79,7 +86,9 @@ class Component:
     ``discrete = True``. ``feedthrough`` declares, per output port, the input ports that act
     on it at the same instant.
 
-    ``views`` says what reports draw of it: by kind of view (`VIEWS`), the ports that it takes.
+    ``terminals`` are groups of ports that are connected together (`terminals`), by their names.
+    ``views`` says what reports draw of it: by kind of view (`ports.VIEWS`), the ports that it
+    takes.
     ``exercised`` has values by port with which everything in it acts, where the start values do
     not do: tests run the component with them.
 
@@ -89,6 +98,7 @@ class Component:
     feedthrough: ClassVar[Mapping[str, Sequence[str]]] = {}
     rolls_back: ClassVar[bool] = True
     discrete: ClassVar[bool] = False
+    terminals: ClassVar[Mapping[str, Terminal]] = {}
     views: ClassVar[Mapping[str, Mapping[str, str]]] = {}
     exercised: ClassVar[Mapping[str, Any]] = {}
     transient: ClassVar[frozenset[str]] = frozenset({"name"})
@@ -107,12 +117,14 @@ class Component:
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
         cls._declared = frozenset(n for n, v in vars(cls).items() if isinstance(v, Port))
-        cls.ports, cls.scalars = lay_out(_declared_ports(cls))
+        cls.ports, cls.scalars = lay_out(declared_ports(cls))
         for name, port in cls.ports.items():
             setattr(cls, name, port)
         cls.scalar_by_name = {scalar.name: scalar for scalar in cls.scalars}
-        _check_feedthrough(cls)
-        _check_views(cls)
+        named = {**cls.ports, **cls.scalar_by_name}
+        check_feedthrough(cls.__name__, cls.ports, cls.feedthrough)
+        check_views(cls.__name__, cls.views)
+        check_terminals(cls.__name__, cls.terminals, named, list(declared_terms(cls)))
         for kind in (float, int, bool, str):
             of_type = [s for s in cls.scalars if s.port.type is kind]
             # A dict of its own per class: a shared one would mix the classes.
@@ -416,43 +428,8 @@ class Reachable:
     )
 
 
-def _check_views(cls: type[Component]) -> None:
-    for kind, ports in cls.views.items():
-        if kind not in VIEWS or set(ports) != set(VIEWS[kind]):
-            raise TypeError(f"{cls.__name__}.views: {kind!r} is none of {VIEWS}, with its ports")
-
-
 def _is_fixed(port: Port) -> bool:
     return isinstance(port, Parameter) and not port.tunable
-
-
-def _declared_ports(cls: type[Component]) -> dict[str, Port]:
-    """Return the ports that a class and its bases declare, the nearest declaration of each."""
-    ports: dict[str, Port] = {}
-    others = {"name", "values"}
-    for base in reversed(cls.__mro__):
-        # A component class also holds placed copies of inherited ports: they declare nothing.
-        own = vars(base).get("_declared", vars(base))
-        for name, value in vars(base).items():
-            if not isinstance(value, Port):
-                others.add(name)
-            elif name in own:
-                ports.pop(name, None)
-                ports[name] = value
-            if name in ports and name in others:
-                raise TypeError(f"{cls.__name__}.{name} is a port and something else too")
-            if name in ports and ports[name].name != name:
-                raise TypeError(f"{cls.__name__}.{name} is the same port as {ports[name].name}")
-    return ports
-
-
-def _check_feedthrough(cls: type[Component]) -> None:
-    for output, inputs in cls.feedthrough.items():
-        if isinstance(inputs, str):
-            raise TypeError(f"{cls.__name__}.feedthrough[{output!r}]: a list of names is needed")
-        for name, kind in [(output, "output"), *((i, "input") for i in inputs)]:
-            if name not in cls.ports or cls.ports[name].kind != kind:
-                raise TypeError(f"{cls.__name__}.feedthrough names {name!r}: no such {kind}")
 
 
 def _range_text(low: float | None, high: float | None) -> str:

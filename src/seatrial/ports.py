@@ -23,6 +23,20 @@ ROLES = {
 }
 """What whoever runs a component does with a port that declares a role."""
 
+VIEWS = {
+    "landing-point": ("place", "phase"),
+    "line": ("north", "east", "down"),
+    "waypoints": ("count", "place"),
+    "wind": ("velocity",),
+}
+"""Kinds of views and the ports that each names.
+
+landing-point: parameters, the place on a deck (x forward, y to starboard of the body origin, m)
+and the name of the manoeuvre. line: outputs with one axis per point, its coordinates in {n}, m.
+waypoints: parameters, how many there are and the port of each, whose name ends in ``_1`` and so
+on (north and east in {n}, m). wind: an output, velocity of the air (north and east in {n}, m/s).
+"""
+
 _TYPES: tuple[type, ...] = (float, int, bool, str)
 
 
@@ -203,6 +217,8 @@ class Input(Port):
         options.setdefault("start", "" if options.get("type") is str else 0)
         super().__init__(unit, description, **options)
         self.optional = optional
+        self.term_of = ""
+        """Name of the `terms.Terms` that it is one of."""
 
 
 class Output(Port):

@@ -22,7 +22,7 @@ class DirectInstance(ByType):
         self.variables = Variables({s.name: _variable(component, s) for s in component.scalars})
         self.feedthrough = scalar_feedthrough(component)
         self.rolls_back, self.any_step = component.rolls_back, True
-        self.views = component.views
+        self.terminals, self.views = component.terminals, component.views
 
     def set_start(self, values: Mapping[str, Value]) -> None:
         """Set parameters and start values by variable name, before `initialise`."""
@@ -120,4 +120,5 @@ def _variable(component: Component, scalar: ScalarPort) -> Variable:
         description=port.description,
         optional=isinstance(port, Input) and port.optional,
         role=port.role,
+        term_of=port.term_of if isinstance(port, Input) else "",
     )

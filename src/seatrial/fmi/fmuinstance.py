@@ -35,7 +35,7 @@ class FmuInstance(ByType):
         self.name = name
         self.fmu = fmu
         self.variables, self.feedthrough = fmu.variables, fmu.feedthrough
-        self.views = fmu.views
+        self.terminals, self.views = fmu.terminals, fmu.views
         simulation = fmu.description.coSimulation
         self.rolls_back = bool(simulation.canGetAndSetFMUstate)
         self.any_step = bool(simulation.canHandleVariableCommunicationStepSize)

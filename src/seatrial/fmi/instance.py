@@ -10,6 +10,7 @@ from functools import cached_property
 from typing import Any, Protocol
 
 from ..ports import Scalar
+from ..terminals import Terminal
 from ..units import Unit
 
 Value = Scalar | bytes
@@ -47,6 +48,8 @@ class Variable:
     """Place in its array, row by row."""
     optional: bool = False
     """An input that is normally not connected."""
+    term_of: str = ""
+    """Name of the sum that the input is a term of."""
     role: str = ""
     """What whoever runs the component does with it, of `ports.ROLES`; empty: nothing special."""
 
@@ -79,6 +82,15 @@ class Variables(dict[str, Variable]):
     def of_role(self, role: str) -> list[str]:
         """Return the names of the variables that declare a role of `ports.ROLES`."""
         return [name for name, variable in self.items() if variable.role == role]
+
+    @cached_property
+    def terms(self) -> dict[str, list[str]]:
+        """Inputs (ports) that are terms of one sum, in order, by the name of the sum."""
+        found: dict[str, dict[str, None]] = {}
+        for name, variable in self.items():
+            if variable.term_of:
+                found.setdefault(variable.term_of, {})[self.port_of(name) or name] = None
+        return {sum_: list(ports) for sum_, ports in found.items()}
 
     @staticmethod
     def port_of(name: str) -> str:
@@ -123,8 +135,12 @@ class Instance(Protocol):
         """Per output, the inputs that act on it at the same instant."""
 
     @property
+    def terminals(self) -> Mapping[str, Terminal]:
+        """Groups of variables that are connected together."""
+
+    @property
     def views(self) -> Mapping[str, Mapping[str, str]]:
-        """What reports draw of it: ports by kind of view, of `component.VIEWS`."""
+        """What reports draw of it: ports by kind of view, of `ports.VIEWS`."""
 
     def set_start(self, values: Mapping[str, Value]) -> None:
         """Set parameters and start values by variable name, before `initialise`."""

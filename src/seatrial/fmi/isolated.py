@@ -41,7 +41,7 @@ class IsolatedInstance:
             raise InputError("isolated components need Linux or another POSIX system")
         self.name, self.fmu = name, fmu
         self.variables, self.feedthrough = fmu.variables, fmu.feedthrough
-        self.views = fmu.views
+        self.terminals, self.views = fmu.terminals, fmu.views
         self._timeout_s, self._limit = _BOOT_S, ""
         self._time: float | None = None
         self._ended = ""

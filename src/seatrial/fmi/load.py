@@ -76,6 +76,7 @@ def _load(path: Path, _stamp: tuple[int, int]) -> LoadedFmu:
         content.variables,
         content.arrays,
         content.feedthrough,
+        {},
         views_of(root),
         content.notes,
     )

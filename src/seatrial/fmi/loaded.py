@@ -8,6 +8,7 @@ from pathlib import Path
 
 from fmpy.model_description import ModelDescription
 
+from ..terminals import Terminal
 from .instance import Variables
 from .variables import Array
 
@@ -24,7 +25,9 @@ class LoadedFmu:
     arrays: Mapping[int, Array]
     """What each value reference of an FMI 3 FMU stands for."""
     feedthrough: Mapping[str, Sequence[str]]
+    terminals: Mapping[str, Terminal]
+    """Groups of variables that are connected together."""
     views: Mapping[str, Mapping[str, str]]
-    """What reports draw of it; see `component.VIEWS`."""
+    """What reports draw of it; see `ports.VIEWS`."""
     notes: tuple[str, ...]
     """What this FMU has that cannot be used here, for its user."""

@@ -11,8 +11,8 @@ from typing import Any
 
 from fmpy.model_description import ModelDescription
 
-from ..component import VIEWS
 from ..errors import InputError
+from ..ports import VIEWS
 from ..units import Unit, defined_unit
 from .instance import Value, Variable, Variables
 

@@ -63,7 +63,7 @@ class Run:
 def viewed(
     manifest: Mapping[str, Any], kind: str
 ) -> Iterator[tuple[str, dict[str, Any], dict[str, str]]]:
-    """Yield name, entry and ports of the components that have a view (`component.VIEWS`)."""
+    """Yield name, entry and ports of the components that have a view (`ports.VIEWS`)."""
     for name, component in manifest["components"].items():
         ports = component.get("views", {}).get(kind)
         if ports is not None:

@@ -1,0 +1,45 @@
+"""Terminals: named groups of a component's ports that are connected together, by member.
+
+The words, so that components of different makers meet:
+
+============  ==================================================================================
+motion        truth of a craft: position, velocity, attitude, rates, acceleration
+wrench        force, moment (N and N.m, body axes, at the body origin)
+attachment    point, velocity, force: of a tether or a tow, all in {n}
+reading       of a sensor: position_n, velocity_n, position_valid; heading, heading_valid; heel,
+              roll_pitch, roll_rate, yaw_rate, gyro, accelerometer, imu_valid; wind_speed,
+              wind_angle, wind_valid; depth, depth_valid; pressure
+sensors       the same members, of who reads them
+truth         members of motion, of who reads them
+actuators     pulses by channel, ch1 ... ch16; or by name, angles and shares
+failures      faults of sensors and actuators by name: gps, mag, gyro, motor1, ...
+orders        what commands a pilot: mode, armed, manual, targets, home, legs; and what it answers
+serial        down (towards the vehicle), up
+============  ==================================================================================
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+Rule = Literal["plug", "bus"]
+"""FMI 3.0's matching rules: of a plug all inputs must be met, of a bus any may stay open."""
+
+
+@dataclass(frozen=True)
+class Terminal:
+    """A group of ports: by the name of a member, the port, scalar or sum of the component."""
+
+    members: Mapping[str, str] = field(default_factory=dict)
+    rule: Rule = "bus"
+
+
+def terminal(*same: str, rule: Rule = "bus", **others: str) -> Terminal:
+    """Return a terminal: members named as their ports, then member = port (or port__axis).
+
+    A scalar of a port is written ``port__axis``, ``roll_pitch__phi``.
+    """
+    named = {name: name for name in same}
+    return Terminal({**named, **{m: p.replace("__", ".") for m, p in others.items()}}, rule)
