@@ -17,7 +17,7 @@ from pathlib import Path
 
 from seatrial.cosim.assembly import assemble
 from seatrial.cosim.master import Master
-from seatrial.cosim.rig import load_rig
+from seatrial.cosim.flattening import load_rig
 from seatrial.links.arduino.component import Arduino
 from seatrial.links.text import encode
 

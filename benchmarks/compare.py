@@ -24,7 +24,7 @@ from typing import Any
 import fmpy
 
 from seatrial.cosim.assembly import assemble
-from seatrial.cosim.rig import load_rig
+from seatrial.cosim.flattening import load_rig
 from seatrial.cosim.ssp.writing import Experiment, write_ssp
 
 from .pages import write_measured

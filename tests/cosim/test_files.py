@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from pydantic import BaseModel, Field
 
 from seatrial.cosim.files import FileModel, available, find_file, read_toml, validated
+from seatrial.cosim.flattening import load_rig
 from seatrial.cosim.parameters import load_vehicle
-from seatrial.cosim.rig import load_rig
 from seatrial.errors import InputError
 from seatrial.shipped import shipped_folder
 
@@ -237,9 +237,8 @@ def test_mistakes_in_a_rig_name_its_file(write) -> None:
     with pytest.raises(InputError) as error:
         load_rig("mine")
     assert str(error.value).splitlines() == [
-        f"{path}: components.a.fmu: this key is missing",
-        f"{path}: components.a.fmuu: unknown key 'fmuu'; did you mean 'fmu'? "
-        "(known: fmu, isolated, parameters, profile, set, step, timeout)",
+        f"{path}: components.a.fmuu: unknown key 'fmuu'; did you mean 'fmu'? (known: choices, "
+        "fmu, home, isolated, parameters, profile, rig, set, step, timeout, variant)",
     ]
 
 

@@ -17,7 +17,7 @@ from typing import Any
 import pytest
 
 from seatrial.cosim.assembly import assemble
-from seatrial.cosim.rig import load_rig
+from seatrial.cosim.flattening import load_rig
 from seatrial.errors import InputError
 from seatrial.fmi.isolated import IsolatedInstance
 from seatrial.trials.run import run_trial

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.cosim.rig import load_rig
+from seatrial.cosim.flattening import load_rig
 from seatrial.errors import InputError
 from seatrial.links.endpoints.url import check_urls, open_endpoint
 from tests.packages import installed
@@ -76,7 +76,7 @@ talker = {{ fmu = "nmea0183", set = {{ links = "tape:{tape}" }} }}
 PROGRAM = """
 import sys
 from seatrial.cosim.master import Master
-from seatrial.cosim.rig import load_rig
+from seatrial.cosim.flattening import load_rig
 from seatrial.cosim.assembly import assemble
 
 system = assemble(load_rig(sys.argv[1]), "direct")

@@ -10,8 +10,8 @@ from fmpy.ssp.ssd import read_ssd, validate_tree
 from lxml import etree
 
 from seatrial.cosim.assembly import assemble
+from seatrial.cosim.flattening import load_rig
 from seatrial.cosim.master import Master
-from seatrial.cosim.rig import load_rig
 from seatrial.cosim.ssp.reading import read_ssp
 from seatrial.cosim.ssp.tools import findings
 from seatrial.cosim.system import System

@@ -8,9 +8,9 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from seatrial.cosim.assembly import assemble
+from seatrial.cosim.flattening import load_rig
 from seatrial.cosim.master import Master
 from seatrial.cosim.parameters import load_vehicle
-from seatrial.cosim.rig import load_rig
 from seatrial.craft.cable_shape import hanging_shape
 from seatrial.craft.tether import Tether
 from seatrial.errors import InputError

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from seatrial.cosim.assembly import assemble
+from seatrial.cosim.flattening import load_rig
 from seatrial.cosim.master import Master
-from seatrial.cosim.rig import load_rig
 from seatrial.errors import InputError, SimulationError
 
 from .native import changed, forgetful

@@ -12,8 +12,8 @@ import pytest
 
 from seatrial.component import seconds
 from seatrial.cosim.assembly import assemble
+from seatrial.cosim.flattening import load_rig
 from seatrial.cosim.master import Master
-from seatrial.cosim.rig import load_rig
 from seatrial.cosim.system import System
 from seatrial.shipped import shipped_folder
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from seatrial.cosim.assembly import assemble
-from seatrial.cosim.rig import load_rig
+from seatrial.cosim.flattening import load_rig
 from seatrial.cosim.ssp.reading import read_ssp
 from seatrial.cosim.system import System
 from seatrial.trials.export import export_ssp

@@ -13,9 +13,9 @@ from contextlib import contextmanager
 from pymavlink import mavutil, mavwp
 
 from seatrial.cosim.assembly import assemble
+from seatrial.cosim.flattening import load_rig
 from seatrial.cosim.master import Master
 from seatrial.cosim.profile import load_profile
-from seatrial.cosim.rig import load_rig
 from seatrial.links.geodesy import Origin
 
 WAYPOINT, LOITER_TURNS, RETURN, JUMP, SPEED = 16, 18, 20, 177, 178

@@ -349,7 +349,7 @@ def _signal(name: str, variable: Variable, feeder: str) -> Signal:
 
 
 def _loaded_rig(name: str, step: Any) -> Rig:
-    from ..cosim.rig import load_rig
+    from ..cosim.flattening import load_rig
     from ..cosim.ssp.reading import read_ssp
     from ..shipped import available
 

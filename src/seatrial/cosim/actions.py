@@ -8,6 +8,7 @@ from typing import Any, Literal
 from ..errors import InputError, unknown
 from ..fmi.instance import Value
 from .master import Master
+from .part import Part
 from .system import System, settable
 from .values import from_written, port_names, port_scalars
 
@@ -15,35 +16,49 @@ ActionKind = Literal["set", "override", "release"]
 
 
 @dataclass(frozen=True)
-class Action:
-    """What becomes of the scalars of one port, checked."""
+class Change:
+    """What becomes of the scalars of one port."""
 
-    kind: ActionKind
     component: str
     values: dict[str, Value | None]
     """By variable name, in the port's unit; None where it is released."""
 
+
+@dataclass(frozen=True)
+class Action:
+    """What becomes of the ports that one name means, checked."""
+
+    kind: ActionKind
+    changes: tuple[Change, ...]
+
     def apply(self, master: Master) -> None:
         """Do it at the master's time. Raises SimulationError."""
-        if self.kind == "set":
-            master.set(self.component, list(self.values), list(self.values.values()))
-        for name, value in self.values.items():
-            if self.kind == "override":
-                master.override(self.component, name, value)
-            elif self.kind == "release":
-                master.release(self.component, name)
+        for change in self.changes:
+            if self.kind == "set":
+                master.set(change.component, list(change.values), list(change.values.values()))
+            for name, value in change.values.items():
+                if self.kind == "override":
+                    master.override(change.component, name, value)
+                elif self.kind == "release":
+                    master.release(change.component, name)
 
 
 def action(system: System, kind: ActionKind, key: str, written: Any, where: str) -> Action:
     """Return the action on ``component.port`` of what a person wrote.
 
     Inputs that nothing feeds and tunable parameters can be set; outputs and inputs that are
-    wholly connected, overridden and released. Raises InputError, naming ``where``.
+    wholly connected, overridden and released. What a rig inside shows stands for all ports
+    that it means. Raises InputError, naming ``where``.
     """
-    component, _, port = key.partition(".")
-    if component not in system.parts:
-        raise InputError(f"{where}: {unknown('component', component, system.parts)}")
-    part = system.parts[component]
+    located = system.located(key, where)
+    return Action(kind, tuple(_change(system, kind, each, key, written, where) for each in located))
+
+
+def _change(
+    system: System, kind: ActionKind, place: tuple[Part, str], key: str, written: Any, where: str
+) -> Change:
+    part, port = place
+    component = part.name
     variables = part.instance.variables
     scalars = port_scalars(variables, port)
     if not scalars:
@@ -62,6 +77,6 @@ def action(system: System, kind: ActionKind, key: str, written: Any, where: str)
             f"{where}: {key} is neither an output nor an input that is wholly connected"
         )
     if kind == "release":
-        return Action(kind, component, dict.fromkeys(variable.name for variable in scalars))
+        return Change(component, dict.fromkeys(variable.name for variable in scalars))
     given = from_written(written, scalars, part.presets.get(port, {}), where)
-    return Action(kind, component, {name: value.value for name, value in given.items()})
+    return Change(component, {name: value.value for name, value in given.items()})

@@ -26,16 +26,21 @@ def assemble(
     ``variant`` replaces the rig's; ``seed`` is what the components' own seeds derive from,
     where a component has one. Raises InputError for anything in the files that does not fit.
     """
-    system = System(rig, engine, seed, variant or rig.file.variant, {}, [])
-    profiles = Profiles(rig.file.profile, rig.read_from.path.parent)
+    system = System(rig, engine, seed, variant or rig.file.variant)
+    profiles: dict[str, Profiles] = {}
     once: dict[str, str] = {}
     try:
-        for name, entry in rig.file.components.items():
-            progress(f"{name} ({entry.fmu})")
+        for name, placed in rig.components.items():
+            progress(f"{name} ({placed.entry.fmu})")
             system.parts[name] = load_part(rig, name, engine, once)
-            give_parameters(system, system.parts[name], profiles)
+            scope = placed.scope
+            if scope.path not in profiles:
+                profiles[scope.path] = Profiles(scope.file.profile, scope.read_from.path.parent)
+            give_parameters(system, system.parts[name], profiles[scope.path])
+        for key, written, where in rig.settings:
+            system.set(key, written, where)
         _refuse_idle_variant(system)
-        system.connections = connect(system)
+        connect(system)
         _yield_to_connections(system)
     except BaseException:
         system.free()
@@ -44,7 +49,7 @@ def assemble(
 
 
 def _refuse_idle_variant(system: System) -> None:
-    takers = [entry for entry in system.rig.file.components.values() if entry.parameters]
+    takers = [placed for placed in system.rig.components.values() if placed.entry.parameters]
     if system.variant and not takers:
         raise InputError(
             f"{system.rig.read_from.path}: variant {system.variant!r}: no component takes "

@@ -7,26 +7,30 @@ from dataclasses import replace
 
 from ..errors import InputError
 from .parameters import ParameterSet, load_vehicle, split_reference
+from .part import Part
 from .profile import Profile, Profiles
-from .rig import ComponentEntry
-from .system import Part, System, settable
+from .rig import Placed, Scope
+from .system import System, settable
 from .values import Given, from_entry, from_written
 
 
 def give_parameters(system: System, part: Part, profiles: Profiles) -> None:
-    """Give a component what the rig says, the later before the earlier.
+    """Give a component what its rig says, the later before the earlier.
 
     These are the seed derived from the system's, the vehicle's parameter set, the section of an
-    electronics profile, and the rig's own ``set``. Raises InputError.
+    electronics profile, the home of the rig around it, and the rig's own ``set``. Raises
+    InputError.
     """
-    entry = system.rig.file.components[part.name]
-    where = f"{system.rig.read_from.path}: components.{part.name}"
+    placed = system.rig.components[part.name]
+    entry, where = placed.entry, placed.where
     _give_seed(part, system.seed)
     if entry.parameters is not None:
-        _give_parameter_set(part, _parameter_set(system, entry, where))
+        _give_parameter_set(part, _parameter_set(system, placed))
     if entry.profile is not None:
         profile, section = profiles.find(entry.profile, f"{where}.profile")
         _give_profile(part, section, profile, f"{where}.profile")
+        if section.startswith("links."):
+            _give_home(part, placed.scope)
     for port, written in entry.set.items():
         system.set(f"{part.name}.{port}", written, f"{where}.set")
 
@@ -61,11 +65,29 @@ def _give_profile(part: Part, section: str, profile: Profile, where: str) -> Non
             part.given[name] = replace(given, source=source)
 
 
-def _parameter_set(system: System, entry: ComponentEntry, where: str) -> ParameterSet:
+def _give_home(part: Part, scope: Scope) -> None:
+    """Move a link to the home of the rig that it is in, if that has one of its own."""
+    if scope.home is None:
+        return
+    origin = f"{scope.read_from.path.name}: home of {scope.path}"
+    for port, written in zip(("latitude", "longitude", "altitude"), scope.home, strict=True):
+        if port in part.instance.variables:
+            scalars = settable(part.instance.variables, port, origin)
+            part.given.update(from_written(written, scalars, {}, origin))
+
+
+def _parameter_set(system: System, placed: Placed) -> ParameterSet:
+    """Return the vehicle's values, of the system's variant; inside, if the vehicle has that."""
+    entry, scope = placed.entry, placed.scope
     assert entry.parameters is not None
     name, table = split_reference(entry.parameters, entry.fmu)
     try:
-        vehicle = load_vehicle(name, system.rig.read_from.path.parent)
-        return vehicle.parameter_set(table, system.variant)
+        vehicle = load_vehicle(name, scope.read_from.path.parent)
+        variant = scope.variant
+        if system.variant is not None and (
+            scope.path == "" or system.variant in vehicle.file.variants
+        ):
+            variant = system.variant
+        return vehicle.parameter_set(table, variant)
     except InputError as error:
-        raise InputError(f"{where}.parameters: {error}") from None
+        raise InputError(f"{placed.where}.parameters: {error}") from None

@@ -1,82 +1,159 @@
-"""Connections of a rig: from ports as written to scalars, with units converted."""
+"""Connections of a rig: from ports and terminals as written to scalars, with units converted."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from dataclasses import dataclass, field
 
-from ..errors import InputError, unknown
-from ..fmi.instance import Variable, Variables
+from ..errors import InputError
+from ..fmi.instance import Variable
 from ..units import conversion
-from .rig import ConnectionEntry
-from .system import Connection, System
-from .values import port_names, port_scalars
+from .joining import Group, Pin, Resolver, kind_of
+from .rig import ConnectionEntry, Scope
+from .system import Connection, Joint, System
+from .values import port_scalars
+
+_SOURCES = ("output",)
+_TARGETS = ("input", "tunable parameter")
 
 
-def connect(system: System) -> list[Connection]:
-    """Return the connections of a system's rig, scalar by scalar. Raises InputError."""
-    connections: list[Connection] = []
-    feeders: dict[tuple[str, str], str] = {}
-    for written, entry in system.rig.connections():
-        where = f'{system.rig.read_from.path}: connections."{written}"'
-        for connection in _between(system, written, entry, where):
-            target = connection.target
-            if target in feeders:
+def connect(system: System) -> None:
+    """Make the connections of a system's rig, port by port and scalar by scalar.
+
+    Raises InputError for names that are none, ports that do not fit, inputs with two sources,
+    terminals that have nothing in common, and inputs of a plug that are not met.
+    """
+    making = _Making(system, Resolver(system.parts, system.rig.top))
+    for scope in system.rig.top.all():
+        for written, entry in scope.connections():
+            making.connect(scope, written, entry)
+
+
+@dataclass
+class _Making:
+    """Connections made so far."""
+
+    system: System
+    resolver: Resolver
+    feeders: dict[tuple[str, str], str] = field(default_factory=dict)
+    """What feeds a scalar, by component and name."""
+
+    def connect(self, scope: Scope, written: str, entry: ConnectionEntry) -> None:
+        """Make one connection as written in the file of ``scope``."""
+        where = f'{scope.read_from.path}: connections."{written}"'
+        source = self.resolver.named(scope, written, where, _SOURCES)
+        target = self.resolver.named(scope, entry.to, where, _TARGETS)
+        if source is None or target is None:
+            self.system.open.append(f"{written} = {entry.to}: not made, one side has no such name")
+        elif source.is_port and target.is_port:
+            for pin in target.members[""]:
+                self._feed(_one(source.members[""], written, where), pin, entry, where)
+        elif source.is_port or target.is_port:
+            port, terminal = (written, entry.to) if source.is_port else (entry.to, written)
+            raise InputError(f"{where}: {port} is a port and {terminal} a terminal")
+        else:
+            self._join(source, target, written, entry, where)
+
+    def _join(self, a: Group, b: Group, written: str, entry: ConnectionEntry, where: str) -> None:
+        """Connect two terminals, each member from its output to its inputs."""
+        if (entry.factor, entry.offset, entry.convert) != (1.0, 0.0, True):
+            raise InputError(f"{where}: terminals take no factor, offset or convert")
+        met: set[str] = set()
+        for member in (m for m in a.members if m in b.members):
+            for here, there in ((a, b), (b, a)):
+                sources = self._of_kind(here.members[member], _SOURCES)
+                for target in self._of_kind(there.members[member], _TARGETS):
+                    if sources:
+                        source = _one(sources, f"{written}.{member}", where)
+                        self._feed(source, target, entry, f"{where}, {member}")
+                        met.add(target.name)
+        if not met:
+            raise InputError(
+                f"{where}: nothing joins: {written} {self._told(a)}; {entry.to} {self._told(b)}"
+            )
+        for name, group in ((written, a), (entry.to, b)):
+            if group.rule == "plug":
+                self._refuse_open(name, group, met, where)
+
+    def _refuse_open(self, name: str, group: Group, met: set[str], where: str) -> None:
+        for member, pins in group.members.items():
+            for pin in self._of_kind(pins, ("input",)):
+                if pin.name not in met:
+                    raise InputError(f"{where}: nothing gives {name} its {member} ({pin.name})")
+
+    def _told(self, group: Group) -> str:
+        """Return what a terminal gives and takes, for a message."""
+        kinds = {"gives": _SOURCES, "takes": _TARGETS}
+        told = {
+            verb: [m for m, pins in group.members.items() if self._of_kind(pins, kind)]
+            for verb, kind in kinds.items()
+        }
+        return " and ".join(f"{verb} {', '.join(names)}" for verb, names in told.items() if names)
+
+    def _of_kind(self, pins: list[Pin], wanted: tuple[str, ...]) -> list[Pin]:
+        return [pin for pin in pins if kind_of(self.resolver.variables(pin)[0]) in wanted]
+
+    def _feed(self, source: Pin, target: Pin, entry: ConnectionEntry, where: str) -> None:
+        """Connect two ports, scalar by scalar; of a sum, the first term that is free."""
+        if target.sum_of:
+            target = self._free_term(target, where)
+        sources = self._scalars(source, _SOURCES, where)
+        targets = self._scalars(target, _TARGETS, where)
+        if len(sources) != len(targets):
+            raise InputError(
+                f"{where}: {source.name} has {len(sources)} scalars, "
+                f"{target.name} has {len(targets)}"
+            )
+        self.system.joints.append(Joint(source.name, target.name, entry.factor, entry.offset))
+        for one, other in zip(sources, targets, strict=True):
+            place = (target.component, other.name)
+            if place in self.feeders:
                 raise InputError(
-                    f"{where}: {'.'.join(target)} is already fed by {feeders[target]}; "
+                    f"{where}: {'.'.join(place)} is already fed by {self.feeders[place]}; "
                     "an input takes one connection"
                 )
-            feeders[target] = written
-            connections.append(connection)
-    return connections
+            self.feeders[place] = source.name
+            self.system.connections.append(_scalar(source, one, target, other, entry, where))
 
-
-def _between(
-    system: System, written: str, entry: ConnectionEntry, where: str
-) -> Iterator[Connection]:
-    """Yield the connections between two ports, or two scalars, as written."""
-    sources = _end(system, written, ("output",), where)
-    targets = _end(system, entry.to, ("input", "tunable parameter"), where)
-    if len(sources) != len(targets):
+    def _free_term(self, target: Pin, where: str) -> Pin:
+        variables = self.system.parts[target.component].instance.variables
+        for term in target.sum_of:
+            names = [(target.component, v.name) for v in port_scalars(variables, term)]
+            if not any(name in self.feeders for name in names):
+                return Pin(target.component, term)
+        feeders = [self.feeders.get((target.component, term), term) for term in target.sum_of]
         raise InputError(
-            f"{where}: {written} has {len(sources)} scalars, {entry.to} has {len(targets)}"
+            f"{where}: all {len(feeders)} terms of {target.name} are fed; it takes no more"
         )
-    from_, to = (end.partition(".")[0] for end in (written, entry.to))
-    for source, target in zip(sources, targets, strict=True):
-        factor, offset = _transformed(*_converting(source, target, entry, where), entry)
-        if (factor, offset) != (1.0, 0.0) and target.type is not float:
-            raise InputError(f"{where}: {entry.to} is no real number to transform")
-        to_real = (source.type, target.type) == (int, float)
-        yield Connection((from_, source.name), (to, target.name), factor, offset, to_real)
+
+    def _scalars(self, pin: Pin, wanted: tuple[str, ...], where: str) -> list[Variable]:
+        scalars = self.resolver.variables(pin)
+        for variable in scalars:
+            if kind_of(variable) not in wanted:
+                needed = " or ".join(wanted)
+                raise InputError(f"{where}: {pin.name} is {kind_of(variable)}, {needed} is needed")
+        return scalars
 
 
-def _end(system: System, written: str, wanted: tuple[str, ...], where: str) -> list[Variable]:
-    """Return the scalars at one end of a connection, which must be of a wanted kind."""
-    name, _, port = written.partition(".")
-    if name not in system.parts:
-        raise InputError(f"{where}: {unknown('component', name, system.parts)}")
-    variables = system.parts[name].instance.variables
-    scalars, needed = port_scalars(variables, port), " or ".join(wanted)
-    if not scalars:
-        fitting = Variables({n: v for n, v in variables.items() if _kind(v) in wanted})
-        raise InputError(f"{where}: {name}: {unknown(needed, port, port_names(fitting))}")
-    for variable in scalars:
-        if _kind(variable) not in wanted:
-            raise InputError(f"{where}: {written} is {_kind(variable)}, {needed} is needed")
-    return scalars
+def _one(pins: list[Pin], written: str, where: str) -> Pin:
+    if len(pins) > 1:
+        raise InputError(
+            f"{where}: {written} is {' and '.join(p.name for p in pins)}: one is needed"
+        )
+    return pins[0]
 
 
-def _kind(variable: Variable) -> str:
-    """Return a variable's causality; of a parameter, its variability too."""
-    if variable.causality != "parameter":
-        return variable.causality
-    return f"{variable.variability} parameter"
-
-
-def _transformed(factor: float, offset: float, entry: ConnectionEntry) -> tuple[float, float]:
-    """Return a conversion of units followed by a connection's own linear transformation."""
-    if (entry.factor, entry.offset) == (1.0, 0.0):
-        return factor, offset
-    return entry.factor * factor, entry.factor * offset + entry.offset
+def _scalar(
+    source: Pin, one: Variable, target: Pin, other: Variable, entry: ConnectionEntry, where: str
+) -> Connection:
+    """Return the connection of two scalars."""
+    factor, offset = _converting(one, other, entry, where)
+    if (entry.factor, entry.offset) != (1.0, 0.0):
+        factor, offset = entry.factor * factor, entry.factor * offset + entry.offset
+    if (factor, offset) != (1.0, 0.0) and other.type is not float:
+        raise InputError(f"{where}: {target.name} is no real number to transform")
+    to_real = (one.type, other.type) == (int, float)
+    ends = (source.component, one.name), (target.component, other.name)
+    return Connection(*ends, factor, offset, to_real)
 
 
 def _converting(

@@ -10,8 +10,9 @@ from ..fmi.bundle_name import bundle_name
 from ..fmi.direct import DirectInstance
 from ..fmi.instance import Instance
 from ..fmi.source import find_source
+from .part import Part
 from .rig import ComponentEntry, Rig, duration_ns
-from .system import Engine, Part
+from .system import Engine
 
 _TIMEOUT_S = 60.0
 """Longest wall time of a call of an isolated component, where the rig says nothing else."""
@@ -23,9 +24,8 @@ def load_part(rig: Rig, name: str, engine: Engine, once: dict[str, str]) -> Part
     ``once`` has, by their hashes, the names of the components in this process whose FMU allows
     one instance only; it is kept up to date. Raises InputError.
     """
-    entry = rig.file.components[name]
-    where = f"{rig.read_from.path}: components.{name}"
-    every = 1
+    placed = rig.components[name]
+    entry, where, every = placed.entry, placed.where, 1
     if entry.step is not None:
         step_ns = duration_ns(entry.step, f"{where}.step")
         every, rest = divmod(step_ns, rig.step_ns)
@@ -35,7 +35,9 @@ def load_part(rig: Rig, name: str, engine: Engine, once: dict[str, str]) -> Part
             )
     timeout_s = _timeout_s(entry, f"{where}.timeout")
     try:
-        instance, sha256, code = _instance(entry, name, rig.folder, engine, timeout_s, once)
+        instance, sha256, code = _instance(
+            entry, name, placed.scope.folder, engine, timeout_s, once
+        )
     except InputError as error:
         raise InputError(f"{where}.fmu: {error}") from None
     return Part(name, entry.fmu, instance, sha256, code, every)

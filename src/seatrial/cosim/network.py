@@ -16,7 +16,8 @@ from typing import Any
 from ..component import NS
 from ..errors import ExcessError, SimulationError
 from ..fmi.instance import Reader, Writer
-from .system import Connection, Part, System
+from .part import Part
+from .system import Connection, System
 from .timing import StepTimes
 
 Name = tuple[str, str]

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,8 @@ from pydantic import Field
 from ..component import NS
 from ..errors import InputError
 from ..units import quantity
-from .files import FileModel, Source, find_file, read_toml, validated
+from .files import FileModel, Source, validated
+from .paths import joined
 from .registry import ALGORITHMS
 
 LONGEST_S = 9.0e9
@@ -43,14 +45,21 @@ class ConnectionEntry(FileModel):
 
 
 class ComponentEntry(FileModel):
-    """One component of a rig."""
+    """One component of a rig: an FMU, or another rig."""
 
-    fmu: str
+    fmu: str = ""
+    rig: str = ""
+    """Another rig in the place of an FMU; it takes ``choices``, ``home``, ``variant``, ``set``."""
+    choices: dict[str, str] = Field(default_factory=dict)
+    home: list[str] | None = Field(default=None, min_length=3, max_length=3)
+    """Latitude, longitude and altitude of the origin of all links in it."""
+    variant: str | None = None
     parameters: str | None = None
     """A vehicle's parameter set: ``hydrone``, or ``hydrone.TABLE`` for a table of another name."""
     profile: str | None = None
     """A section of the rig's profile, ``sensors.gnss``, or of another, ``gloria:sensors.gnss``."""
     set: dict[str, Any] = Field(default_factory=dict)
+    """By port; of a rig, by component.port inside it."""
     step: str | None = None
     isolated: bool = False
     """It runs in a process of its own."""
@@ -58,49 +67,57 @@ class ComponentEntry(FileModel):
     """Longest wall time of one call of an isolated component."""
 
 
+Shown = str | list[str] | dict[str, str]
+"""A port or terminal, the union of several, or a terminal put together: port by member."""
+
+
 class RigFile(FileModel):
     """The content of a rig file."""
 
     title: str = ""
-    step: str
+    step: str | None = None
+    """Communication step; an inner rig's counts only where it runs alone."""
     algorithm: str = "jacobi"
     """A name of `registry.ALGORITHMS`."""
     iteration: IterationEntry | None = None
     variant: str | None = None
     profile: str | None = None
+    choices: dict[str, str] = Field(default_factory=dict)
+    """Texts by name, which ``{name}`` stands for in this file and in inner rigs."""
     components: dict[str, ComponentEntry]
     connections: dict[str, str | ConnectionEntry | list[str | ConnectionEntry]] = Field(
         default_factory=dict
     )
+    shows: dict[str, Shown] = Field(default_factory=dict)
+    """What rigs around this one may connect to."""
 
 
 @dataclass(frozen=True)
-class Rig:
-    """A rig file, read and checked as far as it can be without its FMUs."""
+class Scope:
+    """A rig's file at its place: the top, or a rig in the place of a component.
 
+    ``choices`` are those of its file and of the rigs around it.
+    """
+
+    path: str
+    """Names of the components on the way, joined by dots; empty at the top."""
     file: RigFile
     read_from: Source
-    unpacked: Path | None = None
-    """The folder of its FMUs, if it was read from a package."""
+    folder: Path
+    """Where relative paths of its FMUs start."""
+    choices: Mapping[str, str]
+    inner: Mapping[str, Scope]
+    variant: str | None = None
+    home: tuple[str, str, str] | None = None
 
-    @property
-    def folder(self) -> Path:
-        """Folder that relative paths of FMUs start from."""
-        return self.unpacked or self.read_from.path.parent
-
-    @property
-    def step_ns(self) -> int:
-        """Communication step, ns."""
-        return duration_ns(self.file.step, f"{self.read_from.path}: step")
-
-    def changed(self, changes: Mapping[str, Any]) -> Rig:
-        """Return the rig with keys of its file replaced. Raises InputError."""
-        content = {**self.file.model_dump(exclude_unset=True), **changes}
-        file = validated(RigFile, content, self.read_from.path)
-        return _checked(replace(self, file=file))
+    def all(self) -> Iterator[Scope]:
+        """Yield the rigs inside, the innermost first, then this one."""
+        for scope in self.inner.values():
+            yield from scope.all()
+        yield self
 
     def connections(self) -> list[tuple[str, ConnectionEntry]]:
-        """Return (from, where to) pairs as written, ports or scalars."""
+        """Return (from, where to) pairs of this file alone, as written."""
         pairs = []
         for source, targets in self.file.connections.items():
             for target in targets if isinstance(targets, list) else [targets]:
@@ -109,27 +126,107 @@ class Rig:
         return pairs
 
 
-def load_rig(name: str, relative_to: Path | None = None) -> Rig:
-    """Read the rig ``name`` (shipped, in ``harness/rigs``, or a path). Raises InputError."""
-    path = find_file("harness/rigs", name, relative_to)
-    content, read_from = read_toml(path)
-    return _checked(Rig(validated(RigFile, content, path), read_from))
+@dataclass(frozen=True)
+class Placed:
+    """A component and the rig that it stands in."""
+
+    entry: ComponentEntry
+    scope: Scope
+    name: str
+    """In that rig."""
+
+    @property
+    def where(self) -> str:
+        """File and key, for messages."""
+        return f"{self.scope.read_from.path}: components.{self.name}"
 
 
-def _checked(rig: Rig) -> Rig:
-    path, file = rig.read_from.path, rig.file
+@dataclass(frozen=True)
+class Rig:
+    """A rig file with the rigs inside it, checked as far as it can be without its FMUs."""
+
+    file: RigFile
+    read_from: Source
+    top: Scope
+
+    @property
+    def step_ns(self) -> int:
+        """Communication step, ns."""
+        where = f"{self.read_from.path}: step"
+        if self.file.step is None:
+            raise InputError(f"{where}: this key is missing: a rig that runs alone needs it")
+        return duration_ns(self.file.step, where)
+
+    def changed(self, changes: Mapping[str, Any]) -> Rig:
+        """Return the rig with keys of its own file replaced, ``step`` say. Raises InputError."""
+        content = {**self.file.model_dump(exclude_unset=True), **changes}
+        file = validated(RigFile, content, self.read_from.path)
+        check_rig_file(file, self.read_from.path)
+        return Rig(file, self.read_from, replace(self.top, file=file))
+
+    @cached_property
+    def components(self) -> dict[str, Placed]:
+        """Components by path, those of inner rigs in the place of these."""
+        return dict(_placed(self.top))
+
+    @property
+    def settings(self) -> list[tuple[str, Any, str]]:
+        """What rigs set in the rigs inside them, the inner first: (path, as written, where)."""
+        return [
+            (f"{joined(scope.path, name)}.{key}", written, f"{scope.read_from.path}: {place}")
+            for scope in self.top.all()
+            for name, entry in scope.file.components.items()
+            for place in [f"components.{name}.set"]
+            if entry.rig
+            for key, written in entry.set.items()
+        ]
+
+    @property
+    def sources(self) -> list[Source]:
+        """The files of the rigs inside, each once."""
+        found = {scope.read_from.path: scope.read_from for scope in self.top.all() if scope.path}
+        return list(found.values())
+
+
+def _placed(scope: Scope) -> Iterator[tuple[str, Placed]]:
+    for name, entry in scope.file.components.items():
+        if name in scope.inner:
+            yield from _placed(scope.inner[name])
+        else:
+            yield joined(scope.path, name), Placed(entry, scope, name)
+
+
+def check_rig_file(file: RigFile, path: Path) -> None:
+    """Raise InputError for what no single key of a rig's file can tell."""
     for name, component in file.components.items():
-        if not _IDENTIFIER.fullmatch(name):
-            raise InputError(
-                f"{path}: components.{name}: a component's name has letters, digits and '_' "
-                "and starts with a letter or '_'"
-            )
-        if component.timeout is not None and not component.isolated:
-            raise InputError(f"{path}: components.{name}.timeout: needs isolated = true")
-    if rig.step_ns <= 0:
+        _check_component(name, component, f"{path}: components.{name}")
+    for name in file.shows:
+        if not _IDENTIFIER.fullmatch(name) or name in file.components:
+            what = "is a component too" if name in file.components else "is no identifier"
+            raise InputError(f"{path}: shows.{name}: {name!r} {what}")
+    if file.step is not None and duration_ns(file.step, f"{path}: step") <= 0:
         raise InputError(f"{path}: step: must be positive, found {file.step!r}")
     _check_algorithm(path, file)
-    return rig
+
+
+_OF_FMUS = ("parameters", "profile", "step", "isolated", "timeout")
+_OF_RIGS = ("choices", "home", "variant")
+
+
+def _check_component(name: str, component: ComponentEntry, where: str) -> None:
+    if not _IDENTIFIER.fullmatch(name):
+        raise InputError(
+            f"{where}: a component's name has letters, digits and '_' "
+            "and starts with a letter or '_'"
+        )
+    if bool(component.fmu) == bool(component.rig):
+        raise InputError(f"{where}: either fmu or rig is needed")
+    kind, alien = ("rig", _OF_FMUS) if component.rig else ("fmu", _OF_RIGS)
+    for key in alien:
+        if key in component.model_fields_set:
+            raise InputError(f"{where}.{key}: has no effect beside {kind}")
+    if component.timeout is not None and not component.isolated:
+        raise InputError(f"{where}.timeout: needs isolated = true")
 
 
 def _check_algorithm(path: Path, file: RigFile) -> None:

@@ -2,37 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from ..errors import InputError, unknown
-from ..fmi.instance import Instance, Variable, Variables
-from .parameters import Outline
+from ..fmi.instance import Variable, Variables
+from .joining import Resolver
+from .part import Part
+from .paths import split_path
 from .rig import Rig
 from .values import Given, from_written, port_names, port_scalars
 
 Engine = Literal["fmu", "direct"]
-
-
-@dataclass
-class Part:
-    """One component of an assembled rig."""
-
-    name: str
-    fmu: str
-    instance: Instance
-    sha256: str
-    """Of the FMU file; empty in process."""
-    code: str
-    """Name and hash of the code, equal in both carriers; empty for a file of somebody else."""
-    every: int
-    """It steps once in so many communication steps."""
-    given: dict[str, Given] = field(default_factory=dict)
-    """Values set by the rig's user, by variable name; the others keep the FMU's start values."""
-    outline: Outline | None = None
-    """Of the vehicle whose parameters it has, if its file has one."""
-    presets: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -52,6 +33,16 @@ class Connection:
         return self.to_real or (self.factor, self.offset) != (1.0, 0.0)
 
 
+@dataclass(frozen=True)
+class Joint:
+    """A connection of two ports, ``component.port`` each, as a rig or its terminals make it."""
+
+    source: str
+    target: str
+    factor: float = 1.0
+    offset: float = 0.0
+
+
 @dataclass
 class System:
     """An assembled rig: what the master steps."""
@@ -60,35 +51,39 @@ class System:
     engine: Engine
     seed: int
     variant: str | None
-    parts: dict[str, Part]
-    connections: list[Connection]
+    parts: dict[str, Part] = field(default_factory=dict)
+    connections: list[Connection] = field(default_factory=list)
+    joints: list[Joint] = field(default_factory=list)
+    """The same, port by port."""
+    open: list[str] = field(default_factory=list)
+    """Connections whose names end in ``?`` and that were not made, with the reason."""
 
     def set(self, key: str, written: Any, origin: str) -> None:
         """Set ``component.port`` to what a person wrote, before the run.
 
         Raises InputError for an unknown component or port, or a value that does not fit.
         """
-        part, scalars = self._settable(key, origin)
-        for variable in scalars:
-            self.refuse_connected(part.name, variable.name, origin)
-        presets = part.presets.get(key.partition(".")[2], {})
-        part.given.update(from_written(written, scalars, presets, f"{origin}: {key}"))
+        for part, port, scalars in self._settable(key, origin):
+            for variable in scalars:
+                self.refuse_connected(part.name, variable.name, origin)
+            presets = part.presets.get(port, {})
+            part.given.update(from_written(written, scalars, presets, f"{origin}: {key}"))
 
     def scale(self, key: str, factor: float, origin: str) -> None:
         """Multiply the number ``component.port``, as set so far, by ``factor``.
 
         Raises InputError for an unknown component or port, or one that holds no number.
         """
-        part, scalars = self._settable(key, origin)
-        for variable in scalars:
-            given = part.given.get(variable.name)
-            value = variable.start if given is None else given.value
-            if not isinstance(value, float):
-                raise InputError(f"{origin}: {key} is not a real number and cannot be scaled")
-            before = "start value of the FMU" if given is None else given.origin
-            part.given[variable.name] = Given(
-                value * factor, f"{origin}: {factor!r} times {before}"
-            )
+        for part, _, scalars in self._settable(key, origin):
+            for variable in scalars:
+                given = part.given.get(variable.name)
+                value = variable.start if given is None else given.value
+                if not isinstance(value, float):
+                    raise InputError(f"{origin}: {key} is not a real number and cannot be scaled")
+                before = "start value of the FMU" if given is None else given.origin
+                part.given[variable.name] = Given(
+                    value * factor, f"{origin}: {factor!r} times {before}"
+                )
 
     def refuse_connected(self, component: str, variable: str, origin: str) -> None:
         """Raise InputError if a connection feeds the input: a value set there would do nothing."""
@@ -99,12 +94,28 @@ class System:
                     f"{origin}: {component}.{variable} is fed by {feeder}; override it in an event"
                 )
 
-    def _settable(self, key: str, origin: str) -> tuple[Part, list[Variable]]:
-        name, _, port = key.partition(".")
-        if name not in self.parts:
-            raise InputError(f"{origin}: {unknown('component', name, self.parts)}")
-        part = self.parts[name]
-        return part, settable(part.instance.variables, port, f"{origin}: {name}")
+    def located(self, written: str, where: str) -> list[tuple[Part, str]]:
+        """Return the components and ports that a name means: a path, or what a rig inside shows.
+
+        Of an unknown port of a known component, the component and that name. Raises InputError.
+        """
+        name, port = split_path(self.parts, written)
+        if name in self.parts:
+            return [(self.parts[name], port)]
+        if name not in self.rig.top.inner:
+            known = [*self.parts, *self.rig.top.inner]
+            raise InputError(f"{where}: {unknown('component', name, known)}")
+        group = Resolver(self.parts, self.rig.top).anywhere(written, where)
+        if not group.is_port:
+            members = ", ".join(f"{written}.{member}" for member in group.members)
+            raise InputError(f"{where}: {written} is a terminal; its members are {members}")
+        return [(self.parts[pin.component], pin.port) for pin in group.members[""]]
+
+    def _settable(self, key: str, origin: str) -> list[tuple[Part, str, list[Variable]]]:
+        return [
+            (part, port, settable(part.instance.variables, port, f"{origin}: {part.name}"))
+            for part, port in self.located(key, origin)
+        ]
 
     def feeders(self, component: str) -> dict[str, str]:
         """Return which outputs feed the inputs and parameters of a component, by their names."""

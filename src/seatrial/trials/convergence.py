@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ..component import seconds
-from ..cosim.rig import duration_ns
+from ..cosim.rig import Rig, Scope, duration_ns
 from ..cosim.system import Engine
 from ..errors import InputError, SimulationError
 from .accuracy import Accuracy, accuracy, ranked
@@ -103,20 +103,31 @@ def load_convergence(folder: Path) -> Convergence | None:
 
 def _halved(trial: Trial, count: int) -> Trial:
     """Return the trial with all communication steps halved ``count`` times, but the same rows."""
-    where, parts = trial.rig.read_from.path, 2**count
-    components = trial.rig.file.model_dump(exclude_unset=True)["components"]
-    for name, entry in components.items():
-        if entry.get("step") is not None:
-            key = f"{where}: components.{name}.step"
-            entry["step"] = _part_of(duration_ns(entry["step"], key), parts, key)
-    step = _part_of(trial.rig.step_ns, parts, f"{where}: step")
+    rig, parts = trial.rig, 2**count
+    top = _refined(rig.top, parts)
+    step = _part_of(rig.step_ns, parts, f"{rig.read_from.path}: step")
+    top = replace(top, file=top.file.model_copy(update={"step": step}))
     every = f"{trial.record_every * trial.rig.step_ns} ns"
     record = trial.file.record.model_copy(update={"every": every})
     return replace(
         trial,
-        rig=trial.rig.changed({"step": step, "components": components}),
+        rig=Rig(top.file, rig.read_from, top),
         file=trial.file.model_copy(update={"record": record, "real_time": None}),
     )
+
+
+def _refined(scope: Scope, parts: int) -> Scope:
+    """Return a rig with the components' own steps divided, in the rigs inside it too."""
+    components = {}
+    for name, entry in scope.file.components.items():
+        if entry.step is not None:
+            key = f"{scope.read_from.path}: components.{name}.step"
+            step = _part_of(duration_ns(entry.step, key), parts, key)
+            entry = entry.model_copy(update={"step": step})
+        components[name] = entry
+    file = scope.file.model_copy(update={"components": components})
+    inner = {name: _refined(each, parts) for name, each in scope.inner.items()}
+    return replace(scope, file=file, inner=inner)
 
 
 def _part_of(length_ns: int, parts: int, where: str) -> str:

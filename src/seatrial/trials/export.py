@@ -7,7 +7,7 @@ from pathlib import Path
 from ..component import seconds
 from ..cosim.assembly import assemble
 from ..cosim.files import find_file, read_toml
-from ..cosim.rig import load_rig
+from ..cosim.flattening import load_rig
 from ..cosim.ssp.writing import Experiment, write_ssp
 from ..cosim.system import System
 from ..errors import InputError, unknown

@@ -12,7 +12,8 @@ from typing import Any
 from .. import __version__
 from ..component import seconds
 from ..cosim.files import Source
-from ..cosim.system import Engine, Part, System
+from ..cosim.part import Part
+from ..cosim.system import Engine, System
 from ..cosim.values import storable
 from .trial import Trial
 
@@ -29,6 +30,7 @@ def manifest(trial: Trial, system: System, engine: Engine) -> dict[str, Any]:
         "versions": {"python": platform.python_version(), **versions},
         "trial": {**_file(trial.read_from), "title": trial.file.title},
         "rig": {**_file(trial.rig.read_from), "title": trial.rig.file.title},
+        **_composition(trial),
         "engine": engine,
         "algorithm": trial.rig.file.algorithm,
         "variant": system.variant,
@@ -41,7 +43,7 @@ def manifest(trial: Trial, system: System, engine: Engine) -> dict[str, Any]:
             name: _component(part, system.feeders(name), seconds(part.every * trial.rig.step_ns))
             for name, part in system.parts.items()
         },
-        "connections": _connections(trial),
+        "connections": _connections(system),
         "signals": {
             f"{name}.{v.name}": {
                 "type": _TYPES[v.type],
@@ -58,13 +60,23 @@ def manifest(trial: Trial, system: System, engine: Engine) -> dict[str, Any]:
     }
 
 
-def _connections(trial: Trial) -> list[list[Any]]:
+def _composition(trial: Trial) -> dict[str, Any]:
+    """Return the choices of a rig and the files of the rigs inside it, if it has any."""
+    rig, content = trial.rig, dict[str, Any]()
+    if rig.top.choices:
+        content["choices"] = dict(rig.top.choices)
+    if rig.sources:
+        content["rigs"] = [_file(source) for source in rig.sources]
+    return content
+
+
+def _connections(system: System) -> list[list[Any]]:
     """Return [from, to], and [factor, offset] behind where a connection has them."""
     rows: list[list[Any]] = []
-    for source, connection in trial.rig.connections():
-        transformed = (connection.factor, connection.offset) != (1.0, 0.0)
-        transformation = [connection.factor, connection.offset] if transformed else []
-        rows.append([source, connection.to, *transformation])
+    for joint in system.joints:
+        transformed = (joint.factor, joint.offset) != (1.0, 0.0)
+        transformation = [joint.factor, joint.offset] if transformed else []
+        rows.append([joint.source, joint.target, *transformation])
     return rows
 
 

@@ -12,7 +12,8 @@ from pydantic_core import PydanticCustomError
 
 from ..cosim.clock import OverrunPolicy
 from ..cosim.files import FileModel, Source, find_file, read_toml, validated
-from ..cosim.rig import Rig, duration_ns, load_rig
+from ..cosim.flattening import load_rig
+from ..cosim.rig import Rig, duration_ns
 from ..errors import InputError, unknown
 from .criteria import Criterion, parse
 from .verdict import WHOLE

@@ -12,8 +12,8 @@ import pytest
 from pymavlink import mavutil
 
 from seatrial.cosim.assembly import assemble
+from seatrial.cosim.flattening import load_rig
 from seatrial.cosim.master import Master
-from seatrial.cosim.rig import load_rig
 from seatrial.errors import InputError
 from seatrial.trials.run import run_trial
 from seatrial.trials.trial import load_trial

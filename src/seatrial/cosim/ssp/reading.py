@@ -13,8 +13,9 @@ from typing import Any
 from ...component import NS, seconds
 from ...errors import InputError
 from ...fmi.archive import content_hash
-from ..files import Source, validated
-from ..rig import Rig, RigFile
+from ..files import Source
+from ..flattening import rig_of
+from ..rig import Rig
 from .flat import Flat, FlatConnection, Leaf, Path_
 from .package import DEFAULT, open_package
 from .parameters import Value
@@ -54,10 +55,7 @@ def read_ssp(path: Path, step: Any = None) -> SspSystem:
         "components": _components(flat, folder, names, connections, notes),
         "connections": _connections(connections, names),
     }
-    file = validated(RigFile, content, path)
-    rig = Rig(file, Source(path.stem, path, content_hash(path)), folder).changed(
-        {}
-    )  # checked like a file
+    rig = rig_of(content, Source(path.stem, path, content_hash(path)), folder)
     start = None if structure.start is None else f"{structure.start!r} s"
     stop = None if structure.stop is None else f"{structure.stop!r} s"
     return SspSystem(structure.name, rig, start, stop, tuple(notes.texts))

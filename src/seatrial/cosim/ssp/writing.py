@@ -18,7 +18,8 @@ from ...fmi.export import fmu_bytes, zipped
 from ...fmi.instance import Variable
 from ...fmi.source import find_source
 from ...units import Unit, conversion, unit
-from ..system import Connection, Part, System
+from ..part import Part
+from ..system import Connection, System
 from .annotations import write_oms, write_osp
 from .definitions import write_units
 from .documents import NAMESPACES
@@ -70,7 +71,7 @@ def _refuse_fed_parameters(system: System) -> None:
 
 
 def _fmu(system: System, part: Part, values: Mapping[str, Value], notes: list[str]) -> bytes:
-    source = find_source(part.fmu, system.rig.folder)
+    source = find_source(part.fmu, system.rig.components[part.name].scope.folder)
     if not isinstance(source, Path):
         return fmu_bytes(source, values)
     if values:
@@ -90,7 +91,7 @@ def _unsaid(system: System) -> list[str]:
             f"the algorithm {file.algorithm!r} cannot be said: other tools couple by plain Jacobi, "
             "one step of delay per connection"
         )
-    if any(entry.isolated for entry in file.components.values()):
+    if any(placed.entry.isolated for placed in system.rig.components.values()):
         notes.append("isolated = true cannot be said: other tools choose their processes")
     return notes
 

@@ -1,0 +1,149 @@
+"""Rigs inside rigs: their files read, their choices made, each at its place."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from ..errors import InputError, unknown
+from .files import Source, find_file, read_toml, validated
+from .paths import joined
+from .rig import ComponentEntry, Rig, RigFile, Scope, check_rig_file
+
+_DEEPEST = 16
+_CHOICE = re.compile(r"\{([A-Za-z_][A-Za-z0-9_]*)\}")
+_MUST_BE_KNOWN = ("fmu", "rig", "parameters", "profile")
+
+
+def load_rig(
+    name: str, relative_to: Path | None = None, choices: Mapping[str, str] | None = None
+) -> Rig:
+    """Read the rig ``name`` (shipped, in ``harness/rigs``, or a path) with all rigs inside it.
+
+    ``choices`` replace the defaults of its file. Raises InputError for anything wrong in the
+    files, a choice that nothing uses, and a rig that contains itself.
+    """
+    path = find_file("harness/rigs", name, relative_to)
+    reading = _Reading(dict(choices or {}))
+    top = reading.scope(path, "", reading.given, ())
+    idle = [name for name in reading.given if name not in reading.used]
+    if idle:
+        raise InputError(f"{path}: {unknown('choice', idle[0], sorted(reading.used))}")
+    return Rig(top.file, top.read_from, top)
+
+
+def rig_of(content: Any, read_from: Source, folder: Path) -> Rig:
+    """Return the rig of ``content``, which has no rigs inside. Raises InputError.
+
+    ``folder`` is where relative paths of its FMUs start.
+    """
+    file = validated(RigFile, content, read_from.path)
+    check_rig_file(file, read_from.path)
+    return Rig(file, read_from, Scope("", file, read_from, folder, {}, {}))
+
+
+@dataclass
+class _Reading:
+    """The choices that were given, and those that a file declares or uses."""
+
+    given: dict[str, str]
+    used: set[str] = field(default_factory=set)
+
+    def scope(
+        self,
+        path: Path,
+        place: str,
+        around: Mapping[str, str],
+        chain: tuple[Path, ...],
+        entry: ComponentEntry | None = None,
+    ) -> Scope:
+        """Return the rig of a file at ``place``, with the choices ``around`` it."""
+        if path in chain or len(chain) > _DEEPEST:
+            names = " -> ".join(p.stem for p in (*chain, path))
+            raise InputError(f"{chain[-1]}: a rig contains itself: {names}")
+        content, read_from = read_toml(path)
+        choices = {**_declared(content), **around}
+        self.used |= _declared(content).keys() | _used(content)
+        file = validated(RigFile, _chosen(content, choices), path)
+        _refuse_unchosen(file, path)
+        check_rig_file(file, path)
+        inner = {
+            name: self._inner(
+                part, f"{path}: components.{name}", joined(place, name), choices, path, chain
+            )
+            for name, part in file.components.items()
+            if part.rig
+        }
+        variant = (entry and entry.variant) or file.variant
+        home = (entry.home[0], entry.home[1], entry.home[2]) if entry and entry.home else None
+        return Scope(place, file, read_from, path.parent, choices, inner, variant, home)
+
+    def _inner(
+        self,
+        entry: ComponentEntry,
+        where: str,
+        place: str,
+        choices: Mapping[str, str],
+        path: Path,
+        chain: tuple[Path, ...],
+    ) -> Scope:
+        try:
+            file = find_file("harness/rigs", entry.rig, path.parent)
+        except InputError as error:
+            raise InputError(f"{where}.rig: {error}") from None
+        before = set(self.used)
+        self.used = set()
+        scope = self.scope(file, place, {**choices, **entry.choices}, (*chain, path), entry)
+        for name in entry.choices:
+            if name not in self.used:
+                raise InputError(f"{where}.choices: {unknown('choice', name, sorted(self.used))}")
+        self.used = before | (self.used - entry.choices.keys())
+        return scope
+
+
+def _declared(content: Mapping[str, Any]) -> dict[str, str]:
+    """Return the choices of a file's content; what is wrong in them is told when it is checked."""
+    table = content.get("choices", {})
+    return {k: v for k, v in table.items() if isinstance(v, str)} if type(table) is dict else {}
+
+
+def _texts(value: Any) -> Iterator[str]:
+    """Yield all texts of a file's content, keys too."""
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, dict):
+        for key, each in value.items():
+            yield key
+            yield from _texts(each)
+    elif isinstance(value, list):
+        for each in value:
+            yield from _texts(each)
+
+
+def _used(content: Mapping[str, Any]) -> set[str]:
+    return {match[1] for text in _texts(dict(content)) for match in _CHOICE.finditer(text)}
+
+
+def _chosen(value: Any, choices: Mapping[str, str]) -> Any:
+    """Return a file's content with every ``{name}`` of a choice replaced."""
+    if isinstance(value, str):
+        return _CHOICE.sub(lambda match: choices.get(match[1], match[0]), value)
+    if isinstance(value, dict):
+        return {_chosen(key, choices): _chosen(each, choices) for key, each in value.items()}
+    if isinstance(value, list):
+        return [_chosen(each, choices) for each in value]
+    return value
+
+
+def _refuse_unchosen(file: RigFile, path: Path) -> None:
+    for name, entry in file.components.items():
+        for key in _MUST_BE_KNOWN:
+            unchosen = _CHOICE.search(getattr(entry, key) or "")
+            if unchosen:
+                raise InputError(
+                    f"{path}: components.{name}.{key}: the choice {unchosen[1]!r} has no value; "
+                    f"give it one in [choices], or on the command line: --choose {unchosen[1]}=..."
+                )

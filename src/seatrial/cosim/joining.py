@@ -1,0 +1,180 @@
+"""Names in a rig's connections: ports, terminals, and what rigs inside it show."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from ..errors import InputError, unknown
+from ..fmi.instance import Variable, Variables
+from ..terminals import Rule
+from .part import Part
+from .paths import joined
+from .rig import Scope, Shown
+from .values import port_names, port_scalars
+
+_PLUGS = ("actuators", "wrench")
+"""Terminals put together in a rig whose inputs must all be met."""
+
+
+@dataclass(frozen=True)
+class Pin:
+    """A port, a scalar of one, or the sum of several inputs, of one component."""
+
+    component: str
+    port: str
+    sum_of: tuple[str, ...] = ()
+    """Of a sum, the inputs that are its terms."""
+
+    @property
+    def name(self) -> str:
+        """``component.port``."""
+        return f"{self.component}.{self.port}"
+
+
+@dataclass
+class Group:
+    """What a name in a rig stands for: a port (one member without a name) or a terminal."""
+
+    members: dict[str, list[Pin]] = field(default_factory=dict)
+    rule: Rule = "bus"
+
+    @property
+    def is_port(self) -> bool:
+        """Say if it is a port, or several that are used as one."""
+        return "" in self.members
+
+    @property
+    def pins(self) -> list[Pin]:
+        """All ports of all members."""
+        return [pin for pins in self.members.values() for pin in pins]
+
+    def add(self, other: Group) -> None:
+        """Add the members of another group."""
+        for member, pins in other.members.items():
+            self.members.setdefault(member, []).extend(pins)
+        self.rule = "plug" if "plug" in (self.rule, other.rule) else "bus"
+
+
+class Resolver:
+    """Says what names mean, in the rig at the top and in those inside it.
+
+    Raises InputError, which begins with the ``where`` of each call, for a name that is none.
+    """
+
+    def __init__(self, parts: Mapping[str, Part], top: Scope) -> None:
+        self._parts, self._top = parts, top
+
+    def named(
+        self, scope: Scope, written: str, where: str, wanted: Sequence[str] = ()
+    ) -> Group | None:
+        """Return what ``written`` means in the file of ``scope``.
+
+        None for a name that ends in ``?`` and that a component or rig does not have. ``wanted``
+        are the kinds of ports that a message about an unknown one offers.
+        """
+        name, optional = written.removesuffix("?"), written.endswith("?")
+        head, _, rest = name.partition(".")
+        if head in scope.inner:
+            return self._shown(scope.inner[head], head, rest, optional, where)
+        if head in scope.file.components:
+            return self._of_component(joined(scope.path, head), rest, optional, where, wanted)
+        raise InputError(f"{where}: {unknown('component', head, scope.file.components)}")
+
+    def anywhere(self, written: str, where: str) -> Group:
+        """Return what a path means, seen from outside: a port at any depth, or what is shown."""
+        scope, rest = self._top, written
+        while True:
+            head, _, behind = rest.partition(".")
+            if head not in scope.inner or behind.partition(".")[0] in scope.inner[head].file.shows:
+                break
+            scope, rest = scope.inner[head], behind
+        group = self.named(scope, rest, where)
+        assert group is not None
+        return group
+
+    def variables(self, pin: Pin) -> list[Variable]:
+        """Return the scalars of a pin; of a sum, those of its first term."""
+        variables = self._parts[pin.component].instance.variables
+        return port_scalars(variables, pin.sum_of[0] if pin.sum_of else pin.port)
+
+    def _shown(
+        self, scope: Scope, name: str, written: str, optional: bool, where: str
+    ) -> Group | None:
+        """Return what a rig inside shows under a name, or a part of that."""
+        shown, _, member = written.partition(".")
+        shows = scope.file.shows
+        if shown not in shows:
+            if optional:
+                return None
+            found = unknown("name", shown, shows) if shows else "it shows nothing"
+            raise InputError(f"{where}: {name} does not show {shown!r}: {found}")
+        inside = f"{scope.read_from.path}: shows.{shown}"
+        group = self._put_together(scope, shown, shows[shown], inside)
+        if group is None and not optional:
+            raise InputError(f"{where}: {name} does not show {shown!r} with these choices")
+        return group if group is None or not member else self._part(group, member, where)
+
+    def _put_together(self, scope: Scope, shown: str, written: Shown, where: str) -> Group | None:
+        if isinstance(written, str):
+            return self.named(scope, written, where)
+        group = Group()
+        if isinstance(written, list):
+            for each in written:
+                found = self.named(scope, each, where)
+                if found is not None:
+                    group.add(found)
+            return group if group.members else None
+        for member, each in written.items():
+            found = self.named(scope, each, f"{where}.{member}")
+            if found is None:
+                continue
+            if not found.is_port:
+                raise InputError(f"{where}.{member}: {each} is a terminal, a port is needed")
+            group.members[member] = found.members[""]
+        group.rule = "plug" if shown in _PLUGS else "bus"
+        return group
+
+    def _part(self, group: Group, written: str, where: str) -> Group:
+        """Return a member of a terminal, or a scalar of a port."""
+        member, axis = ("", written) if group.is_port else written.partition(".")[::2]
+        if member not in group.members:
+            raise InputError(f"{where}: {unknown('member', member, group.members)}")
+        pins = group.members[member]
+        if axis:
+            pins = [Pin(p.component, f"{p.port}.{axis}") for p in pins]
+            for pin in pins:
+                if not self.variables(pin):
+                    names = [v.name for v in self.variables(Pin(pin.component, pin.port))]
+                    raise InputError(f"{where}: {unknown('scalar', pin.port, names)}")
+        return Group({"": pins})
+
+    def _of_component(
+        self, path: str, rest: str, optional: bool, where: str, wanted: Sequence[str]
+    ) -> Group | None:
+        instance = self._parts[path].instance
+        name, _, member = rest.partition(".")
+        if port_scalars(instance.variables, rest) or rest in instance.variables.terms:
+            return Group({"": [self._pin(path, rest)]})
+        if name in instance.terminals:
+            terminal = instance.terminals[name]
+            pins = {m: [self._pin(path, port)] for m, port in terminal.members.items()}
+            group = Group(pins, terminal.rule)
+            return self._part(group, member, where) if member else group
+        if optional:
+            return None
+        variables = instance.variables
+        fitting = {n: v for n, v in variables.items() if not wanted or kind_of(v) in wanted}
+        known = [*port_names(Variables(fitting)), *variables.terms, *instance.terminals]
+        raise InputError(f"{where}: {path}: {unknown(' or '.join(wanted) or 'port', rest, known)}")
+
+    def _pin(self, path: str, port: str) -> Pin:
+        variables: Variables = self._parts[path].instance.variables
+        return Pin(path, port, tuple(variables.terms.get(port, ())))
+
+
+def kind_of(variable: Variable) -> str:
+    """Return a variable's causality; of a parameter, its variability too."""
+    if variable.causality != "parameter":
+        return variable.causality
+    return f"{variable.variability} parameter"

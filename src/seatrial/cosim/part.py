@@ -1,0 +1,31 @@
+"""One component of an assembled rig."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from ..fmi.instance import Instance
+from .parameters import Outline
+from .values import Given
+
+
+@dataclass
+class Part:
+    """One component of an assembled rig."""
+
+    name: str
+    fmu: str
+    instance: Instance
+    sha256: str
+    """Of the FMU file; empty in process."""
+    code: str
+    """Name and hash of the code, equal in both carriers; empty for a file of somebody else."""
+    every: int
+    """It steps once in so many communication steps."""
+    given: dict[str, Given] = field(default_factory=dict)
+    """Values set by the rig's user, by variable name; the others keep the FMU's start values."""
+    outline: Outline | None = None
+    """Of the vehicle whose parameters it has, if its file has one."""
+    presets: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
