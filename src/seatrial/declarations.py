@@ -1,4 +1,4 @@
-"""What the class of a component declares, collected and checked when the class is made."""
+"""Declarations of a component's class, collected and checked when the class is made."""
 
 from __future__ import annotations
 

@@ -63,7 +63,12 @@ def errors(bench: Bench, algorithm: str, more: str = "") -> list[float]:
         ("gauss-seidel", "", 1.0),
         ("extrapolated", "", 2.0),
         ("iterated", "iteration = { count = 2, tolerance = 1e-12 }", 2.0),
-        ("iterated", "iteration = { count = 4, tolerance = 1e-12 }", 2.0),
+        pytest.param(
+            "iterated",
+            "iteration = { count = 4, tolerance = 1e-12 }",
+            2.0,
+            marks=pytest.mark.interop,
+        ),
     ],
 )
 def test_orders_of_convergence_on_two_bodies(
@@ -442,7 +447,9 @@ def ring(gain: float, count: int, turn: int, kind: str = "users.py:Scale") -> tu
 
 
 @pytest.mark.parametrize("turn", [1, -1])
-@pytest.mark.parametrize("count", [1, 2, 6, pytest.param(20, marks=pytest.mark.interop)])
+@pytest.mark.parametrize(
+    "count", [1, 2, *(pytest.param(n, marks=pytest.mark.interop) for n in (6, 20))]
+)
 @pytest.mark.parametrize("gain", [0.5, 0.9, 0.99, -0.5, -0.95, -1.05, -5.0, -25.0])
 def test_a_loop_settles_whatever_its_gain_and_order_of_declaration(
     direct: Bench, gain: float, count: int, turn: int
