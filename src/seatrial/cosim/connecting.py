@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from ..errors import InputError
 from ..fmi.instance import Variable
 from ..units import conversion
-from .joining import Group, Pin, Resolver, kind_of
+from .joining import Group, End, Resolver, kind_of
 from .rig import ConnectionEntry, Scope
 from .system import Connection, Joint, System
 from .values import port_scalars
@@ -45,8 +45,8 @@ class _Making:
         if source is None or target is None:
             self.system.open.append(f"{written} = {entry.to}: not made, one side has no such name")
         elif source.is_port and target.is_port:
-            for pin in target.members[""]:
-                self._feed(_one(source.members[""], written, where), pin, entry, where)
+            for end in target.members[""]:
+                self._feed(_one(source.members[""], written, where), end, entry, where)
         elif source.is_port or target.is_port:
             port, terminal = (written, entry.to) if source.is_port else (entry.to, written)
             raise InputError(f"{where}: {port} is a port and {terminal} a terminal")
@@ -68,31 +68,31 @@ class _Making:
                         met.add(target.name)
         if not met:
             raise InputError(
-                f"{where}: nothing joins: {written} {self._told(a)}; {entry.to} {self._told(b)}"
+                f"{where}: nothing joins: {written} {self._directions(a)}; {entry.to} {self._directions(b)}"
             )
         for name, group in ((written, a), (entry.to, b)):
             if group.rule == "plug":
                 self._refuse_open(name, group, met, where)
 
     def _refuse_open(self, name: str, group: Group, met: set[str], where: str) -> None:
-        for member, pins in group.members.items():
-            for pin in self._of_kind(pins, ("input",)):
-                if pin.name not in met:
-                    raise InputError(f"{where}: nothing gives {name} its {member} ({pin.name})")
+        for member, ends in group.members.items():
+            for end in self._of_kind(ends, ("input",)):
+                if end.name not in met:
+                    raise InputError(f"{where}: nothing gives {name} its {member} ({end.name})")
 
-    def _told(self, group: Group) -> str:
+    def _directions(self, group: Group) -> str:
         """Return what a terminal gives and takes, for a message."""
         kinds = {"gives": _SOURCES, "takes": _TARGETS}
-        told = {
-            verb: [m for m, pins in group.members.items() if self._of_kind(pins, kind)]
+        named = {
+            verb: [m for m, ends in group.members.items() if self._of_kind(ends, kind)]
             for verb, kind in kinds.items()
         }
-        return " and ".join(f"{verb} {', '.join(names)}" for verb, names in told.items() if names)
+        return " and ".join(f"{verb} {', '.join(names)}" for verb, names in named.items() if names)
 
-    def _of_kind(self, pins: list[Pin], wanted: tuple[str, ...]) -> list[Pin]:
-        return [pin for pin in pins if kind_of(self.resolver.variables(pin)[0]) in wanted]
+    def _of_kind(self, ends: list[End], wanted: tuple[str, ...]) -> list[End]:
+        return [end for end in ends if kind_of(self.resolver.variables(end)[0]) in wanted]
 
-    def _feed(self, source: Pin, target: Pin, entry: ConnectionEntry, where: str) -> None:
+    def _feed(self, source: End, target: End, entry: ConnectionEntry, where: str) -> None:
         """Connect two ports, scalar by scalar; of a sum, the first term that is free."""
         if target.sum_of:
             target = self._free_term(target, where)
@@ -114,36 +114,36 @@ class _Making:
             self.feeders[place] = source.name
             self.system.connections.append(_scalar(source, one, target, other, entry, where))
 
-    def _free_term(self, target: Pin, where: str) -> Pin:
+    def _free_term(self, target: End, where: str) -> End:
         variables = self.system.parts[target.component].instance.variables
         for term in target.sum_of:
             names = [(target.component, v.name) for v in port_scalars(variables, term)]
             if not any(name in self.feeders for name in names):
-                return Pin(target.component, term)
+                return End(target.component, term)
         feeders = [self.feeders.get((target.component, term), term) for term in target.sum_of]
         raise InputError(
             f"{where}: all {len(feeders)} terms of {target.name} are fed; it takes no more"
         )
 
-    def _scalars(self, pin: Pin, wanted: tuple[str, ...], where: str) -> list[Variable]:
-        scalars = self.resolver.variables(pin)
+    def _scalars(self, end: End, wanted: tuple[str, ...], where: str) -> list[Variable]:
+        scalars = self.resolver.variables(end)
         for variable in scalars:
             if kind_of(variable) not in wanted:
                 needed = " or ".join(wanted)
-                raise InputError(f"{where}: {pin.name} is {kind_of(variable)}, {needed} is needed")
+                raise InputError(f"{where}: {end.name} is {kind_of(variable)}, {needed} is needed")
         return scalars
 
 
-def _one(pins: list[Pin], written: str, where: str) -> Pin:
-    if len(pins) > 1:
+def _one(ends: list[End], written: str, where: str) -> End:
+    if len(ends) > 1:
         raise InputError(
-            f"{where}: {written} is {' and '.join(p.name for p in pins)}: one is needed"
+            f"{where}: {written} is {' and '.join(p.name for p in ends)}: one is needed"
         )
-    return pins[0]
+    return ends[0]
 
 
 def _scalar(
-    source: Pin, one: Variable, target: Pin, other: Variable, entry: ConnectionEntry, where: str
+    source: End, one: Variable, target: End, other: Variable, entry: ConnectionEntry, where: str
 ) -> Connection:
     """Return the connection of two scalars."""
     factor, offset = _converting(one, other, entry, where)

@@ -105,7 +105,7 @@ class _Reading:
 
 
 def _declared(content: Mapping[str, Any]) -> dict[str, str]:
-    """Return the choices of a file's content; what is wrong in them is told when it is checked."""
+    """Return the choices of a file's content; mistakes in them are found when it is checked."""
     table = content.get("choices", {})
     return {k: v for k, v in table.items() if isinstance(v, str)} if type(table) is dict else {}
 

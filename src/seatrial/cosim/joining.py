@@ -18,7 +18,7 @@ _PLUGS = ("actuators", "wrench")
 
 
 @dataclass(frozen=True)
-class Pin:
+class End:
     """A port, a scalar of one, or the sum of several inputs, of one component."""
 
     component: str
@@ -36,7 +36,7 @@ class Pin:
 class Group:
     """What a name in a rig stands for: a port (one member without a name) or a terminal."""
 
-    members: dict[str, list[Pin]] = field(default_factory=dict)
+    members: dict[str, list[End]] = field(default_factory=dict)
     rule: Rule = "bus"
 
     @property
@@ -45,14 +45,14 @@ class Group:
         return "" in self.members
 
     @property
-    def pins(self) -> list[Pin]:
+    def ends(self) -> list[End]:
         """All ports of all members."""
-        return [pin for pins in self.members.values() for pin in pins]
+        return [end for ends in self.members.values() for end in ends]
 
     def add(self, other: Group) -> None:
         """Add the members of another group."""
-        for member, pins in other.members.items():
-            self.members.setdefault(member, []).extend(pins)
+        for member, ends in other.members.items():
+            self.members.setdefault(member, []).extend(ends)
         self.rule = "plug" if "plug" in (self.rule, other.rule) else "bus"
 
 
@@ -93,10 +93,10 @@ class Resolver:
         assert group is not None
         return group
 
-    def variables(self, pin: Pin) -> list[Variable]:
-        """Return the scalars of a pin; of a sum, those of its first term."""
-        variables = self._parts[pin.component].instance.variables
-        return port_scalars(variables, pin.sum_of[0] if pin.sum_of else pin.port)
+    def variables(self, end: End) -> list[Variable]:
+        """Return the scalars of a end; of a sum, those of its first term."""
+        variables = self._parts[end.component].instance.variables
+        return port_scalars(variables, end.sum_of[0] if end.sum_of else end.port)
 
     def _shown(
         self, scope: Scope, name: str, written: str, optional: bool, where: str
@@ -140,14 +140,14 @@ class Resolver:
         member, axis = ("", written) if group.is_port else written.partition(".")[::2]
         if member not in group.members:
             raise InputError(f"{where}: {unknown('member', member, group.members)}")
-        pins = group.members[member]
+        ends = group.members[member]
         if axis:
-            pins = [Pin(p.component, f"{p.port}.{axis}") for p in pins]
-            for pin in pins:
-                if not self.variables(pin):
-                    names = [v.name for v in self.variables(Pin(pin.component, pin.port))]
-                    raise InputError(f"{where}: {unknown('scalar', pin.port, names)}")
-        return Group({"": pins})
+            ends = [End(p.component, f"{p.port}.{axis}") for p in ends]
+            for end in ends:
+                if not self.variables(end):
+                    names = [v.name for v in self.variables(End(end.component, end.port))]
+                    raise InputError(f"{where}: {unknown('scalar', end.port, names)}")
+        return Group({"": ends})
 
     def _of_component(
         self, path: str, rest: str, optional: bool, where: str, wanted: Sequence[str]
@@ -155,11 +155,11 @@ class Resolver:
         instance = self._parts[path].instance
         name, _, member = rest.partition(".")
         if port_scalars(instance.variables, rest) or rest in instance.variables.terms:
-            return Group({"": [self._pin(path, rest)]})
+            return Group({"": [self._end(path, rest)]})
         if name in instance.terminals:
             terminal = instance.terminals[name]
-            pins = {m: [self._pin(path, port)] for m, port in terminal.members.items()}
-            group = Group(pins, terminal.rule)
+            ends = {m: [self._end(path, port)] for m, port in terminal.members.items()}
+            group = Group(ends, terminal.rule)
             return self._part(group, member, where) if member else group
         if optional:
             return None
@@ -168,9 +168,9 @@ class Resolver:
         known = [*port_names(Variables(fitting)), *variables.terms, *instance.terminals]
         raise InputError(f"{where}: {path}: {unknown(' or '.join(wanted) or 'port', rest, known)}")
 
-    def _pin(self, path: str, port: str) -> Pin:
+    def _end(self, path: str, port: str) -> End:
         variables: Variables = self._parts[path].instance.variables
-        return Pin(path, port, tuple(variables.terms.get(port, ())))
+        return End(path, port, tuple(variables.terms.get(port, ())))
 
 
 def kind_of(variable: Variable) -> str:

@@ -76,7 +76,7 @@ class RigFile(FileModel):
 
     title: str = ""
     step: str | None = None
-    """Communication step; an inner rig's counts only where it runs alone."""
+    """Communication step; an inner rig's holds where that runs alone."""
     algorithm: str = "jacobi"
     """A name of `registry.ALGORITHMS`."""
     iteration: IterationEntry | None = None

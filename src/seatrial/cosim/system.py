@@ -109,7 +109,7 @@ class System:
         if not group.is_port:
             members = ", ".join(f"{written}.{member}" for member in group.members)
             raise InputError(f"{where}: {written} is a terminal; its members are {members}")
-        return [(self.parts[pin.component], pin.port) for pin in group.members[""]]
+        return [(self.parts[end.component], end.port) for end in group.members[""]]
 
     def _settable(self, key: str, origin: str) -> list[tuple[Part, str, list[Variable]]]:
         return [
