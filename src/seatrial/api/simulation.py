@@ -300,11 +300,9 @@ class Simulation:
         """Return the component and the scalars that a name means."""
         from ..cosim.values import port_names, port_scalars
 
-        component, _, port = name.partition(".")
-        parts = self._master.system.parts
-        if component not in parts:
-            raise InputError(f"{name}: {unknown('component', component, parts)}")
-        variables = parts[component].instance.variables
+        part, port = self._master.system.located(name, name)[0]
+        component = part.name
+        variables = part.instance.variables
         scalars = port_scalars(variables, port)
         if not scalars:
             raise InputError(f"{component}: {unknown('port', port, port_names(variables))}")

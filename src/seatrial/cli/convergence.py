@@ -16,7 +16,17 @@ from ..trials.readable import number, person_scale
 from ..trials.report import write_report
 from ..trials.run import Hooks, Result
 from ..trials.trial import load_trial
-from .options import EngineName, Out, Settings, engine_named, is_campaign, setting
+from .options import (
+    Autopilot,
+    Choices,
+    EngineName,
+    Out,
+    Settings,
+    Vehicle,
+    changes_of,
+    engine_named,
+    is_campaign,
+)
 from .show import console, print_notes
 from .statuses import FAILED
 from .stopping import stoppable
@@ -27,12 +37,15 @@ def convergence(
     trial: Annotated[str, typer.Argument(help="A trial: a name, a .toml or an .ssp file.")],
     halvings: Annotated[int, typer.Option(help="How often the step is halved, at least 2.")] = 2,
     settings: Settings = None,
+    choices: Choices = None,
+    vehicle: Vehicle = None,
+    autopilot: Autopilot = None,
     engine: EngineName = "fmu",
     out: Out = None,
 ) -> None:
     """Halve a trial's communication step: order and error of each output; status 1 if erratic."""
     chosen = engine_named(engine)
-    changes = dict(setting(text) for text in settings or [])
+    changes = changes_of(settings, choices, vehicle, autopilot)
     if is_campaign(trial):
         raise InputError(f"convergence works with a trial; {trial} is a campaign")
     loaded = load_trial(trial, changes=changes, origin="--set")
@@ -59,7 +72,9 @@ def convergence(
 def _print(found: Convergence) -> None:
     """Print the worst output of each port, and what does not converge, differs or is exact."""
     own, half = (f"{number(step * 1e3, 9)} ms" for step in found.steps[:2])
-    rows = [worst for worst in by_port(found.outputs) if worst.behaviour != "exact"]
+    rows = [
+        worst for worst in by_port(found.outputs, found.components) if worst.behaviour != "exact"
+    ]
     if rows:
         title = f"{found.trial}, estimated errors"
         table = Table(title=title, title_justify="left", box=SIMPLE, padding=(0, 1, 0, 0))

@@ -18,6 +18,17 @@ Settings = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="KEY=VALUE", help="Set component.port, or a trial's key."),
 ]
+Choices = Annotated[
+    list[str] | None,
+    typer.Option("--choose", metavar="NAME=VALUE", help="Make one of the rig's choices."),
+]
+Vehicle = Annotated[
+    str | None, typer.Option("--vehicle", metavar="NAME", help="Short for --choose vehicle=NAME.")
+]
+Autopilot = Annotated[
+    str | None,
+    typer.Option("--autopilot", metavar="NAME", help="Short for --choose autopilot=NAME."),
+]
 EngineName = Annotated[
     str, typer.Option("--engine", help="'fmu': every component is an FMU; 'direct': in process.")
 ]
@@ -31,6 +42,23 @@ def engine_named(name: str) -> Engine:
     if name not in ("fmu", "direct"):
         raise InputError(f"--engine: 'fmu' or 'direct' is needed, found {name!r}")
     return "direct" if name == "direct" else "fmu"
+
+
+def changes_of(
+    settings: list[str] | None,
+    choices: list[str] | None = None,
+    vehicle: str | None = None,
+    autopilot: str | None = None,
+) -> dict[str, Any]:
+    """Return what the command line changes in a trial, by key. Raises InputError."""
+    changes = dict(setting(text) for text in settings or [])
+    for text in choices or []:
+        name, equals, value = text.partition("=")
+        if not equals or not name or not value:
+            raise InputError(f"--choose: NAME=VALUE is needed, found {text!r}")
+        changes[f"choices.{name.strip()}"] = value.strip()
+    named = {"choices.vehicle": vehicle, "choices.autopilot": autopilot}
+    return {**changes, **{key: value for key, value in named.items() if value is not None}}
 
 
 def setting(text: str) -> tuple[str, Any]:

@@ -15,7 +15,17 @@ from ..trials.campaign_report import write_campaign_report
 from ..trials.report import write_report
 from ..trials.run import Hooks, Result, run_trial
 from ..trials.trial import Trial, load_trial
-from .options import EngineName, Out, Settings, engine_named, is_campaign, setting
+from .options import (
+    Autopilot,
+    Choices,
+    EngineName,
+    Out,
+    Settings,
+    Vehicle,
+    changes_of,
+    engine_named,
+    is_campaign,
+)
 from .show import console, print_case, print_notes, print_reachable, print_verdicts
 from .statuses import FAILED
 from .stopping import stoppable
@@ -27,6 +37,9 @@ def run(
         str, typer.Argument(help="A trial or campaign: a name, a .toml or an .ssp file.")
     ],
     settings: Settings = None,
+    choices: Choices = None,
+    vehicle: Vehicle = None,
+    autopilot: Autopilot = None,
     engine: EngineName = "fmu",
     out: Out = None,
     real_time: Annotated[
@@ -48,13 +61,15 @@ def run(
     chosen = engine_named(engine)
     if hardware:
         allow_hardware()
-    changes = dict(setting(text) for text in settings or [])
+    changes = changes_of(settings, choices, vehicle, autopilot)
     pace = {"factor": real_time, "overrun": overrun}
     pace = {key: value for key, value in pace.items() if value is not None}
     if is_campaign(trial):
         campaign = load_campaign(trial)
-        if changes:
+        if settings:
             raise InputError("--set works with a trial; a campaign sets its own parameters")
+        if changes:
+            raise InputError("--choose works with a trial; a campaign has choices in its grid")
         if pace:
             raise InputError("--real-time and --overrun work with a trial, not with a campaign")
         if in_real_time:

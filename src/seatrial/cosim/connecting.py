@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from ..errors import InputError
 from ..fmi.instance import Variable
 from ..units import conversion
-from .joining import Group, End, Resolver, kind_of
+from .joining import End, Group, Resolver, kind_of
 from .rig import ConnectionEntry, Scope
 from .system import Connection, Joint, System
 from .values import port_scalars
@@ -67,9 +67,8 @@ class _Making:
                         self._feed(source, target, entry, f"{where}, {member}")
                         met.add(target.name)
         if not met:
-            raise InputError(
-                f"{where}: nothing joins: {written} {self._directions(a)}; {entry.to} {self._directions(b)}"
-            )
+            sides = (f"{name} {self._directions(of)}" for name, of in ((written, a), (entry.to, b)))
+            raise InputError(f"{where}: nothing joins: {'; '.join(sides)}")
         for name, group in ((written, a), (entry.to, b)):
             if group.rule == "plug":
                 self._refuse_open(name, group, met, where)

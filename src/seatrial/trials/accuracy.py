@@ -16,6 +16,7 @@ from typing import Literal
 
 import numpy as np
 
+from ..cosim.paths import split_path
 from .expressions import FloatArray
 
 ROUND_OFF = 1e-11
@@ -90,9 +91,10 @@ def ranked(outputs: Sequence[Accuracy]) -> list[Accuracy]:
     )
 
 
-def by_port(outputs: Sequence[Accuracy]) -> list[Accuracy]:
-    """Return the worst scalar of each port, the worst port first."""
-    worst: dict[str, Accuracy] = {}
+def by_port(outputs: Sequence[Accuracy], components: Sequence[str]) -> list[Accuracy]:
+    """Return the worst scalar of each port, the worst port first; ``components`` by path."""
+    worst: dict[tuple[str, str], Accuracy] = {}
     for output in ranked(outputs):
-        worst.setdefault(".".join(output.signal.split(".")[:2]), output)
+        component, port = split_path(components, output.signal)
+        worst.setdefault((component, port.partition(".")[0]), output)
     return list(worst.values())

@@ -81,7 +81,7 @@ def _figure(found: Convergence, moving: list[Accuracy]) -> Figure:
     """Return how the worst outputs differ from their runs at half the step, over the step."""
     figure = Figure()
     steps = [step * 1e3 for step in found.steps[:-1]]
-    worst = [output for output in by_port(moving) if output.range][:_PLOTTED]
+    worst = [output for output in by_port(moving, found.components) if output.range][:_PLOTTED]
     for index, output in enumerate(worst):
         figure.trace(
             "scatter",

@@ -45,6 +45,8 @@ class Convergence:
     """Real outputs, the worst first."""
     discrete: list[Discrete]
     """Other outputs that differ between two runs."""
+    components: list[str]
+    """Of the rig, by path."""
 
     @property
     def converges(self) -> bool:
@@ -167,6 +169,7 @@ def _compared(trials: Sequence[Trial], runs: Sequence[Run]) -> Convergence:
         folders=[".", *(_folder_name(trial) for trial in trials[1:])],
         outputs=ranked(outputs),
         discrete=[one for one in discrete if any(at is not None for at in one.differs_at)],
+        components=list(finest.manifest["components"]),
     )
 
 

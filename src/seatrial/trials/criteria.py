@@ -82,7 +82,7 @@ SIGN: "+" | "-"
 TIMES: "*" | "/"
 FUNCTION: /(abs|max|min|sqrt)(?=\s*\()/
 NUMBER: /([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?/
-SIGNAL: /[A-Za-z_][A-Za-z0-9_]*(-[A-Za-z0-9_]+)*(\.[A-Za-z0-9_]+){1,2}/
+SIGNAL: /[A-Za-z_][A-Za-z0-9_]*(-[A-Za-z0-9_]+)*(\.[A-Za-z0-9_]+)+/
 UNIT: NO_KEYWORD UNIT_PART (("." | "/") UNIT_PART)*
 NO_KEYWORD: /(?!(and|or|not|after|from|to|settles)\b)/
 UNIT_PART: /(%|°|[A-Za-zµμΩ]+(-?[0-9])?)/

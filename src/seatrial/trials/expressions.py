@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -111,6 +111,17 @@ Expression = Literal | Signal | Operation
 def signal_names(node: Expression | Condition) -> set[str]:
     """Return the names of all signals that occur in ``node``."""
     return {leaf.name for leaf in node.leaves() if isinstance(leaf, Signal)}
+
+
+def renamed(node: Any, names: Mapping[str, str]) -> Any:
+    """Return an expression or condition with other names of signals."""
+    if isinstance(node, Signal):
+        return Signal(names[node.name])
+    if isinstance(node, Literal):
+        return node
+    if isinstance(node, Comparison):
+        return Comparison(node.operator, renamed(node.left, names), renamed(node.right, names))
+    return replace(node, arguments=tuple(renamed(argument, names) for argument in node.arguments))
 
 
 def depth(node: Expression | Condition) -> int:

@@ -10,6 +10,7 @@ from ..cosim.system import Engine, System
 from ..errors import InputError, SimulationError
 from .checks import check_criteria, check_events, check_plots, check_real_time
 from .hooks import Hooks
+from .naming import by_path
 from .trial import Trial
 
 
@@ -67,6 +68,7 @@ def prepare(trial: Trial, engine: Engine, hooks: Hooks) -> Prepared:
             system.set(key, written, origin)
         for key, factor, origin in trial.scales:
             system.scale(key, factor, origin)
+        trial = by_path(trial, system)
         units = check_criteria(trial, system)
         check_plots(trial, system)
         check_events(trial, system)

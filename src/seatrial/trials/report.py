@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from jinja2 import Environment, FileSystemBytecodeCache, FileSystemLoader, StrictUndefined
 
+from ..cosim.paths import split_path
 from ..errors import InputError
 from ..fmi.cache import cache_folder
 from ..units import quantity
@@ -178,7 +179,7 @@ def _rest(run: Run, ports: Sequence[Port]) -> Iterator[Section]:
 def _ports(run: Run) -> Iterator[Port]:
     grouped: dict[tuple[str, str], list[str]] = {}
     for signal in run.signals:
-        component, _, rest = signal.partition(".")
+        component, rest = split_path(run.manifest["components"], signal)
         grouped.setdefault((component, rest.partition(".")[0]), []).append(signal)
     for (component, name), signals in grouped.items():
         yield Port(component, name, tuple(signals))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -74,6 +74,8 @@ class TrialFile(FileModel):
 
     title: str = ""
     rig: str
+    choices: dict[str, str] = Field(default_factory=dict)
+    """Of the rig: the vehicle, the autopilot."""
     start: str = "0 s"
     stop: str
     variant: str | None = None
@@ -104,6 +106,8 @@ class Trial:
     read_from: Source
     rig: Rig
     criteria: tuple[tuple[str, Criterion], ...]
+    rig_changes: Mapping[str, Any] = field(default_factory=dict)
+    """Keys of the rig's file that were replaced."""
     overrides: tuple[tuple[str, Any, str], ...] = ()
     """Settings from outside the file: (component.port, what was written, who says so)."""
     scales: tuple[tuple[str, float, str], ...] = ()
@@ -173,25 +177,33 @@ class Trial:
     def changed(self, changes: Mapping[str, Any], origin: str) -> Trial:
         """Return the trial with settings changed: ``component.port``, or a key of the trial.
 
-        Keys of the trial are variant, seed, start and stop; of its rig, step and algorithm.
-        Raises InputError.
+        Keys of the trial are variant, seed, start, stop and ``choices.NAME``; of its rig, step
+        and algorithm. Raises InputError.
         """
         keys, rig_keys = ("variant", "seed", "start", "stop"), ("step", "algorithm")
-        own, of_rig, overrides = {}, {}, list(self.overrides)
+        own, of_rig, overrides = dict[str, Any](), dict(self.rig_changes), list(self.overrides)
+        choices = {**self.file.choices, **choices_in(changes, origin)}
         for key, value in changes.items():
-            if "." in key:
+            if key.startswith(_CHOICES):
+                own["choices"] = choices
+            elif "." in key:
                 overrides.append((key, value, origin))
             elif key in keys:
                 own[key] = value
             elif key in rig_keys:
                 of_rig[key] = value
             else:
-                known = (*keys, *rig_keys)
+                known = (*keys, *rig_keys, f"{_CHOICES}NAME")
                 raise InputError(f"{origin}: {unknown('key', key, known)}, or component.port")
         content = {**self.file.model_dump(), **own}
         file = validated(TrialFile, content, self.read_from.path)
-        rig = self.rig.changed(of_rig) if of_rig else self.rig
-        return _checked(replace(self, file=file, rig=rig, overrides=tuple(overrides)))
+        rig = self.rig
+        if choices != self.file.choices:
+            rig = _rig(file, self.read_from.path)
+        if of_rig:
+            rig = rig.changed(of_rig)
+        changed = replace(self, file=file, rig=rig, rig_changes=of_rig)
+        return _checked(replace(changed, overrides=tuple(overrides)))
 
 
 def load_trial(
@@ -207,13 +219,35 @@ def load_trial(
     """
     changes = changes or {}
     read = _package if name.endswith(".ssp") else _trial
-    return read(name, relative_to, changes).changed(changes, origin)
+    return read(name, relative_to, changes, origin).changed(changes, origin)
 
 
-def _package(name: str, relative_to: Path | None, changes: Mapping[str, Any]) -> Trial:
+_CHOICES = "choices."
+"""What the key of a choice begins with, among settings."""
+
+
+def choices_in(changes: Mapping[str, Any], origin: str) -> dict[str, str]:
+    """Return the choices among settings, by name. Raises InputError for one that is no text."""
+    found = {k.removeprefix(_CHOICES): v for k, v in changes.items() if k.startswith(_CHOICES)}
+    for name, value in found.items():
+        if not isinstance(value, str):
+            raise InputError(f"{origin}: {_CHOICES}{name}: a text is needed, found {value!r}")
+    return found
+
+
+def _rig(file: TrialFile, path: Path) -> Rig:
+    try:
+        return load_rig(file.rig, path.parent, file.choices)
+    except InputError as error:
+        raise InputError(f"{path}: rig: {error}") from None
+
+
+def _package(name: str, relative_to: Path | None, changes: Mapping[str, Any], origin: str) -> Trial:
     path = ((relative_to or Path.cwd()) / name).resolve()
     from ..cosim.ssp.reading import read_ssp  # needs an XML library and FMPy
 
+    for choice in choices_in(changes, origin):
+        raise InputError(f"{origin}: {_CHOICES}{choice}: a package has no choices")
     package = read_ssp(path, changes.get("step"))
     stop = package.stop or changes.get("stop")
     if stop is None:
@@ -225,14 +259,13 @@ def _package(name: str, relative_to: Path | None, changes: Mapping[str, Any]) ->
     return Trial(file, package.rig.read_from, package.rig, (), notes=package.notes)
 
 
-def _trial(name: str, relative_to: Path | None, _changes: Mapping[str, Any]) -> Trial:
+def _trial(name: str, relative_to: Path | None, changes: Mapping[str, Any], origin: str) -> Trial:
     path = find_file("harness/trials", name, relative_to)
     content, read_from = read_toml(path)
     file = validated(TrialFile, content, path)
-    try:
-        rig = load_rig(file.rig, path.parent)
-    except InputError as error:
-        raise InputError(f"{path}: rig: {error}") from None
+    choices = {**file.choices, **choices_in(changes, origin)}
+    file = file.model_copy(update={"choices": choices})
+    rig = _rig(file, path)
     criteria = []
     for index, entry in enumerate(file.criteria):
         try:

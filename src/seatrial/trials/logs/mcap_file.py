@@ -5,11 +5,12 @@ from __future__ import annotations
 import base64
 import io
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from ... import __version__
+from ...cosim.paths import split_path
 from ...errors import InputError
 from ...fmi.cache import write_whole
 from ..run_folder import MANIFEST, Run
@@ -52,7 +53,7 @@ def write_mcap(run: Run, path: Path) -> None:
     writer = Writer(content)
     writer.start(library=f"seatrial {__version__}")
     channels = []
-    for component, signals in _by_component(columns(run)).items():
+    for component, signals in _by_component(columns(run), run.manifest["components"]).items():
         tree = _tree(component, signals)
         schema = writer.register_schema(component, "jsonschema", _schema(tree, component, run))
         channels.append((writer.register_channel(f"/{component}", "json", schema), _rows(tree)))
@@ -65,10 +66,10 @@ def write_mcap(run: Run, path: Path) -> None:
     write_whole(path, content.getvalue())
 
 
-def _by_component(signals: Sequence[Column]) -> dict[str, list[Column]]:
+def _by_component(signals: Sequence[Column], components: Container[str]) -> dict[str, list[Column]]:
     found: dict[str, list[Column]] = {}
     for signal in signals:
-        found.setdefault(signal.name.partition(".")[0], []).append(signal)
+        found.setdefault(split_path(components, signal.name)[0], []).append(signal)
     return found
 
 

@@ -1,0 +1,77 @@
+"""Names that rigs inside a rig show, in a trial: each replaced by the path of what it means."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from ..cosim.joining import Resolver
+from ..cosim.recorder import output_names
+from ..cosim.system import System
+from ..errors import InputError
+from .criteria import Criterion
+from .expressions import renamed
+from .trial import Trial
+
+
+def by_path(trial: Trial, system: System) -> Trial:
+    """Return the trial with the signals that it reads by their paths, as they are recorded.
+
+    Criteria, plots, records and ``real_time`` may write ``vehicle.motion.position.x`` for
+    ``vehicle.hull.position.x``. Other names stay as they are. Raises InputError for what a rig
+    inside does not show.
+    """
+    if not trial.rig.top.inner:
+        return trial
+    naming, file = _Naming(system), trial.file
+    where = str(trial.read_from.path)
+    criteria = tuple((name, naming.criterion(c, f"{where}: {name}")) for name, c in trial.criteria)
+    plots = [
+        entry.model_copy(update={"signals": [naming.one(s, where) for s in entry.signals]})
+        for entry in file.plots
+    ]
+    patterns = [p for each in file.record.signals for p in naming.pattern(each, where)]
+    record = file.record.model_copy(update={"signals": patterns})
+    real_time = file.real_time
+    if real_time is not None:
+        signals = {"factor": real_time.factor, "paused": real_time.paused}
+        found = {k: naming.one(s, where) for k, s in signals.items() if isinstance(s, str)}
+        real_time = real_time.model_copy(update=found)
+    changes = {"plots": plots, "record": record, "real_time": real_time}
+    return replace(trial, file=file.model_copy(update=changes), criteria=criteria)
+
+
+class _Naming:
+    """Finds outputs by what is written."""
+
+    def __init__(self, system: System) -> None:
+        self._system = system
+        self._outputs = frozenset(output_names(system))
+        self._resolver = Resolver(system.parts, system.rig.top)
+
+    def one(self, written: str, where: str) -> str:
+        """Return the path of the output that a name means, or the name if it means none."""
+        inner = written.partition(".")[0] in self._system.rig.top.inner
+        if written in self._outputs or not inner:
+            return written
+        names = [f"{part.name}.{port}" for part, port in self._system.located(written, where)]
+        return names[0] if len(names) == 1 and names[0] in self._outputs else written
+
+    def criterion(self, criterion: Criterion, where: str) -> Criterion:
+        """Return a criterion of outputs by path."""
+        names = {name: self.one(name, where) for name in criterion.signals}
+        return replace(criterion, subject=renamed(criterion.subject, names))
+
+    def pattern(self, written: str, where: str) -> list[str]:
+        """Return the patterns of paths for one of shown names: a name, or ``name.*``."""
+        name = written.removesuffix(".*")
+        if any(mark in name for mark in "*?["):
+            return [written]
+        try:
+            group = self._resolver.anywhere(name, where)
+        except InputError:
+            return [self.one(written, where)] if name == written else [written]
+        scalars = [
+            f"{end.component}.{v.name}" for end in group.ends for v in self._resolver.variables(end)
+        ]
+        found = [scalar for scalar in scalars if scalar in self._outputs]
+        return found or [written]
