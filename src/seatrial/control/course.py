@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from ..component import Input, Output, Parameter
+from ..component import Input, Output, Parameter, terminal
 from ..errors import InputError
 from ..sampled import Sampled
 from .guidance_path import Point
@@ -55,6 +55,17 @@ class Course(Sampled):
 
     views: ClassVar = {"waypoints": {"count": "count", "place": "waypoint"}}
     feedthrough: ClassVar = {}
+    terminals: ClassVar = {
+        "orders": terminal(
+            "leg",
+            "leg_from",
+            "leg_to",
+            "leg_speed",
+            "leg_radius",
+            "leg_wait",
+            leg_reached="reached",
+        )
+    }
 
     def reset(self, t: float) -> None:
         """Start on the first leg; raises InputError for a broken number of waypoints."""

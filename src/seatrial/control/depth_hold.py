@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from ..component import Input, Output, Parameter
+from ..component import Input, Output, Parameter, terminal
 from .axis_hold import AxisHold
 
 
@@ -30,6 +30,11 @@ class DepthHold(AxisHold):
     heave = Output("N", "heave force asked of the thrusters, positive down")
 
     feedthrough: ClassVar = {"heave": ("depth_wanted", "depth")}
+    terminals: ClassVar = {
+        "wanted": terminal("depth_wanted"),
+        "sensors": terminal("depth"),
+        "held": terminal("heave"),
+    }
 
     def sample(self, t: float, k: int) -> None:
         """Command the heave force."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from ..component import Input, Output, Parameter
+from ..component import Input, Output, Parameter, terminal
 from ..sampled import Sampled
 
 _UNITS = ("N", "N", "N.m")
@@ -80,6 +80,7 @@ class DynamicPositioning(Sampled):
     feedthrough: ClassVar = {
         "demand": ("station", "station_heading", "position", "attitude", "velocity", "rates")
     }
+    terminals: ClassVar = {"truth": terminal("position", "attitude", "velocity", "rates")}
 
     def reset(self, t: float) -> None:
         """Start with no integral and thrusters at rest."""

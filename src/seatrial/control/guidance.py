@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from typing import ClassVar, NamedTuple
 
-from ..component import Input, Output, Parameter
+from ..component import Input, Output, Parameter, Terminal, terminal
 from ..errors import InputError
 from .guidance_motion import MANUAL, NEUTRAL, STEER, Command, Goal, Law
-from .guidance_orders import MANUAL_AXES, Decision, GuidanceOrders, Task
+from .guidance_orders import MANUAL_AXES, ORDERS, SENSED, Decision, GuidanceOrders, Task
 from .guidance_path import Point
 
 PILOTED = {"manual": (False, False), "stabilize": (True, False), "depth-hold": (True, True)}
@@ -156,6 +156,23 @@ class Guidance(GuidanceOrders):
         "cross_track": _PATH,
         "distance": (*_ABLE, *_GOAL),
         "reached": (*_ABLE, "leg", "leg_to", "leg_radius", "leg_wait", "position_n", "depth"),
+    }
+    terminals: ClassVar = {
+        "orders": Terminal(
+            {**ORDERS.members, "nav_speed": "speed_wanted", "nav_depth": "depth_wanted"}
+        ),
+        "sensors": terminal(*SENSED, "depth", "depth_valid"),
+        "wanted": terminal(
+            "engaged",
+            "direct",
+            "speed_wanted",
+            "heading_wanted",
+            "depth_wanted",
+            "speed",
+            speed_engaged="engaged__speed",
+            heading_engaged="engaged__heading",
+            direct_yaw="direct__yaw",
+        ),
     }
 
     # ------------------------------------------------------------------ running

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import ClassVar, NamedTuple
 
-from ..component import Input, Output, Parameter
+from ..component import Input, Output, Parameter, terminal
 from ..errors import InputError, unknown
 from ..sampled import Sampled
 from .estimates import is_lost
@@ -19,6 +19,35 @@ MANUAL_AXES = ("surge", "sway", "yaw", "heave")
 """Axes of manual control."""
 
 NED = ("north", "east", "down")
+
+SENSED = ("position_n", "velocity_n", "position_valid", "heading", "heading_valid")
+"""Members of the terminal ``sensors``."""
+
+ORDERS = terminal(
+    "mode",
+    "armed",
+    "manual",
+    "home",
+    "target_kind",
+    "target_valid",
+    "target_position",
+    "target_velocity",
+    "target_heading",
+    "target_speed",
+    "leg",
+    "leg_from",
+    "leg_to",
+    "leg_speed",
+    "leg_radius",
+    "leg_wait",
+    "leg_circle",
+    leg_reached="reached",
+    nav_state="state",
+    nav_heading="heading_wanted",
+    nav_cross_track="cross_track",
+    nav_distance="distance",
+)
+"""What commands guidance, and what it answers."""
 
 Task = tuple[str | float, ...]
 """Identity of a task: a new one begins anew, where the craft is."""
@@ -98,6 +127,8 @@ class GuidanceOrders(Sampled):
     cross_track_rms = Output("m", "root mean square of cross_track on legs before now")
     distance = Output("m", "horizontal distance to the end of the leg or the point to stay at")
     reached = Output("1", "the leg's number if it is done, else 0", type=int)
+
+    terminals: ClassVar = {"orders": ORDERS, "sensors": terminal(*SENSED)}
 
     # ------------------------------------------------------------------ memory
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from ..component import Input, Output, Parameter
+from ..component import Input, Output, Parameter, terminal
 from ..sampled import Sampled
 
 
@@ -49,6 +49,11 @@ class HeadingAutopilot(Sampled):
     feedthrough: ClassVar = {
         "rudder": ("reference", "reference_rate", "heading", "yaw_rate"),
         "error": ("reference", "heading"),
+    }
+    terminals: ClassVar = {
+        "wanted": terminal(heading_wanted="reference", yaw_rate_wanted="reference_rate"),
+        "sensors": terminal("heading", "yaw_rate"),
+        "held": terminal("rudder"),
     }
 
     def reset(self, t: float) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from ..component import Input, Output, Parameter
+from ..component import Input, Output, Parameter, terminal
 from .axis_hold import AxisHold
 
 
@@ -35,6 +35,11 @@ class HeadingHold(AxisHold):
     yaw_moment = Output("N.m", "yaw moment asked of the thrusters, positive to starboard")
 
     feedthrough: ClassVar = {"yaw_moment": ("heading_wanted", "heading")}
+    terminals: ClassVar = {
+        "wanted": terminal("heading_wanted"),
+        "sensors": terminal("heading"),
+        "held": terminal("yaw_moment"),
+    }
 
     def sample(self, t: float, k: int) -> None:
         """Command the yaw moment."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from ..component import Component, Input, Output, Parameter
+from ..component import Component, Input, Output, Parameter, terminal
 
 
 class Helm(Component):
@@ -46,6 +46,11 @@ class Helm(Component):
         "sway": ("direct",),
         "yaw_moment": ("engaged", "direct", "yaw_moment_held"),
         "heave": ("engaged", "direct", "heave_held"),
+    }
+    terminals: ClassVar = {
+        "wanted": terminal("engaged", "direct"),
+        "held": terminal(surge="surge_held", yaw_moment="yaw_moment_held", heave="heave_held"),
+        "demand": terminal("surge", "sway", "yaw_moment", "heave"),
     }
 
     def outputs(self, t: float) -> None:

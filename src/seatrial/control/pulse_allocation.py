@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from ..component import Input
+from ..component import Input, terminal
 from .twin_thrusters import TwinThrusters
 
 
@@ -24,6 +24,10 @@ class PulseAllocation(TwinThrusters):
     feedthrough: ClassVar = {
         "pulse_port": ("surge", "yaw_moment"),
         "pulse_starboard": ("surge", "yaw_moment"),
+    }
+    terminals: ClassVar = {
+        **TwinThrusters.terminals,
+        "demand": terminal("surge", "yaw_moment"),
     }
 
     def start(self, t: float) -> None:

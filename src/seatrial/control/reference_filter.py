@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from ..component import Input, Output, Parameter
+from ..component import Input, Output, Parameter, terminal
 from ..sampled import Sampled
 
 _Motion = tuple[float, float, float]
@@ -49,6 +49,11 @@ class HeadingReference(Sampled):
     feedthrough: ClassVar = {
         "heading": ("engaged", "measured_heading"),
         "rate": ("engaged", "measured_rate"),
+    }
+    terminals: ClassVar = {
+        "wanted": terminal(heading_wanted="target", heading_engaged="engaged"),
+        "sensors": terminal(heading="measured_heading", yaw_rate="measured_rate"),
+        "reference": terminal(heading_wanted="heading", yaw_rate_wanted="rate"),
     }
 
     def reset(self, t: float) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from ..component import Component, Input, Output, Parameter
+from ..component import Component, Input, Output, Parameter, terminal
 
 
 class RudderHelm(Component):
@@ -30,6 +30,11 @@ class RudderHelm(Component):
     rudder = Output("rad", "rudder wanted, positive to turn to port")
 
     feedthrough: ClassVar = {"rudder": ("engaged", "manual", "rudder_held")}
+    terminals: ClassVar = {
+        "wanted": terminal(heading_engaged="engaged", direct_yaw="manual"),
+        "held": terminal(rudder="rudder_held"),
+        "actuators": terminal("rudder"),
+    }
 
     def outputs(self, t: float) -> None:
         """Choose."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from ..component import Input, Output, Parameter
+from ..component import Input, Output, Parameter, terminal
 from ..errors import InputError
 from ..foils import HIGH_ALPHA, SAIL_ENTRIES, sail_naca0015
 from ..sampled import Sampled
@@ -116,6 +116,18 @@ class SailControl(Sampled):
         "sail": (*_ACTING, "sheet"),
         "flap": _ACTING,
         "heeling_moment": (*_ACTING, "sheet"),
+    }
+    terminals: ClassVar = {
+        "wanted": terminal(sail_engaged="trimming", direct_sheet="sheet"),
+        "sensors": terminal(
+            "heading",
+            "heel",
+            "roll_rate",
+            wind_speed="apparent_wind__speed",
+            wind_angle="apparent_wind__angle",
+        ),
+        "estimate": terminal("wind"),
+        "actuators": terminal("sail", "flap"),
     }
 
     def reset(self, t: float) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import ClassVar, NamedTuple
 
-from ..component import Input, Output, Parameter
+from ..component import Input, Output, Parameter, terminal
 from .guidance_motion import BEAT, FOLLOW, MANUAL, NEUTRAL, Command
 from .guidance_orders import Decision, GuidanceOrders
 from .guidance_path import Point, bearing
@@ -188,6 +188,17 @@ class SailingGuidance(GuidanceOrders):
         "cross_track": (*_ABLE, *_SPEED, "leg_from", "heading", "velocity_n", "wind"),
         "distance": (*_ABLE, *_GOAL),
         "reached": (*_ABLE, "leg", "leg_to", "leg_radius", "leg_wait", "position_n"),
+    }
+    terminals: ClassVar = {
+        **GuidanceOrders.terminals,
+        "estimate": terminal("wind"),
+        "wanted": terminal(
+            "heading_wanted",
+            heading_engaged="engaged__heading",
+            sail_engaged="engaged__sail",
+            direct_yaw="direct__yaw",
+            direct_sheet="direct__sheet",
+        ),
     }
 
     # ------------------------------------------------------------------ running

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from ..component import Input, Output, Parameter
+from ..component import Input, Output, Parameter, terminal
 from ..sampled import Sampled
 
 _LEAST_SPEED = 0.1  # m/s: below it the direction of the flow at the rudder means nothing
@@ -51,6 +51,13 @@ class SailingHeading(Sampled):
 
     rudder = Output("rad", "rudder wanted, trailing edge to port positive")
     yaw_moment = Output("N.m", "yaw moment asked of the rudder, to starboard positive")
+
+    terminals: ClassVar = {
+        "wanted": terminal("heading_wanted"),
+        "sensors": terminal("heading"),
+        "estimate": terminal("nu"),
+        "held": terminal("rudder"),
+    }
 
     _ACTING: ClassVar[tuple[str, ...]] = ("heading_wanted", "heading", "nu")
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from ..component import Input, Output, Parameter
+from ..component import Input, Output, Parameter, terminal
 from ..foils import HIGH_ALPHA, SAIL_ENTRIES, foil_naca63010, sail_naca0015
 from .sail_loads import foil_load, sail_place
 from .sailing_heading import SailingHeading
@@ -86,6 +86,12 @@ class SailingHeadingBackstepping(SailingHeading):
         "rudder": _ALL,
         "yaw_moment": _ALL,
         "lyapunov": SailingHeading._ACTING,
+    }
+    terminals: ClassVar = {
+        **SailingHeading.terminals,
+        "sensors": terminal(
+            "heading", wind_speed="apparent_wind__speed", wind_angle="apparent_wind__angle"
+        ),
     }
 
     def reset(self, t: float) -> None:

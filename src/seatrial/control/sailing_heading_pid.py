@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from ..component import Input, Parameter
+from ..component import Input, Parameter, terminal
 from .sailing_heading import SailingHeading
 
 
@@ -39,6 +39,10 @@ class SailingHeadingPid(SailingHeading):
     feedthrough: ClassVar = {
         "rudder": (*SailingHeading._ACTING, "heel"),
         "yaw_moment": (*SailingHeading._ACTING, "heel"),
+    }
+    terminals: ClassVar = {
+        **SailingHeading.terminals,
+        "sensors": terminal("heading", "heel"),
     }
 
     def reset(self, t: float) -> None:

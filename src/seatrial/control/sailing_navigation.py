@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from ..component import Input, Output, Parameter
+from ..component import Input, Output, Parameter, terminal
 from ..sampled import Sampled
 
 _NED = ("north", "east", "down")
@@ -52,6 +52,18 @@ class SailingNavigation(Sampled):
     feedthrough: ClassVar = {
         "nu": ("velocity_n", "heading", "heel", "gyro"),
         "wind": ("velocity_n", "velocity_valid", "heading", "heel", "apparent_wind"),
+    }
+    terminals: ClassVar = {
+        "sensors": terminal(
+            "velocity_n",
+            "heading",
+            "heel",
+            "gyro",
+            position_valid="velocity_valid",
+            wind_speed="apparent_wind__speed",
+            wind_angle="apparent_wind__angle",
+        ),
+        "estimate": terminal("nu", "wind"),
     }
 
     def reset(self, t: float) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from ..component import Input, Output, Parameter
+from ..component import Input, Output, Parameter, terminal
 from ..sampled import Sampled
 
 
@@ -42,6 +42,10 @@ class SpeedHold(Sampled):
     surge = Output("N", "surge force asked of the thrusters, positive ahead")
 
     feedthrough: ClassVar = {"surge": ("enabled", "speed_wanted", "speed")}
+    terminals: ClassVar = {
+        "wanted": terminal("speed_wanted", "speed", speed_engaged="enabled"),
+        "held": terminal("surge"),
+    }
 
     def reset(self, t: float) -> None:
         """Start with no integral."""

@@ -6,10 +6,11 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from ..component import Input, Output, Parameter
+from ..component import Input, Output, Parameter, terminal
 from ..errors import InputError
 from ..sampled import Sampled
 from .estimates import is_lost
+from .guidance_orders import SENSED
 from .twin_thrusters import TwinThrusters
 
 IDLE, HOLD, RETURN, HEADING_ONLY = range(4)
@@ -128,6 +129,12 @@ class StationKeeping(Sampled, TwinThrusters):
         "yaw_moment": tuple(name for name in _ACTING if name != "velocity_n"),
         "distance": ("station", "position_n"),
         "mode": ("enabled", "station", "position_n", "position_valid", "heading_valid"),
+    }
+    terminals: ClassVar = {
+        **TwinThrusters.terminals,
+        "orders": terminal(armed="enabled"),
+        "sensors": terminal(*SENSED, "yaw_rate"),
+        "held": terminal("yaw_moment", surge="surge_force"),
     }
 
     # ------------------------------------------------------------------ running

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from ..component import Component, Input, Output, Parameter
+from ..component import Component, Input, Output, Parameter, terminal
 
 
 class ThrusterAllocation(Component):
@@ -36,6 +36,10 @@ class ThrusterAllocation(Component):
         "port": ("surge", "yaw_moment"),
         "starboard": ("surge", "yaw_moment"),
         "vertical": ("heave",),
+    }
+    terminals: ClassVar = {
+        "demand": terminal("surge", "yaw_moment", "heave"),
+        "actuators": terminal("port", "starboard", "vertical"),
     }
 
     def outputs(self, t: float) -> None:

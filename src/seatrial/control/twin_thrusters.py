@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from typing import ClassVar
 
-from ..component import Component, Output, Parameter
+from ..component import Component, Output, Parameter, terminal
 from ..errors import InputError
 
 
@@ -31,6 +32,8 @@ class TwinThrusters(Component):
 
     pulse_port = Output("s", "pulse to the port thruster", start=1.5e-3)
     pulse_starboard = Output("s", "pulse to the starboard thruster", start=1.5e-3)
+
+    terminals: ClassVar = {"actuators": terminal(port="pulse_port", starboard="pulse_starboard")}
 
     def _check_pulses(self) -> None:
         """Raise InputError if the pulses do not rise."""
