@@ -61,3 +61,34 @@ class Boat(Component):
     def outputs(self, t):
         self.value = constants.NUMBER + 0 * number
 '''
+
+BARGE = '''
+"""A user's craft with terminals."""
+from seatrial.component import Component, Input, Output
+from seatrial.terminals import terminal
+from seatrial.terms import Terms
+
+
+class Barge(Component):
+    """Adds the loads on it."""
+
+    force = Terms(3, "N", "force on the barge", axes="xyz")
+    moment = Terms(2, "N.m", "moment on the barge", axes="xyz")
+    lift = Terms(2, "N", "lift")
+    pulse = Input("s", "pulse")
+    position = Output("m", "place", axes="xyz")
+    attitude = Output("rad", "Euler angles", axes=("phi", "theta", "psi"))
+    depth = Output("m", "depth of its only gauge", axes=("a",))
+    said = Output("1", "text", type=str)
+
+    terminals = {
+        "motion": terminal("position", "attitude"),
+        "wrench": terminal("force", "moment", "lift", rule="plug"),
+        "actuators": terminal(ch1="pulse"),
+        "reading": terminal("depth", "said", heel="attitude__phi"),
+    }
+
+    def outputs(self, t):
+        self.position = self.force
+        self.depth = (self.lift + self.moment[0],)
+'''

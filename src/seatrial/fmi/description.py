@@ -30,8 +30,8 @@ def describe(cls: type[Component], name: str, start_values: Mapping[str, Any]) -
 
     ``start_values`` (by port name, SI) replace start values of the class. pythonfmu writes the
     description; added are units, min, max, nominal, exact start values, variability, output
-    dependencies, InitialUnknowns, annotations of roles and of optional inputs, and the
-    capabilities that the component really has.
+    dependencies, InitialUnknowns, annotations of roles, of optional inputs and of terms of sums,
+    and the capabilities that the component really has.
 
     Raises InputError for a start value that does not fit, or a unit that cannot be written in
     FMI's base units.
@@ -72,14 +72,17 @@ def _insert_views(root: Element, cls: type[Component]) -> None:
 
 
 def _annotate(element: Element, port: Port) -> None:
-    """Write what FMI has no attribute for, where `variables` reads it."""
-    optional = isinstance(port, Input) and port.optional
-    if optional or port.role:
+    """Write what FMI has no attribute for, where `variables` reads it.
+
+    In one element: FMI 2.0's schema allows a tool one, and names a tool once.
+    """
+    said = {"role": port.role}
+    if isinstance(port, Input):
+        said |= {"optional": "true" if port.optional else "", "term_of": port.term_of}
+    given = {name: text for name, text in said.items() if text}
+    if given:
         tool = SubElement(SubElement(element, "Annotations"), "Tool", {"name": "seatrial"})
-        if optional:
-            SubElement(tool, "optional")
-        if port.role:
-            SubElement(tool, "role", {"name": port.role})
+        SubElement(tool, "port", given)
 
 
 def summary(component: type[Component]) -> str:

@@ -17,8 +17,10 @@ from .. import __version__
 from .bundle import Bundle, bundled
 from .cache import cache_folder, write_whole
 from .description import describe
+from .direct import DirectInstance
 from .slave import START_VALUES
 from .source import ComponentSource
+from .terminals import PLACE, terminals_xml
 
 _TIMESTAMP = (1980, 1, 1, 0, 0, 0)
 _BINARIES = Path(pythonfmu.__file__).parent / "resources" / "binaries"
@@ -55,6 +57,9 @@ def fmu_bytes(source: ComponentSource, start_values: Mapping[str, Any] | None = 
     if start_values:
         text = json.dumps(dict(sorted(start_values.items())), indent=1)
         files[f"resources/{START_VALUES}"] = text.encode()
+    instance = DirectInstance(source.component_class()(source.name))
+    if instance.terminals:
+        files[PLACE] = terminals_xml(instance.terminals, instance.variables)
     identifier = source.stem
     for binary in sorted(_BINARIES.rglob("*pythonfmu-export.*")):
         folder = binary.parent.name
@@ -100,6 +105,6 @@ def zipped(files: Mapping[str, bytes]) -> bytes:
 def _tool_tag() -> str:
     """Return a tag of what besides the bundle decides an FMU's bytes."""
     digest = hashlib.sha256(f"{__version__} {pythonfmu.__version__}".encode())
-    for module in ("description.py", "export.py"):
+    for module in ("description.py", "export.py", "terminals.py"):
         digest.update(Path(__file__).with_name(module).read_bytes())
     return digest.hexdigest()[:8]

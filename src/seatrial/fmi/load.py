@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from fmpy.model_description import ValidationError, read_model_description
+from fmpy.model_description import ModelDescription, ValidationError, read_model_description
 
 from ..errors import InputError
 from .archive import content_hash, unpacked
@@ -15,6 +16,8 @@ from .fmi2 import Fmi2Instance
 from .fmi3 import Fmi3Instance
 from .instance import Instance
 from .loaded import LoadedFmu
+from .osp import read_osp
+from .terminals import read_terminals
 from .variables import described, views_of
 from .xmlfile import read_xml
 
@@ -31,13 +34,22 @@ _MOST_PROBLEMS = 3
 def load_fmu(path: Path) -> LoadedFmu:
     """Unpack and read the FMU at ``path``.
 
-    Raises InputError if it is no co-simulation FMU of FMI 2.0 or 3.0, or is damaged.
+    Its terminals are those inside; if there are none, the variable groups in the
+    OspModelDescription.xml beside it.
+
+    Raises InputError if it is no co-simulation FMU of FMI 2.0 or 3.0, or is damaged, and for a
+    mistake in a file of terminals.
     """
     try:
         status = path.stat()
     except OSError as error:
         raise InputError(f"{path}: {error.strerror}") from None
-    return _load(path.resolve(), (status.st_mtime_ns, status.st_size))
+    fmu = _load(path.resolve(), (status.st_mtime_ns, status.st_size))
+    if fmu.terminals:
+        return fmu
+    others = _names(fmu.description)
+    groups = read_osp(fmu.path, fmu.description.modelName or "", fmu.variables, others)
+    return replace(fmu, terminals=groups) if groups else fmu
 
 
 def open_instance(fmu: LoadedFmu, name: str) -> Instance:
@@ -76,10 +88,14 @@ def _load(path: Path, _stamp: tuple[int, int]) -> LoadedFmu:
         content.variables,
         content.arrays,
         content.feedthrough,
-        {},
+        read_terminals(folder, path, content.variables, _names(description)),
         views_of(root),
         content.notes,
     )
+
+
+def _names(description: ModelDescription) -> set[str]:
+    return {v.name for v in description.modelVariables}
 
 
 def _refuse_other_kinds(path: Path, root: Any) -> None:

@@ -115,9 +115,8 @@ class _Reading:
         inherited = {a: getattr(v, a) or getattr(declared, a, None) for a in _INHERITED}
         limits = {a: _number(inherited[a]) if kind in (int, float) else None for a in _LIMITS}
         unit = (inherited["unit"] or "") if kind is float else ""
-        tool = element.find("Annotations/Tool[@name='seatrial']")
-        optional = tool is not None and tool.find("optional") is not None
-        role = tool.find("role") if tool is not None else None
+        port = element.find("Annotations/Tool[@name='seatrial']/port")
+        said = {} if port is None else port.attrib
         starts = self._starts(v, element, len(names))
         return [
             Variable(
@@ -136,8 +135,9 @@ class _Reading:
                 integers=self._integers.get(v.type, INTEGERS["Int32"]),
                 items={item.name: int(item.value) for item in getattr(declared, "items", ())},
                 element=place,
-                optional=optional,
-                role="" if role is None else role.get("name", ""),
+                optional=said.get("optional") == "true",
+                term_of=said.get("term_of", ""),
+                role=said.get("role", ""),
             )
             for place, name in enumerate(names)
         ]
