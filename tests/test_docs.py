@@ -507,7 +507,7 @@ def test_solvers_agree_as_the_page_says(phase: str) -> None:
 
     def load(t: float, x: Any) -> dict[str, Any]:
         force, moment = downwash.wrench(t, x.attitude.tolist())
-        return {"load_force": force, "load_moment": moment}
+        return {"force_2": force, "moment_2": moment}
 
     runs = [
         craft.reference(np.arange(21.0), load, downwash.breaks(), method=m, rtol=1e-6, atol=1e-6).x

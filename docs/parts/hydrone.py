@@ -116,8 +116,8 @@ def _static(pad_x: float, pad_y: float, weight: float = 98.1) -> tuple[float, fl
     values = load_vehicle("hydrone").parameter_set("marine-craft", "source").values
     for name, entry in values.items():
         craft.set(name, entry.value)
-    craft.set("load_force", [0.0, 0.0, weight])
-    craft.set("load_moment", [pad_y * weight, -pad_x * weight, 0.0])
+    craft.set("force_2", [0.0, 0.0, weight])
+    craft.set("moment_2", [pad_y * weight, -pad_x * weight, 0.0])
     x = craft.trim(np.zeros(12), hold=("position.x", "position.y", "attitude.psi"))
     return float(x[2]), float(np.degrees(x[3])), float(np.degrees(x[4]))
 

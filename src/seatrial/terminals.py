@@ -43,3 +43,7 @@ def terminal(*same: str, rule: Rule = "bus", **others: str) -> Terminal:
     """
     named = {name: name for name in same}
     return Terminal({**named, **{m: p.replace("__", ".") for m, p in others.items()}}, rule)
+
+
+MOTION = terminal("position", "velocity", "attitude", "rates", "acceleration")
+"""What every craft gives under the name ``motion``."""

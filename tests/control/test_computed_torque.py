@@ -77,7 +77,7 @@ def test_rejection_of_steps(row):
         size[axis] = float(row["amp"]) if 112.0 <= t < 187.0 else 0.0
         if row["kind"] == "meas":
             return {"nu_bias": size}
-        return {"load_force": size[:2], "load_moment": size[2]}
+        return {"force_1": size[:2], "moment_1": size[2]}
 
     rows = follow(law, 186.5, variant, inputs=step, yaw_coupling_sign=1.0)
     expected = np.array([float(row[name]) for name in ("du", "dv", "dr")])
@@ -91,7 +91,7 @@ def test_a_force_abeam_moves_sway_alone():
         started(ComputedTorque, "physical", **CASES[1]),
         60.0,
         "physical",
-        inputs=lambda _t: {"load_force": [0.0, 5.0]},
+        inputs=lambda _t: {"force_1": [0.0, 5.0]},
     )
     off = rows[-1, 1:4] - rows[-1, 6:9]
     assert off == pytest.approx([0.0, 5.0 / 5.87, 0.0], abs=1e-9)

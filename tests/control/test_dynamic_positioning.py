@@ -90,8 +90,8 @@ def held(load, stop, time_constant=0.0, share=1.0, station=(0.0, 0.0, 0.0)):
     ship = ThrusterShip("ship")
     for name, entry in load_vehicle("thruster-ship").file.components["thruster-ship"].items():
         ship.set(name, entry.value)
-    ship.set("load_force", load[:2])
-    ship.set("load_moment", load[2])
+    ship.set("force_2", load[:2])
+    ship.set("moment_2", load[2])
     ship.initialise()
     ship.begin()
     thrusters = started(ForceActuator, time_constant=time_constant, capacity=share * CAPACITY)
@@ -108,8 +108,8 @@ def held(load, stop, time_constant=0.0, share=1.0, station=(0.0, 0.0, 0.0)):
         for name in ("position", "attitude", "velocity", "rates"):
             positioning.set(name, ship.get(name))
         thrusters.set("demand", positioning.get("demand"))
-        ship.set("force", thrusters.get("force"))
-        ship.set("moment", thrusters.get("moment"))
+        ship.set("force_1", thrusters.get("force"))
+        ship.set("moment_1", thrusters.get("moment"))
         for component in (ship, thrusters, positioning):
             component.advance(0.1 * k, 0.1)
     return np.array(places)

@@ -48,7 +48,7 @@ class Hydrone:
 
         def load(time, x):
             force, moment = downwash.wrench(time, x.attitude.tolist())
-            return {"load_force": force, "load_moment": moment}
+            return {"force_2": force, "moment_2": moment}
 
         return craft.reference(t, load, downwash.breaks(), **options)
 

@@ -35,7 +35,7 @@ class AnyStep(MarineCraft):
 def constant(downwash):
     """Return the wrench of the landed HUAUV in the body axes of a level craft, as inputs."""
     force, moment = downwash.wrench(5.0, (0.0, 0.0, 0.0))
-    return {"load_force": force, "load_moment": moment}
+    return {"force_2": force, "moment_2": moment}
 
 
 def set_all(component, values):
@@ -101,7 +101,7 @@ def test_energy_of_craft_and_standing_load_is_conserved(hydrone):
 
     def load(t, x):
         force, moment = downwash.wrench(5.0, x.attitude.tolist())
-        return {"load_force": force, "load_moment": moment}
+        return {"force_2": force, "moment_2": moment}
 
     run, E = energies(craft, load)
     depth = np.array([x[2] + np.dot(rotation(*x[3:6])[2], downwash.pad) for x in run.x])
@@ -179,7 +179,11 @@ def test_small_loads_approach_the_linear_solution(hydrone, factor):
     load = constant(downwash)
     set_all(craft, load)
     model = craft.linearise(np.zeros(12))
-    slope = model.B[:, :6] @ [*load["load_force"], *load["load_moment"]]
+    slope = sum(
+        model.B[:, model.u_names.index(f"{name}.{axis}")] * value
+        for name, vector in load.items()
+        for axis, value in zip("xyz", vector, strict=True)
+    )
     system = np.block([[model.A, slope[:, None]], [np.zeros((1, 13))]])
     linear = expm(2.0 * system)[:12, 12]
     reached = craft.reference([0.0, 2.0]).x[-1]
@@ -230,7 +234,7 @@ def test_vertical_weight_heels_more(hydrone, pad, roll, pitch):
 
     def slope(state):  # at rest; the load turns in body axes as the craft heels
         force, moment = downwash.wrench(5.0, (state[1], state[2], 0.0))
-        set_all(craft, {"load_force": force, "load_moment": moment})
+        set_all(craft, {"force_2": force, "moment_2": moment})
         return craft.derivatives(np.array([0.0, 0.0, *state, *[0.0] * 7]))
 
     found = root(slope, [0.0, 0.0, 0.0], method="lm", options={"xtol": 1e-14, "ftol": 1e-14})
@@ -263,7 +267,7 @@ def test_port_and_starboard_mirror_each_other_to_the_bit(hydrone, variant):
         craft.begin()
         for k in range(1200):
             force, moment = downwash.wrench(k / 100, craft.attitude)
-            set_all(craft, {"load_force": force, "load_moment": moment})
+            set_all(craft, {"force_2": force, "moment_2": moment})
             craft.advance(k / 100, 0.01)
         ends.append([v for p in craft.state_ports for v in craft.get(p.name)])
     mirror = [1, -1, 1, -1, 1, -1]

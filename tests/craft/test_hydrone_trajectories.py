@@ -262,7 +262,7 @@ def coupled_peaks(hydrone, variant, H, delay):
     angles = []
     for k in range(round(14.0 / H)):
         now = downwash.wrench(round(k * H, 9), craft.attitude)
-        craft.load_force, craft.load_moment = held if delay else now
+        craft.force_2, craft.moment_2 = held if delay else now
         held = now
         craft.advance(k * H, H)
         angles.append(craft.attitude[:2])

@@ -152,9 +152,9 @@ def test_motion_does_not_depend_on_where_the_body_origin_is():
     np.testing.assert_allclose(new.mass_matrix(), H.T @ old.mass_matrix() @ H, atol=1e-13)
     force, lever = np.array([2.0, -1.0, 0.5]), np.array([0.1, 0.4, -0.2])
     t = np.linspace(0, 5, 6)
-    push = {"load_force": force, "load_moment": np.cross(lever, force)}
+    push = {"force_2": force, "moment_2": np.cross(lever, force)}
     a = old.reference(t, lambda t, x: push)
-    push_new = {"load_force": force, "load_moment": np.cross(lever + d, force)}
+    push_new = {"force_2": force, "moment_2": np.cross(lever + d, force)}
     b = new.reference(t, lambda t, x: push_new)
     for x, y in zip(a.x, b.x, strict=True):
         np.testing.assert_allclose(y[3:6], x[3:6], atol=1e-9)
@@ -188,7 +188,7 @@ def test_a_craft_at_rest_in_the_water_stays_so():
 
 def test_acceleration_of_a_dry_body_is_force_over_mass():
     component = craft(mass=4.0, buoyancy=4 * 9.81, restoring="submerged", **STRAY)
-    for name in ("load_force", "propulsion_force", "tether_force"):
+    for name in ("force_2", "force_1", "force_3"):
         component.set(name, (2.0, -4.0, 6.0))
     component.initialise()
     assert component.get("acceleration") == pytest.approx((1.5, -3.0, 4.5), abs=1e-14)
@@ -197,8 +197,8 @@ def test_acceleration_of_a_dry_body_is_force_over_mass():
 def test_acceleration_is_the_second_derivative_of_position():
     component = free(**DRAG)
     component.set("current", (0.5, 0.3, 0.0))
-    component.set("propulsion_force", (5.0, 0.0, 0.0))
-    component.set("tether_moment", (0.0, 0.4, 0.0))
+    component.set("force_1", (5.0, 0.0, 0.0))
+    component.set("moment_3", (0.0, 0.4, 0.0))
     R = np.array(rotation(*STRAY["attitude_start"]))
     h, x = 1e-5, at_start(component)
     slope = component.derivatives(x)
@@ -212,21 +212,48 @@ def test_acceleration_is_the_second_derivative_of_position():
 def test_all_inputs_act_on_the_acceleration_at_once():
     component = free(**DRAG)
     D = component.linearise(at_start(component)).D
-    assert D.shape == (3, 21)
+    assert D.shape == (9, 4 * 6 + 3 + 3)
     assert (np.abs(D).max(axis=0) > 1e-6).all()
+
+
+def test_an_attachment_pulls_as_its_force_and_moment_do():
+    place, pull = np.array([-0.7, 0.2, -0.1]), np.array([3.0, -2.0, 5.0])
+    towed, pushed = free(**DRAG, attachment_place=place), free(**DRAG)
+    force = np.array(rotation(*STRAY["attitude_start"])).T @ pull
+    towed.set("attachment_force", pull)
+    pushed.set("force_2", force)
+    pushed.set("moment_4", np.cross(place, force))
+    x = at_start(towed)
+    np.testing.assert_allclose(towed.derivatives(x), pushed.derivatives(x), rtol=1e-12)
+
+
+def test_the_velocity_of_the_attachment_is_that_of_its_place():
+    component, h = free(**DRAG, attachment_place=(-0.7, 0.2, -0.1)), 1e-4
+    x = component.reference([0.0, h, 2 * h]).x
+    places = []
+    for state in x:
+        names = ("position", "attitude", "velocity", "rates")
+        for name, part in zip(names, np.split(state, 4), strict=True):
+            component.set(f"{name}_start", part)
+        component.initialise()
+        places.append((component.get("attachment_point"), component.get("attachment_velocity")))
+    slope = np.subtract(places[2][0], places[0][0]) / (2 * h)
+    np.testing.assert_allclose(places[1][1], slope, atol=1e-6)
+    arm = np.array(rotation(*x[0, 3:6])) @ (-0.7, 0.2, -0.1)
+    np.testing.assert_allclose(places[0][0], x[0, :3] + arm, atol=1e-14)
 
 
 def test_forces_of_all_kinds_add_up():
     component = free(**DRAG)
     x = at_start(component)
     for a in ("force", "moment"):
-        for kind, share in [("load", 1.0), ("propulsion", -3.0), ("tether", 4.0)]:
-            component.set(f"{kind}_{a}", np.array([0.2, -0.3, 0.4]) * share)
+        for term, share in [(1, 1.0), (2, -3.0), (4, 4.0)]:
+            component.set(f"{a}_{term}", np.array([0.2, -0.3, 0.4]) * share)
     slope = component.derivatives(x)
-    component.set("propulsion_force", 0.0)
-    component.set("propulsion_moment", 0.0)
-    component.set("tether_force", (0.2, -0.3, 0.4))
-    component.set("tether_moment", (0.2, -0.3, 0.4))
+    for a in ("force", "moment"):
+        for term in (1, 2, 4):
+            component.set(f"{a}_{term}", 0.0)
+        component.set(f"{a}_3", np.array([0.4, -0.6, 0.8]))
     np.testing.assert_allclose(component.derivatives(x), slope, atol=1e-13)
 
 
@@ -281,7 +308,7 @@ def test_damping_opposes_motion_through_the_water(axis, sign):
 
 def test_fixed_steps_follow_the_reference():
     component = free(**DRAG)
-    component.set("propulsion_force", (3.0, 0.0, 0.0))
+    component.set("force_1", (3.0, 0.0, 0.0))
     expected = component.reference([0.0, 2.0]).x[-1]
     component.initialise()
     component.begin()

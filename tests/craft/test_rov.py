@@ -29,7 +29,7 @@ GENERAL = {
     "volume": 0.0121,
     "density": 1000.0,
     "center_of_buoyancy": (0.02, 0.01, -0.06),
-    "tether_attachment": (-0.15, 0.04, -0.05),
+    "attachment_place": (-0.15, 0.04, -0.05),
 }
 DAMPING = [name for name in GENERAL if "damping" in name]
 # No force at all: no drag, weight and buoyancy equal and in one place.
@@ -97,7 +97,7 @@ def test_the_rotation_turns_with_the_angular_velocity():
 def source_accelerations(eta, nu, loads, water, water_rate):
     """Return nu' from eqs 3.15 to 3.45, written as vectors and matrices of their own."""
     m, r_G, r_B = GENERAL["mass"], *(GENERAL[f"center_of_{a}"] for a in ("gravity", "buoyancy"))
-    r_T = GENERAL["tether_attachment"]
+    r_T = GENERAL["attachment_place"]
     xx, yy, zz, xy, xz, yz = GENERAL["inertia"]
     I_G = np.array([[xx, -xy, -xz], [-xy, yy, -yz], [-xz, -yz, zz]])
     I_0 = I_G + m * (np.dot(r_G, r_G) * np.eye(3) - np.outer(r_G, r_G))
@@ -126,10 +126,8 @@ def source_accelerations(eta, nu, loads, water, water_rate):
     W, buoyancy = m * GRAVITY, GENERAL["density"] * GRAVITY * GENERAL["volume"]
     f = R.T @ [0, 0, 1]
     G = -np.concatenate([(W - buoyancy) * f, np.cross(r_G, W * f) - np.cross(r_B, buoyancy * f)])
-    pull = R.T @ loads["tether_force"]
-    tau = np.concatenate(
-        [loads["propulsion_force"] + pull, loads["propulsion_moment"] + np.cross(r_T, pull)]
-    )
+    pull = R.T @ loads["attachment_force"]
+    tau = np.concatenate([loads["force_1"] + pull, loads["moment_1"] + np.cross(r_T, pull)])
     resistance = rigid + added + D1 * nu_r + D2 * np.abs(nu_r) * nu_r + G
     nu_r_dot = np.linalg.solve(M_CR + M_A, tau - resistance)
     turning = -np.cross(nu[3:], R.T @ water) + R.T @ water_rate
@@ -143,7 +141,7 @@ def test_accelerations_are_those_of_the_source():
         nu, water, water_rate = rng.normal(size=6), rng.normal(size=3), rng.normal(size=3)
         loads = {
             name: rng.normal(scale=20.0, size=3)
-            for name in ("propulsion_force", "propulsion_moment", "tether_force")
+            for name in ("force_1", "moment_1", "attachment_force")
         }
         inputs = {**loads, "current": water, "current_acceleration": water_rate}
         for name, value in inputs.items():
@@ -257,28 +255,28 @@ def test_a_tether_pulls_where_it_is_attached():
     component.initialise()
     for _ in range(20):
         force = rng.normal(scale=10.0, size=3)
-        component.set("tether_force", force)
+        component.set("attachment_force", force)
         change = component.derivatives(np.concatenate([ETA, NU]))[6:] - base
         tau = component.mass_matrix() @ change
         close(J1(ETA) @ tau[:3], force, atol=1e-12)
-        power = np.dot(force, component.get("tether_point_velocity"))
+        power = np.dot(force, component.get("attachment_velocity"))
         assert tau @ NU == pytest.approx(power, abs=1e-12)
 
 
-def test_the_velocity_of_the_tether_point_is_its_derivative():
+def test_the_velocity_of_the_attachment_is_its_derivative():
     h = 1e-4
     x = craft().reference([0.0, h, 2 * h]).x
     places = []
     for row in x[::2]:
         component = craft(eta_start=row[:6], nu_start=row[6:])
         component.initialise()
-        places.append(np.array(component.get("tether_point")))
+        places.append(np.array(component.get("attachment_point")))
     component = craft(eta_start=x[1, :6], nu_start=x[1, 6:])
     component.initialise()
     velocity = (places[1] - places[0]) / (2 * h)
-    close(component.get("tether_point_velocity"), velocity, atol=1e-7)
-    arm = J1(x[1]).T @ (np.array(component.get("tether_point")) - x[1, :3])
-    close(arm, GENERAL["tether_attachment"], atol=1e-15)
+    close(component.get("attachment_velocity"), velocity, atol=1e-7)
+    arm = J1(x[1]).T @ (np.array(component.get("attachment_point")) - x[1, :3])
+    close(arm, GENERAL["attachment_place"], atol=1e-15)
 
 
 # ---------------------------------------------------------------------- outputs
@@ -299,7 +297,7 @@ def test_roll_and_yaw_are_wrapped(turns, angle):
 
 def test_acceleration_is_the_second_derivative_of_position():
     component = craft()
-    inputs = {"current": WATER, "propulsion_force": (5.0, 0.0, 2.0), "tether_force": (1, 2, -3)}
+    inputs = {"current": WATER, "force_1": (5.0, 0.0, 2.0), "attachment_force": (1, 2, -3)}
     for name, value in inputs.items():
         component.set(name, value)
     component.initialise()

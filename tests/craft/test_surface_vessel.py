@@ -44,16 +44,13 @@ def test_surge_alone_follows_its_closed_form():
 
 
 def test_thruster_1_ahead_turns_to_starboard():
-    slope = build(SurfaceVessel, "physical").derivatives(
-        np.zeros(6), np.array([1.0, 0.0, 0.0, 0.0, 0.0])
-    )
+    slope = build(SurfaceVessel, "physical", command=[1.0, 0.0]).derivatives(np.zeros(6))
     np.testing.assert_allclose(slope[3:], [46.7 / 8.44, 0, 0.1 * 46.7 / 0.133], rtol=1e-14)
 
 
 def test_loads_act_on_all_three_axes():
-    slope = build(SurfaceVessel, "physical").derivatives(
-        np.zeros(6), np.array([0.0, 0.0, 3.0, 4.0, 5.0])
-    )
+    loads = {"force_1": [3.0, 3.0], "force_4": [0.0, 1.0], "moment_2": 5.0}
+    slope = build(SurfaceVessel, "physical", **loads).derivatives(np.zeros(6))
     np.testing.assert_allclose(slope[3:], [3 / 8.44, 4 / 12.55, 5 / 0.133], rtol=1e-14)
 
 
@@ -64,7 +61,7 @@ def test_straight_motion_is_unstable_above_the_munk_limit():
     assert limit == pytest.approx(0.062, abs=5e-4)
     craft = build(SurfaceVessel, "physical")
     for share, sign in ((0.999, -1), (1.001, 1)):
-        A = craft.linearise(np.array([0, 0, 0, share * limit, 0, 0]), np.zeros(5)).A
+        A = craft.linearise(np.array([0, 0, 0, share * limit, 0, 0])).A
         poles = np.linalg.eigvals(A[np.ix_([4, 5], [4, 5])])
         assert sign * poles.real.max() > 0
 
@@ -80,7 +77,7 @@ def test_linearisation_is_the_jacobian_of_section_5():
             [-m11 * R / m22, -d22 / m22, -m11 * U / m22],
             [c * V / m33, c * U / m33, -d33 / m33],
         ]
-        A = craft.linearise(np.array([0, 0, 0, U, V, R]), np.zeros(5)).A
+        A = craft.linearise(np.array([0, 0, 0, U, V, R])).A
         np.testing.assert_allclose(A[3:, 3:], expected, rtol=1e-14, atol=1e-17)
 
 

@@ -25,7 +25,7 @@ def build(model="nonlinear", load=(0.0, 0.0, 0.0), **changes):
     craft = ThrusterShip("ship")
     entries = load_vehicle("thruster-ship").file.components["thruster-ship"]
     values = {name: entry.value for name, entry in entries.items()}
-    force = {"force": load[:2], "moment": load[2]}
+    force = {"force_1": load[:2], "moment_1": load[2]}
     for name, value in {**values, "model": model, **force, **changes}.items():
         craft.set(name, value)
     return craft
@@ -150,32 +150,40 @@ def test_linear_motions_add_up():
 # ---------------------------------------------------------------------- linear model
 
 
+def columns(linear, term):
+    """Return the columns of X, Y and N of one term of the loads."""
+    names = (f"force_{term}.x", f"force_{term}.y", f"moment_{term}")
+    return [linear.u_names.index(name) for name in names]
+
+
 def test_linear_model_is_that_of_the_source():
     for model in ("nonlinear", "linear"):
-        linear = build(model).linearise(np.zeros(6), np.zeros(6))
+        linear = build(model).linearise(np.zeros(6))
         A = np.zeros((6, 6))
         A[[0, 1, 2], [3, 4, 5]] = 1
         np.testing.assert_array_equal(linear.A, A)
         B = np.zeros((6, 3))
         B[3, 0], B[4, 1], B[5, 2] = 1.2690355329949e-07, 7.3391695908404e-08, 2.3226513507903e-10
         B[4, 2] = B[5, 1] = -1.3452306210590e-10
-        for inputs in (linear.B[:, :3], linear.B[:, 3:]):  # thrusters, load
-            np.testing.assert_allclose(inputs, B, rtol=1e-13)
+        for term in (1, 2, 3, 4):
+            np.testing.assert_allclose(linear.B[:, columns(linear, term)], B, rtol=1e-13)
 
 
 def test_linear_model_is_the_nonlinear_one_linearised():
-    linear = build().linearise(np.zeros(6), np.zeros(6))
+    linear = build().linearise(np.zeros(6))
     generator = np.random.default_rng(1)
     for _ in range(5):
-        x, u = generator.uniform(-1, 1, 6), generator.uniform(-1, 1, 6) * [*FULL, *FULL]
+        x, u = generator.uniform(-1, 1, 6), generator.uniform(-1, 1, 12)
+        for term in (1, 2, 3, 4):
+            u[columns(linear, term)] *= FULL
         expected = linear.A @ x + linear.B @ u
         np.testing.assert_allclose(build("linear").derivatives(x, u), expected, rtol=1e-12)
 
 
 def test_six_integrators_that_the_thrusters_control():
-    linear = build().linearise(np.zeros(6), np.zeros(6))
+    linear = build().linearise(np.zeros(6))
     np.testing.assert_array_equal(np.linalg.eigvals(linear.A), 0)
-    B = linear.B[:, :3] * FULL
+    B = linear.B[:, columns(linear, 1)] * FULL
     assert np.linalg.matrix_rank(np.hstack([B, linear.A @ B])) == 6
 
 
@@ -264,7 +272,7 @@ def test_mass_matrix():
 
 def test_a_load_acts_as_the_thrusters_do():
     np.testing.assert_array_equal(
-        end(20.0, load=FULL), end(20.0, load_force=FULL[:2], load_moment=FULL[2])
+        end(20.0, load=FULL), end(20.0, force_2=FULL[:2], moment_2=FULL[2])
     )
 
 

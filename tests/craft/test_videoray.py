@@ -40,7 +40,7 @@ def terminal(d1, d2, force):
 def test_drag_balances_thrust_in_surge(force):
     component = videoray(volume=6.5e-3)
     speed = terminal(0.95, 6.04, force)
-    component.set("propulsion_force", (force, 0, 0))
+    component.set("force_1", (force, 0, 0))
     x = np.array([0, 0, 5.0, 0, 0, 0, speed, 0, 0, 0, 0, 0])
     # The accelerations' rounding: 2e-15 of the thrust per kilogram.
     assert np.abs(component.derivatives(x)[6:]).max() < 2e-15 * max(1.0, force)
@@ -52,7 +52,7 @@ def test_drag_balances_thrust_in_surge(force):
 @pytest.mark.parametrize(("axis", "d1", "d2"), [(2, 3.70, 26.36), (5, 0.023, 0.45)])
 def test_drag_balances_thrust_in_heave_and_yaw(axis, d1, d2):
     component = videoray(volume=6.5e-3)
-    component.set("propulsion_moment" if axis == 5 else "propulsion_force", (0, 0, 0.5))
+    component.set("moment_1" if axis == 5 else "force_1", (0, 0, 0.5))
     end = component.reference([0.0, 60.0]).x[-1, 6:]
     assert end[axis] == pytest.approx(terminal(d1, d2, 0.5), rel=1e-9)
     assert np.abs(np.delete(end, axis)).max() == 0.0
@@ -71,7 +71,7 @@ def test_quadratic_drag_alone_gives_a_hyperbolic_tangent():
     errors = []
     for count in (10, 20, 40, 80):
         component = videoray(volume=6.5e-3, linear_damping_force=0.0)
-        component.set("propulsion_force", (thrust, 0, 0))
+        component.set("force_1", (thrust, 0, 0))
         u = ran(component, 4.0, count)[:, 6]
         exact = speed * np.tanh(np.linspace(0, 4.0, count + 1) / time_constant)
         errors.append(np.abs(u - exact).max())
@@ -167,6 +167,6 @@ def test_level_motion_under_pi_control_is_that_of_the_surface_vessel():
             assert row["t"] == pytest.approx(k * period)
             expected = [row[name] for name in ("u", "v", "r", "tau1", "tau2")]
             np.testing.assert_allclose([u, v, r, *tau], expected, rtol=1e-7, atol=1e-9)
-        component.set("propulsion_force", (full * sum(tau), 0, 0))
-        component.set("propulsion_moment", (0, 0, full * arm * (tau[0] - tau[1])))
+        component.set("force_1", (full * sum(tau), 0, 0))
+        component.set("moment_1", (0, 0, full * arm * (tau[0] - tau[1])))
         component.advance(k * period, period)

@@ -41,7 +41,7 @@ def test_a_c_program_steps_a_plant_like_we_do(host: Path, tmp_path: Path) -> Non
     identifier = description.coSimulation.modelIdentifier
     command = [
         str(host), str(folder / "binaries" / "linux64" / f"{identifier}.so"), description.guid,
-        (folder / "resources").as_uri(), str(STEPS), str(H), vr["propulsion_force.x"], str(FORCE),
+        (folder / "resources").as_uri(), str(STEPS), str(H), vr["force_1.x"], str(FORCE),
         *(vr[name] for name in outputs),
     ]  # fmt: skip
     # The line that `seatrial doctor` prints is what is tested.
@@ -54,7 +54,7 @@ def test_a_c_program_steps_a_plant_like_we_do(host: Path, tmp_path: Path) -> Non
     instance.set_start({"mass": 20.0, "inertia.xx": 3.0, "inertia.yy": 2.0, "inertia.zz": 5.0})
     instance.initialise(0.0, 1.0)
     instance.begin()
-    instance.writer(["propulsion_force.x"])([FORCE])
+    instance.writer(["force_1.x"])([FORCE])
     for k in range(STEPS):
         instance.step(k * H, H)
     expected = instance.reader(outputs)()

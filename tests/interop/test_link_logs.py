@@ -33,7 +33,7 @@ stop = "10 s"
 "mavlink.links" = "udpout:127.0.0.1:{port}"
 [[events]]
 at = "3 s"
-set = {{ "hull.load_moment.x" = "20 N.m" }}
+set = {{ "hull.moment_2.x" = "20 N.m" }}
 [record]
 signals = ["hull.*", "gnss.*"]
 """

@@ -111,8 +111,8 @@ def _manifest(phase: str, scenario: str, signals: Mapping[str, str]) -> dict[str
         },
         "connections": [
             ["hull.attitude", "downwash.attitude"],
-            ["downwash.force", "hull.load_force"],
-            ["downwash.moment", "hull.load_moment"],
+            ["downwash.force", "hull.force_2"],
+            ["downwash.moment", "hull.moment_2"],
         ],
         "signals": {
             name: {"unit": unit, "description": f"signal {name}"} for name, unit in signals.items()

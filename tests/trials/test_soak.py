@@ -23,8 +23,8 @@ propulsion = { fmu = "propulsion", parameters = "hydrone" }
 
 [connections]
 "thruster.thrust"   = ["propulsion.thrust.t1", "propulsion.thrust.t2"]
-"propulsion.force"  = "hull.propulsion_force"
-"propulsion.moment" = "hull.propulsion_moment"
+"propulsion.force"  = "hull.force_1"
+"propulsion.moment" = "hull.moment_1"
 """
 TRIAL = 'rig = "soak.toml"\nstop = "{hours} h"\n[record]\nevery = "1 s"\n'
 

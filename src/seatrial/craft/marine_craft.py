@@ -8,10 +8,19 @@ from typing import Any, ClassVar
 
 import casadi as ca
 
-from ..component import Input, Parameter
+from ..component import Parameter
 from ..plant import State
 from ..ports import Output
-from .six_dof import SixDofCraft, mass_matrix, relative_acceleration, submerged_restoring
+from ..terminals import MOTION
+from .six_dof import (
+    LOADS,
+    SixDofCraft,
+    attachment_motion,
+    external_load,
+    mass_matrix,
+    relative_acceleration,
+    submerged_restoring,
+)
 from .symbolic import euler_rate_matrix, rotation_matrix
 
 
@@ -45,8 +54,7 @@ class MarineCraft(SixDofCraft):
 
     In both surface forms the moment is a couple and the force acts at the body origin.
 
-    **Inputs.** Forces (N, body axes) act at the body origin and moments (N.m, body axes) about
-    it; load, propulsion and tether add up.
+    **Loads**, tau, as in `SixDofCraft`: terms of force and moment, and a tether or tow.
     """
 
     max_step = Parameter(
@@ -74,11 +82,6 @@ class MarineCraft(SixDofCraft):
         0.0, "m", "centre of buoyancy from the body origin, body axes (submerged)", axes="xyz"
     )
 
-    load_force = Input("N", "force of a load on the craft, body axes", axes="xyz")
-    load_moment = Input("N.m", "moment of a load about the body origin, body axes", axes="xyz")
-    tether_force = Input("N", "force of a tether on the craft, body axes", axes="xyz")
-    tether_moment = Input("N.m", "moment of a tether about the body origin, body axes", axes="xyz")
-
     position = State("m", "body origin in north-east-down", axes="xyz")
     attitude = State("rad", "Euler angles, ZYX", axes=("phi", "theta", "psi"))
     velocity = State(
@@ -91,31 +94,18 @@ class MarineCraft(SixDofCraft):
         axes="xyz",
     )
 
-    feedthrough: ClassVar = {
-        "acceleration": (
-            "load_force",
-            "load_moment",
-            "propulsion_force",
-            "propulsion_moment",
-            "tether_force",
-            "tether_moment",
-            "current",
-        )
-    }
+    terminals: ClassVar = {**SixDofCraft.terminals, "motion": MOTION}
+    feedthrough: ClassVar = {"acceleration": (*LOADS, "current")}
 
     def equations(
         self, x: SimpleNamespace, u: SimpleNamespace, p: SimpleNamespace
     ) -> tuple[Mapping[str, Any], Mapping[str, Any]]:
-        """Return the derivatives of eta and nu, and the acceleration (see the class)."""
+        """Return the derivatives of eta and nu, the acceleration and the attachment's motion."""
         R = rotation_matrix(x.attitude)
         relative = x.velocity - R.T @ u.current
         nu_r = ca.vertcat(relative, x.rates)
         M = mass_matrix(p)
-        tau = (
-            ca.vertcat(u.load_force, u.load_moment)
-            + ca.vertcat(u.propulsion_force, u.propulsion_moment)
-            + ca.vertcat(u.tether_force, u.tether_moment)
-        )
+        tau = external_load(R, u, p)
         h = M @ nu_r if p.coriolis == "full" else ca.diag(M) * nu_r
         vertical = R[2, :].T
         nu_r_dot = relative_acceleration(M, h, nu_r, tau + _restoring(x, vertical, p), p)
@@ -127,7 +117,8 @@ class MarineCraft(SixDofCraft):
             "velocity": acceleration - ca.cross(x.rates, x.velocity),
             "rates": nu_r_dot[3:],
         }
-        return derivatives, {"acceleration": acceleration}
+        attached = attachment_motion(R, x.position, x.velocity, x.rates, p)
+        return derivatives, {**attached, "acceleration": acceleration}
 
 
 def _restoring(x: SimpleNamespace, n: Any, p: SimpleNamespace) -> Any:

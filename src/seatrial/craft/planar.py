@@ -9,12 +9,14 @@ Heave and pitch are left out: z = theta = 0, w = q = 0.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 import casadi as ca
 
+from ..component import Terms, terminal
 from ..plant import Plant, State
 from ..ports import Output
+from ..terminals import MOTION
 
 
 class PlanarCraft(Plant):
@@ -38,6 +40,8 @@ class PlanarCraft(Plant):
         axes="xyz",
     )
 
+    terminals: ClassVar = {"motion": MOTION}
+
 
 class ThreeDofCraft(PlanarCraft):
     """Base of craft that stay upright: the states eta = (x, y, psi) and nu = (u, v, r)."""
@@ -52,6 +56,22 @@ class ThreeDofCraft(PlanarCraft):
         "velocity of the body origin over ground and rate of yaw, body axes",
         axes=("u", "v", "r"),
     )
+
+
+class LoadedCraft(ThreeDofCraft):
+    """Base of craft that stay upright, on which others act: thrusters, an environmental load.
+
+    ``force`` and ``moment`` are sums of their terms: (X, Y), N, in body axes at the body origin,
+    and N, N.m, positive to starboard.
+    """
+
+    force = Terms(4, "N", "force on the craft, body axes", axes="xy")
+    moment = Terms(4, "N.m", "yaw moment on the craft, positive to starboard")
+
+    terminals: ClassVar = {
+        **ThreeDofCraft.terminals,
+        "wrench": terminal("force", "moment", rule="plug"),
+    }
 
 
 def motion_outputs(eta: Any, nu: Any, nu_dot: Any) -> dict[str, Any]:

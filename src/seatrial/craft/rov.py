@@ -12,7 +12,16 @@ import casadi as ca
 from ..component import Input, Parameter
 from ..plant import State
 from ..ports import Output
-from .six_dof import SixDofCraft, mass_matrix, relative_acceleration, submerged_restoring
+from ..terminals import MOTION
+from .six_dof import (
+    LOADS,
+    SixDofCraft,
+    attachment_motion,
+    external_load,
+    mass_matrix,
+    relative_acceleration,
+    submerged_restoring,
+)
 from .symbolic import euler_rate_matrix, rotation_matrix
 
 _NED = ("north", "east", "down")
@@ -22,7 +31,7 @@ _PQR = ("p", "q", "r")
 
 
 class Rov(SixDofCraft):
-    """Submerged vehicle: M nu_r' + C(nu_r) nu_r + F_D(nu_r) + G(eta) = tau_prop + tau_tether.
+    """Submerged vehicle: M nu_r' + C(nu_r) nu_r + F_D(nu_r) + G(eta) = tau.
 
     Source 000, eqs 3.8 to 3.45, in the corrected form that docs/vehicles/videoray.md lists.
     eta = (x, y, z, phi, theta, psi): body origin in {n} (x north, y east, z down), m, and Euler
@@ -46,13 +55,11 @@ class Rov(SixDofCraft):
     buoyancy; with f = J1^T (0, 0, 1), G = -((W - B) f, r_G x W f - r_B x B f) (3.25 to 3.28).
     Roll and pitch are stable if the centre of buoyancy is above the CG (z_B < z_G).
 
-    **Tether.** ``tether_force`` f, N, in {n}, is what the tether does to the vehicle at
-    ``tether_attachment`` r (body axes): tau_tether = (J1^T f, r x J1^T f). ``tether_point`` and
-    ``tether_point_velocity`` are the place of that point, x + J1 r, and its velocity over
-    ground, J1 (nu1 + nu2 x r), both in {n}.
+    **Loads**, tau, as in `SixDofCraft`: propulsion by terms of force and moment, the tether by
+    ``attachment_force``.
 
     ``attitude`` has phi and psi in (-pi, pi]; in eta they count turns, so that they do not
-    jump. tau_prop = (``propulsion_force``, ``propulsion_moment``), body axes, about the origin.
+    jump.
 
     Not modelled: the surface (a vehicle that comes above z = 0 keeps all of its buoyancy),
     waves, bottom, lift, damping that couples axes, what the tether does beyond its force.
@@ -63,11 +70,7 @@ class Rov(SixDofCraft):
     center_of_buoyancy = Parameter(
         0.0, "m", "centre of buoyancy from the body origin, body axes", axes="xyz"
     )
-    tether_attachment = Parameter(
-        0.0, "m", "attachment of the tether from the body origin, body axes", axes="xyz"
-    )
 
-    tether_force = Input("N", "force of the tether on the vehicle, {n}", axes=_NED)
     current_acceleration = Input("m/s2", "acceleration of the water, uniform, {n}", axes=_NED)
 
     eta = State(
@@ -89,20 +92,9 @@ class Rov(SixDofCraft):
         "inertial acceleration of the body origin, dv/dt + omega x v, body axes",
         axes="xyz",
     )
-    tether_point = Output("m", "attachment of the tether, {n}", axes=_NED)
-    tether_point_velocity = Output(
-        "m/s", "velocity of the attachment of the tether over ground, {n}", axes=_NED
-    )
 
-    feedthrough: ClassVar = {
-        "acceleration": (
-            "propulsion_force",
-            "propulsion_moment",
-            "tether_force",
-            "current",
-            "current_acceleration",
-        )
-    }
+    terminals: ClassVar = {**SixDofCraft.terminals, "motion": MOTION}
+    feedthrough: ClassVar = {"acceleration": (*LOADS, "current", "current_acceleration")}
 
     def equations(
         self, x: SimpleNamespace, u: SimpleNamespace, p: SimpleNamespace
@@ -118,30 +110,22 @@ class Rov(SixDofCraft):
             "eta": ca.vertcat(R @ velocity, euler_rate_matrix(euler) @ rates),
             "nu": ca.vertcat(acceleration - ca.cross(rates, velocity), nu_r_dot[3:]),
         }
-        arm = p.tether_attachment
         return derivatives, {
+            **attachment_motion(R, x.eta[:3], velocity, rates, p),
             "position": x.eta[:3],
             "attitude": ca.vertcat(_wrapped(euler[0]), euler[1], _wrapped(euler[2])),
             "velocity": velocity,
             "rates": rates,
             "acceleration": acceleration,
-            "tether_point": x.eta[:3] + R @ arm,
-            "tether_point_velocity": R @ (velocity + ca.cross(rates, arm)),
         }
 
 
 def _relative_acceleration(R: Any, nu_r: Any, u: SimpleNamespace, p: SimpleNamespace) -> Any:
-    """Return nu_r' (6,) under propulsion, tether, weight and buoyancy; R = J1."""
-    tether = R.T @ u.tether_force
-    tau = ca.vertcat(
-        u.propulsion_force + tether,
-        u.propulsion_moment + ca.cross(p.tether_attachment, tether),
-    )
+    """Return nu_r' (6,) under all loads, weight and buoyancy; R = J1."""
     W, B = p.mass * p.gravity, p.density * p.gravity * p.volume
     M = mass_matrix(p)
-    return relative_acceleration(
-        M, M @ nu_r, nu_r, tau + submerged_restoring(W, B, R[2, :].T, p), p
-    )
+    tau = external_load(R, u, p) + submerged_restoring(W, B, R[2, :].T, p)
+    return relative_acceleration(M, M @ nu_r, nu_r, tau, p)
 
 
 def _wrapped(angle: Any) -> Any:

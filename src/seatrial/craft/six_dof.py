@@ -8,17 +8,19 @@ forces (N) and moments about the body origin (N.m), in body axes.
 from __future__ import annotations
 
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, ClassVar
 
 import casadi as ca
 import numpy as np
 
-from ..component import Input, Parameter
+from ..component import Input, Parameter, Terms, terminal
 from ..model import Vector
 from ..plant import Plant
+from ..ports import Output
 from .inertia import require_positive_definite
 from .symbolic import skew
 
+_NED = ("north", "east", "down")
 _TENSOR = ("xx", "yy", "zz", "xy", "xz", "yz")
 _UVW = ("u", "v", "w")
 _PQR = ("p", "q", "r")
@@ -36,14 +38,21 @@ class SixDofCraft(Plant):
     """Base of craft in six degrees of freedom: M nu_r' + C(nu_r) nu_r + D(nu_r) nu_r = tau.
 
     nu_r is nu less the velocity of the water in body axes. The subclass declares its states
-    and outputs and forms its equations from `mass_matrix`, `relative_acceleration` and, if it
-    is submerged, `submerged_restoring`.
+    and outputs and forms its equations from `mass_matrix`, `external_load`,
+    `relative_acceleration` and, if it is submerged, `submerged_restoring`; it publishes
+    `attachment_motion` and adds the terminal ``motion`` to ``terminals``.
 
     **Inertia.** M = M_RB + M_A about the body origin, M_A = [[A, B], [B^T, J]] with positive
     entries for water that adds inertia (A_xx = -X_u', B_zq = -Z_q'). All inertia is in M: the
     water must not give back acceleration forces through an input.
 
     **Damping.** D nu = (linear + quadratic |nu_r|) nu_r, axis by axis, coefficients >= 0.
+
+    **Loads.** ``force`` and ``moment`` are sums of their terms, in body axes: forces act at the
+    body origin, moments about it. A tether or a tow pulls with ``attachment_force`` f, {n}, at
+    ``attachment_place`` r, body axes: (R^T f, r x R^T f). ``attachment_point`` and
+    ``attachment_velocity`` are the place of that point, x + R r, and its velocity over ground,
+    R (v + omega x r), both in {n}.
     """
 
     mass = Parameter(1.0, "kg", "mass of the craft, without added mass", min=0.0)
@@ -69,12 +78,26 @@ class SixDofCraft(Plant):
         0.0, "N.m.s2/rad2", "quadratic damping", axes=_PQR, min=0.0
     )
     gravity = Parameter(9.81, "m/s2", "acceleration of gravity", min=0.0)
-
-    propulsion_force = Input("N", "force of the propulsion, body axes", axes="xyz")
-    propulsion_moment = Input(
-        "N.m", "moment of the propulsion about the body origin, body axes", axes="xyz"
+    attachment_place = Parameter(
+        0.0, "m", "attachment of a tether or tow from the body origin, body axes", axes="xyz"
     )
-    current = Input("m/s", "velocity of the water, uniform, {n}", axes=("north", "east", "down"))
+
+    force = Terms(4, "N", "force on the craft, body axes", axes="xyz")
+    moment = Terms(4, "N.m", "moment on the craft about the body origin, body axes", axes="xyz")
+    attachment_force = Input(
+        "N", "force of a tether or tow at its attachment, {n}", axes=_NED, optional=True
+    )
+    current = Input("m/s", "velocity of the water, uniform, {n}", axes=_NED)
+
+    attachment_point = Output("m", "attachment of a tether or tow, {n}", axes=_NED)
+    attachment_velocity = Output("m/s", "velocity of the attachment over ground, {n}", axes=_NED)
+
+    terminals: ClassVar = {
+        "wrench": terminal("force", "moment", rule="plug"),
+        "attachment": terminal(
+            point="attachment_point", velocity="attachment_velocity", force="attachment_force"
+        ),
+    }
 
     def start(self, t: float) -> None:
         """Start from the start values; raises InputError if M is not positive definite."""
@@ -92,6 +115,35 @@ class SixDofCraft(Plant):
         """
         numbers = {name: ca.DM(getattr(self, name)) for name in _INERTIAS}
         return np.array(mass_matrix(SimpleNamespace(**numbers)))
+
+
+LOADS = (*SixDofCraft.force.names, *SixDofCraft.moment.names, "attachment_force")
+"""Inputs of `external_load`."""
+
+
+def external_load(R: Any, u: SimpleNamespace, p: SimpleNamespace) -> Any:
+    """Return the load (6,) of the terms of force and moment, and of what is attached.
+
+    ``R`` is the rotation body to {n}; N and N.m about the body origin, body axes.
+    """
+    pull = R.T @ u.attachment_force
+    force, moment = SixDofCraft.force.total(u), SixDofCraft.moment.total(u)
+    return ca.vertcat(force + pull, moment + ca.cross(p.attachment_place, pull))
+
+
+def attachment_motion(
+    R: Any, position: Any, velocity: Any, rates: Any, p: SimpleNamespace
+) -> dict[str, Any]:
+    """Return place (m) and velocity (m/s) of the attachment, {n}, by output.
+
+    ``R`` is the rotation body to {n}, ``position`` the body origin in {n}, m, ``velocity``
+    (m/s) and ``rates`` (rad/s) in body axes.
+    """
+    arm = p.attachment_place
+    return {
+        "attachment_point": position + R @ arm,
+        "attachment_velocity": R @ (velocity + ca.cross(rates, arm)),
+    }
 
 
 def mass_matrix(p: SimpleNamespace) -> Any:

@@ -10,13 +10,13 @@ import casadi as ca
 
 from ..component import Input, Parameter
 from ..errors import InputError
-from .planar import ThreeDofCraft, kinematics, motion_outputs, planar_coriolis
+from .planar import LoadedCraft, kinematics, motion_outputs, planar_coriolis
 
 _MASSES = ("kg", "kg", "kg.m2")
 _DAMPINGS = ("N.s/m", "N.s/m", "N.m.s/rad")
 
 
-class SurfaceVessel(ThreeDofCraft):
+class SurfaceVessel(LoadedCraft):
     """Vessel in surge, sway and yaw that two thrusters ahead move: no force in sway.
 
     Source 000, eqs 5.17 to 5.19 and 6.5. eta = (x, y, psi): body origin in {n} (x north,
@@ -29,8 +29,8 @@ class SurfaceVessel(ThreeDofCraft):
         m33 r' = N - d33 r + s (m11 - m22) u v           N = l (E1 t1 - E2 t2)
 
     ``command`` (t1, t2) is each thruster's share of its full thrust E1, E2 (``thrust``), -1 to
-    1; thruster 1 ahead turns to starboard. ``load_force`` and ``load_moment``, body axes, add to
-    X, Y and N. ``lever_arm`` l is the thrusters' distance from the centre line; the source has
+    1; thruster 1 ahead turns to starboard. The terms of ``force`` and ``moment``, body axes, add
+    to X, Y and N. ``lever_arm`` l is the thrusters' distance from the centre line; the source has
     none (l = 1 m).
 
     s is ``yaw_coupling_sign``, 1: the yaw moment of the added masses as momentum demands it
@@ -52,10 +52,7 @@ class SurfaceVessel(ThreeDofCraft):
     )
 
     command = Input("1", "share of each thruster's full thrust, -1 to 1", axes=("t1", "t2"))
-    load_force = Input("N", "force of an environmental load, body axes", axes="xy")
-    load_moment = Input("N.m", "yaw moment of an environmental load, positive to starboard")
-
-    feedthrough: ClassVar = {"acceleration": ("command", "load_force")}
+    feedthrough: ClassVar = {"acceleration": ("command", *LoadedCraft.force.names)}
 
     def start(self, t: float) -> None:
         """Start from the start values; raises InputError for a sign between -1 and 1."""
@@ -71,7 +68,7 @@ class SurfaceVessel(ThreeDofCraft):
         """Return the derivatives of eta and nu, and the motion (see the class)."""
         first, second = ca.vertsplit(p.thrust * u.command)
         tau = ca.vertcat(first + second, 0, p.lever_arm * (first - second))
-        load = ca.vertcat(u.load_force, u.load_moment)
+        load = ca.vertcat(LoadedCraft.force.total(u), LoadedCraft.moment.total(u))
         signs = ca.vertcat(1, 1, p.yaw_coupling_sign)
         coriolis = signs * planar_coriolis((p.mass * x.nu)[:2], x.nu)
         nu_dot = (tau + load - p.damping * x.nu - coriolis) / p.mass

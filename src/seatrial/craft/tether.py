@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from ..component import NS, Component, Input, Output, Parameter, seconds
+from ..component import NS, Component, Input, Output, Parameter, seconds, terminal
 from ..errors import InputError, SimulationError
 from ..model import Vector
 from .cable import Cable
@@ -102,6 +102,10 @@ class Tether(Component):
     east = Output("m", "cable at tenths of its length from the top: east", axes=_STATIONS)
     down = Output("m", "cable at tenths of its length from the top: down", axes=_STATIONS)
 
+    terminals: ClassVar = {
+        "top": terminal(point="top_position", velocity="top_velocity", force="surface_force"),
+        "bottom": terminal(point="bottom_position", velocity="bottom_velocity", force="force"),
+    }
     # Positions are taken at instants, forces hold for a step: a master must not extrapolate them.
     discrete = True
     views: ClassVar = {"line": {"north": "north", "east": "east", "down": "down"}}

@@ -9,15 +9,15 @@ from typing import Any, ClassVar
 import casadi as ca
 import numpy as np
 
-from ..component import Input, Parameter
+from ..component import Parameter
 from ..model import Vector
 from .inertia import require_positive_definite
-from .planar import ThreeDofCraft, kinematics, motion_outputs, planar_coriolis
+from .planar import LoadedCraft, kinematics, motion_outputs, planar_coriolis
 
 _INERTIAS = ("mass", "inertia", "center_of_gravity", "X_udot", "Y_vdot", "Y_rdot", "N_rdot")
 
 
-class ThrusterShip(ThreeDofCraft):
+class ThrusterShip(LoadedCraft):
     """Ship in surge, sway and yaw under thrusters: M nu' + C(nu) nu = tau, eta' = R(psi) nu.
 
     Source 003. eta = (x, y, psi): body origin in {n} (x north, y east), m, and heading,
@@ -36,8 +36,8 @@ class ThrusterShip(ThreeDofCraft):
     ``model`` = "linear" is the exact linearisation of all this about rest at the origin with
     psi = 0, from the same expressions: eta' = nu, M nu' = tau.
 
-    tau = (X, Y, N): ``force`` and ``moment`` of the thrusters plus those of an environmental
-    load, N and N.m about the body origin, in body axes.
+    tau = (X, Y, N): sums of the terms of ``force`` and ``moment``, N and N.m about the body
+    origin, in body axes: thrusters, an environmental load.
 
     Not modelled: damping of any kind (nothing ever comes to rest by itself), wind, waves,
     current, thrusters that interact.
@@ -53,14 +53,7 @@ class ThrusterShip(ThreeDofCraft):
     Y_rdot = Parameter(0.0, "kg.m", "added mass, sway from yaw and yaw from sway")
     N_rdot = Parameter(0.0, "kg.m2", "added inertia in yaw, negative")
 
-    force = Input("N", "force of the thrusters, body axes", axes="xy")
-    moment = Input("N.m", "yaw moment of the thrusters, positive to starboard")
-    load_force = Input("N", "force of an environmental load, body axes", axes="xy")
-    load_moment = Input("N.m", "yaw moment of an environmental load, positive to starboard")
-
-    feedthrough: ClassVar = {
-        "acceleration": ("force", "moment", "load_force", "load_moment"),
-    }
+    feedthrough: ClassVar = {"acceleration": (*LoadedCraft.force.names, *LoadedCraft.moment.names)}
 
     def start(self, t: float) -> None:
         """Start from the start values; raises InputError if M is not positive definite."""
@@ -80,13 +73,15 @@ class ThrusterShip(ThreeDofCraft):
     ) -> tuple[Mapping[str, Any], Mapping[str, Any]]:
         """Return the derivatives of eta and nu, and the motion (see the class)."""
         M = _mass_matrix(p)
-        tau = ca.vertcat(u.force + u.load_force, u.moment + u.load_moment)
+        force, moment = LoadedCraft.force, LoadedCraft.moment
+        tau = ca.vertcat(force.total(u), moment.total(u))
         nu_dot = ca.ldl_solve(tau - planar_coriolis((M @ x.nu)[:2], x.nu), *ca.ldl(M))
         derivatives = {"eta": kinematics(x.eta, x.nu), "nu": nu_dot}
         motion = motion_outputs(x.eta, x.nu, nu_dot)
         if p.model == "nonlinear":
             return derivatives, motion
-        point = ca.vertcat(x.eta, x.nu, u.force, u.moment, u.load_force, u.load_moment)
+        loads = [getattr(u, name) for name in (*force.names, *moment.names)]
+        point = ca.vertcat(x.eta, x.nu, *loads)
         return _about_rest(derivatives, point), _about_rest(motion, point)
 
 
