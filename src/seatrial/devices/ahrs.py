@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from ..component import Input, Parameter
+from ..component import Input, Parameter, terminal
 from ..craft.kinematics import to_body
 from ..errors import InputError
 from .sensor import Measured, Sensor, full_circle, half_circle
@@ -68,6 +68,17 @@ class Ahrs(Sensor):
         resolution=0.01,
     )
 
+    terminals: ClassVar = {
+        "motion": terminal("attitude", "acceleration"),
+        "reading": terminal(
+            "euler",
+            "accelerometer",
+            imu_valid="valid",
+            heading="euler__psi",
+            heading_valid="valid",
+            heel="euler__phi",
+        ),
+    }
     feedthrough: ClassVar = {
         "euler": ("attitude",),
         "accelerometer": ("attitude", "acceleration"),

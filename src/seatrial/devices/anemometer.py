@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from ..component import Input, Parameter
+from ..component import Input, Parameter, terminal
 from ..craft.kinematics import cross, to_body
 from .sensor import Measured, Sensor, half_circle
 
@@ -55,6 +55,10 @@ class Anemometer(Sensor):
     )
 
     _ACTING = ("wind", "attitude", "velocity", "rates")
+    terminals: ClassVar = {
+        "motion": terminal("attitude", "velocity", "rates"),
+        "reading": terminal(wind_speed="speed", wind_angle="angle", wind_valid="valid"),
+    }
     feedthrough: ClassVar = {"speed": _ACTING, "angle": _ACTING}
 
     def measure(self) -> list[float]:

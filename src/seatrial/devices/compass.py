@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from ..component import Input, Parameter
+from ..component import Input, Parameter, terminal
 from .sensor import Measured, Sensor, full_circle
 
 _DEG = math.radians(1.0)
@@ -46,6 +46,10 @@ class Compass(Sensor):
         resolution=0.1 * _DEG,
     )
 
+    terminals: ClassVar = {
+        "motion": terminal("attitude"),
+        "reading": terminal("heading", heading_valid="valid"),
+    }
     feedthrough: ClassVar = {"heading": ("attitude",)}
 
     def measure(self) -> list[float]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from ..component import Input, Parameter
+from ..component import Input, Parameter, terminal
 from ..craft.kinematics import to_ned
 from .sensor import Measured, Sensor
 
@@ -44,6 +44,10 @@ class Depth(Sensor):
         resolution=0.002,
     )
 
+    terminals: ClassVar = {
+        "motion": terminal("position", "attitude"),
+        "reading": terminal("depth", depth_valid="valid"),
+    }
     feedthrough: ClassVar = {"depth": ("position", "attitude")}
 
     def measure(self) -> list[float]:

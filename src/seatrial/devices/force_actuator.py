@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from ..component import Input, Output, Parameter
+from ..component import Input, Output, Parameter, terminal
 from .actuator import Actuator
 
 _SLOW_LAG = 1.0
@@ -41,6 +41,7 @@ class ForceActuator(Actuator):
     force = Output("N", "force on the ship, body axes", axes="xy")
     moment = Output("N.m", "yaw moment on the ship, positive to starboard")
 
+    terminals: ClassVar = {"wrench": terminal("force", "moment")}
     feedthrough: ClassVar = {"force": ("demand", "fault"), "moment": ("demand", "fault")}
 
     def start(self, t: float) -> None:

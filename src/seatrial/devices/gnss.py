@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from ..component import Input, Parameter
+from ..component import Input, Parameter, terminal
 from ..craft.kinematics import cross, to_ned
 from .sensor import Measured, Sensor
 
@@ -58,6 +58,10 @@ class Gnss(Sensor):
         resolution=0.001,
     )
 
+    terminals: ClassVar = {
+        "motion": terminal("position", "velocity", "attitude", "rates"),
+        "reading": terminal("position_n", "velocity_n", position_valid="valid"),
+    }
     feedthrough: ClassVar = {
         "position_n": ("position", "attitude"),
         "velocity_n": ("attitude", "velocity", "rates"),

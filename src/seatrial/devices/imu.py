@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from ..component import Input, Parameter
+from ..component import Input, Parameter, terminal
 from ..craft.kinematics import to_body
 from .sensor import Measured, Sensor
 
@@ -69,6 +69,18 @@ class Imu(Sensor):
         instability=0.3 * _DEG,
     )
 
+    terminals: ClassVar = {
+        "motion": terminal("attitude", "rates", "acceleration"),
+        "reading": terminal(
+            "gyro",
+            "accelerometer",
+            "roll_pitch",
+            imu_valid="valid",
+            heel="roll_pitch__phi",
+            roll_rate="gyro__x",
+            yaw_rate="gyro__z",
+        ),
+    }
     feedthrough: ClassVar = {
         "gyro": ("rates",),
         "accelerometer": ("attitude", "acceleration"),

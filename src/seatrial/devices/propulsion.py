@@ -3,21 +3,45 @@
 from __future__ import annotations
 
 import math
-from typing import ClassVar
+from typing import Any, ClassVar
 
-from ..component import Component, Input, Output, Parameter
+from ..component import Component, Input, Output, Parameter, terminal
 from ..craft.kinematics import cross
 from ..errors import InputError
 
-_NUMBERS = (1, 2, 3, 4)
+COUNT = 16
+"""Most thrusters that a craft has."""
+
+_THRUSTS = tuple(f"t{number}" for number in range(1, COUNT + 1))
+
+
+class _OfEach:
+    """A vector per thruster, as parameters NAME_1 ... NAME_16; reading gives all of them."""
+
+    def __init__(self, unit: str, description: str) -> None:
+        self._unit, self._description = unit, description
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._name = name
+        for number in range(1, COUNT + 1):
+            text = f"{self._description} of thruster {number}"
+            parameter = Parameter(0.0, self._unit, text, axes="xyz")
+            parameter.__set_name__(owner, f"{name}_{number}")
+            setattr(owner, parameter.name, parameter)
+
+    def __get__(self, component: Any, owner: type | None = None) -> Any:
+        if component is None:
+            return self
+        return [getattr(component, f"{self._name}_{n}") for n in range(1, COUNT + 1)]
 
 
 class Propulsion(Component):
-    """Sum of up to four fixed thrusters: force = sum d_i T_i, moment = sum r_i x d_i T_i.
+    """Sum of up to 16 fixed thrusters: force = sum d_i T_i, moment = sum r_i x d_i T_i.
 
     T_i is the thrust of thruster i, N, positive along its direction d_i, a unit vector in body
     axes (x bow, y starboard, z down); r_i is its position from the body origin, m. A direction
-    of (0, 0, 0) is no thruster. Static: outputs follow the thrusts at the same instant.
+    of (0, 0, 0) is no thruster; the others are added by number. Static: outputs follow the
+    thrusts at the same instant.
 
     Two thrusters ahead at y = -d and +d, z = z_T give N = (T_1 - T_2) d, so that the port one
     turns the bow to starboard, and M = +z_T (T_1 + T_2). (Source 004, eq. 57, has both with the
@@ -29,41 +53,38 @@ class Propulsion(Component):
 
     exercised: ClassVar = {"direction_1": [1, 0, 0], "position_1": [-0.45, -0.4, 0.15]}
 
-    position_1 = Parameter(0.0, "m", "position of thruster 1 from the body origin", axes="xyz")
-    position_2 = Parameter(0.0, "m", "position of thruster 2 from the body origin", axes="xyz")
-    position_3 = Parameter(0.0, "m", "position of thruster 3 from the body origin", axes="xyz")
-    position_4 = Parameter(0.0, "m", "position of thruster 4 from the body origin", axes="xyz")
-    direction_1 = Parameter(0.0, "1", "direction of thruster 1's positive thrust", axes="xyz")
-    direction_2 = Parameter(0.0, "1", "direction of thruster 2's positive thrust", axes="xyz")
-    direction_3 = Parameter(0.0, "1", "direction of thruster 3's positive thrust", axes="xyz")
-    direction_4 = Parameter(0.0, "1", "direction of thruster 4's positive thrust", axes="xyz")
+    position = _OfEach("m", "position from the body origin")
+    direction = _OfEach("1", "direction of the positive thrust, a unit vector, or 0 for none,")
 
-    thrust = Input(
-        "N", "thrust of each thruster along its direction", axes=("t1", "t2", "t3", "t4")
-    )
+    # Optional: most craft have fewer thrusters.
+    thrust = Input("N", "thrust of each thruster along its direction", axes=_THRUSTS, optional=True)
     force = Output("N", "force on the craft, body axes", axes="xyz")
     moment = Output("N.m", "moment on the craft about the body origin, body axes", axes="xyz")
 
+    terminals: ClassVar = {"wrench": terminal("force", "moment")}
     feedthrough: ClassVar = {"force": ("thrust",), "moment": ("thrust",)}
 
     def start(self, t: float) -> None:
         """Work out each thruster's force and moment; raises InputError for a bad direction."""
-        self._effects = [self._effect(number) for number in _NUMBERS]
+        pairs = enumerate(zip(self.position, self.direction, strict=True))
+        self._effects = [
+            [index, *self._effect(index + 1, *pair)] for index, pair in pairs if any(pair[1])
+        ]
 
     def outputs(self, t: float) -> None:
         """Sum the thrusters."""
-        total = [0.0] * 6
-        for thrust, effect in zip(self.thrust, self._effects, strict=True):
+        thrusts, total = self.thrust, [0.0] * 6
+        for index, *effect in self._effects:
             for i, part in enumerate(effect):
-                total[i] += part * thrust
+                total[i] += part * thrusts[index]
         self.force, self.moment = total[:3], total[3:]
 
-    def _effect(self, number: int) -> list[float]:
+    def _effect(
+        self, number: int, position: tuple[float, ...], direction: tuple[float, ...]
+    ) -> list[float]:
         """Return force and moment per newton of a thruster's thrust: (d, r x d)."""
-        position = getattr(self, f"position_{number}")
-        direction = getattr(self, f"direction_{number}")
         length = math.hypot(*direction)
-        if length != 0.0 and abs(length - 1.0) > 1e-6:
+        if abs(length - 1.0) > 1e-6:
             raise InputError(
                 f"{self.name}.direction_{number} is {direction}, of length {length:.6g}: give a "
                 "unit vector, or (0, 0, 0) for no thruster"

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import ClassVar
 
-from ..component import Component, Input, Output, Parameter
+from ..component import Component, Input, Output, Parameter, terminal
 from ..craft.kinematics import Vector3, cross, to_body
 from ..errors import InputError
 
@@ -68,6 +68,10 @@ class Downwash(Component):
 
     exercised: ClassVar = {"direction": "vertical", "contact_time": 1e-3}
     views: ClassVar = {"landing-point": {"place": "pad", "phase": "phase"}}
+    terminals: ClassVar = {
+        "motion": terminal("attitude"),
+        "wrench": terminal("force", "moment"),
+    }
     feedthrough: ClassVar = {"force": ("attitude",), "moment": ("attitude",)}
 
     def start(self, t: float) -> None:

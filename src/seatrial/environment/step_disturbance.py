@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from ..component import Component, Output, Parameter
+from ..component import Component, Output, Parameter, terminal
 from ..errors import InputError
 
 _LOAD = ("N", "N", "N.m")
@@ -34,6 +34,8 @@ class StepDisturbance(Component):
     force = Output("N", "force on the vessel, body axes", axes="xy")
     moment = Output("N.m", "yaw moment on the vessel, positive to starboard")
     nu_bias = Output(_UVR, "error of the measured velocity and yaw rate, body axes", axes="uvr")
+
+    terminals: ClassVar = {"wrench": terminal("force", "moment")}
 
     def start(self, t: float) -> None:
         """Raise InputError for a disturbance that never comes."""
