@@ -8,6 +8,7 @@ from ..errors import InputError
 from ..fmi.instance import Variable
 from ..units import conversion
 from .joining import End, Group, Resolver, kind_of
+from .paths import joined
 from .rig import ConnectionEntry, Scope
 from .system import Connection, Joint, System
 from .values import port_scalars
@@ -40,10 +41,15 @@ class _Making:
     def connect(self, scope: Scope, written: str, entry: ConnectionEntry) -> None:
         """Make one connection as written in the file of ``scope``."""
         where = f'{scope.read_from.path}: connections."{written}"'
-        source = self.resolver.named(scope, written, where, _SOURCES)
-        target = self.resolver.named(scope, entry.to, where, _TARGETS)
+        # A mark on one side makes both optional: not every autopilot has what a vehicle shows.
+        names = written.removesuffix("?"), entry.to.removesuffix("?")
+        mark = "" if names == (written, entry.to) else "?"
+        source = self.resolver.named(scope, names[0] + mark, where, _SOURCES)
+        target = self.resolver.named(scope, names[1] + mark, where, _TARGETS)
         if source is None or target is None:
-            self.system.open.append(f"{written} = {entry.to}: not made, one side has no such name")
+            missing = [n for n, of in zip(names, (source, target), strict=True) if of is None]
+            said = f'{joined(scope.path, "")}"{written}" = "{entry.to}"'
+            self.system.open.append(f"{said}: there is no {' and no '.join(missing)}")
         elif source.is_port and target.is_port:
             for end in target.members[""]:
                 self._feed(_one(source.members[""], written, where), end, entry, where)
