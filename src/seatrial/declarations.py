@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from .ports import VIEWS, Port
+from .ports import VIEWS, Parameter, Port, ScalarPort
 from .terminals import Terminal
 from .terms import Terms
 
@@ -60,11 +60,17 @@ def check_terminals(
 ) -> None:
     """Raise TypeError for a terminal called as a port, or a member that is none.
 
-    ``named`` has ports and scalars, ``terms`` the names of the inputs that sum.
+    ``named`` has ports and scalars, ``terms`` the names of the inputs that sum. A parameter that
+    is not tunable may be called as a terminal: nothing is connected to it.
     """
     for name, terminal in terminals.items():
-        if name in named or name in terms:
+        if name in terms or (name in named and not _is_fixed(named[name])):
             raise TypeError(f"{owner}.{name} is a port and a terminal too")
         for member, port in terminal.members.items():
             if port not in named and port not in terms:
                 raise TypeError(f"{owner}.terminals[{name!r}][{member!r}]: no port {port!r}")
+
+
+def _is_fixed(named: Port | ScalarPort) -> bool:
+    port = named.port if isinstance(named, ScalarPort) else named
+    return isinstance(port, Parameter) and not port.tunable

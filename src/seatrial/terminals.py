@@ -7,14 +7,23 @@ motion        truth of a craft: position, velocity, attitude, rates, acceleratio
 wrench        force, moment (N and N.m, body axes, at the body origin)
 attachment    point, velocity, force: of a tether or a tow, all in {n}
 reading       of a sensor: position_n, velocity_n, position_valid; heading, heading_valid; heel,
-              roll_pitch, roll_rate, yaw_rate, gyro, accelerometer, imu_valid; wind_speed,
-              wind_angle, wind_valid; depth, depth_valid; pressure
+              pitch, roll_pitch, roll_rate, yaw_rate, gyro, accelerometer, imu_valid; wind_speed,
+              wind_angle, wind_valid; depth, depth_valid, of the vehicle; water_depth,
+              water_depth_valid, below a transducer; pressure
 sensors       the same members, of who reads them
 truth         members of motion, of who reads them
 actuators     pulses by channel, ch1 ... ch16; or by name, angles and shares
 failures      faults of sensors and actuators by name: gps, mag, gyro, motor1, ...
 orders        what commands a pilot: mode, armed, manual, targets, home, legs; and what it answers
+deflections   manual control: surge, sway, yaw, heave, -1 to 1, and armed
+wanted        within a pilot: engaged, direct, speed_engaged, heading_engaged, sail_engaged,
+              direct_yaw, direct_sheet, speed, speed_wanted, heading_wanted, yaw_rate_wanted,
+              depth_wanted
+held          what an autopilot asks: surge, yaw_moment, heave, rudder
+demand        what is asked of an allocation: surge, sway, yaw_moment, heave
+estimate      nu, wind
 serial        down (towards the vehicle), up
+bus           tx, rx: of a node, and n1 ... n12 of a CAN bus
 ============  ==================================================================================
 """
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, ClassVar
 
-from ..component import Component, Input, Logging, Output, Parameter, Reachable
+from ..component import Component, Input, Logging, Output, Parameter, Reachable, terminal
 from ..errors import InputError
 from .endpoints.endpoint import Endpoint
 from .endpoints.url import check_urls, open_endpoint, other_end
@@ -50,6 +50,9 @@ class SerialGateway(Logging, Reachable, Component):
     tx = Output("1", "bytes from the other end", type=str)
     sent = Output("1", "bytes sent", type=int)
     received = Output("1", "bytes received", type=int)
+
+    # In the place of the topside: what comes from outside goes down.
+    terminals: ClassVar = {"serial": terminal(down="tx", up="rx")}
 
     def __init__(self, name: str = "component") -> None:
         super().__init__(name)

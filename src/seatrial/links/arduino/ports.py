@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from ...component import Component, Input, Output, Parameter, Reachable
+from typing import ClassVar
+
+from ...component import Component, Input, Output, Parameter, Reachable, Terminal, terminal
 from .mcus import MCUS
 from .uart_links import read_links, read_monitors
 from .wiring import OTHERS, SERVOS, UARTS, read_uarts, read_wires
@@ -103,3 +105,11 @@ class ArduinoPorts(Reachable, Component):
     connected = Output("1", "board: whether all UARTs that have sent still do", type=bool)
     bytes_sent = Output("1", "bytes that left the UARTs", type=int)
     bytes_received = Output("1", "bytes that were put on the lines to the UARTs", type=int)
+
+    terminals: ClassVar = {
+        "sensors": terminal("gyro", "accelerometer", "wind_speed", "wind_angle", "depth"),
+        "truth": terminal("attitude"),
+        "pulses": Terminal({f"ch{n}": f"pulse.s{n}" for n in range(1, SERVOS + 1)}),
+        # What drives the board, or is its instrument, is above it.
+        **{uart: terminal(down=f"rx.{uart}", up=f"tx.{uart}") for uart in _UARTS},
+    }

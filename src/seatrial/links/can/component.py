@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
-from ...component import NS, Component, Input, Logging, Noise, Output, Parameter
+from ...component import NS, Component, Input, Logging, Noise, Output, Parameter, terminal
 from ...errors import InputError, SimulationError, unknown
 from ..text import Inbox, Outbox, chunk
 from .bus_state import restore, saved
@@ -136,6 +136,8 @@ class CanBus(Logging, Noise, Component):
     latency = Output("s", "of the identifiers watched", axes=_WATCHED)
 
     feedthrough: ClassVar = {}
+    # One for each node: its terminal `bus` joins it.
+    terminals: ClassVar = {n: terminal(tx=f"tx.{n}", rx=f"rx.{n}") for n in _NODES}
 
     def __init__(self, name: str = "component") -> None:
         super().__init__(name)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from typing import Any, ClassVar
 
-from ...component import NS, Component, Input, Output, Parameter, Reachable
+from ...component import NS, Component, Input, Output, Parameter, Reachable, terminal
 from ...errors import InputError
 from .frame import Frame
 from .gateway import Gateway
@@ -64,6 +64,8 @@ class CanGateway(Reachable, Component):
     frames_in = Output("1", "frames from outside", type=int)
     frames_out = Output("1", "frames to the outside", type=int)
     forgotten = Output("1", "frames from outside that were never confirmed", type=int)
+
+    terminals: ClassVar = {"bus": terminal("tx", "rx")}
 
     def __init__(self, name: str = "component") -> None:
         super().__init__(name)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import Any, ClassVar, NamedTuple
 
-from ...component import NS, Component, Input, Noise, Output, Parameter
+from ...component import NS, Component, Input, Noise, Output, Parameter, terminal
 from ...errors import InputError
 from .bits import INTERMISSION, length
 from .frame import FD_LENGTHS, Frame
@@ -75,6 +75,8 @@ class CanTraffic(Noise, Component):
     asked = Output("1", "frames requested", type=int)
     confirmed = Output("1", "frames sent", type=int)
     received = Output("1", "frames received", type=int)
+
+    terminals: ClassVar = {"bus": terminal("tx", "rx")}
 
     # ------------------------------------------------------------------ running
 

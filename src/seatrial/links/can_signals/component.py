@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 from cantools.database.can import Database, Message
 from cantools.database.errors import Error
 
-from ...component import NS, Component, Input, Output, Parameter
+from ...component import NS, Component, Input, Output, Parameter, terminal
 from ...errors import InputError
 from ..can.frame import Frame
 from ..can.node import CanNode
@@ -75,6 +75,8 @@ class CanSignals(Component):
     frames_received = Output("1", "frames received that it reads", type=int)
     frames_refused = Output("1", "frames received that are not as the DBC says", type=int)
     limited = Output("1", "values that were beyond their limits", type=int)
+
+    terminals: ClassVar = {"bus": terminal("tx", "rx")}
 
     # ------------------------------------------------------------------ running
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, ClassVar
 
 from dronecan.transport import Transfer
 
-from ...component import NS, Input, Output, Parameter
+from ...component import NS, Input, Output, Parameter, terminal
 from ..geodesy import Origin
 from .channels import AXES, MOST_CHANNELS, channels_of
 from .commands import messages
@@ -69,6 +69,21 @@ class DroneCanAutopilot(DroneCanNode):
     acceleration = Output("m/s2", "specific force, body axes", axes="xyz")
     attitude_valid = Output("1", "whether attitude is valid", type=bool)
     others = Output("1", "other nodes that are there", type=int)
+
+    terminals: ClassVar = {
+        **DroneCanNode.terminals,
+        "reading": terminal(
+            "position_n",
+            "velocity_n",
+            "position_valid",
+            heading="attitude__psi",
+            heel="attitude__phi",
+            pitch="attitude__theta",
+            heading_valid="attitude_valid",
+            gyro="rates",
+            accelerometer="acceleration",
+        ),
+    }
 
     # ------------------------------------------------------------------ running
 

@@ -10,7 +10,7 @@ from typing import Any, ClassVar, NamedTuple
 
 from dronecan.transport import Transfer
 
-from ...component import NS, Component, Input, Noise, Output, Parameter
+from ...component import NS, Component, Input, Noise, Output, Parameter, terminal
 from ...errors import InputError
 from ..can.node import CanNode
 from .allocation import Allocatee, Allocation
@@ -112,6 +112,8 @@ class DroneCanNode(Noise, Component):
     tx = Output("1", "operations to the bus", type=str)
     own_id = Output("1", "node ID that it has, 0 while it has none", type=int)
     malformed = Output("1", "transfers received that could not be understood", type=int)
+
+    terminals: ClassVar = {"bus": terminal("tx", "rx")}
 
     # ------------------------------------------------------------------ written by nodes
 

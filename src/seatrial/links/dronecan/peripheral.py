@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, ClassVar
 
 from dronecan.transport import Transfer
 
-from ...component import NS, Input, Output, Parameter
+from ...component import NS, Input, Output, Parameter, Terminal, terminal
 from ...errors import InputError, unknown
 from ..geodesy import Origin
 from ..parameter_validation import midnight_us
@@ -97,6 +97,22 @@ class DroneCanPeripheral(DroneCanNode):
     command = Output("1", "command: -1 to 1, or in the channel's unit", axes=AXES)
     pulse = Output("s", "servo pulse", axes=AXES)
     failsafe = Output("1", "whether a channel is neutral for want of commands", type=bool)
+
+    terminals: ClassVar = {
+        **DroneCanNode.terminals,
+        "sensors": terminal(
+            "position_n",
+            "velocity_n",
+            "position_valid",
+            heading="attitude__psi",
+            heel="attitude__phi",
+            pitch="attitude__theta",
+            heading_valid="attitude_valid",
+            gyro="rates",
+            accelerometer="acceleration",
+        ),
+        "actuators": Terminal({f"ch{n}": f"pulse.{axis}" for n, axis in enumerate(AXES, 1)}),
+    }
 
     # ------------------------------------------------------------------ running
 

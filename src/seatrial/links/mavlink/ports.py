@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from pymavlink.dialects.v20 import all as mavlink
 
-from ...component import Input, Logging, Output, Parameter, Reachable
+from ...component import Input, Logging, Output, Parameter, Reachable, Terminal, terminal
 from ...sampled import Sampled
 from ..endpoints.url import check_urls
 from .failsafe import ACTIONS
@@ -24,6 +26,8 @@ _EULER = ("phi", "theta", "psi")
 NAMED_VALUES = 8
 """Values of `named`."""
 
+_MANUAL = ("surge", "sway", "yaw", "heave")
+_CHANNELS = tuple(f"ch{number}" for number in range(1, CHANNELS + 1))
 _NAMED = tuple(f"n{number}" for number in range(1, NAMED_VALUES + 1))
 
 
@@ -108,7 +112,7 @@ class MavlinkPorts(Logging, Reachable, Sampled):
     pulse = Input(
         "s",
         "servo pulses, 0 for none",
-        axes=tuple(f"ch{n}" for n in range(1, CHANNELS + 1)),
+        axes=_CHANNELS,
         optional=True,
     )
     named = Input("1", "values that `names` names, in any unit", axes=_NAMED, optional=True)
@@ -135,7 +139,7 @@ class MavlinkPorts(Logging, Reachable, Sampled):
     manual = Output(
         "1",
         "manual control, -1 to 1: ahead, to starboard, turn to starboard, down",
-        axes=("surge", "sway", "yaw", "heave"),
+        axes=_MANUAL,
     )
     target_kind = Output("1", "position, velocity or heading", type=str, start="position")
     target_valid = Output("1", "whether there is a set-point", type=bool)
@@ -163,3 +167,58 @@ class MavlinkPorts(Logging, Reachable, Sampled):
     speedup = Output("1", "simulated time per wall time that is wanted", start=1.0)
     paused = Output("s", "wall time that it stood still")
     ground_stations = Output("1", "number of ground stations that are there", type=int)
+
+    terminals: ClassVar = {
+        "sensors": terminal(
+            "position_n",
+            "velocity_n",
+            "position_valid",
+            "heading_valid",
+            "accelerometer",
+            "imu_valid",
+            "wind_speed",
+            "wind_angle",
+            "wind_valid",
+            "pressure",
+            heading="attitude__psi",
+            heel="attitude__phi",
+            pitch="attitude__theta",
+            gyro="rates",
+        ),
+        "truth": terminal(
+            position="true_position",
+            velocity="true_velocity",
+            attitude="true_attitude",
+            rates="true_rates",
+            acceleration="true_acceleration",
+        ),
+        "orders": terminal(
+            "mode",
+            "armed",
+            "manual",
+            "home",
+            "target_kind",
+            "target_valid",
+            "target_position",
+            "target_velocity",
+            "target_heading",
+            "target_speed",
+            "leg",
+            "leg_from",
+            "leg_to",
+            "leg_speed",
+            "leg_radius",
+            "leg_wait",
+            "leg_circle",
+            "leg_reached",
+            "nav_state",
+            "nav_heading",
+            "nav_speed",
+            "nav_depth",
+            "nav_cross_track",
+            "nav_distance",
+        ),
+        "deflections": Terminal({"armed": "armed", **{axis: f"manual.{axis}" for axis in _MANUAL}}),
+        "pulses": Terminal({channel: f"pulse.{channel}" for channel in _CHANNELS}),
+        "failures": Terminal({unit: f"failure.{unit}" for unit in UNITS}),
+    }

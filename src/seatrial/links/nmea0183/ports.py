@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from ...component import Input, Output, Parameter, Reachable
+from typing import ClassVar
+
+from ...component import Input, Output, Parameter, Reachable, terminal
 from ...sampled import Sampled
 from ..endpoints.url import check_urls
 from .schedule import schedule
@@ -83,3 +85,28 @@ class Nmea0183Ports(Reachable, Sampled):
     sentences_sent = Output("1", "sentences sent", type=int)
     sentences_received = Output("1", "sentences received", type=int)
     lines_refused = Output("1", "lines received that are no sentences", type=int)
+
+    terminals: ClassVar = {
+        "sensors": terminal(
+            "position_n",
+            "velocity_n",
+            "position_valid",
+            "heading",
+            "heading_valid",
+            "roll_pitch",
+            "imu_valid",
+            "wind_speed",
+            "wind_angle",
+            "wind_valid",
+            heel="roll_pitch__phi",
+            pitch="roll_pitch__theta",
+            yaw_rate="rate_of_turn",
+            water_depth="depth",
+            water_depth_valid="depth_valid",
+        ),
+        "estimate": terminal(wind="true_wind"),
+        "orders": terminal(
+            "target_kind", "target_valid", "target_position", "target_heading", "target_speed"
+        ),
+        "serial": terminal(down="tx", up="rx"),
+    }

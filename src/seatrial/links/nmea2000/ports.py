@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
-from ...component import Component, Input, Noise, Output, Parameter
+from ...component import Component, Input, Noise, Output, Parameter, terminal
 from .address_claim import HIGHEST
 from .catalogue import check_intervals, check_sends
 
@@ -149,3 +149,40 @@ class Nmea2000Ports(Noise, Component):
     bus_track_valid = _received("a track to keep")
     bus_commanded_rudder = Output("rad", "rudder commanded, positive to turn to starboard")
     bus_commanded_rudder_valid = _received("a commanded rudder")
+
+    terminals: ClassVar = {
+        "bus": terminal("tx", "rx"),
+        "sensors": terminal(
+            "position_n",
+            "velocity_n",
+            "position_valid",
+            "heading",
+            "heading_valid",
+            "wind_speed",
+            "wind_angle",
+            "wind_valid",
+            heel="attitude__phi",
+            pitch="attitude__theta",
+            yaw_rate="rate_of_turn",
+            imu_valid="rate_valid",
+            water_depth="depth",
+        ),
+        "reading": terminal(
+            position_n="bus_position_n",
+            velocity_n="bus_velocity_n",
+            position_valid="bus_position_valid",
+            heading="bus_heading",
+            heading_valid="bus_heading_valid",
+            wind_speed="bus_wind_speed",
+            wind_angle="bus_wind_angle",
+            wind_valid="bus_wind_valid",
+            heel="bus_attitude__phi",
+            pitch="bus_attitude__theta",
+            yaw_rate="bus_rate_of_turn",
+            imu_valid="bus_rate_of_turn_valid",
+            water_depth="bus_depth",
+            water_depth_valid="bus_depth_valid",
+        ),
+        "steering": terminal(heading_wanted="heading_to_steer"),
+        "wanted": terminal(heading_wanted="bus_heading_to_steer"),
+    }

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
-from ...component import NS, Component, Input, Logging, Output, Parameter
+from ...component import NS, Component, Input, Logging, Output, Parameter, terminal
 from ...errors import InputError
 from ..text import Inbox, Outbox
 from .frame import VRCSR, Frame, encode
@@ -71,6 +71,8 @@ class M5Thrusters(Logging, Component):
     temperature = Output("K", "of each", axes=_AXES, start=288.15)
     faults = Output("1", "fault bits of each", type=int, axes=_AXES)
     errors = Output("1", "wrong checksums and broken frames", type=int)
+
+    terminals: ClassVar = {"serial": terminal(down="rx", up="tx")}
 
     def __init__(self, name: str = "component") -> None:
         super().__init__(name)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any, ClassVar
 
-from ...component import NS, Component, Output, Parameter
+from ...component import NS, Component, Output, Parameter, terminal
 from ..text import Outbox
 from .stream_file import FROM_DEVICE, TO_DEVICE, read_stream
 
@@ -32,6 +32,8 @@ class StreamPlayer(Component):
 
     tx = Output("1", "bytes sent", type=str)
     played = Output("1", "pieces played", type=int)
+
+    terminals: ClassVar = {"serial": terminal(down="tx")}
 
     def start(self, t: float) -> None:
         """Read the file."""

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from typing import ClassVar
 
-from ...component import Component, Input, Logging, Output, Parameter
+from ...component import Component, Input, Logging, Output, Parameter, Terminal, terminal
 from .drive import SLEW_UNITS, THRUSTERS
 from .gains import GAINS
 from .registers import check_settings
@@ -99,3 +100,16 @@ class Pro4RovPorts(Logging, Component):
     node_id = Output("1", "its node id", type=int)
     requests = Output("1", "requests that it has carried out", type=int)
     communication_errors = Output("1", "wrong checksums and broken frames", type=int)
+
+    terminals: ClassVar = {
+        "serial": terminal(down="rx", up="tx"),
+        "sensors": terminal(
+            "depth",
+            heading="attitude__psi",
+            heel="attitude__phi",
+            pitch="attitude__theta",
+            gyro="rates",
+            accelerometer="specific_force",
+        ),
+        "actuators": Terminal({name: f"command.{name}" for name in THRUSTERS}),
+    }

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from typing import ClassVar
 
-from ...component import Component, Input, Logging, Output, Parameter
+from ...component import Component, Input, Logging, Output, Parameter, terminal
 
 _XYZ = ("x", "y", "z")
 
@@ -74,3 +75,18 @@ class Pro4TopsidePorts(Logging, Component):
     missed = Output("1", "cycles without an answer before the next", type=int)
     round_trip = Output("s", "from a request's first byte to the end of its answer")
     errors = Output("1", "wrong checksums and broken frames", type=int)
+
+    terminals: ClassVar = {
+        "serial": terminal(down="tx", up="rx"),
+        "deflections": terminal(
+            "armed", surge="manual__surge", yaw="manual__yaw", heave="manual__heave"
+        ),
+        "reading": terminal(
+            "depth",
+            heading="attitude__psi",
+            heel="attitude__phi",
+            pitch="attitude__theta",
+            heading_valid="connected",
+            depth_valid="connected",
+        ),
+    }
