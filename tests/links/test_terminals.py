@@ -84,8 +84,7 @@ def test_a_ground_station_drives_through_the_topside():
         "mavlink.deflections topside.deflections; topside.serial stream.serial;"
         "topside.reading mavlink.sensors"
     )
-    depths = {pair for pair in pilot.connected() if pair[0] == "topside.depth"}
-    assert joined == pilot.connected() - depths
+    assert joined == pilot.connected()
 
 
 def test_pulses_and_failures_are_named_as_in_vehicles():

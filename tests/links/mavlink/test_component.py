@@ -142,7 +142,7 @@ def test_a_second_ground_station_on_the_same_endpoint_loses_nothing(started, con
 
 def test_guided_set_points_come_out_at_ports(started, connect):
     boat = started()
-    boat.set("attitude", [0.0, 0.0, math.pi / 2])
+    boat.set("heading", math.pi / 2)
     station = connect(boat.urls[0])
     station.mav.set_mode_send(1, 1, 15)
     until(boat, lambda: boat.get("mode") == "guided")
@@ -160,6 +160,35 @@ def test_guided_set_points_come_out_at_ports(started, connect):
     until(boat, lambda: boat.get("home")[0] != 0.0)
     # 0.001 and 0.002 degrees from where the equator meets Greenwich.
     assert boat.get("home") == pytest.approx([110.574, 222.639, 0.0], abs=0.01)
+
+
+def test_a_submarines_depth_is_its_altitude_and_its_pressure(started, connect):
+    rov = started(vehicle_type="submarine")
+    rov.set("position_n", [0.0, 0.0, 4.0])
+    rov.set("depth", 20.0)
+    station = connect(rov.urls[0])
+    assert received(rov, station, "GLOBAL_POSITION_INT").relative_alt == -4000
+    assert received(rov, station, "ALTITUDE").altitude_local == -4.0
+    rov.set("depth_valid", True)
+    # Two technical atmospheres of 980.665 hPa on top of a standard one.
+    assert received(rov, station, "SCALED_PRESSURE2").press_abs == pytest.approx(2974.58)
+    assert (
+        received(rov, station, "ALTITUDE", lambda m: m.altitude_local != -4.0).altitude_local
+        == -20.0
+    )
+
+
+def test_a_boats_depth_does_not_lower_it(started, connect):
+    boat = started(depth=20.0, depth_valid=True)
+    station = connect(boat.urls[0])
+    assert received(boat, station, "ALTITUDE").altitude_local == 0.0
+
+
+def test_attitude_is_roll_pitch_and_heading(started, connect):
+    boat = started(roll_pitch=[0.1, -0.2], heading=1.5, gyro=[0.3, 0.4, 0.5])
+    m = received(boat, connect(boat.urls[0]), "ATTITUDE")
+    assert (m.roll, m.pitch, m.yaw) == pytest.approx((0.1, -0.2, 1.5))
+    assert (m.rollspeed, m.pitchspeed, m.yawspeed) == pytest.approx((0.3, 0.4, 0.5))
 
 
 def test_truth_goes_out_beside_the_estimates(started, connect):

@@ -24,7 +24,7 @@ def interval_of(bench, number):
 
 def test_what_a_ground_station_needs_comes_unasked():
     bench = Bench()
-    bench.measure(voltage=16.0, pressure=101_325.0)
+    bench.measure(voltage=16.0)
     bench.wait(4.0)
     received = {m.get_type() for m in bench.transport.take(link=0)}
     assert received >= {
@@ -46,7 +46,6 @@ def test_what_a_ground_station_needs_comes_unasked():
         "EKF_STATUS_REPORT",
         "SCALED_IMU",
         "HIGHRES_IMU",
-        "SCALED_PRESSURE",
         "CURRENT_MODE",
     }
 

@@ -114,16 +114,15 @@ def test_inertia():
     m = sent("SCALED_IMU", **measured)
     assert (m.xacc, m.yacc, m.zacc) == (0, 1000, -2000)
     assert (m.xgyro, m.ygyro, m.zgyro) == (500, -1000, 2)
-    m = sent("HIGHRES_IMU", **measured, pressure=90_000.0)
-    assert (m.yacc, m.ygyro, m.abs_pressure) == (9.80665, -1.0, 900.0)
+    m = sent("HIGHRES_IMU", **measured, submerged=True, depth=10.0)
+    assert (m.yacc, m.ygyro, m.abs_pressure) == (9.80665, -1.0, pytest.approx(1993.915))
 
 
-def test_pressure_of_air_and_water():
-    assert sent("SCALED_PRESSURE", pressure=101_000.0).press_abs == 1010.0
-    assert silent("SCALED_PRESSURE2")
-    assert sent("SCALED_PRESSURE2", submerged=True, pressure=201_325.0).press_abs == 2013.25
-    assert silent("SCALED_PRESSURE", submerged=True, pressure=201_325.0)
-    assert silent("SCALED_PRESSURE")
+def test_pressure_of_the_water_is_that_of_its_depth():
+    # An atmosphere, and a technical one (98 066.5 Pa) for each 10 m of fresh water.
+    for depth, pressure in ((0.0, 1013.25), (10.0, 1993.915), (100.0, 10_819.9)):
+        m = sent("SCALED_PRESSURE2", submerged=True, depth=depth)
+        assert m.press_abs == pytest.approx(pressure, rel=1e-12)
     assert silent("SCALED_PRESSURE2", submerged=True)
     assert sent("HIGHRES_IMU").fields_updated & 0x200 == 0
 
@@ -257,7 +256,7 @@ def test_values_of_any_size_can_be_sent(x, submerged):
         attitude=tuple(x[6:9]),
         rates=tuple(x[9:]),
         specific_force=tuple(x[:3]),
-        pressure=x[0],
+        depth=x[0] if submerged else None,
         apparent_wind=(x[1], x[2]),
         voltage=x[3],
         current=x[4],

@@ -80,7 +80,9 @@ class Mavlink(MavlinkPorts):
     Both are relative to the current folder. A key never comes over a link.
 
     Positions in {n} from the origin (``latitude``, ``longitude``, ``altitude``), depth being
-    negative altitude (`Origin`); attitude ZYX; angles rad. Truth goes out as SIM_STATE if
+    negative altitude (`Origin`); attitude ZYX; angles rad. A submarine's ``depth``, while it is
+    valid, takes the place of its position's down, and is reported as pressure too: hydrostatic,
+    of fresh water at 1000 kg/m3 under 101 325 Pa. Truth goes out as SIM_STATE if
     ``truth`` is on.
 
     Not here: radio channels with losses and delays, MAVLink FTP, cameras, logs on
@@ -263,16 +265,18 @@ class Mavlink(MavlinkPorts):
 
     def _estimates(self) -> Estimates:
         measured = self.voltage > 0.0
+        north, east, down = self.position_n
+        dives = self.depth_valid and self._vehicle.identity.submerged
         return Estimates(
-            position_n=self.position_n,
+            position_n=(north, east, self.depth if dives else down),
             velocity_n=self.velocity_n,
             position_valid=self.position_valid,
-            attitude=self.attitude,
+            attitude=(*self.roll_pitch, self.heading),
             heading_valid=self.heading_valid,
-            rates=self.rates,
+            rates=self.gyro,
             specific_force=self.accelerometer,
             imu_valid=self.imu_valid,
-            pressure=self.pressure if self.pressure > 0.0 else None,
+            depth=self.depth if dives else None,
             ground_distance=self.ground_distance if self.ground_distance > 0.0 else None,
             apparent_wind=(self.wind_speed, self.wind_angle) if self.wind_valid else None,
             voltage=self.voltage if measured else None,

@@ -84,20 +84,18 @@ class MavlinkPorts(Logging, Reachable, Sampled):
     position_n = Input("m", "position, north-east-down", axes=_NED)
     velocity_n = Input("m/s", "velocity over ground, north-east-down", axes=_NED)
     position_valid = Input("1", "whether position and velocity are valid", type=bool)
-    attitude = Input("rad", "Euler angles, ZYX", axes=_EULER)
+    heading = Input("rad", "heading, clockwise from north")
     heading_valid = Input("1", "whether the heading is valid", type=bool, start=True)
-    rates = Input("rad/s", "angular velocity, body axes", axes=("p", "q", "r"))
+    roll_pitch = Input("rad", "roll and pitch, starboard side down, bow up", axes=("phi", "theta"))
+    gyro = Input("rad/s", "angular velocity, body axes", axes="xyz")
     accelerometer = Input(
         "m/s2", "specific force, body axes", axes="xyz", start=(0.0, 0.0, -9.80665)
     )
     imu_valid = Input(
-        "1", "whether rates and specific force are valid", type=bool, start=True, optional=True
+        "1", "whether gyro and specific force are valid", type=bool, start=True, optional=True
     )
-    pressure = Input(
-        "Pa",
-        "absolute pressure of the air or, submerged, the water, 0 if it is not measured",
-        optional=True,
-    )
+    depth = Input("m", "depth of a submarine, positive down", optional=True)
+    depth_valid = Input("1", "whether the depth is measured", type=bool, optional=True)
     ground_distance = Input(
         "m", "distance to the ground below, 0 if it is not measured", optional=True
     )
@@ -173,17 +171,19 @@ class MavlinkPorts(Logging, Reachable, Sampled):
             "position_n",
             "velocity_n",
             "position_valid",
+            "heading",
             "heading_valid",
+            "roll_pitch",
+            "gyro",
             "accelerometer",
             "imu_valid",
             "wind_speed",
             "wind_angle",
             "wind_valid",
-            "pressure",
-            heading="attitude__psi",
-            heel="attitude__phi",
-            pitch="attitude__theta",
-            gyro="rates",
+            "depth",
+            "depth_valid",
+            heel="roll_pitch__phi",
+            pitch="roll_pitch__theta",
         ),
         "truth": terminal(
             position="true_position",

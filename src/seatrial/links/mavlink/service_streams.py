@@ -32,7 +32,6 @@ GROUPS: Mapping[int, tuple[int, ...]] = {
     mavlink.MAV_DATA_STREAM_RAW_SENSORS: (
         mavlink.MAVLINK_MSG_ID_SCALED_IMU,
         mavlink.MAVLINK_MSG_ID_HIGHRES_IMU,
-        mavlink.MAVLINK_MSG_ID_SCALED_PRESSURE,
         mavlink.MAVLINK_MSG_ID_SCALED_PRESSURE2,
     ),
     mavlink.MAV_DATA_STREAM_EXTENDED_STATUS: (

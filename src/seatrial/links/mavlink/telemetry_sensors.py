@@ -10,7 +10,9 @@ from pymavlink.dialects.v20 import all as mavlink
 
 from .codec import Message
 from .scaling import (
+    FRESH_WATER,
     STANDARD_GRAVITY,
+    STANDARD_PRESSURE,
     UNKNOWN_U16,
     clamped,
     compass_degrees,
@@ -30,9 +32,8 @@ _FARTHEST_CM = 0xFFFF
 
 
 class SensorTelemetry(Service):
-    """GPS_RAW_INT, SCALED_IMU, HIGHRES_IMU, SCALED_PRESSURE (of the water, SCALED_PRESSURE2, in
-    a submarine), DISTANCE_SENSOR (downwards), WIND and WIND_COV, BATTERY_STATUS,
-    NAMED_VALUE_FLOAT.
+    """GPS_RAW_INT, SCALED_IMU, HIGHRES_IMU, SCALED_PRESSURE2 (of the water, in a submarine),
+    DISTANCE_SENSOR (downwards), WIND and WIND_COV, BATTERY_STATUS, NAMED_VALUE_FLOAT.
 
     The true wind is the apparent one, which is measured in the horizontal plane here, turned
     by the heading, plus the vehicle's velocity.
@@ -42,7 +43,6 @@ class SensorTelemetry(Service):
         mavlink.MAVLINK_MSG_ID_GPS_RAW_INT: 0.5,
         mavlink.MAVLINK_MSG_ID_SCALED_IMU: 0.5,
         mavlink.MAVLINK_MSG_ID_HIGHRES_IMU: 0.5,
-        mavlink.MAVLINK_MSG_ID_SCALED_PRESSURE: 1.0,
         mavlink.MAVLINK_MSG_ID_SCALED_PRESSURE2: 1.0,
         mavlink.MAVLINK_MSG_ID_DISTANCE_SENSOR: 0.5,
         mavlink.MAVLINK_MSG_ID_WIND: 1.0,
@@ -58,8 +58,7 @@ class SensorTelemetry(Service):
             mavlink.MAVLINK_MSG_ID_GPS_RAW_INT: self._gps,
             mavlink.MAVLINK_MSG_ID_SCALED_IMU: self._scaled_imu,
             mavlink.MAVLINK_MSG_ID_HIGHRES_IMU: self._highres_imu,
-            mavlink.MAVLINK_MSG_ID_SCALED_PRESSURE: self._pressure_of_air,
-            mavlink.MAVLINK_MSG_ID_SCALED_PRESSURE2: self._pressure_of_water,
+            mavlink.MAVLINK_MSG_ID_SCALED_PRESSURE2: self._scaled_pressure,
             mavlink.MAVLINK_MSG_ID_DISTANCE_SENSOR: self._distance,
             mavlink.MAVLINK_MSG_ID_WIND: self._wind,
             mavlink.MAVLINK_MSG_ID_WIND_COV: self._wind_cov,
@@ -104,7 +103,7 @@ class SensorTelemetry(Service):
         ]
 
     def _highres_imu(self, now: float) -> list[Message]:
-        e = self.vehicle.estimates
+        e, pressure = self.vehicle.estimates, self._pressure()
         return [
             mavlink.MAVLink_highres_imu_message(
                 microseconds(now),
@@ -113,25 +112,17 @@ class SensorTelemetry(Service):
                 0.0,
                 0.0,
                 0.0,
-                (e.pressure or 0.0) / 100.0,
+                0.0 if pressure is None else pressure / 100.0,
                 0.0,
                 0.0,
                 0.0,
-                _IMU | (0 if e.pressure is None else _PRESSURE),
+                _IMU | (0 if pressure is None else _PRESSURE),
             )
         ]
 
-    def _pressure_of_air(self, now: float) -> list[Message]:
-        pressure = self.vehicle.estimates.pressure
-        if self.vehicle.identity.submerged or pressure is None:
-            return []
-        return [
-            mavlink.MAVLink_scaled_pressure_message(milliseconds(now), pressure / 100.0, 0.0, 0)
-        ]
-
-    def _pressure_of_water(self, now: float) -> list[Message]:
-        pressure = self.vehicle.estimates.pressure
-        if not self.vehicle.identity.submerged or pressure is None:
+    def _scaled_pressure(self, now: float) -> list[Message]:
+        pressure = self._pressure()
+        if pressure is None:
             return []
         return [
             mavlink.MAVLink_scaled_pressure2_message(milliseconds(now), pressure / 100.0, 0.0, 0)
@@ -191,6 +182,11 @@ class SensorTelemetry(Service):
             mavlink.MAVLink_named_value_float_message(milliseconds(now), name.encode(), value)
             for name, value in self.vehicle.estimates.named
         ]
+
+    def _pressure(self) -> float | None:
+        """Return the absolute pressure of the water, Pa."""
+        depth = self.vehicle.estimates.depth
+        return None if depth is None else STANDARD_PRESSURE + FRESH_WATER * STANDARD_GRAVITY * depth
 
     def _true_wind(self) -> tuple[float, float] | None:
         """Return where the wind blows to, north and east, m/s."""

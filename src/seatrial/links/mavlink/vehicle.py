@@ -56,8 +56,8 @@ class Estimates:
     specific_force: Ned = (0.0, 0.0, -9.80665)
     imu_valid: bool = True
     """Whether rates and specific force are valid."""
-    pressure: float | None = None
-    """Absolute, of the air, or in a submarine of the water."""
+    depth: float | None = None
+    """Of a submarine, positive down."""
     ground_distance: float | None = None
     """To the ground below."""
     apparent_wind: tuple[float, float] | None = None
