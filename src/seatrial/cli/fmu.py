@@ -14,14 +14,16 @@ from ..cosim.parameters import load_vehicle, split_reference
 from ..cosim.system import settable
 from ..cosim.values import from_entry
 from ..errors import InputError
+from ..fmi.cache import write_whole
 from ..fmi.description import summary
 from ..fmi.direct import DirectInstance
 from ..fmi.export import build_fmu
 from ..fmi.instance import Value, Variable
 from ..fmi.load import load_fmu, open_instance
 from ..fmi.loaded import LoadedFmu
+from ..fmi.osp import osp_file, osp_xml
 from ..fmi.source import ComponentSource, find_source, named_sources, shipped_sources
-from .show import console
+from .show import console, print_notes
 
 fmu_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
 
@@ -50,6 +52,9 @@ def build(
     variant: Annotated[
         str | None, typer.Option(help="Variant of the vehicle's parameters.")
     ] = None,
+    osp: Annotated[
+        bool, typer.Option("--osp", help="Write the OspModelDescription.xml of each beside it.")
+    ] = False,
 ) -> None:
     """Build .fmu files that any FMI 2.0 tool loads."""
     for name in names or list(shipped_sources()):
@@ -57,6 +62,19 @@ def build(
         values = _start_values(source, parameters, variant) if parameters else None
         path = build_fmu(source, out / f"{source.name}.fmu", values)
         console.print(f"{path}  ({path.stat().st_size / 1000:.0f} kB)", soft_wrap=True)
+        if osp:
+            _write_osp(source, out)
+
+
+def _write_osp(source: ComponentSource, folder: Path) -> None:
+    """Write the terminals of a component for OSP, if it has any."""
+    instance = DirectInstance(source.component_class()(source.name))
+    if not instance.terminals:
+        print_notes([f"{source.name} has no terminals: no OspModelDescription.xml"])
+        return
+    path = osp_file(folder, source.name)
+    write_whole(path, osp_xml(instance.terminals, instance.variables))
+    console.print(str(path), soft_wrap=True)
 
 
 @fmu_app.command()
