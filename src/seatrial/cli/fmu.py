@@ -24,6 +24,7 @@ from ..fmi.loaded import LoadedFmu
 from ..fmi.osp import osp_file, osp_xml
 from ..fmi.source import ComponentSource, find_source, named_sources, shipped_sources
 from .show import console, print_notes
+from .terminals import print_proposals, print_terminals
 
 fmu_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
 
@@ -97,16 +98,16 @@ def check(
 
 @fmu_app.command()
 def describe(name: Named) -> None:
-    """Show an FMU's variables: causality, type, unit, start value, limits."""
+    """Show an FMU's variables (causality, type, unit, start value, limits) and terminals."""
     found = find_source(name, Path.cwd())
     if isinstance(found, Path):
         fmu = load_fmu(found)
         title, variables = fmu.description.description or found.name, fmu.variables
-        through, notes = fmu.feedthrough, fmu.notes
+        through, notes, terminals = fmu.feedthrough, fmu.notes, fmu.terminals
     else:
         instance = DirectInstance(found.component_class()(found.name))
         title, variables = summary(type(instance.component)), instance.variables
-        through, notes = instance.feedthrough, ()
+        through, notes, terminals = instance.feedthrough, (), instance.terminals
     console.print(f"[bold]{escape(name)}[/bold]: {escape(title)}", soft_wrap=True)
     table = Table(box=None, padding=(0, 2, 0, 0))
     for heading in ("variable", "causality", "type", "unit", "start", "min", "max", "description"):
@@ -116,6 +117,9 @@ def describe(name: Named) -> None:
     console.print(table)
     for output, inputs in through.items():
         console.print(f"{output} depends at once on {', '.join(inputs)}", soft_wrap=True)
+    print_terminals(terminals, variables)
+    if isinstance(found, Path) and not terminals:
+        print_proposals(name, variables)
     for note in notes:
         console.print(f"note: {escape(note)}", soft_wrap=True)
 
