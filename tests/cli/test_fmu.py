@@ -1,4 +1,4 @@
-"""What the FMU commands show and write of terminals."""
+"""Terminals in what the FMU commands show and write."""
 
 from __future__ import annotations
 

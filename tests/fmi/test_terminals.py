@@ -128,6 +128,16 @@ def test_terminals_of_other_tools(native_fmu, tmp_path: Path) -> None:
     }
 
 
+def test_arrays_are_members_and_clocks_are_none(native_fmu, tmp_path: Path) -> None:
+    text = listed(
+        '<Terminal name="Bus" matchingRule="org.fmi-ls-bus.transceiver">'
+        f"{member('in_Float64', 'Rx_Data')}{member('tick', 'Rx_Clock')}</Terminal>"
+        f'<Terminal name="Clocks" matchingRule="bus">{member("tick")}</Terminal>'
+    )
+    fmu = load_fmu(with_file(native_fmu("fmi3"), tmp_path / "x.fmu", text))
+    assert fmu.terminals == {"Bus": Terminal({"Rx_Data": "in_Float64"})}
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [

@@ -40,12 +40,12 @@ def print_proposals(fmu: str, variables: Variables) -> None:
     proposed = proposed_terminals(variables)
     if not proposed:
         return
-    name = re.sub(r"\W", "_", Path(fmu).stem)
+    name = re.sub(r"\W", "_", Path(fmu).stem, flags=re.ASCII)  # a bare key of TOML
     lines = [
         "it has no terminals; by names and units it could show these in a rig of its own:",
         "",
         "[components]",
-        f"{_toml(name)} = {{ fmu = {_toml(fmu)} }}",
+        f"{name} = {{ fmu = {_toml(fmu)} }}",
         "",
         "[shows]",
     ]

@@ -181,7 +181,7 @@ def _members(element: Any, reading: MemberReader, prefix: str) -> dict[str, str]
     for child in element:
         if child.tag == "TerminalMemberVariable":
             variable = attribute(child, "variableName")
-            reading.add(members, prefix + child.get("memberName", variable), variable, child)
+            reading.add(members, prefix + (child.get("memberName") or variable), variable, child)
         elif child.tag == "TerminalStreamMemberVariable":
             for way in ("in", "out"):
                 name = prefix + attribute(child, f"{way}StreamMemberName")
