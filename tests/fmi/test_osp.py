@@ -16,6 +16,7 @@ from seatrial.terminals import Terminal
 
 from . import boats
 from .conftest import source
+from .native import changed
 
 # Abridged from libcosim's tests (KnuckleBoomCrane, chassis), with variables of the slave.
 OTHERS = """<?xml version="1.0" encoding="utf-8" ?>
@@ -58,6 +59,15 @@ def test_groups_of_others_are_terminals(namespace: str, slave: Path) -> None:
         "actuatorLimits": Terminal({"q": "q"}),
         "linear mechanical port": Terminal({"u": "u", "x": "x"}),
     }
+
+
+@pytest.mark.parametrize("name", ["../fmi2", "", "a" * 5000])
+def test_a_model_name_that_is_no_name_of_a_file(name: str, slave: Path, tmp_path: Path) -> None:
+    beside(slave, OTHERS)
+    inside = tmp_path / "inside"
+    inside.mkdir()
+    other = changed(slave, inside / "it.fmu", ('modelName="fmi2"', f'modelName="{name}"'))
+    assert load_fmu(other).terminals == {}
 
 
 def test_types_of_groups_and_terms(write) -> None:

@@ -10,6 +10,7 @@ its quantity where OSP-IS has one. Terminals with sums are written term by term,
 
 from __future__ import annotations
 
+import os
 from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any
@@ -91,7 +92,8 @@ def read_osp(
     is missing or given twice, and a variable that the FMU does not have.
     """
     file = osp_file(path.parent, model_name)
-    if Path(model_name).name != model_name or not file.is_file():
+    # Any text may be a modelName: no other folder, and no name that the system refuses.
+    if Path(model_name).name != model_name or not os.path.isfile(file):
         return {}
     root = read_xml(file, str(file))
     if _tag(root) != "OspModelDescription":
