@@ -70,14 +70,25 @@ class _Making:
                 for target in self._of_kind(there.members[member], _TARGETS):
                     if sources:
                         source = _one(sources, f"{written}.{member}", where)
-                        self._feed(source, target, entry, f"{where}, {member}")
                         met.add(target.name)
+                        if not self._is_fed_so(source, target):
+                            self._feed(source, target, entry, f"{where}, {member}")
         if not met:
             sides = (f"{name} {self._directions(of)}" for name, of in ((written, a), (entry.to, b)))
             raise InputError(f"{where}: nothing joins: {'; '.join(sides)}")
         for name, group in ((written, a), (entry.to, b)):
             if group.rule == "plug":
                 self._refuse_open(name, group, met, where)
+
+    def _is_fed_so(self, source: End, target: End) -> bool:
+        """Say if another member made the same connection: ``heel`` is in ``roll_pitch`` too."""
+        if target.sum_of:
+            return False
+        pairs = zip(self.resolver.variables(source), self.resolver.variables(target), strict=False)
+        return all(
+            self.feeders.get((target.component, other.name)) == f"{source.component}.{one.name}"
+            for one, other in pairs
+        )
 
     def _refuse_open(self, name: str, group: Group, met: set[str], where: str) -> None:
         for member, ends in group.members.items():
@@ -116,7 +127,7 @@ class _Making:
                     f"{where}: {'.'.join(place)} is already fed by {self.feeders[place]}; "
                     "an input takes one connection"
                 )
-            self.feeders[place] = source.name
+            self.feeders[place] = f"{source.component}.{one.name}"
             self.system.connections.append(_scalar(source, one, target, other, entry, where))
 
     def _free_term(self, target: End, where: str) -> End:

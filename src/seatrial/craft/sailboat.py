@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import casadi as ca
 import numpy as np
 
-from ..component import Input, Parameter
+from ..component import Input, Parameter, terminal
 from ..foils import HIGH_ALPHA, SAIL_ENTRIES, foil_naca63010, sail_naca0015
 from ..model import Vector
 from ..plant import State
@@ -128,6 +128,10 @@ class Sailboat(PlanarCraft):
         axes=("speed", "angle"),
     )
 
+    terminals: ClassVar = {
+        **PlanarCraft.terminals,
+        "angles": terminal("rudder", "sail", "flap"),
+    }
     feedthrough: ClassVar = {
         "sail_load": ("sail", "flap", "wind"),
         "keel_load": ("current",),

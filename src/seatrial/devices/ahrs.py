@@ -77,6 +77,7 @@ class Ahrs(Sensor):
             heading="euler__psi",
             heading_valid="valid",
             heel="euler__phi",
+            pitch="euler__theta",
         ),
     }
     feedthrough: ClassVar = {
