@@ -9,9 +9,10 @@ from ..errors import InputError
 from ..sampled import Sampled
 from .actuator import Actuator
 from .fault import SHARE_WRONG
+from .pulse_range import AngleRange, PulseRange
 
 
-class Servo(Actuator, Sampled):
+class Servo(AngleRange, PulseRange, Actuator, Sampled):
     """Position servo driven by a pulse every ``period`` (50 Hz frames).
 
     At each frame (counted in whole nanoseconds from the start of the run, whatever the
@@ -38,12 +39,6 @@ class Servo(Actuator, Sampled):
     """
 
     period = Parameter(0.02, "s", "period of the pulse frames", min=1e-6)
-    pulse_min = Parameter(1.1e-3, "s", "pulse of angle_min", min=0.0)
-    pulse_neutral = Parameter(1.5e-3, "s", "pulse of the middle of the range", min=0.0)
-    pulse_max = Parameter(1.9e-3, "s", "pulse of angle_max", min=0.0)
-    reversed = Parameter(0.0, "1", "1 if the servo turns the other way", min=0.0, max=1.0)
-    angle_min = Parameter(-math.pi / 4, "rad", "angle at pulse_min")
-    angle_max = Parameter(math.pi / 4, "rad", "angle at pulse_max")
     angle_start = Parameter(0.0, "rad", "angle at the start of the run")
     rate = Parameter(math.radians(60.0) / 0.21, "rad/s", "speed of the shaft", min=1e-9)
     dead_band = Parameter(8e-6, "s", "error of the pulse at which the motor rests", min=0.0)
@@ -53,16 +48,8 @@ class Servo(Actuator, Sampled):
 
     def reset(self, t: float) -> None:
         """Start at rest; raises InputError for pulses or angles out of order."""
-        if not self.pulse_min < self.pulse_neutral < self.pulse_max:
-            raise InputError(
-                f"{self.name}: pulse_min, pulse_neutral and pulse_max must rise, got "
-                f"{self.pulse_min!r}, {self.pulse_neutral!r}, {self.pulse_max!r} s"
-            )
-        if not self.angle_min < self.angle_max:
-            raise InputError(
-                f"{self.name}: angle_min must be less than angle_max, got {self.angle_min!r} and "
-                f"{self.angle_max!r} rad"
-            )
+        self.check_pulses()
+        self.check_angles()
         if not self.angle_min <= self.angle_start <= self.angle_max:
             raise InputError(
                 f"{self.name}.angle_start is {self.angle_start!r} rad, allowed "
@@ -107,12 +94,7 @@ class Servo(Actuator, Sampled):
 
     def _wanted(self, pulse: float) -> float:
         """Return the angle that the pulse asks for."""
-        middle = 0.5 * (self.angle_min + self.angle_max)
-        away = pulse - self.pulse_neutral
-        span = (self.pulse_max if away > 0.0 else self.pulse_min) - self.pulse_neutral
-        share = math.copysign(min(away / span, 1.0), away)
-        half_range = 0.5 * (self.angle_max - self.angle_min)
-        wanted: float = middle + (-share if self.reversed else share) * half_range
+        wanted: float = self.middle + self.share_of(pulse) * self.half_range
         if self.fault == "wrong":
-            wanted = min(wanted + SHARE_WRONG * 2.0 * half_range, self.angle_max)
+            wanted = min(wanted + SHARE_WRONG * 2.0 * self.half_range, self.angle_max)
         return wanted

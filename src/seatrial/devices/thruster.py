@@ -7,15 +7,15 @@ from bisect import bisect_right
 from collections.abc import Sequence
 
 from ..component import Input, Output, Parameter
-from ..errors import InputError
 from .actuator import Actuator
+from .pulse_range import PulseRange
 from .t200 import CURRENT, FORCE, PULSE, SPEED
 
 SHORTEST_SIGNAL, LONGEST_SIGNAL = 0.8e-3, 2.2e-3
 """Pulses outside these, s, are not a signal to a speed controller (assumed, BLHeli-like)."""
 
 
-class Thruster(Actuator):
+class Thruster(PulseRange, Actuator):
     """Blue Robotics T200 with a Basic ESC: pulse width in, thrust, current and speed out.
 
     Steady state, from the published bollard table at 16 V (`seatrial.devices.t200`), linear in
@@ -56,10 +56,6 @@ class Thruster(Actuator):
     """
 
     time_constant = Parameter(0.15, "s", "time constant of thrust and current", min=1e-6)
-    pulse_min = Parameter(1.1e-3, "s", "pulse of full power astern", min=0.0)
-    pulse_neutral = Parameter(1.5e-3, "s", "pulse that stops it", min=0.0)
-    pulse_max = Parameter(1.9e-3, "s", "pulse of full power ahead", min=0.0)
-    reversed = Parameter(0.0, "1", "1 if the motor turns the other way", min=0.0, max=1.0)
 
     pulse = Input("s", "width of the servo pulse, 0 for none", start=1.5e-3)
     supply_voltage = Input("V", "voltage at the speed controller", start=16.0)
@@ -69,11 +65,7 @@ class Thruster(Actuator):
 
     def start(self, t: float) -> None:
         """Start at rest; raises InputError if the pulses do not rise."""
-        if not self.pulse_min < self.pulse_neutral < self.pulse_max:
-            raise InputError(
-                f"{self.name}: pulse_min, pulse_neutral and pulse_max must rise, got "
-                f"{self.pulse_min!r}, {self.pulse_neutral!r}, {self.pulse_max!r} s"
-            )
+        self.check_pulses()
         self._thrust = self._current = self._speed = 0.0
         self.begin_at(self.pulse_neutral)
 
