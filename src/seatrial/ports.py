@@ -20,6 +20,8 @@ ROLES = {
     "run-folder": "folder of the run, for logs of its own: given once there is one",
     "address": "where programs outside connect to: shown when a run in real time begins",
     "file": "name of a file: relative to the profile that gives it",
+    "tunables": "parameters of others that a link sets: a table in its profile",
+    "tunable": "values of a link's tunables, in their order: connected to what they set",
 }
 """What whoever runs a component does with a port that declares a role."""
 

@@ -11,6 +11,7 @@ from rich.markup import escape
 
 from ..cosim.profile import Actuator, Home, Identity, Profile, check_profile
 from ..cosim.profile_kinds import GROUPS, keys
+from ..cosim.tunables import Tunable
 from ..ports import Parameter
 from ..trials.readable import from_si, number, person_unit
 from .show import console
@@ -43,6 +44,8 @@ def describe(name: Named) -> None:
             kind, section = entry["kind"], f"{group}.{table}"
             rows = _parameters(keys(group, kind), profile, section)
             _print(f"{section}: {kind}", rows, entry.get("source", ""))
+            if tunables := profile.tunables(section):
+                _print(f"tunables of {section}", _tunables(tunables))
 
 
 def _print(title: str, rows: Rows, source: str = "") -> None:
@@ -87,12 +90,23 @@ def _actuators(actuators: dict[str, Actuator]) -> Rows:
 def _parameters(ports: dict[str, Parameter], profile: Profile, section: str) -> Rows:
     """Return a table's parameters: those of the file, and its component's where it has none."""
     given = profile.parameters(section)
+    if tunables := profile.tunables(section):
+        shown = f"{len(tunables)}, below"
+        given |= {key: shown for key, port in ports.items() if port.role == "tunables"}
     rows = [("key", "value", "unit", "from", "meaning")]
     for key, port in ports.items():
         unit = person_unit(port.unit_of(0))
         value = _shown(given.get(key, port.start), unit)
         origin = "profile" if key in given else "default"
         rows.append((key, value, "" if unit == "1" else unit, origin, port.description))
+    return rows
+
+
+def _tunables(tunables: Sequence[Tunable]) -> Rows:
+    rows = [("name", "min", "max", "unit", "sets")]
+    for each in tunables:
+        limits = number(each.min), number(each.max)
+        rows.append((each.name, *limits, each.unit, " ".join(each.targets)))
     return rows
 
 

@@ -18,8 +18,10 @@ from pydantic import BeforeValidator, Field
 
 from ..errors import InputError, unknown
 from ..fmi.index import component_class
+from ..ports import Parameter
 from .files import FileModel, Source, find_file, read_toml, validated
 from .profile_kinds import GROUPS, NAME, in_si, keys, of_a_kind, refused, section_model
+from .tunables import Tunable, TunableEntry, read_tunables
 
 VEHICLE_TYPES = ("ground_rover", "submarine", "surface_boat")
 """MAVLink's MAV_TYPE, in lower case."""
@@ -169,11 +171,26 @@ class Profile:
         for key, port in keys(group, kind).items():
             if port.role == "file" and values.get(key):
                 values[key] = str(self.read_from.path.parent / values[key])
+            if port.role == "tunables":  # they start with what they set: see `tunables`
+                values.pop(key, None)
         if group == "links":
             ports = component_class(kind).ports
             shared = {name: value for name, value in self._shared().items() if name in ports}
             return {**shared, **values}
         return values
+
+    def tunables(self, section: str) -> tuple[Tunable, ...]:
+        """Return what a link of a rig tunes in other components, in the order of its outputs.
+
+        Empty for a section that has none. Raises InputError as `parameters`.
+        """
+        entry = self._section(section)
+        group, _, name = section.partition(".")
+        if isinstance(entry, Actuator):
+            return ()
+        ports = keys(group, self.tables(group)[name]["kind"])
+        found = [(getattr(entry, k), p) for k, p in ports.items() if p.role == "tunables"]
+        return tuple(each for table, port in found for each in read_tunables(table, port))
 
     def source(self, section: str) -> str:
         """Return where a section's values come from. Raises InputError as `parameters`."""
@@ -307,7 +324,18 @@ def _read_section(path: Path, group: str, name: str, table: dict[str, Any]) -> F
         if port.role == "file" and written and not (path.parent / written).is_file():
             file = path.parent / written
             raise InputError(f"{path}: {group}.{name}.{key}: there is no file {file}")
+        if port.role == "tunables":
+            _check_tunables(written, port, f"{path}: {group}.{name}.{key}")
     return entry
+
+
+def _check_tunables(table: dict[str, TunableEntry], port: Parameter, where: str) -> None:
+    """Raise InputError with a line for each mistake, which begins with ``where``."""
+    try:
+        read_tunables(table, port)
+    except InputError as error:
+        lines = str(error).splitlines()
+        raise InputError("\n".join(f"{where}: {line}" for line in lines)) from None
 
 
 def _check_together(profile: Profile, section: str, kind: str) -> None:

@@ -15,6 +15,7 @@ from ..fmi.index import component_class, components
 from ..ports import Parameter
 from ..units import quantity, unit
 from .files import FileModel
+from .tunables import TunableEntry
 
 GROUPS = ("sensors", "links")
 """Groups of tables whose ``kind`` is a component of the index (`fmi.index`)."""
@@ -73,8 +74,17 @@ def _table_model(group: str, kind: str) -> type[FileModel]:
     fields: dict[str, Any] = {"kind": (Literal[kind], ...)}
     fields["source"] = (str, ...) if group == "sensors" else (str, "")
     for name, port in keys(group, kind).items():
-        fields[name] = (Annotated[Any, BeforeValidator(_reader(port))], None)
+        if port.role == "tunables":
+            fields[name] = (Annotated[dict[str, TunableEntry], BeforeValidator(_table)], {})
+        else:
+            fields[name] = (Annotated[Any, BeforeValidator(_reader(port))], None)
     return create_model(kind, __base__=FileModel, **fields)
+
+
+def _table(written: Any) -> Any:
+    if not isinstance(written, dict):
+        raise refused("a table with an entry for each is needed")
+    return written
 
 
 def _reader(port: Parameter) -> Callable[[Any], Any]:

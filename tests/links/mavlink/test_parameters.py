@@ -195,7 +195,7 @@ def test_tunables_have_names_starts_and_limits() -> None:
         ("STEER_P 9 50 0", "low limit 50 is above its high limit 0"),
         ("STEER_P 90 0 50", "STEER_P starts with 90, 0 to 50 is allowed"),
         ("steer 9 0 50", "capital letters"),
-        ("; ".join(f"T{n} 0 0 1" for n in range(17)), "17 tunables, at most 16"),
+        ("; ".join(f"T{n} 0 0 1" for n in range(65)), "65 tunables, at most 64"),
     ],
 )
 def test_mistakes_in_tunables_are_named(text: str, message: str) -> None:

@@ -10,7 +10,7 @@ from ...errors import InputError
 from .parameter_definition import REAL32, Definition
 from .settings import Settings
 
-MOST_TUNABLES = 16
+MOST_TUNABLES = 64
 
 
 def tunable_parameters(text: str) -> list[Definition]:

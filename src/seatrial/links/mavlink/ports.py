@@ -11,7 +11,7 @@ from ...sampled import Sampled
 from ..endpoints.url import check_urls
 from .failsafe import ACTIONS
 from .parameters_simulation import FASTEST, SLOWEST
-from .parameters_tunable import MOST_TUNABLES
+from .parameters_tunable import MOST_TUNABLES, tunable_parameters
 from .service_failures import UNITS, failing_units
 from .vehicle import CHANNELS
 
@@ -69,7 +69,13 @@ class MavlinkPorts(Logging, Reachable, Sampled):
     actuators = Parameter(
         "", "1", "CHANNEL NAME MIN NEUTRAL MAX of each output channel, pulses in us; with ;"
     )
-    tunables = Parameter("", "1", "NAME START LOW HIGH of each tunable parameter; with ;")
+    tunables = Parameter(
+        "",
+        "1",
+        "NAME START LOW HIGH of each tunable parameter; with ;",
+        check=tunable_parameters,
+        role="tunables",
+    )
     parameter_file = Parameter("", "1", "file of the parameters that were set; empty: none")
     speedup_start = Parameter(
         1.0, "1", "simulated time per wall time until it is set", min=SLOWEST, max=FASTEST
@@ -160,6 +166,7 @@ class MavlinkPorts(Logging, Reachable, Sampled):
         "1",
         "the tunable parameters, in any unit",
         axes=tuple(f"t{n}" for n in range(1, MOST_TUNABLES + 1)),
+        role="tunable",
     )
     failure = Output("1", "failure of each unit, none without", axes=UNITS, type=str, start="none")
     speedup = Output("1", "simulated time per wall time that is wanted", start=1.0)

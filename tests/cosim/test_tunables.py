@@ -1,0 +1,145 @@
+"""Tunables of a profile's link: what is read, what is refused, what the link takes."""
+
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from seatrial.cosim.profile import check_profile, load_profile
+from seatrial.cosim.tunables import Tunable, carried
+from seatrial.errors import InputError
+from seatrial.fmi.index import component_class
+from seatrial.links.mavlink.component import Mavlink
+from seatrial.units import conversion
+from tests.cosim.test_profile import GOOD
+from tests.terminals import RIGS
+
+TABLE = """
+[links.ground.tunables]
+CRUISE_SPEED = { sets = "guidance.cruise_speed", min = 0, max = 1.5 }
+RUDDER_MAX   = { sets = ["autopilot.rudder_limit", "helm.rudder_limit"], unit = "deg", min = 1, max = 35 }
+"""
+
+
+@pytest.fixture
+def load(write):
+    """Return a function that reads a profile with a table, one text replaced by another."""
+
+    def load(old="", new="", more=""):
+        assert not old or TABLE.count(old) == 1
+        return check_profile(
+            "boat.toml", write("boat.toml", GOOD + TABLE.replace(old, new) + more).parent
+        )
+
+    return load
+
+
+def test_a_table_gives_them_in_its_order(load):
+    profile = load()
+    assert profile.tunables("links.ground") == (
+        Tunable("CRUISE_SPEED", ("guidance.cruise_speed",), 0.0, 1.5, ""),
+        Tunable("RUDDER_MAX", ("autopilot.rudder_limit", "helm.rudder_limit"), 1.0, 35.0, "deg"),
+    )
+    # They are no values of the link: they start with what they set.
+    assert "tunables" not in profile.parameters("links.ground")
+    assert profile.tunables("sensors.gnss") == profile.tunables("actuators.port") == ()
+
+
+def test_the_link_takes_them_as_a_text(load):
+    text = carried(load().tunables("links.ground"), [1.0, 12.5])
+    assert text == "CRUISE_SPEED 1.0 0.0 1.5; RUDDER_MAX 12.5 1.0 35.0"
+    link = Mavlink("link")
+    for name, value in {"links": "udpin:127.0.0.1:0", "tunables": text}.items():
+        link.set(name, value)
+    link.initialise()
+    assert link.get("tunable")[:3] == [1.0, 12.5, 0.0]
+    link.close()
+
+
+PLACE = "links.ground.tunables"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "found"),
+    [
+        (", max = 1.5", "", [f"{PLACE}.CRUISE_SPEED.max: this key is missing"]),
+        ("max = 1.5", "most = 1.5, max = 2", [f"{PLACE}.CRUISE_SPEED.most", "unknown key"]),
+        ("max = 1.5", "maxx = 1.5, max = 2", ["did you mean 'max'"]),
+        ("max = 1.5", 'max = "1.5 m/s"', [f"{PLACE}.CRUISE_SPEED.max", "found '1.5 m/s'"]),
+        ("max = 1.5", "max = true", [f"{PLACE}.CRUISE_SPEED.max", "found True"]),
+        ("max = 1.5", "max = -1", [f"{PLACE}: CRUISE_SPEED: ", "0 is above its high limit -1"]),
+        ("max = 1.5", "max = inf", [f"{PLACE}: CRUISE_SPEED: ", "'inf' is no number"]),
+        ("CRUISE_SPEED", "A23456789_1234567", ["A23456789_1234567", "1 to 16 capital letters"]),
+        ("CRUISE_SPEED", "cruise", [f"{PLACE}: cruise: ", "1 to 16 capital letters"]),
+        ("CRUISE_SPEED", '"A 1 0 2; B"', [f"{PLACE}: 'A 1 0 2; B' cannot be a tunable's name"]),
+        ('"deg"', '"degz"', [f"{PLACE}: RUDDER_MAX: ", "degz"]),
+        ('"guidance.cruise_speed"', '"cruise_speed"', ["CRUISE_SPEED.sets", "'cruise_speed'"]),
+        ('"guidance.cruise_speed"', "[]", ["CRUISE_SPEED.sets: at least one"]),
+        ('"guidance.cruise_speed"', "3", [f"{PLACE}.CRUISE_SPEED.sets", "found 3"]),
+        (
+            '"guidance.cruise_speed"',
+            '"helm.rudder_limit"',
+            ["RUDDER_MAX.sets: 'helm.rudder_limit' is already set by CRUISE_SPEED"],
+        ),
+    ],
+)
+def test_a_mistake_names_file_and_place(load, old, new, found):
+    with pytest.raises(InputError) as caught:
+        load(old, new)
+    for text in ("boat.toml: ", *found):
+        assert text in str(caught.value)
+
+
+def test_a_text_is_no_table(write):
+    text = GOOD.replace('failsafe = "return"', 'tunables = "STEER_P 9 0 50"')
+    with pytest.raises(
+        InputError, match=r"links\.ground\.tunables: a table with an entry for each"
+    ):
+        check_profile("boat.toml", write("boat.toml", text).parent)
+
+
+def test_there_are_as_many_as_the_link_has_outputs(load):
+    def more(count):
+        return "".join(f'T{n} = {{ sets = "a.t{n}", min = 0, max = 1 }}\n' for n in range(count))
+
+    assert len(load(more=more(62)).tunables("links.ground")) == len(Mavlink.ports["tunable"].axes)
+    with pytest.raises(InputError, match=f"{PLACE}: 65 tunables, at most 64 are allowed"):
+        load(more=more(63))
+
+
+def test_all_mistakes_are_reported(load):
+    with pytest.raises(InputError) as caught:
+        load("max = 1.5", "max = -1", more='b = { sets = "a.b", min = 0, max = 1 }\n')
+    assert len(str(caught.value).splitlines()) == 2
+
+
+def written(rig):
+    """Return what a rig's own text and connections say of each tunable."""
+    content = tomllib.loads((RIGS / f"{rig}.toml").read_text())
+    entries = content["components"]["mavlink"]["set"]["tunables"].split(";")
+    for number, entry in enumerate(entries, 1):
+        name, _, low, high = entry.split()
+        ends = content["connections"][f"mavlink.tunable.t{number}"]
+        ends = ends if isinstance(ends, list) else [ends]
+        classes = [content["components"][end["to"].split(".")[0]]["fmu"] for end in ends]
+        yield name, float(low), float(high), ends, classes
+
+
+@pytest.mark.parametrize("vehicle", ["hydrone", "videoray", "gloria", "mariner"])
+def test_shipped_profiles_tune_what_the_rigs_do(vehicle):
+    tunables = load_profile(vehicle).tunables("links.ground")
+    for tunable, (name, low, high, ends, classes) in zip(
+        tunables, written(f"{vehicle}-mavlink"), strict=True
+    ):
+        assert (tunable.name, tunable.min, tunable.max) == (name, low, high)
+        assert tunable.targets == tuple(end["to"] for end in ends)
+        for target, end, cls in zip(tunable.targets, ends, classes, strict=True):
+            port = component_class(cls).ports[target.split(".")[1]]
+            assert port.tunable
+            factor = conversion(tunable.unit, port.unit)[0] if tunable.unit else 1.0
+            assert factor == end.get("factor", 1.0)
+
+
+def test_every_shipped_profile_is_here():
+    shipped = {path.stem for path in (Path(__file__).parents[2] / "hil_profiles").glob("*.toml")}
+    assert shipped == {"hydrone", "videoray", "gloria", "mariner"}
