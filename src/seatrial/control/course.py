@@ -21,7 +21,8 @@ class Course(Sampled):
     ``leg`` stays, and guidance at its end; ``passed`` is the number of legs done.
 
     Nothing depends on an input at the same instant, so that the loop with guidance is none.
-    Positions in {n}, m, down positive. Every leg has the same speed and radius.
+    Positions in {n}, m, down positive. Every leg has the same speed and radius: those of the
+    guidance, if the course says none (a negative speed, a radius of 0).
 
     Raises InputError at the start for a number of waypoints that is not whole.
     """
@@ -39,8 +40,16 @@ class Course(Sampled):
     waypoint_6 = Parameter(0.0, "m", "sixth waypoint", axes=_NED)
     waypoint_7 = Parameter(0.0, "m", "seventh waypoint", axes=_NED)
     waypoint_8 = Parameter(0.0, "m", "eighth waypoint", axes=_NED)
-    speed = Parameter(1.0, "m/s", "speed on every leg", min=0.0, tunable=True)
-    radius = Parameter(3.0, "m", "distance at which a waypoint is reached", min=0.0, tunable=True)
+    speed = Parameter(
+        -1.0, "m/s", "speed on every leg, negative for that of the guidance", tunable=True
+    )
+    radius = Parameter(
+        0.0,
+        "m",
+        "distance at which a waypoint is reached, 0 for that of the guidance",
+        min=0.0,
+        tunable=True,
+    )
     wait = Parameter(0.0, "s", "time to stay at every waypoint", min=0.0, tunable=True)
 
     reached = Input("1", "number of the leg that is done, 0 while none is", type=int)

@@ -110,8 +110,10 @@ class GuidanceOrders(Sampled):
     leg = Input("1", "auto: number of the leg, another for each new one; 0 for none", type=int)
     leg_from = Input("m", "auto: where the leg begins", axes=NED)
     leg_to = Input("m", "auto: where the leg ends", axes=NED)
-    leg_speed = Input("m/s", "auto: speed on the leg", start=1.0)
-    leg_radius = Input("m", "auto: distance at which its end is reached", start=3.0)
+    leg_speed = Input("m/s", "auto: speed on the leg, negative for cruise_speed", start=1.0)
+    leg_radius = Input(
+        "m", "auto: distance at which its end is reached, 0 for acceptance_radius", start=3.0
+    )
     leg_wait = Input("s", "auto: time to stay at its end")
     leg_circle = Input("m", "auto: radius of the circle to stay on, 0 for none")
     home = Input("m", "position to return to", axes=NED)
@@ -213,7 +215,9 @@ class GuidanceOrders(Sampled):
         match task[0]:
             case "leg":
                 end, circle = self._placed(self.leg_to), self.leg_circle or circle
-                return Goal(FOLLOW, end, start, self.leg_speed, self.leg_radius, circle)
+                speed = cruise if self.leg_speed < 0.0 else self.leg_speed
+                radius = self.leg_radius or self.acceptance_radius
+                return Goal(FOLLOW, end, start, speed, radius, circle)
             case "return":
                 end = self._placed(self.home)
                 return Goal(FOLLOW, end, start, cruise, self.acceptance_radius, circle)

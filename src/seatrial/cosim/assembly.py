@@ -11,6 +11,7 @@ from .loading import load_part
 from .profile import Profiles
 from .rig import Rig
 from .system import Engine, System
+from .tuning import connect_tunables
 
 
 def assemble(
@@ -41,6 +42,8 @@ def assemble(
             system.set(key, written, where)
         _refuse_idle_variant(system)
         connect(system)
+        for name, placed in rig.components.items():
+            connect_tunables(system, system.parts[name], profiles[placed.scope.path])
         _yield_to_connections(system)
     except BaseException:
         system.free()

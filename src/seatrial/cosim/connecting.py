@@ -56,11 +56,14 @@ class _Making:
         elif source.is_port or target.is_port:
             port, terminal = (written, entry.to) if source.is_port else (entry.to, written)
             raise InputError(f"{where}: {port} is a port and {terminal} a terminal")
-        else:
-            self._join(source, target, written, entry, where)
+        elif not self._join(source, target, written, entry, where):
+            sides = f"{written} {self._directions(source)}; {entry.to} {self._directions(target)}"
+            if not mark:
+                raise InputError(f"{where}: nothing joins: {sides}")
+            self.system.open.append(f'"{written}" = "{entry.to}": nothing joins: {sides}')
 
-    def _join(self, a: Group, b: Group, written: str, entry: ConnectionEntry, where: str) -> None:
-        """Connect two terminals, each member from its output to its inputs."""
+    def _join(self, a: Group, b: Group, written: str, entry: ConnectionEntry, where: str) -> bool:
+        """Connect two terminals, each member from its output to its inputs; say if any was."""
         if (entry.factor, entry.offset, entry.convert) != (1.0, 0.0, True):
             raise InputError(f"{where}: terminals take no factor, offset or convert")
         met: set[str] = set()
@@ -73,12 +76,10 @@ class _Making:
                         met.add(target.name)
                         if not self._is_fed_so(source, target):
                             self._feed(source, target, entry, f"{where}, {member}")
-        if not met:
-            sides = (f"{name} {self._directions(of)}" for name, of in ((written, a), (entry.to, b)))
-            raise InputError(f"{where}: nothing joins: {'; '.join(sides)}")
         for name, group in ((written, a), (entry.to, b)):
-            if group.rule == "plug":
+            if met and group.rule == "plug":
                 self._refuse_open(name, group, met, where)
+        return bool(met)
 
     def _is_fed_so(self, source: End, target: End) -> bool:
         """Say if another member made the same connection: ``heel`` is in ``roll_pitch`` too."""

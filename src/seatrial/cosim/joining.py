@@ -154,7 +154,12 @@ class Resolver:
     ) -> Group | None:
         instance = self._parts[path].instance
         name, _, member = rest.partition(".")
-        if port_scalars(instance.variables, rest) or rest in instance.variables.terms:
+        scalars = port_scalars(instance.variables, rest)
+        # Nothing is connected to a fixed parameter: a terminal may have its name.
+        fixed = scalars and kind_of(scalars[0]) == "fixed parameter"
+        if (scalars and not (fixed and name in instance.terminals)) or (
+            rest in instance.variables.terms
+        ):
             return Group({"": [self._end(path, rest)]})
         if name in instance.terminals:
             terminal = instance.terminals[name]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Any, Literal, Protocol
 
 from ..errors import InputError, unknown
 from ..fmi.instance import Variable, Variables
@@ -43,6 +43,13 @@ class Joint:
     offset: float = 0.0
 
 
+class Tuned(Protocol):
+    """Tunables of a link, which start at the values of what they set."""
+
+    def update(self, system: System) -> None:
+        """Take the values over. Raises InputError."""
+
+
 @dataclass
 class System:
     """An assembled rig: what the master steps."""
@@ -57,6 +64,8 @@ class System:
     """The same, port by port."""
     open: list[str] = field(default_factory=list)
     """Connections whose names end in ``?`` and that were not made, with the reason."""
+    tunings: list[Tuned] = field(default_factory=list)
+    """What lets tunables of links start at the values that their targets are given."""
 
     def set(self, key: str, written: Any, origin: str) -> None:
         """Set ``component.port`` to what a person wrote, before the run.
@@ -68,6 +77,7 @@ class System:
                 self.refuse_connected(part.name, variable.name, origin)
             presets = part.presets.get(port, {})
             part.given.update(from_written(written, scalars, presets, f"{origin}: {key}"))
+        self._tune(key, origin)
 
     def scale(self, key: str, factor: float, origin: str) -> None:
         """Multiply the number ``component.port``, as set so far, by ``factor``.
@@ -84,11 +94,23 @@ class System:
                 part.given[variable.name] = Given(
                     value * factor, f"{origin}: {factor!r} times {before}"
                 )
+        self._tune(key, origin)
+
+    def _tune(self, key: str, origin: str) -> None:
+        try:
+            for tuning in self.tunings:
+                tuning.update(self)
+        except InputError as error:
+            raise InputError(f"{origin}: {key}: {error}") from None
 
     def refuse_connected(self, component: str, variable: str, origin: str) -> None:
         """Raise InputError if a connection feeds the input: a value set there would do nothing."""
+        parameter = self.parts[component].instance.variables[variable].causality == "parameter"
         for connection in self.connections:
             if connection.target == (component, variable):
+                source = self.parts[connection.source[0]].instance.variables[connection.source[1]]
+                if parameter and source.role == "tunable":
+                    return  # the link's tunable starts there
                 feeder = ".".join(connection.source)
                 raise InputError(
                     f"{origin}: {component}.{variable} is fed by {feeder}; override it in an event"

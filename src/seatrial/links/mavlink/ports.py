@@ -192,7 +192,7 @@ class MavlinkPorts(Logging, Reachable, Sampled):
             heel="roll_pitch__phi",
             pitch="roll_pitch__theta",
         ),
-        "truth": terminal(
+        "motion": terminal(
             position="true_position",
             velocity="true_velocity",
             attitude="true_attitude",
