@@ -11,6 +11,9 @@ from fractions import Fraction
 Known = tuple[Fraction, dict[str, int]]
 """Factor to the SI unit, and exponent of each of FMI's base units."""
 
+STANDARD_GRAVITY = 9.80665
+"""Standard gravity, m/s2: the unit g of sensors and of kilogram-force, not that of a place."""
+
 _PI = Fraction("3.1415926535897932384626433832795028841971693993751")
 _PREFIXES = {
     prefix: Fraction(10) ** power

@@ -11,7 +11,6 @@ from scipy.spatial.transform import Rotation
 from seatrial.cosim.profile import load_profile
 from seatrial.devices.ahrs import Ahrs
 from seatrial.devices.depth import Depth
-from seatrial.errors import InputError
 
 from .running import run, started
 
@@ -24,7 +23,7 @@ PERFECT = dict.fromkeys(ERRORS, 0.0)
 
 
 def readings(attitudes, **values):
-    """Return (attitude, acceleration) as read at 10 Hz from a vehicle with these attitudes."""
+    """Return (attitude, minus specific force), the signs of source 000, as read at 10 Hz."""
     values = {**PROFILE.parameters("sensors.ahrs"), **values}
     rows = run(
         started(Ahrs, **values),
@@ -33,19 +32,19 @@ def readings(attitudes, **values):
         100,
         lambda t_ms: {"attitude": attitudes[t_ms // 100]},
     )
-    return np.array([row[0] for row in rows]), np.array([row[1] for row in rows])
+    return np.array([row[0] for row in rows]), -np.array([row[1] for row in rows])
 
 
-@given(angles, triples, st.sampled_from([-1.0, 1.0]))
-def test_reading_is_gravity_with_the_acceleration_added_or_taken_off(attitude, acceleration, sign):
+@given(angles, triples)
+def test_reading_is_the_acceleration_less_gravity(attitude, acceleration):
     phi, theta, psi = attitude
     gravity = Rotation.from_euler("ZYX", [psi, theta, phi]).inv().apply([0, 0, 9.81])
-    ahrs = started(Ahrs, **PERFECT, attitude=attitude, acceleration=acceleration, acc_sign=sign)
-    expected = gravity + sign * np.array(acceleration)
+    ahrs = started(Ahrs, **PERFECT, attitude=attitude, acceleration=acceleration)
+    expected = np.array(acceleration) - gravity
     np.testing.assert_allclose(ahrs.get("accelerometer"), expected, rtol=0, atol=1e-13)
 
 
-def test_free_fall_reads_nothing_with_the_sign_of_the_profile():
+def test_free_fall_reads_nothing():
     fall = {"attitude": (0.0, 0.0, 1.0), "acceleration": (0.0, 0.0, 9.81)}
     assert started(Ahrs, **PERFECT, **fall).get("accelerometer") == [0.0, 0.0, 0.0]
 
@@ -68,12 +67,6 @@ def test_heading_counts_tenths_of_a_degree_from_0_to_3599(psi, tenths, turns):
     attitude = (0.0, 0.0, (psi + 360 * turns) * DEG)
     heading = started(Ahrs, euler_noise=0.0, attitude=attitude).get("euler")[2]
     assert heading / (0.1 * DEG) == pytest.approx(tenths, abs=1e-6)
-
-
-@pytest.mark.parametrize("sign", [0.0, 0.5, -0.999])
-def test_a_sign_that_is_none_is_refused(sign):
-    with pytest.raises(InputError, match=r"acc_sign is .* allowed -1\.0 or 1\.0"):
-        started(Ahrs, acc_sign=sign)
 
 
 # ---------------------------------------------------------------------- table 7.1

@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 
 LAG_S, LEAD_S = 0.45, 0.2
 """Of a sample's time before and after the truth: 0.3 s of the GNSS, a row, the clock's 0.1 s."""
-STANDARD_GRAVITY = 9.80665
+GRAVITY = 9.81
 ANTENNA = (0.0, 0.0, -0.3)
 MIDNIGHT_US = datetime.datetime(2026, 2, 5, tzinfo=datetime.UTC).timestamp() * 1e6
 
@@ -51,7 +51,7 @@ class Truth:
         )
         antenna = position + turn.apply(ANTENNA)
         moving = turn.apply(velocity + np.cross(rates, ANTENNA))
-        felt = acceleration - turn.inv().apply([0.0, 0.0, STANDARD_GRAVITY])
+        felt = acceleration - turn.inv().apply([0.0, 0.0, GRAVITY])
         along = turn.inv().apply(moving)
         for names, values in (
             (("north", "east", "down"), antenna),

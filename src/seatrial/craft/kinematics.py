@@ -46,6 +46,17 @@ def to_body(attitude: Sequence[float], v: Sequence[float]) -> Vector3:
     )
 
 
+def specific_force(
+    attitude: Sequence[float], acceleration: Sequence[float], gravity: float
+) -> Vector3:
+    """Return acceleration - R^T (0, 0, gravity), m/s2, body axes: what accelerometers read.
+
+    ``acceleration`` is inertial, in body axes. At rest and level (0, 0, -gravity).
+    """
+    (ax, ay, az), (gx, gy, gz) = acceleration, to_body(attitude, (0.0, 0.0, gravity))
+    return (ax - gx, ay - gy, az - gz)
+
+
 def cross(a: Sequence[float], b: Sequence[float]) -> Vector3:
     """Return a x b."""
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])

@@ -6,7 +6,8 @@ import math
 from typing import ClassVar
 
 from ..component import Input, Parameter, terminal
-from ..craft.kinematics import to_body
+from ..craft.kinematics import specific_force
+from ..unit_table import STANDARD_GRAVITY
 from .sensor import Measured, Sensor
 
 _DEG = math.radians(1.0)
@@ -55,10 +56,10 @@ class Imu(Sensor):
         "m/s2",
         "specific force, body axes",
         axes="xyz",
-        span=(-4 * 9.80665, 4 * 9.80665),
+        span=(-4 * STANDARD_GRAVITY, 4 * STANDARD_GRAVITY),
         noise=0.007,
         instability=0.0005,
-        resolution=4 * 9.80665 / 32768,
+        resolution=4 * STANDARD_GRAVITY / 32768,
     )
     roll_pitch = Measured(
         "rad",
@@ -89,7 +90,5 @@ class Imu(Sensor):
 
     def measure(self) -> list[float]:
         """Return rates, specific force, roll and pitch."""
-        attitude = self.attitude
-        weight = to_body(attitude, (0.0, 0.0, self.gravity))
-        force = [a - g for a, g in zip(self.acceleration, weight, strict=True)]
-        return [*self.rates, *force, *attitude[:2]]
+        force = specific_force(self.attitude, self.acceleration, self.gravity)
+        return [*self.rates, *force, *self.attitude[:2]]

@@ -7,6 +7,8 @@ on a Basic ESC.
 
 import math
 
+from ..unit_table import STANDARD_GRAVITY
+
 # fmt: off
 PULSE = (
     0.0011, 0.00112, 0.00114, 0.00116, 0.00118, 0.0012, 0.00122, 0.00124, 0.00126, 0.00128,
@@ -26,9 +28,7 @@ KGF = (
 )
 """Thrust, kgf, positive ahead."""
 
-KGF_TO_NEWTON = 9.80665
-
-FORCE = tuple(kgf * KGF_TO_NEWTON for kgf in KGF)
+FORCE = tuple(kgf * STANDARD_GRAVITY for kgf in KGF)
 """Thrust, N, positive ahead."""
 
 CURRENT = (

@@ -202,7 +202,7 @@ def test_truth_goes_out_beside_the_estimates(started, connect):
     assert (truth.lat_int, truth.alt) == (0, -4.0)
     # On its starboard side, what is abeam points down, and the weight acts to starboard.
     assert (truth.vn, truth.vd) == (pytest.approx(1.0), pytest.approx(2.0))
-    assert (truth.yacc, truth.zacc) == (pytest.approx(-9.80665), pytest.approx(0.0, abs=1e-6))
+    assert (truth.yacc, truth.zacc) == (pytest.approx(-9.81), pytest.approx(0.0, abs=1e-6))
     assert received(boat, station, "LOCAL_POSITION_NED").z == 3.0
 
 

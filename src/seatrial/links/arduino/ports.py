@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import ClassVar
 
 from ...component import Component, Input, Output, Parameter, Reachable, Terminal, terminal
+from ...unit_table import STANDARD_GRAVITY
 from .mcus import MCUS
 from .uart_links import read_links, read_monitors
 from .wiring import OTHERS, SERVOS, UARTS, read_uarts, read_wires
@@ -62,7 +63,7 @@ class ArduinoPorts(Reachable, Component):
         axes=("north", "east", "down"),
     )
     water_density = Parameter(1000.0, "kg/m3", "of the water over the pressure sensor", min=0.0)
-    gravity = Parameter(9.80665, "m/s2", "acceleration of gravity", min=0.0)
+    gravity = Parameter(STANDARD_GRAVITY, "m/s2", "acceleration of gravity", min=0.0)
 
     rx = Input("1", "bytes that arrive at each UART, as text", type=str, axes=_UARTS, optional=True)
     cut = Input(
@@ -81,7 +82,7 @@ class ArduinoPorts(Reachable, Component):
         "m/s2",
         "specific force, body axes",
         axes="xyz",
-        start=(0.0, 0.0, -9.80665),
+        start=(0.0, 0.0, -STANDARD_GRAVITY),
         optional=True,
     )
     attitude = Input(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ...craft.kinematics import to_body, to_ned
+from ...craft.kinematics import specific_force, to_ned
 from ...errors import InputError
 from ...sampled import Sampled
 from ..endpoints.endpoint import Endpoint
@@ -19,7 +19,6 @@ from .parameters import vehicle_parameters
 from .parameters_tunable import MOST_TUNABLES, tunable_parameters
 from .pause import stand_still
 from .ports import NAMED_VALUES, VEHICLE_TYPES, MavlinkPorts
-from .scaling import STANDARD_GRAVITY
 from .service_failures import UNITS, failing_units
 from .settings import Settings
 from .signing import Signing, read_key
@@ -298,12 +297,10 @@ class Mavlink(MavlinkPorts):
 
     def _truth(self) -> Truth:
         attitude = self.true_attitude
-        weight = to_body(attitude, (0.0, 0.0, STANDARD_GRAVITY))
-        felt = [a - g for a, g in zip(self.true_acceleration, weight, strict=True)]
         return Truth(
             self.true_position,
             to_ned(attitude, self.true_velocity),
             attitude,
             self.true_rates,
-            (felt[0], felt[1], felt[2]),
+            specific_force(attitude, self.true_acceleration, self.gravity),
         )

@@ -8,6 +8,7 @@ from pymavlink.dialects.v20 import all as mavlink
 
 from ...component import Input, Logging, Output, Parameter, Reachable, Terminal, terminal
 from ...sampled import Sampled
+from ...unit_table import STANDARD_GRAVITY
 from ..endpoints.url import check_urls
 from .failsafe import ACTIONS
 from .parameters_simulation import FASTEST, SLOWEST
@@ -58,6 +59,7 @@ class MavlinkPorts(Logging, Reachable, Sampled):
     target_timeout = Parameter(3.0, "s", "time for which a set-point is valid", min=0.0)
     full_speed = Parameter(1.0, "m/s", "speed of full thrust in an attitude set-point", min=0.0)
     truth = Parameter("off", "1", "whether the truth is sent", choices=("off", "on"))
+    gravity = Parameter(9.81, "m/s2", "acceleration of gravity, in the truth", min=0.0)
     waypoint_radius = Parameter(3.0, "m", "distance at which a waypoint is reached", min=0.0)
     cruise_speed = Parameter(1.0, "m/s", "speed of legs that name none", min=0.0)
     loiter_radius = Parameter(10.0, "m", "radius of turns that name none", min=0.1)
@@ -95,7 +97,7 @@ class MavlinkPorts(Logging, Reachable, Sampled):
     roll_pitch = Input("rad", "roll and pitch, starboard side down, bow up", axes=("phi", "theta"))
     gyro = Input("rad/s", "angular velocity, body axes", axes="xyz")
     accelerometer = Input(
-        "m/s2", "specific force, body axes", axes="xyz", start=(0.0, 0.0, -9.80665)
+        "m/s2", "specific force, body axes", axes="xyz", start=(0.0, 0.0, -STANDARD_GRAVITY)
     )
     imu_valid = Input(
         "1", "whether gyro and specific force are valid", type=bool, start=True, optional=True

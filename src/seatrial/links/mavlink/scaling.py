@@ -8,8 +8,6 @@ from collections.abc import Sequence
 from ..geodesy import Ned
 
 UNKNOWN_U16 = 0xFFFF
-STANDARD_GRAVITY = 9.80665
-"""m/s2."""
 STANDARD_PRESSURE = 101_325.0
 """Of the air at the surface, Pa."""
 FRESH_WATER = 1000.0

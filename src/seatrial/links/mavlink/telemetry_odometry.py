@@ -8,8 +8,9 @@ from collections.abc import Mapping
 from pymavlink.dialects.v20 import all as mavlink
 
 from ...craft.kinematics import to_body
+from ...unit_table import STANDARD_GRAVITY
 from .codec import Message
-from .scaling import STANDARD_GRAVITY, deg_e7, int16, int32, microseconds, quaternion
+from .scaling import deg_e7, int16, int32, microseconds, quaternion
 from .service import Builder, Service
 
 _UNKNOWN = [math.nan] * 21

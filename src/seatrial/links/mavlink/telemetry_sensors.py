@@ -8,10 +8,10 @@ from typing import ClassVar
 
 from pymavlink.dialects.v20 import all as mavlink
 
+from ...unit_table import STANDARD_GRAVITY
 from .codec import Message
 from .scaling import (
     FRESH_WATER,
-    STANDARD_GRAVITY,
     STANDARD_PRESSURE,
     UNKNOWN_U16,
     clamped,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from ...unit_table import STANDARD_GRAVITY
 from ..geodesy import Ned, Origin
 from .modes import Dialect, Mode
 
@@ -53,7 +54,7 @@ class Estimates:
     """Euler angles ZYX: phi, theta, psi."""
     heading_valid: bool = True
     rates: Ned = (0.0, 0.0, 0.0)
-    specific_force: Ned = (0.0, 0.0, -9.80665)
+    specific_force: Ned = (0.0, 0.0, -STANDARD_GRAVITY)
     imu_valid: bool = True
     """Whether rates and specific force are valid."""
     depth: float | None = None

@@ -6,6 +6,7 @@ import math
 from typing import ClassVar
 
 from ...component import Component, Input, Logging, Output, Parameter, Terminal, terminal
+from ...unit_table import STANDARD_GRAVITY
 from .drive import SLEW_UNITS, THRUSTERS
 from .gains import GAINS
 from .registers import check_settings
@@ -63,7 +64,7 @@ class Pro4RovPorts(Logging, Component):
     )
     surface_pressure = Parameter(101_325.0, "Pa", "pressure at the surface", min=0.0)
     density = Parameter(1000.0, "kg/m3", "density of the water", min=0.0)
-    gravity = Parameter(9.80665, "m/s2", "acceleration of gravity", min=0.0)
+    gravity = Parameter(STANDARD_GRAVITY, "m/s2", "acceleration of gravity", min=0.0)
     depth_offset = Parameter(0.0, "m", "depth that its pressure sensor reads too much")
 
     rx = Input("1", "bytes received", type=str, optional=True)
@@ -71,7 +72,11 @@ class Pro4RovPorts(Logging, Component):
     attitude = Input("rad", "Euler angles, ZYX", axes=("phi", "theta", "psi"))
     depth = Input("m", "depth, positive down")
     specific_force = Input(
-        "m/s2", "specific force, body axes", axes=_XYZ, start=(0.0, 0.0, -9.80665), optional=True
+        "m/s2",
+        "specific force, body axes",
+        axes=_XYZ,
+        start=(0.0, 0.0, -STANDARD_GRAVITY),
+        optional=True,
     )
     rates = Input("rad/s", "angular velocity, body axes", axes=("p", "q", "r"), optional=True)
     magnetometer = Input("1", "raw readings", axes=_XYZ, optional=True)

@@ -6,6 +6,7 @@ import math
 from typing import ClassVar
 
 from ...component import Component, Input, Logging, Output, Parameter, terminal
+from ...unit_table import STANDARD_GRAVITY
 
 _XYZ = ("x", "y", "z")
 
@@ -27,7 +28,7 @@ class Pro4TopsidePorts(Logging, Component):
     )
     surface_pressure = Parameter(101_325.0, "Pa", "pressure at the surface", min=0.0)
     density = Parameter(1000.0, "kg/m3", "density of the water", min=1e-3)
-    gravity = Parameter(9.80665, "m/s2", "acceleration of gravity", min=1e-3)
+    gravity = Parameter(STANDARD_GRAVITY, "m/s2", "acceleration of gravity", min=1e-3)
     nmea = Parameter("off", "1", "whether it sends NMEA sentences", choices=("off", "on"))
 
     rx = Input("1", "bytes received", type=str, optional=True)
