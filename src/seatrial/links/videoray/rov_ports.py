@@ -110,6 +110,7 @@ class Pro4RovPorts(Logging, Component):
         "serial": terminal(down="rx", up="tx"),
         "sensors": terminal(
             "depth",
+            euler="attitude",
             heading="attitude__psi",
             heel="attitude__phi",
             pitch="attitude__theta",
