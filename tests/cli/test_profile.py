@@ -84,3 +84,13 @@ def test_describe_shows_every_parameter_of_every_table(name: str, tmp_path: Path
             shown = rows(done.stdout, f"{group}.{table}: {kind}")
             first = 2 if shown[0].startswith("  source") else 1
             assert [line.split()[0] for line in shown[first:]] == list(keys(group, kind))
+
+
+def test_describe_shows_what_a_ground_station_tunes(tmp_path: Path) -> None:
+    done = seatrial("profile", "describe", "mariner", cwd=tmp_path)
+    shown = [line.split() for line in rows(done.stdout, "tunables of links.ground")]
+    assert shown[-1] == [
+        *("RUDDER_MAX", "1", "35", "deg", "autopilot.rudder_limit", "helm.rudder_limit"),
+    ]
+    link = [line.split() for line in rows(done.stdout, "links.ground: mavlink")]
+    assert ["tunables", "11,", "below", "profile"] in [words[:4] for words in link]
