@@ -16,7 +16,7 @@ class Esc(PulseRange):
 
     held at -1 and 1 beyond the range, positive ahead, with the other sign if ``reversed`` = 1;
     0 while the pulse is no further than ``dead_band`` from neutral. Outside the dead band it
-    is on that line, so that it jumps at the edge. A pulse of 0 is no signal and counts as
+    is on that line, so that it jumps at the edge. A pulse of 0 is no signal and acts as
     neutral: a board that has not attached its outputs yet stops the thruster. Pulses in s;
     static: the share follows the pulse at the same instant.
 
