@@ -79,7 +79,8 @@ def held(
         psi = truth["attitude"][2]
         c, s = math.cos(psi), math.sin(psi)
         north, east = force
-        pair.set("thrust", [port.get("thrust"), starboard.get("thrust"), 0, 0])
+        pair.set("thrust.t1", port.get("thrust"))
+        pair.set("thrust.t2", starboard.get("thrust"))
         craft.set("force_1", pair.get("force"))
         craft.set("moment_1", pair.get("moment"))
         craft.set("force_2", [c * north + s * east, -s * north + c * east, 0])

@@ -18,7 +18,7 @@ def forces(surge, moment):
     pair = started(
         Propulsion,
         position_1=[0, -0.4, 0], position_2=[0, 0.4, 0],
-        direction_1=[1, 0, 0], direction_2=[1, 0, 0], thrust=[*thrusts, 0, 0],
+        direction_1=[1, 0, 0], direction_2=[1, 0, 0], thrust=[*thrusts, *[0] * 14],
     )  # fmt: skip
     return pair.get("force.x"), pair.get("moment.z")
 

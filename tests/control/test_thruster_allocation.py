@@ -22,7 +22,7 @@ def load(port, starboard, vertical):
         direction_1=[1, 0, 0],
         direction_2=[1, 0, 0],
         direction_3=[0, 0, 1],
-        thrust=[46.7 * port, 46.7 * starboard, 25.0 * vertical, 0.0],
+        thrust=[46.7 * port, 46.7 * starboard, 25.0 * vertical, *[0.0] * 13],
     )
     return np.array([*propulsion.get("force"), *propulsion.get("moment")])
 

@@ -349,6 +349,51 @@ def test_a_rig_names_a_vehicle_file_beside_itself(direct, write, monkeypatch, tm
         direct.system(rig.format("mine", ""), top='step = "1 s"\nvariant = "heavy"')
 
 
+# ---------------------------------------------------------------------- lists of like parts
+
+THRUSTERS = (
+    HEAD
+    + """
+[propulsion]
+gain = { value = 1, source = "s", mark = "stated" }
+
+[[propulsion.thrusters]]
+position = { value = [1, 2, 3], unit = "m" }
+direction = { value = [1, 0, 0] }
+source = "drawing 7"
+mark = "stated"
+
+[[propulsion.thrusters]]
+position = { value = [1, -2, 3], unit = "m", mark = "assumed" }
+direction = { value = [0, 0, 1] }
+source = "drawing 8"
+mark = "stated"
+"""
+)
+
+
+def test_parts_of_a_list_are_numbered_and_share_source_and_mark(load) -> None:
+    values = load(THRUSTERS).parameter_set("propulsion", None).values
+    assert list(values) == ["gain", "position_1", "direction_1", "position_2", "direction_2"]
+    assert values["position_2"] == Entry(
+        value=[1, -2, 3], unit="m", source="drawing 8", mark="assumed"
+    )
+    assert (values["direction_1"].unit, values["direction_1"].source) == ("1", "drawing 7")
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (THRUSTERS.replace("gain", "position_2"), r"propulsion: thrusters: position_2 is there twice"),
+        (THRUSTERS.replace('mark = "stated"\n\n[[', "\n[["), r"propulsion\.\w+_1\.mark: this key is missing"),
+        (THRUSTERS.replace("{ value = [0, 0, 1] }", "3"), r"propulsion\.direction_2: Input should be"),
+    ],
+)  # fmt: skip
+def test_mistakes_in_a_list_name_their_place(load, text: str, message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        load(text)
+
+
 # ---------------------------------------------------------------------- what is shipped
 
 

@@ -105,5 +105,28 @@ def load_vehicle(name: str, relative_to: Path | None = None) -> Vehicle:
     for key, value in components.items():
         if not isinstance(value, dict):
             raise InputError(f"{path}: {key}: {unknown('key', key, known)}")
+    components = {name: _numbered(table, f"{path}: {name}") for name, table in components.items()}
     content = {**top, "components": components}
     return Vehicle(validated(VehicleFile, content, path, ours="components"), read_from)
+
+
+def _numbered(table: dict[str, Any], where: str) -> dict[str, Any]:
+    """Return a component's table with each list of like parts written out, part by part.
+
+    The entries of part 2 have its number, ``position_2``, and the part's source and mark unless
+    they have their own. Raises InputError for an entry that is there twice.
+    """
+    entries: dict[str, Any] = {}
+    for key, value in table.items():
+        parts = value if isinstance(value, list) else []
+        if not parts or not all(isinstance(part, dict) for part in parts):
+            entries[key] = value
+            continue
+        for number, part in enumerate(parts, 1):
+            shared = {k: part[k] for k in ("source", "mark") if k in part}
+            for name in (k for k in part if k not in shared):
+                entry, own = part[name], f"{name}_{number}"
+                if own in table or own in entries:
+                    raise InputError(f"{where}: {key}: {own} is there twice")
+                entries[own] = {**shared, **entry} if isinstance(entry, dict) else entry
+    return entries
