@@ -33,6 +33,7 @@ from .declarations import (
     check_views,
     declared_ports,
     declared_terms,
+    with_terms,
 )
 from .errors import InputError, SimulationError, unknown
 from .ports import Input, Output, Parameter, Port, Scalar, ScalarPort, lay_out
@@ -122,9 +123,11 @@ class Component:
             setattr(cls, name, port)
         cls.scalar_by_name = {scalar.name: scalar for scalar in cls.scalars}
         named = {**cls.ports, **cls.scalar_by_name}
-        check_feedthrough(cls.__name__, cls.ports, cls.feedthrough)
+        terms = declared_terms(cls)
+        check_feedthrough(cls.__name__, {**cls.ports, **terms}, cls.feedthrough)
+        cls.feedthrough = with_terms(cls.feedthrough, terms)
         check_views(cls.__name__, cls.views)
-        check_terminals(cls.__name__, cls.terminals, named, list(declared_terms(cls)))
+        check_terminals(cls.__name__, cls.terminals, named, list(terms))
         for kind in (float, int, bool, str):
             of_type = [s for s in cls.scalars if s.port.type is kind]
             # A dict of its own per class: a shared one would mix the classes.

@@ -36,8 +36,18 @@ def declared_terms(cls: type) -> dict[str, Terms]:
     return {n: v for base in of_bases for n, v in base.items() if isinstance(v, Terms)}
 
 
+def with_terms(
+    feedthrough: Mapping[str, Sequence[str]], terms: Mapping[str, Terms]
+) -> dict[str, tuple[str, ...]]:
+    """Return feed-through with the terms of each sum in the place of its name."""
+    return {
+        output: tuple(name for i in inputs for name in (terms[i].names if i in terms else (i,)))
+        for output, inputs in feedthrough.items()
+    }
+
+
 def check_feedthrough(
-    owner: str, ports: Mapping[str, Port], feedthrough: Mapping[str, Sequence[str]]
+    owner: str, ports: Mapping[str, Port | Terms], feedthrough: Mapping[str, Sequence[str]]
 ) -> None:
     """Raise TypeError where ``feedthrough`` names what is no output, or no input."""
     for output, inputs in feedthrough.items():

@@ -17,6 +17,8 @@ class Terms:
     is that of the terms; a term that nothing feeds is zero.
     """
 
+    kind = "input"
+
     def __init__(self, count: int, unit: str, description: str, **options: Any) -> None:
         self.name = ""
         self.inputs = tuple(

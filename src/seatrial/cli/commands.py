@@ -28,6 +28,10 @@ COMMANDS = {
         "listing:list_all",
         "List trials, campaigns, rigs, vehicles, profiles, experiments and FMUs by name.",
     ),
+    "describe": Command(
+        "describe:describe",
+        "Show a rig's components, rigs inside it, every connection, and what is left open.",
+    ),
     "report": Command("report:report", "Write the report of a run again."),
     "compare": Command(
         "compare:compare", "Compare two runs signal by signal; status 1 if their signals differ."

@@ -1,0 +1,98 @@
+"""``seatrial describe``: what a rig is made of, and every connection in it."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+from rich.markup import escape
+
+from ..cosim.assembly import assemble
+from ..cosim.flattening import load_rig
+from ..cosim.rig import Rig, Scope
+from ..cosim.system import Joint, System
+from ..errors import InputError
+from ..shipped import available
+from ..trials.trial import choices_in, load_trial
+from .options import Autopilot, Choices, Vehicle, changes_of
+from .show import console
+
+
+def describe(
+    rig: Annotated[str, typer.Argument(help="A rig or a trial: a name or a .toml file.")],
+    choices: Choices = None,
+    vehicle: Vehicle = None,
+    autopilot: Autopilot = None,
+) -> None:
+    """Show a rig's components, rigs inside it, every connection, and what is left open."""
+    changes = changes_of(None, choices, vehicle, autopilot)
+    loaded = _loaded(rig, changes)
+    system = assemble(loaded, "direct" if _in_process(loaded) else "fmu")
+    try:
+        _print_rig(system)
+    finally:
+        system.free()
+
+
+def _loaded(name: str, changes: dict[str, str]) -> Rig:
+    if name not in available("harness/rigs") and name in available("harness/trials"):
+        return load_trial(name, changes=changes, origin="--choose").rig
+    try:
+        return load_rig(name, None, choices_in(changes, "--choose"))
+    except InputError:
+        if not name.endswith(".toml"):
+            raise
+        try:
+            return load_trial(name, changes=changes, origin="--choose").rig
+        except InputError:
+            pass
+        raise
+
+
+def _in_process(rig: Rig) -> bool:
+    """Say if all components can be shown without making or opening an FMU."""
+    return not any(
+        placed.entry.fmu.endswith(".fmu") or placed.entry.isolated
+        for placed in rig.components.values()
+    )
+
+
+def _print_rig(system: System) -> None:
+    top = system.rig.top
+    console.print(f"[bold]{escape(top.file.title or top.read_from.name)}[/bold]")
+    for name, value in top.choices.items():
+        console.print(f"  {escape(name)} = {escape(value)}", soft_wrap=True)
+    _print_components(top, "")
+    width = max((len(joint.source) for joint in system.joints), default=0)
+    lines = [
+        f"{joint.source:{width}} -> {joint.target}{_transformed(joint)}" for joint in system.joints
+    ]
+    _print_list(f"{len(lines)} connections", lines)
+    _print_list("not made", system.open)
+    _print_list("inputs that nothing feeds", system.unconnected_inputs())
+    shown = [f"{name} = {value!r}" for name, value in top.file.shows.items()]
+    _print_list("shows", shown)
+
+
+def _transformed(joint: Joint) -> str:
+    if (joint.factor, joint.offset) == (1.0, 0.0):
+        return ""
+    return f"  (times {joint.factor:g}" + (f", plus {joint.offset:g})" if joint.offset else ")")
+
+
+def _print_components(scope: Scope, indent: str) -> None:
+    for name, entry in scope.file.components.items():
+        if name not in scope.inner:
+            console.print(f"{indent}  {escape(name)}: {escape(entry.fmu)}", soft_wrap=True)
+            continue
+        inner = scope.inner[name]
+        title = inner.file.title or inner.read_from.name
+        console.print(f"{indent}  [bold]{escape(name)}[/bold]: {escape(title)}", soft_wrap=True)
+        _print_components(inner, f"{indent}  ")
+
+
+def _print_list(title: str, lines: list[str]) -> None:
+    if lines:
+        console.print(f"\n[bold]{title}[/bold]")
+    for line in lines:
+        console.print(f"  {escape(line)}", soft_wrap=True)
