@@ -26,12 +26,9 @@ def searched_folders(kind: str) -> list[Path]:
 
 
 def available(kind: str) -> dict[str, Path]:
-    """Return the files of ``kind`` by name, the ones that `find_file` of `cosim.files` returns.
-
-    Those in folders have names such as ``vehicles/hydrone``.
-    """
+    """Return the files of ``kind`` by name, the ones that `find_file` of `cosim.files` returns."""
     found: dict[str, Path] = {}
     for folder in searched_folders(kind):
-        for path in sorted(folder.rglob("*.toml")):
-            found.setdefault(path.relative_to(folder).with_suffix("").as_posix(), path)
+        for path in sorted(folder.glob("*.toml")):
+            found.setdefault(path.stem, path)
     return dict(sorted(found.items()))

@@ -37,8 +37,8 @@ def test_a_caller_of_the_api_is_type_checked(tmp_path: Path) -> None:
     """By what is installed: a wheel has ``py.typed`` beside the modules."""
     (tmp_path / "caller.py").write_text(
         "import seatrial\n"
-        'with seatrial.Simulation("hydrone") as sim:\n'
-        '    reveal_type(sim.record("hull.*").signals["hull.position"].unit)\n'
+        'with seatrial.Simulation("landing") as sim:\n'
+        '    reveal_type(sim.record("vehicle.hull.*").signals["vehicle.hull.position"].unit)\n'
         '    sim.step("1 s")\n'
         'reveal_type(seatrial.run_trial("x").verdicts[0].worst)\n'
     )

@@ -53,10 +53,10 @@ def test_a_lag_and_an_oscillator_follow_their_closed_forms(rig: Rig) -> None:
 
 
 def test_a_shipped_rig_gives_the_numbers_of_a_trial(tmp_path: Path) -> None:
-    sets = ["--set", "stop=2 s", "--set", "downwash.pad=diagonal-aft"]
+    sets = ["--set", "stop=2 s", "--set", "drone.pad=diagonal-aft"]
     seatrial("run", "hydrone-landing", "--engine", "direct", "--out", "run", *sets, cwd=tmp_path)
-    given = {"downwash.pad": "diagonal-aft", "downwash.phase": "landing"}
-    with Simulation("hydrone", set=given) as sim:
+    given = {"drone.pad": "diagonal-aft", "drone.phase": "landing"}
+    with Simulation("landing", set=given) as sim:
         recording = sim.record()
         sim.run("2 s")
     same_as_record(recording.signals, tmp_path / "run")
@@ -231,6 +231,8 @@ def test_a_closed_simulation_and_a_state_of_another_are_refused(rig: Rig) -> Non
 
 # ---------------------------------------------------------------------- the outside world
 
+MAVLINK = {"autopilot": "mavlink"}
+
 
 @pytest.mark.parametrize(
     ("link", "said"),
@@ -246,16 +248,17 @@ def test_nothing_but_programs_on_this_machine_is_reached(
     """Even where the environment allows it: nobody watches over what would move."""
     monkeypatch.setenv(ALLOWED, "1")
     with pytest.raises(InputError) as caught:
-        Simulation("hydrone-mavlink", set={"mavlink.links": link})
+        Simulation("sil", choices=MAVLINK, set={"autopilot.mavlink.links": link})
     assert said in str(caught.value)
     assert os.environ[ALLOWED] == "1"
 
 
 def test_links_on_this_machine_work(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv(ALLOWED, raising=False)
-    with Simulation("hydrone-mavlink", set={"mavlink.links": "udpin:127.0.0.1:0"}) as sim:
+    links = {"autopilot.mavlink.links": "udpin:127.0.0.1:0"}
+    with Simulation("sil", choices=MAVLINK, set=links) as sim:
         sim.step(2)
-        with pytest.raises(InputError, match="the state of mavlink cannot be saved"):
+        with pytest.raises(InputError, match=r"the state of autopilot\.mavlink cannot be saved"):
             sim.save()
     assert ALLOWED not in os.environ
 

@@ -61,18 +61,20 @@ def test_a_restored_simulation_takes_the_same_course(
 
 
 def test_noise_and_overrides_of_a_shipped_rig_are_restored() -> None:
-    with Simulation("hydrone", seed=5) as sim:
-        sim.override("autopilot.pulse_port", "1.6 ms")
+    with Simulation("landing", seed=5) as sim:
+        sim.override("autopilot.keeper.pulse_port", "1.6 ms")
         sim.run(1)
-        state, recording = sim.save(), sim.record("gnss.*", "compass.*", "hull.position")
+        recorded = "vehicle.gnss.*", "vehicle.compass.*", "vehicle.hull.position"
+        state, recording = sim.save(), sim.record(*recorded)
         sim.run(2)
-        sim.release("autopilot.pulse_port")
+        sim.release("autopilot.keeper.pulse_port")
         sim.run("2.5 s")
         sim.restore(state)
         sim.run(2)
         signals = recording.signals
     again = signals.t.tolist().index(1.01, 2)
-    assert len(set(signals["gnss.position_n"][:100, 0].tolist())) > 3  # it does come with noise
+    fixes = signals["vehicle.gnss.position_n"][:100, 0].tolist()
+    assert len(set(fixes)) > 3  # it does come with noise
     for name in signals:
         assert signals[name][1:101].tolist() == signals[name][again : again + 100].tolist(), name
 

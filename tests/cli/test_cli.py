@@ -43,7 +43,7 @@ def boat(write, tmp_path: Path) -> Path:
 
 
 def test_a_trial_passes_and_leaves_a_whole_folder(tmp_path: Path) -> None:
-    done = seatrial("run", "hydrone-landing", "--set", "downwash.pad=nominal", cwd=tmp_path)
+    done = seatrial("run", "hydrone-landing", "--set", "drone.pad=nominal", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert done.stdout.count("PASS") == 5
     (folder,) = (tmp_path / "runs").iterdir()
@@ -66,15 +66,24 @@ def test_a_criterion_that_fails_is_status_one(tmp_path: Path) -> None:
     [
         (["run", "hydrone-landnig"], "did you mean 'hydrone-landing'"),
         (["run", "nothing.toml"], "there is no file"),
-        (["run", "hydrone-landing", "--set", "hull.masss=3"], "did you mean 'mass'"),
-        (["run", "hydrone-landing", "--set", "hull.mass=3 N"], "'N' cannot be converted to 'kg'"),
-        (["run", "hydrone-landing", "--set", "downwash.pad=aft"], "unknown preset 'aft'"),
+        (["run", "hydrone-landing", "--set", "vehicle.hull.masss=3"], "did you mean 'mass'"),
+        (
+            ["run", "hydrone-landing", "--set", "vehicle.hull.mass=3 N"],
+            "'N' cannot be converted to 'kg'",
+        ),
+        (["run", "hydrone-landing", "--set", "drone.pad=aft"], "unknown preset 'aft'"),
         (["run", "hydrone-landing", "--set", "vairant=source"], "did you mean 'variant'"),
         (["run", "hydrone-landing", "--set", "variant=sauce"], "did you mean 'source'"),
-        (["run", "hydrone-landing", "--set", "hull.mass=-3"], "not in its range 0.0 <= mass"),
-        (["run", "hydrone-landing", "--set", "hull.coriolis=fulll"], "did you mean 'full'"),
+        (
+            ["run", "hydrone-landing", "--set", "vehicle.hull.mass=-3"],
+            "not in its range 0.0 <= mass",
+        ),
+        (["run", "hydrone-landing", "--set", "vehicle.hull.coriolis=fulll"], "did you mean 'full'"),
         (["run", "hydrone-landing", "--set", "nonsense"], "KEY=VALUE is needed"),
-        (["run", "hydrone-landing", "--set", "hull.velocity=3"], "output and cannot be set"),
+        (
+            ["run", "hydrone-landing", "--set", "vehicle.hull.velocity=3"],
+            "output and cannot be set",
+        ),
         (["run", "hydrone-landing", "--engine", "warp"], "'fmu' or 'direct'"),
         (["run", "hydrone-pads", "--set", "seed=3"], "--set works with a trial"),
         (

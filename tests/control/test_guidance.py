@@ -91,6 +91,21 @@ def test_past_the_end_it_heads_for_the_end():
     assert found.get("state") == FOLLOW
 
 
+@pytest.mark.parametrize(("asked", "speed"), [(-1.0, 0.7), (0.4, 0.4), (0.0, 0.0)])
+def test_a_leg_without_a_speed_of_its_own_is_at_cruise_speed(asked, speed):
+    settled = {"leg_speed": asked, "cruise_speed": 0.7, "acceleration": 1e3, "approach_gain": 1e3}
+    found = guidance((20.0, 0.0), **leg((0, 0), (90, 0)), **settled)
+    assert found.get("speed_wanted") == pytest.approx(speed)
+
+
+@pytest.mark.parametrize(("asked", "state"), [(0.0, STAY), (2.0, FOLLOW), (6.0, STAY)])
+def test_a_leg_without_a_radius_of_its_own_has_that_of_acceptance(asked, state):
+    radii = {"leg_radius": asked, "acceptance_radius": 5.0}
+    found = guidance((46.0, 0.0), **leg((0, 0), (50, 0)), leg_wait=9.0, **radii)
+    drive(found, 0.3)
+    assert found.get("state") == state
+
+
 def test_the_end_is_reached_within_the_radius_and_after_the_wait():
     found, seen = guidance(**leg((0, 0), (10, 0)), leg_radius=2.0, leg_wait=1.0), {}
 

@@ -62,10 +62,10 @@ def test_a_users_file_wins_over_the_shipped_one_of_the_same_name(kind: str, writ
 
 
 def test_the_users_content_is_what_is_read(write) -> None:
-    before = load_rig("hydrone").file.title
-    write("here/harness/rigs/hydrone.toml", RIG.format("my own"))
+    before = load_rig("landing").file.title
+    write("here/harness/rigs/landing.toml", RIG.format("my own"))
     assert before != "my own"
-    assert load_rig("hydrone").file.title == "my own"
+    assert load_rig("landing").file.title == "my own"
 
 
 def test_a_path_is_relative_to_the_file_that_names_it_or_to_the_current_folder(write, here) -> None:
@@ -94,12 +94,12 @@ def test_a_path_never_falls_back_to_a_shipped_file(here: Path) -> None:
 @pytest.mark.parametrize(
     ("kind", "name", "message"),
     [
-        ("harness/rigs", "hydrnoe", r"unknown rig 'hydrnoe'; did you mean 'hydrone'"),
+        ("harness/rigs", "landnig", r"unknown rig 'landnig'; did you mean 'landing'"),
         ("harness/trials", "hydrone-landin", r"unknown trial .* did you mean 'hydrone-landing'"),
         ("harness/campaigns", "hydrone-pad", r"unknown campaign .* did you mean 'hydrone-pads'"),
         ("vehicles", "hydron", r"unknown vehicle 'hydron'; did you mean 'hydrone'"),
         ("harness/rigs", "mine", r"unknown rig 'mine'; did you mean 'miner'"),
-        ("harness/rigs", "zzz", r"\(known: .*hydrone, .*miner"),
+        ("harness/rigs", "zzz", r"\(known: .*landing, .*miner"),
         ("harness/rigs", "", r"unknown rig ''"),
         ("harness/rigs", "zzz", r"or give a path ending in \.toml$"),
     ],

@@ -62,7 +62,7 @@ def manifest(folder: Path) -> dict[str, Any]:
     [pytest.param("fmu", (0, 99), marks=pytest.mark.interop), ("direct", (0, 1))],
 )
 def test_the_record_is_the_same_whoever_is_isolated(engine, counts, tmp_path: Path) -> None:
-    shipped = load_trial("hydrone-landing").changed({"stop": "0.3 s"}, "the test")
+    shipped = load_trial("hydrone-open-landing").changed({"stop": "0.3 s"}, "the test")
     entries = shipped.rig.file.components
     records = set()
     for count in counts:

@@ -130,7 +130,7 @@ def test_a_trial_carries_its_settings_and_names_what_is_left_out(rig: Path, writ
 
 
 def test_seeds_travel_as_parameters(tmp_path: Path) -> None:
-    path, _ = export_ssp("hydrone", tmp_path / "x.ssp")
+    path, _ = export_ssp("landing", tmp_path / "x.ssp")
     read = read_ssp(path).rig.file.components
     seeds = {name: read[name].set["seed"] for name in ("gnss", "compass", "imu")}
     assert len(set(seeds.values())) == 3
@@ -155,8 +155,8 @@ sum = { fmu = "users.py:Sum" }
 
 
 def test_a_name_that_is_neither_trial_nor_rig_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="did you mean 'hydrone'"):
-        export_ssp("hydron", tmp_path / "x.ssp")
+    with pytest.raises(InputError, match="did you mean 'landing'"):
+        export_ssp("landin", tmp_path / "x.ssp")
     assert list(tmp_path.iterdir()) == []
 
 

@@ -1,18 +1,14 @@
 """Tunables of a profile's link: what is read, what is refused, what the link takes."""
 
-import tomllib
 from pathlib import Path
 
 import pytest
 
-from seatrial.cosim.profile import check_profile, load_profile
+from seatrial.cosim.profile import check_profile
 from seatrial.cosim.tunables import Tunable, carried
 from seatrial.errors import InputError
-from seatrial.fmi.index import component_class
 from seatrial.links.mavlink.component import Mavlink
-from seatrial.units import conversion
 from tests.cosim.test_profile import GOOD
-from tests.terminals import RIGS
 
 TABLE = """
 [links.ground.tunables]
@@ -111,33 +107,6 @@ def test_all_mistakes_are_reported(load):
     with pytest.raises(InputError) as caught:
         load("max = 1.5", "max = -1", more='b = { sets = "a.b", min = 0, max = 1 }\n')
     assert len(str(caught.value).splitlines()) == 2
-
-
-def written(rig):
-    """Return what a rig's own text and connections say of each tunable."""
-    content = tomllib.loads((RIGS / f"{rig}.toml").read_text())
-    entries = content["components"]["mavlink"]["set"]["tunables"].split(";")
-    for number, entry in enumerate(entries, 1):
-        name, _, low, high = entry.split()
-        ends = content["connections"][f"mavlink.tunable.t{number}"]
-        ends = ends if isinstance(ends, list) else [ends]
-        classes = [content["components"][end["to"].split(".")[0]]["fmu"] for end in ends]
-        yield name, float(low), float(high), ends, classes
-
-
-@pytest.mark.parametrize("vehicle", ["hydrone", "videoray", "gloria", "mariner"])
-def test_shipped_profiles_tune_what_the_rigs_do(vehicle):
-    tunables = load_profile(vehicle).tunables("links.ground")
-    for tunable, (name, low, high, ends, classes) in zip(
-        tunables, written(f"{vehicle}-mavlink"), strict=True
-    ):
-        assert (tunable.name, tunable.min, tunable.max) == (name, low, high)
-        assert tunable.targets == tuple(end["to"] for end in ends)
-        for target, end, cls in zip(tunable.targets, ends, classes, strict=True):
-            port = component_class(cls).ports[target.split(".")[1]]
-            assert port.tunable
-            factor = conversion(tunable.unit, port.unit)[0] if tunable.unit else 1.0
-            assert factor == end.get("factor", 1.0)
 
 
 def test_every_shipped_profile_is_here():

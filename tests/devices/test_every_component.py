@@ -25,7 +25,8 @@ SELDOM = {
     SailingGuidance: {
         "wearing": {"leg", "leg_from", "leg_to", "target_heading", "target_speed", "target_valid"},
         "cross_track": {"home", "velocity_n", *(f"target_{x}" for x in ("kind", "valid"))}
-        | {"target_position", "target_speed", "target_velocity"},
+        | {"target_position", "target_speed", "target_velocity", "leg_speed"},
+        "state": {"leg_speed"},
     },
 }
 """What acts after the first instant only, or in too few situations to be met by chance."""

@@ -40,6 +40,10 @@ def test_a_unit_that_contradicts_the_run_is_refused(tmp_path):
     log = run_trial(trial, tmp_path / "log", engine="direct").folder
     text = available("harness/identification")["videoray-yaw"].read_text("utf-8")
     path = tmp_path / "yaw.toml"
-    path.write_text(text.replace('"ahrs.euler.psi"', '"ahrs.euler.psi", unit = "deg"'))
-    with pytest.raises(InputError, match=r"ahrs.euler.psi': the run has it in rad, not deg"):
+    path.write_text(
+        text.replace('"vehicle.ahrs.euler.psi"', '"vehicle.ahrs.euler.psi", unit = "deg"')
+    )
+    with pytest.raises(
+        InputError, match=r"vehicle.ahrs.euler.psi': the run has it in rad, not deg"
+    ):
         study(load_experiment(str(path)), log)

@@ -211,7 +211,7 @@ def test_plots_of_a_trial_come_first_in_its_report(bench, tmp_path: Path) -> Non
     ("text", "message"),
     [
         ('rig = "nowhere.toml"\nstop = "1 s"', "there is no file"),
-        ('rig = "hydrnoe"\nstop = "1 s"', "did you mean 'hydrone'"),
+        ('rig = "landnig"\nstop = "1 s"', "did you mean 'landing'"),
         ('rig = "rig.toml"', "stop: this key is missing"),
         ('rig = "rig.toml"\nstop = "1.005 s"', "whole number of communication steps"),
         ('rig = "rig.toml"\nstop = "0 s"', "not after the start"),

@@ -45,7 +45,7 @@ def test_track_has_the_wind_and_the_marks(tmp_path: Path) -> None:
     }
     arrow, text = figure["layout"]["annotations"]
     wind = load_run(tmp_path / "out").signals
-    north, east = (wind[f"wind.velocity.{axis}"].mean() for axis in ("north", "east"))
+    north, east = (wind[f"vehicle.wind.velocity.{axis}"].mean() for axis in ("north", "east"))
     # It points where the wind blows to; on paper y goes down and the tail is given.
     assert np.arctan2(-arrow["ax"], arrow["ay"]) == pytest.approx(np.arctan2(east, north))
     assert text["text"] == f"wind {np.hypot(north, east):.2g} m/s"

@@ -126,8 +126,8 @@ def run_trial(
 
     ``trial`` is a name, or a path of a ``.toml`` or ``.ssp`` file. ``set`` changes it as
     ``--set`` does: ``component.port`` or ``variant``, ``seed``, ``start``, ``stop``, ``step``,
-    ``algorithm``; numbers in the port's unit (SI; s), text with a unit (``"10 deg"``), sequences
-    and arrays with one element per axis.
+    ``algorithm``, ``choices.NAME``; numbers in the port's unit (SI; s), text with a unit
+    (``"10 deg"``), sequences and arrays with one element per axis.
 
     The run leaves a folder, because a result without its manifest cannot be repeated: ``out``,
     which must not hold anything yet, or else a new one, ``runs/NAME-DATE-TIME``, below the

@@ -46,7 +46,7 @@ class Simulation:
     text with a unit (``"10 deg"``) or the name of a preset, sequences and arrays with one element
     per axis. ``seed`` is what all noise derives from, ``variant`` one of the vehicle's,
     ``engine`` as for `run_trial`, ``step`` the communication step in s or as text in place of
-    the rig's. Time starts at 0.
+    the rig's, ``choices`` those of the rig: ``{"vehicle": "gloria"}``. Time starts at 0.
 
     The simulation is at a communication point between any two calls. The same calls give the
     same numbers, those of a trial with events at the same times.
@@ -67,13 +67,15 @@ class Simulation:
         variant: str | None = None,
         engine: str = "direct",
         step: float | str | None = None,
+        choices: Mapping[str, str] | None = None,
     ) -> None:
         from ..cosim.assembly import assemble
         from ..links.hardware import confined
 
         self._observers: list[Callable[[Simulation], object]] = []
         self._error = ""
-        loaded, chosen = _loaded_rig(str(rig), as_duration(step)), as_engine(engine)
+        loaded = _loaded_rig(str(rig), as_duration(step), choices)
+        chosen = as_engine(engine)
         with confined():
             system = assemble(loaded, chosen, variant=variant, seed=int(seed))
             try:
@@ -346,16 +348,18 @@ def _signal(name: str, variable: Variable, feeder: str) -> Signal:
     )
 
 
-def _loaded_rig(name: str, step: Any) -> Rig:
+def _loaded_rig(name: str, step: Any, choices: Mapping[str, str] | None) -> Rig:
     from ..cosim.flattening import load_rig
     from ..cosim.ssp.reading import read_ssp
     from ..shipped import available
 
     if name.endswith(".ssp"):
+        if choices:
+            raise InputError(f"{name}: a package has no choices, found {', '.join(choices)}")
         rig = read_ssp(Path(name).resolve(), step).rig
     else:
         try:
-            rig = load_rig(name)
+            rig = load_rig(name, None, choices)
         except InputError as error:
             if name in available("harness/trials"):
                 raise InputError(f"{name!r} is a trial: run_trial runs it; {error}") from None

@@ -15,7 +15,9 @@ _KINDS = {
     "trials": "harness/trials",
     "campaigns": "harness/campaigns",
     "rigs": "harness/rigs",
-    "vehicles": "vehicles",
+    "vehicles of rigs (--vehicle)": "harness/rigs/vehicles",
+    "autopilots of rigs (--autopilot)": "harness/rigs/autopilots",
+    "parameters of vehicles": "vehicles",
     "profiles": "hil_profiles",
     "experiments": "harness/identification",
 }

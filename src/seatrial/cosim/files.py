@@ -51,7 +51,9 @@ def find_file(kind: str, name: str, relative_to: Path | None = None) -> Path:
         if path.is_file():
             return path
     what = kind.rpartition("/")[2].rstrip("s") if "/" in kind else kind.rstrip("s")
-    raise InputError(unknown(what, name, available(kind)) + "; or give a path ending in .toml")
+    inside, slash, _ = name.rpartition("/")
+    known = [f"{inside}{slash}{each}" for each in available(f"{kind}{slash}{inside}")]
+    raise InputError(unknown(what, name, known) + "; or give a path ending in .toml")
 
 
 def _beside(kind: str, naming: Path | None) -> list[Path]:

@@ -46,6 +46,10 @@ class Joint:
 class Tuned(Protocol):
     """Tunables of a link, which start at the values of what they set."""
 
+    @property
+    def targets(self) -> tuple[tuple[tuple[str, str], ...], ...]:
+        """What each sets: component and variable."""
+
     def update(self, system: System) -> None:
         """Take the values over. Raises InputError."""
 

@@ -144,7 +144,7 @@ def test_libcosim_runs_it(fmu, station):
 
 @pytest.mark.parametrize("engine", ["direct", "fmu"])
 def test_the_rig_runs_with_nobody_there_and_is_the_same_each_time(engine, write, tmp_path):
-    text = 'rig = "hydrone-mavlink"\nstop = "1 s"\n[set]\n"mavlink.links" = ""\n'
+    text = 'rig = "sil"\nchoices = { autopilot = "mavlink" }\nstop = "1 s"\n[set]\n"autopilot.mavlink.links" = ""\n'
     trial = load_trial(str(write("short.toml", text)))
     records = []
     for name in ("one", "two"):
