@@ -39,6 +39,17 @@ waypoints: parameters, how many there are and the port of each, whose name ends 
 on (north and east in {n}, m). wind: an output, velocity of the air (north and east in {n}, m/s).
 """
 
+FRAMES = {"n": "{n}, north-east-down", "b": "{b}, body axes"}
+"""Frames that a port with axes may be in, and how they are called."""
+
+_BY_AXES = {
+    ("north", "east", "down"): "n",
+    ("north", "east"): "n",
+    ("u", "v", "w"): "b",
+    ("p", "q", "r"): "b",
+}
+"""Axes whose names say the frame."""
+
 _TYPES: tuple[type, ...] = (float, int, bool, str)
 
 
@@ -50,7 +61,9 @@ class Port:
 
     Values are SI with angles in radians; ``unit`` is written as in FMI (``N.m``, ``kg.m2``,
     ``rad/s``, ``1`` for none), one for all elements or a tuple with one per axis. A ``role`` of
-    `ROLES` says what whoever runs the component does with the port.
+    `ROLES` says what whoever runs the component does with the port. A ``frame`` of `FRAMES` is
+    that of its axes: a connection between two frames is refused. The axes north, east, down and
+    u, v, w and p, q, r say it by their names.
     """
 
     kind: Kind
@@ -67,9 +80,12 @@ class Port:
         max: Limit = None,
         nominal: Limit = None,
         role: str = "",
+        frame: str = "",
     ) -> None:
         if role and role not in ROLES:
             raise ValueError(f"role {role!r} is none of {', '.join(ROLES)}")
+        if frame and (frame not in FRAMES or axes is None):
+            raise ValueError(f"frame {frame!r} is none of {', '.join(FRAMES)}, of a port with axes")
         if type not in _TYPES:
             raise TypeError(f"a port's type is float, int, bool or str, not {type!r}")
         for axis in axes or ():
@@ -86,6 +102,7 @@ class Port:
         self.start = self._spread(start)
         self.min, self.max, self.nominal = min, max, nominal
         self.role = role
+        self.frame = frame or _BY_AXES.get(tuple(axes or ()), "")
         for each in (unit, min, max, nominal):
             if isinstance(each, tuple) and len(each) != self.size:
                 raise ValueError(f"{each} needs one element for each of {self.size} values")

@@ -296,6 +296,17 @@ def test_names_that_nothing_shows_are_refused_in_trials(yard, tmp_path: Path) ->
     assert not (tmp_path / "run").exists()
 
 
+def test_frames_must_be_the_same(tmp_path: Path) -> None:
+    (tmp_path / "rig.toml").write_text(
+        'step = "10 ms"\n[components]\nhull = { fmu = "marine-craft", parameters = "hydrone" }\n'
+        'other = { fmu = "marine-craft", parameters = "hydrone" }\n[connections]\n'
+        '"hull.velocity" = "other.current"\n'
+    )
+    message = refused(tmp_path / "rig.toml")
+    assert "velocity.u is in {b}, body axes; current.north in {n}, north-east-down" in message
+    assert "attachment_velocity in {n}" in message
+
+
 def test_a_sum_without_sources_is_zero_and_a_constant_may_be_a_term(yard) -> None:
     system = built(yard())
     system.set("a.set.x", "0.5 N", "test")

@@ -97,8 +97,8 @@ def test_a_shipped_fmu_shows_what_its_component_shows(name: str, tmp_path: Path)
     fmu = load_fmu(built_once(component, tmp_path / "x.fmu"))
     direct = DirectInstance(component.component_class()(name))
     assert fmu.terminals == direct.terminals
-    assert {n: v.term_of for n, v in fmu.variables.items()} == {
-        n: v.term_of for n, v in direct.variables.items()
+    assert {n: (v.term_of, v.frame) for n, v in fmu.variables.items()} == {
+        n: (v.term_of, v.frame) for n, v in direct.variables.items()
     }
 
 

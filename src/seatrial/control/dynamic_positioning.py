@@ -70,7 +70,7 @@ class DynamicPositioning(Sampled):
 
     station = Input("m", "position to hold", axes=("north", "east"))
     station_heading = Input("rad", "heading to hold, clockwise from north")
-    position = Input("m", "position, north-east-down", axes="xyz")
+    position = Input("m", "position, north-east-down", axes="xyz", frame="n")
     attitude = Input("rad", "Euler angles, ZYX", axes=("phi", "theta", "psi"))
     velocity = Input("m/s", "velocity over ground, body axes", axes=("u", "v", "w"))
     rates = Input("rad/s", "angular velocity, body axes", axes=("p", "q", "r"))

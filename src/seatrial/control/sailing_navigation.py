@@ -35,7 +35,7 @@ class SailingNavigation(Sampled):
     velocity_valid = Input("1", "whether the velocity is valid", type=bool, start=True)
     heading = Input("rad", "heading, clockwise from north")
     heel = Input("rad", "heel, starboard down")
-    gyro = Input("rad/s", "angular velocity, body axes", axes="xyz")
+    gyro = Input("rad/s", "angular velocity, body axes", axes="xyz", frame="b")
     apparent_wind = Input(
         ("m/s", "rad"),
         "apparent wind, and where it blows to from the bow, to starboard positive",

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 from ..errors import InputError
 from ..fmi.instance import Variable
+from ..ports import FRAMES
 from ..units import conversion
 from .joining import End, Group, Resolver, kind_of
 from .paths import joined
@@ -182,9 +183,21 @@ def _converting(
             f"{where}: {source.name} is {source.type.__name__}, "
             f"{target.name} is {target.type.__name__}"
         )
+    if source.frame and target.frame and source.frame != target.frame:
+        raise InputError(f"{where}: {_frames(source, target)}")
     if not (entry.convert and source.unit and target.unit and target.type is float):
         return 1.0, 0.0
     try:
         return conversion(source.measure, target.measure)
     except InputError as error:
         raise InputError(f"{where}: {source.name} to {target.name}: {error}") from None
+
+
+def _frames(source: Variable, target: Variable) -> str:
+    """Return what is wrong between two frames, and what would be right."""
+    one, other = FRAMES[source.frame], FRAMES[target.frame]
+    return (
+        f"{source.name} is in {one}; {target.name} in {other}. Connect an output in the same "
+        "frame (sensors give position_n and velocity_n, craft attachment_velocity in {n}), or "
+        "a component between that turns it by the attitude"
+    )

@@ -82,7 +82,7 @@ class MarineCraft(SixDofCraft):
         0.0, "m", "centre of buoyancy from the body origin, body axes (submerged)", axes="xyz"
     )
 
-    position = State("m", "body origin in north-east-down", axes="xyz")
+    position = State("m", "body origin in north-east-down", axes="xyz", frame="n")
     attitude = State("rad", "Euler angles, ZYX", axes=("phi", "theta", "psi"))
     velocity = State(
         "m/s", "velocity of the body origin over ground, body axes", axes=("u", "v", "w")
@@ -92,6 +92,7 @@ class MarineCraft(SixDofCraft):
         "m/s2",
         "inertial acceleration of the body origin, dv/dt + omega x v, body axes",
         axes="xyz",
+        frame="b",
     )
 
     terminals: ClassVar = {**SixDofCraft.terminals, "motion": MOTION}

@@ -26,7 +26,7 @@ class PlanarCraft(Plant):
     names in ``feedthrough`` the inputs that act on ``acceleration``.
     """
 
-    position = Output("m", "body origin in north-east-down; z = 0", axes="xyz")
+    position = Output("m", "body origin in north-east-down; z = 0", axes="xyz", frame="n")
     attitude = Output("rad", "Euler angles, ZYX; theta = 0", axes=("phi", "theta", "psi"))
     velocity = Output(
         "m/s",
@@ -38,6 +38,7 @@ class PlanarCraft(Plant):
         "m/s2",
         "inertial acceleration of the body origin, dv/dt + omega x v, body axes",
         axes="xyz",
+        frame="b",
     )
 
     terminals: ClassVar = {"motion": MOTION}
@@ -65,7 +66,7 @@ class LoadedCraft(ThreeDofCraft):
     and N, N.m, positive to starboard.
     """
 
-    force = Terms(4, "N", "force on the craft, body axes", axes="xy")
+    force = Terms(4, "N", "force on the craft, body axes", axes="xy", frame="b")
     moment = Terms(4, "N.m", "yaw moment on the craft, positive to starboard")
 
     terminals: ClassVar = {

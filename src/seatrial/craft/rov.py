@@ -83,7 +83,7 @@ class Rov(SixDofCraft):
         "velocity of the body origin over ground and angular velocity, body axes",
         axes=(*_UVW, *_PQR),
     )
-    position = Output("m", "body origin in north-east-down", axes="xyz")
+    position = Output("m", "body origin in north-east-down", axes="xyz", frame="n")
     attitude = Output("rad", "Euler angles, ZYX; phi and psi in (-pi, pi]", axes=_EULER)
     velocity = Output("m/s", "velocity of the body origin over ground, body axes", axes=_UVW)
     rates = Output("rad/s", "angular velocity, body axes", axes=_PQR)
@@ -91,6 +91,7 @@ class Rov(SixDofCraft):
         "m/s2",
         "inertial acceleration of the body origin, dv/dt + omega x v, body axes",
         axes="xyz",
+        frame="b",
     )
 
     terminals: ClassVar = {**SixDofCraft.terminals, "motion": MOTION}

@@ -82,8 +82,10 @@ class SixDofCraft(Plant):
         0.0, "m", "attachment of a tether or tow from the body origin, body axes", axes="xyz"
     )
 
-    force = Terms(4, "N", "force on the craft, body axes", axes="xyz")
-    moment = Terms(4, "N.m", "moment on the craft about the body origin, body axes", axes="xyz")
+    force = Terms(4, "N", "force on the craft, body axes", axes="xyz", frame="b")
+    moment = Terms(
+        4, "N.m", "moment on the craft about the body origin, body axes", axes="xyz", frame="b"
+    )
     attachment_force = Input(
         "N", "force of a tether or tow at its attachment, {n}", axes=_NED, optional=True
     )

@@ -40,7 +40,9 @@ class Ahrs(Sensor):
     gravity = Parameter(9.81, "m/s2", "acceleration of gravity", min=0.0)
 
     attitude = Input("rad", "Euler angles, ZYX", axes=("phi", "theta", "psi"))
-    acceleration = Input("m/s2", "inertial acceleration of the body origin, body axes", axes="xyz")
+    acceleration = Input(
+        "m/s2", "inertial acceleration of the body origin, body axes", axes="xyz", frame="b"
+    )
 
     euler = Measured(
         "rad",
@@ -54,6 +56,7 @@ class Ahrs(Sensor):
         "m/s2",
         "specific force, body axes",
         axes="xyz",
+        frame="b",
         span=(-20.0, 20.0),
         noise=(0.024, 0.016, 0.043),
         resolution=0.01,

@@ -33,7 +33,7 @@ class Depth(Sensor):
     assumed_density = Parameter(1025.0, "kg/m3", "density the instrument is set to", min=1e-6)
     place = Parameter(0.0, "m", "sensor from the body origin, body axes", axes="xyz")
 
-    position = Input("m", "body origin in north-east-down", axes="xyz")
+    position = Input("m", "body origin in north-east-down", axes="xyz", frame="n")
     attitude = Input("rad", "Euler angles, ZYX", axes=("phi", "theta", "psi"))
     depth = Measured(
         "m",

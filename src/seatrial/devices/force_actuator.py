@@ -38,7 +38,7 @@ class ForceActuator(Actuator):
     )
 
     demand = Input(("N", "N", "N.m"), "forces and moment asked for, body axes", axes="XYN")
-    force = Output("N", "force on the ship, body axes", axes="xy")
+    force = Output("N", "force on the ship, body axes", axes="xy", frame="b")
     moment = Output("N.m", "yaw moment on the ship, positive to starboard")
 
     terminals: ClassVar = {"wrench": terminal("force", "moment")}

@@ -35,7 +35,7 @@ class Gnss(Sensor):
     correlation_time = Parameter(600.0, "s", "correlation time of the varying bias", min=1e-6)
     antenna = Parameter(0.0, "m", "antenna from the body origin, body axes", axes="xyz")
 
-    position = Input("m", "body origin in north-east-down", axes="xyz")
+    position = Input("m", "body origin in north-east-down", axes="xyz", frame="n")
     attitude = Input("rad", "Euler angles, ZYX", axes=("phi", "theta", "psi"))
     velocity = Input("m/s", "velocity of the body origin, body axes", axes=("u", "v", "w"))
     rates = Input("rad/s", "angular velocity, body axes", axes=("p", "q", "r"))

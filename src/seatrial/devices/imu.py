@@ -41,12 +41,15 @@ class Imu(Sensor):
 
     attitude = Input("rad", "Euler angles, ZYX", axes=("phi", "theta", "psi"))
     rates = Input("rad/s", "angular velocity, body axes", axes=("p", "q", "r"))
-    acceleration = Input("m/s2", "inertial acceleration of the body origin, body axes", axes="xyz")
+    acceleration = Input(
+        "m/s2", "inertial acceleration of the body origin, body axes", axes="xyz", frame="b"
+    )
 
     gyro = Measured(
         "rad/s",
         "angular velocity, body axes",
         axes="xyz",
+        frame="b",
         span=(-250.0 * _DEG, 250.0 * _DEG),
         noise=0.035 * _DEG,
         instability=0.003 * _DEG,
@@ -56,6 +59,7 @@ class Imu(Sensor):
         "m/s2",
         "specific force, body axes",
         axes="xyz",
+        frame="b",
         span=(-4 * STANDARD_GRAVITY, 4 * STANDARD_GRAVITY),
         noise=0.007,
         instability=0.0005,

@@ -58,8 +58,10 @@ class Propulsion(Component):
 
     # Optional: most craft have fewer thrusters.
     thrust = Input("N", "thrust of each thruster along its direction", axes=_THRUSTS, optional=True)
-    force = Output("N", "force on the craft, body axes", axes="xyz")
-    moment = Output("N.m", "moment on the craft about the body origin, body axes", axes="xyz")
+    force = Output("N", "force on the craft, body axes", axes="xyz", frame="b")
+    moment = Output(
+        "N.m", "moment on the craft about the body origin, body axes", axes="xyz", frame="b"
+    )
 
     terminals: ClassVar = {"wrench": terminal("force", "moment")}
     feedthrough: ClassVar = {"force": ("thrust",), "moment": ("thrust",)}

@@ -33,8 +33,9 @@ class Measured(Output):
         instability: Any = 0.0,
         resolution: Any = 0.0,
         axes: Sequence[str] | None = None,
+        frame: str = "",
     ) -> None:
-        super().__init__(unit, description, axes=axes)
+        super().__init__(unit, description, axes=axes, frame=frame)
         self.low: list[float] = self._spread(span[0])
         self.high: list[float] = self._spread(span[1])
         self._errors = dict(zip(self.ERRORS, (noise, bias, instability, resolution), strict=True))

@@ -60,8 +60,8 @@ class Downwash(Component):
     climb_acceleration = Parameter(1.0, "m/s2", "take-off: acceleration upwards", min=0.0)
 
     attitude = Input("rad", "Euler angles of the deck", axes=("phi", "theta", "psi"))
-    force = Output("N", "force on the craft, body axes", axes="xyz")
-    moment = Output("N.m", "moment on the craft about its origin, body axes", axes="xyz")
+    force = Output("N", "force on the craft, body axes", axes="xyz", frame="b")
+    moment = Output("N.m", "moment on the craft about its origin, body axes", axes="xyz", frame="b")
     load = Output("N", "magnitude of the load, downwards")
     height = Output("m", "height of the rotors above the deck")
     on_deck = Output("1", "the HUAUV stands on the deck", type=bool)

@@ -31,7 +31,7 @@ class StepDisturbance(Component):
     begin_time = Parameter(112.0, "s", "time at which it comes")
     end_time = Parameter(187.0, "s", "time at which it goes")
 
-    force = Output("N", "force on the vessel, body axes", axes="xy")
+    force = Output("N", "force on the vessel, body axes", axes="xy", frame="b")
     moment = Output("N.m", "yaw moment on the vessel, positive to starboard")
     nu_bias = Output(_UVR, "error of the measured velocity and yaw rate, body axes", axes="uvr")
 

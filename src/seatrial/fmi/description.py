@@ -76,7 +76,7 @@ def _annotate(element: Element, port: Port) -> None:
 
     In one element: FMI 2.0's schema allows a tool one, and names a tool once.
     """
-    said = {"role": port.role}
+    said = {"role": port.role, "frame": port.frame}
     if isinstance(port, Input):
         said |= {"optional": "true" if port.optional else "", "term_of": port.term_of}
     given = {name: text for name, text in said.items() if text}

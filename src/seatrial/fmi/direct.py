@@ -120,5 +120,6 @@ def _variable(component: Component, scalar: ScalarPort) -> Variable:
         description=port.description,
         optional=isinstance(port, Input) and port.optional,
         role=port.role,
+        frame=port.frame,
         term_of=port.term_of if isinstance(port, Input) else "",
     )

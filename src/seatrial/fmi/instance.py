@@ -48,6 +48,8 @@ class Variable:
     """Place in its array, row by row."""
     optional: bool = False
     """An input that is normally not connected."""
+    frame: str = ""
+    """Frame of its axes, of `ports.FRAMES`; empty: none is known."""
     term_of: str = ""
     """Name of the sum that the input is a term of."""
     role: str = ""

@@ -136,6 +136,7 @@ class _Reading:
                 items={item.name: int(item.value) for item in getattr(declared, "items", ())},
                 element=place,
                 optional=said.get("optional") == "true",
+                frame=said.get("frame", ""),
                 term_of=said.get("term_of", ""),
                 role=said.get("role", ""),
             )

@@ -77,11 +77,12 @@ class ArduinoPorts(Reachable, Component):
     wind_angle = Input(
         "rad", "where it blows to from the bow, to starboard, at the vane", optional=True
     )
-    gyro = Input("rad/s", "angular velocity, body axes", axes="xyz", optional=True)
+    gyro = Input("rad/s", "angular velocity, body axes", axes="xyz", frame="b", optional=True)
     accelerometer = Input(
         "m/s2",
         "specific force, body axes",
         axes="xyz",
+        frame="b",
         start=(0.0, 0.0, -STANDARD_GRAVITY),
         optional=True,
     )

@@ -66,7 +66,7 @@ class DroneCanAutopilot(DroneCanNode):
     position_valid = Output("1", "whether there is a fix", type=bool)
     attitude = Output("rad", "Euler angles, ZYX", axes=("phi", "theta", "psi"))
     rates = Output("rad/s", "angular velocity, body axes", axes="pqr")
-    acceleration = Output("m/s2", "specific force, body axes", axes="xyz")
+    acceleration = Output("m/s2", "specific force, body axes", axes="xyz", frame="b")
     attitude_valid = Output("1", "whether attitude is valid", type=bool)
     others = Output("1", "other nodes that are there", type=int)
 

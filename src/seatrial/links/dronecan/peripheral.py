@@ -91,7 +91,7 @@ class DroneCanPeripheral(DroneCanNode):
     position_valid = Input("1", "whether there is a fix", type=bool, start=True, optional=True)
     attitude = Input("rad", "Euler angles, ZYX", axes=("phi", "theta", "psi"), optional=True)
     rates = Input("rad/s", "angular velocity, body axes", axes="pqr", optional=True)
-    acceleration = Input("m/s2", "specific force, body axes", axes="xyz", optional=True)
+    acceleration = Input("m/s2", "specific force, body axes", axes="xyz", frame="b", optional=True)
     attitude_valid = Input("1", "whether attitude is valid", type=bool, start=True, optional=True)
 
     command = Output("1", "command: -1 to 1, or in the channel's unit", axes=AXES)

@@ -95,9 +95,13 @@ class MavlinkPorts(Logging, Reachable, Sampled):
     heading = Input("rad", "heading, clockwise from north")
     heading_valid = Input("1", "whether the heading is valid", type=bool, start=True)
     roll_pitch = Input("rad", "roll and pitch, starboard side down, bow up", axes=("phi", "theta"))
-    gyro = Input("rad/s", "angular velocity, body axes", axes="xyz")
+    gyro = Input("rad/s", "angular velocity, body axes", axes="xyz", frame="b")
     accelerometer = Input(
-        "m/s2", "specific force, body axes", axes="xyz", start=(0.0, 0.0, -STANDARD_GRAVITY)
+        "m/s2",
+        "specific force, body axes",
+        axes="xyz",
+        frame="b",
+        start=(0.0, 0.0, -STANDARD_GRAVITY),
     )
     imu_valid = Input(
         "1", "whether gyro and specific force are valid", type=bool, start=True, optional=True
@@ -122,11 +126,13 @@ class MavlinkPorts(Logging, Reachable, Sampled):
         optional=True,
     )
     named = Input("1", "values that `names` names, in any unit", axes=_NAMED, optional=True)
-    true_position = Input("m", "true position, north-east-down", axes="xyz")
+    true_position = Input("m", "true position, north-east-down", axes="xyz", frame="n")
     true_velocity = Input("m/s", "true velocity, body axes", axes=("u", "v", "w"))
     true_attitude = Input("rad", "true Euler angles, ZYX", axes=_EULER)
     true_rates = Input("rad/s", "true angular velocity, body axes", axes=("p", "q", "r"))
-    true_acceleration = Input("m/s2", "true inertial acceleration, body axes", axes="xyz")
+    true_acceleration = Input(
+        "m/s2", "true inertial acceleration, body axes", axes="xyz", frame="b"
+    )
     nav_state = Input("1", "guidance: 2 stays, 3 follows a leg, 4 steers, else less", type=int)
     nav_heading = Input("rad", "guidance: heading wanted, clockwise from north")
     nav_speed = Input(

@@ -75,6 +75,7 @@ class Pro4RovPorts(Logging, Component):
         "m/s2",
         "specific force, body axes",
         axes=_XYZ,
+        frame="b",
         start=(0.0, 0.0, -STANDARD_GRAVITY),
         optional=True,
     )

@@ -67,7 +67,7 @@ class Pro4TopsidePorts(Logging, Component):
         max=math.tau,
     )
     depth = Output("m", "depth, positive down")
-    specific_force = Output("m/s2", "specific force, body axes", axes=_XYZ)
+    specific_force = Output("m/s2", "specific force, body axes", axes=_XYZ, frame="b")
     magnetometer = Output("1", "raw readings", axes=_XYZ)
     water_temperature = Output("K", "temperature of the water", start=273.15)
     humidity = Output("1", "relative humidity inside the vehicle")
