@@ -4,6 +4,8 @@ from pathlib import Path
 
 import pytest
 
+from seatrial.cosim.assembly import assemble
+from seatrial.cosim.flattening import load_rig
 from seatrial.cosim.profile import check_profile
 from seatrial.cosim.tunables import Tunable, carried
 from seatrial.errors import InputError
@@ -107,6 +109,19 @@ def test_all_mistakes_are_reported(load):
     with pytest.raises(InputError) as caught:
         load("max = 1.5", "max = -1", more='b = { sets = "a.b", min = 0, max = 1 }\n')
     assert len(str(caught.value).splitlines()) == 2
+
+
+def test_a_value_of_the_vehicle_s_file_stays_where_its_tunable_starts():
+    """What something else is set later must not bring back the start value of the component."""
+    rig = load_rig("sil", choices={"vehicle": "mariner", "autopilot": "mavlink"})
+    system = assemble(rig, "direct")
+    link, gain = system.parts["autopilot.mavlink"], ("autopilot.pilot.autopilot", "derivative_gain")
+    given = system.parts[gain[0]].given[gain[1]].value
+    assert given != system.parts[gain[0]].instance.variables[gain[1]].start
+    system.set("autopilot.pilot.guidance.lookahead", "900 m", "test")
+    assert f"HDG_D {given!r} " in link.given[system.tunings[0].text].value
+    assert gain in system.tuned
+    system.free()
 
 
 def test_every_shipped_profile_is_here():

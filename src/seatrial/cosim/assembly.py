@@ -63,11 +63,9 @@ def _refuse_idle_variant(system: System) -> None:
 def _yield_to_connections(system: System) -> None:
     """Drop what a vehicle's file gives to connected ports; refuse what this rig gives to them.
 
-    The vehicle's file speaks of all its rigs. What a tunable sets keeps its value: the tunable
-    starts there.
+    The vehicle's file speaks of all its rigs. What tunables set is where these start: it stays.
     """
-    tuned = {end for tuning in system.tunings for ends in tuning.targets for end in ends}
-    fed = {connection.target for connection in system.connections} - tuned
+    fed = {connection.target for connection in system.connections} - system.tuned
     for name, part in system.parts.items():
         for variable in [v for v in part.given if part.given[v].mark and (name, v) in fed]:
             del part.given[variable]

@@ -47,8 +47,12 @@ class Tuned(Protocol):
     """Tunables of a link, which start at the values of what they set."""
 
     @property
+    def link(self) -> str:
+        """Component of the link."""
+
+    @property
     def targets(self) -> tuple[tuple[tuple[str, str], ...], ...]:
-        """What each sets: component and variable."""
+        """The parameters that each sets: component and variable."""
 
     def update(self, system: System) -> None:
         """Take the values over. Raises InputError."""
@@ -99,6 +103,13 @@ class System:
                     value * factor, f"{origin}: {factor!r} times {before}"
                 )
         self._tune(key, origin)
+
+    @property
+    def tuned(self) -> frozenset[tuple[str, str]]:
+        """Parameters that tunables of links set: component and variable."""
+        return frozenset(
+            target for tuning in self.tunings for targets in tuning.targets for target in targets
+        )
 
     def _tune(self, key: str, origin: str) -> None:
         try:
