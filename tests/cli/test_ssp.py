@@ -45,6 +45,39 @@ def test_export_check_and_run_go_together(write, tmp_path: Path) -> None:
     assert float(last["hull.v"]) == pytest.approx(speed(4.0, 1.0, seconds=1.0), rel=1e-12)
 
 
+LOOP = """step = "10 ms"
+[choices]
+boat = "none"
+[components]
+loop = { rig = "{boat}.toml" }
+"""
+
+
+def test_a_rig_inside_a_rig_is_a_system_unless_the_tool_takes_none(write, tmp_path: Path) -> None:
+    write("boats.py", BOATS)
+    write("quay.toml", RIG)
+    write("loop.toml", LOOP)
+    for tool, signal in (("fmpy", "loop.hull.v"), ("libcosim", "loop_hull.v")):
+        done = seatrial(
+            "ssp", "export", "loop.toml", "--choose", "boat=quay", "--for", tool, cwd=tmp_path
+        )
+        assert done.returncode == 0, done.stderr
+        done = seatrial("ssp", "check", "loop.ssp", "--for", tool, cwd=tmp_path)
+        assert done.returncode == 0, done.stdout
+        done = seatrial(
+            "run", "loop.ssp", "--set", "stop=1 s", "--out", tool, "--report", "none",
+            cwd=tmp_path,
+        )  # fmt: skip
+        assert done.returncode == 0, done.stderr
+        with (tmp_path / tool / "signals.csv").open(encoding="utf-8") as file:
+            assert float(list(csv.DictReader(file))[-1][signal]) == pytest.approx(
+                speed(8.0, 1.0, seconds=1.0), rel=1e-12
+            )
+    done = seatrial("ssp", "export", "loop.toml", "--for", "ecosim", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "did you mean 'ecos'" in done.stderr
+
+
 def test_the_status_says_what_is_rejected(yard: Yard, tmp_path: Path) -> None:
     yard.package(tmp_path / "x.ssp", MINIMAL.replace('"Minimal" version="1.0"', '"Minimal" version="1.1"'))  # fmt: skip
     for tool, status in (("libcosim", 0), ("ecos", 1), ("fmpy", 0), ("omsimulator", 0)):

@@ -345,7 +345,7 @@ def test_ten_thousand_connectors_are_read_in_bounded_time(yard: Yard, tmp_path: 
     begun = time.perf_counter()
     read = read_ssp(path)
     assert time.perf_counter() - begun < 20.0
-    assert list(read.rig.file.components) == ["hull", "damper"]
+    assert list(read.rig.components) == ["hull", "damper"]
 
 
 def test_nested_systems_may_have_the_same_names(yard: Yard, tmp_path: Path) -> None:
@@ -355,5 +355,18 @@ def test_nested_systems_may_have_the_same_names(yard: Yard, tmp_path: Path) -> N
     ssd = description(
         system(twice + DAMPER.replace('"damper"', '"sub_damper_damper"') + HULL, connections)
     )
-    names = list(read_ssp(yard.package(tmp_path / "x.ssp", ssd)).rig.file.components)
-    assert names == ["sub_damper", "sub_damper_damper", "sub_damper_damper_2", "hull"]
+    names = list(read_ssp(yard.package(tmp_path / "x.ssp", ssd)).rig.components)
+    assert names == ["sub.damper", "sub_damper.damper", "sub_damper_damper", "hull"]
+
+
+def test_names_of_systems_that_become_equal_are_kept_apart(yard: Yard, tmp_path: Path) -> None:
+    sub = SUB.format(elements=DAMPER, inner="", bindings="")
+    twice = sub.replace('"sub"', '"a.b"') + sub.replace('"sub"', '"a b"')
+    connections = TO_SUB.format(outer="").replace('"sub"', '"a b"')
+    ssd = description(system(twice + HULL, connections)).replace(BINDING, "")
+    path = yard.package(tmp_path / "x.ssp", ssd)
+    read = read_ssp(path)
+    assert list(read.rig.components) == ["a_b.damper", "a_b_2.damper", "hull"]
+    assert "a b is called a_b_2 here" in read.notes
+    found = run(path)
+    assert found["a_b_2.damper.force"] == -0.5 * found["hull.v"] != found["a_b.damper.force"]

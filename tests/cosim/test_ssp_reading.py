@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from seatrial.cosim.assembly import assemble
 from seatrial.cosim.ssp.reading import read_ssp
 from seatrial.errors import InputError
 from seatrial.trials.trial import load_trial
@@ -91,7 +92,7 @@ def test_a_transformation_applies_with_its_defaults(
     assert run(path)["hull.v"] == pytest.approx(v, rel=1e-12)
 
 
-def test_a_nested_system_is_made_flat_and_transformations_compose(
+def test_a_nested_system_is_a_rig_in_the_rig_and_transformations_compose(
     yard: Yard, tmp_path: Path
 ) -> None:
     ssd = nested(outer=linear(2.0, 1.0), inner=linear(3.0, 0.25))
@@ -101,8 +102,19 @@ def test_a_nested_system_is_made_flat_and_transformations_compose(
     for _ in range(200):
         v += 0.01 * -0.5 * (3.0 * (2.0 * v + 1.0) + 0.25) / 8.0
     assert found["hull.v"] == pytest.approx(v, rel=1e-12)
-    assert "sub_damper.force" in found
-    assert "sub.damper is called sub_damper here" in read_ssp(path).notes
+    assert "sub.damper.force" in found
+    assert read_ssp(path).notes == ()
+    assert list(read_ssp(path).rig.top.inner) == ["sub"]
+
+
+def test_what_is_inside_a_nested_system_is_set_by_path(yard: Yard, tmp_path: Path) -> None:
+    system = assemble(read_ssp(yard.package(tmp_path / "x.ssp", nested())).rig)
+    system.set("sub.damper.damping", "1.5", "test")
+    assert system.parts["sub.damper"].given["damping"].value == 1.5
+    for wrong, near in (("sub.dampr.damping", "damper"), ("sup.damper.damping", "sub")):
+        with pytest.raises(InputError, match=f"did you mean '{near}'"):
+            system.set(wrong, "1.5", "test")
+    system.free()
 
 
 @pytest.mark.parametrize(

@@ -12,6 +12,8 @@ from ..cosim.ssp.reading import read_ssp
 from ..cosim.ssp.tools import TOOLS, findings
 from ..errors import InputError, unknown
 from ..trials.export import export_ssp
+from ..trials.trial import choices_in
+from .options import Autopilot, Choices, Vehicle, changes_of
 from .show import console, print_notes
 
 ssp_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
@@ -28,9 +30,22 @@ def export(
     variant: Annotated[
         str | None, typer.Option(help="Variant of the vehicle's parameters.")
     ] = None,
+    choices: Choices = None,
+    vehicle: Vehicle = None,
+    autopilot: Autopilot = None,
+    tool: Annotated[
+        str | None,
+        typer.Option("--for", help=f"A tool that must take it: {', '.join(TOOLS)}."),
+    ] = None,
 ) -> None:
-    """Write a rig, or a trial with its settings, as an SSP 1.0 package."""
-    path, notes = export_ssp(name, out, variant)
+    """Write a rig, or a trial with its settings, as an SSP 1.0 package.
+
+    Rigs inside rigs are systems inside systems. For a tool that takes none of these, all
+    components stand in one system.
+    """
+    _refuse_unknown(tool)
+    chosen = choices_in(changes_of(None, choices, vehicle, autopilot), "--choose")
+    path, notes = export_ssp(name, out, variant, choices=chosen, tool=tool)
     print_notes(notes)
     console.print(f"{path}  ({path.stat().st_size / 1000:.0f} kB)", soft_wrap=True)
 
@@ -43,8 +58,7 @@ def check(
     ] = None,
 ) -> None:
     """Say what seatrial and other tools reject or ignore in a package; status 1 if any rejects."""
-    if tool is not None and tool not in TOOLS:
-        raise InputError(f"--for: {unknown('tool', tool, TOOLS)}")
+    _refuse_unknown(tool)
     found = [one for one in findings(package) if tool in (None, one.tool)]
     rejected = _own_view(package) if tool is None else False
     for one in TOOLS if tool is None else (tool,):
@@ -57,6 +71,11 @@ def check(
             )
     if rejected or any(one.rejects for one in found):
         raise typer.Exit(1)
+
+
+def _refuse_unknown(tool: str | None) -> None:
+    if tool is not None and tool not in TOOLS:
+        raise InputError(f"--for: {unknown('tool', tool, TOOLS)}")
 
 
 def _own_view(package: Path) -> bool:

@@ -35,14 +35,30 @@ def load_rig(
     return Rig(top.file, top.read_from, top)
 
 
-def rig_of(content: Any, read_from: Source, folder: Path) -> Rig:
-    """Return the rig of ``content``, which has no rigs inside. Raises InputError.
+def rig_of(
+    content: Any, read_from: Source, folder: Path, inside: Mapping[str, Any] | None = None
+) -> Rig:
+    """Return the rig of ``content``; ``inside`` has those of the rigs in it, by path.
 
-    ``folder`` is where relative paths of its FMUs start.
+    All come from one file. Their components may be connected to by path. ``folder`` is where
+    relative paths of their FMUs start. Raises InputError.
     """
+    top = _scope_of(content, "", read_from, folder, inside or {})
+    return Rig(top.file, read_from, top)
+
+
+def _scope_of(
+    content: Any, place: str, read_from: Source, folder: Path, inside: Mapping[str, Any]
+) -> Scope:
     file = validated(RigFile, content, read_from.path)
     check_rig_file(file, read_from.path)
-    return Rig(file, read_from, Scope("", file, read_from, folder, {}, {}))
+    inner = {
+        name: _scope_of(inside[path], path, read_from, folder, inside)
+        for name, part in file.components.items()
+        if part.rig
+        for path in [joined(place, name)]
+    }
+    return Scope(place, file, read_from, folder, {}, inner, is_open=True)
 
 
 @dataclass

@@ -75,6 +75,8 @@ class Resolver:
         """
         name, optional = written.removesuffix("?"), written.endswith("?")
         head, _, rest = name.partition(".")
+        if head in scope.inner and scope.inner[head].is_open:
+            return self.named(scope.inner[head], rest, where, wanted)
         if head in scope.inner:
             return self._shown(scope.inner[head], head, rest, optional, where)
         if head in scope.file.components:

@@ -109,6 +109,8 @@ class Scope:
     inner: Mapping[str, Scope]
     variant: str | None = None
     home: tuple[str, str, str] | None = None
+    is_open: bool = False
+    """Whatever is inside may be connected to, by its path; otherwise what its file shows."""
 
     def all(self) -> Iterator[Scope]:
         """Yield the rigs inside, the innermost first, then this one."""
@@ -184,8 +186,8 @@ class Rig:
     @property
     def sources(self) -> list[Source]:
         """The files of the rigs inside, each once."""
-        found = {scope.read_from.path: scope.read_from for scope in self.top.all() if scope.path}
-        return list(found.values())
+        found = {scope.read_from.path: scope.read_from for scope in self.top.all()}
+        return [source for path, source in found.items() if path != self.read_from.path]
 
 
 def _placed(scope: Scope) -> Iterator[tuple[str, Placed]]:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 from ..component import seconds
 from ..cosim.assembly import assemble
 from ..cosim.files import find_file, read_toml
 from ..cosim.flattening import load_rig
-from ..cosim.ssp.writing import Experiment, write_ssp
+from ..cosim.ssp.describing import Experiment
+from ..cosim.ssp.tools import takes_systems
+from ..cosim.ssp.writing import write_ssp
 from ..cosim.system import System
 from ..errors import InputError, unknown
 from ..shipped import available
@@ -19,22 +22,31 @@ _USUAL_STOP = 10.0
 
 
 def export_ssp(
-    name: str, out: Path | None = None, variant: str | None = None
+    name: str,
+    out: Path | None = None,
+    variant: str | None = None,
+    *,
+    choices: Mapping[str, str] | None = None,
+    tool: str | None = None,
 ) -> tuple[Path, list[str]]:
     """Write the trial or rig ``name`` as an SSP 1.0 package; return its path and notes.
 
     ``name`` is a shipped name or a path; where a trial and a rig share it, the trial is meant.
-    The package is ``out``, or ``NAME.ssp`` in the current folder. The notes say what SSP
-    cannot. Raises InputError.
+    The package is ``out``, or ``NAME.ssp`` in the current folder. ``choices`` are of the rig.
+    Rigs inside rigs are systems inside systems, unless ``tool``, one of `TOOLS`, takes none.
+    The notes say what SSP cannot. Raises InputError.
     """
+    in_one = tool is not None and not takes_systems(tool)
     if _is_trial(name):
-        changes = {} if variant is None else {"variant": variant}
-        trial = load_trial(name, changes=changes, origin="--variant")
+        changes = {f"choices.{key}": value for key, value in (choices or {}).items()}
+        if variant is not None:
+            changes["variant"] = variant
+        trial = load_trial(name, changes=changes, origin="--choose, --variant")
         system, notes = _set_up(trial), [*trial.notes, *_unsaid(trial)]
         start, stop = seconds(trial.start_ns), seconds(trial.stop_ns)
         title = trial.name
     else:
-        rig = load_rig(name)
+        rig = load_rig(name, choices=choices)
         system = assemble(rig, "fmu", variant=variant)
         notes = [f"a rig has no stop time: the package says {_USUAL_STOP:g} s"]
         start, stop, title = 0.0, _USUAL_STOP, rig.read_from.name
@@ -42,7 +54,7 @@ def export_ssp(
     try:
         if path.resolve() == Path(name).resolve():
             raise InputError(f"{path} would replace what it is made from; name another with --out")
-        notes += write_ssp(system, Experiment(title, start, stop), path)
+        notes += write_ssp(system, Experiment(title, start, stop), path, in_one=in_one)
     finally:
         system.free()
     return path, notes

@@ -64,8 +64,9 @@ class Flat:
 
     def __init__(self, structure: Structure, root: Path, label: str, notes: Notes) -> None:
         self.leaves: dict[Path_, Leaf] = {}
+        self.elements: dict[Path_, list[str]] = {}
+        """The names of what each system has inside, by where it is."""
         self._notes = notes
-        self._elements: dict[Path_, list[str]] = {}
         self._connectors: dict[Node, Connector] = {}
         self._edges: dict[Node, tuple[Node, Connection]] = {}
         description = (root / DEFAULT).resolve()
@@ -84,9 +85,9 @@ class Flat:
     def _add_system(self, system: System, path: Path_, place: _Place) -> None:
         if len(path) > _DEEPEST:
             raise InputError(f"{system.where}: systems nest deeper than {_DEEPEST} levels")
-        if len(self._elements) >= _MOST_SYSTEMS:  # references can double at each level
+        if len(self.elements) >= _MOST_SYSTEMS:  # references can double at each level
             raise InputError(f"{system.where}: more than {_MOST_SYSTEMS} systems")
-        self._elements[path] = list(system.elements)
+        self.elements[path] = list(system.elements)
         self._connectors.update({(path, name): c for name, c in system.connectors.items()})
         for name, element in system.elements.items():
             inner = (*path, name)
@@ -150,8 +151,8 @@ class Flat:
         ends = []
         for element, name in (connection.start, connection.end):
             node = ((*path, element) if element else path, name)
-            if element and element not in self._elements[path]:
-                message = unknown("element", element, self._elements[path])
+            if element and element not in self.elements[path]:
+                message = unknown("element", element, self.elements[path])
                 raise InputError(f"{connection.where}: {message}")
             if node not in self._connectors:
                 names = [n for p, n in self._connectors if p == node[0]]
@@ -195,7 +196,7 @@ class Flat:
                 "those are not supported, bind them to the components"
             )
         found = []
-        for element in self._elements[path]:
+        for element in self.elements[path]:
             if name.startswith(f"{element}."):
                 rest = name.removeprefix(f"{element}.")
                 found += self._variables(parameter, rest, (*path, element))

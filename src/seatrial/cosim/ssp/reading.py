@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import os
-import re
 from base64 import b64encode
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,8 +14,10 @@ from ...errors import InputError
 from ...fmi.archive import content_hash
 from ..files import Source
 from ..flattening import rig_of
+from ..paths import joined
 from ..rig import Rig
-from .flat import Flat, FlatConnection, Leaf, Path_
+from .flat import Flat, FlatConnection, Leaf, Node, Path_
+from .layout import unused
 from .package import DEFAULT, open_package
 from .parameters import Value
 from .structure import Notes, Structure, read_structure
@@ -47,35 +48,34 @@ def read_ssp(path: Path, step: Any = None) -> SspSystem:
     flat = Flat(structure, folder, path.name, notes)
     if not flat.leaves:
         raise InputError(f"{path}: {DEFAULT} has no component")
-    names = _names(list(flat.leaves), notes)
+    names = _names(flat, notes)
     connections = flat.connections()
+    components = _components(flat, folder, names, connections, notes)
     content = {
         "title": structure.name,
         "step": step or _step(structure, list(flat.leaves.values()), notes),
-        "components": _components(flat, folder, names, connections, notes),
+        "components": components[()],
         "connections": _connections(connections, names),
     }
-    rig = rig_of(content, Source(path.stem, path, content_hash(path)), folder)
+    inside = {names[place]: {"components": listed} for place, listed in components.items()}
+    rig = rig_of(content, Source(path.stem, path, content_hash(path)), folder, inside)
     start = None if structure.start is None else f"{structure.start!r} s"
     stop = None if structure.stop is None else f"{structure.stop!r} s"
     return SspSystem(structure.name, rig, start, stop, tuple(notes.texts))
 
 
-def _names(paths: list[Path_], notes: Notes) -> dict[Path_, str]:
-    """Return the components' names in the rig: identifiers, each once."""
-    names: dict[Path_, str] = {}
-    taken: set[str] = set()
-    for path in paths:
-        plain = re.sub(r"[^A-Za-z0-9_]", "_", "_".join(path))
-        first = name = plain if not plain[:1].isdigit() else f"_{plain}"
-        for count in range(2, len(paths) + 2):
-            if name not in taken:
-                break
-            name = f"{first}_{count}"
-        taken.add(name)
-        names[path] = name
-        if path != (name,):
-            notes.add(f"{'.'.join(path)} is called {name} here")
+def _names(flat: Flat, notes: Notes) -> dict[Path_, str]:
+    """Return the paths of systems and components in the rig: identifiers, joined by dots."""
+    names: dict[Path_, str] = {(): ""}
+    for place, elements in flat.elements.items():
+        taken: set[str] = set()
+        for element in elements:
+            name = unused(element, taken)
+            taken.add(name)
+            inside = (*place, element)
+            names[inside] = joined(names[place], name)
+            if element != name:
+                notes.add(f"{'.'.join(inside)} is called {names[inside]} here")
     return names
 
 
@@ -85,26 +85,34 @@ def _components(
     names: dict[Path_, str],
     connections: list[FlatConnection],
     notes: Notes,
-) -> dict[str, Any]:
-    """Return the rig's components, as its file would have them."""
+) -> dict[Path_, dict[str, Any]]:
+    """Return the components of every system, as the file of a rig would have them."""
     fed = {connection.target for connection in connections}
-    components = {}
-    for path, leaf in flat.leaves.items():
-        values: dict[str, Value] = {}
-        for variable, value in leaf.values().items():
-            if (path, variable) in fed:
-                notes.add(
-                    f"{leaf.parameters[variable].where}: {variable!r} is fed by a connection; "
-                    "its start value is not used"
-                )
-            else:
-                # A rig's file has bytes as base64 text.
-                values[variable] = b64encode(value).decode() if type(value) is bytes else value
-        entry: dict[str, Any] = {"fmu": os.path.relpath(leaf.fmu.path, folder), "set": values}
-        if leaf.step is not None:
-            entry["step"] = f"{leaf.step!r} s"
-        components[names[path]] = entry
-    return components
+    found: dict[Path_, dict[str, Any]] = {}
+    for place, elements in flat.elements.items():
+        found[place] = listed = {}
+        for path in ((*place, element) for element in elements):
+            leaf = flat.leaves.get(path)
+            entry = {"rig": names[path]} if leaf is None else _component(leaf, folder, fed, notes)
+            listed[names[path].rpartition(".")[2]] = entry
+    return found
+
+
+def _component(leaf: Leaf, folder: Path, fed: set[Node], notes: Notes) -> dict[str, Any]:
+    values: dict[str, Value] = {}
+    for variable, value in leaf.values().items():
+        if (leaf.path, variable) in fed:
+            notes.add(
+                f"{leaf.parameters[variable].where}: {variable!r} is fed by a connection; "
+                "its start value is not used"
+            )
+        else:
+            # A rig's file has bytes as base64 text.
+            values[variable] = b64encode(value).decode() if type(value) is bytes else value
+    entry: dict[str, Any] = {"fmu": os.path.relpath(leaf.fmu.path, folder), "set": values}
+    if leaf.step is not None:
+        entry["step"] = f"{leaf.step!r} s"
+    return entry
 
 
 def _connections(flat: list[FlatConnection], names: dict[Path_, str]) -> dict[str, Any]:

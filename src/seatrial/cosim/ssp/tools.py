@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ...errors import InputError, unknown
 from ...fmi.xmlfile import read_xml
 from . import rules
 from .documents import where
@@ -147,6 +148,13 @@ FACTS = (
     Fact(rules.experiment, {}, {"fmpy": "ignores the default experiment's times and step"}),
 )
 """All measured with libcosim 0.11, ecos 0.7 and FMPy 0.3; OMSimulator's are read, not run."""
+
+
+def takes_systems(tool: str) -> bool:
+    """Say if one of `TOOLS` takes systems inside systems. Raises InputError for another name."""
+    if tool not in TOOLS:
+        raise InputError(unknown("tool", tool, TOOLS))
+    return not any(tool in f.rejected for f in FACTS if f.finder is rules.inner_systems)
 
 
 def findings(path: Path) -> list[Finding]:
