@@ -65,7 +65,7 @@ def test_a_rig_inside_a_rig_is_a_system_unless_the_tool_takes_none(write, tmp_pa
         done = seatrial("ssp", "check", "loop.ssp", "--for", tool, cwd=tmp_path)
         assert done.returncode == 0, done.stdout
         done = seatrial(
-            "run", "loop.ssp", "--set", "stop=1 s", "--out", tool, "--report", "none",
+            "run", "loop.ssp", "--set", "stop=1 s", "--out", tool,
             cwd=tmp_path,
         )  # fmt: skip
         assert done.returncode == 0, done.stderr

@@ -109,11 +109,11 @@ def test_a_nested_system_is_a_rig_in_the_rig_and_transformations_compose(
 
 def test_what_is_inside_a_nested_system_is_set_by_path(yard: Yard, tmp_path: Path) -> None:
     system = assemble(read_ssp(yard.package(tmp_path / "x.ssp", nested())).rig)
-    system.set("sub.damper.damping", "1.5", "test")
+    system.set("sub.damper.damping", 1.5, "test")
     assert system.parts["sub.damper"].given["damping"].value == 1.5
     for wrong, near in (("sub.dampr.damping", "damper"), ("sup.damper.damping", "sub")):
         with pytest.raises(InputError, match=f"did you mean '{near}'"):
-            system.set(wrong, "1.5", "test")
+            system.set(wrong, 1.5, "test")
     system.free()
 
 
