@@ -132,7 +132,7 @@ def test_a_trial_carries_its_settings_and_names_what_is_left_out(rig: Path, writ
 def test_seeds_travel_as_parameters(tmp_path: Path) -> None:
     path, _ = export_ssp("landing", tmp_path / "x.ssp")
     read = read_ssp(path).rig.components
-    sensors = [f"loop.vehicle.{name}" for name in ("gnss", "compass", "imu")]
+    sensors = [f"vehicle.{name}" for name in ("gnss", "compass", "imu")]
     seeds = {name: read[name].entry.set["seed"] for name in sensors}
     assert len(set(seeds.values())) == 3
     assert all(isinstance(seed, float) and seed > 0.0 for seed in seeds.values())
