@@ -258,6 +258,7 @@ BOAT = """
 [components]
 inner = { rig = "inner.toml" }
 inner_hull = { fmu = "boats.py:Hull" }
+inner_hull_angle = { fmu = "boats.py:Compass" }
 [connections]
 "inner.v" = { to = "inner.resisted", factor = 2.0 }
 "inner.force" = "inner_hull.force"
@@ -310,26 +311,33 @@ def test_a_rig_in_a_rig_is_a_system_that_values_cross_at_connectors(
         root = etree.fromstring(archive.read("SystemStructure.ssd"))
         assert sorted(n for n in archive.namelist() if n.endswith(".fmu")) == [
             f"resources/{name}.fmu"
-            for name in ("boat.inner.damper", "boat.inner.hull", "boat.inner_hull", "shore")
+            for name in (
+                "boat.inner.damper",
+                "boat.inner.hull",
+                "boat.inner_hull",
+                "boat.inner_hull_angle",
+                "shore",
+            )
         ]
     assert len(read_ssd(str(path)).system.elements) == 2  # FMPy validates what it reads
     top, boat, inner = root.iter("{*}System")
-    # One connector for one value that goes to two; converted where it arrives.
-    assert connected(top) == {"boat/inner.hull.angle": "shore/angle"}
+    # One connector for one value that goes to two; converted where it arrives. A connector
+    # inner_hull_angle would be called as the component is.
+    assert connected(top) == {"boat/inner_hull_2_angle": "shore/angle"}
     assert connected(boat) == {
-        "inner/hull.angle": "inner.hull.angle",
-        "inner_hull/angle": "inner.hull.angle * 0.01745 unconverted",
-        "inner_hull/force": "inner/damper.force",
+        "inner/hull_angle": "inner_hull_2_angle",
+        "inner_hull/angle": "inner_hull_2_angle * 0.01745 unconverted",
+        "inner_hull/force": "inner/damper_force",
     }
     assert connected(inner) == {
-        "hull/angle": "hull.angle * 0.01745 unconverted",
+        "hull/angle": "hull_angle * 0.01745 unconverted",
         "damper/v": "hull/v * 2 unconverted",  # the boat's connection, the shortest way
         "hull/force": "damper/force",
-        "damper.force": "damper/force",
+        "damper_force": "damper/force",
     }
     kinds = {c.get("name"): c.get("kind") for c in inner.find("{*}Connectors")}
-    assert kinds == {"hull.angle": "input", "damper.force": "output"}
-    units = [c[0].get("unit") for c in root.iter("{*}Connector") if c.get("name") == "hull.angle"]
+    assert kinds == {"hull_angle": "input", "damper_force": "output"}
+    units = [c[0].get("unit") for c in root.iter("{*}Connector") if "l_2_a" in c.get("name")]
     assert units == ["deg"]
 
 
@@ -338,8 +346,8 @@ def test_a_tool_without_systems_in_systems_gets_one(tool: str, outer: Path, tmp_
     path, _ = export_ssp(str(outer), tmp_path / "x.ssp", tool=tool)
     read = read_ssp(path).rig.changed({"algorithm": "plain-jacobi"})
     # boat.inner.hull and boat.inner_hull would be called alike.
-    names = ["boat_inner_hull", "boat_inner_damper", "boat_inner_hull_2", "shore"]
-    assert list(read.components) == names
+    boat = ["inner_hull", "inner_damper", "inner_hull_2", "inner_hull_angle"]
+    assert list(read.components) == [*(f"boat_{name}" for name in boat), "shore"]
     assert not any(one.rejects for one in findings(path) if one.tool == tool)
     mine = rows(assemble(load_rig(str(outer))), 40)
     assert [list(row.values()) for row in rows(assemble(read), 40)] == [

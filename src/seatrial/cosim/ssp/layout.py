@@ -36,8 +36,8 @@ class Level:
     connectors: dict[str, Boundary] = field(default_factory=dict)
     connections: dict[tuple[End, End], Connection | None] = field(default_factory=dict)
     """The last one on the way to an input has what is done to the value; others pass it on."""
-    entries: dict[Output, str] = field(default_factory=dict)
-    """Connectors by what comes in through them."""
+    crossing: dict[Output, str] = field(default_factory=dict)
+    """Connectors by what goes in or out through them."""
 
     def parts(self, path: str = "") -> Iterator[tuple[str, Part]]:
         """Yield all parts inside, each with its path from the system at ``path``."""
@@ -47,16 +47,26 @@ class Level:
             else:
                 yield joined(path, name), element
 
-    def gives(self, name: str, carried: Output, start: End) -> None:
-        """Let the value at ``start`` out at the connector ``name``."""
-        self.connectors[name] = Boundary("output", carried)
-        self.connections[start, ("", name)] = None
+    def connector(
+        self, kind: Literal["input", "output"], carried: Output, path: Path_, variable: str
+    ) -> str:
+        """Return the connector through which a value goes; a new one is called by what it is of.
 
-    def takes(self, name: str, carried: Output) -> str:
-        """Return the connector at which a value comes in: ``name``, if it is the first."""
-        found = self.entries.setdefault(carried, name)
-        self.connectors[found] = Boundary("input", carried)
-        return found
+        Dots of the path become ``_``: with them it would be called as a variable inside is in
+        tools that join names by dots.
+        """
+        if carried in self.crossing:
+            return self.crossing[carried]
+        base = prefix = "_".join(path)
+        count = 1
+        while (name := f"{prefix}_{variable}") in self.connectors or (
+            name.partition(".")[0] in self.elements
+        ):
+            count += 1
+            prefix = f"{base}_{count}"
+        self.connectors[name] = Boundary(kind, carried)
+        self.crossing[carried] = name
+        return name
 
 
 def flat(system: System, connections: Iterable[Connection]) -> Level:
@@ -74,7 +84,7 @@ def flat(system: System, connections: Iterable[Connection]) -> Level:
 def nested(system: System, connections: Iterable[Connection]) -> Level:
     """Return the systems of a rig and of those inside it, connected through their connectors.
 
-    A connector is called by what stands behind it, seen from its system, ``hull.position.x``:
+    A connector is called by what stands behind it, seen from its system, ``hull_position.x``:
     the output that it gives, or the first of the inputs that it feeds.
     """
     levels: dict[Path_, Level] = {}
@@ -129,12 +139,13 @@ def _route(connection: Connection, levels: dict[Path_, Level]) -> None:
     shared = _shared(source[:-1], target[:-1])
     start = (source[-1], output)
     for depth in range(len(source) - 1, shared, -1):
-        name = ".".join((*source[depth:], output))
-        levels[source[:depth]].gives(name, connection.source, start)
+        level = levels[source[:depth]]
+        name = level.connector("output", connection.source, source[depth:], output)
+        level.connections[start, ("", name)] = None
         start = (source[depth - 1], name)
     for depth in range(shared + 1, len(target)):
-        name = ".".join((*target[depth:], variable))
-        name = levels[target[:depth]].takes(name, connection.source)
+        level = levels[target[:depth]]
+        name = level.connector("input", connection.source, target[depth:], variable)
         levels[target[: depth - 1]].connections[start, (target[depth - 1], name)] = None
         start = ("", name)
     levels[target[:-1]].connections[start, (target[-1], variable)] = connection
