@@ -83,12 +83,16 @@ def ours(system: System, steps: int) -> tuple[list[str], list[list[float]]]:
 
 
 @pytest.mark.parametrize(
-    ("rig", "steps"), [("hydrone-open-loop", 1200), ("hydrone", 1200)]
-)  # fmt: skip
-def test_libcosim_and_our_plain_jacobi_agree(rig: str, steps: int, tmp_path: Path) -> None:
+    ("rig", "drone", "hull"),
+    [("hydrone-open-loop", "downwash", "hull"), ("landing", "drone", "loop.vehicle.hull")],
+)
+def test_libcosim_and_our_plain_jacobi_agree(
+    rig: str, drone: str, hull: str, tmp_path: Path
+) -> None:
+    steps = 1200
     system = assemble(load_rig(str(plain(rig, tmp_path))), "fmu")
-    system.set("downwash.pad", "diagonal-aft", "test")
-    system.set("downwash.phase", "takeoff", "test")
+    system.set(f"{drone}.pad", "diagonal-aft", "test")
+    system.set(f"{drone}.phase", "takeoff", "test")
     runner = Path(__file__).with_name("libcosim_run.py")
     done = subprocess.run(
         [sys.executable, str(runner)],
@@ -102,5 +106,5 @@ def test_libcosim_and_our_plain_jacobi_agree(rig: str, steps: int, tmp_path: Pat
         scale = max(1.0, max(abs(row[column]) for row in rows))
         worst = max(abs(a[column] - b[column]) for a, b in zip(rows, theirs, strict=True))
         assert worst <= 1e-9 * scale, name
-    roll = names.index("hull.attitude.phi")
+    roll = names.index(f"{hull}.attitude.phi")
     assert max(abs(row[roll]) for row in rows) > 0.15  # it is the take-off that was compared
