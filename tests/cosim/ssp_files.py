@@ -7,6 +7,7 @@ from pathlib import Path
 
 from seatrial.cosim.assembly import assemble
 from seatrial.cosim.master import Master
+from seatrial.cosim.system import System
 from seatrial.fmi.export import build_fmu
 from seatrial.fmi.source import ComponentSource, find_source
 from seatrial.trials.trial import load_trial
@@ -203,5 +204,20 @@ def run(path: Path, **changes: str) -> dict[str, float]:
         master.terminate()
         names = [".".join(name) for name in master.names]
         return dict(zip(names, master.signals, strict=True))
+    finally:
+        system.free()
+
+
+def rows(system: System, steps: int) -> list[dict[str, object]]:
+    """Return every output after each step."""
+    try:
+        master = Master(system)
+        master.initialise()
+        found = []
+        for _ in range(steps):
+            master.step()
+            names = [".".join(name) for name in master.names]
+            found.append(dict(zip(names, master.signals, strict=True)))
+        return found
     finally:
         system.free()

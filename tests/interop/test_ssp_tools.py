@@ -74,6 +74,7 @@ VARIANTS = {
     "prefix of ssc": renamed("ssc"),
     "prefix of osp": renamed("osp"),
     "nested": nested(),
+    "equal paths": nested().replace('"in"', '"damper.v"'),
     "connector of the system": description(
         system(HULL + DAMPER, THERE + BACK + TO_OUT, before=OUT)
     ),

@@ -105,6 +105,17 @@ def inner_systems(view: View) -> Iterator[Any]:
         yield from (one for one in children(elements) if tag(one) != "ssd:Component")
 
 
+def equal_paths(view: View) -> Iterator[Any]:
+    """Yield connectors that have the path of another, such as `a.b` of a system with an `a`."""
+    found = set()
+    for one in view.all("ssd:Connector"):
+        around = one.iterancestors(_full("ssd:System"), _full("ssd:Component"))
+        path = ".".join(reversed([each.get("name", "") for each in (one, *around)]))
+        if path in found:
+            yield one
+        found.add(path)
+
+
 def inner_packages(view: View) -> Iterator[Any]:
     """Yield components that are no FMUs."""
     yield from (one for one in view.all("ssd:Component") if one.get("type", FMU) != FMU)

@@ -68,6 +68,11 @@ FACTS = (
     ),
     Fact(rules.inner_systems, {"libcosim": _FLAT, "ecos": _FLAT}, {}),
     Fact(
+        rules.equal_paths,
+        {"fmpy": "fails where two connectors have the same path, names joined by dots"},
+        {},
+    ),
+    Fact(
         rules.inner_packages,
         dict.fromkeys(("libcosim", "ecos", "fmpy"), "takes FMUs only, no packages in packages"),
         {},
