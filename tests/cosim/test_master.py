@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import pytest
 
@@ -72,6 +73,34 @@ def test_slow_component_steps_at_its_own_rate(bench: Bench) -> None:
     assert fast[-1] == pytest.approx(0.1 * sum(k / 10 for k in range(20)), abs=1e-12)
     held = [0.0] * 4 + [0.0] * 5 + [0.25] * 5 + [0.75] * 5 + [1.5]
     assert slow == pytest.approx(held, abs=1e-12)
+
+
+def test_a_rig_inside_has_a_step_for_its_parts(bench: Bench) -> None:
+    """But for those that say one, in rigs inside it too."""
+    (bench.folder / "part.toml").write_text(
+        '[components]\nown = { fmu = "users.py:Ramp", step = "300 ms" }\n'
+        'sum = { fmu = "users.py:Sum" }\n[shows]\nu = "sum.u"\n',
+        "utf-8",
+    )
+    (bench.folder / "half.toml").write_text(
+        '[components]\npart = { rig = "part.toml" }\n[shows]\nu = "part.u"\n', "utf-8"
+    )
+    parts = bench.system(
+        'ramp = { fmu = "users.py:Ramp" }\nhalf = { rig = "half.toml", step = "500 ms" }\n'
+        'part = { rig = "part.toml" }',
+        '"ramp.y" = ["half.u", "part.u"]',
+    ).parts
+    every = {name: part.every for name, part in parts.items() if name.endswith("sum")}
+    assert every == {"half.part.sum": 5, "part.sum": 1}
+
+
+def test_a_step_of_a_rig_inside_that_does_not_fit_says_where_it_is(tmp_path: Path) -> None:
+    bench = Bench(tmp_path, "direct")
+    (bench.folder / "part.toml").write_text(
+        '[components]\nsum = { fmu = "users.py:Sum" }\n', "utf-8"
+    )
+    with pytest.raises(InputError, match=r"rig\.toml: components\.half\.step: '50 ms' is not"):
+        bench.system('half = { rig = "part.toml", step = "50 ms" }')
 
 
 def test_sampled_component_keeps_its_own_instants(bench: Bench) -> None:

@@ -84,7 +84,7 @@ def ours(system: System, steps: int) -> tuple[list[str], list[list[float]]]:
 
 @pytest.mark.parametrize(
     ("rig", "drone", "hull"),
-    [("hydrone-open-loop", "downwash", "hull"), ("landing", "drone", "loop.vehicle.hull")],
+    [("hydrone-open-loop", "downwash", "hull"), ("landing", "drone", "vehicle.hull")],
 )
 def test_libcosim_and_our_plain_jacobi_agree(
     rig: str, drone: str, hull: str, tmp_path: Path

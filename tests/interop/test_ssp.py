@@ -21,7 +21,7 @@ TRIAL = """rig = "{}"
 stop = "12 s"
 set = {{ "drone.pad" = "diagonal-aft", "drone.phase" = "takeoff" }}
 """
-ROLL = "loop.vehicle.hull.attitude.phi"
+ROLL = "vehicle.hull.attitude.phi"
 
 Expected = tuple[list[str], list[list[float]]]
 """Names of outputs, and their values after each step."""

@@ -75,8 +75,9 @@ class _Reading:
         around: Mapping[str, str],
         chain: tuple[Path, ...],
         entry: ComponentEntry | None = None,
+        step: tuple[str, str] | None = None,
     ) -> Scope:
-        """Return the rig of a file at ``place``, with the choices ``around`` it."""
+        """Return the rig of a file at ``place``, with the choices and the step around it."""
         if path in chain or len(chain) > _DEEPEST:
             names = " -> ".join(p.stem for p in (*chain, path))
             raise InputError(f"{chain[-1]}: a rig contains itself: {names}")
@@ -88,14 +89,14 @@ class _Reading:
         check_rig_file(file, path)
         inner = {
             name: self._inner(
-                part, f"{path}: components.{name}", joined(place, name), choices, path, chain
+                part, f"{path}: components.{name}", joined(place, name), choices, path, chain, step
             )
             for name, part in file.components.items()
             if part.rig
         }
         variant = (entry and entry.variant) or file.variant
         home = (entry.home[0], entry.home[1], entry.home[2]) if entry and entry.home else None
-        return Scope(place, file, read_from, path.parent, choices, inner, variant, home)
+        return Scope(place, file, read_from, path.parent, choices, inner, variant, home, step)
 
     def _inner(
         self,
@@ -105,6 +106,7 @@ class _Reading:
         choices: Mapping[str, str],
         path: Path,
         chain: tuple[Path, ...],
+        step: tuple[str, str] | None,
     ) -> Scope:
         try:
             file = find_file("harness/rigs", entry.rig, path.parent)
@@ -112,7 +114,9 @@ class _Reading:
             raise InputError(f"{where}.rig: {error}") from None
         before = set(self.used)
         self.used = set()
-        scope = self.scope(file, place, {**choices, **entry.choices}, (*chain, path), entry)
+        if entry.step is not None:
+            step = entry.step, f"{where}.step"
+        scope = self.scope(file, place, {**choices, **entry.choices}, (*chain, path), entry, step)
         for name in entry.choices:
             if name not in self.used:
                 raise InputError(f"{where}.choices: {unknown('choice', name, sorted(self.used))}")

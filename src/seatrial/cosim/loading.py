@@ -26,12 +26,13 @@ def load_part(rig: Rig, name: str, engine: Engine, once: dict[str, str]) -> Part
     """
     placed = rig.components[name]
     entry, where, every = placed.entry, placed.where, 1
-    if entry.step is not None:
-        step_ns = duration_ns(entry.step, f"{where}.step")
-        every, rest = divmod(step_ns, rig.step_ns)
+    stepped = placed.scope.step if entry.step is None else (entry.step, f"{where}.step")
+    if stepped is not None:
+        written, place = stepped
+        every, rest = divmod(duration_ns(written, place), rig.step_ns)
         if every < 1 or rest:
             raise InputError(
-                f"{where}.step: {entry.step!r} is not a multiple of the rig's {rig.file.step!r}"
+                f"{place}: {written!r} is not a multiple of the rig's {rig.file.step!r}"
             )
     timeout_s = _timeout_s(entry, f"{where}.timeout")
     try:

@@ -61,6 +61,7 @@ class ComponentEntry(FileModel):
     set: dict[str, Any] = Field(default_factory=dict)
     """By port; of a rig, by component.port inside it."""
     step: str | None = None
+    """Of a rig, that of all components in it that say none themselves."""
     isolated: bool = False
     """It runs in a process of its own."""
     timeout: str | None = None
@@ -111,6 +112,8 @@ class Scope:
     home: tuple[str, str, str] | None = None
     is_open: bool = False
     """Whatever is inside may be connected to, by its path; otherwise what its file shows."""
+    step: tuple[str, str] | None = None
+    """Of its components that say none themselves, and where it is written."""
 
     def all(self) -> Iterator[Scope]:
         """Yield the rigs inside, the innermost first, then this one."""
@@ -211,7 +214,7 @@ def check_rig_file(file: RigFile, path: Path) -> None:
     _check_algorithm(path, file)
 
 
-_OF_FMUS = ("parameters", "profile", "step", "isolated", "timeout")
+_OF_FMUS = ("parameters", "profile", "isolated", "timeout")
 _OF_RIGS = ("choices", "home", "variant")
 
 

@@ -1,4 +1,4 @@
-"""Where the parts of a rig stand in a package: in systems in systems, or all in one."""
+"""Layout of a rig in a package: systems in systems, or all parts in one."""
 
 from __future__ import annotations
 
