@@ -60,7 +60,8 @@ class Port:
     of them if the port has axes; assigning converts to the port's type and checks the length.
 
     Values are SI with angles in radians; ``unit`` is written as in FMI (``N.m``, ``kg.m2``,
-    ``rad/s``, ``1`` for none), one for all elements or a tuple with one per axis. A ``role`` of
+    ``rad/s``, ``1`` for a number), one for all elements or a tuple with one per axis. It is empty
+    where a parameter says what the values mean: then connections convert nothing. A ``role`` of
     `ROLES` says what whoever runs the component does with the port. A ``frame`` of `FRAMES` is
     that of its axes: a connection between two frames is refused. The axes north, east, down and
     u, v, w and p, q, r say it by their names.

@@ -47,6 +47,13 @@ def test_each_axis_has_its_unit(tmp_path: Path) -> None:
     assert units["nu_start.r"] == "rad/s"
 
 
+def test_a_port_may_have_no_unit(tmp_path: Path) -> None:
+    path = built_once(shipped_sources()["can-signals"], tmp_path / "can-signals.fmu")
+    assert validate_fmu(str(path)) == []
+    units = {v.name: v.unit for v in read_model_description(str(path)).modelVariables}
+    assert (units["send.s1"], units["received.s16"], units["lost_after"]) == (None, None, "1")
+
+
 def test_dependencies_say_direct_feedthrough_only(counter_fmu: Path) -> None:
     description = read_model_description(str(counter_fmu))
     depends = {u.variable.name: [d.name for d in u.dependencies] for u in description.outputs}

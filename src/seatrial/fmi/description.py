@@ -123,10 +123,11 @@ def _complete_variable(component: Component, scalar: ScalarPort, element: Elemen
     if "start" in element.attrib:
         element.set("start", str(value).lower() if port.type is bool else _text(value))
     if port.type is float:
-        try:
-            element.set("unit", unit(scalar.unit).text)
-        except InputError as error:
-            raise InputError(f"{type(component).__name__}.{port.name}: {error}") from None
+        if scalar.unit:
+            try:
+                element.set("unit", unit(scalar.unit).text)
+            except InputError as error:
+                raise InputError(f"{type(component).__name__}.{port.name}: {error}") from None
         for name in ("min", "max", "nominal"):
             limit = port.limit(name, scalar.index)
             if limit is not None and math.isfinite(limit):
@@ -140,7 +141,8 @@ def _text(value: Any) -> str:
 
 
 def _insert_units(root: Element, component: Component) -> None:
-    used = {unit(s.unit).text: unit(s.unit) for s in component.scalars if s.port.type is float}
+    real = [s for s in component.scalars if s.port.type is float and s.unit]
+    used = {unit(s.unit).text: unit(s.unit) for s in real}
     if not used:
         return
     definitions = Element("UnitDefinitions")

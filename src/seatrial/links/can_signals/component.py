@@ -29,8 +29,8 @@ class CanSignals(Component):
     ``sends`` and ``receives`` name signals, ``MESSAGE.SIGNAL`` each, separated by ``;``: the
     first one is the port ``send.s1`` or ``received.s1``, and so on. Ports have SI units and
     radians: the DBC's unit of the signal says what that means (``us`` is s, ``deg`` is rad, ``%``
-    is a share of 1). So their connections are written with ``convert = false``. A range after a
-    signal's name, ``LOW HIGH UNIT``, is refused if the signal cannot carry it.
+    is a share of 1). The ports declare none and connect to any. A range after a signal's name,
+    ``LOW HIGH UNIT``, is refused if the signal cannot carry it.
 
     **Sending.** A message goes out at the start of the run + k cycle times (GenMsgCycleTime),
     with the inputs as of the communication point at or before; ``cycle_time`` is for messages
@@ -66,10 +66,10 @@ class CanSignals(Component):
     )
 
     rx = Input("1", "operations from the bus", type=str)
-    send = Input("1", "values to send, in SI", axes=_AXES, optional=True)
+    send = Input("", "values to send, in SI", axes=_AXES, optional=True)
 
     tx = Output("1", "operations to the bus", type=str)
-    received = Output("1", "values that were received, in SI", axes=_AXES)
+    received = Output("", "values that were received, in SI", axes=_AXES)
     valid = Output("1", "whether they were, and are not lost", type=bool, axes=_AXES)
     frames_sent = Output("1", "frames requested", type=int)
     frames_received = Output("1", "frames received that it reads", type=int)

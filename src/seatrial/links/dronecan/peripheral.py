@@ -83,9 +83,9 @@ class DroneCanPeripheral(DroneCanNode):
     voltage = Input("V", "voltage at each ESC", axes=AXES, optional=True)
     current = Input("A", "current of each ESC", axes=AXES, optional=True)
     temperature = Input("K", "temperature of each ESC", axes=AXES, optional=True)
-    speed = Input("1", "speed: rad/s, or m/s", axes=AXES, optional=True)
-    position = Input("1", "position of each actuator: rad, or m", axes=AXES, optional=True)
-    force = Input("1", "force of each actuator: N, or N.m", axes=AXES, optional=True)
+    speed = Input("", "speed: rad/s, or m/s", axes=AXES, optional=True)
+    position = Input("", "position of each actuator: rad, or m", axes=AXES, optional=True)
+    force = Input("", "force of each actuator: N, or N.m", axes=AXES, optional=True)
     position_n = Input("m", "of the antenna, north-east-down", axes=_NED, optional=True)
     velocity_n = Input("m/s", "of the antenna, north-east-down", axes=_NED, optional=True)
     position_valid = Input("1", "whether there is a fix", type=bool, start=True, optional=True)
@@ -94,7 +94,7 @@ class DroneCanPeripheral(DroneCanNode):
     acceleration = Input("m/s2", "specific force, body axes", axes="xyz", frame="b", optional=True)
     attitude_valid = Input("1", "whether attitude is valid", type=bool, start=True, optional=True)
 
-    command = Output("1", "command: -1 to 1, or in the channel's unit", axes=AXES)
+    command = Output("", "command: -1 to 1, or in the channel's unit", axes=AXES)
     pulse = Output("s", "servo pulse", axes=AXES)
     failsafe = Output("1", "whether a channel is neutral for want of commands", type=bool)
 
