@@ -9,7 +9,7 @@ attachment    point, velocity, force: of a tether or a tow, all in {n}
 reading       of a sensor: position_n, velocity_n, position_valid; heading, heading_valid; heel,
               pitch, roll_pitch, roll_rate, yaw_rate, gyro, accelerometer, imu_valid; wind_speed,
               wind_angle, wind_valid; depth, depth_valid, of the vehicle; water_depth,
-              water_depth_valid, below a transducer; pressure
+              water_depth_valid, below a transducer; pressure; rudder
 sensors       the same members, of who reads them
 truth         members of motion, of who reads them
 actuators     pulses by channel, ch1 ... ch16; or by name, angles and shares

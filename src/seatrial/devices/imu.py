@@ -82,6 +82,7 @@ class Imu(Sensor):
             "roll_pitch",
             imu_valid="valid",
             heel="roll_pitch__phi",
+            pitch="roll_pitch__theta",
             roll_rate="gyro__x",
             yaw_rate="gyro__z",
         ),

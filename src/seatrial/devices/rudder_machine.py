@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, ClassVar
 
 import casadi as ca
 
-from ..component import Input, Parameter
+from ..component import Input, Parameter, terminal
 from ..errors import InputError
 from ..plant import Plant, State
 from .actuator import Actuator
@@ -47,6 +47,8 @@ class RudderMachine(Actuator, Plant):
 
     command = Input("rad", "angle asked for, in the sense of positive")
     angle = State("rad", "angle of the rudder, trailing edge to port positive: turns to port")
+
+    terminals: ClassVar = {"reading": terminal(rudder="angle")}
 
     def start(self, t: float) -> None:
         """Start at ``angle_start``; raises InputError if it is beyond the limit."""

@@ -61,6 +61,12 @@ def test_every_sentence_says_what_the_inputs_are():
     assert (float(sent["AGRSA"].rsa_starboard), sent["AGRSA"].rsa_starboard_status) == (-7.5, "A")
 
 
+def test_a_rudder_that_is_positive_to_port_has_the_other_sign_in_its_sentence():
+    bench = Bench(rudder_positive="port")
+    bench.set(**VALID)
+    assert float(read(bench.run(1.05))["AGRSA"].rsa_starboard) == 7.5
+
+
 def test_what_is_not_valid_is_empty_and_says_so():
     bench = Bench(**HOME)
     bench.set(**{name: value for name, value in VALID.items() if not name.endswith("_valid")})

@@ -272,3 +272,30 @@ def test_a_claim_is_the_name_in_eight_bytes():
     assert found == [381, 0x2B, 140, 60, 5, 4, 1]  # industry 4, marine; arbitrary address
     assert bits & 0x1FFFFF == 1234567
     assert GLOBAL == 0xFF
+
+
+RUDDERS = ("rudder", "rudder_order", "commanded_rudder")
+
+
+def test_a_rudder_that_is_positive_to_port_has_the_other_sign_on_the_bus():
+    here = {name: -INPUTS[name] for name in RUDDERS}
+    network = Network({"node": {**here, "rudder_positive": "port", "sends": "127237 127245"}})
+    network.run(2.0)
+    data = payloads(network.frames)
+    for pgn, first in ((127237, 24), (127245, 16), (127245, 32)):
+        (value,) = (value for bit, *_, value in LAYOUTS[pgn] if bit == first)
+        raw = int.from_bytes(data[pgn], "little") >> first & 0xFFFF
+        assert raw == round(value * 1e4) % (1 << 16)
+    for pgn in (127237, 127245):
+        for frame in frames_of(pgn, packed(pgn)):
+            network.send(frame)
+    network.run(0.1)
+    node = network.nodes["node"]
+    found = [node.get(f"bus_{name}") for name in RUDDERS]
+    assert found == pytest.approx([here[name] for name in RUDDERS], abs=1e-4)
+    assert node.get("bus_rudder_direction") == -1  # to port, whatever the sign
+
+
+def test_a_rudder_that_is_not_connected_is_not_available_with_either_sign():
+    for positive in ("port", "starboard"):
+        assert sent_field(127245, 32, 16, rudder_positive=positive) == 0x7FFF

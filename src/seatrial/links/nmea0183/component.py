@@ -169,13 +169,18 @@ class Nmea0183(Nmea0183Ports):
             self.water_speed if self.water_speed_valid else None,
             self.depth if self.depth_valid else None,
             self.water_temperature if self.water_temperature_valid else None,
-            self.rudder if self.rudder_valid else None,
+            self._rudder() if self.rudder_valid else None,
         )
 
     def _true_wind(self) -> tuple[float, float]:
         """Return its speed, and where it comes from, clockwise from the bow."""
         north, east = self.true_wind
         return math.hypot(north, east), math.atan2(-east, -north) - self.heading
+
+    def _rudder(self) -> float:
+        """Return its angle, positive to turn to starboard, as RSA has it."""
+        angle: float = self.rudder
+        return -angle if self.rudder_positive == "port" else angle
 
     @property
     def _origin(self) -> Origin:

@@ -35,6 +35,12 @@ class Nmea0183Ports(Reachable, Sampled):
     transducer_offset = Parameter(
         0.0, "m", "from the depth's transducer up to the waterline, or, negative, down to the keel"
     )
+    rudder_positive = Parameter(
+        "starboard",
+        "1",
+        "the way a positive rudder on the port turns the ship",
+        choices=("port", "starboard"),
+    )
     cruise_speed = Parameter(1.0, "m/s", "speed that goes with orders: they name none", min=0.0)
     order_timeout = Parameter(5.0, "s", "time for which an order is valid", min=0.0)
 
@@ -69,7 +75,7 @@ class Nmea0183Ports(Reachable, Sampled):
     depth_valid = Input("1", "whether it is valid", type=bool, optional=True)
     water_temperature = Input("K", "temperature of the water", start=273.15, optional=True)
     water_temperature_valid = Input("1", "whether it is valid", type=bool, optional=True)
-    rudder = Input("rad", "angle of the rudder, positive to turn to starboard", optional=True)
+    rudder = Input("rad", "angle of the rudder, in the sense of rudder_positive", optional=True)
     rudder_valid = Input("1", "whether it is valid", type=bool, optional=True)
 
     tx = Output("1", "bytes that are sent, as text", type=str)
@@ -103,7 +109,10 @@ class Nmea0183Ports(Reachable, Sampled):
             yaw_rate="rate_of_turn",
             water_depth="depth",
             water_depth_valid="depth_valid",
+            rudder="rudder",
         ),
+        # A true wind is as valid as the anemometer that it is estimated from.
+        "anemometer": terminal(wind_valid="true_wind_valid"),
         "estimate": terminal(wind="true_wind"),
         "orders": terminal(
             "target_kind", "target_valid", "target_position", "target_heading", "target_speed"

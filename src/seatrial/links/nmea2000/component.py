@@ -50,8 +50,8 @@ class Nmea2000(Nmea2000Ports):
     other nodes may change its intervals, and command fields of 127237 and 127245.
 
     **Signs.** All headings, courses and the yaw are clockwise from north; roll is positive to
-    starboard, pitch bow up, rate of turn to starboard. Rudders, on ports and bus, are positive to
-    turn to starboard: components with the other sign are connected with ``factor = -1``. Wind is
+    starboard, pitch bow up, rate of turn to starboard. Rudders are positive to turn to starboard on
+    the bus, and to the side of ``rudder_positive`` on the ports. Wind is
     on ports where it blows to, as an anemometer here has it, and on the bus where it comes from.
     Position in {n} from the origin (``latitude``, ``longitude``, ``altitude``). UTC is midnight of
     ``date`` plus simulated time.
@@ -147,7 +147,8 @@ class Nmea2000(Nmea2000Ports):
         values, valid = self._readings.get(name, now)
         assert values is not None
         if name in _PUBLISHED:
-            setattr(self, f"bus_{name}", values[0])
+            turned = name in _RUDDERS and self.rudder_positive == "port"
+            setattr(self, f"bus_{name}", -values[0] if turned else values[0])
             setattr(self, f"bus_{name}_valid", valid)
         elif name in ("place", "altitude"):
             self._publish_position(now)
@@ -292,6 +293,8 @@ _PUBLISHED = (
     "commanded_rudder",
 )
 """Quantities of one value that go to outputs of their name."""
+_RUDDERS = ("rudder", "rudder_order", "commanded_rudder")
+"""Those with the sign of rudders."""
 
 
 @lru_cache(64)  # nodes of one profile have one origin

@@ -41,6 +41,11 @@ class _Measured:
         value: float = getattr(self.node, name)
         return value if valid and value < NOT_CONNECTED else None
 
+    def rudder(self, name: str) -> float | None:
+        """Return an angle of a rudder, positive to turn to starboard."""
+        angle = self.one(name)
+        return -angle if angle is not None and self.node.rudder_positive == "port" else angle
+
     def each(self, name: str, valid: bool = True) -> Sequence[float | None]:
         """Return the values of an input with axes."""
         values: Sequence[float] = getattr(self.node, name)
@@ -70,7 +75,7 @@ def _system_time(m: _Measured) -> list[Fields]:
 
 
 def _heading_control(m: _Measured) -> list[Fields]:
-    node, rudder = m.node, m.one("commanded_rudder")
+    node, rudder = m.node, m.rudder("commanded_rudder")
     heading = m.one("heading", node.heading_valid and node.heading_reference == "true")
     return [
         {
@@ -87,13 +92,13 @@ def _heading_control(m: _Measured) -> list[Fields]:
 
 
 def _rudder(m: _Measured) -> list[Fields]:
-    order = m.one("rudder_order")
+    order = m.rudder("rudder_order")
     return [
         {
             "instance": int(m.node.rudder_instance),
             "directionOrder": _direction(order),
             "angleOrder": order,
-            "position": m.one("rudder"),
+            "position": m.rudder("rudder"),
         }
     ]
 

@@ -68,6 +68,12 @@ class Nmea2000Ports(Noise, Component):
         0.0, "m", "from the transducer up to the waterline; negative: down to the keel"
     )
     rudder_instance = Parameter(0.0, "1", "which rudder it sends and reads", min=0.0, max=252.0)
+    rudder_positive = Parameter(
+        "starboard",
+        "1",
+        "the way a positive rudder on the ports turns the ship",
+        choices=("port", "starboard"),
+    )
     timeout = Parameter(
         1.0, "s", "time for which a received value is valid, at least 3 intervals", min=0.0
     )
@@ -81,8 +87,8 @@ class Nmea2000Ports(Noise, Component):
     rate_valid = _valid("the rate of turn")
     attitude = _measured("rad", "Euler angles, ZYX", axes=_EULER)
     attitude_valid = _valid("the attitude")
-    rudder = _measured("rad", "angle of the rudder, positive to turn to starboard")
-    rudder_order = _measured("rad", "rudder angle ordered, positive to turn to starboard")
+    rudder = _measured("rad", "angle of the rudder, in the sense of rudder_positive")
+    rudder_order = _measured("rad", "rudder angle ordered, in the same sense")
     water_speed = _measured("m/s", "speed through the water, ahead")
     depth = _measured("m", "depth of the water below the transducer")
     position_n = _measured("m", "position, north-east-down", axes=_NED)
@@ -107,7 +113,7 @@ class Nmea2000Ports(Noise, Component):
     )
     heading_to_steer = _measured("rad", "heading to steer, clockwise from north")
     track = _measured("rad", "track to keep, clockwise from north")
-    commanded_rudder = _measured("rad", "rudder commanded, positive to turn to starboard")
+    commanded_rudder = _measured("rad", "rudder commanded, in the same sense")
     rudder_limit = _measured("rad", "largest rudder, to either side")
     silent = Input(
         "1", "whether it sends no data; the network's messages go on", type=bool, optional=True
@@ -125,9 +131,9 @@ class Nmea2000Ports(Noise, Component):
     bus_rate_of_turn_valid = _received("a rate of turn")
     bus_attitude = Output("rad", "Euler angles, ZYX", axes=_EULER)
     bus_attitude_valid = _received("an attitude")
-    bus_rudder = Output("rad", "angle of the rudder, positive to turn to starboard")
+    bus_rudder = Output("rad", "angle of the rudder, in the sense of rudder_positive")
     bus_rudder_valid = _received("an angle of the rudder")
-    bus_rudder_order = Output("rad", "rudder angle ordered, positive to turn to starboard")
+    bus_rudder_order = Output("rad", "rudder angle ordered, in the same sense")
     bus_rudder_order_valid = _received("a rudder angle ordered")
     bus_rudder_direction = Output("1", "way the rudder is to move: 1 starboard, -1 port", type=int)
     bus_water_speed = Output("m/s", "speed through the water, ahead")
@@ -147,7 +153,7 @@ class Nmea2000Ports(Noise, Component):
     bus_heading_to_steer_valid = _received("a heading to steer")
     bus_track = Output("rad", "track to keep, clockwise from north")
     bus_track_valid = _received("a track to keep")
-    bus_commanded_rudder = Output("rad", "rudder commanded, positive to turn to starboard")
+    bus_commanded_rudder = Output("rad", "rudder commanded, in the same sense")
     bus_commanded_rudder_valid = _received("a commanded rudder")
 
     terminals: ClassVar = {
@@ -165,7 +171,15 @@ class Nmea2000Ports(Noise, Component):
             pitch="attitude__theta",
             yaw_rate="rate_of_turn",
             imu_valid="rate_valid",
+            rudder="rudder",
             water_depth="depth",
+        ),
+        # What PGN 127257 has beside them, from a compass and an IMU.
+        "ahrs": terminal(
+            heading="attitude__psi",
+            heel="attitude__phi",
+            pitch="attitude__theta",
+            imu_valid="attitude_valid",
         ),
         "reading": terminal(
             position_n="bus_position_n",
@@ -182,6 +196,7 @@ class Nmea2000Ports(Noise, Component):
             imu_valid="bus_rate_of_turn_valid",
             water_depth="bus_depth",
             water_depth_valid="bus_depth_valid",
+            rudder="bus_rudder",
         ),
         "steering": terminal(heading_wanted="heading_to_steer"),
         "wanted": terminal(heading_wanted="bus_heading_to_steer"),
