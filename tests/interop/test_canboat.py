@@ -340,7 +340,7 @@ def test_both_canboats_read_the_log_of_a_rig_as_its_plant_was(tmp_path):
     assert result.status == "complete", result.error
     with (result.folder / "signals.csv").open() as file:
         rows = list(csv.DictReader(file))
-    with can.LogReader(str(result.folder / "can.blf")) as log:
+    with can.LogReader(str(result.folder / "autopilot.network.can.blf")) as log:
         messages = list(log)
     frames = [(round(m.timestamp * 1e9), frame_of(m)) for m in messages]
     decoder, pythons = NMEA2000Decoder(), []
@@ -354,7 +354,7 @@ def test_both_canboats_read_the_log_of_a_rig_as_its_plant_was(tmp_path):
     for found in (pythons, scripts):
         for time, pgn, fields in found:
             hull = rows[min(round(time * 10), len(rows) - 1)]
-            as_hull(pgn, fields, {name: float(hull[f"hull.{name}"]) for name in HULL})
+            as_hull(pgn, fields, {name: float(hull[f"vehicle.hull.{name}"]) for name in HULL})
 
 
 HULL = ("position.x", "position.y", "attitude.phi", "attitude.psi", "rates.r")

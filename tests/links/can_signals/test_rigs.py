@@ -31,11 +31,13 @@ def test_thrusters_on_a_bus(tmp_path):
     with (result.folder / "signals.csv").open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     received = [
-        float(row["port_node.received.s1"]) for row in rows if row["port_node.valid.s1"] == "1"
+        float(row["autopilot.port_node.received.s1"])
+        for row in rows
+        if row["autopilot.port_node.valid.s1"] == "1"
     ]
     matrix = canmatrix.formats.loadp_flat(str(PROFILES / "hydrone.dbc"))
     command = matrix.frame_by_name("ThrusterCommand")
-    with can.LogReader(str(result.folder / "can.log")) as log:
+    with can.LogReader(str(result.folder / "autopilot.can.log")) as log:
         sent = [
             float(command.decode(bytes(each.data))["PortPulse"].phys_value)
             for each in log
@@ -46,7 +48,7 @@ def test_thrusters_on_a_bus(tmp_path):
     )
 
     # The command line tool reads the log as candump's.
-    with (result.folder / "can.log").open(encoding="utf-8") as log:
+    with (result.folder / "autopilot.can.log").open(encoding="utf-8") as log:
         head = "".join(next(log) for _ in range(30))
     decoded = subprocess.run(
         [sys.executable, "-m", "cantools", "decode", str(PROFILES / "hydrone.dbc")],

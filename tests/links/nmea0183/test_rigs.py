@@ -40,25 +40,38 @@ class Plotter(Component):
     def outputs(self, t):
         self.tx = Outbox(self._out).text
 '''
+RIG = """
+step = "20 ms"
+
+[components]
+vehicle   = { rig = "vehicles/gloria" }
+autopilot = { rig = "feed.toml", choices = { vehicle = "gloria" } }
+
+[connections]
+"vehicle.sensors"     = "autopilot.sensors"
+"autopilot.actuators" = "vehicle.actuators"
+"""
 TRIAL = """
 rig = "rig.toml"
 stop = "30 s"
 
 [set]
-"boat.eta_start" = ["0 m", "0 m", "0 deg", "100 deg"]
-"guidance.mode" = "guided"
-"instruments.links" = ""
+"vehicle.boat.eta_start" = ["0 m", "0 m", "0 deg", "100 deg"]
+"autopilot.main.pilot.guidance.mode" = "guided"
+"autopilot.instruments.links" = ""
 
 [record]
-signals = ["boat.position.*", "boat.attitude.psi", "instruments.tx"]
+signals = ["vehicle.boat.position.*", "vehicle.boat.attitude.psi", "autopilot.instruments.tx"]
 every = "20 ms"
 """
 
 
 def test_what_plotters_read_and_send(tmp_path):
-    rig = (shipped_folder("harness") / "rigs" / "gloria-nmea0183.toml").read_text("utf-8")
-    rig = rig.replace("[components]", '[components]\nplotter = { fmu = "plotter.py:Plotter" }')
-    (tmp_path / "rig.toml").write_text(f'{rig}"plotter.tx" = "instruments.rx"\n', "utf-8")
+    feed = (shipped_folder("harness") / "rigs" / "autopilots/nmea0183.toml").read_text("utf-8")
+    feed = feed.replace("[components]", '[components]\nplotter = { fmu = "plotter.py:Plotter" }')
+    feed = feed.replace("[connections]", '[connections]\n"plotter.tx" = "instruments.rx"')
+    (tmp_path / "feed.toml").write_text(feed, "utf-8")
+    (tmp_path / "rig.toml").write_text(RIG, "utf-8")
     (tmp_path / "plotter.py").write_text(PLOTTER, "utf-8")
     (tmp_path / "trial.toml").write_text(TRIAL, "utf-8")
     result = run_trial(load_trial(str(tmp_path / "trial.toml")), tmp_path / "run", engine="direct")
@@ -66,11 +79,13 @@ def test_what_plotters_read_and_send(tmp_path):
 
     with (result.folder / "signals.csv").open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
-    assert math.degrees(float(rows[-1]["boat.attitude.psi"])) == pytest.approx(60.0, abs=5.0)
+    assert math.degrees(float(rows[-1]["vehicle.boat.attitude.psi"])) == pytest.approx(
+        60.0, abs=5.0
+    )
     counts = {"RMC": 0, "HDT": 0}
     seen = 0
     for row in rows:
-        number, chunks = decode(row["instruments.tx"])
+        number, chunks = decode(row["autopilot.instruments.tx"])
         if number == seen:
             continue
         seen = number
@@ -78,22 +93,26 @@ def test_what_plotters_read_and_send(tmp_path):
             sentence = pynmea2.parse(data.decode("ascii"), check=True)
             if sentence.sentence_type == "HDT" and sentence.heading is not None:
                 counts["HDT"] += 1
-                away = float(sentence.heading) - math.degrees(float(row["boat.attitude.psi"]))
+                away = float(sentence.heading) - math.degrees(
+                    float(row["vehicle.boat.attitude.psi"])
+                )
                 assert abs((away + 180.0) % 360.0 - 180.0) < 6.0  # the compass's own errors
             if sentence.sentence_type == "RMC" and sentence.is_valid:
                 counts["RMC"] += 1
                 north, east, _ = pymap3d.geodetic2ned(
                     sentence.latitude, sentence.longitude, 0.0, -22.862, -43.223, 0.0
                 )
-                assert abs(north - float(row["boat.position.x"])) < 10.0
-                assert abs(east - float(row["boat.position.y"])) < 10.0
+                assert abs(north - float(row["vehicle.boat.position.x"])) < 10.0
+                assert abs(east - float(row["vehicle.boat.position.y"])) < 10.0
     assert counts["RMC"] >= 28
     assert counts["HDT"] >= 145
 
 
 def test_the_shipped_trial_begins(tmp_path):
     trial = load_trial("gloria-nmea0183")
-    trial = trial.changed({"stop": "5 s", "instruments.links": "tcpin:127.0.0.1:0"}, "test")
+    trial = trial.changed(
+        {"stop": "5 s", "autopilot.instruments.links": "tcpin:127.0.0.1:0"}, "test"
+    )
     trial = replace(trial, file=trial.file.model_copy(update={"real_time": None}))
     result = run_trial(trial, tmp_path / "run", engine="direct")
     assert result.status == "complete", result.error

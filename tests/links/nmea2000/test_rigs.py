@@ -74,7 +74,7 @@ def test_a_chart_plotter_turns_the_ship_as_without_a_bus(tmp_path):
         np.abs(one["ship.rates.r"])
     )
     rudder = np.interp(one["time"] - 0.15, one["time"], one["machine.angle"])
-    assert np.max(np.abs(one["pilot.bus_rudder"] + rudder)[4:]) < 1e-4 + 0.15 * 0.0873
+    assert np.max(np.abs(one["pilot.bus_rudder"] - rudder)[4:]) < 1e-4 + 0.15 * 0.0873
 
 
 @pytest.mark.long
@@ -93,7 +93,7 @@ def test_shipped_trials_hold(name, tmp_path):
 def test_the_catamaran_goes_by_what_it_receives(tmp_path):
     """As long as its bus works; guidance stops without a heading."""
     trial = load_trial("hydrone-nmea2000-square").changed(
-        {"stop": "9 s", "heading_sensor.silent": True}, "test"
+        {"stop": "9 s", "autopilot.network.heading_sensor.silent": True}, "test"
     )
     silent = run_trial(trial, tmp_path / "silent", engine="direct")
     trial = load_trial("hydrone-nmea2000-square").changed({"stop": "9 s"}, "test")
@@ -103,9 +103,9 @@ def test_the_catamaran_goes_by_what_it_receives(tmp_path):
         assert each.status == "complete", each.error
         with (each.folder / "signals.csv").open() as file:
             rows = list(csv.DictReader(file))
-        distances.append(float(rows[-1]["hull.position.x"]))
-        assert 3.49 < float(rows[-1]["plotter.bus_depth"]) < 3.51
+        distances.append(float(rows[-1]["vehicle.hull.position.x"]))
+        assert 3.49 < float(rows[-1]["autopilot.network.plotter.bus_depth"]) < 3.51
     assert abs(distances[0]) < 0.1
     assert distances[1] > 2.0
-    assert float(rows[-1]["plotter.bus_engine_speed.e1"]) > 50.0
-    assert abs(float(rows[-1]["pilot.bus_position_n.north"]) - distances[1]) < 1.0
+    assert float(rows[-1]["autopilot.network.plotter.bus_engine_speed.e1"]) > 50.0
+    assert abs(float(rows[-1]["autopilot.network.node.bus_position_n.north"]) - distances[1]) < 1.0
