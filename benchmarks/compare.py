@@ -25,7 +25,8 @@ import fmpy
 
 from seatrial.cosim.assembly import assemble
 from seatrial.cosim.flattening import load_rig
-from seatrial.cosim.ssp.writing import Experiment, write_ssp
+from seatrial.cosim.ssp.describing import Experiment
+from seatrial.cosim.ssp.writing import write_ssp
 
 from .pages import write_measured
 
@@ -90,8 +91,9 @@ def native_fmu(folder: Path) -> Path:
 
 def cases(folder: Path, steps: int) -> list[Case]:
     """Write the packages: the Hydrone's loop of Python FMUs, and a chain of native ones."""
-    hydrone = assemble(load_rig("hydrone"))
-    write_ssp(hydrone, Experiment("hydrone", 0.0, 1e3), folder / "hydrone.ssp")
+    hydrone = assemble(load_rig("landing"))
+    experiment = Experiment("hydrone", 0.0, 1e3)
+    write_ssp(hydrone, experiment, folder / "hydrone.ssp", in_one=True)
     native_fmu(folder)
     names = [f"m{i}" for i in range(MASSES)]
     lines = ['step = "10 ms"', "[components]", *(f'{n} = {{ fmu = "mass.fmu" }}' for n in names)]
@@ -110,7 +112,7 @@ def cases(folder: Path, steps: int) -> list[Case]:
             f"Python FMUs: the Hydrone's closed loop, {len(hydrone.parts)} FMUs, "
             f"{len(hydrone.connections)} connections",
             folder / "hydrone.ssp", len(hydrone.parts), steps, 0.01,
-            ["hull.attitude.phi", "hull.position.x"],
+            ["loop_vehicle_hull.attitude.phi", "loop_vehicle_hull.position.x"],
         ),
         Case(
             f"Native FMUs: a chain of {MASSES} masses, {len(chain.connections)} connections",
