@@ -121,19 +121,29 @@ def test_seeds_travel_as_parameters(tmp_path: Path) -> None:
     assert all(isinstance(seed, float) and seed > 0.0 for seed in seeds.values())
 
 
-def test_a_connection_to_a_parameter_is_refused(write, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("source", "output"),
+    [
+        ('"users.py:Ramp"', "y"),
+        ('"mavlink", set = { tunables = "RATE 1 0 2" }', "tunable.t1"),  # by hand, of no profile
+    ],
+)
+def test_a_connection_to_a_parameter_is_refused(
+    source: str, output: str, write, tmp_path: Path
+) -> None:
     write("users.py", users.CHAIN)
     rig = write(
         "knob.toml",
-        """step = "10 ms"
+        f"""step = "10 ms"
 [components]
-ramp = { fmu = "users.py:Ramp" }
-sum = { fmu = "users.py:Sum" }
+knob = {{ fmu = {source} }}
+sum = {{ fmu = "users.py:Sum" }}
 [connections]
-"ramp.y" = { to = "sum.rate", convert = false }
+"knob.{output}" = {{ to = "sum.rate", convert = false }}
 """,
     )
-    with pytest.raises(InputError, match=r"ramp\.y feeds the parameter sum\.rate, for which SSP"):
+    said = rf"knob\.{output} feeds the parameter sum\.rate, for which SSP"
+    with pytest.raises(InputError, match=said):
         export_ssp(str(rig), tmp_path / "knob.ssp")
     assert not (tmp_path / "knob.ssp").exists()
 
