@@ -74,7 +74,7 @@ push = { rig = "push-{kind}", set = { "push.force_value" = 4 } }
 [connections]
 "push.wrench" = "body.wrench"
 [shows]
-motion = "body.motion"
+motion = ["body.motion", { push = "push.wrench.force" }]
 load   = "body.wrench"
 set    = "body.force_3"
 """
@@ -189,7 +189,7 @@ def test_a_choice_without_a_value_is_named(yard) -> None:
         ('"a.motion"    = "reader.sensors"', '"a.motion" = "reader.total"',
          "reader.total is a port and a.motion a terminal"),
         ('"a.motion"    = "reader.sensors"', '"a.motion" = "b.motion"',
-         "nothing joins: a.motion gives total, turn; b.motion gives total, turn"),
+         "nothing joins: a.motion gives total, turn, push; b.motion gives total, turn, push"),
         ('"a.motion"    = "reader.sensors"', '"a.motion.totl" = "reader.total"',
          "unknown member 'totl'; did you mean 'total'"),
         ('"a.load", "b.load"', '"a.load", "a.load", "a.load"',

@@ -123,7 +123,7 @@ class Resolver:
         group = Group()
         if isinstance(written, list):
             for each in written:
-                found = self.named(scope, each, where)
+                found = self._put_together(scope, shown, each, where)
                 if found is not None:
                     group.add(found)
             return group if group.members else None

@@ -68,8 +68,8 @@ class ComponentEntry(FileModel):
     """Longest wall time of one call of an isolated component."""
 
 
-Shown = str | list[str] | dict[str, str]
-"""A port or terminal, the union of several, or a terminal put together: port by member."""
+Shown = str | dict[str, str] | list[str | dict[str, str]]
+"""A port or terminal; a terminal put together, port by member; or the union of several."""
 
 
 class RigFile(FileModel):
