@@ -40,7 +40,7 @@ def steps() -> list[tuple[str, str, list[str]]]:
 def session(folder: Path) -> Iterator[MavProxy]:
     """Yield a MAVProxy that knows the vehicle of a running trial, and has the page's files."""
     port, home = free_port(), folder / "home"
-    given = {"mavlink__links": f"udpout:{HOST}:{port}"}
+    given = {"autopilot__mavlink__links": f"udpout:{HOST}:{port}"}
     with (
         running("hydrone-mission", folder, factor=FACTOR, **given) as trial,
         mavproxy(home, f"udpin:{HOST}:{port}") as proxy,

@@ -32,7 +32,7 @@ def flown(module: str, trial: str, dialect: str, folder: Path) -> tuple[Run, dic
         "manual_timeout": "5 s",
         "target_timeout": "10 s",
     }
-    sets = {f"mavlink__{name}": value for name, value in given.items()}
+    sets = {f"autopilot__mavlink__{name}": value for name, value in given.items()}
     with running(trial, folder, factor=FACTOR, stop="6000 s", **sets) as started:
         wait_for(lambda: started.is_running, "the trial runs")
         name = f"tests.interop.{module}"

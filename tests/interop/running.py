@@ -79,7 +79,7 @@ def running(
     If the machine held it up it does not hurry afterwards: its peers could not follow. Without a
     factor the trial's own pace is kept.
 
-    ``given`` goes to ``--set``, with two underscores for the point: ``mavlink__links="..."``.
+    ``given`` goes to ``--set``, with two underscores for the point: ``autopilot__mavlink__links="..."``.
     An error in the block gets what the trial printed as a note.
     """
     sets = [f"--set={name.replace('__', '.')}={value}" for name, value in given.items()]

@@ -106,7 +106,7 @@ def test_two_stations_see_three_vehicles_and_each_obeys_its_own_orders(tmp_path,
     port = free_port()
     servers = {name: free_port(socket.SOCK_STREAM) for name in NAMES.values()}
     links = {
-        f"{name}_mavlink__links": f"udpout:{HOST}:{port} tcpin:{HOST}:{server}"
+        f"{name}__autopilot__mavlink__links": f"udpout:{HOST}:{port} tcpin:{HOST}:{server}"
         for name, server in servers.items()
     }
     # One station receives all vehicles at its port, the other is a client of each.
@@ -151,7 +151,7 @@ def test_two_stations_see_three_vehicles_and_each_obeys_its_own_orders(tmp_path,
             station.close()
 
     # What the plants did: each went its own way, and no other.
-    courses = {"hydrone_hull": 0.0, "videoray_vehicle": -90.0, "gloria_boat": 90.0}
+    courses = {"hydrone.vehicle.hull": 0.0, "videoray.vehicle.hull": -90.0, "gloria.vehicle.boat": 90.0}
     for plant, course in courses.items():
         moved = [
             run.signals[f"{plant}.position.{a}"][-1] - run.signals[f"{plant}.position.{a}"][0]

@@ -26,16 +26,17 @@ from .running import SEATRIAL, free_port
 
 # Set off by a current and heeled by a load, so that all of its coordinates move.
 TRIAL = """
-rig  = "hydrone-mavlink"
+rig  = "sil"
+choices = {{ autopilot = "mavlink" }}
 stop = "10 s"
 [set]
-"hull.current" = ["0.4 m/s", "-0.3 m/s", "0 m/s"]
-"mavlink.links" = "udpout:127.0.0.1:{port}"
+"vehicle.hull.current" = ["0.4 m/s", "-0.3 m/s", "0 m/s"]
+"autopilot.mavlink.links" = "udpout:127.0.0.1:{port}"
 [[events]]
 at = "3 s"
-set = {{ "hull.moment_2.x" = "20 N.m" }}
+set = {{ "vehicle.hull.moment_2.x" = "20 N.m" }}
 [record]
-signals = ["hull.*", "gnss.*"]
+signals = ["vehicle.hull.*", "vehicle.gnss.*"]
 """
 CENTIMETRE = 0.0112
 """1e-7 degrees of latitude, m."""
@@ -55,7 +56,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Run:
 @pytest.fixture(scope="module")
 def origin(run: Run) -> tuple[float, float, float]:
     """Return latitude and longitude, degrees, and altitude of the run's origin."""
-    given = run.manifest["components"]["mavlink"]["parameters"]
+    given = run.manifest["components"]["autopilot.mavlink"]["parameters"]
     latitude, longitude = (given[n]["value"] for n in ("latitude", "longitude"))
     return math.degrees(latitude), math.degrees(longitude), given["altitude"]["value"]
 
@@ -84,24 +85,24 @@ def north_east(latitude: float, longitude: float, origin: tuple[float, float, fl
 
 def compare(run: Run, m: dict[str, float], now: float, origin: tuple[float, float, float]) -> None:
     """Compare a SIM_STATE, the truth, with the record."""
-    position = [at(run, f"hull.position.{axis}", now) for axis in "xyz"]
+    position = [at(run, f"vehicle.hull.position.{axis}", now) for axis in "xyz"]
     found = north_east(m["lat_int"] * 1e-7, m["lon_int"] * 1e-7, origin)
     assert found == pytest.approx(position[:2], abs=CENTIMETRE)
     assert m["alt"] == pytest.approx(origin[2] - position[2], abs=1e-6)
     for field, axis in (("roll", "phi"), ("pitch", "theta"), ("yaw", "psi")):
-        truth = at(run, f"hull.attitude.{axis}", now)
+        truth = at(run, f"vehicle.hull.attitude.{axis}", now)
         assert m[field] == pytest.approx(truth, rel=SINGLE, abs=1e-12)
     for field, axis in (("xgyro", "p"), ("ygyro", "q"), ("zgyro", "r")):
-        assert m[field] == pytest.approx(at(run, f"hull.rates.{axis}", now), rel=SINGLE, abs=1e-12)
+        assert m[field] == pytest.approx(at(run, f"vehicle.hull.rates.{axis}", now), rel=SINGLE, abs=1e-12)
 
 
 def test_it_moves(run: Run) -> None:
-    for name in ("hull.position.x", "hull.position.y", "hull.attitude.phi"):
+    for name in ("vehicle.hull.position.x", "vehicle.hull.position.y", "vehicle.hull.attitude.phi"):
         assert np.ptp(run.signals[name]) > 0.1
 
 
 def test_pymavlink_reads_the_trajectory(run: Run, origin: tuple[float, float, float]) -> None:
-    reader = mavutil.mavlink_connection(str(run.folder / "mavlink.tlog"), dialect="all")
+    reader = mavutil.mavlink_connection(str(run.folder / "autopilot.mavlink.tlog"), dialect="all")
     begun, kinds, truths, estimates = None, set(), 0, 0
     while (m := reader.recv_match()) is not None:
         kinds.add(m.get_type())
@@ -112,7 +113,7 @@ def test_pymavlink_reads_the_trajectory(run: Run, origin: tuple[float, float, fl
             truths += 1
         elif m.get_type() == "LOCAL_POSITION_NED":
             assert m.time_boot_ms == round(now * 1e3)
-            wanted = [at(run, f"gnss.position_n.{axis}", now) for axis in ("north", "east", "down")]
+            wanted = [at(run, f"vehicle.gnss.position_n.{axis}", now) for axis in ("north", "east", "down")]
             assert [m.x, m.y, m.z] == pytest.approx(wanted, rel=SINGLE, abs=1e-12)
             estimates += 1
     reader.close()
@@ -122,7 +123,7 @@ def test_pymavlink_reads_the_trajectory(run: Run, origin: tuple[float, float, fl
 
 
 def test_mavlogdump_reads_the_trajectory(run: Run, origin: tuple[float, float, float]) -> None:
-    log = str(run.folder / "mavlink.tlog")
+    log = str(run.folder / "autopilot.mavlink.tlog")
     table = tool("mavlogdump.py", "--types", "SIM_STATE", "--format", "csv", log)
     rows = list(csv.DictReader(io.StringIO(table)))
     begun = float(rows[0]["timestamp"])
@@ -134,14 +135,14 @@ def test_mavlogdump_reads_the_trajectory(run: Run, origin: tuple[float, float, f
 
 
 def test_mavtogpx_draws_the_track(run: Run, origin: tuple[float, float, float]) -> None:
-    log = run.folder / "mavlink.tlog"
+    log = run.folder / "autopilot.mavlink.tlog"
     tool("mavtogpx.py", "--type", "GLOBAL_POSITION_INT", "--", str(log))
     gpx = ElementTree.parse(f"{log}.gpx").getroot()
     space = {"g": "http://www.topografix.com/GPX/1/0"}
     points = gpx.findall(".//g:trkpt", space)
     Path(f"{log}.gpx").unlink()
     assert len(points) > 40
-    drift = [run.signals[f"gnss.position_n.{axis}"] for axis in ("north", "east")]
+    drift = [run.signals[f"vehicle.gnss.position_n.{axis}"] for axis in ("north", "east")]
     for point in points:
         place = north_east(float(point.get("lat", "")), float(point.get("lon", "")), origin)
         off = np.hypot(drift[0] - place[0], drift[1] - place[1])
@@ -155,10 +156,10 @@ def test_the_mcap_file_has_the_trajectory(run: Run, tmp_path: Path) -> None:
     )
     rows = 0
     with out.open("rb") as file:
-        for _, _, message in make_reader(file).iter_messages(topics="/hull"):
+        for _, _, message in make_reader(file).iter_messages(topics="/vehicle.hull"):
             now, got = message.log_time / 1e9, json.loads(message.data)
             assert [got["position"][axis] for axis in "xyz"] == [
-                at(run, f"hull.position.{axis}", now) for axis in "xyz"
+                at(run, f"vehicle.hull.position.{axis}", now) for axis in "xyz"
             ]
             rows += 1
     assert rows == len(run.time) == 1001

@@ -26,7 +26,7 @@ def boat(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
     """Yield a connection to the vehicle of a running trial, which has a position by now."""
     port, folder = free_port(socket.SOCK_STREAM), tmp_path_factory.mktemp("script")
     links = f"tcpin:{HOST}:{port}"
-    with running("hydrone-mission", folder, factor=4.0, mavlink__links=links) as trial:
+    with running("hydrone-mission", folder, factor=4.0, autopilot__mavlink__links=links) as trial:
         wait_for(lambda: trial.is_running, "the trial's first step")
         connection = mavutil.mavlink_connection(f"tcp:{HOST}:{port}", dialect="all", retries=10)
         connection.wait_heartbeat(timeout=WAIT_S)

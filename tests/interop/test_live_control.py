@@ -132,7 +132,7 @@ def test_a_station_changes_the_pace_pauses_and_breaks_things(
 ) -> None:
     links = f"udpout:{HOST}:{station.port}"
     with running(
-        "hydrone-mission", tmp_path, factor=None, engine=engine, mavlink__links=links
+        "hydrone-mission", tmp_path, factor=None, engine=engine, autopilot__mavlink__links=links
     ) as trial:
         controlled(trial, station)
         # A signal ends a pause, and the run.
@@ -142,13 +142,13 @@ def test_a_station_changes_the_pace_pauses_and_breaks_things(
     assert run.manifest["status"] == "stopped"
     assert run.timing["pacing"]["paused_s"] >= 3.5
     assert run.timing["pacing"]["overruns"]["longest_s"] < 3.5
-    assert "off" in run.signals["mavlink.failure.gps"]
+    assert "off" in run.signals["autopilot.mavlink.failure.gps"]
 
 
 @pytest.mark.long  # tests/links/mavlink/test_pause.py has it in simulated wall time
 def test_a_pause_that_nobody_can_end_is_over(station: Station, tmp_path: Path) -> None:
     links = f"udpout:{HOST}:{station.port}"
-    sets = {"mavlink__links": links, "mavlink__station_timeout": "2 s"}
+    sets = {"autopilot__mavlink__links": links, "autopilot__mavlink__station_timeout": "2 s"}
     with running("hydrone-mission", tmp_path, factor=None, stop="10 s", **sets) as trial:
         wait_for(lambda: trial.is_running, "the trial runs")
         station.receive("HEARTBEAT")
@@ -162,7 +162,7 @@ def test_a_pause_that_nobody_can_end_is_over(station: Station, tmp_path: Path) -
 @pytest.mark.parametrize("dialect", ["ardupilotmega", "px4"])
 def test_mavsdk_injects_failures(dialect: str, tmp_path: Path) -> None:
     port = free_port()
-    sets = {"mavlink__links": f"udpout:{HOST}:{port}", "mavlink__autopilot_type": dialect}
+    sets = {"autopilot__mavlink__links": f"udpout:{HOST}:{port}", "autopilot__mavlink__autopilot_type": dialect}
     with running("hydrone-mission", tmp_path, factor=None, **sets) as trial:
         wait_for(lambda: trial.is_running, "the trial runs")
         done = subprocess.run(

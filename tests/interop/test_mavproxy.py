@@ -107,7 +107,7 @@ def drive_and_arm(proxy: MavProxy, trial: RunningTrial) -> None:
     proxy.ask("arm throttle", r"\bARMED$")
     proxy.type("rc 3 1800")
     proxy.type("rc 1 1550")
-    wait_for(lambda: moved(trial, "hull") > 1.0, "1 m by overridden channels")
+    wait_for(lambda: moved(trial, "vehicle.hull") > 1.0, "1 m by overridden channels")
     proxy.type("rc all 0")
     proxy.ask("disarm", r"DISARMED$")
 
@@ -117,7 +117,7 @@ def test_a_session_with_a_boat(tmp_path: Path, factor: float) -> None:
     port, folder = free_port(), tmp_path
     with (
         running(
-            "hydrone-mission", folder, factor=factor, mavlink__links=f"udpin:{HOST}:{port}"
+            "hydrone-mission", folder, factor=factor, autopilot__mavlink__links=f"udpin:{HOST}:{port}"
         ) as trial,
         mavproxy(folder / "home", f"udpout:{HOST}:{port}") as proxy,
     ):
@@ -153,9 +153,9 @@ def test_a_session_with_signatures(tmp_path: Path) -> None:
     port, folder = free_port(), tmp_path
     (folder / "key.txt").write_text("battery staple\n")
     given = {
-        "mavlink__links": f"udpin:{HOST}:{port}",
-        "mavlink__signing_key_file": "key.txt",
-        "mavlink__state_file": "state.json",
+        "autopilot__mavlink__links": f"udpin:{HOST}:{port}",
+        "autopilot__mavlink__signing_key_file": "key.txt",
+        "autopilot__mavlink__state_file": "state.json",
     }
     with (
         running("hydrone-mission", folder, factor=5.0, **given) as trial,
@@ -181,11 +181,14 @@ def test_a_session_with_signatures(tmp_path: Path) -> None:
 
 
 DIVE = """
-rig  = "videoray-mavlink"
+rig  = "sil"
+choices = { vehicle = "videoray", autopilot = "mavlink" }
 stop = "3600 s"
+[set]
+"vehicle.hull.eta_start.z" = "1 m"
 [real_time]
 [record]
-signals = ["vehicle.position.*"]
+signals = ["vehicle.hull.position.*"]
 every   = "1 s"
 """
 DEEP = "QGC WPL 110\n0\t1\t0\t16\t0\t0\t0\t0\t{0:.8f}\t{1:.8f}\t0\t1\n1\t0\t3\t16\t0\t0\t0\t0\t{2:.8f}\t{1:.8f}\t-3\t1\n"
@@ -198,7 +201,7 @@ def test_a_session_with_a_submarine(tmp_path: Path) -> None:
     trial_file.write_text(DIVE)
     with (
         running(
-            str(trial_file), folder, factor=5.0, mavlink__links=f"udpin:{HOST}:{port}"
+            str(trial_file), folder, factor=5.0, autopilot__mavlink__links=f"udpin:{HOST}:{port}"
         ) as trial,
         mavproxy(folder / "home", f"udpout:{HOST}:{port}") as proxy,
     ):
@@ -211,7 +214,7 @@ def test_a_session_with_a_submarine(tmp_path: Path) -> None:
             proxy.ask(f"mode {name}", rf"Mode {name}$")
         proxy.ask("arm throttle", r"\bARMED$")
         proxy.type("rc 3 1300")  # downwards; the depth is held when the control is released
-        wait_for(lambda: moved(trial, "vehicle", "z") > 1.0, "1 m down by overridden channels")
+        wait_for(lambda: moved(trial, "vehicle.hull", "z") > 1.0, "1 m down by overridden channels")
         proxy.type("rc 3 1500")
         station = mavutil.mavlink_connection(f"udpout:{HOST}:{port}", source_system=250)
         station.mav.heartbeat_send(6, 8, 0, 0, 4)
@@ -226,7 +229,7 @@ def test_a_session_with_a_submarine(tmp_path: Path) -> None:
         proxy.expect(r"AP: Mission complete", 120.0)
         assert proxy.newest("GLOBAL_POSITION_INT", "relative_alt") == pytest.approx(-3000, abs=400)
         proxy.ask("mode SURFACE", r"AP: Mode SURFACE$")
-        depth = lambda: trial.signals().signals["vehicle.position.z"]  # noqa: E731
+        depth = lambda: trial.signals().signals["vehicle.hull.position.z"]  # noqa: E731
         wait_for(lambda: depth()[-1] < 0.5, "the surface", 120.0)
         proxy.ask("disarm", r"DISARMED$")
         assert proxy.complaints("online system") == []

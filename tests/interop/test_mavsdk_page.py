@@ -25,7 +25,7 @@ def test_the_program_of_the_page(tmp_path: Path) -> None:
     program.write_text(found[1], "utf-8")
     links = f"udpout:{HOST}:{port}"
     with running(
-        "hydrone-mission", tmp_path, factor=4.0, engine="fmu", mavlink__links=links
+        "hydrone-mission", tmp_path, factor=4.0, engine="fmu", autopilot__mavlink__links=links
     ) as trial:
         wait_for(lambda: trial.is_running, "the trial runs", 180.0)
         command = [sys.executable, str(program), f"udpin://{HOST}:{port}"]
@@ -34,9 +34,9 @@ def test_the_program_of_the_page(tmp_path: Path) -> None:
         run = trial.stop()
     assert "of 4" in done.stdout
     assert done.stdout.rstrip().endswith("home")
-    x, y = (run.signals[f"hull.position.{axis}"] for axis in "xy")
+    x, y = (run.signals[f"vehicle.hull.position.{axis}"] for axis in "xy")
     east = 10.0 * METRE * np.cos(np.radians(31.78))
     for north, to_east in ((10.0 * METRE, 0.0), (10.0 * METRE, east)):
         assert np.hypot(x - north, y - to_east).min() <= 2.1
     assert np.hypot(x[-1], y[-1]) <= 3.5
-    assert not run.signals["mavlink.armed"][-1]
+    assert not run.signals["autopilot.mavlink.armed"][-1]

@@ -14,7 +14,7 @@ from .mavsdk_process import flown
 @pytest.mark.parametrize("dialect", ["ardupilotmega", "px4"])
 def test_a_dive(dialect: str, tmp_path: Path, subtests: pytest.Subtests) -> None:
     run, received = flown("mavsdk_dive", "videoray-mission", dialect, tmp_path)
-    x, y, z = (run.signals[f"vehicle.position.{axis}"] for axis in "xyz")
+    x, y, z = (run.signals[f"vehicle.hull.position.{axis}"] for axis in "xyz")
 
     def stage(name: str, tail_s: float = np.inf) -> slice:
         began, ended = received["marks"][name]
@@ -28,7 +28,7 @@ def test_a_dive(dialect: str, tmp_path: Path, subtests: pytest.Subtests) -> None
             assert away.min() <= 0.6
             assert z[rows][away.argmin()] == pytest.approx(down, abs=0.5)
     with subtests.test("surface"):
-        assert set(run.signals["mavlink.mode"][stage("surface")][3:-1]) == {"surface"}
+        assert set(run.signals["autopilot.mavlink.mode"][stage("surface")][3:-1]) == {"surface"}
         assert z[stage("surface")][-1] < 0.5
     if dialect == "px4":
         with subtests.test("goto"):
@@ -36,9 +36,9 @@ def test_a_dive(dialect: str, tmp_path: Path, subtests: pytest.Subtests) -> None
             assert np.hypot(x[stage("goto")][-1] - 2.0, y[stage("goto")][-1] - 2.0) < 0.6
         with subtests.test("turn"):
             turn = stage("turn", 5.0)
-            assert np.degrees(run.signals["vehicle.rates.r"][turn]).mean() == pytest.approx(
+            assert np.degrees(run.signals["vehicle.hull.rates.r"][turn]).mean() == pytest.approx(
                 5, abs=1
             )
-            assert run.signals["vehicle.velocity.u"][turn].mean() == pytest.approx(0.2, abs=0.05)
+            assert run.signals["vehicle.hull.velocity.u"][turn].mean() == pytest.approx(0.2, abs=0.05)
             sinking = np.polyfit(run.time[turn], z[turn], 1)[0]
             assert sinking == pytest.approx(0.05, abs=0.02)

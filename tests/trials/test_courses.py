@@ -46,7 +46,7 @@ def test_every_criterion_holds(name, tmp_path):
 
 def beside(found, craft):
     """Return per leg the waypoint and the true positions, and the distances from its line."""
-    parameters = found.manifest["components"]["course"]["parameters"]
+    parameters = found.manifest["components"]["autopilot.course"]["parameters"]
 
     def place(name):
         return np.array([parameters[f"{name}.{axis}"]["value"] for axis in ("north", "east")])
@@ -54,7 +54,7 @@ def beside(found, craft):
     count = int(parameters["count"]["value"])
     places = [place(name) for name in ("start_point", *(f"waypoint_{n + 1}" for n in range(count)))]
     track = np.column_stack([found.signals[f"{craft}.position.{axis}"] for axis in "xy"])
-    legs, follows = found.signals["course.leg"], found.signals["guidance.state"] == 3
+    legs, follows = found.signals["autopilot.course.leg"], found.signals["autopilot.pilot.guidance.state"] == 3
     for n, (start, end) in enumerate(itertools.pairwise(places), 1):
         at = track[legs == n]
         length = math.dist(start, end)
@@ -69,8 +69,8 @@ def beside(found, craft):
 @pytest.mark.parametrize(
     ("name", "craft", "radius"),
     [
-        ("hydrone-course-square", "hull", 3.0),
-        pytest.param("videoray-course-box", "vehicle", 1.0, marks=pytest.mark.long),
+        ("hydrone-course-square", "vehicle.hull", 3.0),
+        pytest.param("videoray-course-box", "vehicle.hull", 1.0, marks=pytest.mark.long),
     ],
 )
 def test_the_true_track_passes_the_waypoints_and_keeps_to_the_legs(name, craft, radius, tmp_path):
@@ -84,7 +84,7 @@ def test_the_true_track_passes_the_waypoints_and_keeps_to_the_legs(name, craft, 
     rms = math.sqrt(np.mean(off**2))
     assert rms <= 2.0
     # The component's own figure, from the fixes.
-    assert found.signals["guidance.cross_track_rms"][-1] == pytest.approx(rms, rel=0.1)
+    assert found.signals["autopilot.pilot.guidance.cross_track_rms"][-1] == pytest.approx(rms, rel=0.1)
 
 
 def test_across_a_current_it_heads_up_by_the_crab_angle(tmp_path):
@@ -92,7 +92,7 @@ def test_across_a_current_it_heads_up_by_the_crab_angle(tmp_path):
     passes(found)
     late = (found.time > 150) & (found.time < 190)
     u, v, psi = (
-        found.signals[f"hull.{name}"][late] for name in ("velocity.u", "velocity.v", "attitude.psi")
+        found.signals[f"vehicle.hull.{name}"][late] for name in ("velocity.u", "velocity.v", "attitude.psi")
     )
     # A third of a metre per second abeam, with the speed held over ground along the bow.
     assert (u * np.sin(psi) + v * np.cos(psi)).mean() == pytest.approx(0.0, abs=0.01)
@@ -104,9 +104,9 @@ def test_across_a_current_it_heads_up_by_the_crab_angle(tmp_path):
 
 @pytest.mark.long
 def test_without_the_integral_the_current_leaves_its_error(tmp_path):
-    found = run("hydrone-course-current", tmp_path / "run", **{"guidance.integral_gain": 0.0})
+    found = run("hydrone-course-current", tmp_path / "run", **{"autopilot.pilot.guidance.integral_gain": 0.0})
     late = (found.time > 150) & (found.time < 190)
-    psi, error = found.signals["hull.attitude.psi"], found.signals["guidance.cross_track"]
+    psi, error = found.signals["vehicle.hull.attitude.psi"], found.signals["autopilot.pilot.guidance.cross_track"]
     # tan(heading) = -e / lookahead.
     assert error[late].mean() == pytest.approx(-5.0 * math.tan(psi[late].mean()), abs=0.1)
     assert error[late].mean() > 1.0

@@ -28,7 +28,7 @@ def test_every_criterion_holds(name, tmp_path):
 
 def test_heading_of_the_compass_follows_that_of_the_vehicle(tmp_path):
     found = run("videoray-open-yaw", tmp_path / "run")
-    psi, read = found.signals["vehicle.attitude.psi"], found.signals["ahrs.euler.psi"]
+    psi, read = found.signals["@.attitude.psi"], found.signals["ahrs.euler.psi"]
     assert np.unwrap(psi)[-1] > 5 * math.tau
     samples = slice(0, None, 10)
     error = np.degrees((read - psi + math.pi)[samples] % math.tau - math.pi)
@@ -51,7 +51,7 @@ def test_faster_than_the_limit_it_porpoises(share, least, most, tmp_path):
         "stop": "120 s",
     }
     found = run("videoray-open-surge", tmp_path / "run", **settings)
-    pitch = np.degrees(np.abs(found.signals["vehicle.attitude.theta"][found.time > 90]))
+    pitch = np.degrees(np.abs(found.signals["@.attitude.theta"][found.time > 90]))
     assert least <= pitch.max() <= most
 
 
