@@ -32,6 +32,7 @@ COMMANDS = {
         "describe:describe",
         "Show a rig's components, rigs inside it, every connection, and what is left open.",
     ),
+    "new": Command("new:new_app", "Write the files of a vehicle of your own."),
     "report": Command("report:report", "Write the report of a run again."),
     "compare": Command(
         "compare:compare", "Compare two runs signal by signal; status 1 if their signals differ."
