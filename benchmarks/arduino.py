@@ -16,8 +16,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 from seatrial.cosim.assembly import assemble
-from seatrial.cosim.master import Master
 from seatrial.cosim.flattening import load_rig
+from seatrial.cosim.master import Master
 from seatrial.links.arduino.component import Arduino
 from seatrial.links.text import encode
 
@@ -28,6 +28,8 @@ STEP_NS = 20_000_000
 HEADING = b"$HEHDT,100.0,T*2E\r\n"
 FIX = b"$GPRMC,120000.00,A,2251.7200,S,04313.3800,W,3.00,100.0,010126,,,A*6B\r\n"
 WIRES = "9 servo 1; 10 servo 2; 11 servo 3; A0 vane 5; 2 anemometer 1; 0x68 mpu6050"
+
+CHOICES = {"vehicle": "gloria", "autopilot": "gloria-sketch", "servos": "pulse", "step": "20 ms"}
 
 
 def spent() -> float:
@@ -60,11 +62,9 @@ def alone(backend: str, seconds: float) -> float:
 
 
 def sailing(backend: str, seconds: float) -> float:
-    """Return the processor time of the rig ``gloria-sketch``, boards and all, in process; s."""
-    rig = load_rig("gloria-sketch")
-    components = rig.file.model_dump(exclude_unset=True)["components"]
-    components["mega"]["set"] = {"backend": backend}
-    system = assemble(rig.changed({"components": components}), "direct")
+    """Return the processor time of Gloria under her sketch, boards and all, in process; s."""
+    system = assemble(load_rig("sil", None, CHOICES), "direct")
+    system.set("autopilot.main.mega.backend", backend, "this table")
     begin = spent()
     try:
         master = Master(system)

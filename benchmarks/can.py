@@ -18,8 +18,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 from seatrial.cosim.assembly import assemble
-from seatrial.cosim.master import Master
 from seatrial.cosim.flattening import load_rig
+from seatrial.cosim.master import Master
 from seatrial.links.can.component import NODES, CanBus
 from seatrial.links.can.controller import Controller
 from seatrial.links.can.frame import Frame

@@ -112,7 +112,7 @@ def cases(folder: Path, steps: int) -> list[Case]:
             f"Python FMUs: the Hydrone's closed loop, {len(hydrone.parts)} FMUs, "
             f"{len(hydrone.connections)} connections",
             folder / "hydrone.ssp", len(hydrone.parts), steps, 0.01,
-            ["loop_vehicle_hull.attitude.phi", "loop_vehicle_hull.position.x"],
+            ["vehicle_hull.attitude.phi", "vehicle_hull.position.x"],
         ),
         Case(
             f"Native FMUs: a chain of {MASSES} masses, {len(chain.connections)} connections",

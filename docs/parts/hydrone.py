@@ -70,11 +70,12 @@ class Motion(NamedTuple):
 
 def _motion(run: Run) -> Motion:
     signals = run.signals
-    x, y, z = (signals[f"hull.position.{axis}"] for axis in "xyz")
-    angles = [np.degrees(signals[f"hull.attitude.{a}"]) for a in ("phi", "theta", "psi")]
+    closed = "vehicle.hull.position.x" in signals
+    hull, load = ("vehicle.hull", "drone.load") if closed else ("hull", "downwash.load")
+    x, y, z = (signals[f"{hull}.position.{axis}"] for axis in "xyz")
+    angles = [np.degrees(signals[f"{hull}.attitude.{a}"]) for a in ("phi", "theta", "psi")]
     settles = next(v["worst"] for v in run.verdicts if "settles" in v["check"])
-    load = signals["downwash.load"]
-    return Motion(run.time, x, y, z, *angles, load, bool(run.passed), settles)
+    return Motion(run.time, x, y, z, *angles, signals[load], bool(run.passed), settles)
 
 
 @cache

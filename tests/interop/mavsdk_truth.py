@@ -38,7 +38,9 @@ class Truth:
     def __init__(self, run: Run) -> None:
         self.run, self.time = run, run.time
         self.arrays: dict[str, Array] = {}
-        phi, theta, psi = (run.signals[f"vehicle.hull.attitude.{a}"] for a in ("phi", "theta", "psi"))
+        phi, theta, psi = (
+            run.signals[f"vehicle.hull.attitude.{a}"] for a in ("phi", "theta", "psi")
+        )
         turn = Rotation.from_euler("ZYX", np.column_stack([psi, theta, phi]))
         position, velocity, rates, acceleration = (
             np.column_stack([run.signals[f"vehicle.hull.{port}.{a}"] for a in axes])

@@ -151,7 +151,11 @@ def test_two_stations_see_three_vehicles_and_each_obeys_its_own_orders(tmp_path,
             station.close()
 
     # What the plants did: each went its own way, and no other.
-    courses = {"hydrone.vehicle.hull": 0.0, "videoray.vehicle.hull": -90.0, "gloria.vehicle.boat": 90.0}
+    courses = {
+        "hydrone.vehicle.hull": 0.0,
+        "videoray.vehicle.hull": -90.0,
+        "gloria.vehicle.boat": 90.0,
+    }
     for plant, course in courses.items():
         moved = [
             run.signals[f"{plant}.position.{a}"][-1] - run.signals[f"{plant}.position.{a}"][0]

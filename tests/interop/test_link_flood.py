@@ -125,7 +125,9 @@ def received(log: Path) -> Iterator[bytes]:
 @pytest.mark.parametrize("seconds", [5, pytest.param(60, marks=pytest.mark.long)])
 def test_a_flood_is_read_to_the_end(tmp_path: Path, seconds: int) -> None:
     port, frames = free_port(), mixed(RATE * seconds)
-    with running("hydrone-mission", tmp_path, autopilot__mavlink__links=f"udpin:{HOST}:{port}") as trial:
+    with running(
+        "hydrone-mission", tmp_path, autopilot__mavlink__links=f"udpin:{HOST}:{port}"
+    ) as trial:
         wait_for(lambda: trial.is_running, "the trial's first step")
         clock = Clock(port)
         idle, _ = share(trial, clock, lambda: wait_for(lambda: clock.now() > 5.0, "5 s"))

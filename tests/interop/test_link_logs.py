@@ -93,7 +93,9 @@ def compare(run: Run, m: dict[str, float], now: float, origin: tuple[float, floa
         truth = at(run, f"vehicle.hull.attitude.{axis}", now)
         assert m[field] == pytest.approx(truth, rel=SINGLE, abs=1e-12)
     for field, axis in (("xgyro", "p"), ("ygyro", "q"), ("zgyro", "r")):
-        assert m[field] == pytest.approx(at(run, f"vehicle.hull.rates.{axis}", now), rel=SINGLE, abs=1e-12)
+        assert m[field] == pytest.approx(
+            at(run, f"vehicle.hull.rates.{axis}", now), rel=SINGLE, abs=1e-12
+        )
 
 
 def test_it_moves(run: Run) -> None:
@@ -113,7 +115,10 @@ def test_pymavlink_reads_the_trajectory(run: Run, origin: tuple[float, float, fl
             truths += 1
         elif m.get_type() == "LOCAL_POSITION_NED":
             assert m.time_boot_ms == round(now * 1e3)
-            wanted = [at(run, f"vehicle.gnss.position_n.{axis}", now) for axis in ("north", "east", "down")]
+            wanted = [
+                at(run, f"vehicle.gnss.position_n.{axis}", now)
+                for axis in ("north", "east", "down")
+            ]
             assert [m.x, m.y, m.z] == pytest.approx(wanted, rel=SINGLE, abs=1e-12)
             estimates += 1
     reader.close()

@@ -34,7 +34,10 @@ FILE_DEG = 0.51e-6
 def vehicle(tmp_path_factory: pytest.TempPathFactory) -> Iterator[int]:
     """Yield the port at which a running trial's vehicle listens."""
     port, folder = free_port(), tmp_path_factory.mktemp("loss")
-    given = {"autopilot__mavlink__links": f"udpin:{HOST}:{port}", "autopilot__mavlink__system_id": str(SYSTEM)}
+    given = {
+        "autopilot__mavlink__links": f"udpin:{HOST}:{port}",
+        "autopilot__mavlink__system_id": str(SYSTEM),
+    }
     with running("hydrone-mission", folder, factor=2.0, stop="6000 s", **given) as trial:
         wait_for(lambda: trial.is_running, "the trial's first step")
         yield port

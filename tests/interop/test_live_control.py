@@ -162,7 +162,10 @@ def test_a_pause_that_nobody_can_end_is_over(station: Station, tmp_path: Path) -
 @pytest.mark.parametrize("dialect", ["ardupilotmega", "px4"])
 def test_mavsdk_injects_failures(dialect: str, tmp_path: Path) -> None:
     port = free_port()
-    sets = {"autopilot__mavlink__links": f"udpout:{HOST}:{port}", "autopilot__mavlink__autopilot_type": dialect}
+    sets = {
+        "autopilot__mavlink__links": f"udpout:{HOST}:{port}",
+        "autopilot__mavlink__autopilot_type": dialect,
+    }
     with running("hydrone-mission", tmp_path, factor=None, **sets) as trial:
         wait_for(lambda: trial.is_running, "the trial runs")
         done = subprocess.run(

@@ -117,7 +117,10 @@ def test_a_session_with_a_boat(tmp_path: Path, factor: float) -> None:
     port, folder = free_port(), tmp_path
     with (
         running(
-            "hydrone-mission", folder, factor=factor, autopilot__mavlink__links=f"udpin:{HOST}:{port}"
+            "hydrone-mission",
+            folder,
+            factor=factor,
+            autopilot__mavlink__links=f"udpin:{HOST}:{port}",
         ) as trial,
         mavproxy(folder / "home", f"udpout:{HOST}:{port}") as proxy,
     ):

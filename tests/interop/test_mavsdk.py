@@ -179,7 +179,9 @@ def it_is_steered(flight: Flight) -> None:
 
 def it_has_the_helm(flight: Flight) -> None:
     rows = flight.truth.window(*flight.marks["manual"])
-    surge, yaw = (flight.truth.run.signals[f"autopilot.mavlink.manual.{a}"] for a in ("surge", "yaw"))
+    surge, yaw = (
+        flight.truth.run.signals[f"autopilot.mavlink.manual.{a}"] for a in ("surge", "yaw")
+    )
     later = slice(rows.start + 20, rows.stop - 5)
     assert surge[later] == pytest.approx(0.6, abs=1e-3)
     assert yaw[later] == pytest.approx(0.3, abs=1e-3)

@@ -39,6 +39,8 @@ def test_a_dive(dialect: str, tmp_path: Path, subtests: pytest.Subtests) -> None
             assert np.degrees(run.signals["vehicle.hull.rates.r"][turn]).mean() == pytest.approx(
                 5, abs=1
             )
-            assert run.signals["vehicle.hull.velocity.u"][turn].mean() == pytest.approx(0.2, abs=0.05)
+            assert run.signals["vehicle.hull.velocity.u"][turn].mean() == pytest.approx(
+                0.2, abs=0.05
+            )
             sinking = np.polyfit(run.time[turn], z[turn], 1)[0]
             assert sinking == pytest.approx(0.05, abs=0.02)

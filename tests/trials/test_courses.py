@@ -54,7 +54,10 @@ def beside(found, craft):
     count = int(parameters["count"]["value"])
     places = [place(name) for name in ("start_point", *(f"waypoint_{n + 1}" for n in range(count)))]
     track = np.column_stack([found.signals[f"{craft}.position.{axis}"] for axis in "xy"])
-    legs, follows = found.signals["autopilot.course.leg"], found.signals["autopilot.pilot.guidance.state"] == 3
+    legs, follows = (
+        found.signals["autopilot.course.leg"],
+        found.signals["autopilot.pilot.guidance.state"] == 3,
+    )
     for n, (start, end) in enumerate(itertools.pairwise(places), 1):
         at = track[legs == n]
         length = math.dist(start, end)
@@ -84,7 +87,9 @@ def test_the_true_track_passes_the_waypoints_and_keeps_to_the_legs(name, craft, 
     rms = math.sqrt(np.mean(off**2))
     assert rms <= 2.0
     # The component's own figure, from the fixes.
-    assert found.signals["autopilot.pilot.guidance.cross_track_rms"][-1] == pytest.approx(rms, rel=0.1)
+    assert found.signals["autopilot.pilot.guidance.cross_track_rms"][-1] == pytest.approx(
+        rms, rel=0.1
+    )
 
 
 def test_across_a_current_it_heads_up_by_the_crab_angle(tmp_path):
@@ -92,7 +97,8 @@ def test_across_a_current_it_heads_up_by_the_crab_angle(tmp_path):
     passes(found)
     late = (found.time > 150) & (found.time < 190)
     u, v, psi = (
-        found.signals[f"vehicle.hull.{name}"][late] for name in ("velocity.u", "velocity.v", "attitude.psi")
+        found.signals[f"vehicle.hull.{name}"][late]
+        for name in ("velocity.u", "velocity.v", "attitude.psi")
     )
     # A third of a metre per second abeam, with the speed held over ground along the bow.
     assert (u * np.sin(psi) + v * np.cos(psi)).mean() == pytest.approx(0.0, abs=0.01)
@@ -104,9 +110,16 @@ def test_across_a_current_it_heads_up_by_the_crab_angle(tmp_path):
 
 @pytest.mark.long
 def test_without_the_integral_the_current_leaves_its_error(tmp_path):
-    found = run("hydrone-course-current", tmp_path / "run", **{"autopilot.pilot.guidance.integral_gain": 0.0})
+    found = run(
+        "hydrone-course-current",
+        tmp_path / "run",
+        **{"autopilot.pilot.guidance.integral_gain": 0.0},
+    )
     late = (found.time > 150) & (found.time < 190)
-    psi, error = found.signals["vehicle.hull.attitude.psi"], found.signals["autopilot.pilot.guidance.cross_track"]
+    psi, error = (
+        found.signals["vehicle.hull.attitude.psi"],
+        found.signals["autopilot.pilot.guidance.cross_track"],
+    )
     # tan(heading) = -e / lookahead.
     assert error[late].mean() == pytest.approx(-5.0 * math.tan(psi[late].mean()), abs=0.1)
     assert error[late].mean() > 1.0

@@ -114,7 +114,7 @@ UPRIGHT = {"it stays upright", "heel stays below 45 degrees"}
 
 
 def heel(found: Run) -> float:
-    return float(np.abs(found.signals["boat.attitude.phi"]).max() / DEG)
+    return float(np.abs(found.signals["vehicle.boat.attitude.phi"]).max() / DEG)
 
 
 def assert_gusts(run: Any, course: int, seed: int, engine: str) -> None:
@@ -122,7 +122,7 @@ def assert_gusts(run: Any, course: int, seed: int, engine: str) -> None:
     assert found.manifest["status"] == "complete"
     assert {v["name"] for v in found.verdicts if v["passed"]} >= UPRIGHT
     # The gust of 50 % came, on top of the others.
-    assert found.signals["wind.speed"].max() > 6.0
+    assert found.signals["vehicle.wind.speed"].max() > 6.0
 
 
 @pytest.mark.long
@@ -153,7 +153,9 @@ def test_in_no_gusts_does_it_heel_beyond_45_degrees(run: Any, course: int, seed:
 def test_the_triangle_is_finished_by_wearing_round(run: Any, seed: int) -> None:
     found = run("gloria-triangle", (("seed", seed),), "fmu")
     assert found.passed
-    off = found.signals["boat.attitude.psi"] - found.signals["wind.direction"] - np.pi
+    off = (
+        found.signals["vehicle.boat.attitude.psi"] - found.signals["vehicle.wind.direction"] - np.pi
+    )
     # It never was head to wind: 30 degrees are for gusts and for yawing.
     assert np.abs(np.angle(np.exp(1j * off))).min() > 30 * DEG
 
@@ -161,5 +163,5 @@ def test_the_triangle_is_finished_by_wearing_round(run: Any, seed: int) -> None:
 @pytest.mark.long
 def test_it_beats_to_windward_by_wearing_round(run: Any) -> None:
     found = run("gloria-windward", (("seed", 2),))
-    assert found.signals["course.passed"][-1] >= 1
+    assert found.signals["autopilot.course.passed"][-1] >= 1
     assert heel(found) < 90.0

@@ -260,13 +260,16 @@ def test_sensitivities(row: dict[str, str], sensitivity: Cases) -> None:
 
 def test_the_autopilot_keeps_the_craft_where_it_is(tmp_path: Path) -> None:
     runs = {}
-    for name in ("hydrone-open-landing", "hydrone-landing"):
+    hulls = {"hydrone-open-landing": "hull", "hydrone-landing": "vehicle.hull"}
+    for name in hulls:
         trial = load_trial(name).changed({"stop": "60 s"}, "test")
         runs[name] = load_run(run_trial(trial, tmp_path / name, engine="direct").folder)
     drift = {
-        name: np.hypot(run.signals["hull.position.x"][-1], run.signals["hull.position.y"][-1])
+        name: np.hypot(*(run.signals[f"{hulls[name]}.position.{a}"][-1] for a in "xy"))
         for name, run in runs.items()
     }
-    heading = {name: DEG(abs(run.signals["hull.attitude.psi"][-1])) for name, run in runs.items()}
+    heading = {
+        name: DEG(abs(run.signals[f"{hulls[name]}.attitude.psi"][-1])) for name, run in runs.items()
+    }
     assert heading["hydrone-landing"] < 2 < 10 < heading["hydrone-open-landing"]
     assert drift["hydrone-landing"] < 0.2

@@ -35,10 +35,14 @@ class Craft:
 
 
 CRAFTS = {
-    "hydrone": Craft("hydrone", "hull", ROVER, ((20, 0, 0), (20, 15, 0)), 3.0, 100, 2.0),
-    "videoray": Craft("videoray", "vehicle", SUB, ((0, 0, 2), (5, 0, 2), (5, 4, 3)), 1.0, 120, 0.5),
-    "gloria": Craft("gloria", "boat", ROVER, ((0, 50, 0), (35, 80, 0)), 8.0, 150, 25.0),
-    "mariner": Craft("mariner", "ship", ROVER, ((2500, 0, 0), (4500, 2000, 0)), 1e3, 1200, 400.0),
+    "hydrone": Craft("hydrone", "vehicle.hull", ROVER, ((20, 0, 0), (20, 15, 0)), 3.0, 100, 2.0),
+    "videoray": Craft(
+        "videoray", "vehicle.hull", SUB, ((0, 0, 2), (5, 0, 2), (5, 4, 3)), 1.0, 120, 0.5
+    ),
+    "gloria": Craft("gloria", "vehicle.boat", ROVER, ((0, 50, 0), (35, 80, 0)), 8.0, 150, 25.0),
+    "mariner": Craft(
+        "mariner", "vehicle.ship", ROVER, ((2500, 0, 0), (4500, 2000, 0)), 1e3, 1200, 400.0
+    ),
 }
 every = pytest.mark.parametrize(
     "craft",
@@ -55,15 +59,20 @@ def waypoints(places):
 
 def at_sea(craft, folder, items=(), **settings):
     """Return a voyage whose vehicle finds a mission in its plan folder."""
-    given = {"mavlink__plan_folder": mission_file(folder / "plans", origin_of(craft.name), items)}
+    plans = mission_file(folder / "plans", origin_of(craft.name), items)
+    given = {"autopilot__mavlink__plan_folder": plans}
     # Half of a run's time goes to the link and to noise that nothing uses, else.
-    given["mavlink__period"] = "100 ms"
+    given["autopilot__mavlink__period"] = "100 ms"
     if craft.name == "hydrone":
-        given["imu__period"] = "100 ms"
+        given["vehicle__imu__period"] = "100 ms"
+    if craft.name == "videoray":
+        given["vehicle__hull__eta_start.z"] = "1 m"
     if craft.name == "gloria":
-        given["boat__eta_start"] = ["0 m", "0 m", "0 deg", "90 deg"]
-    step = "100 ms" if craft.name == "mariner" else "20 ms"
-    return voyage(f"{craft.name}-mavlink", craft.plant, step, **given, **settings)
+        given["vehicle__boat__eta_start"] = ["0 m", "0 m", "0 deg", "90 deg"]
+    choices = {"step": "20 ms"}
+    if craft.name == "mariner":
+        choices = {"step": "100 ms", "algorithm": "extrapolated"}
+    return voyage(craft.name, craft.plant, choices, **given, **settings)
 
 
 def completes(v, craft, at_most):
@@ -80,7 +89,7 @@ def test_a_mission_leads_through_its_waypoints(craft, tmp_path):
     with at_sea(craft, tmp_path, waypoints(craft.places)) as v:
         completes(v, craft, craft.at_most)
         assert v.passed(craft.places, craft.radius * FIX)
-        assert 0.0 < v.signal("guidance.cross_track_rms") <= craft.rms
+        assert 0.0 < v.signal("autopilot.pilot.guidance.cross_track_rms") <= craft.rms
         assert v.position[2] == pytest.approx(craft.places[-1][2], abs=0.35)
         assert v.received["HEARTBEAT"].custom_mode == craft.modes["auto"]
 
@@ -109,11 +118,11 @@ def test_gloria_sails_a_long_mission_in_gusts(tmp_path):
     # Off the wind, dead upwind, round a place, and home: the wind blows north.
     places = ((0, 150, 0), (-60, 200, 0))
     items = [*waypoints(places), (LOITER_TURNS, 1, 0, 60, (0, 100, 0)), (RETURN, 0, 0, 0, None)]
-    gusts = {"wind__intensity": "15 %", "wind__direction_deviation": "8 deg"}
+    gusts = {"vehicle__wind__intensity": "15 %", "vehicle__wind__direction_deviation": "8 deg"}
     with at_sea(craft, tmp_path, items, **gusts) as v:
         completes(v, craft, 2500)
         assert v.passed([*places, (0, 0)], craft.radius * FIX)
-        assert v.signal("guidance.cross_track_rms") <= craft.rms
+        assert v.signal("autopilot.pilot.guidance.cross_track_rms") <= craft.rms
 
 
 # ---------------------------------------------------------------------- orders
@@ -159,27 +168,27 @@ def test_gloria_lies_to_goes_and_is_steered_by_hand(tmp_path):
         v.arm()
         v.wait(15)
         assert v.away(0, 0) < 15.0
-        assert abs(v.signal("boat.velocity.u")) < 0.5  # she lies to
+        assert abs(v.signal("vehicle.boat.velocity.u")) < 0.5  # she lies to
         v.enter(craft.modes["guided"])
         v.go_to(20, 60)
         v.until(lambda: v.away(20, 60) < craft.radius * FIX, "the position", 90)
         v.enter(craft.modes["manual"])
-        heading = v.signal("boat.attitude.psi")
+        heading = v.signal("vehicle.boat.attitude.psi")
         end = v.time + 5.0
         while v.time < end:  # to starboard, the sheet half hauled in
             v.link.mav.manual_control_send(2, 0, 1000, 500, 0, 0)
             v.wait(0.5)
-        assert v.signal("boat.attitude.psi") > heading + 0.05
-        assert v.signal("rudder_servo.angle") == pytest.approx(-np.radians(12))
+        assert v.signal("vehicle.boat.attitude.psi") > heading + 0.05
+        assert v.signal("vehicle.servos.rudder.angle") == pytest.approx(-np.radians(12))
         v.command(400, 0)
         v.wait(2)
-        assert v.signal("rudder_servo.angle") == 0.0
+        assert v.signal("vehicle.servos.rudder.angle") == 0.0
 
 
 @pytest.mark.long
 def test_gloria_holds_in_a_current_and_loiters(tmp_path):
     craft = CRAFTS["gloria"]
-    with at_sea(craft, tmp_path, boat__current=["0 m/s", "0.15 m/s"]) as v:
+    with at_sea(craft, tmp_path, vehicle__boat__current=["0 m/s", "0.15 m/s"]) as v:
         v.arm()
         v.wait(600)
         assert max(np.hypot(n, e) for _, n, e, _ in v.track) < 110.0
@@ -196,7 +205,7 @@ def test_the_mariner_keeps_her_heading_in_hold_and_turns_by_her_rudder(tmp_path)
     with at_sea(craft, tmp_path) as v:
         v.arm()
         v.wait(120)
-        heading = v.signal("ship.attitude.psi")
+        heading = v.signal("vehicle.ship.attitude.psi")
         assert abs(heading) < np.radians(2)
         assert v.position[0] > 900  # she does not stop
         v.enter(craft.modes["manual"])
@@ -204,10 +213,10 @@ def test_the_mariner_keeps_her_heading_in_hold_and_turns_by_her_rudder(tmp_path)
         while v.time < end:
             v.link.mav.manual_control_send(4, 0, 300, 0, 0, 0)
             v.wait(0.5)
-        turned = v.signal("ship.attitude.psi")
+        turned = v.signal("vehicle.ship.attitude.psi")
         assert turned > np.radians(10)
         v.enter(craft.modes["hold"])
         v.wait(240)
         # As wide as a ship needs to stop turning, and no way back.
-        assert turned - 0.02 < v.signal("ship.attitude.psi") < turned + np.radians(25)
-        assert abs(v.signal("ship.rates.r")) < np.radians(0.1)
+        assert turned - 0.02 < v.signal("vehicle.ship.attitude.psi") < turned + np.radians(25)
+        assert abs(v.signal("vehicle.ship.rates.r")) < np.radians(0.1)

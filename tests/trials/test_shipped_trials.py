@@ -27,12 +27,17 @@ COMPARED_S = 1
 """How a trial begins shows how it goes on; to the end they run in their vehicles' tests, or here."""
 
 
+def has_sketch(name: str) -> bool:
+    """Return whether a compiler makes a program of a sketch for this trial."""
+    return "sketch" in FILES[name].get("choices", {}).get("autopilot", "")
+
+
 def one_per_rig(names: list[str]) -> list[Any]:
-    """Return trials as parameters: the first of each rig at once, the others later."""
+    """Return trials as parameters: the first of each rig and its choices at once, others later."""
     rigs, parameters = set(), []
     for name in names:
-        rig = FILES[name]["rig"]
-        later = rig in rigs or rig.endswith("-sketch")  # a compiler makes programs of sketches
+        rig = FILES[name]["rig"], *sorted(FILES[name].get("choices", {}).items())
+        later = rig in rigs or has_sketch(name)
         parameters.append(pytest.param(name, marks=pytest.mark.interop if later else ()))
         rigs.add(rig)
     return parameters
@@ -52,8 +57,8 @@ def test_no_campaign_hides_behind_a_trial() -> None:
 def begun(name: str, engine: str, folder: Path) -> list[bytes]:
     """Return the rows of a trial's record until it ends or `COMPARED_S` have passed."""
     trial, polls = load_trial(name), itertools.count()
-    if any(entry.fmu == "arduino" for entry in trial.rig.file.components.values()):
-        need("host")  # a compiler makes a program of the sketch
+    if has_sketch(name):
+        need("host")
     enough = COMPARED_S * NS // trial.rig.step_ns
     hooks = Hooks(stop_requested=lambda: next(polls) > enough)
     result = run_trial(trial, folder, engine=engine, hooks=hooks)
@@ -78,8 +83,8 @@ def test_whole_trials_as_fmus(name: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", one_per_rig(PACED))
 def test_with_nobody_connected_they_leave_the_same_bytes_too(name: str, tmp_path: Path) -> None:
     trial = load_trial(name)
-    components = trial.rig.file.components.items()
-    links = [c for c, entry in components if entry.fmu in ("mavlink", "nmea0183", "serial-gateway")]
+    linked = ("mavlink", "nmea0183", "serial-gateway")
+    links = [c for c, placed in trial.rig.components().items() if placed.entry.fmu in linked]
     trial = trial.changed({"stop": f"{COMPARED_S} s", **{f"{c}.links": "" for c in links}}, "test")
     trial = replace(trial, file=trial.file.model_copy(update={"real_time": None}))
     signals = []

@@ -28,7 +28,7 @@ def test_every_criterion_holds(name, tmp_path):
 
 def test_heading_of_the_compass_follows_that_of_the_vehicle(tmp_path):
     found = run("videoray-open-yaw", tmp_path / "run")
-    psi, read = found.signals["@.attitude.psi"], found.signals["ahrs.euler.psi"]
+    psi, read = found.signals["hull.attitude.psi"], found.signals["ahrs.euler.psi"]
     assert np.unwrap(psi)[-1] > 5 * math.tau
     samples = slice(0, None, 10)
     error = np.degrees((read - psi + math.pi)[samples] % math.tau - math.pi)
@@ -43,15 +43,15 @@ def test_heading_of_the_compass_follows_that_of_the_vehicle(tmp_path):
 def test_faster_than_the_limit_it_porpoises(share, least, most, tmp_path):
     """Started 1 degree bow up: at 0.61 m/s that dies out, above it grows to a limit cycle."""
     settings = {
-        "vehicle.eta_start": ["0 m", "0 m", "50 m", "0 deg", "1 deg", "0 deg"],
-        "vehicle.volume": "6.5 l",
-        "port.full_thrust": f"{46.7 * share / 0.02} N",
-        "starboard.full_thrust": f"{46.7 * share / 0.02} N",
-        "vertical.full_thrust": "0 N",
+        "hull.eta_start": ["0 m", "0 m", "50 m", "0 deg", "1 deg", "0 deg"],
+        "hull.volume": "6.5 l",
+        "thrusters.port.full_thrust": f"{46.7 * share / 0.02} N",
+        "thrusters.starboard.full_thrust": f"{46.7 * share / 0.02} N",
+        "thrusters.vertical.full_thrust": "0 N",
         "stop": "120 s",
     }
     found = run("videoray-open-surge", tmp_path / "run", **settings)
-    pitch = np.degrees(np.abs(found.signals["@.attitude.theta"][found.time > 90]))
+    pitch = np.degrees(np.abs(found.signals["hull.attitude.theta"][found.time > 90]))
     assert least <= pitch.max() <= most
 
 
@@ -62,5 +62,5 @@ def test_on_its_tether_it_holds_depth_and_heading(seed, tmp_path):
     assert [v["passed"] for v in found.verdicts] == [True, True]
     # It was at work: through 20 m of tether, taut at the end, against a current.
     assert found.signals["tether.greatest_tension"][-1] > 1.5
-    place = [found.signals[f"vehicle.position.{axis}"][-1] for axis in "xyz"]
+    place = [found.signals[f"loop.vehicle.hull.position.{axis}"][-1] for axis in "xyz"]
     assert math.dist(place, (0.0, 0.0, 0.0)) == pytest.approx(20.0, abs=0.6)

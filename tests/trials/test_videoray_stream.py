@@ -22,14 +22,16 @@ pytestmark = pytest.mark.interop
 WAIT_S = 120.0
 REPLAY = """
 title = "again"
-rig = "videoray-stream-replay"
+rig = "sil"
+choices = {{ vehicle = "videoray", autopilot = "pro4", topside = "replay", step = "20 ms" }}
 stop = "{stop}"
 
 [set]
-"player.file" = "{file}"
+"vehicle.hull.eta_start.z" = "2 m"
+"autopilot.topside.player.file" = "{file}"
 
 [record]
-signals = ["vehicle.*", "stream.command.*"]
+signals = ["vehicle.hull.*", "autopilot.board.command.*"]
 every = "20 ms"
 """
 
@@ -57,29 +59,31 @@ def test_depth_and_heading_are_held_on_a_tether_with_the_named_gains(seed, tmp_p
 def test_the_captured_gains_oscillate(tmp_path):
     found = run("videoray-stream-captured", tmp_path / "run")
     late = found.time > 20
-    heading = np.degrees(found.signals["vehicle.attitude.psi"][late])
+    heading = np.degrees(found.signals["vehicle.hull.attitude.psi"][late])
     assert np.ptp(heading) > 30
-    assert np.ptp(found.signals["vehicle.position.z"][late]) > 3
+    assert np.ptp(found.signals["vehicle.hull.position.z"][late]) > 3
     assert failed(found) == []
 
 
 def test_a_recorded_stream_drives_the_vehicle_the_same_way_again(tmp_path):
-    recorded = ["vehicle.*", "stream.command.*"]
+    recorded = ["vehicle.hull.*", "autopilot.board.command.*"]
     trial = load_trial("videoray-stream-manual")
     record = trial.file.record.model_copy(update={"signals": recorded})
     trial = replace(trial, file=trial.file.model_copy(update={"record": record}))
     first = run_trial(trial, tmp_path / "first", engine="direct").folder
     again = run_trial(trial, tmp_path / "again", engine="direct").folder
     assert (first / "signals.csv").read_bytes() == (again / "signals.csv").read_bytes()
-    assert (first / "topside.stream").read_bytes() == (again / "topside.stream").read_bytes()
+    assert (first / "autopilot.topside.box.stream").read_bytes() == (
+        again / "autopilot.topside.box.stream"
+    ).read_bytes()
     # What one end sends, the other receives: but for the last step's, at the same times.
     received, sent = (
         [line for line in (first / f"{name}.stream").read_text().splitlines() if " > " in line]
-        for name in ("stream", "topside")
+        for name in ("autopilot.board", "autopilot.topside.box")
     )
     assert received == sent
     (tmp_path / "replay.toml").write_text(
-        REPLAY.format(stop="30 s", file=(first / "topside.stream").as_posix())
+        REPLAY.format(stop="30 s", file=(first / "autopilot.topside.box.stream").as_posix())
     )
     replayed = run_trial(
         load_trial(str(tmp_path / "replay.toml")), tmp_path / "replay", engine="direct"
@@ -88,7 +92,7 @@ def test_a_recorded_stream_drives_the_vehicle_the_same_way_again(tmp_path):
     one, other = load_run(first), load_run(replayed.folder)
     assert failed(one) == []
     assert set(one.signals) == set(other.signals)
-    assert np.ptp(one.signals["vehicle.position.x"]) > 1
+    assert np.ptp(one.signals["vehicle.hull.position.x"]) > 1
     for name, values in one.signals.items():
         np.testing.assert_array_equal(values, other.signals[name], err_msg=name)
 
@@ -111,7 +115,10 @@ def test_a_topside_over_a_terminal_in_real_time(seconds, tmp_path):
     """No cycle is missed, the vehicle holds, and stops when the topside dies; then recovers."""
     place, stop = tmp_path / "rov", f"{3 * seconds + 120} s"
     with running(
-        "videoray-stream-live", tmp_path, gateway__links=f"pty:{place}", stop=stop
+        "videoray-stream-live",
+        tmp_path,
+        autopilot__topside__gateway__links=f"pty:{place}",
+        stop=stop,
     ) as live:
         wait_for(lambda: live.is_running and place.exists(), "the trial runs", WAIT_S)
         # Three times at most: another program on a busy machine may take a cycle, but not each time.
@@ -124,16 +131,19 @@ def test_a_topside_over_a_terminal_in_real_time(seconds, tmp_path):
         found = live.stop()
     print(f"round trips: {np.percentile(trips, [50, 90, 99, 100]) * 1e3} ms, missed {missed}")
     assert missed == 0
-    commanded = found.signals["stream.commanded"]
+    commanded = found.signals["autopilot.board.commanded"]
     changes = np.flatnonzero(np.diff(commanded.astype(int)))
     assert len(changes) >= 3  # on, off, on again
     stopped, again = changes[-2:]
     assert commanded[again + 1]
     silent = (found.time > found.time[stopped]) & (found.time <= found.time[again])
     for thruster in ("port", "starboard", "vertical"):
-        assert not np.any(found.signals[f"stream.command.{thruster}"][silent])
+        assert not np.any(found.signals[f"autopilot.board.command.{thruster}"][silent])
     held = (found.time > found.time[stopped] - 5) & (found.time <= found.time[stopped])
-    depth, heading = found.signals["vehicle.position.z"], found.signals["vehicle.attitude.psi"]
+    depth, heading = (
+        found.signals["vehicle.hull.position.z"],
+        found.signals["vehicle.hull.attitude.psi"],
+    )
     assert np.abs(depth[held] - 2.5).max() < 0.05
     assert np.degrees(np.abs(heading[held])).max() < 2.0
 
@@ -173,7 +183,7 @@ def drive(links, seconds):
 
 def test_a_mavlink_pilot_drives_the_vehicle_through_the_stream(tmp_path):
     trial = load_trial("videoray-stream-pilot").changed(
-        {"mavlink.links": "tcpin:127.0.0.1:0", "stop": "60 s"}, "test"
+        {"autopilot.topside.mavlink.links": "tcpin:127.0.0.1:0", "stop": "60 s"}, "test"
     )
     reached, stop = [], threading.Event()
     hooks = Hooks(stop_requested=stop.is_set, reachable=lambda *places: reached.append(places))
@@ -194,10 +204,12 @@ def test_a_mavlink_pilot_drives_the_vehicle_through_the_stream(tmp_path):
         stop.set()
         thread.join(WAIT_S)
     found = load_run(done[0].folder)
-    port, starboard = (found.signals[f"stream.command.{side}"] for side in ("port", "starboard"))
+    port, starboard = (
+        found.signals[f"autopilot.board.command.{side}"] for side in ("port", "starboard")
+    )
     assert port.max() > 0.05
     assert starboard[np.argmax(port)] < port.max()  # it turned to starboard
-    assert found.signals["vehicle.position.x"].max() > 0.05
+    assert found.signals["vehicle.hull.position.x"].max() > 0.05
 
 
 def pilot(place):

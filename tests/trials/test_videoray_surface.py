@@ -73,6 +73,6 @@ def test_heading_is_held_up_to_the_munk_limit(tmp_path):
     """What docs/vehicles/videoray-control.md says of it."""
     found = run("videoray-hold-pull", tmp_path / "run")
     late = (found.time > 80) & (found.time < 110)  # under way, before the tether pulls
-    off = found.signals["vehicle.attitude.psi"][late] + np.radians(170)
-    assert found.signals["vehicle.velocity.u"][late].mean() == pytest.approx(0.30, abs=0.01)
+    off = found.signals["vehicle.hull.attitude.psi"][late] + np.radians(170)
+    assert found.signals["vehicle.hull.velocity.u"][late].mean() == pytest.approx(0.30, abs=0.01)
     assert np.degrees(np.abs(off).max()) < 0.5

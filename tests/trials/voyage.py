@@ -1,4 +1,4 @@
-"""A rig in process and a pymavlink station over TCP, in lockstep: minutes at sea in seconds.
+"""A vehicle under MAVLink in process and a pymavlink station over TCP, in lockstep: minutes at sea in seconds.
 
 The station receives and answers between the steps, so nothing depends on the wall clock. What is
 asserted comes from the plant, not from the vehicle's telemetry.
@@ -27,18 +27,18 @@ _RELATIVE = 3
 class Voyage:
     """``craft`` is the component that moves; ``track`` its true positions, every 0.5 s."""
 
-    def __init__(self, rig, craft, step, settings):
-        loaded = load_rig(rig).changed({"step": step})
+    def __init__(self, vehicle, craft, choices, settings):
+        loaded = load_rig("sil", None, {"vehicle": vehicle, "autopilot": "mavlink", **choices})
         self._system = assemble(loaded, "direct")
-        for key, value in {"mavlink.links": "tcpin:127.0.0.1:0", **settings}.items():
+        for key, value in {"autopilot.mavlink.links": "tcpin:127.0.0.1:0", **settings}.items():
             self._system.set(key, value, "test")
         self.master = Master(self._system, 0, 10**15)
         self.master.initialise()
         self._craft = craft
         self._places = {f"{c}.{n}": i for i, (c, n) in enumerate(self.master.names)}
-        home = load_profile(loaded.file.profile).parameters("links.ground")
+        home = load_profile(vehicle).parameters("links.ground")
         self.origin = Origin(home["latitude"], home["longitude"], home["altitude"])
-        component = self._system.parts["mavlink"].instance.component
+        component = self._system.parts["autopilot.mavlink"].instance.component
         self._system_id = round(home["system_id"])
         self.link = mavutil.mavlink_connection(
             component.urls[0].replace("tcpin", "tcp"), source_system=255, source_component=190
@@ -153,10 +153,13 @@ class Voyage:
 
 
 @contextmanager
-def voyage(rig, craft, step, **settings):
+def voyage(vehicle, craft, choices, **settings):
     """Give a `Voyage` and end it; settings have two underscores for the point."""
     made = Voyage(
-        rig, craft, step, {key.replace("__", "."): value for key, value in settings.items()}
+        vehicle,
+        craft,
+        choices,
+        {key.replace("__", "."): value for key, value in settings.items()},
     )
     try:
         yield made

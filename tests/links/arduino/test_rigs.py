@@ -16,10 +16,17 @@ from .bench import need, write_sketch
 
 pytestmark = pytest.mark.interop
 
+HEADING = "vehicle.boat.eta.psi"
+
+
+def mega(name: str) -> str:
+    """Return the board's component."""
+    return "autopilot.main.mega" if name.startswith("gloria") else "autopilot.mega"
+
 
 def sailed(name: str, folder: Path, backend: str = "host", **changes: object):
     need(backend)
-    trial = load_trial(name).changed({"mega.backend": backend, **changes}, "test")
+    trial = load_trial(name).changed({f"{mega(name)}.backend": backend, **changes}, "test")
     result = run_trial(trial, folder, engine="direct")
     assert result.status == "complete", result.error
     return result
@@ -33,7 +40,7 @@ def rows(result) -> list[dict[str, str]]:
 def apart(one, other) -> float:
     """Return the greatest difference of the headings, deg."""
     return max(
-        abs(math.degrees(float(a["boat.eta.psi"]) - float(b["boat.eta.psi"])))
+        abs(math.degrees(float(a[HEADING]) - float(b[HEADING])))
         for a, b in zip(rows(one), rows(other), strict=True)
     )
 
@@ -47,7 +54,8 @@ def test_both_back_ends_steer_alike(tmp_path):
         sailed("gloria-sketch", tmp_path / each, each, stop="4 s") for each in ("host", "simavr")
     )
     assert apart(host, simavr) < 1.0
-    ends = [[float(rows(each)[-1][f"mega.pulse.s{n}"]) for n in (1, 3)] for each in (host, simavr)]
+    pulses = [f"{mega('gloria')}.pulse.s{n}" for n in (1, 3)]
+    ends = [[float(rows(each)[-1][pulse]) for pulse in pulses] for each in (host, simavr)]
     assert ends[1] == pytest.approx(ends[0], abs=15e-6)
 
 
@@ -84,16 +92,21 @@ def test_a_run_lists_links_that_there_are(tmp_path):
     need("host")
     place, reported = f"{tmp_path}/radio", []
     trial = load_trial("gloria-sketch")
-    trial = trial.changed({"mega.monitors": f"2=pty:{place}", "stop": "0.2 s"}, "test")
+    trial = trial.changed(
+        {"autopilot.main.mega.monitors": f"2=pty:{place}", "stop": "0.2 s"}, "test"
+    )
     trial = trial.in_real_time({}, "test")
     hooks = Hooks(reachable=lambda name, where: reported.append((name, where)))
     assert run_trial(trial, tmp_path / "run", engine="direct", hooks=hooks).status == "complete"
-    assert reported == [("mega", place)]  # and not of instruments that nothing outside reads
+    assert reported == [
+        ("autopilot.main.mega", place)
+    ]  # and not of instruments that nothing outside reads
 
 
 def test_the_station_keeper_drives(tmp_path):
     result = sailed("hydrone-sketch", tmp_path / "run", stop="3 s")
-    assert rows(result)[-1]["mega.pulse.s1"] != rows(result)[0]["mega.pulse.s1"]
+    pulse = f"{mega('hydrone-sketch')}.pulse.s1"
+    assert rows(result)[-1][pulse] != rows(result)[0][pulse]
 
 
 def test_a_sketch_that_crashes_leaves_the_record_whole(tmp_path):
@@ -101,7 +114,7 @@ def test_a_sketch_that_crashes_leaves_the_record_whole(tmp_path):
     source = "void setup() {}\nvoid loop() { delay(1005); *(volatile byte *)0 = 1; }\n"
     sketch = write_sketch(tmp_path, source)
     trial = load_trial("gloria-sketch")
-    trial = trial.changed({"mega.sketch": str(sketch), "stop": "5 s"}, "test")
+    trial = trial.changed({"autopilot.main.mega.sketch": str(sketch), "stop": "5 s"}, "test")
     result = run_trial(trial, tmp_path / "run", engine="direct")
     assert result.status != "complete"
     assert "Segmentation fault" in str(result.error)
@@ -114,13 +127,15 @@ def test_two_hours_of_gusts_and_no_drift(tmp_path):
     need("host")
     trial = load_trial("gloria-sketch").changed({"stop": "7200 s"}, "test")
     # The radio's line: a report takes 8 ms there, so a step of 20 ms has it whole.
-    record = trial.file.record.model_copy(update={"signals": ["mega.tx.uart2"], "every": "1 s"})
+    record = trial.file.record.model_copy(
+        update={"signals": ["autopilot.main.mega.tx.uart2"], "every": "1 s"}
+    )
     trial = replace(trial, file=trial.file.model_copy(update={"record": record}))
     result = run_trial(trial, tmp_path / "run", engine="direct")
     assert result.status == "complete", result.error
     found = []
     for row in rows(result):
-        for when, data in decode(row["mega.tx.uart2"])[1]:
+        for when, data in decode(row["autopilot.main.mega.tx.uart2"])[1]:
             found += [(when, match) for match in re.findall(rb"\$GLO,(\d+),", data)]
     assert len(found) > 7000
     assert max(abs(int(clock) / 1e3 - when / 1e9) for when, clock in found) < 0.05
