@@ -32,7 +32,7 @@ class PulseAllocation(TwinThrusters):
 
     def start(self, t: float) -> None:
         """Check the pulses; raises InputError if they do not rise."""
-        self._check_pulses()
+        self.check_pulses()
 
     def outputs(self, t: float) -> None:
         """Allocate."""

@@ -146,7 +146,7 @@ class StationKeeping(Sampled, TwinThrusters):
                 f"{self.name}: capture_radius ({self.capture_radius!r} m) must be less than "
                 f"hold_radius ({self.hold_radius!r} m)"
             )
-        self._check_pulses()
+        self.check_pulses()
         self._mode, self._backwards = IDLE, False
         self._integral_ne, self._integral_yaw = [0.0, 0.0], 0.0
         # Nothing has been received yet: lost until first valid.

@@ -2,40 +2,15 @@
 
 from __future__ import annotations
 
-import math
-from typing import Any, ClassVar
+from typing import ClassVar
 
-from ..component import Component, Input, Output, Parameter, terminal
-from ..craft.kinematics import cross
-from ..errors import InputError
-
-COUNT = 16
-"""Most thrusters that a craft has."""
+from ..component import Input, Output, terminal
+from ..thrusters import COUNT, FixedThrusters
 
 _THRUSTS = tuple(f"t{number}" for number in range(1, COUNT + 1))
 
 
-class _OfEach:
-    """A vector per thruster, as parameters NAME_1 ... NAME_16; reading gives all of them."""
-
-    def __init__(self, unit: str, description: str) -> None:
-        self._unit, self._description = unit, description
-
-    def __set_name__(self, owner: type, name: str) -> None:
-        self._name = name
-        for number in range(1, COUNT + 1):
-            text = f"{self._description} of thruster {number}"
-            parameter = Parameter(0.0, self._unit, text, axes="xyz")
-            parameter.__set_name__(owner, f"{name}_{number}")
-            setattr(owner, parameter.name, parameter)
-
-    def __get__(self, component: Any, owner: type | None = None) -> Any:
-        if component is None:
-            return self
-        return [getattr(component, f"{self._name}_{n}") for n in range(1, COUNT + 1)]
-
-
-class Propulsion(Component):
+class Propulsion(FixedThrusters):
     """Sum of up to 16 fixed thrusters: force = sum d_i T_i, moment = sum r_i x d_i T_i.
 
     T_i is the thrust of thruster i, N, positive along its direction d_i, a unit vector in body
@@ -53,9 +28,6 @@ class Propulsion(Component):
 
     exercised: ClassVar = {"direction_1": [1, 0, 0], "position_1": [-0.45, -0.4, 0.15]}
 
-    position = _OfEach("m", "position from the body origin")
-    direction = _OfEach("1", "direction of the positive thrust, a unit vector, or 0 for none,")
-
     # Optional: most craft have fewer thrusters.
     thrust = Input("N", "thrust of each thruster along its direction", axes=_THRUSTS, optional=True)
     force = Output("N", "force on the craft, body axes", axes="xyz", frame="b")
@@ -68,10 +40,7 @@ class Propulsion(Component):
 
     def start(self, t: float) -> None:
         """Work out each thruster's force and moment; raises InputError for a bad direction."""
-        pairs = enumerate(zip(self.position, self.direction, strict=True))
-        self._effects = [
-            [index, *self._effect(index + 1, *pair)] for index, pair in pairs if any(pair[1])
-        ]
+        self._effects = [[index, *effect] for index, effect in self.effects().items()]
 
     def outputs(self, t: float) -> None:
         """Sum the thrusters."""
@@ -80,15 +49,3 @@ class Propulsion(Component):
             for i, part in enumerate(effect):
                 total[i] += part * thrusts[index]
         self.force, self.moment = total[:3], total[3:]
-
-    def _effect(
-        self, number: int, position: tuple[float, ...], direction: tuple[float, ...]
-    ) -> list[float]:
-        """Return force and moment per newton of a thruster's thrust: (d, r x d)."""
-        length = math.hypot(*direction)
-        if abs(length - 1.0) > 1e-6:
-            raise InputError(
-                f"{self.name}.direction_{number} is {direction}, of length {length:.6g}: give a "
-                "unit vector, or (0, 0, 0) for no thruster"
-            )
-        return [*direction, *cross(position, direction)]
