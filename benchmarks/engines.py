@@ -21,6 +21,18 @@ Result = tuple[float, float | None, dict[str, float]]
 """Wall time, time in the components' steps, final values."""
 
 
+def _plain(name: str) -> str:
+    """Return a name without the points that a package's reader may replace."""
+    return name.replace(".", "_")
+
+
+def _parted(name: str) -> tuple[str, str]:
+    """Return component and variable; all that is looked at is one of a hull's three axes, or plain."""
+    parts = name.split(".")
+    at = -2 if len(parts) > 2 else -1
+    return ".".join(parts[:at]), ".".join(parts[at:])
+
+
 def ours(ssp: Path, steps: int, algorithm: str, watch: list[str]) -> Result:
     from seatrial.cosim.assembly import assemble
     from seatrial.cosim.master import Master
@@ -35,8 +47,8 @@ def ours(ssp: Path, steps: int, algorithm: str, watch: list[str]) -> Result:
         master.step()
     wall = perf_counter() - begun
     own = sum(times.total_ns for times in master.step_times.values()) * 1e-9
-    names = {".".join(name): i for i, name in enumerate(master.names)}
-    return wall, own, {name: master.signals[names[name]] for name in watch}
+    names = {_plain(".".join(name)): i for i, name in enumerate(master.names)}
+    return wall, own, {name: master.signals[names[_plain(name)]] for name in watch}
 
 
 def fmpy_lists(ssp: Path, steps: int, step: float, watch: list[str]) -> Result:
@@ -100,7 +112,8 @@ def fmpy_lists(ssp: Path, steps: int, step: float, watch: list[str]) -> Result:
         for getter, references, names in gets:
             values.update(zip(names, getter(references), strict=True))
     wall = perf_counter() - begun
-    return wall, own, {name: values[name] for name in watch}
+    plain = {_plain(name): value for name, value in values.items()}
+    return wall, own, {name: plain[_plain(name)] for name in watch}
 
 
 def fmpy_ssp(ssp: Path, steps: int, step: float, watch: list[str]) -> Result:
@@ -133,7 +146,7 @@ def libcosim(ssp: Path, steps: int, watch: list[str]) -> Result:
     wall = (perf_counter() - begun) * steps / (steps - 1)
     values = {}
     for name in watch:
-        slave, _, variable = name.partition(".")
+        slave, variable = _parted(name)
         index = execution.slave_index_from_instance_name(slave)
         reference = next(
             v.reference for v in execution.slave_variables(index) if v.name.decode() == variable
@@ -154,7 +167,7 @@ def ecos(ssp: Path, steps: int, step: float, watch: list[str]) -> Result:
     for _ in range(steps):
         simulation.step()
     wall = perf_counter() - begun
-    return wall, None, {name: simulation.get_real(name.replace(".", "::", 1)) for name in watch}
+    return wall, None, {name: simulation.get_real("::".join(_parted(name))) for name in watch}
 
 
 def main() -> None:

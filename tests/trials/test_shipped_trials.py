@@ -84,7 +84,7 @@ def test_whole_trials_as_fmus(name: str, tmp_path: Path) -> None:
 def test_with_nobody_connected_they_leave_the_same_bytes_too(name: str, tmp_path: Path) -> None:
     trial = load_trial(name)
     linked = ("mavlink", "nmea0183", "serial-gateway")
-    links = [c for c, placed in trial.rig.components().items() if placed.entry.fmu in linked]
+    links = [c for c, placed in trial.rig.components.items() if placed.entry.fmu in linked]
     trial = trial.changed({"stop": f"{COMPARED_S} s", **{f"{c}.links": "" for c in links}}, "test")
     trial = replace(trial, file=trial.file.model_copy(update={"real_time": None}))
     signals = []
