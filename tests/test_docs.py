@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import datetime
 import doctest
 import importlib
 import importlib.util
@@ -257,6 +258,8 @@ def test_keys_and_defaults_are_those_of_the_model(model: type[BaseModel]) -> Non
             expected = "none"
         elif default in ("", {}, []):
             expected = "empty"
+        elif isinstance(default, datetime.date):
+            expected = f"`{default}`"
         else:
             expected = f"`{json.dumps(default)}`"
         assert shown[key] == expected, key

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import datetime
 import json
 import re
 from functools import partial
@@ -12,7 +13,7 @@ from pydantic_core import PydanticUndefined
 
 from parts import part
 from parts.markdown import table
-from seatrial.cosim.profile import Actuator, Home, Identity, ProfileFile
+from seatrial.cosim.profile_file import Actuator, Home, Identity, ProfileFile
 
 MODELS: dict[str, tuple[type[BaseModel], str]] = {
     "profile": (ProfileFile, "key"),
@@ -28,6 +29,10 @@ def _default(field: FieldInfo) -> str:
         return "needed"
     if value is None:
         return "none"
+    if isinstance(value, BaseModel):
+        return "its keys' defaults"
+    if isinstance(value, datetime.date):
+        return f"`{value}`"
     return f"`{json.dumps(value)}`" if value not in ("", {}, []) else "empty"
 
 

@@ -89,5 +89,5 @@ def test_without_thrusters_all_channels_are_at_neutral():
 
 
 def test_a_direction_that_is_no_unit_vector_is_refused():
-    with pytest.raises(InputError, match="direction_2 is .* of length 2: give a unit vector"):
+    with pytest.raises(InputError, match=r"direction_2 is .* of length 2: give a unit vector"):
         started(ThrusterMatrixAllocation, direction_2=[0, 2, 0])

@@ -64,6 +64,8 @@ station_timeout = "10 s"
 failsafe = "return"
 """
 
+ACTUATORS_AND_SENSORS = GOOD[GOOD.index("[actuators.port]") : GOOD.index("[links.ground]")]
+
 
 @pytest.fixture
 def load(write):
@@ -134,13 +136,46 @@ def test_a_sensorless_profile_is_fine(write):
     assert load_profile("bare.toml", write("bare.toml", text).parent).sections() == []
 
 
+def bare(write, text):
+    return check_profile("bare.toml", write("bare.toml", f'title = "bare"\n{text}').parent)
+
+
+def test_what_a_rig_does_not_use_may_be_left_out(write):
+    text = "".join(
+        f"{line}\n" for line in ACTUATORS_AND_SENSORS.splitlines() if "source" not in line
+    )
+    profile = bare(write, text)
+    assert profile.parameters("sensors.heading") == {"heading_noise": math.radians(0.5)}
+    assert profile.source("sensors.heading") == "no source given"
+    assert profile.notes("sensors.heading") == ["profile bare: sensors.heading has no source"]
+    assert profile.notes("actuators.port") == ["profile bare: actuators.port has no source"]
+
+
+def test_defaults_of_identity_and_home_are_those_of_the_link_and_are_reported(write):
+    profile = bare(write, '[links.ground]\nkind = "mavlink"\n[identity]\nsystem_id = 7\n')
+    values, ports = profile.parameters("links.ground"), component_class("mavlink").ports
+    assert values.pop("system_id") == 7.0
+    assert values == {name: ports[name].start[0] for name in values}
+    assert profile.notes("links.ground") == [
+        "profile bare: links.ground has defaults for what [identity] and [home] do not say: "
+        "component_id = 1.0, vehicle_type = surface_boat, autopilot_type = ardupilotmega, "
+        "firmware_version = 0.1.0-dev, uid = 1, latitude = 0.0, longitude = 0.0, altitude = 0.0, "
+        "date = 2026-01-01"
+    ]
+
+
+def test_a_full_profile_has_nothing_to_note(load):
+    profile = load()
+    assert [note for section in profile.sections() for note in profile.notes(section)] == []
+
+
 # Each mistake, and what the message must say of it.
 MISTAKES = {
     "unknown key": (
         ("system_id", "sytem_id"),
         ["identity.sytem_id", "did you mean 'system_id'"],
     ),
-    "missing key": (("uid = 0xFFFF_FFFF_FFFF_FFFF\n", ""), ["identity.uid", "missing"]),
+    "missing key": (("channel = 1\n", ""), ["actuators.port.channel", "missing"]),
     "unknown table": (("[home]", "[hone]"), ["hone", "did you mean 'home'"]),
     "id out of range": (("system_id = 7", "system_id = 256"), ["identity.system_id", "255", "256"]),
     "id as text": (("system_id = 7", 'system_id = "7"'), ["identity.system_id", "integer", "'7'"]),
@@ -177,9 +212,9 @@ MISTAKES = {
     "reversed as number": (("reversed = true", "reversed = 1"), ["actuators.rudder.reversed", "1"]),
     "kind": (('"compass"', '"compas"'), ["sensors.heading.kind", "did you mean 'compass'"]),
     "no kind": (('kind = "compass"\n', ""), ["sensors.heading.kind", "missing"]),
-    "no source": (
-        ('kind = "compass"\nsource = "data sheet"', 'kind = "compass"'),
-        ["source", "missing"],
+    "source no text": (
+        ('kind = "compass"\nsource = "data sheet"', 'kind = "compass"\nsource = 3'),
+        ["sensors.heading.source", "string", "found 3"],
     ),
     "sensor key": (
         ("heading_noise", "heading_nose"),

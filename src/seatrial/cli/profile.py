@@ -9,12 +9,13 @@ from typing import Annotated, Any
 import typer
 from rich.markup import escape
 
-from ..cosim.profile import Actuator, Home, Identity, Profile, check_profile
+from ..cosim.profile import NO_SOURCE, Profile, check_profile
+from ..cosim.profile_file import Actuator, Home, Identity
 from ..cosim.profile_kinds import GROUPS, keys
 from ..cosim.tunables import Tunable
 from ..ports import Parameter
 from ..trials.readable import from_si, number, person_unit
-from .show import console
+from .show import console, print_notes
 
 profile_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
 
@@ -26,6 +27,7 @@ Named = Annotated[str, typer.Argument(metavar="PROFILE", help="A profile: a name
 def check(name: Named) -> None:
     """Check a profile; every mistake is reported with file and key (status 2)."""
     profile = check_profile(name)
+    print_notes(_notes(profile))
     console.print(f"{escape(str(profile.read_from.path))}: no problem found", soft_wrap=True)
 
 
@@ -36,16 +38,21 @@ def describe(name: Named) -> None:
     console.print(f"[bold]{escape(profile.file.title)}[/bold]", soft_wrap=True)
     console.print(escape(str(profile.read_from.path)), soft_wrap=True)
     _print("identity", _identity(profile.file.identity))
-    _print("home", _home(profile.file.home), profile.file.home.source)
+    _print("home", _home(profile.file.home), profile.file.home.source or NO_SOURCE)
     if profile.file.actuators:
         _print("actuators", _actuators(profile.file.actuators))
     for group in GROUPS:
         for table, entry in profile.tables(group).items():
             kind, section = entry["kind"], f"{group}.{table}"
             rows = _parameters(keys(group, kind), profile, section)
-            _print(f"{section}: {kind}", rows, entry.get("source", ""))
+            no_source = NO_SOURCE if group == "sensors" else ""
+            _print(f"{section}: {kind}", rows, entry.get("source", "") or no_source)
             if tunables := profile.tunables(section):
                 _print(f"tunables of {section}", _tunables(tunables))
+
+
+def _notes(profile: Profile) -> list[str]:
+    return [note for section in profile.sections() for note in profile.notes(section)]
 
 
 def _print(title: str, rows: Rows, source: str = "") -> None:
@@ -83,7 +90,9 @@ def _actuators(actuators: dict[str, Actuator]) -> Rows:
         pulses = (entry.pulse_min, entry.pulse_neutral, entry.pulse_max)
         shown = " ".join(number(from_si(pulse, "us")) for pulse in pulses)
         turned = "yes" if entry.reversed else "no"
-        rows.append((str(entry.channel), name, entry.port, shown, turned, entry.source))
+        rows.append(
+            (str(entry.channel), name, entry.port, shown, turned, entry.source or NO_SOURCE)
+        )
     return rows
 
 

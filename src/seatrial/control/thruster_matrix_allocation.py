@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..component import Input, Output, Parameter, terminal
+from ..component import Input, Output, Parameter, Terminal, terminal
 from ..thrusters import COUNT, FixedThrusters
 from .thruster_pulses import ThrusterPulses
 
@@ -81,7 +81,7 @@ class ThrusterMatrixAllocation(FixedThrusters, ThrusterPulses):
     feedthrough: ClassVar = {"pulse": ("surge", "sway", "heave", "yaw_moment")}
     terminals: ClassVar = {
         "demand": terminal("surge", "sway", "heave", "yaw_moment"),
-        "actuators": terminal(**{channel: f"pulse__{channel}" for channel in _CHANNELS}),
+        "actuators": Terminal({channel: f"pulse.{channel}" for channel in _CHANNELS}),
     }
 
     def start(self, t: float) -> None:

@@ -29,6 +29,7 @@ def give_parameters(system: System, part: Part, profiles: Profiles) -> None:
     if entry.profile is not None:
         profile, section = profiles.find(entry.profile, f"{where}.profile")
         _give_profile(part, section, profile, f"{where}.profile")
+        system.notes += [note for note in profile.notes(section) if note not in system.notes]
         if section.startswith("links."):
             _give_home(part, placed.scope)
     for port, written in entry.set.items():

@@ -71,8 +71,7 @@ def section_model(group: str, name: str, kind: str) -> type[FileModel]:
 
 @cache
 def _table_model(group: str, kind: str) -> type[FileModel]:
-    fields: dict[str, Any] = {"kind": (Literal[kind], ...)}
-    fields["source"] = (str, ...) if group == "sensors" else (str, "")
+    fields: dict[str, Any] = {"kind": (Literal[kind], ...), "source": (str, "")}
     for name, port in keys(group, kind).items():
         if port.role == "tunables":
             fields[name] = (Annotated[dict[str, TunableEntry], BeforeValidator(_table)], {})

@@ -72,6 +72,8 @@ class System:
     """The same, port by port."""
     open: list[str] = field(default_factory=list)
     """Connections whose names end in ``?`` and that were not made, with the reason."""
+    notes: list[str] = field(default_factory=list)
+    """What the profiles do not say, and what is taken instead."""
     tunings: list[Tuned] = field(default_factory=list)
     """What lets tunables of links start at the values that their targets are given."""
 

@@ -92,9 +92,10 @@ class Run:
         return verdicts
 
     def notes(self) -> list[str]:
-        """Return what the user should know: of the rig, of the steps, of the pace."""
+        """Return what the user should know: of profiles, the rig, the steps, the pace."""
         pace = [] if self._pace is None else [self._pace.pacer.note()]
-        return [*self.prepared.loose_inputs(), *self._master.notes(), *pace]
+        prepared = self.prepared
+        return [*prepared.system.notes, *prepared.loose_inputs(), *self._master.notes(), *pace]
 
     # ------------------------------------------------------------------ inside
 
