@@ -72,19 +72,25 @@ def _checked(name: str) -> str:
 
 def _refuse_existing(files: dict[Path, str]) -> None:
     """Raise InputError for a file that is there, and for one that would hide a shipped one."""
-    there = [str(path) for path in files if path.exists() or path.is_symlink()]
+    folders = {parent for path in files for parent in path.parents}
+    there = [path for path in files if path.exists() or path.is_symlink()]
+    there += [folder for folder in folders if folder.exists() and not folder.is_dir()]
     if there:
-        raise InputError(f"nothing is written: {', '.join(there)} exists already")
-    hidden = [
-        str(path)
-        for path in files
-        if (shipped_folder(path.parts[0]).joinpath(*path.parts[1:])).exists()
-    ]
+        raise InputError(f"nothing is written, for there is already {_listed(there)}")
+    hidden = [path for path in files if _shipped(path).exists()]
     if hidden:
         raise InputError(
-            f"nothing is written: seatrial ships {', '.join(hidden)}, which yours would hide: take "
+            f"nothing is written: seatrial ships {_listed(hidden)}, which yours would hide: take "
             "another name"
         )
+
+
+def _shipped(path: Path) -> Path:
+    return shipped_folder(path.parts[0]).joinpath(*path.parts[1:])
+
+
+def _listed(paths: list[Path]) -> str:
+    return ", ".join(sorted(str(path) for path in paths))
 
 
 def _say(name: str, like: str, files: dict[Path, str]) -> None:
