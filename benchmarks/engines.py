@@ -27,7 +27,7 @@ def _plain(name: str) -> str:
 
 
 def _parted(name: str) -> tuple[str, str]:
-    """Return component and variable; all that is looked at is one of a hull's three axes, or plain."""
+    """Return component and variable, which is one of three axes of a hull or a scalar."""
     parts = name.split(".")
     at = -2 if len(parts) > 2 else -1
     return ".".join(parts[:at]), ".".join(parts[at:])

@@ -149,7 +149,9 @@ def live(block: Block, folder: Path, port: str, background: ExitStack) -> Block:
     if trial is None:
         return block
     links = f"udpout:{HOST}:{port}"
-    running_trial = background.enter_context(running(trial[1], folder, autopilot__mavlink__links=links))
+    running_trial = background.enter_context(
+        running(trial[1], folder, autopilot__mavlink__links=links)
+    )
     wait_for(lambda: running_trial.is_running, f"{trial[1]} runs", 180.0)
     return block._replace(text=block.text[trial.end() :])
 

@@ -96,9 +96,7 @@ class _Reading:
         }
         variant = (entry and entry.variant) or file.variant
         home = (entry.home[0], entry.home[1], entry.home[2]) if entry and entry.home else None
-        return Scope(
-            place, file, read_from, path.parent, choices, inner, variant, home, step=step
-        )
+        return Scope(place, file, read_from, path.parent, choices, inner, variant, home, step=step)
 
     def _inner(
         self,
