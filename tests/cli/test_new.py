@@ -146,10 +146,36 @@ def test_eight_thrusters_drive_it_as_manual_control_says(made, monkeypatch):
         given = {**settings, f"{pilot}.guidance.manual.{axis}": 0.3}
         with Simulation("sil", choices={"vehicle": NAME}, set=given) as simulation:
             simulation.run("2 s")
-            speeds = {a: simulation[f"{hull}.velocity.{a}"] for a in "uvw"}
-            assert abs(simulation[f"{hull}.attitude.theta"]) < math.radians(3.0)
+            speeds = {a: simulation.get(f"{hull}.velocity.{a}") for a in "uvw"}
+            assert abs(simulation.get(f"{hull}.attitude.theta")) < math.radians(3.0)
         assert speeds.pop(moved) > 0.1
         assert max(map(abs, speeds.values())) < 0.03
+
+
+@every_made
+def test_under_guidance_its_profile_needs_actuators_and_sensors_only(made):
+    path = made / f"hil_profiles/{NAME}.toml"
+    text = path.read_text("utf-8")
+    cut = text[text.index("[actuators.") : text.index("[links.")]
+    lines = [line for line in cut.splitlines() if not line.startswith("source")]
+    path.write_text("\n".join(['title = "bare"', *lines]), "utf-8")
+    done = run(made, NAME, "--set", "stop=1 s")
+    assert done.returncode == 1, done.stderr
+    assert f"note: profile {NAME}: actuators." in done.stdout
+    done = run(made, f"{NAME}-mission", "--set", "stop=1 s")
+    assert "unknown section 'links.ground'" in done.stderr
+
+
+def test_what_a_link_takes_by_default_is_a_note(made):
+    path = made / f"hil_profiles/{NAME}.toml"
+    text = path.read_text("utf-8")
+    path.write_text(text[: text.index("[identity]")] + text[text.index("[actuators.") :], "utf-8")
+    links = ("--set", "autopilot.mavlink.links=")
+    done = run(made, f"{NAME}-mission", *links, "--set", "stop=1 s", "--real-time", "1e6")
+    assert done.returncode == 0, done.stderr
+    note = f"note: profile {NAME}: links.ground has defaults for what [identity] and [home] do not"
+    assert note in done.stdout
+    assert note in seatrial("profile", "check", NAME, cwd=made).stdout
 
 
 def test_a_second_call_writes_nothing(made):
