@@ -113,6 +113,13 @@ def test_it_runs_under_guidance(made):
     assert done.stdout.count("PASS") >= 2
 
 
+def test_a_trial_of_another_autopilot_is_refused_with_the_rig_that_lacks_the_course(made):
+    done = run(made, NAME, "--autopilot", "mavlink")
+    assert done.returncode == 2
+    assert "set: unknown component 'course'; (known: mavlink, pilot)" in done.stderr
+    assert "in autopilot, the rig mavlink\n" in done.stderr
+
+
 @pytest.mark.long
 @every_made
 def test_its_trial_passes(made):

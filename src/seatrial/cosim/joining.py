@@ -81,7 +81,8 @@ class Resolver:
             return self._shown(scope.inner[head], head, rest, optional, where)
         if head in scope.file.components:
             return self._of_component(joined(scope.path, head), rest, optional, where, wanted)
-        raise InputError(f"{where}: {unknown('component', head, scope.file.components)}")
+        inside = f" in {scope.path}, the rig {scope.read_from.name}" if scope.path else ""
+        raise InputError(f"{where}: {unknown('component', head, scope.file.components)}{inside}")
 
     def anywhere(self, written: str, where: str) -> Group:
         """Return what a path means, seen from outside: a port at any depth, or what is shown."""
