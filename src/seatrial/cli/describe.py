@@ -70,6 +70,8 @@ def _print_rig(system: System) -> None:
     _print_list(f"{len(lines)} connections", lines)
     _print_list("not made", system.open)
     _print_list("inputs that nothing feeds", system.unconnected_inputs())
+    optional = system.unconnected_inputs(optional=True)
+    _print_list("optional inputs that nothing feeds", optional)
     shown = [f"{name} = {value!r}" for name, value in top.file.shows.items()]
     _print_list("shows", shown)
 

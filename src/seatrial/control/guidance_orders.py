@@ -100,13 +100,20 @@ class GuidanceOrders(Sampled):
         "1",
         "manual control, -1 to 1: ahead, to starboard, turn to starboard, down",
         axes=MANUAL_AXES,
+        optional=True,
     )
-    target_kind = Input("1", f"guided: one of {', '.join(TARGETS)}", type=str, start="position")
-    target_valid = Input("1", "guided: whether there is a set-point", type=bool, start=True)
-    target_position = Input("m", "guided: position to go to", axes=NED)
-    target_velocity = Input("m/s", "guided: velocity over ground", axes=NED)
-    target_heading = Input("rad", "guided: heading, clockwise from north")
-    target_speed = Input("m/s", "guided: speed along the bow, to a position 0 for cruise_speed")
+    target_kind = Input(
+        "1", f"guided: one of {', '.join(TARGETS)}", type=str, start="position", optional=True
+    )
+    target_valid = Input(
+        "1", "guided: whether there is a set-point", type=bool, start=True, optional=True
+    )
+    target_position = Input("m", "guided: position to go to", axes=NED, optional=True)
+    target_velocity = Input("m/s", "guided: velocity over ground", axes=NED, optional=True)
+    target_heading = Input("rad", "guided: heading, clockwise from north", optional=True)
+    target_speed = Input(
+        "m/s", "guided: speed along the bow, to a position 0 for cruise_speed", optional=True
+    )
     leg = Input("1", "auto: number of the leg, another for each new one; 0 for none", type=int)
     leg_from = Input("m", "auto: where the leg begins", axes=NED)
     leg_to = Input("m", "auto: where the leg ends", axes=NED)
@@ -115,8 +122,8 @@ class GuidanceOrders(Sampled):
         "m", "auto: distance at which its end is reached, 0 for acceptance_radius", start=3.0
     )
     leg_wait = Input("s", "auto: time to stay at its end")
-    leg_circle = Input("m", "auto: radius of the circle to stay on, 0 for none")
-    home = Input("m", "position to return to", axes=NED)
+    leg_circle = Input("m", "auto: radius of the circle to stay on, 0 for none", optional=True)
+    home = Input("m", "position to return to", axes=NED, optional=True)
     position_n = Input("m", "position, north-east-down", axes=NED)
     velocity_n = Input("m/s", "velocity over ground, north-east-down", axes=NED)
     position_valid = Input("1", "whether position and velocity are valid", type=bool, start=True)

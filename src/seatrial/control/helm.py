@@ -34,7 +34,7 @@ class Helm(Component):
     direct = Input("1", "manual control, -1 to 1", axes=("surge", "sway", "yaw", "heave"))
     surge_held = Input("N", "surge force of the autopilot, positive ahead")
     yaw_moment_held = Input("N.m", "yaw moment of the autopilot, positive to starboard")
-    heave_held = Input("N", "heave force of the autopilot, positive down")
+    heave_held = Input("N", "heave force of the autopilot, positive down", optional=True)
 
     surge = Output("N", "surge force wanted, positive ahead")
     sway = Output("N", "sway force wanted, positive to starboard")

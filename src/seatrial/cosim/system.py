@@ -162,10 +162,10 @@ class System:
             w.target[1]: ".".join(w.source) for w in self.connections if w.target[0] == component
         }
 
-    def unconnected_inputs(self) -> list[str]:
+    def unconnected_inputs(self, *, optional: bool = False) -> list[str]:
         """Return the inputs that no connection reaches and nobody set; whole ports by their name.
 
-        Optional ones are not among them.
+        Those that are normally not connected, if ``optional``, otherwise the others.
         """
         connected = {connection.target for connection in self.connections}
         found: dict[str, None] = {}
@@ -173,7 +173,7 @@ class System:
             variables = part.instance.variables
             inputs = {n for n, v in variables.items() if v.causality == "input"}
             reached = {n for n in inputs if (name, n) in connected or n in part.given}
-            loose = {n for n in inputs - reached if not variables[n].optional}
+            loose = {n for n in inputs - reached if variables[n].optional == optional}
             whole = {}
             for variable in (n for n in variables if n in loose):
                 port = variables.port_of(variable)

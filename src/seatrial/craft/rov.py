@@ -71,7 +71,9 @@ class Rov(SixDofCraft):
         0.0, "m", "centre of buoyancy from the body origin, body axes", axes="xyz"
     )
 
-    current_acceleration = Input("m/s2", "acceleration of the water, uniform, {n}", axes=_NED)
+    current_acceleration = Input(
+        "m/s2", "acceleration of the water, uniform, {n}", axes=_NED, optional=True
+    )
 
     eta = State(
         ("m", "m", "m", "rad", "rad", "rad"),

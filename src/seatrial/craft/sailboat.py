@@ -107,7 +107,9 @@ class Sailboat(PlanarCraft):
     wind = Input(
         "m/s", "velocity of the air over ground: where the wind blows to, {n}", axes=_HORIZONTAL
     )
-    current = Input("m/s", "velocity of the water over ground, {n}", axes=_HORIZONTAL)
+    current = Input(
+        "m/s", "velocity of the water over ground, {n}", axes=_HORIZONTAL, optional=True
+    )
 
     eta = State(
         ("m", "m", "rad", "rad"),

@@ -89,7 +89,7 @@ class SixDofCraft(Plant):
     attachment_force = Input(
         "N", "force of a tether or tow at its attachment, {n}", axes=_NED, optional=True
     )
-    current = Input("m/s", "velocity of the water, uniform, {n}", axes=_NED)
+    current = Input("m/s", "velocity of the water, uniform, {n}", axes=_NED, optional=True)
 
     attachment_point = Output("m", "attachment of a tether or tow, {n}", axes=_NED)
     attachment_velocity = Output("m/s", "velocity of the attachment over ground, {n}", axes=_NED)

@@ -90,7 +90,7 @@ class Tether(Component):
     top_velocity = Input("m/s", "velocity of the end at the surface over ground, {n}", axes=_NED)
     bottom_position = Input("m", "end at the vehicle, {n}", axes=_NED, start=(0.0, 0.0, 40.0))
     bottom_velocity = Input("m/s", "velocity of the end at the vehicle over ground, {n}", axes=_NED)
-    current = Input("m/s", "velocity of the water, uniform part, {n}", axes=_NED)
+    current = Input("m/s", "velocity of the water, uniform part, {n}", axes=_NED, optional=True)
 
     force = Output("N", "force on the vehicle, mean over the coming step, {n}", axes=_NED)
     surface_force = Output(
