@@ -65,7 +65,7 @@ def stepped(system: System) -> Expected:
 
 def flat(names: list[str]) -> list[str]:
     """Return the names of outputs in a package of one system."""
-    return [re.sub(r"^loop\.(\w+)\.", r"loop_\1_", name) for name in names]
+    return [re.sub(r"^(vehicle|autopilot)\.(\w+)\.", r"\1_\2.", name) for name in names]
 
 
 def compare(
