@@ -344,6 +344,7 @@ class Watch(Component):
         self.published.append(t)
 
 
+@pytest.mark.interop
 @pytest.mark.parametrize("start", [0.0, 12.34, 86400.0])
 @pytest.mark.parametrize("h", [0.01, 0.02, 0.1, 1 / 3, 1 / 60])
 def test_a_host_that_accumulates_its_time_is_kept_on_the_grid(h: float, start: float) -> None:

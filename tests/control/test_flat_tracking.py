@@ -249,6 +249,7 @@ def biased(axis, size, period=0.02, stop=200.0):
     return follow(law, stop, "table81_fit", inputs=step)
 
 
+@pytest.mark.interop
 @pytest.mark.parametrize(("which", "axis"), [("surge", "u"), ("sway", "v")])
 def test_transients_of_table_81(which, axis):
     rows = biased(axis, 1.0)

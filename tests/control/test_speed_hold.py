@@ -44,6 +44,7 @@ def test_a_steady_push_leaves_no_error():
     assert surge[-1] == pytest.approx(4.0 + 3.0 * 0.8 + 10.0 * 0.64, rel=1e-5)
 
 
+@pytest.mark.interop
 def test_what_the_capacity_cuts_off_does_not_wind_up():
     hold = started(SpeedHold, **CRAFT, enabled=True, capacity=5.0)
     _, speed, surge = run(hold, 2.0, 100.0)

@@ -12,6 +12,7 @@ from .hydrone_loop import held
 DEG = math.radians(1.0)
 
 
+@pytest.mark.interop
 def test_settles_from_3_m_and_40_degrees_against_a_steady_push():
     rows = held(40, position=(-3, 0), heading=40 * DEG, force=(-3, 0), moment=0.8)
     t, north, east, psi, mode = rows.T

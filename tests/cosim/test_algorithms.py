@@ -236,6 +236,7 @@ def test_a_slow_component_diverges_with_a_name_too(
 PHASES = 12
 
 
+@pytest.mark.interop
 @pytest.mark.parametrize(
     "period", [8.0, *(pytest.param(p, marks=pytest.mark.interop) for p in (16.0, 20.0, 32.0))]
 )
@@ -328,6 +329,7 @@ def test_a_discarded_step_is_taken_in_smaller_ones(bench: Bench, algorithm: str)
         assert value(master, "coarse.x") == pytest.approx(whole + quarters, abs=1e-12)
 
 
+@pytest.mark.interop
 @pytest.mark.parametrize(
     ("algorithm", "more"),
     [

@@ -191,6 +191,7 @@ def test_intermittent_is_off_in_half_of_the_intervals():
     assert pairs.mean() / 7.0 == pytest.approx(0.5, abs=3.9 * 0.5 / math.sqrt(len(pairs)))
 
 
+@pytest.mark.interop
 @every
 @pytest.mark.parametrize("fault", ["garbage", "intermittent"])
 def test_random_failures_are_those_of_the_seed(cls, fault):

@@ -36,6 +36,7 @@ def test_wind_does_not_depend_on_the_communication_step(step_ms):
     assert coarse == fine[::step_ms]
 
 
+@pytest.mark.interop
 def test_gusts_have_the_deviations_and_the_correlation_asked_for():
     # 4000 s are 250 independent stretches of two correlation times: 5 % of a deviation.
     rows = run(started(Wind, **GUSTS), ["speed", "direction"], 4_000_000, 100)

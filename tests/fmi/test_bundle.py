@@ -148,6 +148,7 @@ PLAIN = (
 )
 
 
+@pytest.mark.interop
 @pytest.mark.parametrize(
     "data",
     [

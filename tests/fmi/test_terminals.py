@@ -91,6 +91,7 @@ def test_the_same_component_gives_the_same_bytes(barge: ComponentSource, tmp_pat
     assert one.read_bytes() == two.read_bytes()
 
 
+@pytest.mark.interop
 @pytest.mark.parametrize("name", shipped_sources())
 def test_a_shipped_fmu_shows_what_its_component_shows(name: str, tmp_path: Path) -> None:
     component = shipped_sources()[name]

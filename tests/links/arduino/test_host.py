@@ -185,6 +185,7 @@ def test_wrong_parameters_are_named(tmp_path, values, expected):
         running(tmp_path, NOTHING, **values)
 
 
+@pytest.mark.interop
 def test_boards_come_and_go_without_a_trace(tmp_path):
     sketch = write_sketch(tmp_path, NOTHING)
     with Bench(sketch) as bench:

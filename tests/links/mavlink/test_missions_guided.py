@@ -80,6 +80,7 @@ def test_times_are_those_of_the_way():
     assert bench.node.missions.leg.number == guided.get("reached")
 
 
+@pytest.mark.interop
 @pytest.mark.parametrize(
     ("radius", "turns", "seconds"),
     [(-6.0, 1.0, 80.0), pytest.param(6.0, 2.0, 120.0, marks=pytest.mark.interop)],
