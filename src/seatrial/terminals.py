@@ -54,5 +54,26 @@ def terminal(*same: str, rule: Rule = "bus", **others: str) -> Terminal:
     return Terminal({**named, **{m: p.replace("__", ".") for m, p in others.items()}}, rule)
 
 
+ORDERED = (
+    "mode",
+    "armed",
+    "manual",
+    "home",
+    "target_kind",
+    "target_valid",
+    "target_position",
+    "target_velocity",
+    "target_heading",
+    "target_speed",
+    "leg",
+    "leg_from",
+    "leg_to",
+    "leg_speed",
+    "leg_radius",
+    "leg_wait",
+    "leg_circle",
+)
+"""Members of ``orders`` that whoever commands gives; a pilot answers ``leg_reached``, ``nav_...``."""
+
 MOTION = terminal("position", "velocity", "attitude", "rates", "acceleration")
 """What every craft gives under the name ``motion``."""

@@ -8,6 +8,7 @@ from typing import ClassVar, NamedTuple
 from ..component import Input, Output, Parameter, terminal
 from ..errors import InputError, unknown
 from ..sampled import Sampled
+from ..terminals import ORDERED
 from .estimates import is_lost
 from .guidance_motion import FOLLOW, STAY, STEER, Command, Goal, Law, Past, command
 from .guidance_path import Point
@@ -24,23 +25,7 @@ SENSED = ("position_n", "velocity_n", "position_valid", "heading", "heading_vali
 """Members of the terminal ``sensors``."""
 
 ORDERS = terminal(
-    "mode",
-    "armed",
-    "manual",
-    "home",
-    "target_kind",
-    "target_valid",
-    "target_position",
-    "target_velocity",
-    "target_heading",
-    "target_speed",
-    "leg",
-    "leg_from",
-    "leg_to",
-    "leg_speed",
-    "leg_radius",
-    "leg_wait",
-    "leg_circle",
+    *ORDERED,
     leg_reached="reached",
     nav_state="state",
     nav_heading="heading_wanted",

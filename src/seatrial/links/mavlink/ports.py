@@ -8,6 +8,7 @@ from pymavlink.dialects.v20 import all as mavlink
 
 from ...component import Input, Logging, Output, Parameter, Reachable, Terminal, terminal
 from ...sampled import Sampled
+from ...terminals import ORDERED
 from ...unit_table import STANDARD_GRAVITY
 from ..endpoints.url import check_urls
 from .failsafe import ACTIONS
@@ -208,23 +209,7 @@ class MavlinkPorts(Logging, Reachable, Sampled):
             acceleration="true_acceleration",
         ),
         "orders": terminal(
-            "mode",
-            "armed",
-            "manual",
-            "home",
-            "target_kind",
-            "target_valid",
-            "target_position",
-            "target_velocity",
-            "target_heading",
-            "target_speed",
-            "leg",
-            "leg_from",
-            "leg_to",
-            "leg_speed",
-            "leg_radius",
-            "leg_wait",
-            "leg_circle",
+            *ORDERED,
             "leg_reached",
             "nav_state",
             "nav_heading",
