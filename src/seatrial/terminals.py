@@ -73,7 +73,7 @@ ORDERED = (
     "leg_wait",
     "leg_circle",
 )
-"""Members of ``orders`` that the commanding side gives; a pilot answers ``leg_reached`` and others."""
+"""Members of ``orders`` from whoever commands; a pilot answers ``leg_reached`` and others."""
 
 MOTION = terminal("position", "velocity", "attitude", "rates", "acceleration")
 """What every craft gives under the name ``motion``."""
