@@ -193,7 +193,7 @@ def test_a_choice_without_a_value_is_named(yard) -> None:
         ('"a.motion"    = "reader.sensors"', '"a.motion.totl" = "reader.total"',
          "unknown member 'totl'; did you mean 'total'"),
         ('"a.load", "b.load"', '"a.load", "a.load", "a.load"',
-         "all 3 terms of a.body.force are fed; it takes no more"),
+         "all 3 terms of a.body.force are fed, by a.push.push.force.x, more.force.x, more.force.x"),
         ('"a.motion"    = "reader.sensors"', '"a.motion" = "reader.sensors"\n"b.motion" = "reader.sensors"',
          "reader.total.x is already fed by a.body.total.x"),
         ('rig = "inner/body" }', 'rig = "top" }', "a rig contains itself: top -> top"),

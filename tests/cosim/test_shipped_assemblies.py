@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import pytest
@@ -153,6 +154,35 @@ def test_a_target_that_is_set_moves_the_start_of_its_tunable(sil) -> None:
     assert "CRUISE_SPEED 0.5 0.0 1.5" in system.parts["autopilot.mavlink"].given["tunables"].value
     with pytest.raises(InputError, match=r"CRUISE_SPEED sets .*cruise_speed, which is 2\.0"):
         system.set("autopilot.pilot.guidance.cruise_speed", "2 m/s", "test")
+
+
+def test_the_home_of_a_rig_is_that_of_all_links_in_it() -> None:
+    """The fleet's boats are 100 m apart, however deep their links stand."""
+    system = assemble(load_rig("fleet"), "direct")
+    places = [
+        tuple(
+            system.parts[f"{boat}.autopilot.mavlink"].given[port].value
+            for port in ("latitude", "longitude")
+        )
+        for boat in ("hydrone", "videoray", "gloria")
+    ]
+    system.free()
+    degrees = [tuple(round(math.degrees(angle), 9) for angle in place) for place in places]
+    assert degrees == [(-31.78, -52.26), (-31.78, -52.259), (-31.779, -52.26)]
+
+
+@pytest.mark.parametrize("wanted", ["source", "consistent"])
+def test_a_variant_reaches_the_vehicle_inside(wanted: str) -> None:
+    system = assemble(load_rig("sil"), "direct", variant=wanted)
+    given = system.parts["vehicle.hull"].given["coriolis"]
+    system.free()
+    assert given.value == {"source": "diagonal", "consistent": "full"}[wanted]
+    assert f"variant {wanted}" in given.origin
+
+
+def test_a_variant_that_no_vehicle_inside_has_is_refused() -> None:
+    with pytest.raises(InputError, match="unknown variant 'sauce'; did you mean 'source'"):
+        assemble(load_rig("sil"), "direct", variant="sauce")
 
 
 @pytest.mark.parametrize(

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from ..errors import InputError
-from .component_parameters import give_parameters
+from ..errors import InputError, unknown
+from .component_parameters import give_parameters, variants_of
 from .connecting import connect
 from .loading import load_part
 from .profile import Profiles
@@ -52,12 +52,18 @@ def assemble(
 
 
 def _refuse_idle_variant(system: System) -> None:
+    """Raise InputError for a variant that none of the vehicles in the rig has."""
     takers = [placed for placed in system.rig.components.values() if placed.entry.parameters]
-    if system.variant and not takers:
+    if not system.variant:
+        return
+    where = f"{system.rig.read_from.path}: variant {system.variant!r}"
+    if not takers:
         raise InputError(
-            f"{system.rig.read_from.path}: variant {system.variant!r}: no component takes "
-            "parameters of a vehicle, so there is nothing to vary"
+            f"{where}: no component takes parameters of a vehicle, so there is nothing to vary"
         )
+    known = {variant for placed in takers for variant in variants_of(placed)}
+    if system.variant not in known:
+        raise InputError(f"{where}: {unknown('variant', system.variant, known)}")
 
 
 def _yield_to_connections(system: System) -> None:

@@ -36,6 +36,13 @@ def give_parameters(system: System, part: Part, profiles: Profiles) -> None:
         system.set(f"{part.name}.{port}", written, f"{where}.set")
 
 
+def variants_of(placed: Placed) -> list[str]:
+    """Return the variants of the vehicle that gives a component its parameters."""
+    assert placed.entry.parameters is not None
+    name, _ = split_reference(placed.entry.parameters, placed.entry.fmu)
+    return list(load_vehicle(name, placed.scope.read_from.path.parent).file.variants)
+
+
 def _give_seed(part: Part, seed: int) -> None:
     """Give each instance noise of its own, yet the same in every tool and run."""
     for name in part.instance.variables.of_role("seed"):

@@ -9,7 +9,6 @@ from ..fmi.instance import Variable
 from ..ports import FRAMES
 from ..units import conversion
 from .joining import End, Group, Resolver, kind_of
-from .paths import joined
 from .rig import ConnectionEntry, Scope
 from .system import Connection, Joint, System
 from .values import port_scalars
@@ -49,8 +48,7 @@ class _Making:
         target = self.resolver.named(scope, names[1] + mark, where, _TARGETS)
         if source is None or target is None:
             missing = [n for n, of in zip(names, (source, target), strict=True) if of is None]
-            said = f'{joined(scope.path, "")}"{written}" = "{entry.to}"'
-            self.system.open.append(f"{said}: there is no {' and no '.join(missing)}")
+            self._leave_open(scope, written, entry, f"there is no {' and no '.join(missing)}")
         elif source.is_port and target.is_port:
             for end in target.members[""]:
                 self._feed(_one(source.members[""], written, where), end, entry, where)
@@ -61,7 +59,11 @@ class _Making:
             sides = f"{written} {self._directions(source)}; {entry.to} {self._directions(target)}"
             if not mark:
                 raise InputError(f"{where}: nothing joins: {sides}")
-            self.system.open.append(f'"{written}" = "{entry.to}": nothing joins: {sides}')
+            self._leave_open(scope, written, entry, f"nothing joins: {sides}")
+
+    def _leave_open(self, scope: Scope, written: str, entry: ConnectionEntry, why: str) -> None:
+        inside = f"in {scope.path}, " if scope.path else ""
+        self.system.open.append(f'{inside}"{written}" = "{entry.to}": {why}')
 
     def _join(self, a: Group, b: Group, written: str, entry: ConnectionEntry, where: str) -> bool:
         """Connect two terminals, each member from its output to its inputs; say if any was."""
@@ -86,10 +88,10 @@ class _Making:
         """Say if another member made the same connection: ``heel`` is in ``roll_pitch`` too."""
         if target.sum_of:
             return False
-        pairs = zip(self.resolver.variables(source), self.resolver.variables(target), strict=False)
-        return all(
+        ones, others = self.resolver.variables(source), self.resolver.variables(target)
+        return len(ones) == len(others) and all(
             self.feeders.get((target.component, other.name)) == f"{source.component}.{one.name}"
-            for one, other in pairs
+            for one, other in zip(ones, others, strict=True)
         )
 
     def _refuse_open(self, name: str, group: Group, met: set[str], where: str) -> None:
@@ -134,13 +136,16 @@ class _Making:
 
     def _free_term(self, target: End, where: str) -> End:
         variables = self.system.parts[target.component].instance.variables
+        feeders = []
         for term in target.sum_of:
             names = [(target.component, v.name) for v in port_scalars(variables, term)]
-            if not any(name in self.feeders for name in names):
+            feeding = [self.feeders[name] for name in names if name in self.feeders]
+            if not feeding:
                 return End(target.component, term)
-        feeders = [self.feeders.get((target.component, term), term) for term in target.sum_of]
+            feeders.append(feeding[0])
         raise InputError(
-            f"{where}: all {len(feeders)} terms of {target.name} are fed; it takes no more"
+            f"{where}: all {len(feeders)} terms of {target.name} are fed, by "
+            f"{', '.join(feeders)}; it takes no more"
         )
 
     def _scalars(self, end: End, wanted: tuple[str, ...], where: str) -> list[Variable]:

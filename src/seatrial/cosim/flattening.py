@@ -28,7 +28,7 @@ def load_rig(
     """
     path = find_file("harness/rigs", name, relative_to)
     reading = _Reading(dict(choices or {}))
-    top = reading.scope(path, "", reading.given, ())
+    top = reading.scope(path, "", _Around(reading.given), ())
     idle = [name for name in reading.given if name not in reading.used]
     if idle:
         raise InputError(f"{path}: {unknown('choice', idle[0], sorted(reading.used))}")
@@ -61,6 +61,22 @@ def _scope_of(
     return Scope(place, file, read_from, folder, {}, inner, is_open=True)
 
 
+@dataclass(frozen=True)
+class _Around:
+    """What the rigs around one give it, and those inside it."""
+
+    choices: Mapping[str, str]
+    variant: str | None = None
+    home: tuple[str, str, str] | None = None
+    step: tuple[str, str] | None = None
+
+    def inside(self, entry: ComponentEntry, choices: Mapping[str, str], where: str) -> _Around:
+        """Return what holds inside the rig of ``entry``: its own keys, else those around it."""
+        home = (entry.home[0], entry.home[1], entry.home[2]) if entry.home else self.home
+        step = self.step if entry.step is None else (entry.step, f"{where}.step")
+        return _Around({**choices, **entry.choices}, entry.variant or self.variant, home, step)
+
+
 @dataclass
 class _Reading:
     """The choices that were given, and those that a file declares or uses."""
@@ -68,55 +84,56 @@ class _Reading:
     given: dict[str, str]
     used: set[str] = field(default_factory=set)
 
-    def scope(
-        self,
-        path: Path,
-        place: str,
-        around: Mapping[str, str],
-        chain: tuple[Path, ...],
-        entry: ComponentEntry | None = None,
-        step: tuple[str, str] | None = None,
-    ) -> Scope:
-        """Return the rig of a file at ``place``, with the choices and the step around it."""
+    def scope(self, path: Path, place: str, around: _Around, chain: tuple[Path, ...]) -> Scope:
+        """Return the rig of a file at ``place``, with what the rigs around it give."""
         if path in chain or len(chain) > _DEEPEST:
             names = " -> ".join(p.stem for p in (*chain, path))
             raise InputError(f"{chain[-1]}: a rig contains itself: {names}")
         content, read_from = read_toml(path)
-        choices = {**_declared(content), **around}
+        choices = {**_declared(content), **around.choices}
         self.used |= _declared(content).keys() | _used(content)
         file = validated(RigFile, _chosen(content, choices), path)
         _refuse_unchosen(file, path)
         check_rig_file(file, path)
         inner = {
             name: self._inner(
-                part, f"{path}: components.{name}", joined(place, name), choices, path, chain, step
+                part,
+                joined(place, name),
+                around.inside(part, choices, where),
+                where,
+                (*chain, path),
             )
             for name, part in file.components.items()
+            for where in [f"{path}: components.{name}"]
             if part.rig
         }
-        variant = (entry and entry.variant) or file.variant
-        home = (entry.home[0], entry.home[1], entry.home[2]) if entry and entry.home else None
-        return Scope(place, file, read_from, path.parent, choices, inner, variant, home, step=step)
+        return Scope(
+            place,
+            file,
+            read_from,
+            path.parent,
+            choices,
+            inner,
+            around.variant or file.variant,
+            around.home,
+            step=around.step,
+        )
 
     def _inner(
         self,
         entry: ComponentEntry,
-        where: str,
         place: str,
-        choices: Mapping[str, str],
-        path: Path,
+        around: _Around,
+        where: str,
         chain: tuple[Path, ...],
-        step: tuple[str, str] | None,
     ) -> Scope:
         try:
-            file = find_file("harness/rigs", entry.rig, path.parent)
+            file = find_file("harness/rigs", entry.rig, chain[-1].parent)
         except InputError as error:
             raise InputError(f"{where}.rig: {error}") from None
         before = set(self.used)
         self.used = set()
-        if entry.step is not None:
-            step = entry.step, f"{where}.step"
-        scope = self.scope(file, place, {**choices, **entry.choices}, (*chain, path), entry, step)
+        scope = self.scope(file, place, around, chain)
         for name in entry.choices:
             if name not in self.used:
                 raise InputError(f"{where}.choices: {unknown('choice', name, sorted(self.used))}")
