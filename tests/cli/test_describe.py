@@ -31,3 +31,18 @@ def test_mistakes_have_near_misses(tmp_path) -> None:
     assert "did you mean 'vehicles/gloria'" in done.stderr
     done = seatrial("describe", "sil", "--choose", "vessel=gloria", cwd=tmp_path)
     assert "unknown choice 'vessel'" in done.stderr
+    (tmp_path / "mine.toml").write_text(
+        'rig = "sil"\nstop = "1 s"\nchoices = { vehicle = "hydrona" }\n'
+    )
+    done = seatrial("describe", "mine.toml", cwd=tmp_path)
+    assert "did you mean 'vehicles/hydrone'" in done.stderr
+
+
+def test_a_part_of_a_rig_is_described_alone(tmp_path) -> None:
+    done = seatrial("describe", "vehicles/mariner", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert ["machine.angle", "->", "ship.rudder"] in [
+        line.split() for line in done.stdout.splitlines()
+    ]
+    done = seatrial("describe", "vehicles/marine", cwd=tmp_path)
+    assert "did you mean 'vehicles/mariner'" in done.stderr

@@ -11,9 +11,7 @@ from ..cosim.assembly import assemble
 from ..cosim.flattening import load_rig
 from ..cosim.rig import Rig, Scope
 from ..cosim.system import Joint, System
-from ..errors import InputError
-from ..shipped import available
-from ..trials.trial import choices_in, load_trial
+from ..trials.trial import choices_in, is_trial, load_trial
 from .options import Autopilot, Choices, Vehicle, changes_of
 from .show import console
 
@@ -35,18 +33,9 @@ def describe(
 
 
 def _loaded(name: str, changes: dict[str, str]) -> Rig:
-    if name not in available("harness/rigs") and name in available("harness/trials"):
+    if is_trial(name):
         return load_trial(name, changes=changes, origin="--choose").rig
-    try:
-        return load_rig(name, None, choices_in(changes, "--choose"))
-    except InputError:
-        if not name.endswith(".toml"):
-            raise
-        try:
-            return load_trial(name, changes=changes, origin="--choose").rig
-        except InputError:
-            pass
-        raise
+    return load_rig(name, None, choices_in(changes, "--choose"))
 
 
 def _in_process(rig: Rig) -> bool:

@@ -7,15 +7,13 @@ from pathlib import Path
 
 from ..component import seconds
 from ..cosim.assembly import assemble
-from ..cosim.files import find_file, read_toml
 from ..cosim.flattening import load_rig
 from ..cosim.ssp.describing import Experiment
 from ..cosim.ssp.tools import takes_systems
 from ..cosim.ssp.writing import write_ssp
 from ..cosim.system import System
-from ..errors import InputError, unknown
-from ..shipped import available
-from .trial import Trial, load_trial
+from ..errors import InputError
+from .trial import Trial, is_trial, load_trial
 
 _USUAL_STOP = 10.0
 """Stop time in the package of a rig, which has none itself, s."""
@@ -37,7 +35,7 @@ def export_ssp(
     The notes say what SSP cannot. Raises InputError.
     """
     in_one = tool is not None and not takes_systems(tool)
-    if _is_trial(name):
+    if is_trial(name):
         changes = {f"choices.{key}": value for key, value in (choices or {}).items()}
         if variant is not None:
             changes["variant"] = variant
@@ -58,15 +56,6 @@ def export_ssp(
     finally:
         system.free()
     return path, notes
-
-
-def _is_trial(name: str) -> bool:
-    if name.endswith(".toml"):
-        return "rig" in read_toml(find_file("harness/trials", name))[0]
-    trials, rigs = available("harness/trials"), available("harness/rigs")
-    if not name.endswith(".ssp") and name not in {**trials, **rigs}:
-        raise InputError(unknown("trial or rig", name, {**trials, **rigs}))
-    return name not in rigs or name in trials
 
 
 def _set_up(trial: Trial) -> System:

@@ -15,6 +15,7 @@ from ..cosim.files import FileModel, Source, find_file, read_toml, validated
 from ..cosim.flattening import load_rig
 from ..cosim.rig import Rig, duration_ns
 from ..errors import InputError, unknown
+from ..shipped import available
 from .criteria import Criterion, parse
 from .verdict import WHOLE
 
@@ -204,6 +205,23 @@ class Trial:
             rig = rig.changed(of_rig)
         changed = replace(self, file=file, rig=rig, rig_changes=of_rig)
         return _checked(replace(changed, overrides=tuple(overrides)))
+
+
+def is_trial(name: str) -> bool:
+    """Say if ``name`` is a trial or a package, not a rig; where both share it, it is the trial.
+
+    Raises InputError for a name that is neither. A name with a folder, ``vehicles/hydrone``, is
+    a rig's.
+    """
+    if name.endswith(".toml"):
+        return "rig" in read_toml(find_file("harness/trials", name))[0]
+    trials, rigs = available("harness/trials"), available("harness/rigs")
+    if "/" in name and not name.endswith(".ssp"):
+        find_file("harness/rigs", name)
+        return False
+    if not name.endswith(".ssp") and name not in {**trials, **rigs}:
+        raise InputError(unknown("trial or rig", name, {**trials, **rigs}))
+    return name not in rigs or name in trials
 
 
 def load_trial(
