@@ -30,6 +30,7 @@ from parts import (  # noqa: E402, F401  each registers its parts
     settings,
     ships,
     tether,
+    vehicles,
     videoray_control,
     videoray_stream,
 )

@@ -430,6 +430,7 @@ SLOW = {
     "hydrone-stated",
     "hydrone-sensitivity",
     "hydrone-three-variants",
+    "vehicles-campaign",
     *(f"videoray-rejection{part}" for part in ("", "-table75", "-table81")),
 }
 

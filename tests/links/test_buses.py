@@ -21,13 +21,13 @@ def feeders(rig, **choices):
 @pytest.mark.parametrize("vehicle", ["hydrone", "videoray", "gloria", "mariner"])
 def test_a_plotter_follows_and_commands_every_vehicle(vehicle):
     fed = feeders("sil", vehicle=vehicle, autopilot="nmea0183", step="100 ms")
-    feed, guidance = "autopilot.instruments", "autopilot.main.pilot.guidance"
+    feed, guidance = "autopilot.instruments", "autopilot.pilot.guidance"
     assert fed[f"{feed}.heading"] == fed[f"{guidance}.heading"]
     assert fed[f"{feed}.position_n.north"] == "vehicle.{}.position_n.north".format(
         "positioning" if vehicle == "videoray" else "gnss"
     )
     assert fed[f"{guidance}.target_heading"] == f"{feed}.target_heading"
-    assert fed[f"{guidance}.leg"] == "autopilot.main.course.leg"
+    assert fed[f"{guidance}.leg"] == "autopilot.course.leg"
     rudders = {"gloria": "vehicle.servos.rudder.angle", "mariner": "vehicle.machine.angle"}
     assert fed.get(f"{feed}.rudder") == rudders.get(vehicle)
 
@@ -35,7 +35,7 @@ def test_a_plotter_follows_and_commands_every_vehicle(vehicle):
 def test_the_true_wind_of_a_feed_is_the_pilots_and_valid_with_the_anemometer():
     fed = feeders("sil", vehicle="gloria", autopilot="nmea0183", step="20 ms")
     feed = "autopilot.instruments"
-    assert fed[f"{feed}.true_wind.north"] == "autopilot.main.pilot.navigation.wind.north"
+    assert fed[f"{feed}.true_wind.north"] == "autopilot.pilot.navigation.wind.north"
     assert fed[f"{feed}.true_wind_valid"] == fed[f"{feed}.wind_valid"] == "vehicle.anemometer.valid"
 
 
@@ -44,7 +44,7 @@ def test_a_pilot_on_nmea2000_knows_what_its_node_has_received(vehicle, step):
     bus_step = "20 ms" if vehicle == "hydrone" else step
     choices = {"vehicle": vehicle, "autopilot": "nmea2000", "step": step, "bus_step": bus_step}
     fed = feeders("sil", **choices)
-    node, guidance = "autopilot.node", "autopilot.main.pilot.guidance"
+    node, guidance = "autopilot.node", "autopilot.pilot.guidance"
     for name in ("heading", "heading_valid", "position_n.north", "velocity_n.east"):
         assert fed[f"{guidance}.{name}"] == f"{node}.bus_{name}"
     assert fed[f"{node}.heading_to_steer"] == f"{guidance}.heading_wanted"

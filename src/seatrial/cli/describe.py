@@ -9,8 +9,11 @@ from rich.markup import escape
 
 from ..cosim.assembly import assemble
 from ..cosim.flattening import load_rig
+from ..cosim.paths import joined
 from ..cosim.rig import Rig, Scope
 from ..cosim.system import Joint, System
+from ..cosim.unread import leave_out_unread
+from ..trials.naming import by_path, named_components
 from ..trials.trial import choices_in, is_trial, load_trial
 from .options import Autopilot, Choices, Vehicle, changes_of
 from .show import console
@@ -24,18 +27,15 @@ def describe(
 ) -> None:
     """Show a rig's components, rigs inside it, every connection, and what is left open."""
     changes = changes_of(None, choices, vehicle, autopilot)
-    loaded = _loaded(rig, changes)
+    trial = load_trial(rig, changes=changes, origin="--choose") if is_trial(rig) else None
+    loaded = trial.rig if trial else load_rig(rig, None, choices_in(changes, "--choose"))
     system = assemble(loaded, "direct" if _in_process(loaded) else "fmu")
     try:
+        named = named_components(by_path(trial, system), system) if trial else set()
+        leave_out_unread(system, named)
         _print_rig(system)
     finally:
         system.free()
-
-
-def _loaded(name: str, changes: dict[str, str]) -> Rig:
-    if is_trial(name):
-        return load_trial(name, changes=changes, origin="--choose").rig
-    return load_rig(name, None, choices_in(changes, "--choose"))
 
 
 def _in_process(rig: Rig) -> bool:
@@ -51,7 +51,7 @@ def _print_rig(system: System) -> None:
     console.print(f"[bold]{escape(top.file.title or top.read_from.name)}[/bold]")
     for name, value in top.choices.items():
         console.print(f"  {escape(name)} = {escape(value)}", soft_wrap=True)
-    _print_components(top, "")
+    _print_components(top, "", system.left_out)
     width = max((len(joint.source) for joint in system.joints), default=0)
     lines = [
         f"{joint.source:{width}} -> {joint.target}{_transformed(joint)}" for joint in system.joints
@@ -71,15 +71,16 @@ def _transformed(joint: Joint) -> str:
     return f"  (times {joint.factor:g}" + (f", plus {joint.offset:g})" if joint.offset else ")")
 
 
-def _print_components(scope: Scope, indent: str) -> None:
+def _print_components(scope: Scope, indent: str, left_out: list[str]) -> None:
     for name, entry in scope.file.components.items():
         if name not in scope.inner:
-            console.print(f"{indent}  {escape(name)}: {escape(entry.fmu)}", soft_wrap=True)
+            out = "  (left out: nothing reads it)" if joined(scope.path, name) in left_out else ""
+            console.print(f"{indent}  {escape(name)}: {escape(entry.fmu)}{out}", soft_wrap=True)
             continue
         inner = scope.inner[name]
         title = inner.file.title or inner.read_from.name
         console.print(f"{indent}  [bold]{escape(name)}[/bold]: {escape(title)}", soft_wrap=True)
-        _print_components(inner, f"{indent}  ")
+        _print_components(inner, f"{indent}  ", left_out)
 
 
 def _print_list(title: str, lines: list[str]) -> None:

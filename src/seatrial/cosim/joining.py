@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from ..errors import InputError, unknown
@@ -95,6 +95,13 @@ class Resolver:
         group = self.named(scope, rest, where)
         assert group is not None
         return group
+
+    def shown_outside(self) -> Iterator[End]:
+        """Yield the ports that the rig at the top shows, of what it has with its choices."""
+        for name, written in self._top.file.shows.items():
+            where = f"{self._top.read_from.path}: shows.{name}"
+            group = self._put_together(self._top, name, written, where)
+            yield from group.ends if group is not None else ()
 
     def variables(self, end: End) -> list[Variable]:
         """Return the scalars of a end; of a sum, those of its first term."""

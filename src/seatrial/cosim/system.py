@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal, Protocol
 
@@ -72,6 +73,8 @@ class System:
     """The same, port by port."""
     open: list[str] = field(default_factory=list)
     """Connections whose names end in ``?`` and that were not made, with the reason."""
+    left_out: list[str] = field(default_factory=list)
+    """Components that nothing reads, which were taken out."""
     notes: list[str] = field(default_factory=list)
     """What the profiles do not say, and what is taken instead."""
     tunings: list[Tuned] = field(default_factory=list)
@@ -182,6 +185,15 @@ class System:
                     whole[port] = bool(siblings) and siblings <= loose
                 found[f"{name}.{port if whole[port] else variable}"] = None
         return list(found)
+
+    def leave_out(self, names: Sequence[str]) -> None:
+        """Release components that feed no other, with the connections to them."""
+        for name in names:
+            self.parts.pop(name).instance.free()
+        self.left_out += names
+        self.connections = [c for c in self.connections if c.target[0] in self.parts]
+        gone = tuple(f"{name}." for name in names)
+        self.joints = [joint for joint in self.joints if not joint.target.startswith(gone)]
 
     def free(self) -> None:
         """Release all instances."""

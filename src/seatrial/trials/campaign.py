@@ -19,6 +19,14 @@ from .run import Hooks, Result, StoppedError, check_trial, run_trial
 from .trial import Trial, load_trial
 
 
+class TrialEntry(FileModel):
+    """A trial of a campaign with keys of its own, beside those of the whole campaign."""
+
+    trial: str
+    set: dict[str, Any] = Field(default_factory=dict)
+    grid: dict[str, list[Any]] = Field(default_factory=dict)
+
+
 class CampaignFile(FileModel):
     """The content of a campaign file.
 
@@ -27,7 +35,7 @@ class CampaignFile(FileModel):
     """
 
     title: str = ""
-    trials: list[str] = Field(min_length=1)
+    trials: list[str | TrialEntry] = Field(min_length=1)
     set: dict[str, Any] = Field(default_factory=dict)
     grid: dict[str, list[Any]] = Field(default_factory=dict)
     scale: dict[str, list[float]] = Field(default_factory=dict)
@@ -49,23 +57,27 @@ class Campaign:
     file: CampaignFile
     read_from: Source
     trials: tuple[Trial, ...]
+    """Those of ``file.trials``, in that order."""
 
     def cases(self) -> list[Case]:
         """Return all cases, in the order of the file."""
-        return [case for trial in self.trials for case in self._cases(trial)]
+        pairs = zip(self.trials, self.file.trials, strict=True)
+        return [case for trial, entry in pairs for case in self._cases(trial, entry)]
 
-    def _cases(self, trial: Trial) -> Iterator[Case]:
+    def _cases(self, trial: Trial, entry: str | TrialEntry) -> Iterator[Case]:
         origin = str(self.read_from.path)
-        base = trial.changed(self.file.set, f"{origin}: set")
-        for values in itertools.product(*self.file.grid.values()):
-            chosen = dict(zip(self.file.grid, values, strict=True))
+        own = TrialEntry(trial=entry) if isinstance(entry, str) else entry
+        common, grid = {**self.file.set, **own.set}, {**self.file.grid, **own.grid}
+        base = trial.changed(common, f"{origin}: set")
+        for values in itertools.product(*grid.values()):
+            chosen = dict(zip(grid, values, strict=True))
             varied = base.changed(chosen, f"{origin}: grid")
-            yield Case(_name(trial, chosen), varied, {**self.file.set, **chosen})
+            yield Case(_name(trial, chosen), varied, {**common, **chosen})
             for key, factors in self.file.scale.items():
                 for factor in factors:
                     scaled = varied.scaled(key, factor, f"{origin}: scale")
                     shown = {**chosen, f"{key} times": factor}
-                    yield Case(_name(trial, shown), scaled, {**self.file.set, **shown})
+                    yield Case(_name(trial, shown), scaled, {**common, **shown})
 
 
 def load_campaign(name: str) -> Campaign:
@@ -77,9 +89,10 @@ def load_campaign(name: str) -> Campaign:
     content, read_from = read_toml(path)
     file = validated(CampaignFile, content, path)
     trials = []
-    for trial in file.trials:
+    for entry in file.trials:
+        name = entry if isinstance(entry, str) else entry.trial
         try:
-            trials.append(load_trial(trial, path.parent))
+            trials.append(load_trial(name, path.parent))
         except InputError as error:
             raise InputError(f"{path}: trials: {error}") from None
     return Campaign(file, read_from, tuple(trials))

@@ -30,7 +30,7 @@ def manifest(trial: Trial, system: System, engine: Engine) -> dict[str, Any]:
         "versions": {"python": platform.python_version(), **versions},
         "trial": {**_file(trial.read_from), "title": trial.file.title},
         "rig": {**_file(trial.rig.read_from), "title": trial.rig.file.title},
-        **_composition(trial),
+        **_composition(trial, system),
         "engine": engine,
         "algorithm": trial.rig.file.algorithm,
         "variant": system.variant,
@@ -60,13 +60,15 @@ def manifest(trial: Trial, system: System, engine: Engine) -> dict[str, Any]:
     }
 
 
-def _composition(trial: Trial) -> dict[str, Any]:
-    """Return the choices of a rig and the files of the rigs inside it, if it has any."""
+def _composition(trial: Trial, system: System) -> dict[str, Any]:
+    """Return choices, files of the rigs inside, and parts that were left out, if there are any."""
     rig, content = trial.rig, dict[str, Any]()
     if rig.top.choices:
         content["choices"] = dict(rig.top.choices)
     if rig.sources:
         content["rigs"] = [_file(source) for source in rig.sources]
+    if system.left_out:
+        content["left_out"] = system.left_out
     return content
 
 

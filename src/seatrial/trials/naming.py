@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ..cosim.joining import Resolver
-from ..cosim.recorder import output_names
+from ..cosim.recorder import matching, output_names
 from ..cosim.system import System
 from ..errors import InputError
 from .criteria import Criterion
@@ -38,6 +38,24 @@ def by_path(trial: Trial, system: System) -> Trial:
         real_time = real_time.model_copy(update=found)
     changes = {"plots": plots, "record": record, "real_time": real_time}
     return replace(trial, file=file.model_copy(update=changes), criteria=criteria)
+
+
+def named_components(trial: Trial, system: System) -> set[str]:
+    """Return the components that a trial of signals by path names, in whatever it says.
+
+    The pattern ``*`` names none.
+    """
+    file, where = trial.file, str(trial.read_from.path)
+    signals = {signal for _, criterion in trial.criteria for signal in criterion.signals}
+    signals |= {signal for plot in file.plots for signal in plot.signals}
+    patterns = [pattern for pattern in file.record.signals if pattern != "*"]
+    signals |= set(matching(output_names(system), patterns))
+    if file.real_time is not None:
+        signals |= {s for s in (file.real_time.factor, file.real_time.paused) if isinstance(s, str)}
+    keys = {event.key for event in trial.events()} | {key for key, _, _ in trial.settings()}
+    keys |= {key for key, _, _ in trial.scales}
+    located = [system.located(name, where) for name in signals | keys]
+    return {part.name for places in located for part, _ in places}
 
 
 class _Naming:

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from ..cosim.assembly import assemble
 from ..cosim.master import Master
 from ..cosim.system import Engine, System
+from ..cosim.unread import leave_out_unread
 from ..errors import InputError, SimulationError
 from .checks import check_criteria, check_events, check_plots, check_real_time
 from .hooks import Hooks
-from .naming import by_path
+from .naming import by_path, named_components
 from .trial import Trial
 
 
@@ -73,6 +74,7 @@ def prepare(trial: Trial, engine: Engine, hooks: Hooks) -> Prepared:
         check_plots(trial, system)
         check_events(trial, system)
         check_real_time(trial, system)
+        leave_out_unread(system, named_components(trial, system))
     except BaseException:
         system.free()
         raise

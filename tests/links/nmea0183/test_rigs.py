@@ -57,7 +57,7 @@ stop = "30 s"
 
 [set]
 "vehicle.boat.eta_start" = ["0 m", "0 m", "0 deg", "100 deg"]
-"autopilot.main.pilot.guidance.mode" = "guided"
+"autopilot.pilot.guidance.mode" = "guided"
 "autopilot.instruments.links" = ""
 
 [record]
