@@ -77,3 +77,8 @@ ORDERED = (
 
 MOTION = terminal("position", "velocity", "attitude", "rates", "acceleration")
 """What every craft gives under the name ``motion``."""
+
+ATTACHMENT = terminal(
+    point="attachment_point", velocity="attachment_velocity", force="attachment_force"
+)
+"""Where a tether or a tow holds any craft: it gives point and velocity and takes the force."""

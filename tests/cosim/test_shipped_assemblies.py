@@ -197,3 +197,25 @@ def test_a_variant_that_no_vehicle_inside_has_is_refused() -> None:
 def test_an_autopilot_that_does_not_fit_is_refused_before_the_start(choices, said, sil) -> None:
     with pytest.raises(InputError, match=said):
         sil(**choices)
+
+
+@pytest.mark.parametrize("vehicle", ["hydrone", "gloria", "mariner", "videoray"])
+def test_a_tether_fits_any_vehicle(vehicle: str, tmp_path: Path) -> None:
+    path = tmp_path / "tow.toml"
+    path.write_text(
+        f'step = "10 ms"\n[components]\nloop = {{ rig = "sil", choices = {{ vehicle = "{vehicle}" }} }}\n'
+        'tether = { fmu = "tether", parameters = "tether" }\n'
+        '[connections]\n"loop.attachment" = "tether.bottom"\n'
+    )
+    system = assemble(load_rig(str(path)), "direct")
+    joined = {
+        tuple(name.rpartition(".")[2] for name in (joint.source, joint.target))
+        for joint in system.joints
+        if "tether" in (joint.source.split(".")[0], joint.target.split(".")[0])
+    }
+    system.free()
+    assert joined == {
+        ("attachment_point", "bottom_position"),
+        ("attachment_velocity", "bottom_velocity"),
+        ("force", "attachment_force"),
+    }

@@ -27,6 +27,17 @@ def dimensionless(**changes):
     return ship("source", **{**unit, **changes})
 
 
+def slope_at(craft, state, rudder):
+    """Return the derivatives with this angle of the rudder."""
+    craft.set("rudder", rudder)
+    return craft.derivatives(state)
+
+
+def rudder_effect(linear):
+    """Return what the rudder adds to dv/dt and dr/dt, per radian."""
+    return linear.B[4:, linear.u_names.index("rudder")]
+
+
 def _built(cls, table, variant, changes):
     component = cls(table)
     variables = DirectInstance(component).variables

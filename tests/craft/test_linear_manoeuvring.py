@@ -5,7 +5,7 @@ import pytest
 
 from seatrial.craft.linear_manoeuvring import LinearDerivatives, linear_coefficients
 
-from .mariner import T_D, A, B, K, dimensionless, ship
+from .mariner import T_D, A, B, K, dimensionless, rudder_effect, ship
 
 MARINER = LinearDerivatives(
     mass=0.00798,
@@ -67,9 +67,9 @@ def test_taking_the_tabulated_derivatives_for_the_hull_s_own_makes_an_unstable_s
 def test_gain_of_the_source_with_the_right_rudder_is_four_times_too_slow():
     matrix, effect = linear_coefficients(MARINER)
     craft = dimensionless(state_matrix=matrix.ravel(), rudder_vector=effect)
-    linear = craft.linearise(np.array([0, 0, 0, 1.0, 0, 0]), np.zeros(3))
+    linear = craft.linearise(np.array([0, 0, 0, 1.0, 0, 0]))
     loop = linear.A[2:, 2:][np.ix_([2, 3, 0], [2, 3, 0])]
-    loop += np.outer([*linear.B[4:, 0], 0.0], [0.0, K * T_D, K])
+    loop += np.outer([*rudder_effect(linear), 0.0], [0.0, K * T_D, K])
     poles = np.sort_complex(np.linalg.eigvals(loop))
     expected = [-2.7169, -0.10771 - 0.10639j, -0.10771 + 0.10639j]
     np.testing.assert_allclose(poles, expected, atol=6e-5)
@@ -78,11 +78,11 @@ def test_gain_of_the_source_with_the_right_rudder_is_four_times_too_slow():
 def test_cubic_model_has_these_coefficients_to_first_order():
     craft = ship("cubic", Y=first_order("Y"), N=first_order("N"))
     straight = np.array([0, 0, 0, 7.7175, 0, 0])
-    linear = craft.linearise(straight, np.zeros(3))
+    linear = craft.linearise(straight)
     time, scale = 160.93 / 7.7175, np.array([7.7175, 7.7175 / 160.93])
     found, effect = linear_coefficients(MARINER)
     np.testing.assert_allclose(linear.A[4:, 4:] * scale / scale[:, None] * time, found, rtol=1e-12)
-    np.testing.assert_allclose(linear.B[4:, 0] / scale * time, effect, rtol=1e-12)
+    np.testing.assert_allclose(rudder_effect(linear) / scale * time, effect, rtol=1e-12)
 
 
 def first_order(port):

@@ -14,7 +14,7 @@ from scipy.linalg import expm
 from seatrial.craft.manoeuvring_ship import ManoeuvringShip
 from seatrial.errors import InputError
 
-from .mariner import FEET, T_D, A, B, K, L, U, dimensionless, machine, ship
+from .mariner import FEET, T_D, A, B, K, L, U, dimensionless, machine, rudder_effect, ship, slope_at
 
 DATA = Path(__file__).parents[1] / "reference"
 TIME = L / U
@@ -73,7 +73,7 @@ def test_only_the_product_of_gain_and_rudder_effect_counts(K_scale, B_scale):
     craft = dimensionless(rudder_vector=np.array(B) * B_scale)
     start = np.array([0.0, 0.0, 0.1, 1.0, 0.2, -0.3])
     law = K * K_scale * (start[2] + T_D * start[5])
-    found = craft.derivatives(start, [law, 0, 0])[4:]
+    found = slope_at(craft, start, law)[4:]
     np.testing.assert_allclose(found, closed_loop()[:2] @ [0.2, -0.3, 0.1], rtol=1e-14)
 
 
@@ -106,7 +106,7 @@ def stepped(method, h, count):
 
     def slope(z):
         state = np.array([0, 0, z[2], 1.0, z[0], z[1]])
-        return craft.derivatives(state, [law @ z[1:], 0, 0])[[4, 5, 2]]
+        return slope_at(craft, state, law @ z[1:])[[4, 5, 2]]
 
     z = np.array([0, 0, 0.1])
     for _ in range(count):
@@ -140,11 +140,12 @@ def test_steps_of_the_component_have_order_four():
 
 
 def test_dimensional_matrices():
-    linear = ship("linear").linearise(np.array([0, 0, 0, U, 0, 0]), np.zeros(3))
+    linear = ship("linear").linearise(np.array([0, 0, 0, U, 0, 0]))
     expected = [[-0.03689898, -2.58088635], [-0.00100996, -0.10041910]]
     np.testing.assert_allclose(linear.A[4:, 4:], expected, atol=5e-9)
-    np.testing.assert_allclose(linear.B[4:, 0], [0.06322043, -0.00374568], atol=5e-9)
-    np.testing.assert_array_equal(linear.B[4:, 1:], np.eye(2))
+    np.testing.assert_allclose(rudder_effect(linear), [0.06322043, -0.00374568], atol=5e-9)
+    disturbance = [linear.u_names.index(f"disturbance.{axis}") for axis in "vr"]
+    np.testing.assert_array_equal(linear.B[4:, disturbance], np.eye(2))
 
 
 def test_dimensional_run_is_the_dimensionless_one():
@@ -157,9 +158,9 @@ def test_dimensional_run_is_the_dimensionless_one():
 
 
 def test_nomoto_time_constants():
-    linear = ship("linear").linearise(np.array([0, 0, 0, U, 0, 0]), np.zeros(3))
+    linear = ship("linear").linearise(np.array([0, 0, 0, U, 0, 0]))
     (a, b), (c, d) = linear.A[4:, 4:]
-    Yd, Nd = linear.B[4:, 0]
+    Yd, Nd = rudder_effect(linear)
     poles = np.sort(np.linalg.eigvals(linear.A[4:, 4:]))
     np.testing.assert_allclose(-1 / poles, [7.765, 117.21], rtol=1e-4)
     constant = c * Yd - a * Nd
@@ -171,7 +172,7 @@ def coupled(craft, gear, x, command, h):
     """One Runge-Kutta step of ship and rudder machine together, the command held."""
 
     def slope(z):
-        return np.append(craft.derivatives(z[:6], [z[6], 0, 0]), gear.derivatives(z[6:], [command]))
+        return np.append(slope_at(craft, z[:6], z[6]), gear.derivatives(z[6:], [command]))
 
     k1 = slope(x)
     k2 = slope(x + h / 2 * k1)
@@ -276,9 +277,7 @@ def test_turning_circle():
 
 def test_positive_rudder_turns_to_port():
     for variant in ("linear", "cubic"):
-        slopes = [
-            ship(variant).derivatives(np.array([0, 0, 0, U, 0, 0]), [d, 0, 0]) for d in (0, 0.1)
-        ]
+        slopes = [slope_at(ship(variant), np.array([0, 0, 0, U, 0, 0]), d) for d in (0, 0.1)]
         sway, yaw = (slopes[1] - slopes[0])[4:]
         assert sway > 0 > yaw
 

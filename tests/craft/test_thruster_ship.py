@@ -173,7 +173,7 @@ def test_linear_model_is_the_nonlinear_one_linearised():
     linear = build().linearise(np.zeros(6))
     generator = np.random.default_rng(1)
     for _ in range(5):
-        x, u = generator.uniform(-1, 1, 6), generator.uniform(-1, 1, 12)
+        x, u = generator.uniform(-1, 1, 6), generator.uniform(-1, 1, len(linear.u_names))
         for term in (1, 2, 3, 4):
             u[columns(linear, term)] *= FULL
         expected = linear.A @ x + linear.B @ u

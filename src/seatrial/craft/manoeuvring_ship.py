@@ -11,7 +11,7 @@ import casadi as ca
 from ..component import Input, Parameter
 from ..errors import InputError
 from ..plant import State
-from .planar import ThreeDofCraft, kinematics, motion_outputs
+from .planar import ThreeDofCraft, attachment, kinematics, motion_outputs
 
 _SURGE_TERMS = ("u", "uu", "uuu", "vv", "rr", "rv", "dd", "udd", "vd", "uvd")
 _SWAY_TERMS = (
@@ -53,7 +53,8 @@ class ManoeuvringShip(ThreeDofCraft):
       Y.const, N.const (one propeller) turn the ship even with the rudder amidships.
 
     ``disturbance`` is added to v' and r', m/s2 and rad/s2: what wind or current do to the ship
-    (d1 U^2 / L and d2 (U / L)^2 of dimensionless d1, d2).
+    (d1 U^2 / L and d2 (U / L)^2 of dimensionless d1, d2). A tether or tow accelerates it by the
+    dimensionless inertia above, times rho L^3 / 2; the linear model keeps its speed.
 
     Not modelled: speed loss by waves, shallow water, roll; the engine (at ``speed`` thrust and
     resistance balance, and the polynomial holds near it); rudder machinery, see `RudderMachine`.
@@ -65,6 +66,9 @@ class ManoeuvringShip(ThreeDofCraft):
     max_step = Parameter(0.1, "s", "longest integration sub-step", min=1e-6)
     model = Parameter("linear", "1", "equations of motion", choices=("linear", "cubic"))
     length = Parameter(1.0, "m", "length that makes things dimensionless", min=1e-9)
+    water_density = Parameter(
+        1025.0, "kg/m3", "rho: the ship's mass is its dimensionless one times rho L^3 / 2", min=1e-9
+    )
     speed = Parameter(1.0, "m/s", "service speed", min=1e-9)
     state_matrix = Parameter(
         0.0, "1", "A* of (v*, r*), by rows (linear)", axes=("vv", "vr", "rv", "rr")
@@ -94,7 +98,7 @@ class ManoeuvringShip(ThreeDofCraft):
         start=(1.0, 0.0, 0.0),
     )
 
-    feedthrough: ClassVar = {"acceleration": ("rudder", "disturbance")}
+    feedthrough: ClassVar = {"acceleration": ("rudder", "disturbance", "attachment_force")}
 
     def start(self, t: float) -> None:
         """Start from the start values; raises InputError for what no model can be."""
@@ -116,10 +120,11 @@ class ManoeuvringShip(ThreeDofCraft):
     def equations(
         self, x: SimpleNamespace, u: SimpleNamespace, p: SimpleNamespace
     ) -> tuple[Mapping[str, Any], Mapping[str, Any]]:
-        """Return the derivatives of eta and nu, and the motion (see the class)."""
+        """Return the derivatives of eta and nu, the motion and that of the attachment."""
+        attached, pull = attachment(x, u, p)
         nu_dot = (_linear if p.model == "linear" else _cubic)(x.nu, u.rudder, p)
-        nu_dot += ca.vertcat(0, u.disturbance)
-        motion = motion_outputs(x.eta, x.nu, nu_dot)
+        nu_dot += ca.vertcat(0, u.disturbance) + _pulled(pull, p)
+        motion = {**motion_outputs(x.eta, x.nu, nu_dot), **attached}
         return {"eta": kinematics(x.eta, x.nu), "nu": nu_dot}, motion
 
 
@@ -149,6 +154,13 @@ def _cubic(nu: Any, rudder: Any, p: SimpleNamespace) -> Any:
         )
     )
     return U / p.length * scale * ca.solve(_mass_matrix(p), ca.vertcat(X, Y, N))
+
+
+def _pulled(load: Any, p: SimpleNamespace) -> Any:
+    """Return what a load (X, Y, N), SI, adds to (u', v', r'); the linear model has no u'."""
+    scale = ca.vertcat(1, 1, p.length)
+    nu_dot = ca.solve(_mass_matrix(p), load / scale) / scale / (0.5 * p.water_density * p.length**3)
+    return ca.vertcat(0, nu_dot[1:]) if p.model == "linear" else nu_dot
 
 
 def _product(term: str, factors: Mapping[str, Any]) -> Any:

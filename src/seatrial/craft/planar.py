@@ -9,14 +9,17 @@ Heave and pitch are left out: z = theta = 0, w = q = 0.
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import Any, ClassVar
 
 import casadi as ca
 
-from ..component import Terms, terminal
+from ..component import Input, Parameter, Terms, terminal
 from ..plant import Plant, State
 from ..ports import Output
-from ..terminals import MOTION
+from ..terminals import ATTACHMENT, MOTION
+
+_NED = ("north", "east", "down")
 
 
 class PlanarCraft(Plant):
@@ -24,7 +27,17 @@ class PlanarCraft(Plant):
 
     The subclass declares its states eta and nu, returns `motion_outputs` among its outputs and
     names in ``feedthrough`` the inputs that act on ``acceleration``.
+
+    A tether or a tow pulls with ``attachment_force`` f, {n}, at ``attachment_place`` r, body axes;
+    see `attachment`. What it pulls up or down is lost: there is no heave.
     """
+
+    attachment_place = Parameter(
+        0.0, "m", "attachment of a tether or tow from the body origin, body axes", axes="xyz"
+    )
+    attachment_force = Input(
+        "N", "force of a tether or tow at its attachment, {n}", axes=_NED, optional=True
+    )
 
     position = Output("m", "body origin in north-east-down; z = 0", axes="xyz", frame="n")
     attitude = Output("rad", "Euler angles, ZYX; theta = 0", axes=("phi", "theta", "psi"))
@@ -40,8 +53,10 @@ class PlanarCraft(Plant):
         axes="xyz",
         frame="b",
     )
+    attachment_point = Output("m", "attachment of a tether or tow, {n}", axes=_NED)
+    attachment_velocity = Output("m/s", "velocity of the attachment over ground, {n}", axes=_NED)
 
-    terminals: ClassVar = {"motion": MOTION}
+    terminals: ClassVar = {"motion": MOTION, "attachment": ATTACHMENT}
 
 
 class ThreeDofCraft(PlanarCraft):
@@ -73,6 +88,10 @@ class LoadedCraft(ThreeDofCraft):
         **ThreeDofCraft.terminals,
         "wrench": terminal("force", "moment", rule="plug"),
     }
+
+
+LOADS = (*LoadedCraft.force.names, *LoadedCraft.moment.names, "attachment_force")
+"""Inputs of a `LoadedCraft` that act on its acceleration."""
 
 
 def motion_outputs(eta: Any, nu: Any, nu_dot: Any) -> dict[str, Any]:
@@ -112,6 +131,24 @@ def horizontal_rotation(phi: Any, psi: Any) -> Any:
     """
     c, s = ca.cos(psi), ca.sin(psi)
     return ca.vertcat(ca.horzcat(c, -s * ca.cos(phi)), ca.horzcat(s, c * ca.cos(phi)))
+
+
+def attachment(
+    x: SimpleNamespace, u: SimpleNamespace, p: SimpleNamespace
+) -> tuple[dict[str, Any], Any]:
+    """Return place and velocity of the attachment, by output, and what its force does.
+
+    Point P = (x, y, 0) + R_z(psi) R_x(phi) r, m, and P' = W nu, m/s, in {n}. The load is
+    W^T f, in the order of nu, N and N.m: its power is that of f at the point, f . P'.
+    """
+    north, east, phi, psi = _four(x.eta)
+    a, b, c = ca.vertsplit(p.attachment_place)
+    across, down = b * ca.cos(phi) - c * ca.sin(phi), b * ca.sin(phi) + c * ca.cos(phi)
+    cos, sin = ca.cos(psi), ca.sin(psi)
+    point = ca.vertcat(north + a * cos - across * sin, east + a * sin + across * cos, down)
+    velocity = ca.jtimes(point, x.eta, kinematics(x.eta, x.nu))
+    load = ca.jtimes(velocity, x.nu, u.attachment_force, True)
+    return {"attachment_point": point, "attachment_velocity": velocity}, load
 
 
 def planar_coriolis(h: Any, nu: Any) -> Any:

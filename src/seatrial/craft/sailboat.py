@@ -18,6 +18,7 @@ from .foils import flow_at, foil_load
 from .inertia import require_positive_definite
 from .planar import (
     PlanarCraft,
+    attachment,
     horizontal_rotation,
     kinematics,
     motion_outputs,
@@ -34,7 +35,7 @@ class Sailboat(PlanarCraft):
     """Boat with a rigid sail that has a flap, a keel and a rudder.
 
         eta' = J(phi, psi) nu
-        M nu' = -C_RB(nu) nu - C_A(nu_r) nu_r - D nu_r - g(phi) + S + K + R + M_A nu_c'
+        M nu' = -C_RB(nu) nu - C_A(nu_r) nu_r - D nu_r - g(phi) + S + K + R + T + M_A nu_c'
 
     Source 001, eqs 2.2 to 2.29, in the corrected form that docs/vehicles/gloria.md lists.
     eta = (x, y, phi, psi): body origin, which is the CG, in {n} (x north, y east), m; heel,
@@ -57,7 +58,7 @@ class Sailboat(PlanarCraft):
     **Foils.** S, K, R from 2.15 to 2.29, as `foil_load`: lift and drag by tables at the local
     flow, which the boat's rates turn. The sail's centre of effort is ``sail_arm`` behind its
     axis, along the boom. ``sail`` and ``rudder`` turn their trailing edges to port when
-    positive: a positive ``rudder`` turns the boat to port.
+    positive: a positive ``rudder`` turns the boat to port. T is that of a tether or tow.
 
     ``apparent_wind`` is the flow at the centre of effort of a sail amidships: its speed and
     the direction it blows to, atan2(to starboard, to the bow).
@@ -139,7 +140,7 @@ class Sailboat(PlanarCraft):
         "keel_load": ("current",),
         "rudder_load": ("rudder", "current"),
         "apparent_wind": ("wind",),
-        "acceleration": ("sail", "flap", "rudder", "wind", "current"),
+        "acceleration": ("sail", "flap", "rudder", "wind", "current", "attachment_force"),
     }
 
     def start(self, t: float) -> None:
@@ -196,17 +197,20 @@ class Sailboat(PlanarCraft):
         nu_c_dot = ca.jtimes(nu_c, x.eta, eta_dot)
         foils = _foil_loads(x.nu, air, water, u, p)
         M_A = _added_mass(p)
+        attached, pull = attachment(x, u, p)
         tau = (
             sum(foils.values())
             + _hull(x.eta[2], x.nu, x.nu - nu_c, p)
             - _coriolis((M_A @ (x.nu - nu_c))[:2], x.nu - nu_c)
             + M_A @ nu_c_dot
+            + pull
         )
         nu_dot = ca.ldl_solve(tau, *ca.ldl(_rigid_body(p) + M_A))
         a, b = ca.vertsplit(flow_at(_sail_place(0.0, p), air, x.nu))
         apparent_wind = ca.vertcat(ca.sqrt(a * a + b * b), ca.atan2(b, a))
         return {"eta": eta_dot, "nu": nu_dot}, {
             **motion_outputs(x.eta, x.nu, nu_dot),
+            **attached,
             **foils,
             "apparent_wind": apparent_wind,
         }

@@ -17,6 +17,7 @@ from ..component import Input, Parameter, Terms, terminal
 from ..model import Vector
 from ..plant import Plant
 from ..ports import Output
+from ..terminals import ATTACHMENT
 from .inertia import require_positive_definite
 from .symbolic import skew
 
@@ -96,9 +97,7 @@ class SixDofCraft(Plant):
 
     terminals: ClassVar = {
         "wrench": terminal("force", "moment", rule="plug"),
-        "attachment": terminal(
-            point="attachment_point", velocity="attachment_velocity", force="attachment_force"
-        ),
+        "attachment": ATTACHMENT,
     }
 
     def start(self, t: float) -> None:

@@ -10,7 +10,7 @@ import casadi as ca
 
 from ..component import Input, Parameter
 from ..errors import InputError
-from .planar import LoadedCraft, kinematics, motion_outputs, planar_coriolis
+from .planar import LOADS, LoadedCraft, attachment, kinematics, motion_outputs, planar_coriolis
 
 _MASSES = ("kg", "kg", "kg.m2")
 _DAMPINGS = ("N.s/m", "N.s/m", "N.m.s/rad")
@@ -29,9 +29,9 @@ class SurfaceVessel(LoadedCraft):
         m33 r' = N - d33 r + s (m11 - m22) u v           N = l (E1 t1 - E2 t2)
 
     ``command`` (t1, t2) is each thruster's share of its full thrust E1, E2 (``thrust``), -1 to
-    1; thruster 1 ahead turns to starboard. The terms of ``force`` and ``moment``, body axes, add
-    to X, Y and N. ``lever_arm`` l is the thrusters' distance from the centre line; the source has
-    none (l = 1 m).
+    1; thruster 1 ahead turns to starboard. The terms of ``force`` and ``moment``, body axes, and
+    what a tether or tow does add to X, Y and N. ``lever_arm`` l is the thrusters' distance from
+    the centre line; the source has none (l = 1 m).
 
     s is ``yaw_coupling_sign``, 1: the yaw moment of the added masses as momentum demands it
     (5.18). The source's control law has s = -1 (6.2, 6.3, 8.1), and its table 8.1 comes from a
@@ -52,7 +52,7 @@ class SurfaceVessel(LoadedCraft):
     )
 
     command = Input("1", "share of each thruster's full thrust, -1 to 1", axes=("t1", "t2"))
-    feedthrough: ClassVar = {"acceleration": ("command", *LoadedCraft.force.names)}
+    feedthrough: ClassVar = {"acceleration": ("command", *LOADS)}
 
     def start(self, t: float) -> None:
         """Start from the start values; raises InputError for a sign between -1 and 1."""
@@ -65,12 +65,13 @@ class SurfaceVessel(LoadedCraft):
     def equations(
         self, x: SimpleNamespace, u: SimpleNamespace, p: SimpleNamespace
     ) -> tuple[Mapping[str, Any], Mapping[str, Any]]:
-        """Return the derivatives of eta and nu, and the motion (see the class)."""
+        """Return the derivatives of eta and nu, the motion and that of the attachment."""
         first, second = ca.vertsplit(p.thrust * u.command)
         tau = ca.vertcat(first + second, 0, p.lever_arm * (first - second))
-        load = ca.vertcat(LoadedCraft.force.total(u), LoadedCraft.moment.total(u))
+        attached, pull = attachment(x, u, p)
+        load = ca.vertcat(LoadedCraft.force.total(u), LoadedCraft.moment.total(u)) + pull
         signs = ca.vertcat(1, 1, p.yaw_coupling_sign)
         coriolis = signs * planar_coriolis((p.mass * x.nu)[:2], x.nu)
         nu_dot = (tau + load - p.damping * x.nu - coriolis) / p.mass
-        motion = motion_outputs(x.eta, x.nu, nu_dot)
+        motion = {**motion_outputs(x.eta, x.nu, nu_dot), **attached}
         return {"eta": kinematics(x.eta, x.nu), "nu": nu_dot}, motion

@@ -12,7 +12,7 @@ import numpy as np
 from ..component import Parameter
 from ..model import Vector
 from .inertia import require_positive_definite
-from .planar import LoadedCraft, kinematics, motion_outputs, planar_coriolis
+from .planar import LOADS, LoadedCraft, attachment, kinematics, motion_outputs, planar_coriolis
 
 _INERTIAS = ("mass", "inertia", "center_of_gravity", "X_udot", "Y_vdot", "Y_rdot", "N_rdot")
 
@@ -37,7 +37,7 @@ class ThrusterShip(LoadedCraft):
     psi = 0, from the same expressions: eta' = nu, M nu' = tau.
 
     tau = (X, Y, N): sums of the terms of ``force`` and ``moment``, N and N.m about the body
-    origin, in body axes: thrusters, an environmental load.
+    origin, in body axes: thrusters, an environmental load; and what a tether or tow does.
 
     Not modelled: damping of any kind (nothing ever comes to rest by itself), wind, waves,
     current, thrusters that interact.
@@ -53,7 +53,7 @@ class ThrusterShip(LoadedCraft):
     Y_rdot = Parameter(0.0, "kg.m", "added mass, sway from yaw and yaw from sway")
     N_rdot = Parameter(0.0, "kg.m2", "added inertia in yaw, negative")
 
-    feedthrough: ClassVar = {"acceleration": (*LoadedCraft.force.names, *LoadedCraft.moment.names)}
+    feedthrough: ClassVar = {"acceleration": LOADS}
 
     def start(self, t: float) -> None:
         """Start from the start values; raises InputError if M is not positive definite."""
@@ -71,16 +71,16 @@ class ThrusterShip(LoadedCraft):
     def equations(
         self, x: SimpleNamespace, u: SimpleNamespace, p: SimpleNamespace
     ) -> tuple[Mapping[str, Any], Mapping[str, Any]]:
-        """Return the derivatives of eta and nu, and the motion (see the class)."""
+        """Return the derivatives of eta and nu, the motion and that of the attachment."""
         M = _mass_matrix(p)
-        force, moment = LoadedCraft.force, LoadedCraft.moment
-        tau = ca.vertcat(force.total(u), moment.total(u))
+        attached, pull = attachment(x, u, p)
+        tau = ca.vertcat(LoadedCraft.force.total(u), LoadedCraft.moment.total(u)) + pull
         nu_dot = ca.ldl_solve(tau - planar_coriolis((M @ x.nu)[:2], x.nu), *ca.ldl(M))
         derivatives = {"eta": kinematics(x.eta, x.nu), "nu": nu_dot}
-        motion = motion_outputs(x.eta, x.nu, nu_dot)
+        motion = {**motion_outputs(x.eta, x.nu, nu_dot), **attached}
         if p.model == "nonlinear":
             return derivatives, motion
-        loads = [getattr(u, name) for name in (*force.names, *moment.names)]
+        loads = [getattr(u, name) for name in LOADS]
         point = ca.vertcat(x.eta, x.nu, *loads)
         return _about_rest(derivatives, point), _about_rest(motion, point)
 
