@@ -102,6 +102,7 @@ def _say(name: str, like: str, files: dict[Path, str]) -> None:
     steps = [
         (f"seatrial run {name}", "a course of waypoints, with criteria"),
         (f"seatrial describe sil --vehicle {name}", "its components and connections"),
+        (f"seatrial run {name} --autopilot nmea0183", "the same, with a feed for chart plotters"),
         (f"seatrial run {name}-mission", "for a ground station at UDP port 14550"),
     ]
     if like == "usv":

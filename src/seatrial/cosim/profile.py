@@ -197,7 +197,8 @@ class Profiles:
     def find(self, written: str, where: str) -> tuple[Profile, str]:
         """Return the profile and the section of "SECTION" or "PROFILE:SECTION".
 
-        Raises InputError, which begins with ``where``, if there is no profile to look in.
+        Raises InputError, which begins with ``where``, if there is no profile to look in, or no
+        such section in it: an autopilot may need what a vehicle's profile lacks.
         """
         name, colon, section = written.rpartition(":")
         if not colon and self._own is None:
@@ -205,7 +206,11 @@ class Profiles:
                 f"{where}: the rig names no profile, and {written!r} none of its own, as in "
                 f"'hydrone:{written}'"
             )
-        return self._load(name if colon else str(self._own)), section
+        profile = self._load(name if colon else str(self._own))
+        if section not in profile.sections():
+            path = profile.read_from.path
+            raise InputError(f"{where}: {path}: {unknown('section', section, profile.sections())}")
+        return profile, section
 
     def _load(self, name: str) -> Profile:
         if name not in self._read:

@@ -102,11 +102,11 @@ def design_heading(
 def dimensionless(ship: ManoeuvringShip) -> tuple[Vector, Vector]:
     """Return A* (2, 2) and B* (2,) of sway and yaw on a straight course at service speed."""
     straight = np.array([0.0, 0.0, 0.0, ship.speed, 0.0, 0.0])
-    linear = ship.linearise(straight, np.zeros(3))
+    linear = ship.linearise(straight)
     time_unit = ship.length / ship.speed
     scale = np.array([ship.speed, 1.0 / time_unit])
     A = time_unit * linear.A[4:, 4:] * scale / scale[:, None]
-    return A, time_unit * linear.B[4:, 0] / scale
+    return A, time_unit * linear.B[4:, linear.u_names.index("rudder")] / scale
 
 
 def closed_loop(A: Vector, B: Vector, K: float, T_d: float) -> Vector:
