@@ -237,9 +237,9 @@ MAVLINK = {"autopilot": "mavlink"}
 @pytest.mark.parametrize(
     ("link", "said"),
     [
-        ("udpout:192.0.2.1:14550", "reaches other hosts, by 192.0.2.1"),
-        ("udpin:0.0.0.0:14550", "reaches other hosts, by 0.0.0.0"),
-        ("serial:/dev/null:57600", "is a real port; a simulation in Python opens none"),
+        ("udpout:192.0.2.1:14550", "reaches the host 192.0.2.1; a simulation in Python"),
+        ("udpin:0.0.0.0:14550", "listens at 0.0.0.0, where other hosts reach it"),
+        ("serial:/dev/null:57600", "reaches the device /dev/null; a simulation in Python"),
     ],
 )
 def test_nothing_but_programs_on_this_machine_is_reached(

@@ -1,52 +1,300 @@
-"""The command line and real ports: nothing opens one unless it is allowed."""
+"""Devices and other hosts: nothing reaches one unless it is allowed, whatever opens it."""
 
+import ast
 import os
+import pty
+import shutil
+import signal
+import socket
 import subprocess
 import sys
 from pathlib import Path
 
+import can
 import pytest
 
-from seatrial.links.hardware import ALLOWED, is_simulated_port
+import seatrial
+from seatrial.component import Reachable
+from seatrial.errors import InputError
+from seatrial.fmi.index import component_class, components
+from seatrial.links.can.gateway_url import _FORMS as GATEWAYS
+from seatrial.links.can.gateway_url import open_gateway
+from seatrial.links.endpoints.url import TRANSPORTS, open_endpoint
+from seatrial.links.hardware import (
+    ALLOWED,
+    NETWORK_ALLOWED,
+    check_can_bus,
+    check_host,
+    confined,
+    is_this_machine,
+    is_virtual_can,
+)
+from seatrial.links.own_terminals import is_own
 
 SEATRIAL = str(Path(sys.executable).with_name("seatrial"))
 RIG = """\
 step = "10 ms"
 [components]
-mavlink = { fmu = "mavlink", set = { links = "serial:/dev/null:57600" } }
+mavlink = { fmu = "mavlink", set = { links = "LINK" } }
 """
+DEVICE, NETWORK = r"--hardware \(or SEATRIAL_HARDWARE=1", r"--network \(or SEATRIAL_NETWORK=1"
+
+
+@pytest.fixture(autouse=True)
+def _nothing_allowed(monkeypatch):
+    for variable in (ALLOWED, NETWORK_ALLOWED):
+        monkeypatch.delenv(variable, raising=False)
 
 
 @pytest.mark.parametrize(
-    ("flags", "expected"),
-    [([], "is a real port; allow it with --hardware"), (["--hardware"], "cannot open the link")],
-)
+    ("link", "flags", "expected"),
+    [
+        ("serial:/dev/null:57600", [], "mavlink: links: link 'serial:/dev/null:57600' reaches "
+         "the device /dev/null; allow it with --hardware"),
+        ("serial:/dev/null:57600", ["--network"], "allow it with --hardware"),
+        ("serial:/dev/null:57600", ["--hardware"], "cannot open the link"),
+        ("tcpin:192.0.2.1:5760", ["--hardware"], "mavlink: links: link 'tcpin:192.0.2.1:5760' "
+         "listens at 192.0.2.1, where other hosts reach it; allow it with --network"),
+        ("tcpin:192.0.2.1:5760", ["--network"], "cannot open the link"),
+    ],
+)  # fmt: skip
 @pytest.mark.parametrize("isolated", ["false", pytest.param("true", marks=pytest.mark.interop)])
-def test_a_real_port_is_opened_only_if_allowed(flags, expected, isolated, write, tmp_path):
-    write("rig.toml", RIG.replace("set =", f"isolated = {isolated}, set ="))
+def test_the_command_line_opens_what_is_allowed(link, flags, expected, isolated, write, tmp_path):
+    text = RIG.replace("set =", f"isolated = {isolated}, set =").replace("LINK", link)
+    write("rig.toml", text)
     trial = write("trial.toml", 'rig = "rig.toml"\nstop = "1 s"\n')
-    environment = {name: value for name, value in os.environ.items() if name != ALLOWED}
     run = subprocess.run(
         [SEATRIAL, "run", str(trial), "--engine", "direct", *flags],
-        cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=120,
+        cwd=tmp_path, capture_output=True, text=True, timeout=120,
     )  # fmt: skip
     assert run.returncode == 2
     assert expected in " ".join(run.stderr.split())
     assert not (tmp_path / "runs").exists()
 
 
+# ---------------------------------------------------------------------- every kind of link
+
+ENDPOINTS = {
+    "udpout": ("udpout:192.0.2.1:14550", rf"reaches the host 192\.0\.2\.1.*{NETWORK}"),
+    "udpin": ("udpin:0.0.0.0:14550", rf"listens at 0\.0\.0\.0.*{NETWORK}"),
+    "tcpin": ("tcpin:192.0.2.1:5760", rf"listens at 192\.0\.2\.1.*{NETWORK}"),
+    "tcpout": ("tcpout:192.0.2.1:5760", rf"reaches the host 192\.0\.2\.1.*{NETWORK}"),
+    "serial": ("serial:/dev/null:9600", rf"reaches the device /dev/null.*{DEVICE}"),
+    "pty": None,  # a terminal of its own
+}
+BUSES = {
+    "socketcand": ("socketcand:0.0.0.0:0", rf"listens at 0\.0\.0\.0.*{NETWORK}"),
+    "slcan-tcp": ("slcan-tcp:192.0.2.1:0", rf"listens at 192\.0\.2\.1.*{NETWORK}"),
+    "slcan-pty": None,
+    "yd-raw-tcp": ("yd-raw-tcp:0.0.0.0:0", rf"listens at 0\.0\.0\.0.*{NETWORK}"),
+    "yd-raw-udp": ("yd-raw-udp:192.0.2.1:2002", rf"reaches the host 192\.0\.2\.1.*{NETWORK}"),
+    "dronecan-multicast": None,  # on the loopback interface alone: TTL 0
+    "virtual": None,  # within the process
+    "python-can": ("python-can:socketcan:can0", rf"reaches the bus can0.*{DEVICE}"),
+}
+
+
+def test_every_kind_of_link_is_here():
+    """A kind that is new must say here what it reaches."""
+    assert set(ENDPOINTS) == set(TRANSPORTS.shipped)
+    assert set(BUSES) == set(GATEWAYS)
+
+
+@pytest.mark.parametrize(("url", "refusal"), [*filter(None, ENDPOINTS.values())])
+def test_every_endpoint_beyond_this_machine_is_refused(url, refusal):
+    with pytest.raises(InputError, match=rf"^link '{url}' {refusal}") as caught:
+        open_endpoint(url)
+    assert "\n" not in str(caught.value)
+
+
 @pytest.mark.parametrize(
-    ("device", "simulated"),
-    [("/dev/pts/3", True), ("/dev/pts/../ttyS0", False), ("/dev/ttyACM0", False)],
+    ("url", "refusal"),
+    [
+        *filter(None, BUSES.values()),
+        ("python-can:slcan:socket://192.0.2.1:29537", rf"reaches the host 192\.0\.2\.1.*{NETWORK}"),
+        ("python-can:slcan:/dev/ttyACM0:250000", rf"reaches the device /dev/ttyACM0.*{DEVICE}"),
+        (
+            "python-can:udp_multicast:239.0.0.1",
+            rf"reaches the hosts of the group 239\.0\.0\.1.*{NETWORK}",
+        ),
+        ("python-can:socketcan:vcan0", rf"reaches the bus vcan0, .*not proven virtual.*{DEVICE}"),
+    ],
 )
-def test_pseudo_terminals_are_no_hardware(device, simulated):
-    assert is_simulated_port(device) is simulated
+def test_every_gateway_beyond_this_machine_is_refused(url, refusal):
+    with pytest.raises(InputError, match=rf"^gateway '{url}' {refusal}") as caught:
+        open_gateway(url)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("interface", sorted({*can.VALID_INTERFACES, "unknown"} - {"virtual"}))
+def test_every_bus_of_python_can_but_the_virtual_one_is_refused(interface):
+    with pytest.raises(InputError, match="allow it with --"):
+        check_can_bus("gateway 'x'", interface, "can0")
+
+
+COMPONENTS = {
+    "mavlink": {"links": "tcpout:192.0.2.1:5760"},
+    "nmea0183": {"links": "udpout:192.0.2.1:10110"},
+    "serial-gateway": {"links": "tcpin:0.0.0.0:0"},
+    "can-gateway": {"link": "yd-raw-udp:192.0.2.1:2002"},
+    "arduino": {"monitors": "0=tcpin:0.0.0.0:0"},
+}
+
+
+def test_every_component_that_opens_something_is_here():
+    found = {n for n in components().shipped if issubclass(component_class(n), Reachable)}
+    assert found == set(COMPONENTS)
+
+
+@pytest.mark.parametrize(
+    ("name", "given"),
+    [
+        *COMPONENTS.items(),
+        ("arduino", {"backend": "board", "links": "0=tcpout:192.0.2.1:1", "safe_state": ""}),
+    ],
+)
+def test_every_component_says_which_key_it_is(name, given):
+    made, key = component_class(name)("it"), next(k for k in given if k not in ("backend",))
+    for parameter, value in given.items():
+        made.set(parameter, value)
+    with pytest.raises(InputError, match=rf"^it: {key}: .*{NETWORK}"):
+        made.initialise()
+
+
+def test_nothing_else_opens_sockets_or_ports():
+    """Modules that could: one that is new must ask `hardware`, and be in a test above."""
+    folder = Path(seatrial.__file__).parent
+    opening = {"socket", "serial", "can", "asyncio", "http", "urllib", "ssl", "socketserver", "pty"}
+    found = set()
+    for path in folder.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            names = [a.name for a in node.names] if isinstance(node, ast.Import) else []
+            if isinstance(node, ast.ImportFrom) and not node.level:
+                names = [str(node.module)]
+            if isinstance(node, ast.Attribute) and node.attr == "openpty":
+                names = ["pty"]
+            if {n.partition(".")[0] for n in names if n != "urllib.parse"} & opening:
+                found.add(path.relative_to(folder).as_posix())
+    assert found == {
+        "links/hardware.py",
+        "links/own_terminals.py",
+        "links/endpoints/pseudo_terminal.py",
+        "links/endpoints/serial_port.py",
+        "links/endpoints/tcp.py",
+        "links/endpoints/udp.py",
+        "links/can/dronecan_multicast.py",
+        "links/can/gateway_python_can.py",
+        "links/can/bus_log.py",
+        "links/can/messages.py",
+    }
+
+
+# ---------------------------------------------------------------------- the questions
+
+
+@pytest.mark.parametrize(
+    ("address", "here"),
+    [
+        ("127.0.0.1", True), ("127.8.9.10", True), ("::1", True),
+        ("0.0.0.0", False), ("::", False), ("192.168.1.2", False), ("10.0.0.1", False),
+        ("239.65.82.0", False), ("255.255.255.255", False), ("fe80::1", False),
+    ],
+)  # fmt: skip
+def test_loopback_is_this_machine(address, here):
+    assert is_this_machine(address) is here
+
+
+def test_a_name_is_resolved_first():
+    endpoint = open_endpoint("udpin:localhost:0")
+    endpoint.close()
+    assert endpoint.url.startswith("udpin:127.0.0.1:")
+
+
+def test_other_hosts_are_allowed_by_their_own_variable(monkeypatch):
+    monkeypatch.setenv(ALLOWED, "1")
+    with pytest.raises(InputError, match=NETWORK):
+        check_host("x", "192.0.2.1")
+    monkeypatch.setenv(NETWORK_ALLOWED, "1")
+    check_host("x", "192.0.2.1")
+    with confined(), pytest.raises(InputError, match="run it with seatrial run --network"):
+        check_host("x", "192.0.2.1")
+    check_host("x", "192.0.2.1")
+
+
+def test_the_name_of_a_can_interface_proves_nothing():
+    """In a network of its own: an Ethernet device called vcan0, and a vcan if the kernel has it."""
+    if shutil.which("unshare") is None or shutil.which("ip") is None:
+        pytest.skip("needs unshare and ip")
+    asked = "import seatrial.links.hardware as h; print(h.is_virtual_can('vcan0'), h.is_virtual_can('x'))"
+    script = (
+        "ip link add vcan0 type veth && { ip link add x type vcan 2>/dev/null && echo has; "
+        f'{sys.executable} -c "{asked}"; }}'
+    )
+    run = subprocess.run(["unshare", "-rn", "sh", "-c", script], capture_output=True, text=True)
+    if not run.stdout:
+        pytest.skip(f"no network of its own: {run.stderr}")
+    assert run.stdout.split() in (["has", "False", "True"], ["False", "False"])
+    assert not is_virtual_can("lo")
+
+
+def test_a_terminal_of_another_program_is_a_device():
+    """A bridge to a real board would be one too."""
+    ours, theirs = pty.openpty()
+    device = os.ttyname(theirs)
+    try:
+        refusal = rf"{device}, a terminal that no run of seatrial has opened.*{DEVICE}"
+        with pytest.raises(InputError, match=refusal):
+            open_endpoint(f"serial:{device}:9600")
+    finally:
+        os.close(ours)
+        os.close(theirs)
+
+
+def test_a_terminal_of_a_run_is_none_also_from_another_process(tmp_path):
+    place = tmp_path / "port"
+    code = f"""
+import sys
+from seatrial.links.endpoints.url import open_endpoint
+endpoint = open_endpoint("pty:{place}")
+print("open", flush=True)
+sys.stdin.read()
+"""
+    run = subprocess.Popen(
+        [sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    )
+    try:
+        assert run.stdout.readline() == b"open\n"
+        assert is_own(str(place))
+        open_endpoint(f"serial:{place}:9600").close()
+    finally:
+        run.send_signal(signal.SIGKILL)
+        run.communicate()
+    assert not is_own(str(place))
+
+
+def test_a_claim_ends_with_its_terminal():
+    endpoint = open_endpoint("pty")
+    device = endpoint.url
+    assert is_own(device)
+    endpoint.close()
+    assert not is_own(device)
 
 
 def test_what_a_link_leads_to_counts(tmp_path):
-    link = tmp_path / "port"
-    link.symlink_to("/dev/pts/3")
-    assert is_simulated_port(str(link))
-    other = tmp_path / "other"
+    endpoint = open_endpoint("pty")
+    link, other = tmp_path / "port", tmp_path / "other"
+    link.symlink_to(endpoint.url)
     other.symlink_to("/dev/ttyS0")
-    assert not is_simulated_port(str(other))
+    assert is_own(str(link))
+    assert not is_own(str(other))
+    endpoint.close()
+
+
+def test_an_allowed_host_is_reached(monkeypatch):
+    monkeypatch.setenv(NETWORK_ALLOWED, "1")
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            probe.connect(("192.0.2.1", 9))
+        except OSError:
+            pytest.skip("no route to anywhere")
+    open_endpoint("udpout:192.0.2.1:9").close()  # a socket that is connected sends nothing yet

@@ -373,6 +373,7 @@ def _started(system: System) -> Master:
     master = Master(system)
     try:
         master.initialise()
+        system.refuse_wall_clock()
     except SimulationError as error:
         raise InputError(f"{system.rig.read_from.path}: the rig cannot start: {error}") from None
     return master

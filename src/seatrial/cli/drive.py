@@ -15,7 +15,7 @@ from rich.live import Live
 from ..component import Component
 from ..cosim.profile import load_profile
 from ..errors import INTERRUPTED, SimulationError
-from ..links.hardware import allow as allow_hardware
+from ..links.hardware import allow_devices, allow_network
 from ..links.serial_gateway import SerialGateway
 from ..links.videoray.topside import Pro4Topside
 from .drive_keys import Gamepad, pressed_keys, raw_terminal
@@ -40,12 +40,17 @@ def drive(
         Path | None, typer.Option(help="An existing folder for topside.stream.")
     ] = None,
     hardware: Annotated[
-        bool, typer.Option("--hardware", help="Allow a real port; what is behind it may move.")
+        bool, typer.Option("--hardware", help="Allow devices; what is behind them may move.")
+    ] = False,
+    network: Annotated[
+        bool, typer.Option("--network", help="Allow other hosts, and connections from them.")
     ] = False,
 ) -> None:
     """Drive a VideoRay Pro 4 with keys or a gamepad, and see its heading, depth and attitude."""
     if hardware:
-        allow_hardware()
+        allow_devices()
+    if network:
+        allow_network()
     loaded = load_profile(profile)
     topside, gateway = Pro4Topside("topside"), SerialGateway("topside-port")
     _start(topside, {**loaded.parameters("links.topside"), "run_folder": str(record or "")})

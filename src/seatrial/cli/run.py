@@ -9,7 +9,7 @@ import typer
 
 from ..cosim.system import Engine
 from ..errors import InputError, SimulationError
-from ..links.hardware import allow as allow_hardware
+from ..links.hardware import allow_devices, allow_network
 from ..trials.campaign import Campaign, Case, load_campaign, run_campaign
 from ..trials.campaign_report import write_campaign_report
 from ..trials.report import write_report
@@ -54,13 +54,18 @@ def run(
         typer.Option(metavar="POLICY", help="In real time: 'catch-up', 'slip' or 'abort'."),
     ] = None,
     hardware: Annotated[
-        bool, typer.Option("--hardware", help="Allow real ports; what is behind them may move.")
+        bool, typer.Option("--hardware", help="Allow devices; what is behind them may move.")
+    ] = False,
+    network: Annotated[
+        bool, typer.Option("--network", help="Allow other hosts, and connections from them.")
     ] = False,
 ) -> None:
     """Run a trial, or a campaign of trials, and say what holds."""
     chosen = engine_named(engine)
     if hardware:
-        allow_hardware()
+        allow_devices()
+    if network:
+        allow_network()
     changes = changes_of(settings, choices, vehicle, autopilot)
     pace = {"factor": real_time, "overrun": overrun}
     pace = {key: value for key, value in pace.items() if value is not None}

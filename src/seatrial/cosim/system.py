@@ -195,6 +195,16 @@ class System:
         gone = tuple(f"{name}." for name in names)
         self.joints = [joint for joint in self.joints if not joint.target.startswith(gone)]
 
+    def refuse_wall_clock(self) -> None:
+        """Raise InputError, once started, for a component that needs a run in real time."""
+        for name, part in self.parts.items():
+            for port in part.instance.variables.of_role("wall-clock"):
+                if part.instance.reader([port])()[0]:
+                    raise InputError(
+                        f"{self.rig.read_from.path}: {name} lives on the wall clock: run it in "
+                        "real time at factor 1, with seatrial run --real-time 1"
+                    )
+
     def free(self) -> None:
         """Release all instances."""
         for part in self.parts.values():

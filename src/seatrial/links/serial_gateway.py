@@ -7,16 +7,9 @@ from typing import Any, ClassVar
 from ..component import Component, Input, Logging, Output, Parameter, Reachable, terminal
 from ..errors import InputError
 from .endpoints.endpoint import Endpoint
-from .endpoints.url import check_urls, open_endpoint, other_end
+from .endpoints.url import check_urls, open_endpoints, other_end
+from .safe_state import UNSET, check_safe_state, require_safe_state, safe_state_bytes
 from .text import Inbox, Outbox
-
-
-def check_hex(text: str) -> None:
-    """Raise InputError for a text that is not bytes as hexadecimal numbers."""
-    try:
-        bytes.fromhex(text)
-    except ValueError:
-        raise InputError(f"safe_state: {text!r} is not bytes such as 'FAAF 0100'") from None
 
 
 class SerialGateway(Logging, Reachable, Component):
@@ -29,10 +22,10 @@ class SerialGateway(Logging, Reachable, Component):
     other end reckons with.
 
     ``safe_state`` is sent when it closes, however the run ends: for a real vehicle the request
-    that stops its thrusters.
+    that stops its thrusters. Where a device is behind a link it must be given, if only as empty.
 
     It cannot be rolled back. Raises InputError at the start for a link that is malformed or
-    cannot be opened, or is hardware that is not allowed.
+    cannot be opened, or is not allowed.
     """
 
     feedthrough: ClassVar = {}
@@ -43,7 +36,9 @@ class SerialGateway(Logging, Reachable, Component):
     links = Parameter(
         "tcpin:127.0.0.1:0", "1", "URLs of the other ends, separated by spaces", check=check_urls
     )
-    safe_state = Parameter("", "1", "bytes sent at the end, hexadecimal", check=check_hex)
+    safe_state = Parameter(
+        UNSET, "1", "bytes sent at the end, hexadecimal; empty for none", check=check_safe_state
+    )
 
     rx = Input("1", "bytes for the other end", type=str, optional=True)
 
@@ -62,10 +57,9 @@ class SerialGateway(Logging, Reachable, Component):
         """Open the links."""
         self.close()
         try:
-            for url in self.links.split():
-                self._endpoints.append(open_endpoint(url))
+            require_safe_state(self.safe_state, self.links)
+            self._endpoints = open_endpoints("links", self.links)
         except InputError as error:
-            self.close()
             raise InputError(f"{self.name}: {error}") from None
         self._rx: dict[str, Any] = {}
         self._tx: dict[str, Any] = {}
@@ -91,8 +85,8 @@ class SerialGateway(Logging, Reachable, Component):
 
     def close(self) -> None:
         """Send the safe-state bytes and close the links."""
-        if self.safe_state:
-            self._send(bytes.fromhex(self.safe_state))
+        if last := safe_state_bytes(self.safe_state):
+            self._send(last)
         for endpoint in self._endpoints:
             endpoint.close()
         self._endpoints = []

@@ -37,6 +37,9 @@ class Prepared:
         except SimulationError as error:
             path = trial.rig.read_from.path
             raise InputError(f"{path}: the rig cannot start: {error}") from None
+        pace = trial.file.real_time
+        if pace is None or pace.factor != 1.0:
+            self.system.refuse_wall_clock()
         return master
 
     def loose_inputs(self) -> list[str]:

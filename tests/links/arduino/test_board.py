@@ -6,11 +6,22 @@ import tty
 
 import pytest
 
+from seatrial import Simulation
 from seatrial.errors import InputError
 from seatrial.links.arduino.component import Arduino
+from seatrial.links.endpoints.url import open_endpoint
+from seatrial.links.hardware import ALLOWED
 from seatrial.links.text import decode, encode
+from seatrial.trials.run import run_trial
+from seatrial.trials.trial import load_trial
 
 WAIT_S = 30.0
+RIG = """\
+step = "20 ms"
+[components.mega]
+fmu = "arduino"
+set = { backend = "board", links = "1=serial:DEVICE:38400", safe_state = "" }
+"""
 
 
 def opened():
@@ -22,8 +33,9 @@ def opened():
 
 
 @pytest.fixture
-def line():
+def line(monkeypatch):
     """The sketch's end of the line, and the device."""
+    monkeypatch.setenv(ALLOWED, "1")
     own, other, device = opened()
     yield own, device
     os.close(own)
@@ -125,16 +137,62 @@ def test_a_lost_link_stops_the_others_until_it_is_back(lines):
 
     assert b"X" not in b"".join(feed(15))  # one that never spoke is not missed
     os.write(telling, b"alive")
+    feed_until(True)
     assert feed_until(False).endswith(b"go X\n")
     os.write(telling, b"again")
     assert feed_until(True).endswith(b"go go ")
     board.close()
 
 
+def test_a_safe_state_is_written_on_purpose(line):
+    own, device = line
+    with pytest.raises(InputError, match=f"safe_state is not set, and 'serial:{device}:38400'"):
+        started(links=f"1=serial:{device}:38400")
+    board = started(links=f"1=serial:{device}:38400", safe_state="")
+    board.close()
+    assert read(own) == b""
+
+
+def test_it_is_connected_once_something_was_received(line):
+    own, device = line
+    board = started(links=f"1=serial:{device}:38400", safe_state="")
+    step(board, 0, 5, own)
+    assert not board.get("connected")
+    os.write(own, b"here")
+    _, now = step(board, 5, 1, own)
+    deadline = time.monotonic() + WAIT_S
+    while not board.get("connected"):
+        assert time.monotonic() < deadline
+        _, now = step(board, now, 1, own)
+    board.close()
+
+
+@pytest.mark.parametrize("engine", ["direct", pytest.param("fmu", marks=pytest.mark.interop)])
+def test_it_runs_in_real_time_alone(line, engine, write, tmp_path):
+    _, device = line
+    rig = RIG.replace("DEVICE", device)
+    write("rig.toml", rig)
+    for pace in ("", "[real_time]\nfactor = 2.0\n"):
+        trial = load_trial(str(write("trial.toml", f'rig = "rig.toml"\nstop = "0.1 s"\n{pace}')))
+        with pytest.raises(InputError, match=r"mega lives on the wall clock.*--real-time 1"):
+            run_trial(trial, tmp_path / "run", engine=engine)
+    assert not (tmp_path / "run").exists()
+    trial = load_trial(str(write("trial.toml", 'rig = "rig.toml"\nstop = "0.1 s"\n[real_time]\n')))
+    assert run_trial(trial, tmp_path / "run", engine=engine).status == "complete"
+
+
+def test_a_simulation_in_python_has_no_real_time(write):
+    other = open_endpoint("pty")  # a terminal of a run
+    rig = write("rig.toml", RIG.replace("DEVICE", other.url))
+    with pytest.raises(InputError, match="mega lives on the wall clock"):
+        Simulation(rig)
+    other.close()
+
+
 def test_a_real_port_needs_leave_and_pins_are_out_of_reach(monkeypatch):
-    monkeypatch.delenv("SEATRIAL_HARDWARE", raising=False)
+    monkeypatch.delenv(ALLOWED, raising=False)
     with pytest.raises(InputError, match="--hardware"):
-        started(links="0=serial:/dev/ttyACM0:115200")
+        started(links="0=serial:/dev/ttyACM0:115200", safe_state="")
     with pytest.raises(InputError, match="only its UARTs"):
         started(links="0=serial:/dev/ttyACM0:115200", wires="9 servo 1")
     with pytest.raises(InputError, match="not UART=URL"):

@@ -280,13 +280,9 @@ def gateway(link):
         ("socketcnd:127.0.0.1:1", "did you mean 'socketcand'"),
         ("socketcand:127.0.0.1", "of the form 'socketcand:127.0.0.1:29536'"),
         ("socketcand:127.0.0.1:99999", "cannot open the gateway"),
-        ("slcan-tcp:no.such.host.invalid:1", "cannot open the gateway"),
+        ("slcan-tcp:no.such.host.invalid:1", "host 'no.such.host.invalid'"),
         ("slcan-pty:7", "of the form 'slcan-pty'"),
         ("virtual:", "of the form 'virtual:can0'"),
-        ("python-can:socketcan:can0", "is a real bus; allow it with --hardware"),
-        ("python-can:slcan:/dev/ttyACM0:250000", "is a real bus"),
-        ("python-can:udp_multicast:239.0.0.1", "is a real bus"),
-        ("python-can:nosuchbus:x", "is a real bus"),
     ],
 )
 def test_gateways_that_cannot_be_are_named(link, what, monkeypatch):

@@ -271,7 +271,7 @@ def test_it_cannot_be_rolled_back(started):
 def test_closed_it_gives_its_ports_back(started):
     first = started(links="udpin:127.0.0.1:0 tcpin:127.0.0.1:0")
     links = " ".join(first.urls)
-    with pytest.raises(InputError, match=r"link: cannot open the link 'udpin:.*in use"):
+    with pytest.raises(InputError, match=r"link: links: cannot open the link 'udpin:.*in use"):
         started(links=links)
     first.close()
     first.close()

@@ -119,5 +119,5 @@ def test_two_components_by_their_ports():
 def test_a_port_that_is_taken_is_reported():
     with socket.create_server(("127.0.0.1", 0)) as server:
         url = f"tcpin:127.0.0.1:{server.getsockname()[1]}"
-        with pytest.raises(InputError, match=r"nmea: cannot open the link"):
+        with pytest.raises(InputError, match=r"nmea: links: cannot open the link"):
             Bench(links=url)

@@ -107,7 +107,16 @@ def test_the_safe_state_of_the_profile_stops_the_thrusters():
 def test_a_real_port_needs_leave(monkeypatch):
     monkeypatch.delenv(ALLOWED, raising=False)
     with pytest.raises(InputError, match="--hardware"):
-        started(SerialGateway, links="serial:/dev/ttyS0:115200")
+        started(SerialGateway, links="serial:/dev/ttyS0:115200", safe_state="")
+
+
+def test_a_safe_state_is_written_on_purpose(monkeypatch):
+    monkeypatch.setenv(ALLOWED, "1")
+    remedy = r"safe_state is not set, and 'serial:/dev/null:9600' reaches a device: .* ''"
+    with pytest.raises(InputError, match=remedy):
+        started(SerialGateway, links="serial:/dev/null:9600")
+    with pytest.raises(InputError, match="cannot open the link"):  # the next mistake
+        started(SerialGateway, links="serial:/dev/null:9600", safe_state="")
 
 
 @pytest.mark.parametrize(

@@ -34,7 +34,8 @@ class Arduino(ArduinoPorts):
     **Back ends.** ``host``: the unmodified sketch, compiled by the system's C++ compiler with an
     Arduino API in simulated time; int has 16 bits. ``simavr``: the firmware, compiled by
     avr-gcc with the Arduino core, or ``firmware`` as it is, on an emulated microcontroller.
-    ``board``: a real board at serial ports, on the wall clock: nothing but its UARTs. Without a
+    ``board``: a real board at serial ports, on the wall clock: nothing but its UARTs, and in runs
+    in real time alone. Without a
     sketch or firmware the board is there and does nothing.
 
     **Wires**: what is connected where. ``PIN servo N`` gives pulse N, ``pwm`` duty, ``output`` and
@@ -83,7 +84,7 @@ class Arduino(ArduinoPorts):
             there = {*range(mcu.uarts), *(w.number for w in self._wires if w.kind in _SOFT)}
             self._rates = {k: v for k, v in read_uarts(self.uarts).items() if k in there}
             self._begin()
-            self._monitors = open_links(self.monitors)
+            self._monitors = open_links(self.monitors, "monitors")
         except InputError as error:
             self.close()
             raise InputError(f"{self.name}: {error}") from None
@@ -111,7 +112,8 @@ class Arduino(ArduinoPorts):
         """Publish pulses, levels and bytes."""
         self.tx = [Outbox(memory).text for memory in self._tx]
         self.reached_at = " ".join(other_end(each.url) for each in self._monitors.values())
-        self.connected = not isinstance(self._board, RealBoard) or self._board.connected
+        real = self._board if isinstance(self._board, RealBoard) else None
+        self.on_wall_clock, self.connected = real is not None, real is None or real.connected
         self.bytes_sent, self.bytes_received = self._sent, self._received
         widths, shares, levels = [0.0] * 12, [0.0] * 8, [False] * 8
         for wire in self._wires:

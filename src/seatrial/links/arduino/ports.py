@@ -6,6 +6,7 @@ from typing import ClassVar
 
 from ...component import Component, Input, Output, Parameter, Reachable, Terminal, terminal
 from ...unit_table import STANDARD_GRAVITY
+from ..safe_state import UNSET, check_safe_state
 from .mcus import MCUS
 from .uart_links import read_links, read_monitors
 from .wiring import OTHERS, SERVOS, UARTS, read_uarts, read_wires
@@ -46,7 +47,9 @@ class ArduinoPorts(Reachable, Component):
         "UART=URL where programs listen in and type, as 0=pty:/tmp/uart0",
         check=read_monitors,
     )
-    safe_state = Parameter("", "1", "board: safe-state bytes, hexadecimal")
+    safe_state = Parameter(
+        UNSET, "1", "board: safe-state bytes, hexadecimal; empty for none", check=check_safe_state
+    )
     timeout = Parameter(
         2.0,
         "s",
@@ -104,7 +107,8 @@ class ArduinoPorts(Reachable, Component):
     pulse = Output("s", "width of the last servo pulse, 0 for none", axes=_axes("s", SERVOS))
     duty = Output("1", "share of time that PWM outputs are high", axes=_axes("p"))
     output = Output("1", "levels of digital outputs", type=bool, axes=_axes("o"))
-    connected = Output("1", "board: whether all UARTs that have sent still do", type=bool)
+    connected = Output("1", "board: whether one has sent, and all that have still do", type=bool)
+    on_wall_clock = Output("1", "whether it needs real time: board", type=bool, role="wall-clock")
     bytes_sent = Output("1", "bytes that left the UARTs", type=int)
     bytes_received = Output("1", "bytes that were put on the lines to the UARTs", type=int)
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 import struct
 
 from ...errors import InputError
+from ..safe_state import require_safe_state, safe_state_bytes
 from .board import UART, Event, Inputs
 from .mcus import CLOCK
-from .uart_links import open_links
+from .uart_links import open_links, read_links
 from .wiring import Wire
 
 _INPUT = struct.Struct("<BBHd")
@@ -21,8 +22,8 @@ class RealBoard:
     seconds after it was not; and to the others when one that has sent has been silent for as long:
     its link is lost, and until it sends again nothing is sent to the others.
 
-    Raises InputError for links that cannot be, for real ports that are not allowed, and for wires:
-    pins of a real board are out of reach.
+    Raises InputError for links that cannot be or are not allowed, for a safe state that nobody
+    gave, and for wires: pins of a real board are out of reach.
     """
 
     def __init__(
@@ -37,18 +38,16 @@ class RealBoard:
                 f"wires: a real board has only its UARTs here, not {wires[0].kind}: leave it out, "
                 "or connect the real device"
             )
-        try:
-            self._safe_state = bytes.fromhex(safe_state)
-        except ValueError:
-            raise InputError(f"safe_state: {safe_state!r} is not hexadecimal") from None
+        require_safe_state(safe_state, " ".join(read_links(links).values()))
+        self._safe_state = safe_state_bytes(safe_state)
         self._ports = open_links(links)
         if not self._ports:
             raise InputError("links: the back end 'board' needs UART=URL of a serial port")
 
     @property
     def connected(self) -> bool:
-        """Whether all UARTs that have sent still do."""
-        return not self._lost
+        """Whether something has been received, and all UARTs that have sent still do."""
+        return bool(self._received) and not self._lost
 
     def run(self, target: int, inputs: Inputs) -> list[Event]:
         """Send what waits and return what has come, with the time of the end of the step."""

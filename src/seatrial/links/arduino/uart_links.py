@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ...errors import InputError
 from ..endpoints.endpoint import Endpoint
-from ..endpoints.url import check_urls, open_endpoint
+from ..endpoints.url import check_urls, open_endpoints
 from .wiring import UARTS
 
 
@@ -32,14 +32,7 @@ def read_monitors(text: str) -> dict[int, str]:
     return read_links(text, "monitors")
 
 
-def open_links(text: str) -> dict[int, Endpoint]:
+def open_links(text: str, key: str = "links") -> dict[int, Endpoint]:
     """Open the links of a text. Raises InputError, and leaves none open, if one cannot be."""
-    ports: dict[int, Endpoint] = {}
-    try:
-        for uart, url in read_links(text).items():
-            ports[uart] = open_endpoint(url)
-    except InputError:
-        for port in ports.values():
-            port.close()
-        raise
-    return ports
+    links = read_links(text, key)
+    return dict(zip(links, open_endpoints(key, " ".join(links.values())), strict=True))

@@ -79,7 +79,7 @@ class CanGateway(Reachable, Component):
         try:
             self._gateway = open_gateway(self.link)
         except InputError as error:
-            raise InputError(f"{self.name}: {error}") from None
+            raise InputError(f"{self.name}: link: {error}") from None
         self._can: dict[str, Any] = {}
         self._waiting: deque[tuple[int, Frame]] = deque()
         self._requested: list[tuple[int, int, Frame]] = []

@@ -25,6 +25,8 @@ _HEAD, _BODY = struct.Struct("<HH"), struct.Struct("<HI")
 _FD, _EXTENDED = 1, 1 << 31
 _REMOTE, _ERROR = 1 << 30, 1 << 29
 _LONGEST = 2 * 64
+_MULTICAST_ALL = 49
+"""Linux's IP_MULTICAST_ALL, which Python's module has no name for."""
 
 
 def packed(frame: Frame) -> bytes | None:
@@ -76,6 +78,9 @@ class DroneCanMulticastGateway(Gateway):
             self._receiving.bind((LOOPBACK if sys.platform == "win32" else self._group, PORT))
             member = socket.inet_aton(self._group) + socket.inet_aton(LOOPBACK)
             self._receiving.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, member)
+            if sys.platform == "linux":
+                # Else it receives from every interface on which any program has joined the group.
+                self._receiving.setsockopt(socket.IPPROTO_IP, _MULTICAST_ALL, 0)
             interface = socket.inet_aton(LOOPBACK)
             self._sending.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, interface)
             self._sending.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 0)

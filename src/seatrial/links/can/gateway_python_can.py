@@ -8,7 +8,6 @@ from typing import Any
 import can
 
 from ...errors import InputError
-from ..hardware import is_allowed, is_simulated_port, permission
 from .frame import Frame
 from .gateway import MOST_FRAMES, Gateway
 from .messages import error_message, frame_of, message
@@ -20,13 +19,10 @@ class PythonCanGateway(Gateway):
 
     Times of what is sent are simulated, as far as the interface carries them: ``virtual`` does.
 
-    Raises InputError for a bus that cannot be opened, and for a real one if hardware was not
-    allowed: what listens there may drive thrusters.
+    Raises InputError for a bus that cannot be opened.
     """
 
     def __init__(self, url: str, interface: str, channel: str, bitrate: int | None) -> None:
-        if not (_is_simulated(interface, channel) or is_allowed()):
-            raise InputError(f"gateway {url!r} is a real bus; {permission()}")
         options: dict[str, Any] = {} if bitrate is None else {"bitrate": bitrate}
         if interface == "virtual":
             options["preserve_timestamps"] = True
@@ -76,11 +72,3 @@ class PythonCanGateway(Gateway):
     def _put(self, sent: can.Message) -> None:
         with contextlib.suppress(can.CanError, OSError):  # full, or no receiver: it is lost
             self._bus.send(sent, timeout=0)
-
-
-def _is_simulated(interface: str, channel: str) -> bool:
-    """Return whether there is no more than a program behind a bus."""
-    if interface in ("slcan", "serial"):
-        loopback = channel.startswith(("socket://127.0.0.1:", "socket://localhost:"))
-        return loopback or is_simulated_port(channel)
-    return interface == "virtual" or (interface == "socketcan" and channel.startswith("vcan"))

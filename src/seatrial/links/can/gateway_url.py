@@ -9,24 +9,24 @@
 ``dronecan-multicast:BUS``               DroneCAN's bus over UDP multicast, of this machine alone
 ``virtual:CHANNEL``                      python-can's bus within this process
 ``python-can:INTERFACE:CHANNEL:BITRATE`` anything that python-can has; ``:BITRATE`` if it needs
-                                         one; real buses only if hardware is allowed
+                                         one
 ======================================== ====================================================
 
 HOST is a name or an IPv4 address: of this machine for servers, whose PORT 0 is any free one.
-BUS is 0 to 255.
+BUS is 0 to 255. What is beyond the programs of this machine is opened only if it is allowed
+(`hardware`).
 """
 
 from __future__ import annotations
 
 import re
-import socket
 from collections.abc import Callable
 
 from ...errors import InputError, unknown
 from ..endpoints.pseudo_terminal import PseudoTerminal
 from ..endpoints.tcp import TcpServer
 from ..endpoints.udp import UdpSender
-from ..hardware import refuse_other_host
+from ..hardware import check_can_bus, check_host, check_listening, resolved
 from .dronecan_multicast import DroneCanMulticastGateway
 from .gateway import Gateway
 from .gateway_python_can import PythonCanGateway
@@ -70,24 +70,27 @@ def open_gateway(url: str) -> Gateway:
     """
     kind, parts = _parts(url)
     if kind in ("virtual", "python-can"):
+        interface, channel = parts.get("interface", "virtual"), parts["channel"]
+        check_can_bus(f"gateway {url!r}", interface, channel)
         bitrate = int(parts["bitrate"]) if parts.get("bitrate") else None
-        return PythonCanGateway(url, parts.get("interface", "virtual"), parts["channel"], bitrate)
+        return PythonCanGateway(url, interface, channel, bitrate)
     if kind == "slcan-pty":
         return SlcanGateway(PseudoTerminal())
     return _networked(url, kind, parts)
 
 
 def _networked(url: str, kind: str, parts: dict[str, str]) -> Gateway:
+    what = f"gateway {url!r}"
     try:
         if kind == "dronecan-multicast":
             return DroneCanMulticastGateway(int(parts["bus"]))
-        found = socket.getaddrinfo(parts["host"], None, socket.AF_INET, socket.SOCK_STREAM)
-        address = (str(found[0][4][0]), int(parts["port"]))
-        refuse_other_host(f"gateway {url!r}", address[0])
+        address = (resolved(what, parts["host"]), int(parts["port"]))
         if kind == "yd-raw-udp":
+            check_host(what, address[0])
             return YdRawGateway(UdpSender(address))
+        check_listening(what, address[0])
         return _SERVERS[kind](TcpServer(address))
-    except (OSError, OverflowError, UnicodeError) as error:
+    except (OSError, OverflowError) as error:
         cause = getattr(error, "strerror", None) or error
         raise InputError(f"cannot open the gateway {url!r}: {cause}") from None
 

@@ -18,7 +18,9 @@ object is called with the URL and returns an `Endpoint`::
 4. **One channel object stands for one peer** for as long as it is there: protocols keep what they
    know of a peer by it. Each piece that `Endpoint.poll` returns is of one channel; where the
    transport has frames, one piece is one frame.
-5. **Hardware** that can move something is opened only if ``seatrial.links.hardware.is_allowed()``.
+5. **It asks** `seatrial.links.hardware` before it opens anything: `check_serial_port` for a device,
+   `check_host` and `check_listening` for an IP address. These raise InputError for what was not
+   allowed.
 6. **It closes** everything it opened in `Endpoint.close`, which is called once; a failing
    constructor leaves nothing open.
 7. In an FMU the package must be installed where the FMU runs: entry points do not travel with it.

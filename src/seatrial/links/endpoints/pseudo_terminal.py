@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ...errors import InputError
+from ..own_terminals import claim
 from .descriptor import DescriptorChannel
 from .endpoint import LARGEST_DATAGRAM, Channel, Endpoint
 
@@ -30,6 +31,7 @@ class PseudoTerminal(Endpoint):
         tty.setraw(self._other)
         os.set_blocking(self._own, False)
         self._device = os.ttyname(self._other)
+        self._claim = claim(self._device)
         self.url = f"pty:{place}" if place else self._device
         self._peers = [DescriptorChannel(self._own, LONGEST_QUEUE)]
         if self._place is not None:
@@ -62,6 +64,8 @@ class PseudoTerminal(Endpoint):
         self._close_ends()
 
     def _close_ends(self) -> None:
+        if self._claim is not None:
+            self._claim.close()
         os.close(self._own)
         os.close(self._other)
 

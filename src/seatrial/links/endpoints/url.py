@@ -5,25 +5,26 @@
 ``udpin:HOST:PORT``         bound there; sends to all that have sent something
 ``tcpin:HOST:PORT``         a server with any number of clients
 ``tcpout:HOST:PORT``        a client, which connects again when the connection is lost
-``serial:DEVICE:BAUD``      a serial port; a real one only if hardware is allowed
+``serial:DEVICE:BAUD``      a serial port
 ``pty:PATH``                a new pseudo-terminal, which others open as a serial port at PATH
 ``pty``                     the same at a device of the system's choice
 =========================== =================================================================
 
 HOST is a name or an IPv4 address, PORT 0 at ``udpin`` and ``tcpin`` any free one. PATH becomes a
-symbolic link to the terminal, for as long as the endpoint is open.
+symbolic link to the terminal, for as long as the endpoint is open. What is beyond the programs of
+this machine is opened only if it is allowed (`hardware`).
 Packages add kinds by entry points; `endpoint` says what they must do.
 """
 
 from __future__ import annotations
 
 import re
-import socket
 from collections.abc import Callable
 
 from ...errors import InputError
 from ...plugins import Registry
-from ..hardware import refuse_other_host
+from ..hardware import check_host, check_listening, check_serial_port, resolved
+from ..own_terminals import is_own
 from .endpoint import Endpoint
 from .pseudo_terminal import PseudoTerminal
 from .serial_port import SerialEndpoint
@@ -61,19 +62,45 @@ def open_endpoint(url: str) -> Endpoint:
 def opened(url: str) -> Endpoint:
     """Open an endpoint of a shipped kind. Raises InputError, OSError."""
     kind, place, number = _parts(url)
-    if kind == "serial":
-        return SerialEndpoint(url, place, number)
+    what = f"link {url!r}"
     if kind == "pty":
         return PseudoTerminal(place)
-    address = _resolved(url, place, number)
-    refuse_other_host(f"link {url!r}", address[0])
-    by_address: dict[str, Callable[[tuple[str, int]], Endpoint]] = {
-        "udpout": UdpSender,
-        "udpin": UdpListener,
-        "tcpin": TcpServer,
-        "tcpout": TcpClient,
-    }
-    return by_address[kind](address)
+    if kind == "serial":
+        check_serial_port(what, place)
+        return SerialEndpoint(url, place, number)
+    address = resolved(what, place)
+    ask, factory = _BY_ADDRESS[kind]
+    ask(what, address)
+    return factory((address, number))
+
+
+_BY_ADDRESS: dict[str, tuple[Callable[[str, str], None], Callable[[tuple[str, int]], Endpoint]]] = {
+    "udpout": (check_host, UdpSender),
+    "udpin": (check_listening, UdpListener),
+    "tcpin": (check_listening, TcpServer),
+    "tcpout": (check_host, TcpClient),
+}
+
+
+def open_endpoints(key: str, urls: str) -> list[Endpoint]:
+    """Open all ``urls``, separated by spaces, of the parameter ``key``.
+
+    Raises InputError, with the key, and leaves none open, if one cannot be.
+    """
+    endpoints: list[Endpoint] = []
+    try:
+        for url in urls.split():
+            endpoints.append(open_endpoint(url))
+    except InputError as error:
+        for endpoint in endpoints:
+            endpoint.close()
+        raise InputError(f"{key}: {error}") from None
+    return endpoints
+
+
+def reaches_device(url: str) -> bool:
+    """Return whether there may be a device, and no run of seatrial, at the other end."""
+    return _kind(url) == "serial" and not is_own(_parts(url)[1])
 
 
 def check_urls(links: str) -> None:
@@ -124,12 +151,3 @@ def _parts(url: str) -> tuple[str, str, int]:
         what = "baud rate" if kind == "serial" else "port"
         raise InputError(f"link {url!r}: the {what} is {number}, allowed {lowest} to {highest}")
     return kind, place, number
-
-
-def _resolved(url: str, host: str, port: int) -> tuple[str, int]:
-    try:
-        found = socket.getaddrinfo(host, port, socket.AF_INET, socket.SOCK_DGRAM)
-    except (OSError, UnicodeError) as error:
-        cause = getattr(error, "strerror", None) or error
-        raise InputError(f"link {url!r}: host {host!r}: {cause}") from None
-    return str(found[0][4][0]), port

@@ -7,8 +7,7 @@ from pathlib import Path
 from ...craft.kinematics import specific_force, to_ned
 from ...errors import InputError
 from ...sampled import Sampled
-from ..endpoints.endpoint import Endpoint
-from ..endpoints.url import open_endpoint, other_end
+from ..endpoints.url import open_endpoints, other_end
 from ..geodesy import Origin
 from ..parameter_validation import midnight_us, serial_number, value_names, version, whole_number
 from .modes import MANUAL_MODES, dialect
@@ -252,14 +251,7 @@ class Mavlink(MavlinkPorts):
                     "could be repeated"
                 )
             signing = Signing(read_key(Path(self.signing_key_file)), state)
-        endpoints: list[Endpoint] = []
-        try:
-            for url in self.links.split():
-                endpoints.append(open_endpoint(url))
-        except InputError:
-            for endpoint in endpoints:
-                endpoint.close()
-            raise
+        endpoints = open_endpoints("links", self.links)
         return EndpointTransport(endpoints, identity.system, identity.component, signing, self._log)
 
     def _estimates(self) -> Estimates:

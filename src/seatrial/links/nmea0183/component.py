@@ -11,7 +11,7 @@ from ...component import NS
 from ...errors import InputError
 from ...sampled import Sampled
 from ..endpoints.endpoint import Channel, Endpoint
-from ..endpoints.url import open_endpoint, other_end
+from ..endpoints.url import open_endpoints, other_end
 from ..geodesy import Origin
 from ..text import Inbox, Outbox
 from .codec import decode, encode
@@ -67,10 +67,8 @@ class Nmea0183(Nmea0183Ports):
         self.close()
         try:
             self._midnight = _midnight(self.date).isoformat()
-            for url in self.links.split():
-                self._endpoints.append(open_endpoint(url))
+            self._endpoints = open_endpoints("links", self.links)
         except InputError as error:
-            self.close()
             raise InputError(f"{self.name}: {error}") from None
         self._begun_ns = self.now_ns
         self._schedule = schedule(self.sentences)
