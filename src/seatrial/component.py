@@ -429,6 +429,9 @@ class Reachable:
     reached_at = Output(
         "1", "what others connect to, separated by spaces", type=str, role="address"
     )
+    exceeded = Output(
+        "1", "steps in which a peer brought more than one takes in", type=int, role="exceeded"
+    )
 
 
 def _is_fixed(port: Port) -> bool:

@@ -19,6 +19,7 @@ ROLES = {
     "seed": "seed of the component's noise: derived from the run's seed unless it is given",
     "run-folder": "folder of the run, for logs of its own: given once there is one",
     "address": "where programs outside connect to: shown when a run in real time begins",
+    "exceeded": "steps in which more came from outside than one takes in: a note of the run",
     "wall-clock": "whether it lives on the wall clock: refused but in real time at factor 1",
     "file": "name of a file: relative to the profile that gives it",
     "tunables": "parameters of others that a link sets: a table in its profile",

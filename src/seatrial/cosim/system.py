@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal, Protocol
 
@@ -203,6 +203,16 @@ class System:
                     raise InputError(
                         f"{self.rig.read_from.path}: {name} lives on the wall clock: run it in "
                         "real time at factor 1, with seatrial run --real-time 1"
+                    )
+
+    def floods(self) -> Iterator[str]:
+        """Return a note on every component that was brought more from outside than it took in."""
+        for name, part in self.parts.items():
+            for port in part.instance.variables.of_role("exceeded"):
+                if steps := part.instance.reader([port])()[0]:
+                    yield (
+                        f"{name}: in {steps} steps a peer brought more than one takes in: "
+                        "streams waited, datagrams were dropped"
                     )
 
     def free(self) -> None:

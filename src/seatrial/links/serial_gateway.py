@@ -82,6 +82,7 @@ class SerialGateway(Logging, Reachable, Component):
         self.tx = Outbox(self._tx).text
         self.sent, self.received = self._sent, self._received
         self.reached_at = " ".join(other_end(endpoint.url) for endpoint in self._endpoints)
+        self.exceeded = sum(endpoint.budget.exceeded for endpoint in self._endpoints)
 
     def close(self) -> None:
         """Send the safe-state bytes and close the links."""

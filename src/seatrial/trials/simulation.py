@@ -55,6 +55,7 @@ class Run:
         self._termination = TerminationConditions(trial, master, prepared.units)
         self._pace = Pace(trial.file.real_time, master) if trial.file.real_time else None
         self._events = trial.events()
+        self._floods: list[str] = []
         self._shown = time.perf_counter()
 
     def simulate(self) -> None:
@@ -75,6 +76,8 @@ class Run:
             self.error = f"cannot write {self.folder / 'signals.csv'}: {problem.strerror}"
         finally:
             self.wall["run"] = time.perf_counter() - begun
+            with contextlib.suppress(SimulationError):  # a component may have crashed
+                self._floods = list(self._master.system.floods())
             with contextlib.suppress(OSError):  # the disk may be full: what was recorded stays
                 self._recorder.close()
                 write_json(self.folder / "timing.json", self._timing(started))
@@ -95,7 +98,8 @@ class Run:
         """Return what the user should know: of profiles, the rig, the steps, the pace."""
         pace = [] if self._pace is None else [self._pace.pacer.note()]
         prepared = self.prepared
-        return [*prepared.system.notes, *prepared.loose_inputs(), *self._master.notes(), *pace]
+        notes = [*prepared.system.notes, *prepared.loose_inputs(), *self._master.notes()]
+        return [*notes, *self._floods, *pace]
 
     # ------------------------------------------------------------------ inside
 

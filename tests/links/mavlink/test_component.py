@@ -3,6 +3,7 @@
 import hashlib
 import itertools
 import math
+import socket
 import time
 
 import pytest
@@ -14,6 +15,7 @@ from seatrial.errors import InputError, SimulationError
 from seatrial.links.mavlink.component import Mavlink
 
 WAIT_S = 10.0
+KEY = hashlib.sha256(b"correct horse").digest()
 
 
 def made(**values):
@@ -221,8 +223,9 @@ def test_signatures(started, connect, tmp_path):
     state = tmp_path / "state.json"
     boat = started(signing_key_file=str(key), state_file=str(state))
     stranger, owner = connect(boat.urls[0], 250), connect(boat.urls[0], 255)
-    owner.setup_signing(hashlib.sha256(b"correct horse").digest(), sign_outgoing=True)
-    until(boat, lambda: boat.get("ground_stations") == 2)  # presence needs none
+    owner.setup_signing(KEY, sign_outgoing=True)
+    owner.mav.heartbeat_send(6, 8, 0, 0, 4)
+    until(boat, lambda: boat.get("ground_stations") == 1)  # presence needs one too
     arm = (1, 1, 400, 0, 1, 0, 0, 0, 0, 0, 0)
     for station in (stranger, owner):
         # The key cannot be changed over a link, not even by a station that knows it.
@@ -236,6 +239,55 @@ def test_signatures(started, connect, tmp_path):
     assert received(boat, owner, "COMMAND_ACK")._signed
     boat.close()
     assert "signing_timestamp" in state.read_text()
+
+
+def signed(started, tmp_path, **values):
+    key, state = tmp_path / "key", tmp_path / "state.json"
+    key.write_text("correct horse\n")
+    return started(signing_key_file=str(key), state_file=str(state), **values)
+
+
+def test_heartbeats_that_are_not_the_owners_hold_off_no_failsafe(started, connect, tmp_path):
+    boat = signed(started, tmp_path, station_timeout=0.3)
+    owner, stranger, forger = (connect(boat.urls[0]) for _ in range(3))
+    owner.setup_signing(KEY, sign_outgoing=True)
+    forger.setup_signing(bytes(32), sign_outgoing=True)
+    owner.mav.heartbeat_send(6, 8, 0, 0, 4)
+    until(boat, lambda: boat.get("ground_stations") == 1)
+
+    def lost():
+        for station in (stranger, forger):
+            station.mav.heartbeat_send(6, 8, 0, 0, 4)
+        return boat.get("failsafe_active")
+
+    until(boat, lost)
+    assert boat.get("ground_stations") == 0
+
+
+@pytest.mark.parametrize("url", ["udpin:127.0.0.1:0", "tcpin:127.0.0.1:0"])
+def test_telemetry_of_a_vehicle_that_signs_is_its_owners(url, started, connect, tmp_path):
+    boat = signed(started, tmp_path, links=url)
+    owner, stranger = connect(boat.urls[0]), connect(boat.urls[0])
+    owner.setup_signing(KEY, sign_outgoing=True)
+    owner.mav.heartbeat_send(6, 8, 0, 0, 4)
+    for _ in range(20):
+        received(boat, owner, "ATTITUDE")
+        stranger.mav.heartbeat_send(6, 8, 0, 0, 4)
+    assert stranger.recv_match() is None
+
+
+def test_telemetry_goes_to_senders_of_messages_and_to_who_connects(started, connect):
+    boat = started(links="udpin:127.0.0.1:0 tcpin:127.0.0.1:0")
+    listening = connect(boat.urls[1])
+    received(boat, listening, "ATTITUDE")
+    talking = connect(boat.urls[0])
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as noise:
+        noise.setblocking(False)
+        noise.sendto(b"no message", ("127.0.0.1", int(boat.urls[0].rpartition(":")[2])))
+        for _ in range(20):
+            received(boat, talking, "ATTITUDE")
+        with pytest.raises(BlockingIOError):
+            noise.recv(1000)
 
 
 def test_a_run_without_anybody_is_the_same_each_time(started):

@@ -112,7 +112,9 @@ class Arduino(ArduinoPorts):
         """Publish pulses, levels and bytes."""
         self.tx = [Outbox(memory).text for memory in self._tx]
         self.reached_at = " ".join(other_end(each.url) for each in self._monitors.values())
+        self.exceeded = sum(each.budget.exceeded for each in self._monitors.values())
         real = self._board if isinstance(self._board, RealBoard) else None
+        self.exceeded += real.exceeded if real is not None else 0
         self.on_wall_clock, self.connected = real is not None, real is None or real.connected
         self.bytes_sent, self.bytes_received = self._sent, self._received
         widths, shares, levels = [0.0] * 12, [0.0] * 8, [False] * 8

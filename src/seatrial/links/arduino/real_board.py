@@ -45,6 +45,11 @@ class RealBoard:
             raise InputError("links: the back end 'board' needs UART=URL of a serial port")
 
     @property
+    def exceeded(self) -> int:
+        """In how many steps a board sent more than one takes in."""
+        return sum(port.budget.exceeded for port in self._ports.values())
+
+    @property
     def connected(self) -> bool:
         """Whether something has been received, and all UARTs that have sent still do."""
         return bool(self._received) and not self._lost

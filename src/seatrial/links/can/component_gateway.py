@@ -113,6 +113,7 @@ class CanGateway(Reachable, Component):
         assert self._gateway is not None
         self.tx = CanNode(self._can).text
         self.clients, self.reached_at = self._gateway.clients, self._gateway.reached_at
+        self.exceeded = self._gateway.budget.exceeded
         self.frames_in, self.frames_out = self._in, self._out
         self.forgotten = self._forgotten
 

@@ -14,8 +14,9 @@ import struct
 import sys
 
 from ...errors import InputError
+from ..endpoints.budget import MOST, Budget
 from .frame import Frame
-from .gateway import MOST_FRAMES, Gateway
+from .gateway import FRAME_BYTES, RATE, Gateway
 
 GROUP, PORT = "239.65.82.{}", 57732
 MAGIC = 0x2934
@@ -71,6 +72,7 @@ class DroneCanMulticastGateway(Gateway):
         self._group = GROUP.format(bus)
         self.reached_at = f"mcast:{bus}"
         self._senders: dict[tuple[str, int], int] = {}
+        self.budget = Budget(RATE)
         self._receiving, self._sending = _socket(), _socket()
         try:
             self._receiving.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -98,13 +100,14 @@ class DroneCanMulticastGateway(Gateway):
         """Return frames that have arrived, with their senders; other datagrams are passed over."""
         found: list[tuple[int, Frame]] = []
         own = self._sending.getsockname()
-        while len(found) < MOST_FRAMES:
+        self.budget.renew(len(self._senders))
+        for _ in range(MOST // FRAME_BYTES):
             try:
                 datagram, sender = self._receiving.recvfrom(_LONGEST)
             except OSError:
                 break
             frame = unpacked(datagram) if sender != own else None
-            if frame is not None:
+            if frame is not None and self.budget.take(sender, FRAME_BYTES):
                 found.append((self._senders.setdefault(sender, len(self._senders)), frame))
         return found
 

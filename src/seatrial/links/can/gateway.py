@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 
+from ..endpoints.budget import Budget
 from .frame import Frame
 from .operations import Error
 
-MOST_FRAMES = 1000
-"""Frames taken in by one poll, about: a flood must not stop the simulation."""
+RATE = 150_000.0
+"""Bytes per second of wall time that a client may bring: as text, a full bus of 250 kbit/s."""
+FRAME_BYTES = 16
+"""What a frame of a bus is taken for, whose bytes nobody sees: so a full one of 1 Mbit/s fits."""
 
 
 class Gateway(ABC):
@@ -17,6 +20,8 @@ class Gateway(ABC):
     Clients behind it are known by numbers: several receive each other too.
     """
 
+    budget: Budget
+    """What one poll takes in."""
     reached_at: str
     """What the other side opens, as it is bound: with the port's number where 0 was given."""
 

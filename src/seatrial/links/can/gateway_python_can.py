@@ -8,8 +8,9 @@ from typing import Any
 import can
 
 from ...errors import InputError
+from ..endpoints.budget import Budget
 from .frame import Frame
-from .gateway import MOST_FRAMES, Gateway
+from .gateway import FRAME_BYTES, RATE, Gateway
 from .messages import error_message, frame_of, message
 from .operations import Error
 
@@ -32,6 +33,7 @@ class PythonCanGateway(Gateway):
             raise InputError(f"cannot open the gateway {url!r}: {error}") from None
         self._is_simulated = interface == "virtual"
         self.reached_at = url
+        self.budget = Budget(RATE)
 
     @property
     def clients(self) -> int:
@@ -41,7 +43,8 @@ class PythonCanGateway(Gateway):
     def poll(self) -> list[tuple[int, Frame]]:
         """Return frames that have arrived; others than ISO 11898-1 has are passed over."""
         found: list[tuple[int, Frame]] = []
-        while len(found) < MOST_FRAMES:
+        self.budget.renew(1)
+        while self.budget.take(self, FRAME_BYTES):
             try:
                 received = self._bus.recv(0.0)
             except can.CanError:

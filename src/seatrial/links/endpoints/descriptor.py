@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 
-from .endpoint import Channel
+from .budget import Budget
+from .endpoint import Channel, Endpoint
 
 
 class DescriptorChannel(Channel):
@@ -30,3 +32,29 @@ class DescriptorChannel(Channel):
             pass
         except OSError:
             self._queue.clear()  # unplugged
+
+
+class DescriptorEndpoint(Endpoint):
+    """One peer at a descriptor. What one poll does not take in waits in the system's queue."""
+
+    def __init__(self, descriptor: int, longest: int, budget: Budget) -> None:
+        self._descriptor, self.budget = descriptor, budget
+        self._peers = [DescriptorChannel(descriptor, longest)]
+
+    def channels(self) -> Sequence[Channel]:
+        """Return the one peer, whether it is there or not."""
+        return self._peers
+
+    def poll(self) -> list[tuple[Channel, bytes]]:
+        """Return what has arrived."""
+        peer = self._peers[0]
+        peer.flush()
+        self.budget.renew(1)
+        most = self.budget.left(peer)
+        try:
+            data = os.read(self._descriptor, most)
+        except OSError:  # nothing there, or unplugged
+            return []
+        if len(data) == most:
+            self.budget.exceed()
+        return [(peer, data)] if data else []

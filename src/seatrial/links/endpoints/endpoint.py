@@ -12,7 +12,8 @@ object is called with the URL and returns an `Endpoint`::
    InputError, with the URL, what was found and what is allowed, for one that is malformed, and
    InputError or OSError for one that cannot be opened.
 2. **Nothing waits.** Every call returns at once; connecting, accepting and trying again go on
-   inside `Endpoint.poll`, which takes a bounded number of reads, such as `MOST_READS`.
+   inside `Endpoint.poll`, which takes in what its `budget.Budget` allows: what is more waits where
+   it is, or is lost if it came as datagrams.
 3. **After it is open nothing raises** for what the other end does. Peers come and go, bytes that
    do not fit are lost; queues are bounded.
 4. **One channel object stands for one peer** for as long as it is there: protocols keep what they
@@ -30,10 +31,11 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
+from typing import Literal
+
+from .budget import Budget
 
 LARGEST_DATAGRAM = 65536
-MOST_READS = 256
-"""Reads from one endpoint in one poll: a flood must not stop the simulation."""
 
 
 class Channel(ABC):
@@ -49,6 +51,12 @@ class Endpoint(ABC):
 
     url: str
     """As it is bound: with the port's number where 0 was given."""
+
+    budget = Budget()
+    """What one poll takes in: each object sets its own, unless it bounds that in another way."""
+
+    peers: Literal["named", "connected", "senders"] = "named"
+    """Who they are: those that the URL names, all that connect, or all that send something."""
 
     @abstractmethod
     def channels(self) -> Sequence[Channel]:

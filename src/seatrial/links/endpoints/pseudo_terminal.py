@@ -4,19 +4,18 @@ from __future__ import annotations
 
 import os
 import tty
-from collections.abc import Sequence
 from pathlib import Path
 
 from ...errors import InputError
 from ..own_terminals import claim
-from .descriptor import DescriptorChannel
-from .endpoint import LARGEST_DATAGRAM, Channel, Endpoint
+from .budget import Budget
+from .descriptor import DescriptorEndpoint
 
 LONGEST_QUEUE = 1 << 16
 """Bytes kept while the other end does not read; what comes beyond is lost."""
 
 
-class PseudoTerminal(Endpoint):
+class PseudoTerminal(DescriptorEndpoint):
     """One end of a new pseudo-terminal; ``url`` is the device that others open.
 
     A ``place`` becomes a symbolic link to that device until the endpoint is closed. Raises
@@ -33,7 +32,7 @@ class PseudoTerminal(Endpoint):
         self._device = os.ttyname(self._other)
         self._claim = claim(self._device)
         self.url = f"pty:{place}" if place else self._device
-        self._peers = [DescriptorChannel(self._own, LONGEST_QUEUE)]
+        super().__init__(self._own, LONGEST_QUEUE, Budget())
         if self._place is not None:
             try:
                 self._place.symlink_to(self._device)
@@ -42,19 +41,6 @@ class PseudoTerminal(Endpoint):
                 raise InputError(
                     f"cannot open the link {self.url!r}: {error.strerror or error}"
                 ) from None
-
-    def channels(self) -> Sequence[Channel]:
-        """Return the one peer, whether the device is open or not."""
-        return self._peers
-
-    def poll(self) -> list[tuple[Channel, bytes]]:
-        """Return what has arrived."""
-        self._peers[0].flush()
-        try:
-            data = os.read(self._own, LARGEST_DATAGRAM)
-        except BlockingIOError:
-            return []
-        return [(self._peers[0], data)] if data else []
 
     def close(self) -> None:
         """Close both ends, and take the symbolic link away."""

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import serial
 
 from ...errors import InputError
-from .descriptor import DescriptorChannel
-from .endpoint import LARGEST_DATAGRAM, Channel, Endpoint
+from .budget import RATE, Budget
+from .descriptor import DescriptorEndpoint
 
 LONGEST_QUEUE = 1 << 14
 """Bytes kept for a line that is too slow; frames beyond are lost."""
 
 
-class SerialEndpoint(Endpoint):
+class SerialEndpoint(DescriptorEndpoint):
     """A serial port with one peer, 8 bits, no parity, one stop bit. POSIX only.
 
     Raises InputError for a device that cannot be opened.
@@ -26,20 +24,8 @@ class SerialEndpoint(Endpoint):
         except (OSError, ValueError) as error:
             raise InputError(f"cannot open the link {url!r}: {error}") from None
         self.url = url
-        self._peers = [DescriptorChannel(self._serial.fileno(), LONGEST_QUEUE)]
-
-    def channels(self) -> Sequence[Channel]:
-        """Return the one peer."""
-        return self._peers
-
-    def poll(self) -> list[tuple[Channel, bytes]]:
-        """Return what has arrived."""
-        self._peers[0].flush()
-        try:
-            data = self._serial.read(LARGEST_DATAGRAM)
-        except (OSError, serial.SerialException):
-            return []
-        return [(self._peers[0], data)] if data else []
+        # Ten bits a byte; twice what the line can bring.
+        super().__init__(self._serial.fileno(), LONGEST_QUEUE, Budget(max(RATE, baud / 5.0)))
 
     def close(self) -> None:
         """Close the port."""

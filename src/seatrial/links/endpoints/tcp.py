@@ -8,7 +8,8 @@ import socket
 import time
 from collections.abc import Sequence
 
-from .endpoint import LARGEST_DATAGRAM, MOST_READS, Channel, Endpoint
+from .budget import Budget
+from .endpoint import Channel, Endpoint
 
 MOST_CLIENTS = 16
 LONGEST_QUEUE = 1 << 18
@@ -34,11 +35,11 @@ class _Stream(Channel):
             self._queue += data
             self._flush()
 
-    def receive(self) -> bytes:
+    def receive(self, most: int) -> bytes:
         """Return what has arrived; the stream is closed if its other end is."""
         self._flush()
         try:
-            data = self._socket.recv(LARGEST_DATAGRAM)
+            data = self._socket.recv(most)
         except BlockingIOError:
             return b""
         except OSError:
@@ -64,19 +65,24 @@ class _Stream(Channel):
             self.close()
 
 
-def _read(streams: Sequence[_Stream]) -> list[tuple[Channel, bytes]]:
+def _read(streams: Sequence[_Stream], budget: Budget) -> list[tuple[Channel, bytes]]:
+    """Return what has arrived; what is beyond the budget waits, in the end at the sender's."""
     arrived: list[tuple[Channel, bytes]] = []
+    budget.renew(len(streams))
     for stream in streams:
-        for _ in range(MOST_READS):
-            data = stream.receive() if stream.is_open else b""
-            if not data:
-                break
+        most = budget.left(stream)
+        data = stream.receive(most) if stream.is_open else b""
+        if data:
             arrived.append((stream, data))
+        if len(data) == most:
+            budget.exceed()
     return arrived
 
 
 class TcpServer(Endpoint):
     """Accepts clients, up to `MOST_CLIENTS` at once."""
+
+    peers = "connected"
 
     def __init__(self, address: _Address) -> None:
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
@@ -91,6 +97,7 @@ class TcpServer(Endpoint):
         host, port = self._socket.getsockname()
         self.url = f"tcpin:{host}:{port}"
         self._streams: list[_Stream] = []
+        self.budget = Budget()
 
     def channels(self) -> Sequence[Channel]:
         """Return the clients that are connected."""
@@ -102,7 +109,7 @@ class TcpServer(Endpoint):
         with contextlib.suppress(OSError):  # none, or one that has gone again
             while len(self._streams) < MOST_CLIENTS:
                 self._streams.append(_Stream(self._socket.accept()[0]))
-        return _read(self._streams)
+        return _read(self._streams, self.budget)
 
     def close(self) -> None:
         """Close the server and all connections."""
@@ -120,6 +127,7 @@ class TcpClient(Endpoint):
         self._connecting: socket.socket | None = None
         self._stream: _Stream | None = None
         self._tried = -RETRY_S
+        self.budget = Budget()
 
     def channels(self) -> Sequence[Channel]:
         """Return the server, if it is connected."""
@@ -129,7 +137,7 @@ class TcpClient(Endpoint):
         """Connect if there is no connection, and return what has arrived."""
         if self._stream is None or not self._stream.is_open:
             self._connect()
-        return _read([self._stream]) if self._stream is not None else []
+        return _read([self._stream] if self._stream is not None else [], self.budget)
 
     def close(self) -> None:
         """Close the connection."""

@@ -2,29 +2,57 @@
 
 from __future__ import annotations
 
+import contextlib
 import socket
-from collections.abc import Sequence
+import sys
+from collections.abc import Iterator, Sequence
 
-from .endpoint import LARGEST_DATAGRAM, MOST_READS, Channel, Endpoint
+from .budget import Budget
+from .endpoint import LARGEST_DATAGRAM, Channel, Endpoint
 
 MOST_PEERS = 16
 """Senders that a listener answers; a new one takes the place of the one silent longest."""
+MOST_NEW = 8
+"""Senders that one poll gets to know; more wait for the next."""
+MOST_READS = 64
+"""Datagrams read from one socket in one poll, most of them only to be dropped in a flood."""
 
 _Address = tuple[str, int]
 
 
 class _UdpPeer(Channel):
-    def __init__(self, opened: socket.socket, address: _Address | None = None) -> None:
-        self._socket, self._address = opened, address
+    """One address, through a socket of its own or one that several share."""
+
+    def __init__(self, opened: socket.socket, address: _Address, owned: bool = True) -> None:
+        self.socket, self._address, self._owned = opened, address, owned
 
     def send(self, data: bytes) -> None:
-        try:
-            if self._address is None:
-                self._socket.send(data)
+        with contextlib.suppress(OSError):  # no receiver, or a full queue: a datagram may be lost
+            if self._owned:
+                self.socket.send(data)
             else:
-                self._socket.sendto(data, self._address)
+                self.socket.sendto(data, self._address)
+
+    def close(self) -> None:
+        if self._owned:
+            self.socket.close()
+
+
+def _datagrams(opened: socket.socket) -> Iterator[tuple[bytes, _Address]]:
+    """Read what has arrived at a socket, up to `MOST_READS`."""
+    for _ in range(MOST_READS):
+        try:
+            yield opened.recvfrom(LARGEST_DATAGRAM)
+        except BlockingIOError:
+            return
         except OSError:
-            pass  # no receiver, or the queue is full: a datagram may be lost
+            continue  # the answer to an earlier datagram: the port is closed
+
+
+def _socket() -> socket.socket:
+    opened = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    opened.setblocking(False)
+    return opened
 
 
 class UdpSender(Endpoint):
@@ -32,14 +60,14 @@ class UdpSender(Endpoint):
 
     def __init__(self, address: _Address) -> None:
         self.url = f"udpout:{address[0]}:{address[1]}"
-        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self._socket.setblocking(False)
+        self.budget = Budget()
+        opened = _socket()
         try:
-            self._socket.connect(address)
+            opened.connect(address)
         except OSError:
-            self._socket.close()
+            opened.close()
             raise
-        self._peers = [_UdpPeer(self._socket)]
+        self._peers = [_UdpPeer(opened, address)]
 
     def channels(self) -> Sequence[Channel]:
         """Return the one peer."""
@@ -47,27 +75,28 @@ class UdpSender(Endpoint):
 
     def poll(self) -> list[tuple[Channel, bytes]]:
         """Return the datagrams that have arrived."""
-        arrived: list[tuple[Channel, bytes]] = []
-        for _ in range(MOST_READS):
-            try:
-                arrived.append((self._peers[0], self._socket.recv(LARGEST_DATAGRAM)))
-            except BlockingIOError:
-                break
-            except OSError:
-                continue  # the answer to an earlier datagram: the port is closed
-        return arrived
+        peer = self._peers[0]
+        self.budget.renew(1)
+        found = _datagrams(peer.socket)
+        return [(peer, data) for data, _ in found if self.budget.take(peer, len(data))]
 
     def close(self) -> None:
         """Close the socket."""
-        self._socket.close()
+        self._peers[0].close()
 
 
 class UdpListener(Endpoint):
-    """Bound to an address; answers the latest senders, up to `MOST_PEERS`."""
+    """Bound to an address; answers the latest senders, up to `MOST_PEERS`.
+
+    Each has a socket of its own at the same port (on Linux): the system keeps a queue for each,
+    so that one that floods fills its own alone.
+    """
+
+    peers = "senders"
 
     def __init__(self, address: _Address) -> None:
-        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self._socket.setblocking(False)
+        self._socket = _socket()
+        self.budget = Budget()
         try:
             self._socket.bind(address)
         except OSError:
@@ -85,23 +114,50 @@ class UdpListener(Endpoint):
     def poll(self) -> list[tuple[Channel, bytes]]:
         """Return the datagrams that have arrived, and know their senders."""
         arrived: list[tuple[Channel, bytes]] = []
-        for _ in range(MOST_READS):
-            try:
-                data, address = self._socket.recvfrom(LARGEST_DATAGRAM)
-            except BlockingIOError:
-                break
-            except OSError:
-                continue
-            arrived.append((self._known(address), data))
+        self.budget.renew(len(self._peers))
+        new = 0
+        known = [peer.socket for peer in self._peers.values() if peer.socket is not self._socket]
+        for opened in (*known, self._socket):
+            for data, address in _datagrams(opened):
+                new += address not in self._peers
+                peer = self._known(address)
+                if self.budget.take(peer, len(data)):
+                    arrived.append((peer, data))
+                if new == MOST_NEW:
+                    self.budget.exceed()
+                    break
         return arrived
 
     def close(self) -> None:
-        """Close the socket."""
+        """Close the sockets."""
+        for peer in self._peers.values():
+            peer.close()
         self._socket.close()
 
-    def _known(self, address: _Address) -> Channel:
-        peer = self._peers.pop(address, None) or _UdpPeer(self._socket, address)
+    def _known(self, address: _Address) -> _UdpPeer:
+        peer = self._peers.pop(address, None) or self._made(address)
         if len(self._peers) >= MOST_PEERS:
-            del self._peers[next(iter(self._peers))]
+            self._peers.pop(next(iter(self._peers))).close()
         self._peers[address] = peer
         return peer
+
+    def _made(self, address: _Address) -> _UdpPeer:
+        if sys.platform != "linux":
+            return _UdpPeer(self._socket, address, owned=False)
+        opened = _socket()
+        try:
+            # Both must agree to share the port, for as long as it takes: nobody else may.
+            self._share_port(opened, 1)
+            opened.bind(self._socket.getsockname())
+            opened.connect(address)
+            return _UdpPeer(opened, address)
+        except OSError:
+            opened.close()
+            return _UdpPeer(self._socket, address, owned=False)
+        finally:
+            with contextlib.suppress(OSError):
+                self._share_port(opened, 0)
+
+    def _share_port(self, opened: socket.socket, shared: int) -> None:
+        for each in (self._socket, opened):
+            each.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, shared)

@@ -11,8 +11,8 @@ from .signing import Signing
 Message = Any
 """A message of pymavlink: its fields are attributes."""
 
-UNSIGNED = frozenset({mavlink.MAVLINK_MSG_ID_HEARTBEAT, mavlink.MAVLINK_MSG_ID_RADIO_STATUS})
-"""Messages that are received without a signature: presence, and a radio that has no key."""
+UNSIGNED = frozenset({mavlink.MAVLINK_MSG_ID_RADIO_STATUS})
+"""Messages that are received without a signature: of a radio, which has no key."""
 
 _MOST_SENDERS = 64
 _LONGEST_REST = 1 << 13

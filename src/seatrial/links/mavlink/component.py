@@ -74,7 +74,8 @@ class Mavlink(MavlinkPorts):
     keeps everything waiting (`stand_still`).
 
     **Signatures**: with ``signing_key_file``, whose first line is the pass phrase, unsigned and
-    repeated frames are refused, but for presence; ``state_file`` keeps the newest timestamp.
+    repeated frames are refused, heartbeats too, and peers that come by themselves are sent nothing
+    before their first signed frame; ``state_file`` keeps the newest timestamp.
     Both are relative to the current folder. A key never comes over a link.
 
     Positions in {n} from the origin (``latitude``, ``longitude``, ``altitude``), depth being
@@ -161,6 +162,8 @@ class Mavlink(MavlinkPorts):
         self.speedup = self._settings.speedup
         self.failsafe_active, self.ground_stations = vehicle.failsafe, vehicle.stations
         self.reached_at = " ".join(other_end(url) for url in self.urls)
+        assert self._transport is not None
+        self.exceeded = sum(each.budget.exceeded for each in self._transport.endpoints)
 
     def update(self, t: float, k: int) -> None:
         """Take in what has arrived, and send what is due."""

@@ -12,13 +12,15 @@ from .signing import Signing
 from .tlog import TelemetryLog
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class Link:
     """One peer and the codec of its frames; ``number`` is never used again."""
 
     number: int
     channel: Channel
     codec: Codec
+    admitted: bool
+    """Whether something is sent to it."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +47,12 @@ class Transport(Protocol):
 
 
 class EndpointTransport:
-    """Endpoints, and a `Link` for each of their peers; ``log`` gets every frame."""
+    """Endpoints, and a `Link` for each of their peers; ``log`` gets every frame.
+
+    Sent to are the peers that a URL names, and those that may command the vehicle: with
+    ``signing`` they have sent a frame with a good signature, without it they have connected, or
+    have sent a message.
+    """
 
     def __init__(
         self,
@@ -63,15 +70,16 @@ class EndpointTransport:
 
     def links(self) -> Sequence[int]:
         """Return the numbers of the links that there are now."""
-        return [link.number for link in self._links.values()]
+        return [link.number for link in self._links.values() if link.admitted]
 
     def poll(self) -> list[tuple[Message, Sender]]:
         """Return the messages that have arrived, in order per link."""
         arrived = []
         for endpoint in self.endpoints:
             for channel, data in endpoint.poll():
-                link = self._link(channel)
+                link = self._link(channel, endpoint)
                 for message in link.codec.decode(data):
+                    link.admitted |= self._signing is None or message.get_signed()
                     self._log.write(message.get_msgbuf())
                     arrived.append((message, _sender(message, link)))
         self._reconcile()
@@ -80,13 +88,14 @@ class EndpointTransport:
     def send(self, link: int, message: Message) -> None:
         """Send to one link; nothing happens if it is gone."""
         for one in self._links.values():
-            if one.number == link:
+            if one.number == link and one.admitted:
                 self._transmit(one, message)
 
     def broadcast(self, message: Message) -> None:
         """Send to all links."""
         for link in self._links.values():
-            self._transmit(link, message)
+            if link.admitted:
+                self._transmit(link, message)
 
     def close(self) -> None:
         """Close everything; the newest timestamp of signatures is kept."""
@@ -102,13 +111,18 @@ class EndpointTransport:
 
     def _reconcile(self) -> None:
         """Add the peers that have not sent anything, remove those that are gone."""
-        there = [channel for endpoint in self.endpoints for channel in endpoint.channels()]
-        self._links = {channel: self._link(channel) for channel in there}
+        self._links = {
+            channel: self._link(channel, endpoint)
+            for endpoint in self.endpoints
+            for channel in endpoint.channels()
+        }
 
-    def _link(self, channel: Channel) -> Link:
+    def _link(self, channel: Channel, endpoint: Endpoint) -> Link:
         if channel not in self._links:
             codec = Codec(self._system, self._component, self._made, self._signing)
-            self._links[channel] = Link(self._made, channel, codec)
+            connected = endpoint.peers == "connected" and self._signing is None
+            admitted = endpoint.peers == "named" or connected
+            self._links[channel] = Link(self._made, channel, codec, admitted)
             self._made += 1
         return self._links[channel]
 

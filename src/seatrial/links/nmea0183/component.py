@@ -103,6 +103,7 @@ class Nmea0183(Nmea0183Ports):
         self.cross_track = reported.cross_track or 0.0
         self.waypoint, self.arrived = reported.waypoint or "", bool(reported.arrived)
         self.reached_at = " ".join(other_end(each.url) for each in self._endpoints)
+        self.exceeded = sum(each.budget.exceeded for each in self._endpoints)
 
     def update(self, t: float, k: int) -> None:
         """Take in what has arrived, and send what is due."""

@@ -1,0 +1,172 @@
+"""Floods, in a bounded number of polls: bytes that one poll takes in, and that others are served."""
+
+import os
+import socket
+import time
+
+import pytest
+
+from seatrial.links.endpoints.budget import LEAST, MOST, SMALLEST_SHARE, Budget
+from seatrial.links.endpoints.udp import MOST_NEW
+from seatrial.links.endpoints.url import open_endpoint
+
+WAIT_S = 10.0
+PIECE = b"x" * 64
+HONEST = b"honest"
+
+
+@pytest.fixture
+def opened():
+    """Return a function that opens an endpoint whose budget is the least, closed after the test."""
+    endpoints = []
+
+    def open_(url):
+        endpoint = open_endpoint(url)
+        endpoint.budget = Budget(0.0)
+        endpoints.append(endpoint)
+        return endpoint
+
+    yield open_
+    for endpoint in endpoints:
+        endpoint.close()
+
+
+def place(endpoint):
+    return ("127.0.0.1", int(endpoint.url.rpartition(":")[2]))
+
+
+def until(endpoint, wanted):
+    """Poll until the bytes of some peer are ``wanted``; return what each poll took in."""
+    polls, deadline = [], time.monotonic() + WAIT_S
+    while wanted not in {data for poll in polls for _, data in poll}:
+        assert time.monotonic() < deadline
+        polls.append(endpoint.poll())
+    return polls
+
+
+def most(polls, channel=None):
+    """Return the most bytes of a peer, or of all, in one poll."""
+    return max(sum(len(d) for c, d in poll if channel in (None, c)) for poll in polls)
+
+
+def test_the_budget_follows_wall_time_between_its_bounds():
+    now = [0.0]
+    budget = Budget(1e5, lambda: now[0])
+    found = []
+    for now[0] in (0.0001, 0.0201, 0.0401, 9.0):
+        budget.renew(1)
+        found.append(budget.left("peer"))
+    assert found == [LEAST, 2000, 2000, MOST]
+    budget.renew(4)
+    assert budget.left("peer") == SMALLEST_SHARE
+    assert budget.take("peer", 5000)  # a datagram comes whole
+    assert not budget.take("peer", 1)
+    assert budget.take("other", SMALLEST_SHARE)
+    assert not budget.take("other", 1)
+    assert budget.exceeded == 1  # polls
+    budget.renew(1)
+    assert budget.take("peer", 1)
+
+
+def test_a_tcp_client_that_floods_is_read_by_and_by_and_others_are_served(opened):
+    endpoint = opened("tcpin:127.0.0.1:0")
+    flood, other = (socket.create_connection(place(endpoint)) for _ in range(2))
+    with flood, other:
+        flood.setblocking(False)
+        sent = flood.send(b"f" * (1 << 20))
+        other.sendall(HONEST)
+        polls = until(endpoint, HONEST)
+        assert len(polls) <= 4
+        received = sum(len(d) for poll in polls for _, d in poll if d != HONEST)
+        while received < sent:  # nothing is lost
+            polls.append(endpoint.poll())
+            received += sum(len(data) for _, data in polls[-1])
+        assert received == sent
+        assert most(polls) <= LEAST
+        assert endpoint.budget.exceeded > sent // LEAST - 10
+
+
+def test_a_tcp_server_that_floods_is_read_by_and_by(opened):
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        endpoint = opened(f"tcpout:127.0.0.1:{server.getsockname()[1]}")
+        endpoint.poll()
+        connection, _ = server.accept()
+        with connection:
+            connection.sendall(b"f" * 20_000)
+            polls, deadline = [], time.monotonic() + WAIT_S
+            while sum(len(d) for poll in polls for _, d in poll) < 20_000:
+                assert time.monotonic() < deadline
+                polls.append(endpoint.poll())
+            assert most(polls) == LEAST
+
+
+def test_a_udp_sender_that_floods_loses_its_own_datagrams_alone(opened):
+    endpoint = opened("udpin:127.0.0.1:0")
+    flood, other = (socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(2))
+    with flood, other:
+        for each in (flood, other):
+            each.sendto(HONEST, place(endpoint))
+        until(endpoint, HONEST)
+        endpoint.poll()
+        channels = set(endpoint.channels())
+        for _ in range(5000):  # more than the system keeps for a socket
+            flood.sendto(PIECE, place(endpoint))
+        other.sendto(b"now", place(endpoint))
+        polls = [endpoint.poll()]
+        assert [d for poll in polls for _, d in poll if d != PIECE] == [b"now"]
+        assert set(endpoint.channels()) == channels
+        polls += [endpoint.poll() for _ in range(10)]
+        assert most(polls) <= LEAST // 2 + len(b"now")
+        assert endpoint.budget.exceeded > 0
+
+
+def test_a_udp_peer_that_floods_a_sender_is_bounded(opened):
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as peer:
+        peer.bind(("127.0.0.1", 0))
+        endpoint = opened(f"udpout:127.0.0.1:{peer.getsockname()[1]}")
+        endpoint.channels()[0].send(b"hello")
+        _, address = peer.recvfrom(100)
+        for _ in range(1000):
+            peer.sendto(PIECE, address)
+        polls = [endpoint.poll() for _ in range(10)]
+        assert most(polls) == LEAST
+        assert endpoint.budget.exceeded > 0
+
+
+def test_senders_that_are_new_each_time_are_bounded(opened):
+    endpoint = opened("udpin:127.0.0.1:0")
+    for _ in range(200):
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as flood:
+            flood.sendto(PIECE, place(endpoint))
+    polls = [endpoint.poll() for _ in range(10)]
+    assert 0 < most(polls) <= MOST_NEW * len(PIECE)
+
+
+def test_the_port_is_still_nobody_elses(opened):
+    endpoint = opened("udpin:127.0.0.1:0")
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as peer:
+        peer.sendto(HONEST, place(endpoint))
+        until(endpoint, HONEST)
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as thief:
+        thief.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        with pytest.raises(OSError, match="in use"):
+            thief.bind(place(endpoint))
+
+
+@pytest.mark.parametrize("kind", ["pty", "serial"])
+def test_a_serial_line_that_floods_waits(opened, kind):
+    endpoint, other = opened("pty"), None
+    if kind == "serial":
+        other, endpoint = endpoint, opened(f"serial:{endpoint.url}:57600")
+        descriptor = other._own
+    else:
+        descriptor = os.open(endpoint.url, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
+    sent = os.write(descriptor, b"f" * 3000)
+    polls, deadline = [], time.monotonic() + WAIT_S
+    while sum(len(d) for poll in polls for _, d in poll) < sent:
+        assert time.monotonic() < deadline
+        polls.append(endpoint.poll())
+    assert most(polls) == LEAST
+    assert endpoint.budget.exceeded > 0
+    if other is None:
+        os.close(descriptor)
