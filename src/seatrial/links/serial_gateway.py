@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 
 from ..component import Component, Input, Logging, Output, Parameter, Reachable, terminal
 from ..errors import InputError
+from .endpoints.budget import Budget
 from .endpoints.endpoint import Endpoint
 from .endpoints.url import check_urls, open_endpoints, other_end
 from .safe_state import UNSET, check_safe_state, require_safe_state, safe_state_bytes
@@ -59,6 +60,8 @@ class SerialGateway(Logging, Reachable, Component):
         try:
             require_safe_state(self.safe_state, self.links)
             self._endpoints = open_endpoints("links", self.links)
+            for endpoint in self._endpoints:
+                endpoint.budget = Budget.of_raw_bytes()
         except InputError as error:
             raise InputError(f"{self.name}: {error}") from None
         self._rx: dict[str, Any] = {}

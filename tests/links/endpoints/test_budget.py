@@ -6,11 +6,12 @@ import time
 
 import pytest
 
-from seatrial.links.endpoints.budget import LEAST, MOST, SMALLEST_SHARE, Budget
+from seatrial.links.endpoints.budget import MOST, SMALLEST_SHARE, Budget
 from seatrial.links.endpoints.udp import MOST_NEW
 from seatrial.links.endpoints.url import open_endpoint
 
 WAIT_S = 10.0
+LEAST = 1024
 PIECE = b"x" * 64
 HONEST = b"honest"
 
@@ -22,7 +23,7 @@ def opened():
 
     def open_(url):
         endpoint = open_endpoint(url)
-        endpoint.budget = Budget(0.0)
+        endpoint.budget = Budget(0.0, LEAST)
         endpoints.append(endpoint)
         return endpoint
 
@@ -51,12 +52,12 @@ def most(polls, channel=None):
 
 def test_the_budget_follows_wall_time_between_its_bounds():
     now = [0.0]
-    budget = Budget(1e5, lambda: now[0])
+    budget = Budget(1e5, clock=lambda: now[0])
     found = []
     for now[0] in (0.0001, 0.0201, 0.0401, 9.0):
         budget.renew(1)
         found.append(budget.left("peer"))
-    assert found == [LEAST, 2000, 2000, MOST]
+    assert found == [64, 2000, 2000, MOST]
     budget.renew(4)
     assert budget.left("peer") == SMALLEST_SHARE
     assert budget.take("peer", 5000)  # a datagram comes whole

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ...errors import InputError
+from ..endpoints.budget import Budget
 from ..endpoints.endpoint import Endpoint
 from ..endpoints.url import check_urls, open_endpoints
 from .wiring import UARTS
@@ -35,4 +36,7 @@ def read_monitors(text: str) -> dict[int, str]:
 def open_links(text: str, key: str = "links") -> dict[int, Endpoint]:
     """Open the links of a text. Raises InputError, and leaves none open, if one cannot be."""
     links = read_links(text, key)
-    return dict(zip(links, open_endpoints(key, " ".join(links.values())), strict=True))
+    ports = open_endpoints(key, " ".join(links.values()))
+    for port in ports:
+        port.budget = Budget.of_raw_bytes()
+    return dict(zip(links, ports, strict=True))

@@ -16,7 +16,7 @@ import sys
 from ...errors import InputError
 from ..endpoints.budget import MOST, Budget
 from .frame import Frame
-from .gateway import FRAME_BYTES, RATE, Gateway
+from .gateway import FRAME_BYTES, LEAST, RATE, Gateway
 
 GROUP, PORT = "239.65.82.{}", 57732
 MAGIC = 0x2934
@@ -72,7 +72,7 @@ class DroneCanMulticastGateway(Gateway):
         self._group = GROUP.format(bus)
         self.reached_at = f"mcast:{bus}"
         self._senders: dict[tuple[str, int], int] = {}
-        self.budget = Budget(RATE)
+        self.budget = Budget(RATE, LEAST)
         self._receiving, self._sending = _socket(), _socket()
         try:
             self._receiving.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)

@@ -8,8 +8,8 @@ from ..endpoints.budget import Budget
 from .frame import Frame
 from .operations import Error
 
-RATE = 150_000.0
-"""Bytes per second of wall time that a client may bring: as text, a full bus of 250 kbit/s."""
+RATE, LEAST = 150_000.0, 1024
+"""Bytes per second, and in one poll at least: as text, more than a full bus of 250 kbit/s."""
 FRAME_BYTES = 16
 """What a frame of a bus is taken for, whose bytes nobody sees: so a full one of 1 Mbit/s fits."""
 

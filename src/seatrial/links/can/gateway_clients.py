@@ -9,7 +9,7 @@ from ...errors import InputError
 from ..endpoints.budget import Budget
 from ..endpoints.endpoint import Channel, Endpoint
 from .frame import Frame
-from .gateway import RATE, Gateway
+from .gateway import LEAST, RATE, Gateway
 from .operations import Error
 
 LONGEST_LINE = 1000
@@ -71,7 +71,7 @@ class ClientsGateway(Gateway):
 
     def __init__(self, endpoint: Endpoint, client: Callable[[Channel], Client]) -> None:
         self._endpoint, self._client = endpoint, client
-        self.budget = endpoint.budget = Budget(RATE)
+        self.budget = endpoint.budget = Budget(RATE, LEAST)
         self._clients: dict[Channel, Client] = {}
         self._numbers: dict[Channel, int] = {}
         self._next = 0

@@ -10,7 +10,7 @@ import can
 from ...errors import InputError
 from ..endpoints.budget import Budget
 from .frame import Frame
-from .gateway import FRAME_BYTES, RATE, Gateway
+from .gateway import FRAME_BYTES, LEAST, RATE, Gateway
 from .messages import error_message, frame_of, message
 from .operations import Error
 
@@ -33,7 +33,7 @@ class PythonCanGateway(Gateway):
             raise InputError(f"cannot open the gateway {url!r}: {error}") from None
         self._is_simulated = interface == "virtual"
         self.reached_at = url
-        self.budget = Budget(RATE)
+        self.budget = Budget(RATE, LEAST)
 
     @property
     def clients(self) -> int:

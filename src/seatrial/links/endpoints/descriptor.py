@@ -37,8 +37,8 @@ class DescriptorChannel(Channel):
 class DescriptorEndpoint(Endpoint):
     """One peer at a descriptor. What one poll does not take in waits in the system's queue."""
 
-    def __init__(self, descriptor: int, longest: int, budget: Budget) -> None:
-        self._descriptor, self.budget = descriptor, budget
+    def __init__(self, descriptor: int, longest: int) -> None:
+        self._descriptor, self.budget = descriptor, Budget()
         self._peers = [DescriptorChannel(descriptor, longest)]
 
     def channels(self) -> Sequence[Channel]:

@@ -8,7 +8,6 @@ from pathlib import Path
 
 from ...errors import InputError
 from ..own_terminals import claim
-from .budget import Budget
 from .descriptor import DescriptorEndpoint
 
 LONGEST_QUEUE = 1 << 16
@@ -32,7 +31,7 @@ class PseudoTerminal(DescriptorEndpoint):
         self._device = os.ttyname(self._other)
         self._claim = claim(self._device)
         self.url = f"pty:{place}" if place else self._device
-        super().__init__(self._own, LONGEST_QUEUE, Budget())
+        super().__init__(self._own, LONGEST_QUEUE)
         if self._place is not None:
             try:
                 self._place.symlink_to(self._device)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import serial
 
 from ...errors import InputError
-from .budget import RATE, Budget
 from .descriptor import DescriptorEndpoint
 
 LONGEST_QUEUE = 1 << 14
@@ -24,8 +23,7 @@ class SerialEndpoint(DescriptorEndpoint):
         except (OSError, ValueError) as error:
             raise InputError(f"cannot open the link {url!r}: {error}") from None
         self.url = url
-        # Ten bits a byte; twice what the line can bring.
-        super().__init__(self._serial.fileno(), LONGEST_QUEUE, Budget(max(RATE, baud / 5.0)))
+        super().__init__(self._serial.fileno(), LONGEST_QUEUE)
 
     def close(self) -> None:
         """Close the port."""
