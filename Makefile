@@ -69,6 +69,7 @@ benchmark: $(INSTALLED)
 	$(BIN)/python -m benchmarks.can_latency --write
 	$(BIN)/python -m benchmarks.arduino --write
 	$(BIN)/python -m benchmarks.start --write
+	$(BIN)/python -m benchmarks.floods --write
 
 fmus: $(INSTALLED)
 	$(BIN)/seatrial fmu build --out build/fmus

@@ -100,7 +100,7 @@ class DroneCanMulticastGateway(Gateway):
         """Return frames that have arrived, with their senders; other datagrams are passed over."""
         found: list[tuple[int, Frame]] = []
         own = self._sending.getsockname()
-        self.budget.renew(len(self._senders))
+        self.budget.renew(self._senders)
         for _ in range(MOST // FRAME_BYTES):
             try:
                 datagram, sender = self._receiving.recvfrom(_LONGEST)

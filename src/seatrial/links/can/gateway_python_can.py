@@ -43,7 +43,7 @@ class PythonCanGateway(Gateway):
     def poll(self) -> list[tuple[int, Frame]]:
         """Return frames that have arrived; others than ISO 11898-1 has are passed over."""
         found: list[tuple[int, Frame]] = []
-        self.budget.renew(1)
+        self.budget.renew([self])
         while self.budget.take(self, FRAME_BYTES):
             try:
                 received = self._bus.recv(0.0)

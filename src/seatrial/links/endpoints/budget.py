@@ -7,7 +7,7 @@ run that is faster than real time polls often, and takes in the least each time.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Hashable
 
 RATE, LEAST = 12_000.0, 64
 """Bytes per second of wall time, and in one poll at least, where messages are read: a full line of
@@ -15,13 +15,16 @@ RATE, LEAST = 12_000.0, 64
 RAW_RATE, RAW_LEAST = 100_000.0, 1024
 """The same where bytes are passed on alone: a line of 1 Mbaud."""
 MOST = 4096
-"""Bytes in one poll, of all peers together unless there are many."""
+"""Bytes in one poll, and of one peer."""
 SMALLEST_SHARE = 64
 """Bytes in one poll that each of many peers has."""
 
 
 class Budget:
     """What one poll may take in; ``exceeded`` is in how many polls a peer brought more.
+
+    What a peer does not use it has later, up to `MOST`: an honest one may send at once what it had
+    to say.
 
     ``rate`` is in bytes per second, ``least`` in bytes per poll; ``clock`` is wall time, s.
     """
@@ -34,7 +37,7 @@ class Budget:
     ) -> None:
         self._rate, self._least, self._clock = rate, least, clock
         self._last = clock()
-        self._left: dict[object, int] = {}
+        self._left: dict[Hashable, int] = {}
         self._share, self._is_exceeded = 0, False
         self.exceeded = 0
 
@@ -43,29 +46,29 @@ class Budget:
         """Return one for bytes that nobody reads here."""
         return cls(RAW_RATE, RAW_LEAST)
 
-    def renew(self, peers: int) -> None:
-        """Begin a poll of so many peers, which share what it may take in."""
+    def renew(self, peers: Collection[Hashable]) -> None:
+        """Begin a poll of these peers, which share what it may take in."""
         now = self._clock()
         whole = min(max(self._rate * (now - self._last), self._least), MOST)
         self._last, self._is_exceeded = now, False
-        self._share = max(round(whole) // max(peers, 1), SMALLEST_SHARE)
-        self._left.clear()
+        self._share = max(round(whole) // max(len(peers), 1), SMALLEST_SHARE)
+        self._left = {peer: min(self._left.get(peer, 0) + self._share, MOST) for peer in peers}
 
-    def left(self, peer: object) -> int:
-        """Return the bytes that a peer may still bring in this poll."""
-        return self._left.get(peer, self._share)
+    def left(self, peer: Hashable) -> int:
+        """Return the bytes that a peer may bring now."""
+        return max(self._left.get(peer, self._share), 0)
 
-    def take(self, peer: object, size: int) -> bool:
-        """Return whether ``size`` bytes of a peer's may be taken in, and count them if so.
+    def take(self, peer: Hashable, size: int) -> bool:
+        """Return whether ``size`` bytes of a peer's may be taken in, and note them if so.
 
-        Its first piece always may: a datagram comes whole.
+        A piece that is larger than what is left comes whole, and is made up for later.
         """
-        fits = peer not in self._left or size <= self._left[peer]
-        if fits:
-            self._left[peer] = self.left(peer) - size
+        left = self._left.get(peer, self._share)
+        if left > 0:
+            self._left[peer] = left - size
         else:
             self.exceed()
-        return fits
+        return left > 0
 
     def exceed(self) -> None:
         """Note that a peer brought more than this poll takes in."""

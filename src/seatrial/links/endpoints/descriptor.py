@@ -49,12 +49,13 @@ class DescriptorEndpoint(Endpoint):
         """Return what has arrived."""
         peer = self._peers[0]
         peer.flush()
-        self.budget.renew(1)
+        self.budget.renew(self._peers)
         most = self.budget.left(peer)
         try:
             data = os.read(self._descriptor, most)
         except OSError:  # nothing there, or unplugged
             return []
+        self.budget.take(peer, len(data))
         if len(data) == most:
             self.budget.exceed()
         return [(peer, data)] if data else []

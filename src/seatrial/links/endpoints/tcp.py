@@ -68,11 +68,12 @@ class _Stream(Channel):
 def _read(streams: Sequence[_Stream], budget: Budget) -> list[tuple[Channel, bytes]]:
     """Return what has arrived; what is beyond the budget waits, in the end at the sender's."""
     arrived: list[tuple[Channel, bytes]] = []
-    budget.renew(len(streams))
+    budget.renew(streams)
     for stream in streams:
         most = budget.left(stream)
         data = stream.receive(most) if stream.is_open else b""
         if data:
+            budget.take(stream, len(data))
             arrived.append((stream, data))
         if len(data) == most:
             budget.exceed()

@@ -14,7 +14,7 @@ MOST_PEERS = 16
 """Senders that a listener answers; a new one takes the place of the one silent longest."""
 MOST_NEW = 8
 """Senders that one poll gets to know; more wait for the next."""
-MOST_READS = 32
+MOST_READS = 16
 """Datagrams read from one socket in one poll, most of them only to be dropped in a flood."""
 
 _Address = tuple[str, int]
@@ -76,7 +76,7 @@ class UdpSender(Endpoint):
     def poll(self) -> list[tuple[Channel, bytes]]:
         """Return the datagrams that have arrived."""
         peer = self._peers[0]
-        self.budget.renew(1)
+        self.budget.renew(self._peers)
         found = _datagrams(peer.socket)
         return [(peer, data) for data, _ in found if self.budget.take(peer, len(data))]
 
@@ -114,7 +114,7 @@ class UdpListener(Endpoint):
     def poll(self) -> list[tuple[Channel, bytes]]:
         """Return the datagrams that have arrived, and know their senders."""
         arrived: list[tuple[Channel, bytes]] = []
-        self.budget.renew(len(self._peers))
+        self.budget.renew(self._peers.values())
         new = 0
         known = [peer.socket for peer in self._peers.values() if peer.socket is not self._socket]
         for opened in (*known, self._socket):
