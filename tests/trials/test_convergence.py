@@ -221,5 +221,5 @@ def test_a_run_that_is_stopped_ends_it(bench, tmp_path: Path) -> None:
 def test_a_file_of_another_shape_is_refused(bench, tmp_path: Path) -> None:
     halve(bench(), tmp_path / "run")
     (tmp_path / "run" / "convergence.json").write_text('{"outputs": [{"name": "x"}]}')
-    with pytest.raises(InputError, match=r"convergence.json is not of this version"):
+    with pytest.raises(InputError, match=r"convergence.json: trial: this key is missing"):
         load_convergence(tmp_path / "run")

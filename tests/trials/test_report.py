@@ -24,6 +24,10 @@ from .conftest import PADS, write_run_folder
 VOID = {"meta", "br", "link", "img", "hr", "input"}
 REFERENCES = {"src", "href", "action", "data", "poster", "srcset", "formaction", "xlink:href"}
 EVIL = '<script>alert("x")</script>'
+DURATIONS = {
+    "steps": 1, "mean_s": 0.1, "p50_at_most_s": 0.1, "p99_at_most_s": 0.1, "longest_s": 0.1,
+    "longest_at_s": 0.0, "bins": [1],
+}  # fmt: skip
 
 
 class Page(HTMLParser):
@@ -226,6 +230,9 @@ def test_nothing_written_by_others_becomes_markup(write_run):
             "error": EVIL,
             "status": "failed",
             "events": [{"at": EVIL, "set": {EVIL: EVIL}}, EVIL],
+            **dict.fromkeys(("engine", "algorithm", "variant", "seed"), EVIL),
+            "choices": {EVIL: EVIL},
+            "plots": [{"title": EVIL, "signals": [f"{name}.x"]}],
             "connections": [[EVIL, f"{name}.u"]],
             "components": {
                 name: {
@@ -233,14 +240,23 @@ def test_nothing_written_by_others_becomes_markup(write_run):
                     "sha256": EVIL,
                     "step": 0.01,
                     "parameters": {
-                        EVIL: {"value": EVIL, "unit": EVIL, "from": EVIL, "source": EVIL}
+                        EVIL: {
+                            "value": EVIL,
+                            "unit": EVIL,
+                            "from": EVIL,
+                            "source": EVIL,
+                            "mark": EVIL,
+                        }
                     },
                 }
             },
         },
     )
-    verdicts = [{"name": EVIL, "check": EVIL, "passed": False, "detail": EVIL, "limits": []}]
+    verdict = {"name": EVIL, "check": EVIL, "passed": False, "detail": EVIL, "unit": EVIL}
+    verdicts = [{**verdict, "worst": 1.0, "time": 0.0, "limits": [[f"{name}.x", 1.0, EVIL]]}]
     (folder / "verdicts.json").write_text(json.dumps(verdicts))
+    timing = {"wall_s": {EVIL: EVIL}, EVIL: EVIL, "step_times": {EVIL: DURATIONS}}
+    (folder / "timing.json").write_text(json.dumps(timing))
     path = write_report(folder)
     page = Page(path)
     assert_self_contained(page)
@@ -407,7 +423,7 @@ def test_not_a_campaign(tmp_path):
     with pytest.raises(InputError, match="not a campaign folder"):
         write_campaign_report(tmp_path)
     (tmp_path / "campaign.json").write_text('{"name": "x"}')
-    with pytest.raises(InputError, match="lacks 'cases'"):
+    with pytest.raises(InputError, match="cases: this key is missing"):
         write_campaign_report(tmp_path)
 
 

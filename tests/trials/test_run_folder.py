@@ -126,7 +126,7 @@ def test_not_a_run(tmp_path, write_run):
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"format": 2}, "format 2, this version reads 1"),
+        ({"format": 2}, "format: Input should be 1, found 2"),
         ({"signals": {}}, "which manifest.json does not know"),
     ],
 )
@@ -148,7 +148,7 @@ def test_a_manifest_that_lacks_something(write_run):
     manifest = json.loads((folder / "manifest.json").read_text())
     del manifest["components"]
     (folder / "manifest.json").write_text(json.dumps(manifest))
-    with pytest.raises(InputError, match="lacks components"):
+    with pytest.raises(InputError, match="components: this key is missing"):
         load_run(folder)
 
 

@@ -41,19 +41,16 @@ class CampaignResult:
     """The cases of a campaign: a view of its folder. Raises InputError for another folder."""
 
     def __init__(self, folder: Path | str) -> None:
-        from ..trials.run_folder import read_json
+        from ..trials import run_schema
 
         self.folder = Path(folder)
         """The campaign's folder: ``campaign.json``, and the run folder of each case."""
         if not (self.folder / _INDEX).is_file():
             raise InputError(f"{self.folder} is not a campaign folder: it has no {_INDEX}")
-        index = read_json(self.folder / _INDEX, dict)
-        try:
-            self.name = str(index["name"])
-            self.cases = [self._case(entry) for entry in index["cases"]]
-            """In the order of the campaign."""
-        except KeyError as error:
-            raise InputError(f"{self.folder / _INDEX} lacks {error}") from None
+        index = run_schema.checked_json(self.folder / _INDEX, run_schema.CAMPAIGN)
+        self.name = str(index["name"])
+        self.cases = [self._case(entry) for entry in index["cases"]]
+        """In the order of the campaign."""
 
     @property
     def passed(self) -> bool:
@@ -96,7 +93,7 @@ class CampaignResult:
     def _case(self, entry: dict[str, Any]) -> CaseResult:
         return CaseResult(
             entry["name"],
-            entry["trial"],
+            entry.get("trial", ""),
             entry["set"],
             self.folder / entry["folder"],
             entry["status"],

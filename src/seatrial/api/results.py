@@ -41,7 +41,7 @@ class TrialResult:
     """
 
     def __init__(self, folder: Path | str, notes: tuple[str, ...] = ()) -> None:
-        from ..trials.run_folder import VERDICTS, read_json, read_manifest
+        from ..trials.run_folder import read_manifest, read_verdicts
 
         self.folder = Path(folder)
         """The run folder: signals, manifest, verdicts and timing."""
@@ -49,11 +49,9 @@ class TrialResult:
         """Everything that decides the signals: versions, hashes, seeds, parameters, sources."""
         self.notes = notes
         """What the user should know of the rig and of the steps; of a run read again, nothing."""
-        path = self.folder / VERDICTS
-        entries = read_json(path, list) if path.is_file() else []
         self.verdicts: list[Verdict] = [
             Verdict(**{key: entry[key] for key in Verdict.__dataclass_fields__})
-            for entry in entries
+            for entry in read_verdicts(self.folder)
         ]
         """One per criterion, in the trial's order; empty if the run failed."""
 

@@ -14,7 +14,7 @@ from ..cosim.parameters import load_vehicle, split_reference
 from ..cosim.system import settable
 from ..cosim.values import from_entry
 from ..errors import InputError
-from ..fmi.cache import write_whole
+from ..fmi.cache import write_named
 from ..fmi.description import summary
 from ..fmi.direct import DirectInstance
 from ..fmi.export import build_fmu
@@ -74,7 +74,7 @@ def _write_osp(source: ComponentSource, folder: Path) -> None:
         print_notes([f"{source.name} has no terminals: no OspModelDescription.xml"])
         return
     path = osp_file(folder, source.name)
-    write_whole(path, osp_xml(instance.terminals, instance.variables))
+    write_named(path, osp_xml(instance.terminals, instance.variables))
     console.print(str(path), soft_wrap=True)
 
 

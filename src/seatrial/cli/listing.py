@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import tomllib
 from pathlib import Path
 
 from rich.markup import escape
 
+from ..errors import InputError
 from ..fmi.source import named_sources
+from ..reading import toml_content
 from ..shipped import available
 from .show import console
 
@@ -38,6 +39,6 @@ def _print(kind: str, titles: dict[str, str]) -> None:
 
 def _title(path: Path) -> str:
     try:
-        return str(tomllib.loads(path.read_text("utf-8")).get("title", ""))
-    except (tomllib.TOMLDecodeError, OSError, UnicodeDecodeError):
+        return str(toml_content(path.read_bytes(), str(path)).get("title", ""))
+    except (InputError, OSError):
         return "(cannot be read)"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+import traceback
 from typing import Annotated
 
 import typer
@@ -37,6 +38,10 @@ def main() -> None:
         _complain(SimulationError(f"cannot read or write{where}: {error.strerror}"), BROKEN)
     except KeyboardInterrupt:
         _complain(SimulationError("stopped"), BROKEN)
+    except Exception as error:  # Python's own status 1 would say that a criterion failed
+        traceback.print_exc()
+        what = f"an error of seatrial itself, please report it: {type(error).__name__}: {error}"
+        _complain(SimulationError(what), BROKEN)
     finally:
         _forget_closed_streams()
 

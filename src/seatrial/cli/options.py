@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import tomllib
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from ..errors import InputError
+from ..reading import toml_content
 from ..shipped import available
 
 if TYPE_CHECKING:
@@ -70,8 +70,8 @@ def setting(text: str) -> tuple[str, Any]:
     if plain.lstrip("+-") in ("nan", "inf"):  # TOML takes these words for numbers
         return key.strip(), plain
     try:
-        return key.strip(), tomllib.loads(f"x = {value}")["x"]
-    except tomllib.TOMLDecodeError:
+        return key.strip(), toml_content(f"x = {value}".encode(), text)["x"]
+    except (InputError, UnicodeEncodeError):
         return key.strip(), plain
 
 
@@ -85,6 +85,6 @@ def is_campaign(name: str) -> bool:
 
 def _top_keys(path: Path) -> set[str]:
     try:
-        return set(tomllib.loads(path.read_text("utf-8")))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, OSError):
+        return set(toml_content(path.read_bytes(), str(path)))
+    except (InputError, OSError):
         return set()  # the reader of the trial will say what is wrong

@@ -93,8 +93,7 @@ def run(
             )
             result = run_trial(loaded, out, engine=chosen, hooks=hooks)
         print_verdicts(result)
-        report_page = write_report(result.folder)
-    console.print(f"report: {report_page}", soft_wrap=True)
+        _report(result)
     _exit_with([result])
 
 
@@ -117,6 +116,17 @@ def _run_campaign(campaign: Campaign, out: Path | None, engine: Engine) -> None:
     if len(finished) < len(cases):
         raise SimulationError(f"stopped; {len(finished)} of {len(cases)} cases are on disk")
     _exit_with([result for _, result in finished])
+
+
+def _report(result: Result) -> None:
+    """Write the page; where a full disk ended the run, that is the error, not the missing page."""
+    try:
+        page = write_report(result.folder)
+    except OSError:
+        if result.status != "failed":
+            raise
+    else:
+        console.print(f"report: {page}", soft_wrap=True)
 
 
 def _paced(trial: Trial, pace: dict[str, Any]) -> Trial:

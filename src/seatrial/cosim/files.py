@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,6 +11,7 @@ from typing import Any, TypeVar
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from ..errors import InputError, unknown
+from ..reading import toml_content
 from ..shipped import available, searched_folders, shipped_folder
 
 Model = TypeVar("Model", bound=BaseModel)
@@ -69,17 +69,13 @@ def _beside(kind: str, naming: Path | None) -> list[Path]:
 def read_toml(path: Path) -> tuple[dict[str, Any], Source]:
     """Return a TOML file's content and what it was read from.
 
-    Raises InputError naming file, line and column if it is not TOML.
+    Raises InputError naming the file, and line and column if it is not TOML.
     """
     try:
         data = path.read_bytes()
-        content = tomllib.loads(data.decode("utf-8-sig"))  # some editors of Windows put a mark
     except OSError as error:
         raise InputError(f"{path}: {error.strerror}") from None
-    except UnicodeDecodeError as error:
-        raise InputError(f"{path}: not UTF-8 text at byte {error.start}") from None
-    except ValueError as error:  # TOMLDecodeError, or a number with thousands of digits
-        raise InputError(f"{path}: not TOML: {error}") from None
+    content = toml_content(data, str(path))
     return content, Source(path.stem, path, hashlib.sha256(data).hexdigest())
 
 

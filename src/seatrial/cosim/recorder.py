@@ -45,7 +45,7 @@ class Recorder:
 
     Numbers are written so that they read back exactly; Booleans as 0 and 1; text quoted where
     it must be; bytes as base64 text. The file is whole up to the last flush if the process is
-    killed.
+    killed. What cannot be written raises OSError with the file's name.
     """
 
     def __init__(
@@ -67,6 +67,7 @@ class Recorder:
         self._binaries = [
             column for column, i in enumerate(self._places) if isinstance(master.signals[i], bytes)
         ]
+        self._path = path
         self._file = path.open("w", newline="", encoding="utf-8")
         csv.writer(self._file, lineterminator="\n").writerow(["time", *self.names])
         # Text is always quoted: a lone carriage return in it would end the row otherwise.
@@ -91,14 +92,20 @@ class Recorder:
             row[column] = int(row[column])
         for column in self._binaries:
             row[column] = storable(row[column])
-        self._writer.writerow([master.time, *row])
+        try:
+            self._writer.writerow([master.time, *row])
+        except OSError as error:
+            raise self._named(error) from None
         self.flush_if_due()
 
     def flush_if_due(self) -> None:
         """Flush the file if that was last done more than a second ago."""
         now = time.monotonic()
         if now - self._flushed > 1.0:
-            self._file.flush()
+            try:
+                self._file.flush()
+            except OSError as error:
+                raise self._named(error) from None
             self._flushed = now
 
     def watched(self) -> tuple[NDArray[np.float64], dict[str, NDArray[np.float64]]]:
@@ -107,4 +114,10 @@ class Recorder:
 
     def close(self) -> None:
         """Flush and close the file."""
-        self._file.close()
+        try:
+            self._file.close()
+        except OSError as error:
+            raise self._named(error) from None
+
+    def _named(self, error: OSError) -> OSError:
+        return OSError(error.errno, error.strerror, str(self._path))

@@ -17,7 +17,7 @@ from pathlib import Path
 
 from .. import __version__
 from .bundle import bundled
-from .cache import cache_folder, write_whole
+from .cache import cache_folder, write_named
 from .source import ComponentSource
 
 _SETTLED_NS = 2 * 10**9
@@ -38,7 +38,7 @@ def bundle_name(source: ComponentSource) -> str:
         made = bundled(source)
         name, stamps = made.script, _stamps(made.read, source.folder)
         if all(began - max(stamp[:2]) > _SETTLED_NS for stamp in stamps.values()):
-            write_whole(kept, json.dumps({"name": name, "stamps": stamps}).encode())
+            write_named(kept, json.dumps({"name": name, "stamps": stamps}).encode())
     return name
 
 

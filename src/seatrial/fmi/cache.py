@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import atexit
+import errno
 import os
 import re
 import shutil
@@ -13,6 +14,7 @@ from pathlib import Path
 import platformdirs
 
 from ..errors import InputError
+from ..whole_file import write_whole
 
 # pythonfmu's binary decodes only %20 of a resource URI and crashes on the rest.
 _SAFE = re.compile(r"[A-Za-z0-9_./\\: -]+")
@@ -70,15 +72,14 @@ def _temporary() -> Path:
     return folder
 
 
-def write_whole(path: Path, content: bytes) -> None:
-    """Write a file whole or not at all."""
+def write_named(path: Path, content: bytes) -> None:
+    """Write a file whole or not at all, on the disk when this returns.
+
+    Raises InputError where no file can be written, and OSError for a full or broken disk.
+    """
     try:
-        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=".building-")
+        write_whole(path, content, synced=True)
     except OSError as error:
+        if error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO):
+            raise
         raise InputError(f"cannot write {path}: {error.strerror}") from None
-    with os.fdopen(handle, "wb") as file:
-        file.write(content)
-        file.flush()
-        os.fsync(file.fileno())
-    os.chmod(temporary, 0o644)  # mkstemp's files are private
-    os.replace(temporary, path)

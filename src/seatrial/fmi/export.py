@@ -15,7 +15,7 @@ import pythonfmu
 
 from .. import __version__
 from .bundle import Bundle, bundled
-from .cache import cache_folder, write_whole
+from .cache import cache_folder, write_named
 from .description import describe
 from .direct import DirectInstance
 from .slave import START_VALUES
@@ -37,7 +37,7 @@ def build_fmu(
     """
     content = fmu_bytes(source, start_values)
     destination.parent.mkdir(parents=True, exist_ok=True)
-    write_whole(destination, content)
+    write_named(destination, content)
     return destination
 
 

@@ -6,13 +6,13 @@ A package adds components by the entry-point group ``seatrial.components``; see
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from functools import cache
 
 from ..component import Component
 from ..errors import InputError
 from ..plugins import Registry
+from ..reading import toml_content
 from ..shipped import shipped_folder
 
 _KEYS = {"class", "title"}
@@ -44,9 +44,9 @@ def component_class(name: str) -> type[Component]:
 def _index() -> Mapping[str, Mapping[str, str]]:
     path = shipped_folder("fmus") / "index.toml"
     try:
-        content = tomllib.loads(path.read_text("utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise InputError(f"{path}: {error}") from None
+        content = toml_content(path.read_bytes(), str(path))
+    except OSError as error:
+        raise InputError(f"{path}: {error.strerror}") from None
     for name, entry in content.items():
         if not (isinstance(entry, dict) and set(entry) == _KEYS):
             raise InputError(f'{path}: {name}: {{ class = "module:Class", title = "..." }} needed')

@@ -9,11 +9,14 @@ from typing import Any
 from urllib.parse import quote
 
 from ..errors import InputError
+from ..whole_file import write_whole
+from . import run_schema
 from .decks import Pad, deck, pads
 from .plots import deck_figure
 from .readable import quantity_text
 from .report import REPORT, render
-from .run_folder import load_run, read_json, read_manifest
+from .run_folder import load_run, read_manifest
+from .run_schema import checked_json
 from .sailing import PolarPoint, polar_figure, polar_point
 
 CAMPAIGN = "campaign.json"
@@ -45,12 +48,9 @@ def write_campaign_report(folder: Path | str) -> Path:
     folder = Path(folder)
     if not (folder / CAMPAIGN).is_file():
         raise InputError(f"{folder} is not a campaign folder: it has no {CAMPAIGN}")
-    campaign = read_json(folder / CAMPAIGN, dict)
-    try:
-        cases = [_case(folder, entry) for entry in campaign["cases"]]
-        title = campaign.get("title") or campaign["name"]
-    except KeyError as error:
-        raise InputError(f"{folder / CAMPAIGN} lacks {error}") from None
+    campaign = checked_json(folder / CAMPAIGN, run_schema.CAMPAIGN)
+    cases = [_case(folder, entry) for entry in campaign["cases"]]
+    title = campaign.get("title") or campaign["name"]
     page = render(
         "campaign.html.j2",
         title=title,
@@ -62,7 +62,7 @@ def write_campaign_report(folder: Path | str) -> Path:
         worst_text=_worst_text,
     )
     path = folder / REPORT
-    path.write_text(page, encoding="utf-8")
+    write_whole(path, page)
     return path
 
 

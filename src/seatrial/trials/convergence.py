@@ -13,11 +13,13 @@ from ..component import seconds
 from ..cosim.rig import Rig, Scope, duration_ns
 from ..cosim.system import Engine
 from ..errors import InputError, SimulationError
+from . import run_schema
 from .accuracy import Accuracy, accuracy, ranked
 from .output import write_json
 from .readable import number
 from .run import Hooks, Result, run_trial
-from .run_folder import Run, load_run, read_json
+from .run_folder import Run, load_run
+from .run_schema import checked_json
 from .trial import Trial
 
 CONVERGENCE = "convergence.json"
@@ -94,13 +96,10 @@ def load_convergence(folder: Path) -> Convergence | None:
     path = folder / CONVERGENCE
     if not path.is_file():
         return None
-    content = read_json(path, dict)
-    try:
-        content["outputs"] = [Accuracy(**output) for output in content["outputs"]]
-        content["discrete"] = [Discrete(**output) for output in content["discrete"]]
-        return Convergence(**content)
-    except (KeyError, TypeError) as error:
-        raise InputError(f"{path} is not of this version of seatrial: {error}") from None
+    content = checked_json(path, run_schema.CONVERGENCE)
+    content["outputs"] = [Accuracy(**output) for output in content["outputs"]]
+    content["discrete"] = [Discrete(**output) for output in content["discrete"]]
+    return Convergence(**content)
 
 
 def _halved(trial: Trial, count: int) -> Trial:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..whole_file import write_whole
 from .figure import Figure
 from .heading_design import GAINS, Gain, HeadingDesign, Locus, least_damping
 from .output import claim_folder
@@ -52,7 +53,7 @@ def write_design(design: HeadingDesign, out: Path | None) -> Path:
         damping=_damping_figure(design).json(),
     )
     path = folder / REPORT
-    path.write_text(page, encoding="utf-8")
+    write_whole(path, page)
     return path
 
 

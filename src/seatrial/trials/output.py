@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import contextlib
 import datetime
 import itertools
 import json
+import os
 from pathlib import Path
 from typing import Any
 
 from ..errors import InputError
+from ..whole_file import write_whole
+
+_RESERVE = 4096
+"""Bytes kept for how a run ends."""
 
 
 def claim_folder(out: Path | None, name: str, index: str) -> Path:
@@ -45,7 +51,32 @@ def _new_folder(name: str) -> Path:
 
 
 def write_json(path: Path, content: Any) -> None:
-    """Write a JSON file whole or not at all."""
-    temporary = path.with_suffix(".tmp")
-    temporary.write_text(json.dumps(content, indent=1, ensure_ascii=False) + "\n", "utf-8")
-    temporary.replace(path)
+    """Write a JSON file whole or not at all. Raises OSError with the file's name."""
+    write_whole(path, _text(content) + "\n")
+
+
+def write_json_with_reserve(path: Path, content: Any) -> None:
+    """Write a JSON file with space for `write_json_into_reserve`, white space at its end."""
+    write_whole(path, _text(content) + " " * _RESERVE + "\n")
+
+
+def write_json_into_reserve(path: Path, content: Any) -> None:
+    """Write a JSON file, in the place of the one that is there if the disk cannot hold two.
+
+    Raises OSError with the file's name.
+    """
+    try:
+        write_json(path, content)
+    except OSError as error:
+        data = (_text(content) + "\n").encode()
+        with contextlib.suppress(OSError), path.open("r+b") as file:
+            size = file.seek(0, os.SEEK_END)
+            if len(data) <= size:
+                file.seek(0)
+                file.write(data.ljust(size))
+                return
+        raise error
+
+
+def _text(content: Any) -> str:
+    return json.dumps(content, indent=1, ensure_ascii=False)

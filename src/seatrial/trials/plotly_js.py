@@ -9,7 +9,7 @@ import zlib
 from functools import cache
 from pathlib import Path
 
-from ..fmi.cache import cache_folder, write_whole
+from ..fmi.cache import cache_folder, write_named
 
 
 @cache
@@ -27,5 +27,5 @@ def plotly_js() -> str:
     what = f"{source} {status.st_size} {status.st_mtime_ns} {zlib.ZLIB_RUNTIME_VERSION}"
     kept = cache_folder("pages") / f"plotly-{hashlib.sha256(what.encode()).hexdigest()[:16]}.txt"
     if not kept.is_file():
-        write_whole(kept, base64.b64encode(zlib.compress(source.read_bytes(), 9)))
+        write_named(kept, base64.b64encode(zlib.compress(source.read_bytes(), 9)))
     return kept.read_text("ascii")

@@ -16,6 +16,7 @@ from ..cosim.paths import split_path
 from ..errors import InputError
 from ..fmi.cache import cache_folder
 from ..units import quantity
+from ..whole_file import write_whole
 from .accuracy_section import accuracy_section
 from .convergence import load_convergence
 from .decks import deck, pads
@@ -90,7 +91,7 @@ def write_report(folder: Path | str) -> Path:
         events=[_event_text(event) for event in run.manifest.get("events", [])],
     )
     path = run.folder / REPORT
-    path.write_text(page, encoding="utf-8")
+    write_whole(path, page)
     return path
 
 
@@ -133,10 +134,14 @@ def _sections(run: Run) -> Iterator[Section]:
         yield Section("The deck from above", figure.json())
     plots = run.manifest.get("plots", [])  # manifests of before have none
     if plots:
+        drawn = [(p["title"], [s for s in p["signals"] if _is_number(run, s)]) for p in plots]
         shown_first = [
-            _labelled_panel(run, p["title"], {s: s for s in p["signals"]}) for p in plots
+            _labelled_panel(run, title, {s: s for s in signals})
+            for title, signals in drawn
+            if signals
         ]
-        yield Section("What the trial shows", _over_time(run, [shown_first]))
+        if shown_first:
+            yield Section("What the trial shows", _over_time(run, [shown_first]))
     for title, chosen in (("Motion", motion), ("Velocities", speeds)):
         for components in _alike_craft(run, chosen):
             own = [p for p in chosen if p.component == components[0]]
@@ -183,6 +188,11 @@ def _ports(run: Run) -> Iterator[Port]:
         grouped.setdefault((component, rest.partition(".")[0]), []).append(signal)
     for (component, name), signals in grouped.items():
         yield Port(component, name, tuple(signals))
+
+
+def _is_number(run: Run, signal: str) -> bool:
+    """Return whether a signal was recorded and is numbers: a run that failed may lack it."""
+    return signal in run.signals and not isinstance(run.signals[signal], list)
 
 
 def _is_uniform(run: Run, port: Port) -> bool:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import json
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import islice
@@ -12,16 +11,17 @@ from typing import Any
 
 import numpy as np
 
+from ..cosim.rig import LONGEST_S
 from ..errors import InputError
+from . import run_schema
 from .expressions import FloatArray
+from .run_schema import checked_json
 
 SIGNALS = "signals.csv"
 MANIFEST = "manifest.json"
 VERDICTS = "verdicts.json"
 TIMING = "timing.json"
 
-FORMAT = 1
-_MANIFEST_KEYS = ("trial", "rig", "components", "connections", "signals", "criteria", "status")
 _CHUNK_ROWS = 10_000
 
 
@@ -88,6 +88,7 @@ def load_run(folder: Path | str) -> Run:
     truncated = False
     if (folder / SIGNALS).is_file():
         time, signals, truncated = _read_signals(folder / SIGNALS, _texts(manifest))
+        _check_signals(folder / SIGNALS, time, signals, manifest)
     elif manifest["status"] in ("complete", "ended", "stopped"):
         raise InputError(f"{folder} has no {SIGNALS}")
     if truncated:
@@ -98,21 +99,37 @@ def load_run(folder: Path | str) -> Run:
         signals=signals,
         units=_units(folder, signals, manifest),
         manifest=manifest,
-        verdicts=_optional(folder / VERDICTS, list),
-        timing=_optional(folder / TIMING, dict),
+        verdicts=read_verdicts(folder),
+        timing=_read_timing(folder),
         truncated=truncated,
         notes=tuple(notes),
     )
-
-
-def _optional(path: Path, kind: type) -> Any:
-    return read_json(path, kind) if path.is_file() else kind()
 
 
 def _texts(manifest: dict[str, Any]) -> set[str]:
     """Return the signals that hold text, even if each of them looks like a number."""
     signals = manifest["signals"].items()
     return {name for name, signal in signals if signal.get("type") in ("String", "Binary")}
+
+
+def _check_signals(
+    path: Path, time: FloatArray, signals: Mapping[str, Any], manifest: dict[str, Any]
+) -> None:
+    """Raise InputError for a time that cannot be, and for columns that are not of their type."""
+    if not np.isfinite(time).all() or np.abs(time).max(initial=0.0) > LONGEST_S:
+        raise InputError(f"{path}: a time is not finite, or beyond {LONGEST_S:g} s")
+    if np.any(np.diff(time) < 0.0):
+        row = int(np.argmax(np.diff(time) < 0.0))
+        raise InputError(
+            f"{path}: the time goes back from {time[row]:.9g} to {time[row + 1]:.9g} s"
+        )
+    for name, column in signals.items():
+        kind = manifest["signals"].get(name, {}).get("type")
+        is_text = isinstance(column, list)
+        if kind in ("Real", "Integer", "Boolean") and is_text:
+            raise InputError(f"{path}: {name!r} has text, {MANIFEST} says {kind}")
+        if kind in ("Integer", "Boolean") and not np.isfinite(column).all():
+            raise InputError(f"{path}: {name!r} is not finite, {MANIFEST} says {kind}")
 
 
 def _units(folder: Path, signals: Iterable[str], manifest: dict[str, Any]) -> dict[str, str]:
@@ -131,24 +148,19 @@ def read_manifest(folder: Path) -> dict[str, Any]:
     path = folder / MANIFEST
     if not path.is_file():
         raise InputError(f"{folder} is not a run folder: it has no {MANIFEST}")
-    manifest: dict[str, Any] = read_json(path, dict)
-    if manifest.get("format") != FORMAT:
-        raise InputError(f"{path}: format {manifest.get('format')!r}, this version reads {FORMAT}")
-    missing = [key for key in _MANIFEST_KEYS if key not in manifest]
-    if missing:
-        raise InputError(f"{path} lacks {', '.join(missing)}")
+    manifest: dict[str, Any] = checked_json(path, run_schema.MANIFEST)
     return manifest
 
 
-def read_json(path: Path, kind: type) -> Any:
-    """Return what a JSON file holds. Raises InputError if that is not a ``kind``."""
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise InputError(f"{path} cannot be read: {error}") from None
-    if not isinstance(content, kind):
-        raise InputError(f"{path} holds a {type(content).__name__}, not a {kind.__name__}")
-    return content
+def read_verdicts(folder: Path) -> list[dict[str, Any]]:
+    """Return the verdicts of a run; none if it has no file of them. Raises InputError."""
+    path = folder / VERDICTS
+    return checked_json(path, run_schema.VERDICTS) if path.is_file() else []
+
+
+def _read_timing(folder: Path) -> dict[str, Any]:
+    path = folder / TIMING
+    return checked_json(path, run_schema.TIMING) if path.is_file() else {}
 
 
 def _read_signals(path: Path, texts: set[str]) -> tuple[FloatArray, dict[str, Any], bool]:
@@ -157,7 +169,10 @@ def _read_signals(path: Path, texts: set[str]) -> tuple[FloatArray, dict[str, An
     A column is numbers if every cell is one, unless it is one of ``texts``.
     """
     with path.open(encoding="utf-8", errors="replace", newline="") as file:
-        header = next(csv.reader(file), [])
+        try:
+            header = next(csv.reader(file), [])
+        except csv.Error as error:
+            raise InputError(f"{path}, line 1: {error}") from None
     if not header or header[0] != "time":
         raise InputError(f"{path}: the first column is not 'time'")
     if len(set(header)) != len(header):

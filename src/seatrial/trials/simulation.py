@@ -16,12 +16,13 @@ from ..cosim.recorder import Recorder
 from ..errors import SimulationError
 from .hooks import Hooks
 from .manifest import manifest
-from .output import write_json
+from .output import write_json, write_json_into_reserve, write_json_with_reserve
 from .pacing import Pace
 from .preparation import Prepared
 from .termination import TerminationConditions
 from .verdict import Verdict
 
+_OURS = "ended by an error of seatrial itself"
 _SHOWN_EVERY_S = 0.1
 """Wall time between two calls of the progress hook."""
 _LOOKED_EVERY = 16
@@ -53,6 +54,7 @@ class Run:
             sorted(watched),
         )
         self._termination = TerminationConditions(trial, master, prepared.units)
+        self._content = manifest(trial, master.system, prepared.engine)
         self._pace = Pace(trial.file.real_time, master) if trial.file.real_time else None
         self._events = trial.events()
         self._floods: list[str] = []
@@ -60,9 +62,8 @@ class Run:
 
     def simulate(self) -> None:
         """Run to the end. Errors of the simulation and of the disk are kept in ``error``."""
-        content = manifest(self.prepared.trial, self._master.system, self.prepared.engine)
-        self._write_manifest(content)
-        self.status, self.error = "failed", "ended by an error of seatrial itself"
+        self._claim()
+        self.status, self.error = "failed", _OURS
         started = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
         begun = time.perf_counter()
         try:
@@ -73,25 +74,30 @@ class Run:
         except KeyboardInterrupt:
             self.status, self.error = "stopped", None
         except OSError as problem:
-            self.error = f"cannot write {self.folder / 'signals.csv'}: {problem.strerror}"
+            self._broken_disk(problem)
         finally:
             self.wall["run"] = time.perf_counter() - begun
             with contextlib.suppress(SimulationError):  # a component may have crashed
                 self._floods = list(self._master.system.floods())
-            with contextlib.suppress(OSError):  # the disk may be full: what was recorded stays
-                self._recorder.close()
-                write_json(self.folder / "timing.json", self._timing(started))
-                self._write_manifest(content)
+            self._end(started)
 
     def evaluate(self) -> list[tuple[str, str, Verdict]]:
-        """Evaluate the criteria on every communication step, however often rows were recorded."""
+        """Evaluate the criteria on every communication step, however often rows were recorded.
+
+        If they cannot be written, the run has failed and there are none.
+        """
         trial, (t, signals) = self.prepared.trial, self._recorder.watched()
         verdicts = [
             (name, entry.check, criterion.evaluate(t, signals, self.prepared.units))
             for entry, (name, criterion) in zip(trial.file.criteria, trial.criteria, strict=True)
         ]
         rows = [{"name": name, "check": check, **asdict(of)} for name, check, of in verdicts]
-        write_json(self.folder / "verdicts.json", rows)
+        try:
+            write_json(self.folder / "verdicts.json", rows)
+        except OSError as problem:
+            self._broken_disk(problem)
+            self._write_end()
+            return []
         return verdicts
 
     def notes(self) -> list[str]:
@@ -102,6 +108,38 @@ class Run:
         return [*notes, *self._floods, *pace]
 
     # ------------------------------------------------------------------ inside
+
+    def _claim(self) -> None:
+        """Write the manifest of a run under way; nothing empty is left on a full disk."""
+        path = self.folder / "manifest.json"
+        try:
+            write_json_with_reserve(path, self._manifest())
+        except OSError:
+            for claimed in (path, self.folder / "signals.csv"):
+                claimed.unlink(missing_ok=True)
+            raise
+
+    def _end(self, started: str) -> None:
+        """Write how the run ended; what a full disk does not take is the reason that it failed."""
+        try:
+            self._recorder.close()
+            write_json(self.folder / "timing.json", self._timing(started))
+        except OSError as problem:
+            self._broken_disk(problem)
+        self._write_end()
+
+    def _broken_disk(self, problem: OSError) -> None:
+        if self.status != "failed" or self.error == _OURS:  # else that was first
+            where = problem.filename or self.folder
+            self.status, self.error = "failed", f"cannot write {where}: {problem.strerror}"
+
+    def _write_end(self) -> None:
+        """Write the final manifest; if even that cannot be, the one there says "running"."""
+        with contextlib.suppress(OSError):
+            write_json_into_reserve(self.folder / "manifest.json", self._manifest())
+
+    def _manifest(self) -> dict[str, Any]:
+        return {**self._content, "status": self.status, "error": self.error}
 
     def _loop(self) -> str:
         """Step to the end; return the status."""
@@ -145,10 +183,6 @@ class Run:
         if now - self._shown > _SHOWN_EVERY_S:
             self._shown = now
             self._hooks.progress(self._simulated_s, self._whole_s)
-
-    def _write_manifest(self, content: dict[str, Any]) -> None:
-        ending = {"status": self.status, "error": self.error}
-        write_json(self.folder / "manifest.json", {**content, **ending})
 
     def _timing(self, started: str) -> dict[str, Any]:
         """Return what depends on the machine's speed."""

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from ...errors import InputError
-from ...fmi.cache import write_whole
+from ...fmi.cache import write_named
 from ...fmi.export import fmu_bytes, zipped
 from ...fmi.source import find_source
 from ..part import Part
@@ -41,7 +41,7 @@ def write_ssp(
     describer = Describer(system, connections)
     files[DEFAULT] = as_xml(describer.document(top, experiment))
     path.parent.mkdir(parents=True, exist_ok=True)
-    write_whole(path, zipped(files))
+    write_named(path, zipped(files))
     return [*notes, *describer.notes, *_unsaid(system)]
 
 

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ...errors import InputError
+from ...whole_file import write_whole
 from .plan_items import Item, as_integer
-from .whole_file import write_whole
 
 _HEAD = "QGC WPL 110"
 _COLUMNS = 12

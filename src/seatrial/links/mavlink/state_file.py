@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import InputError
-from .whole_file import write_whole
+from ...reading import json_content
+from ...whole_file import write_whole
 
 
 class StateFile:
@@ -22,8 +23,16 @@ class StateFile:
         self._content: dict[str, Any] = _read(path) if path is not None else {}
 
     def get(self, key: str, default: Any) -> Any:
-        """Return what was put under ``key``, in this run or an earlier one."""
-        return self._content.get(key, default)
+        """Return what was put under ``key``, in this run or an earlier one.
+
+        Raises InputError if the file has something of another type than ``default`` there; with
+        None as the default anything may be there.
+        """
+        value = self._content.get(key, default)
+        if default is not None and type(value) is not type(default):
+            kind = type(default).__name__
+            raise InputError(f"state file {self._path}: {key}: {kind} needed, found {value!r}")
+        return value
 
     def put(self, key: str, value: Any) -> None:
         """Remember ``value`` (plain data) under ``key``; on disk when this returns."""
@@ -40,13 +49,11 @@ class StateFile:
 
 def _read(path: Path) -> dict[str, Any]:
     try:
-        content = json.loads(path.read_text("utf-8"))
+        content = json_content(path.read_bytes(), f"state file {path}")
     except FileNotFoundError:
         return {}
     except OSError as error:
         raise InputError(f"state file {path}: {error.strerror}") from None
-    except ValueError as error:
-        raise InputError(f"state file {path}: not JSON: {error}") from None
     if not isinstance(content, dict):
         raise InputError(f"state file {path}: a JSON object is needed")
     return content

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ...whole_file import write_whole
 from ..expressions import FloatArray
 from ..figure import Figure
 from ..plots import COLOURS, Line, Panel, layout, time_figure
@@ -69,7 +70,7 @@ def write_page(study: Study, folder: Path, parameters: str | None) -> Path:
         delays=_delay_figure(study).json(),
     )
     path = folder / REPORT
-    path.write_text(page, encoding="utf-8")
+    write_whole(path, page)
     return path
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from ...cosim.parameters import Entry, Vehicle, VehicleFile, load_vehicle
 from ...errors import InputError, unknown
+from ...whole_file import write_whole
 from ..readable import number
 from .study import Physical, Study
 
@@ -108,7 +109,7 @@ def write_vehicle(study: Study, vehicle: Vehicle | None, path: Path) -> None:
             changes[table] = {**changes.get(table, {}), **entries}
         variants = {**vehicle.file.variants, VARIANT: changes}
         file = vehicle.file.model_copy(update={"variants": variants, "default": VARIANT})
-    path.write_text("\n".join(_lines(file)) + "\n", "utf-8")
+    write_whole(path, "\n".join(_lines(file)) + "\n")
 
 
 def _lines(file: VehicleFile) -> Iterator[str]:

@@ -12,7 +12,7 @@ from typing import Any
 from ... import __version__
 from ...cosim.paths import split_path
 from ...errors import InputError
-from ...fmi.cache import write_whole
+from ...fmi.cache import write_named
 from ..run_folder import MANIFEST, Run
 from .record import Column, columns, nanoseconds
 
@@ -63,7 +63,7 @@ def write_mcap(run: Run, path: Path) -> None:
     manifest = json.dumps(run.manifest, ensure_ascii=False, indent=1).encode()
     writer.add_attachment(0, 0, MANIFEST, "application/json", manifest)
     writer.finish()  # type: ignore[no-untyped-call]
-    write_whole(path, content.getvalue())
+    write_named(path, content.getvalue())
 
 
 def _by_component(signals: Sequence[Column], components: Container[str]) -> dict[str, list[Column]]:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import InputError
-from ...fmi.cache import write_whole
+from ...fmi.cache import write_named
 from ..run_folder import Run
 from .record import columns, nanoseconds
 
@@ -47,4 +47,4 @@ def write_parquet(run: Run, path: Path) -> None:
     table = pa.Table.from_arrays(values, schema=pa.schema(fields, metadata=about))
     content = io.BytesIO()
     parquet.write_table(table, content, compression="zstd")
-    write_whole(path, content.getvalue())
+    write_named(path, content.getvalue())
