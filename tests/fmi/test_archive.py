@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import stat
 import struct
 import zipfile
@@ -140,12 +141,72 @@ def test_a_bomb_that_says_so(cache: Path, tmp_path: Path, monkeypatch) -> None:
     refused(path, f"'0' has {2**20} bytes unpacked, more than {2**20 - 1}")
     monkeypatch.setattr(archive, "LARGEST_MEMBER", 2**20)
     monkeypatch.setattr(archive, "LARGEST_ARCHIVE", 8 * 2**20 - 1)
-    refused(path, "its members have more than")
+    refused(path, f"bytes would be {8 * 2**20} unpacked, more than {8 * 2**20 - 1}")
     monkeypatch.setattr(archive, "LARGEST_ARCHIVE", 8 * 2**20)
     assert len(list(unpacked(path, "FMU").iterdir())) == 8
     monkeypatch.setattr(archive, "MOST_MEMBERS", 7)
-    with pytest.raises(InputError, match="8 members, more than 7"):
+    with pytest.raises(InputError, match="8 files and folders, more than 7"):
         unpacked(path, "FMU")
+
+
+def test_how_much_an_archive_may_grow(cache: Path, tmp_path: Path, monkeypatch) -> None:
+    path = zipped(tmp_path / "x.fmu", ("zeros", bytes(8 * 2**20)))
+    own = path.stat().st_size
+    monkeypatch.setattr(archive, "ALWAYS_ALLOWED", 2**20)
+    refused(path, f"its {own} bytes would be {8 * 2**20} unpacked, more than {2**20}")
+    monkeypatch.setattr(archive, "ALWAYS_ALLOWED", 8 * 2**20)
+    assert unpacked(path, "FMU").is_dir()
+    stored = tmp_path / "x.fmu"
+    with zipfile.ZipFile(stored, "w") as file:  # an honest one: large, and as large in the file
+        file.writestr("data", bytes(2**20))
+    monkeypatch.setattr(archive, "ALWAYS_ALLOWED", 1000)
+    assert (unpacked(stored, "FMU") / "data").stat().st_size == 2**20
+
+
+def test_the_bounds_as_they_are(cache: Path, tmp_path: Path) -> None:
+    """300 MB of zeros in 300 kB, and one folder more than allowed in names alone."""
+    path = tmp_path / "x.fmu"
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as file, file.open("zeros", "w") as out:
+        for _ in range(300):
+            out.write(bytes(10**6))
+    refused(path, f"would be 300000000 unpacked, more than {256 * 2**20}")
+    names = [f"{i}/" + "/".join("abcdefghi") + "/x" for i in range(2000)]
+    refused(zipped(path, *((name, b"") for name in names)), "22001 files and folders")
+    refused(zipped(path, ("/".join("a" * 65), b"")), "is no name of a file")
+
+
+def test_names_that_would_write_into_a_terminal(cache: Path, tmp_path: Path) -> None:
+    refused(zipped(tmp_path / "x.fmu", ("a\x1b[31m", b"")), r"'a\\x1b\[31m' is no name of a file")
+
+
+@pytest.mark.parametrize("damage", ["cut", "changed", "longer", "missing", "a folder's file"])
+def test_an_unpacked_file_that_was_damaged_is_repaired(
+    damage: str, cache: Path, tmp_path: Path
+) -> None:
+    content = {"bin/x.so": bytes(range(256)) * 99, "bin/y.so": b"y" * 99, "empty/": b""}
+    path = zipped(tmp_path / "x.fmu", *content.items())
+    folder = unpacked(path, "FMU")
+    library, other = folder / "bin/x.so", folder / "bin/y.so"
+    other_before = other.stat().st_ino
+    with library.open("r+b") as in_use:  # a process that has it loaded keeps what it has
+        if damage == "cut":
+            in_use.truncate(99)
+        elif damage == "changed":
+            in_use.write(b"!")
+        elif damage == "longer":
+            in_use.seek(0, 2)
+            in_use.write(b"!")
+        elif damage == "missing":
+            library.unlink()
+        else:
+            (folder / "empty").rmdir()
+        in_use.flush()
+        inode = os.fstat(in_use.fileno()).st_ino
+        assert unpacked(path, "FMU") == folder
+        assert (library.stat().st_ino == inode) == (damage == "a folder's file")
+    assert library.read_bytes() == content["bin/x.so"]
+    assert (folder / "empty").is_dir()
+    assert other.stat().st_ino == other_before
 
 
 def test_a_bomb_that_lies_writes_no_more_than_it_says(

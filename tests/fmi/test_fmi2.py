@@ -15,7 +15,7 @@ from seatrial.fmi.load import load_fmu, open_instance
 
 from .native import changed, read, started
 
-FINE, NAN, DISCARD, ERROR, FATAL, WARN, BAD_START = range(7)
+FINE, NAN, DISCARD, ERROR, FATAL, WARN, BAD_START, NEGATIVE, BEYOND = range(9)
 
 
 @pytest.fixture
@@ -96,6 +96,8 @@ def test_outputs_without_dependencies_depend_on_all_inputs(native_fmu, tmp_path:
         (DISCARD, r"boat: fmi2DoStep\(t = 0\.25 s, h = 0\.25 s\) returned discard: not such a step", DiscardError),
         (ERROR, "returned error: 100% wrong", SimulationError),
         (FATAL, "returned fatal, without a message", FatalError),
+        (NEGATIVE, "returned status -1, which FMI does not have", SimulationError),
+        (BEYOND, "returned status 6, which FMI does not have", SimulationError),
     ],
 )  # fmt: skip
 def test_what_a_refused_step_says(fmi2, trouble: int, message: str, kind: type) -> None:

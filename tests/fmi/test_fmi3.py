@@ -195,6 +195,13 @@ def test_a_step_that_gets_no_further_ends(fmi3) -> None:
         instance.step(0.0, 0.1)
 
 
+@pytest.mark.parametrize("status", [-2, -7])
+def test_a_status_that_fmi_does_not_have_is_an_error(fmi3, status: int) -> None:
+    instance = fmi3(longest_step=float(status))
+    with pytest.raises(SimulationError, match=f"returned status {status}, which FMI does not have"):
+        instance.step(0.0, 0.1)
+
+
 def test_an_event_that_never_ends(native_fmu) -> None:
     instance = open_instance(load_fmu(native_fmu("fmi3")), "boat")
     with pytest.raises(SimulationError, match="boat: an event is not over after 1000 calls"):

@@ -88,6 +88,8 @@ class TrialResult:
         def column(name: str) -> SignalArray:
             entry, values = described[name], run.signals[name]
             kind = types.get(entry.get("type", "Real"), np.object_)
+            if isinstance(values, list):  # text; manifests of before have no types
+                kind = np.object_
             return SignalArray(np.array(values, dtype=kind), entry["unit"], entry["description"])
 
         return Signals(list(run.signals), SignalArray(run.time, "s", "simulated time"), column)

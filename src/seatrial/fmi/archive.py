@@ -13,7 +13,9 @@ import shutil
 import stat
 import tempfile
 import zipfile
-from pathlib import Path, PurePosixPath
+import zlib
+from pathlib import Path, PurePosixPath, PureWindowsPath
+from typing import IO
 
 from ..errors import InputError
 from .cache import cache_folder
@@ -21,14 +23,21 @@ from .cache import cache_folder
 Members = dict[PurePosixPath, zipfile.ZipInfo]
 """By their place in the folder."""
 
-MOST_MEMBERS = 100_000
+MOST_MEMBERS = 20_000
+"""Files and folders: an FMU with a whole Python environment inside has some 15,000."""
 LARGEST_MEMBER = 2 * 2**30
 """Bytes that one member may have unpacked."""
 LARGEST_ARCHIVE = 4 * 2**30
-"""Bytes that all members together may have unpacked."""
+"""Bytes that all members together may have unpacked: binaries for every platform, with data."""
+ALWAYS_ALLOWED = 256 * 2**20
+"""Bytes that any archive may have unpacked, however small it is."""
+MOST_RATIO = 20
+"""Of unpacked bytes to those of the archive beyond that: code and tables reach 3 to 10."""
 
 _LONGEST_PART = 255  # bytes of a file's name, in every usual file system
 _LONGEST_NAME = 1024
+_DEEPEST = 64
+_CONTROL = re.compile(r"[\x00-\x1f\x7f]")
 _ENCRYPTED = 0x1
 _METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)  # FMI and SSP allow no other
 
@@ -45,6 +54,8 @@ def content_hash(path: Path) -> str:
 def unpacked(path: Path, kind: str) -> Path:
     """Return the folder that the archive ``path`` is unpacked in, once for each content.
 
+    A file in it that is no longer what the archive has is unpacked again.
+
     ``kind`` says in messages what it should be: ``FMU``, ``SSP``. Raises InputError for what
     is no zip archive, is damaged, encrypted or too large, or would write elsewhere.
     """
@@ -52,8 +63,10 @@ def unpacked(path: Path, kind: str) -> Path:
     try:
         with zipfile.ZipFile(path) as archive:
             members = _checked(path, archive)
-            if not _is_whole(folder, members):
+            if not folder.is_dir():
                 _unpack(archive, members, folder)
+            for place in _damaged(folder, members):
+                _unpack_again(archive, members[place], folder / place)
     except InputError:
         raise
     except Exception as error:  # zipfile has many ways to say that an archive is damaged
@@ -62,9 +75,7 @@ def unpacked(path: Path, kind: str) -> Path:
     return folder
 
 
-def _unpack(
-    archive: zipfile.ZipFile, members: dict[PurePosixPath, zipfile.ZipInfo], folder: Path
-) -> None:
+def _unpack(archive: zipfile.ZipFile, members: Members, folder: Path) -> None:
     temporary = Path(tempfile.mkdtemp(dir=folder.parent, prefix="unpacking-"))
     try:
         for place, info in members.items():
@@ -73,30 +84,65 @@ def _unpack(
                 target.mkdir(parents=True, exist_ok=True)
                 continue
             target.parent.mkdir(parents=True, exist_ok=True)
-            # No more than the declared size is read, and its checksum must be right then.
-            with archive.open(info) as source, target.open("xb") as file:
-                shutil.copyfileobj(source, file, 2**20)
-        if folder.is_dir() and not _is_whole(folder, members):  # somebody removed a part of it
-            shutil.rmtree(folder, ignore_errors=True)
+            with target.open("xb") as file:
+                _copy(archive, info, file)
         try:
             os.replace(temporary, folder)
         except OSError:
-            if not _is_whole(folder, members):  # or else another process was first
+            if not folder.is_dir():  # or else another process was first
                 raise
     finally:
         shutil.rmtree(temporary, ignore_errors=True)
 
 
-def _is_whole(folder: Path, members: Members) -> bool:
-    """Say if everything in the archive is still there unpacked."""
-    return folder.is_dir() and all((folder / place).exists() for place in members)
+def _unpack_again(archive: zipfile.ZipFile, info: zipfile.ZipInfo, target: Path) -> None:
+    """Replace one file: a process that has the old one open, or loaded, keeps it."""
+    if info.is_dir():
+        target.mkdir(parents=True, exist_ok=True)
+        return
+    target.parent.mkdir(parents=True, exist_ok=True)
+    handle, temporary = tempfile.mkstemp(dir=target.parent, prefix="unpacking-")
+    try:
+        with os.fdopen(handle, "wb") as file:
+            _copy(archive, info, file)
+        os.chmod(temporary, 0o644)  # mkstemp's files are private
+        os.replace(temporary, target)
+    except BaseException:
+        os.unlink(temporary)
+        raise
+
+
+def _copy(archive: zipfile.ZipFile, info: zipfile.ZipInfo, file: IO[bytes]) -> None:
+    # No more than the declared size is read, and its checksum must be right then: the sizes that
+    # were checked are those that are written.
+    with archive.open(info) as source:
+        shutil.copyfileobj(source, file, 2**20)
+
+
+def _damaged(folder: Path, members: Members) -> list[PurePosixPath]:
+    """Return the places whose files are not what the archive has: cut, changed or missing."""
+    return [place for place, info in members.items() if not _matches(folder / place, info)]
+
+
+def _matches(path: Path, info: zipfile.ZipInfo) -> bool:
+    if info.is_dir():
+        return path.is_dir()
+    try:
+        with path.open("rb") as file:
+            if os.fstat(file.fileno()).st_size != info.file_size:
+                return False
+            checksum = 0
+            while block := file.read(2**20):
+                checksum = zlib.crc32(block, checksum)
+    except OSError:
+        return False
+    return checksum == info.CRC
 
 
 def _checked(path: Path, archive: zipfile.ZipFile) -> Members:
     """Return the members. Raises InputError for any that is not to be unpacked."""
     infos = archive.infolist()
-    if len(infos) > MOST_MEMBERS:
-        raise InputError(f"{path}: {len(infos)} members, more than {MOST_MEMBERS}")
+    _refuse_many(path, len(infos))
     members: Members = {}
     for info in infos:
         place = _place(path, info)
@@ -105,12 +151,27 @@ def _checked(path: Path, archive: zipfile.ZipFile) -> Members:
         _refuse_odd(path, info)
         members[place] = info
     folders = {parent for place in members for parent in place.parents}
+    _refuse_many(path, len(folders | members.keys()))
     for place in folders & members.keys():
         if not members[place].is_dir():
             raise InputError(f"{path}: member {str(place)!r} is a file and a folder")
-    if sum(info.file_size for info in infos) > LARGEST_ARCHIVE:
-        raise InputError(f"{path}: its members have more than {LARGEST_ARCHIVE} bytes unpacked")
+    _refuse_bomb(path, sum(info.file_size for info in infos))
     return members
+
+
+def _refuse_many(path: Path, count: int) -> None:
+    if count > MOST_MEMBERS:
+        raise InputError(f"{path}: {count} files and folders, more than {MOST_MEMBERS}")
+
+
+def _refuse_bomb(path: Path, unpacked_bytes: int) -> None:
+    """Raise InputError for an archive too large, or that would grow beyond any honest ratio."""
+    own = path.stat().st_size
+    most = min(LARGEST_ARCHIVE, max(ALWAYS_ALLOWED, MOST_RATIO * own))
+    if unpacked_bytes > most:
+        raise InputError(
+            f"{path}: its {own} bytes would be {unpacked_bytes} unpacked, more than {most}"
+        )
 
 
 def _place(path: Path, info: zipfile.ZipInfo) -> PurePosixPath:
@@ -121,9 +182,11 @@ def _place(path: Path, info: zipfile.ZipInfo) -> PurePosixPath:
     parts = [part.encode("utf-8", "replace") for part in place.parts]
     if (
         not parts
-        or "\0" in name
         or max(map(len, parts)) > _LONGEST_PART
+        or len(parts) > _DEEPEST
         or len(name) > _LONGEST_NAME
+        or _CONTROL.search(name)
+        or (os.name == "nt" and PureWindowsPath(name).is_reserved())
     ):
         raise InputError(f"{path}: member {name[:80]!r} is no name of a file")
     return place

@@ -13,7 +13,7 @@ from fmpy import fmi2
 from .fmuinstance import FmuInstance
 from .instance import Reader, Variable, Writer
 from .loaded import LoadedFmu
-from .messages import WARNING, listening_callbacks, stop_listening
+from .messages import ACCEPTED, listening_callbacks, stop_listening
 
 _CTYPES: dict[type, Any] = {
     float: ctypes.c_double,
@@ -56,7 +56,7 @@ class Fmi2Instance(FmuInstance):
         the FMU wants to end, so that looks like an error.
         """
         status = self._do_step(self._c, t, h, self._never_back)
-        if status > WARNING:
+        if status not in ACCEPTED:
             self._refuse(f"DoStep(t = {t!r} s, h = {h!r} s)", status)
         if self._messages:
             self._messages.forward()
@@ -81,7 +81,7 @@ class Fmi2Instance(FmuInstance):
 
         def read() -> list[Any]:
             status = get(c, vr, count, values)
-            if status > WARNING:
+            if status not in ACCEPTED:
                 self._refuse(function, status)
             if messages:
                 self._refuse_logged_errors(function)
@@ -106,7 +106,7 @@ class Fmi2Instance(FmuInstance):
                 self._refuse_excess(variables, values)
             own[:] = self._encoded(variables, values) if kind is str else values
             status = put(c, vr, count, own)
-            if status > WARNING:
+            if status not in ACCEPTED:
                 self._refuse(function, status)
             if messages:
                 self._refuse_logged_errors(function)

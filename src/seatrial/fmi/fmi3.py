@@ -16,7 +16,7 @@ from .arrays import ArrayCall
 from .fmuinstance import FmuInstance
 from .instance import Reader, Variable, Writer
 from .loaded import LoadedFmu
-from .messages import WARNING
+from .messages import ACCEPTED
 
 _MOST_RETURNS = 10_000
 """Early returns from one step."""
@@ -123,7 +123,7 @@ class Fmi3Instance(FmuInstance):
             ctypes.byref(self._event), ctypes.byref(self._end),
             ctypes.byref(self._early), ctypes.byref(self._reached),
         )  # fmt: skip
-        if status > WARNING:
+        if status not in ACCEPTED:
             self._refuse(f"DoStep(t = {t!r} s, h = {h!r} s)", status)
         if self._end.value:
             self._refuse_end(f"at t = {self._reached.value!r} s")
@@ -180,7 +180,7 @@ class Fmi3Instance(FmuInstance):
             if self._waiting:
                 self._flush()
             status = get(c, *arguments)
-            if status > WARNING:
+            if status not in ACCEPTED:
                 self._refuse(function, status)
             if messages:
                 messages.forward()
@@ -201,7 +201,7 @@ class Fmi3Instance(FmuInstance):
         def put_all(values: Sequence[Any]) -> None:
             call.fill(values)
             status = put(self._c, *arguments)
-            if status > WARNING:
+            if status not in ACCEPTED:
                 self._refuse(function, status)
             if self._messages:
                 self._messages.forward()

@@ -12,7 +12,7 @@ from ..errors import INTERRUPTED, DiscardError, FatalError, InputError, Simulati
 from ..serialisation import is_c_text
 from .instance import ByType, Value, Variable
 from .loaded import LoadedFmu
-from .messages import DISCARD, FATAL, WARNING, Messages, word
+from .messages import ACCEPTED, DISCARD, FATAL, Messages, word
 
 
 class FmuInstance(ByType):
@@ -131,7 +131,7 @@ class FmuInstance(ByType):
 
     def _call(self, function: str, *arguments: Any) -> None:
         status = self._functions[function](self._c, *arguments)
-        if status > WARNING:
+        if status not in ACCEPTED:
             self._refuse(function, status)
 
     def _refuse(self, what: str, status: int) -> None:

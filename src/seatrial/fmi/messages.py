@@ -13,6 +13,8 @@ from fmpy.logging import addLoggerProxy
 
 # Equal in FMI 2.0 and 3.0.
 OK, WARNING, DISCARD, ERROR, FATAL, PENDING = range(6)
+ACCEPTED = (OK, WARNING)
+"""With any other status, one that FMI does not have included, a call has failed."""
 
 _WORDS = ("ok", "warning", "discard", "error", "fatal", "pending")
 _MOST_KEPT = 50
@@ -20,7 +22,9 @@ _MOST_KEPT = 50
 
 def word(status: int) -> str:
     """Return FMI's name of a status, or the number of one that FMI does not have."""
-    return _WORDS[status] if 0 <= status < len(_WORDS) else f"status {status}"
+    if 0 <= status < len(_WORDS):
+        return _WORDS[status]
+    return f"status {status}, which FMI does not have"
 
 
 class Messages:

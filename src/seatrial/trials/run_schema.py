@@ -1,4 +1,4 @@
-"""What the JSON files of run and campaign folders hold, so that readers may rely on it."""
+"""Models of the JSON files in run and campaign folders."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@
 
 enum { K, INTERNAL_STEP, GAIN, LARGEST_STEP, U, Q1, Q2, X, Y, P1, P2, SPEED, ECHO, TROUBLE_TIME, REALS };
 enum { TROUBLE, I, J, MODE_IN, MODE, NEVER_BACK, INTEGERS };
-enum { FINE, NOT_A_NUMBER, DISCARD, ERROR, FATAL, WARN, BAD_START };
+enum { FINE, NOT_A_NUMBER, DISCARD, ERROR, FATAL, WARN, BAD_START, NEGATIVE, BEYOND };
 
 typedef struct {
     fmi2CallbackFunctions calls;
@@ -106,6 +106,8 @@ static fmi2Status trouble(Slave *s) {
     case DISCARD: return say(s, fmi2Discard, "not such a step");
     case ERROR: return say(s, fmi2Error, "100% wrong");
     case FATAL: free(s); return fmi2Fatal;
+    case NEGATIVE: return (fmi2Status)-1;
+    case BEYOND: return (fmi2Status)6;
     case WARN: return say(s, fmi2Warning, "reefing");
     }
     return fmi2OK;

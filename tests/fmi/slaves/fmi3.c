@@ -150,6 +150,7 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 t, fmi3Float64 h, fmi3Boolean 
         s->log(s->environment, fmi3Warning, "all", "the step is too large");
         return fmi3Discard;
     }
+    if (x[LONGEST_STEP] < -1) return (fmi3Status)(int)x[LONGEST_STEP];
     if (x[LONGEST_STEP] > 0) to = fmin(to, t + x[LONGEST_STEP]);
     if (x[LONGEST_STEP] < 0) to = t;
     while (next_event(s) <= to) {
