@@ -9,6 +9,7 @@ import typer
 
 from ..links.videoray.decode import describe_stream
 from ..links.videoray.stream_file import read_stream
+from ..printable import printable
 
 decode_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
 
@@ -24,4 +25,4 @@ def videoray(
 ) -> None:
     """Show the frames of a VideoRay stream, PRO4 and VRCSR, one a line."""
     for line in describe_stream(read_stream(file)):
-        print(line)
+        print(printable(line))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import sys
 import traceback
@@ -11,6 +12,7 @@ import typer
 
 from .. import __version__
 from ..errors import InputError, SeatrialError, SimulationError
+from ..printable import PrintableFormatter, printable
 from .commands import LazyGroup
 from .statuses import BAD_INPUT, BROKEN
 
@@ -27,6 +29,8 @@ app = typer.Typer(
 
 def main() -> None:
     """Run the command line; every error meant for the user is one message and a status."""
+    if logging.lastResort is not None:
+        logging.lastResort.setFormatter(PrintableFormatter())
     try:
         app()
     except InputError as error:
@@ -39,7 +43,7 @@ def main() -> None:
     except KeyboardInterrupt:
         _complain(SimulationError("stopped"), BROKEN)
     except Exception as error:  # Python's own status 1 would say that a criterion failed
-        traceback.print_exc()
+        print(printable(traceback.format_exc()), file=sys.stderr)
         what = f"an error of seatrial itself, please report it: {type(error).__name__}: {error}"
         _complain(SimulationError(what), BROKEN)
     finally:
@@ -59,7 +63,7 @@ def _forget_closed_streams() -> None:
 
 
 def _complain(error: SeatrialError, status: int) -> None:
-    print(f"seatrial: {error}", file=sys.stderr)
+    print(printable(f"seatrial: {error}"), file=sys.stderr)
     sys.exit(status)
 
 

@@ -5,14 +5,29 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from rich.console import Console
+from rich.console import Console, ConsoleOptions, RenderableType
 from rich.markup import escape
+from rich.segment import Segment
+
+from ..printable import printable
 
 if TYPE_CHECKING:
     from ..trials.campaign import Case
     from ..trials.run import Result
 
-console = Console(highlight=False, emoji=False)
+
+class SafeConsole(Console):
+    """A console on which no text acts: control characters are shown, colours are rich's own."""
+
+    def render(
+        self, renderable: RenderableType, options: ConsoleOptions | None = None
+    ) -> Iterable[Segment]:
+        """Return what is printed."""
+        for text, style, control in super().render(renderable, options):
+            yield Segment(text if control else printable(text), style, control)
+
+
+console = SafeConsole(highlight=False, emoji=False)
 
 
 def print_notes(notes: Iterable[str]) -> None:

@@ -19,6 +19,7 @@ from ..links.arduino.mcus import MCUS
 from ..links.arduino.sketch import Sketch, find_sketch, read_source
 from ..links.arduino.unsupported import unsupported
 from ..links.arduino.wiring import PARTS, read_uarts, read_wires
+from ..printable import printable
 
 sketch_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
 
@@ -42,20 +43,20 @@ def check(sketch: _FOLDER, profile: _PROFILE = "", mcu: _MCU = "") -> None:
     found = find_sketch(sketch)
     values = _values(profile, mcu)
     board = MCUS[values["mcu"]]
-    print(f"{found.name} on the {board.board} ({board.name})")
+    print(printable(f"{found.name} on the {board.board} ({board.name})"))
     for kind, files in (
         ("tab", found.tabs),
         ("source", found.others),
         ("library", found.libraries),
     ):
         for file in files:
-            print(f"  {kind} {file}")
+            print(printable(f"  {kind} {file}"))
     for wire in read_wires(values.get("wires", ""), board):
         place = f"0x{wire.place:02x}" if wire.kind in PARTS else f"pin {wire.place}"
-        print(f"  {place}: {wire.kind} {wire.number or ''}".rstrip())
+        print(printable(f"  {place}: {wire.kind} {wire.number or ''}".rstrip()))
     print("what the back end 'host' does not show:")
     for limit in LIMITS:
-        print(f"  {limit}")
+        print(printable(f"  {limit}"))
     problems = [*unsupported(found), *_lines(found, values)]
     if problems:
         raise InputError("\n".join(problems))

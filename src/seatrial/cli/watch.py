@@ -10,6 +10,7 @@ from typing import Protocol
 
 from rich.markup import escape
 
+from ..printable import printable
 from .show import console
 
 PERIOD = 5.0
@@ -110,7 +111,8 @@ class _Lines:
     def show(self, share: float, state: str) -> None:
         if self._clock() >= self._next:
             self._next = self._clock() + PERIOD
-            print(f"{self._name}: {100 * share:.0f} %, {state}", file=sys.stderr, flush=True)
+            line = printable(f"{self._name}: {100 * share:.0f} %, {state}")
+            print(line, file=sys.stderr, flush=True)
 
     def close(self) -> None:
         """Leave the lines as they are."""

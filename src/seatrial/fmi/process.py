@@ -11,6 +11,7 @@ import sys
 import time
 from collections.abc import Callable
 
+from ..printable import printable
 from .pipe import MESSAGE, MOST_BYTES, Frame, Frames
 
 _SLICE_S = 0.2
@@ -232,7 +233,7 @@ class _Output:
         if self._held:
             if sys.stderr is not None:
                 with contextlib.suppress(OSError, ValueError):  # nobody reads it, or it is closed
-                    sys.stderr.write(self._held.decode("utf-8", "replace"))
+                    sys.stderr.write(printable(self._held.decode("utf-8", "replace")))
             self._passed_on = (self._passed_on + self._held)[-_KEPT_BYTES:]
             self._held = b""
 
