@@ -66,7 +66,7 @@ def test_titles_in_listings(tmp_path: Path) -> None:
 
 
 def test_a_profile_of_others(tmp_path: Path) -> None:
-    text = (ROOT / "hil_profiles" / "gloria.toml").read_text("utf-8")
+    text = (ROOT / "hil_profiles" / "mariner.toml").read_text("utf-8")
     text = re.sub(r"^(title|source) = .*$", lambda m: f"{m[1]} = {TOML}", text, flags=re.M)
     (tmp_path / "x.toml").write_text(text)
     done = seatrial("profile", "describe", "x.toml", cwd=tmp_path)

@@ -83,7 +83,9 @@ def _instance(
 
     loaded = load_fmu(source if isinstance(source, Path) else cached_fmu(source, code))
     if entry.isolated:
-        return IsolatedInstance(loaded, name, timeout_s), loaded.sha256, code
+        sandboxed = entry.isolated == "sandboxed"
+        instance = IsolatedInstance(loaded, name, timeout_s, sandboxed=sandboxed)
+        return instance, loaded.sha256, code
     if loaded.description.coSimulation.canBeInstantiatedOnlyOncePerProcess:
         if loaded.sha256 in once:
             raise InputError(

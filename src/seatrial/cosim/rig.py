@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import Field
 
@@ -62,8 +62,8 @@ class ComponentEntry(FileModel):
     """By port; of a rig, by component.port inside it."""
     step: str | None = None
     """Of a rig, that of all components in it that say none themselves."""
-    isolated: bool = False
-    """It runs in a process of its own."""
+    isolated: bool | Literal["sandboxed"] = False
+    """It runs in a process of its own; in a sandbox, without network and files of others."""
     timeout: str | None = None
     """Longest wall time of one call of an isolated component."""
 

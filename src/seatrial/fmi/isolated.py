@@ -20,10 +20,12 @@ from .instance import Reader, Value, Writer
 from .loaded import LoadedFmu
 from .pipe import CALL, INTERVAL, READ, RESULT, STEP, WRITE, Codec, Frames, frame
 from .process import EndedError, WorkerProcess
+from .sandbox import PARENT, sandbox_command, sandbox_environment
 from .worker import shortened
 
 _BOOT_S = 60.0
 """For Python to start and import: no call of the FMU has a part in it."""
+_NO_ANSWER = (ValueError, TypeError, OverflowError, RecursionError, struct.error)
 _ERRORS = {kind.__name__: kind for kind in (DiscardError, InputError, SimulationError)}
 
 
@@ -33,10 +35,15 @@ class IsolatedInstance:
     A call that takes longer than ``timeout_s`` ends the process. Once it has ended, every call
     but `terminate` and `free` raises the same SimulationError. Make and use it in one thread.
 
-    Raises InputError where there are no POSIX pipes, and what `open_instance` raises.
+    ``sandboxed`` lets it see no network and no files but its own; see `sandbox`.
+
+    Raises InputError where there are no POSIX pipes, or no sandbox, and what `open_instance`
+    raises.
     """
 
-    def __init__(self, fmu: LoadedFmu, name: str, timeout_s: float) -> None:
+    def __init__(
+        self, fmu: LoadedFmu, name: str, timeout_s: float, *, sandboxed: bool = False
+    ) -> None:
         if os.name != "posix":
             raise InputError("isolated components need Linux or another POSIX system")
         self.name, self.fmu = name, fmu
@@ -54,14 +61,23 @@ class IsolatedInstance:
         self._just_stepped = False
         # The worker finds the FMU unpacked where it is now.
         environment = {**os.environ, "SEATRIAL_CACHE": str(fmu.folder.parent.parent)}
+        sandbox, parent = list[str](), None
+        if sandboxed:
+            sandbox, parent = sandbox_command(fmu), PARENT
+            environment = sandbox_environment(fmu)
         self._logger = logging.getLogger(f"seatrial.fmu.{name}")
-        self._process = WorkerProcess("seatrial.fmi.worker", name, environment, self._log)
+        self._process = WorkerProcess(
+            "seatrial.fmi.worker", name, environment, self._log, sandbox, parent
+        )
         try:
             self._call("wait", "its start")
             self._timeout_s, self._limit = timeout_s, " (the component's key 'timeout')"
-            self.rolls_back, self.any_step = self._call(
+            able = self._call(
                 "open", "its instantiation", str(fmu.path), fmu.sha256, name, sys.path
             )
+            if not (isinstance(able, list) and len(able) == 2):
+                raise self._misunderstood("its instantiation")
+            self.rolls_back, self.any_step = map(bool, able)
         except BaseException:
             self._process.end()
             raise
@@ -99,7 +115,10 @@ class IsolatedInstance:
                 if self._just_stepped:
                     self._read_after_steps.append(number)
                 answer = self._ask(request, lambda: what + self._when())
-            return codec.unpack(answer)
+            try:
+                return codec.unpack(answer)
+            except _NO_ANSWER:
+                raise self._misunderstood(what + self._when()) from None
 
         return read
 
@@ -175,7 +194,11 @@ class IsolatedInstance:
 
     def _call(self, method: str, what: str, *arguments: Any) -> Any:
         request = frame(CALL, 0, json.dumps([method, *arguments]).encode())
-        return json.loads(self._ask(request, lambda: what + self._when()))
+        answer = self._ask(request, lambda: what + self._when())
+        try:
+            return json.loads(answer)
+        except _NO_ANSWER:
+            raise self._misunderstood(what) from None
 
     def _ask(self, request: bytes, what: Callable[[], str]) -> bytes:
         """Return the answer to a request, with the writes before it."""
@@ -197,7 +220,10 @@ class IsolatedInstance:
             raise
         if code == RESULT:
             return answer
-        kind, text = json.loads(answer)
+        try:
+            kind, text = map(str, json.loads(answer))
+        except _NO_ANSWER:
+            raise self._misunderstood(what()) from None
         if kind == KeyboardInterrupt.__name__:
             raise KeyboardInterrupt
         if kind not in _ERRORS:
@@ -209,6 +235,11 @@ class IsolatedInstance:
         last = f"; the last it wrote:\n{printed}" if printed else ""
         self._ended = f"{self.name}: its process {how} in {what}{last}"
         return SimulationError(self._ended)
+
+    def _misunderstood(self, what: str) -> SimulationError:
+        """End a process that answers what no worker does: the FMU has taken it over."""
+        self._process.end()
+        return self._end("was ended for an answer that is none", what)
 
     def _refuse_ended(self) -> None:
         if self._ended:

@@ -18,6 +18,8 @@ RESULT, FAILURE, MESSAGE = 5, 6, 7
 
 MOST_BYTES = 1 << 16
 """What one read from a pipe takes."""
+LARGEST = 1 << 30
+"""Bytes of a payload."""
 INTERVAL = struct.Struct("<dd")
 """Begin and length of a step, s."""
 
@@ -54,6 +56,8 @@ class Frames:
         length, code, number = _HEADER.unpack_from(data)
         if not CALL <= code <= MESSAGE:
             raise ValueError(f"a frame has no code {code}")
+        if length > LARGEST:
+            raise ValueError(f"a frame of {length} bytes")
         end = _HEADER.size + length
         if len(data) < end:
             return None

@@ -9,7 +9,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from ..printable import printable
 from .pipe import MESSAGE, MOST_BYTES, Frame, Frames
@@ -36,6 +36,8 @@ class WorkerProcess:
 
     It leads a session of its own, so that Ctrl-C in a terminal does not reach it, and ends with
     the thread that made it. ``message`` gets the level and text of its log messages.
+    ``sandbox`` is a command that the worker's is an argument of, which makes ``parent`` the process
+    that the worker ends with, as it sees it.
     """
 
     def __init__(
@@ -44,6 +46,8 @@ class WorkerProcess:
         name: str,
         environment: dict[str, str],
         message: Callable[[int, str], None],
+        sandbox: Sequence[str] = (),
+        parent: int | None = None,
     ) -> None:
         self._message = message
         self._frames, self._output = Frames(), _Output()
@@ -51,7 +55,8 @@ class WorkerProcess:
         self._answers, theirs_out = _pipe()
         self._printed, theirs_printed = _pipe()
         fds = (theirs_in, theirs_out)
-        command = [sys.executable, "-P", "-m", module, *map(str, fds), str(os.getpid()), name]
+        own = [sys.executable, "-P", "-m", module]
+        command = [*sandbox, *own, *map(str, fds), str(parent or os.getpid()), name]
         try:
             self._process = subprocess.Popen(
                 command,

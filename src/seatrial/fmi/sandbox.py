@@ -1,0 +1,85 @@
+"""Sandbox for the process of a foreign FMU, by bubblewrap: no network, no files but its own."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import site
+import subprocess
+import sys
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+from ..errors import InputError
+from .loaded import LoadedFmu
+
+PARENT = 1
+"""Process that a sandboxed one ends with, as it sees it: bubblewrap's, which ends with ours."""
+_SYSTEM = ("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/etc/ld.so.cache")
+_ENVIRONMENT = ("LANG", "LC_ALL", "LD_LIBRARY_PATH", "PATH", "PYTHONDONTWRITEBYTECODE", "TZ")
+"""What of the environment it gets: others may hold secrets."""
+_ISOLATION = (
+    "--unshare-all",
+    *("--cap-drop", "ALL"),
+    "--die-with-parent",
+    *("--proc", "/proc"),
+    *("--dev", "/dev"),
+    *("--tmpfs", "/tmp"),
+)
+
+
+def sandbox_command(fmu: LoadedFmu) -> list[str]:
+    """Return the command that a worker's command is an argument of, to run it in a sandbox.
+
+    The worker sees, read-only, the system's libraries, Python with its packages, seatrial and
+    ``fmu`` with its unpacked folder; a /tmp of its own, which goes with it; nothing else.
+
+    Raises InputError if bubblewrap is not there or cannot make a sandbox here.
+    """
+    bwrap = shutil.which("bwrap")
+    if bwrap is None:
+        raise InputError(
+            'isolated = "sandboxed" needs bubblewrap, which is not here (Debian: apt install '
+            "bubblewrap)"
+        )
+    _refuse_unable(bwrap)
+    command = [bwrap, *_ISOLATION, *_system()]
+    for path in (*_python(), fmu.folder, fmu.path):
+        command += ["--ro-bind", str(path), str(path)]
+    return [*command, "--chdir", "/tmp", "--"]
+
+
+def sandbox_environment(fmu: LoadedFmu) -> dict[str, str]:
+    """Return the environment of a sandboxed worker."""
+    kept = {name: os.environ[name] for name in _ENVIRONMENT if name in os.environ}
+    package = Path(__file__).resolve().parents[2]
+    cache_folder = fmu.folder.parent.parent
+    return {**kept, "PYTHONPATH": str(package), "SEATRIAL_CACHE": str(cache_folder)}
+
+
+@cache
+def _refuse_unable(bwrap: str) -> None:
+    done = subprocess.run(
+        [bwrap, *_ISOLATION, *_system(), "--", "/bin/sh", "-c", ":"], capture_output=True, text=True
+    )
+    if done.returncode:
+        why = done.stderr.strip() or f"it ended with status {done.returncode}"
+        raise InputError(f'isolated = "sandboxed": bubblewrap cannot make a sandbox here: {why}')
+
+
+def _system() -> Iterator[str]:
+    for name in _SYSTEM:
+        path = Path(name)
+        if path.is_symlink():  # /lib is usr/lib
+            yield from ("--symlink", os.readlink(path), name)
+        elif path.exists():
+            yield from ("--ro-bind", name, name)
+
+
+def _python() -> list[Path]:
+    """Return the folders of the interpreter, of installed packages and of seatrial."""
+    user = [site.getusersitepackages()] if site.ENABLE_USER_SITE else []
+    folders = [sys.prefix, sys.base_prefix, *site.getsitepackages(), *user]
+    wanted = [*map(Path, folders), Path(__file__).resolve().parents[1]]
+    return [path for path in dict.fromkeys(wanted) if path.is_dir() and path != Path("/usr")]
