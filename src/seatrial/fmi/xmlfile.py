@@ -32,6 +32,8 @@ def read_xml(path: Path, called: str) -> Any:
         tree = etree.parse(str(path), parser)
     except etree.XMLSyntaxError as error:
         raise InputError(f"{called}: not XML: {error}") from None
+    except (OSError, LookupError, ValueError):  # for bytes that are none of its encoding
+        raise InputError(f"{called}: not XML: it cannot be decoded") from None
     if tree.docinfo.doctype:
         raise InputError(f"{called}: has a document type (DOCTYPE), which is not allowed")
     return tree.getroot()

@@ -50,7 +50,7 @@ class Frame:
                 raise InputError("only CAN FD frames switch the bit rate or show an error state")
         if self.remote and length:
             raise InputError("a remote frame has no data")
-        if self.requested and not (self.remote and self.requested <= 8):
+        if self.requested and not (self.remote and 0 < self.requested <= 8):
             raise InputError("only a remote frame requests data, up to 8 bytes")
 
     @property

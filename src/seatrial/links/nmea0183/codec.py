@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from functools import reduce
+from operator import xor
 from typing import Any
 
 from pynmeagps import NMEAMessage, NMEAReader
@@ -62,7 +64,7 @@ def decode(line: bytes) -> Any:
     ASCII or not printable, or numbers that are not finite. Fields of a formatter that is not known
     have no names.
     """
-    if not (line.isascii() and line.decode("ascii").isprintable()):
+    if not (line.isascii() and line.decode("ascii").isprintable() and _has_checksum(line)):
         return None
     try:
         message = NMEAReader.parse(line)
@@ -72,6 +74,13 @@ def decode(line: bytes) -> Any:
         return None
     numbers = (value for value in vars(message).values() if isinstance(value, float))
     return message if all(map(math.isfinite, numbers)) else None
+
+
+def _has_checksum(line: bytes) -> bool:
+    """Return whether a line is a sentence with the right checksum: pynmeagps passes some over."""
+    body, _, check = line[1:].partition(b"*")
+    found = f"{reduce(xor, body, 0):02X}".encode()
+    return line[:1] in (b"$", b"!") and check[:2].upper() == found
 
 
 def _whole_minutes(value: Any) -> Any:

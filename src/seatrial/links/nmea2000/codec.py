@@ -7,7 +7,14 @@ from dataclasses import dataclass
 from functools import cache, lru_cache
 from typing import Any
 
-from nmea2000 import FieldTypes, NMEA2000Decoder, NMEA2000Field, NMEA2000Message, create_encoder
+from nmea2000 import (
+    FieldTypes,
+    NMEA2000Decoder,
+    NMEA2000Field,
+    NMEA2000Message,
+    backend,
+    create_encoder,
+)
 from nmea2000.input_formats import N2KFormat
 
 from ..can.frame import Frame
@@ -17,6 +24,9 @@ from .catalogue import ALL
 GLOBAL, NO_ADDRESS = 255, 254
 """All nodes as a destination; the source of a node without address (ISO 11783-5)."""
 
+_CLAIM = 60928
+_REFUSALS = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
+"""What the package lets through for contents that no layout has."""
 _LIST = "##list##"
 """What the package calls a message's repeated fields."""
 _TEXTS = (FieldTypes.STRING_FIX, FieldTypes.STRING_LZ, FieldTypes.STRING_LAU)
@@ -107,7 +117,7 @@ class Decoder:
             return None
         if not is_fast(pgn):
             return _single(frame.identifier, frame.data)
-        whole = self._decoder.decode(message(frame, 1.0))
+        whole = _decoded(self._decoder, frame)
         self._keep(f"{pgn} {destination}", str(source), frame, whole is not None)
         return None if whole is None else _read(whole, pgn, source, destination)
 
@@ -122,7 +132,7 @@ class Decoder:
             for frames in packets.values():
                 for identifier, data in frames:
                     frame = Frame(identifier, bytes.fromhex(data), extended=True)
-                    self._decoder.decode(message(frame, 1.0))
+                    _decoded(self._decoder, frame)
 
     def _keep(self, key: str, source: str, frame: Frame, done: bool) -> None:
         packets = self._unfinished.setdefault(source, {})
@@ -151,9 +161,21 @@ def header(frame: Frame) -> tuple[int, int, int, int]:
 @lru_cache(1024)  # a frame is read by all nodes of a bus
 def _single(identifier: int, data: bytes) -> Message | None:
     frame = Frame(identifier, data, extended=True)
-    pgn, source, destination, _ = header(frame)
-    whole = NMEA2000Decoder().decode(message(frame, 1.0))
+    pgn, source, destination, priority = header(frame)
+    if pgn == _CLAIM:
+        # The package's decoder raises for claims of devices that canboat's tables lack.
+        whole = backend.decode(pgn, data, source, destination, priority, "native")
+    else:
+        whole = _decoded(NMEA2000Decoder(), frame)
     return None if whole is None else _read(whole, pgn, source, destination)
+
+
+def _decoded(decoder: Any, frame: Frame) -> Any:
+    """Return what the package makes of a frame; None for what it cannot read."""
+    try:
+        return decoder.decode(message(frame, 1.0))
+    except _REFUSALS:
+        return None
 
 
 def _field(name: str, value: Any) -> Any:

@@ -1,0 +1,31 @@
+"""Frames on a DroneCAN bus: transfers of the kinds that nodes take."""
+
+from __future__ import annotations
+
+from dronecan import uavcan
+
+from seatrial.links.can.node import CanNode
+from seatrial.links.can.operations import Transmit, encode
+from seatrial.links.dronecan.codec import MOST_FRAMES
+from seatrial.links.dronecan.transfers import Transfers
+from seatrial.links.text import Outbox
+
+from .can_frames import frames_of
+
+assert uavcan  # the data types, loaded by the package
+WANTED = frozenset([(1034, False), (341, False), (1, True), (1, False), (11, True), (1030, False)])
+_NODE = 5
+
+
+def one(data: bytes) -> None:
+    """Receive the frames; a session keeps no more than a transfer can have."""
+    memory: dict[str, object] = {}
+    transfers, outbox = Transfers(memory, CanNode({})), Outbox({})
+    sent = frames_of(data)
+    for frame in sent:
+        outbox.put(0, encode(Transmit(frame)))
+    found = list(transfers.receive(outbox.flush(), WANTED, _NODE))
+    assert len(found) + transfers.malformed <= len(sent)
+    sessions = memory["sessions"]
+    assert isinstance(sessions, dict)
+    assert all(len(session[2]) <= MOST_FRAMES for session in sessions.values())

@@ -1,0 +1,27 @@
+"""Frames on an NMEA 2000 bus: single ones, fast packets, and what a helm takes of them."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from seatrial.links.nmea2000.codec import Decoder
+from seatrial.links.nmea2000.received import Received
+
+from .can_frames import frames_of
+
+
+def one(data: bytes) -> None:
+    """Decode the frames; what is received are finite numbers."""
+    unfinished: dict[str, dict[str, list[list[Any]]]] = {}
+    decoder, received = Decoder(unfinished), Received({}, 10**9, 0)
+    for when, frame in enumerate(frames_of(data)):
+        message = decoder.decode(frame)
+        if message is not None:
+            received.take(when, message)
+    for name in received.names():
+        values, _ = received.get(name, 0)
+        assert all(map(math.isfinite, values or []))
+    kept = [frames for packets in unfinished.values() for frames in packets.values()]
+    assert sum(map(len, kept)) <= len(data)
+    Decoder(unfinished)

@@ -1,0 +1,27 @@
+"""Rigs, trials, vehicles, profiles and campaigns: whatever is in the file."""
+
+from __future__ import annotations
+
+import contextlib
+import tempfile
+from pathlib import Path
+
+from seatrial.cosim.flattening import load_rig
+from seatrial.cosim.parameters import load_vehicle
+from seatrial.cosim.profile import load_profile
+from seatrial.errors import InputError
+from seatrial.trials.campaign import load_campaign
+from seatrial.trials.identify.experiment import load_experiment
+from seatrial.trials.trial import load_trial
+
+READERS = (load_trial, load_rig, load_profile, load_vehicle, load_campaign, load_experiment)
+
+
+def one(data: bytes) -> None:
+    """Let every reader have the file."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "x.toml")
+        path.write_bytes(data)
+        for read in READERS:
+            with contextlib.suppress(InputError):
+                read(str(path))
