@@ -4,12 +4,13 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 DOCS := $(VENV)/.docs-installed
+FUZZ := $(VENV)/.fuzz-installed
 NODE_TOOLS := tests/interop/node/node_modules/.installed
 # One thread of BLAS for each worker: they share the processors. Compiled modules are kept, whatever
 # the environment says: hundreds of tests start processes.
 PYTEST := OPENBLAS_NUM_THREADS=1 PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -n auto --dist worksteal
 
-.PHONY: demo test test-interop test-long lint docs fmus benchmark clean
+.PHONY: demo test test-interop test-long fuzz lint docs fmus benchmark clean
 
 $(INSTALLED): pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
@@ -47,6 +48,14 @@ test-interop: $(INSTALLED) $(NODE_TOOLS)
 
 test-long: $(INSTALLED) $(NODE_TOOLS)
 	$(PYTEST) -m long
+
+# Every harness in tests/fuzz for long, guided by coverage: 10^6 executions or half an hour each.
+fuzz: $(FUZZ)
+	$(PYTEST) -m long tests/fuzz
+
+$(FUZZ): $(INSTALLED)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[fuzz]'
+	@touch $@
 
 lint: $(INSTALLED)
 	$(BIN)/ruff check .

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from seatrial.links.can.frame import Frame
+from seatrial.links.can.operations import Transmit, encode
+from seatrial.links.text import Outbox
 
 
 def frames_of(data: bytes) -> list[Frame]:
@@ -14,3 +18,18 @@ def frames_of(data: bytes) -> list[Frame]:
         found.append(Frame(identifier, data[place + 5 : place + 5 + length], extended=True))
         place += 5 + length
     return found
+
+
+def receive(node: Any, frames: list[Frame], steps: int = 3) -> None:
+    """Start a node on a bus that has the frames for it in its second step, and go on."""
+    node.setup(0.0)
+    node.initialise()
+    node.begin()
+    bus: dict[str, Any] = {}
+    for step in range(steps):
+        outbox = Outbox(bus)
+        for frame in frames if step == 1 else []:
+            outbox.put(step * 10_000_000, encode(Transmit(frame)))
+        node.set("rx", outbox.flush())
+        node.advance(step * 0.01, 0.01)
+        assert isinstance(node.get("tx"), str)

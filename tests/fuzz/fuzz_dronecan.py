@@ -6,11 +6,13 @@ from dronecan import uavcan
 
 from seatrial.links.can.node import CanNode
 from seatrial.links.can.operations import Transmit, encode
+from seatrial.links.dronecan.autopilot import DroneCanAutopilot
 from seatrial.links.dronecan.codec import MOST_FRAMES
+from seatrial.links.dronecan.peripheral import DroneCanPeripheral
 from seatrial.links.dronecan.transfers import Transfers
 from seatrial.links.text import Outbox
 
-from .can_frames import frames_of
+from .can_frames import frames_of, receive
 
 assert uavcan  # the data types, loaded by the package
 WANTED = frozenset([(1034, False), (341, False), (1, True), (1, False), (11, True), (1030, False)])
@@ -18,7 +20,7 @@ _NODE = 5
 
 
 def one(data: bytes) -> None:
-    """Receive the frames; a session keeps no more than a transfer can have."""
+    """Receive the frames, alone and as nodes; a session keeps no more than a transfer can have."""
     memory: dict[str, object] = {}
     transfers, outbox = Transfers(memory, CanNode({})), Outbox({})
     sent = frames_of(data)
@@ -29,3 +31,7 @@ def one(data: bytes) -> None:
     sessions = memory["sessions"]
     assert isinstance(sessions, dict)
     assert all(len(session[2]) <= MOST_FRAMES for session in sessions.values())
+    for kind in (DroneCanAutopilot, DroneCanPeripheral):
+        node = kind("node")
+        node.set("node_id", float(_NODE))
+        receive(node, sent)

@@ -6,13 +6,14 @@ import math
 from typing import Any
 
 from seatrial.links.nmea2000.codec import Decoder
+from seatrial.links.nmea2000.component import Nmea2000
 from seatrial.links.nmea2000.received import Received
 
-from .can_frames import frames_of
+from .can_frames import frames_of, receive
 
 
 def one(data: bytes) -> None:
-    """Decode the frames; what is received are finite numbers."""
+    """Decode the frames; what is received are finite numbers. Then let a node have them."""
     unfinished: dict[str, dict[str, list[list[Any]]]] = {}
     decoder, received = Decoder(unfinished), Received({}, 10**9, 0)
     for when, frame in enumerate(frames_of(data)):
@@ -25,3 +26,4 @@ def one(data: bytes) -> None:
     kept = [frames for packets in unfinished.values() for frames in packets.values()]
     assert sum(map(len, kept)) <= len(data)
     Decoder(unfinished)
+    receive(Nmea2000("node"), frames_of(data))

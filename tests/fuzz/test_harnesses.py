@@ -17,7 +17,7 @@ FOLDER = Path(__file__).parent
 CORPUS = FOLDER / "corpus"
 NAMES = sorted(path.stem.removeprefix("fuzz_") for path in FOLDER.glob("fuzz_*.py"))
 KEPT = sorted(path for path in CORPUS.glob("*/*"))
-SLOW = {"archives": 15, "run_folder": 10, "toml": 15}
+SLOW = {"archives": 15, "dronecan": 20, "run_folder": 10, "toml": 15}
 """Examples of harnesses that write files and draw pages."""
 
 
@@ -71,6 +71,7 @@ def test_made_inputs(name: str) -> None:
 def test_for_long(name: str, tmp_path: Path) -> None:
     """10^6 executions or half an hour; the last lines of libFuzzer say what was covered."""
     limits = ["-runs=1000000", "-max_total_time=1800", "-rss_limit_mb=4096", "-timeout=60"]
+    limits.append(f"-artifact_prefix={tmp_path}/")
     done = subprocess.run(
         [sys.executable, "-m", "tests.fuzz", name, *limits, str(tmp_path)],
         cwd=FOLDER.parents[1],

@@ -12,7 +12,6 @@ from nmea2000 import (
     NMEA2000Decoder,
     NMEA2000Field,
     NMEA2000Message,
-    backend,
     create_encoder,
 )
 from nmea2000.input_formats import N2KFormat
@@ -24,7 +23,6 @@ from .catalogue import ALL
 GLOBAL, NO_ADDRESS = 255, 254
 """All nodes as a destination; the source of a node without address (ISO 11783-5)."""
 
-_CLAIM = 60928
 _REFUSALS = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
 """What the package lets through for contents that no layout has."""
 _LIST = "##list##"
@@ -161,12 +159,8 @@ def header(frame: Frame) -> tuple[int, int, int, int]:
 @lru_cache(1024)  # a frame is read by all nodes of a bus
 def _single(identifier: int, data: bytes) -> Message | None:
     frame = Frame(identifier, data, extended=True)
-    pgn, source, destination, priority = header(frame)
-    if pgn == _CLAIM:
-        # The package's decoder raises for claims of devices that canboat's tables lack.
-        whole = backend.decode(pgn, data, source, destination, priority, "native")
-    else:
-        whole = _decoded(NMEA2000Decoder(), frame)
+    pgn, source, destination, _ = header(frame)
+    whole = _decoded(NMEA2000Decoder(), frame)
     return None if whole is None else _read(whole, pgn, source, destination)
 
 
