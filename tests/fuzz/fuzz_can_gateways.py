@@ -1,4 +1,4 @@
-"""What programs send to the CAN gateways: slcan, socketcand, Yacht Devices' RAW lines."""
+"""Lines of programs to the CAN gateways: slcan, socketcand, Yacht Devices RAW."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a MAVLink peer sends, against pymavlink's own parser."""
+"""Bytes of a MAVLink peer, against pymavlink's own parser."""
 
 from __future__ import annotations
 

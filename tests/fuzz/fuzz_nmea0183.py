@@ -1,4 +1,4 @@
-"""What an NMEA 0183 line receives, against pynmea2: sentences, orders of a steering autopilot."""
+"""Bytes on an NMEA 0183 line, against pynmea2: sentences, and orders of a steering autopilot."""
 
 from __future__ import annotations
 
