@@ -132,7 +132,7 @@ def _matches(path: Path, info: zipfile.ZipInfo) -> bool:
             if os.fstat(file.fileno()).st_size != info.file_size:
                 return False
             checksum = 0
-            while block := file.read(2**20):
+            while block := file.read(2**16):
                 checksum = zlib.crc32(block, checksum)
     except OSError:
         return False
