@@ -86,6 +86,12 @@ def has_status(folder: Path, status: str = "running") -> bool:
     return manifest.is_file() and f'"status": "{status}"' in manifest.read_text("utf-8")
 
 
+def rows_of(folder: Path) -> int:
+    """Return how many rows the record has so far."""
+    signals = folder / "signals.csv"
+    return len(signals.read_text("utf-8").splitlines()) - 1 if signals.is_file() else 0
+
+
 def stopped(process: subprocess.Popen[str]) -> str:
     """Return what was output by a process that must end stopped."""
     _, output = process.communicate(timeout=60)
@@ -185,8 +191,7 @@ def test_two_signals_leave_a_whole_record_too(
     rig = tmp_path / "rig.toml"
     rig.write_text(rig.read_text().replace('Slow"', f'Slow", isolated = {isolated}'))
     process = start("run", "trial.toml", "--out", "run")
-    signals = tmp_path / "run" / "signals.csv"
-    wait_for(lambda: signals.is_file() and signals.stat().st_size > 0)
+    wait_for(lambda: rows_of(tmp_path / "run") > 10)
     for _ in range(2):
         process.send_signal(signal.SIGTERM)
         time.sleep(gap_s)
@@ -197,8 +202,7 @@ def test_two_signals_leave_a_whole_record_too(
 def test_signals_up_to_the_very_end_leave_status_and_message(start, tmp_path: Path) -> None:
     # A late one must not kill the program between its message and its end.
     process = start("run", "trial.toml", "--out", "run", "--engine", "direct")
-    signals = tmp_path / "run" / "signals.csv"
-    wait_for(lambda: signals.is_file() and signals.stat().st_size > 0)
+    wait_for(lambda: rows_of(tmp_path / "run") > 10)
     deadline = time.monotonic() + 60
     while process.poll() is None and time.monotonic() < deadline:
         process.send_signal(signal.SIGTERM)
@@ -207,23 +211,54 @@ def test_signals_up_to_the_very_end_leave_status_and_message(start, tmp_path: Pa
     assert_whole(tmp_path / "run", 10)
 
 
-@pytest.mark.parametrize(
-    "pace",
-    [
-        pytest.param([], id="free"),
-        pytest.param(["--real-time", "0.0001"], id="waiting", marks=pytest.mark.interop),
-    ],
-)
-def test_a_killed_run_is_whole_up_to_its_last_flush(pace, start, tmp_path: Path) -> None:
+PACES = [
+    pytest.param([], 10, id="free"),
+    # 100 s of waiting for each step
+    pytest.param(["--real-time", "0.0001"], 1, id="waiting", marks=pytest.mark.interop),
+]
+
+
+def children_of(process: subprocess.Popen[str]) -> list[int]:
+    """Return the processes that a process has started."""
+    listed = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text("utf-8")
+    return [int(pid) for pid in listed.split()]
+
+
+def has_ended(pid: int) -> bool:
+    stat = Path(f"/proc/{pid}/stat")
+    return not stat.exists() or stat.read_text().rpartition(")")[2].split()[0] == "Z"
+
+
+@pytest.mark.parametrize(("pace", "rows"), PACES)
+def test_a_run_whose_supervisor_is_killed_ends_in_order(
+    pace, rows: int, start, tmp_path: Path
+) -> None:
     process = start("run", "trial.toml", "--out", "run", "--engine", "direct", *pace)
-    signals = tmp_path / "run" / "signals.csv"
-    wait_for(lambda: signals.is_file() and signals.stat().st_size > 0)  # it was flushed
+    wait_for(lambda: rows_of(tmp_path / "run") >= rows)
+    (child,) = children_of(process)
     os.kill(process.pid, signal.SIGKILL)
+    wait_for(lambda: has_ended(child))
+    assert has_status(tmp_path / "run", "stopped")
+    done = seatrial("report", "run", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert_whole(tmp_path / "run", rows)
+
+
+@pytest.mark.parametrize(("pace", "rows"), PACES)
+def test_a_run_of_which_all_is_killed_is_whole_up_to_its_last_row(
+    pace, rows: int, start, tmp_path: Path
+) -> None:
+    process = start("run", "trial.toml", "--out", "run", "--engine", "direct", *pace)
+    wait_for(lambda: rows_of(tmp_path / "run") >= rows)
+    (child,) = children_of(process)
+    os.kill(child, signal.SIGSTOP)  # it cannot do anything any more
+    for pid in (process.pid, child):
+        os.kill(pid, signal.SIGKILL)
     process.communicate()
     assert has_status(tmp_path / "run", "running")
-    lines = signals.read_text("utf-8").splitlines()
+    lines = (tmp_path / "run" / "signals.csv").read_text("utf-8").splitlines()
     assert lines[:2] == ["time,boat.y", "0.0,0.0"]
-    assert all(line.count(",") == 1 for line in lines[:-1])
+    assert all(line.count(",") == 1 for line in lines)
     done = seatrial("report", "run", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     page = (tmp_path / "run" / "report.html").read_text("utf-8")

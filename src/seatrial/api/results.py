@@ -144,8 +144,8 @@ def run_trial(
     """
     from ..links.hardware import confined
     from ..shipped import available
-    from ..trials.run import Hooks
-    from ..trials.run import run_trial as run
+    from ..trials.hooks import Hooks
+    from ..trials.supervision import run_supervised
     from ..trials.trial import load_trial
 
     try:
@@ -157,7 +157,7 @@ def run_trial(
     hooks = Hooks() if progress is None else Hooks(progress=progress)
     with confined():
         folder = None if out is None else Path(out)
-        result = run(loaded, folder, engine=as_engine(engine), hooks=hooks)
+        result = run_supervised(loaded, folder, engine=as_engine(engine), hooks=hooks)
     if result.status == "stopped":
         raise KeyboardInterrupt
     if result.status == "failed":

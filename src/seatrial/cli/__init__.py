@@ -4,6 +4,9 @@ Exit status: 0 all is well; 1 a criterion does not hold, or two runs differ; 2 b
 3 a simulation could not go on, or was stopped.
 """
 
-from .main import main
+from .starting import ending_at_once
+
+with ending_at_once():
+    from .main import main
 
 __all__ = ["main"]

@@ -8,6 +8,8 @@ from typing import Any, NamedTuple
 import typer
 from typer.core import TyperCommand, TyperGroup
 
+from .starting import ending_at_once
+
 
 class Command(NamedTuple):
     """A command, or a group of commands."""
@@ -80,7 +82,8 @@ class LazyGroup(TyperGroup):
 def loaded(name: str) -> Any:
     """Return the command ``name`` with its options, imported."""
     module, _, attribute = COMMANDS[name].place.partition(":")
-    found = getattr(import_module(f".{module}", __package__), attribute)
+    with ending_at_once():
+        found = getattr(import_module(f".{module}", __package__), attribute)
     parent = typer.Typer(rich_markup_mode=None)
     if isinstance(found, typer.Typer):
         parent.add_typer(found, name=name, help=COMMANDS[name].help)

@@ -12,9 +12,10 @@ from rich.table import Table
 from ..errors import InputError
 from ..trials.accuracy import Accuracy, by_port, order_text, spread_text
 from ..trials.convergence import Convergence, run_convergence
+from ..trials.hooks import Hooks
 from ..trials.readable import number, person_scale
 from ..trials.report import write_report
-from ..trials.run import Hooks, Result
+from ..trials.run import Result
 from ..trials.trial import load_trial
 from .options import (
     Autopilot,
@@ -57,7 +58,12 @@ def convergence(
                 watch.log(lambda: None)
                 write_report(result.folder)
 
-            hooks = Hooks(watch.building, watch.progress, stop.requested, stop.interruptible)
+            hooks = Hooks(
+                building=watch.building,
+                progress=watch.progress,
+                stop_requested=stop.requested,
+                interruptible=stop.interruptible,
+            )
             watch.expect(halvings + 1)
             folder, found = run_convergence(
                 loaded, out, halvings=halvings, engine=chosen, hooks=hooks, done=done

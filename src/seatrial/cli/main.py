@@ -14,6 +14,7 @@ from .. import __version__
 from ..errors import InputError, SeatrialError, SimulationError
 from ..printable import PrintableFormatter, printable
 from .commands import LazyGroup
+from .starting import interrupting
 from .statuses import BAD_INPUT, BROKEN
 
 app = typer.Typer(
@@ -28,9 +29,17 @@ app = typer.Typer(
 
 
 def main() -> None:
-    """Run the command line; every error meant for the user is one message and a status."""
+    """Run the command line; every error meant for the user is one message and a status.
+
+    Status 1 is a verdict: an error of seatrial itself shows where it was, and has status 3.
+    """
     if logging.lastResort is not None:
         logging.lastResort.setFormatter(PrintableFormatter())
+    with interrupting():
+        _run()
+
+
+def _run() -> None:
     try:
         app()
     except InputError as error:

@@ -12,8 +12,10 @@ from ..errors import InputError, SimulationError
 from ..links.hardware import allow_devices, allow_network
 from ..trials.campaign import Campaign, Case, load_campaign, run_campaign
 from ..trials.campaign_report import write_campaign_report
+from ..trials.hooks import Hooks
 from ..trials.report import write_report
-from ..trials.run import Hooks, Result, run_trial
+from ..trials.run import Result
+from ..trials.supervision import run_supervised
 from ..trials.trial import Trial, load_trial
 from .options import (
     Autopilot,
@@ -89,9 +91,13 @@ def run(
     with stoppable() as stop:
         with Watch(loaded.name) as watch:
             hooks = Hooks(
-                watch.building, watch.progress, stop.requested, stop.interruptible, print_reachable
+                building=watch.building,
+                progress=watch.progress,
+                stop_requested=stop.requested,
+                interruptible=stop.interruptible,
+                reachable=print_reachable,
             )
-            result = run_trial(loaded, out, engine=chosen, hooks=hooks)
+            result = run_supervised(loaded, out, engine=chosen, hooks=hooks)
         print_verdicts(result)
         _report(result)
     _exit_with([result])
@@ -106,7 +112,12 @@ def _run_campaign(campaign: Campaign, out: Path | None, engine: Engine) -> None:
                 watch.log(lambda: print_case(case, result))
                 write_report(result.folder)
 
-            hooks = Hooks(watch.building, watch.progress, stop.requested, stop.interruptible)
+            hooks = Hooks(
+                building=watch.building,
+                progress=watch.progress,
+                stop_requested=stop.requested,
+                interruptible=stop.interruptible,
+            )
             watch.expect(len(cases))
             folder, finished = run_campaign(campaign, out, engine=engine, hooks=hooks, done=done)
         page = write_campaign_report(folder)

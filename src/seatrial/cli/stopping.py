@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from ..errors import SimulationError
+from .starting import heeded
 
 
 class Stop:
@@ -27,9 +28,9 @@ class Stop:
         if self._asked > 1 and self._may_hang:
             raise KeyboardInterrupt
 
-    def requested(self) -> bool:
-        """Say if there was one."""
-        return self._asked > 0
+    def requested(self) -> int:
+        """Return how many there were."""
+        return self._asked
 
     @contextmanager
     def interruptible(self) -> Iterator[None]:
@@ -43,13 +44,13 @@ class Stop:
 
 @contextmanager
 def stoppable() -> Iterator[Stop]:
-    """Make Ctrl-C and a termination signal end the run after the current step.
+    """Make Ctrl-C, a termination signal and a lost terminal end the run after the current step.
 
     A second one ends it at once, if a component hangs. After a stop the signals stay ignored:
     a late second one must not kill a program that is leaving with its message and its status.
     """
-    stop, numbers = Stop(), (signal.SIGINT, signal.SIGTERM)
-    before = {number: signal.signal(number, stop.ask) for number in numbers}
+    stop = Stop()
+    before = {number: signal.signal(number, stop.ask) for number in heeded()}
     try:
         yield stop
     except KeyboardInterrupt:

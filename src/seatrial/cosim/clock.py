@@ -52,7 +52,7 @@ class Pacer:
         """Start the clock: the simulated time ``t_ns`` is now."""
         self._wall_start, self._time_start = self._now(), t_ns
 
-    def keep(self, t_ns: int, stop_requested: Callable[[], bool] = lambda: False) -> int:
+    def keep(self, t_ns: int, stop_requested: Callable[[], int] = lambda: 0) -> int:
         """Wait until the point ``t_ns`` is due, or a stop is requested.
 
         Returns by how many ns the step to it ended too late, 0 if it was in time.
@@ -94,7 +94,7 @@ class Pacer:
     def _due(self, t_ns: int) -> int:
         return self._wall_start + round((t_ns - self._time_start) / self.factor)
 
-    def _wait(self, deadline: int, stop_requested: Callable[[], bool]) -> int:
+    def _wait(self, deadline: int, stop_requested: Callable[[], int]) -> int:
         """Return the wall time at which it was over."""
         while (left := deadline - (now := self._now())) > 0 and not stop_requested():
             if left > self._spin_ns:

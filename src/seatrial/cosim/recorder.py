@@ -1,9 +1,8 @@
-"""The record of a run: ``signals.csv``, one row per recorded time, flushed every second."""
+"""The record of a run: ``signals.csv``, one row per recorded time."""
 
 from __future__ import annotations
 
 import csv
-import time
 from array import array
 from collections.abc import Sequence
 from fnmatch import fnmatchcase
@@ -44,8 +43,9 @@ class Recorder:
     """Writes the recorded signals of a master to a CSV file, and keeps those to ``watch``.
 
     Numbers are written so that they read back exactly; Booleans as 0 and 1; text quoted where
-    it must be; bytes as base64 text. The file is whole up to the last flush if the process is
-    killed. What cannot be written raises OSError with the file's name.
+    it must be; bytes as base64 text. Each row is handed to the system at once: the file is whole
+    up to the last one if the process is killed. What cannot be written raises OSError with the
+    file's name.
     """
 
     def __init__(
@@ -75,7 +75,6 @@ class Recorder:
         self._watched_places = {name: places[name] for name in watch}
         self._watched: dict[str, array[float]] = {name: array("d") for name in watch}
         self._times = array("d")
-        self._flushed = time.monotonic()
 
     def record(self, *, last: bool = False) -> None:
         """Write a row if one is due at the master's time, or if it is the ``last``."""
@@ -94,26 +93,16 @@ class Recorder:
             row[column] = storable(row[column])
         try:
             self._writer.writerow([master.time, *row])
+            self._file.flush()
         except OSError as error:
             raise self._named(error) from None
-        self.flush_if_due()
-
-    def flush_if_due(self) -> None:
-        """Flush the file if that was last done more than a second ago."""
-        now = time.monotonic()
-        if now - self._flushed > 1.0:
-            try:
-                self._file.flush()
-            except OSError as error:
-                raise self._named(error) from None
-            self._flushed = now
 
     def watched(self) -> tuple[NDArray[np.float64], dict[str, NDArray[np.float64]]]:
         """Return time and watched signals at every communication step so far."""
         return np.array(self._times), {n: np.array(column) for n, column in self._watched.items()}
 
     def close(self) -> None:
-        """Flush and close the file."""
+        """Close the file."""
         try:
             self._file.close()
         except OSError as error:

@@ -11,6 +11,7 @@ import sys
 import time
 from collections.abc import Callable, Sequence
 
+from ..links.safe_state import inherited
 from ..printable import printable
 from .pipe import MESSAGE, MOST_BYTES, Frame, Frames
 
@@ -63,7 +64,7 @@ class WorkerProcess:
                 stdin=subprocess.DEVNULL,
                 stdout=theirs_printed,
                 stderr=theirs_printed,
-                pass_fds=fds,
+                pass_fds=(*fds, *inherited()),
                 env=environment,
                 start_new_session=True,
             )
@@ -193,9 +194,7 @@ class WorkerProcess:
             status = self._process.wait(_EXIT_S)
         except subprocess.TimeoutExpired:
             return self._gone("closed its pipes")
-        if status < 0:
-            return self._gone(f"was ended by {_signal_name(-status)}")
-        return self._gone(f"exited with status {status}")
+        return self._gone(how_ended(status))
 
     def _ask_where_it_is(self) -> None:
         """Let a process that hangs print its Python stack; see `worker.main`."""
@@ -269,8 +268,11 @@ def _pipe() -> tuple[int, int]:
     return ends[0], ends[1]
 
 
-def _signal_name(number: int) -> str:
+def how_ended(status: int) -> str:
+    """Return in words how a process ended, from its status: that of a signal is negative."""
+    if status >= 0:
+        return f"exited with status {status}"
+    name = f"signal {-status}"
     with contextlib.suppress(ValueError):
-        name = signal.Signals(number).name
-        return f"{name} (perhaps for lack of memory)" if name == "SIGKILL" else name
-    return f"signal {number}"
+        name = signal.Signals(-status).name
+    return f"was ended by {name}" + (" (perhaps for lack of memory)" if name == "SIGKILL" else "")

@@ -22,8 +22,10 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import InputError, SeatrialError, SimulationError
+from ..links.safe_state import inherited
 from .instance import Instance, Reader
 from .load import load_fmu, open_instance
+from .orphan import end_with
 from .pipe import (
     CALL,
     FAILURE,
@@ -40,6 +42,9 @@ from .pipe import (
 
 _PR_SET_PDEATHSIG = 1
 _C_LINE_BUFFERED = 1
+_ASKING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
+_IN_ORDER_S = 2.0
+"""Wall time to end in order once the parent was killed."""
 
 
 class Worker:
@@ -49,8 +54,9 @@ class Worker:
     """
 
     def __init__(self, requests: int, answers: int) -> None:
-        self._requests, self._answers = requests, answers
+        self._requests, self._answers, self._own = requests, answers, os.getpid()
         self._instance: Instance
+        self._is_open = False
         self._writers: dict[int, Callable[[bytes], None]] = {}
         self._readers: dict[int, tuple[Reader, Codec]] = {}
         self._states: dict[int, Any] = {}
@@ -60,12 +66,17 @@ class Worker:
         """Readers that failed when they were called ahead, right after a step."""
 
     def serve(self) -> None:
-        """Answer requests until the parent closes its end."""
+        """Answer requests until the parent closes its end; if it was killed, end in order."""
         frames = Frames()
-        while data := os.read(self._requests, MOST_BYTES):
-            frames.feed(data)
-            while (request := frames.take()) is not None:
-                self._serve(*request)
+        try:
+            while data := os.read(self._requests, MOST_BYTES):
+                frames.feed(data)
+                while (request := frames.take()) is not None:
+                    self._serve(*request)
+        except (OrphanedError, BrokenPipeError):
+            pass
+        if self._is_open:
+            self.call_terminate()  # links send what stops things, and close
 
     def _serve(self, code: int, number: int, payload: bytes) -> None:
         try:
@@ -78,6 +89,8 @@ class Worker:
                 failure, self._failed_write = self._failed_write, None
                 raise failure
             answer = frame(RESULT, number, self._answer(code, number, payload))
+        except OrphanedError:
+            raise
         except BaseException as error:  # SystemExit, KeyboardInterrupt: the parent handles them
             if code == WRITE:
                 self._failed_write = error
@@ -112,6 +125,8 @@ class Worker:
         return codec.pack(reader())
 
     def _send(self, data: bytes) -> None:
+        if os.getpid() != self._own:
+            os._exit(0)  # a copy of this process that a component made by fork, and that returned
         while data:
             data = data[os.write(self._answers, data) :]
 
@@ -128,6 +143,7 @@ class Worker:
         if fmu.sha256 != sha256:
             raise InputError(f"{path} was changed while it was being loaded")
         self._instance = open_instance(fmu, name)
+        self._is_open = True
         return [self._instance.rolls_back, self._instance.any_step]
 
     def call_reader(self, names: list[str]) -> int:
@@ -186,6 +202,7 @@ class Worker:
 
     def call_free(self) -> None:
         """Release the instance."""
+        self._is_open = False
         self._instance.free()
 
     # ------------------------------------------------------------------ inside
@@ -229,16 +246,28 @@ def _explained(error: BaseException) -> bytes:
     return json.dumps([type(error).__name__, text]).encode()
 
 
+class OrphanedError(BaseException):
+    """The parent was killed: nobody waits for an answer."""
+
+
 def _live_as_long_as(parent: int) -> None:
     """End with the parent, even in a call that never returns; not with its terminal."""
-    for number in (signal.SIGINT, signal.SIGTERM):
+
+    def heed(_number: int, _frame: object) -> None:
+        if os.getppid() != parent:
+            for number in _ASKING:
+                signal.signal(number, signal.SIG_IGN)
+            raise OrphanedError
+
+    for number in _ASKING:
         # Not SIG_IGN: a program that a component starts would ignore them too.
-        signal.signal(number, lambda *_: None)
+        signal.signal(number, heed)
         signal.siginterrupt(number, False)
     if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
     if os.getppid() != parent:  # it ended before the line above
         os._exit(1)
+    end_with(parent, _IN_ORDER_S)
 
 
 def _write_lines_at_once() -> None:
@@ -258,7 +287,7 @@ def main() -> None:
     requests, answers, parent = (int(text) for text in sys.argv[1:4])
     _live_as_long_as(parent)
     _write_lines_at_once()
-    for descriptor in (requests, answers):
+    for descriptor in (requests, answers, *inherited()):
         os.set_inheritable(descriptor, False)  # not for processes that a component starts
     with contextlib.suppress(BrokenPipeError):  # the parent has gone
         Worker(requests, answers).serve()

@@ -9,7 +9,8 @@ from ..errors import InputError
 from .endpoints.budget import Budget
 from .endpoints.endpoint import Endpoint
 from .endpoints.url import check_urls, open_endpoints, other_end
-from .safe_state import UNSET, check_safe_state, require_safe_state, safe_state_bytes
+from .safe_state import HeldChannels
+from .safe_state_bytes import UNSET, check_safe_state, require_safe_state, safe_state_bytes
 from .text import Inbox, Outbox
 
 
@@ -22,8 +23,9 @@ class SerialGateway(Logging, Reachable, Component):
     All clients get all. Bytes leave in the step that has them, at whatever baud rate the
     other end reckons with.
 
-    ``safe_state`` is sent when it closes, however the run ends: for a real vehicle the request
-    that stops its thrusters. Where a device is behind a link it must be given, if only as empty.
+    ``safe_state`` is sent when it closes, and by whoever supervises the run if that ends without
+    closing it: for a real vehicle the request that stops its thrusters. Where a device is behind
+    a link it must be given, if only as empty.
 
     It cannot be rolled back. Raises InputError at the start for a link that is malformed or
     cannot be opened, or is not allowed.
@@ -32,7 +34,7 @@ class SerialGateway(Logging, Reachable, Component):
     feedthrough: ClassVar = {}
     discrete = True
     rolls_back = False
-    transient = Component.transient | {"_endpoints"}
+    transient = Component.transient | {"_endpoints", "_held"}
 
     links = Parameter(
         "tcpin:127.0.0.1:0", "1", "URLs of the other ends, separated by spaces", check=check_urls
@@ -53,6 +55,7 @@ class SerialGateway(Logging, Reachable, Component):
     def __init__(self, name: str = "component") -> None:
         super().__init__(name)
         self._endpoints: list[Endpoint] = []
+        self._held = HeldChannels(name)
 
     def start(self, t: float) -> None:
         """Open the links."""
@@ -67,6 +70,7 @@ class SerialGateway(Logging, Reachable, Component):
         self._rx: dict[str, Any] = {}
         self._tx: dict[str, Any] = {}
         self._sent = self._received = 0
+        self._hold()
 
     def step(self, t: float, h: float) -> None:
         """Carry bytes out and in."""
@@ -76,6 +80,7 @@ class SerialGateway(Logging, Reachable, Component):
                 self._received += len(data)
                 box.put(self.now_ns, data)
         box.flush()
+        self._hold()
         for _, data in Inbox(self._rx).take(self.rx):
             self._sent += len(data)
             self._send(data)
@@ -91,9 +96,14 @@ class SerialGateway(Logging, Reachable, Component):
         """Send the safe-state bytes and close the links."""
         if last := safe_state_bytes(self.safe_state):
             self._send(last)
+        self._held.release()
         for endpoint in self._endpoints:
             endpoint.close()
         self._endpoints = []
+
+    def _hold(self) -> None:
+        data = safe_state_bytes(self.safe_state)
+        self._held.keep(self._endpoints, lambda _: data)
 
     def _send(self, data: bytes) -> None:
         for endpoint in self._endpoints:

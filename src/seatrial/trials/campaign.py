@@ -14,8 +14,10 @@ from pydantic import Field
 from ..cosim.files import FileModel, Source, find_file, read_toml, validated
 from ..cosim.system import Engine
 from ..errors import InputError
+from .hooks import Hooks, StoppedError
 from .output import claim_folder, write_json
-from .run import Hooks, Result, StoppedError, check_trial, run_trial
+from .run import Result
+from .supervision import Supervisor
 from .trial import Trial, load_trial
 
 
@@ -109,27 +111,27 @@ def run_campaign(
     """Run every case into a folder of its own below ``out``, which must not hold anything yet.
 
     None makes a new folder ``runs/NAME-DATE-TIME``. ``done`` is called after each case. Stops
-    after the case that was asked to stop. Returns the folder and the results of the cases that
-    began. Raises InputError for bad input, in any case, and StoppedError, before the first one
-    runs.
+    after the case that was asked to stop. A case that ends its process has failed. Returns the
+    folder and the results of the cases that began. Raises InputError for bad input, in
+    any case, and StoppedError, before the first one runs.
     """
-    hooks = hooks or Hooks()
-    for case in campaign.cases():
-        check_trial(case.trial, engine, hooks)
-    out = claim_folder(out, campaign.read_from.name, "campaign.json")
-    finished: list[tuple[Case, Result]] = []
-    _write_index(campaign, out, finished)
-    for number, case in enumerate(campaign.cases(), start=1):
-        folder = out / f"{number:02d}-{_slug(case.name)}"
-        try:
-            result = run_trial(case.trial, folder, engine=engine, hooks=hooks)
-        except StoppedError:
-            break
-        finished.append((case, result))
+    cases = campaign.cases()
+    with Supervisor([case.trial for case in cases], engine, hooks) as supervisor:
+        for number in range(len(cases)):
+            supervisor.check(number)
+        out = claim_folder(out, campaign.read_from.name, "campaign.json")
+        finished: list[tuple[Case, Result]] = []
         _write_index(campaign, out, finished)
-        done(case, result)
-        if result.status == "stopped":
-            break
+        for number, case in enumerate(cases):
+            try:
+                result = supervisor.run(number, out / f"{number + 1:02d}-{_slug(case.name)}")
+            except StoppedError:
+                break
+            finished.append((case, result))
+            _write_index(campaign, out, finished)
+            done(case, result)
+            if result.status == "stopped":
+                break
     return out, finished
 
 

@@ -15,11 +15,13 @@ from ..cosim.system import Engine
 from ..errors import InputError, SimulationError
 from . import run_schema
 from .accuracy import Accuracy, accuracy, ranked
+from .hooks import Hooks
 from .output import write_json
 from .readable import number
-from .run import Hooks, Result, run_trial
+from .run import Result
 from .run_folder import Run, load_run
 from .run_schema import checked_json
+from .supervision import Supervisor
 from .trial import Trial
 
 CONVERGENCE = "convergence.json"
@@ -78,14 +80,14 @@ def run_convergence(
         raise InputError(f"--halvings: at least 2 are needed to see an order, found {halvings}")
     trials = [_halved(trial, count) for count in range(halvings + 1)]
     folders: list[Path] = []
-    for one in trials:
-        folder = folders[0] / _folder_name(one) if folders else out
-        result = run_trial(one, folder, engine=engine, hooks=hooks)
-        done(result)
-        if result.status != "complete":
-            why = result.error or "stopped; the signals recorded so far are on disk"
-            raise SimulationError(f"at a step of {_step_text(one)}: {why}")
-        folders.append(result.folder)
+    with Supervisor(trials, engine, hooks) as supervisor:
+        for number, one in enumerate(trials):
+            result = supervisor.run(number, folders[0] / _folder_name(one) if folders else out)
+            done(result)
+            if result.status != "complete":
+                why = result.error or "stopped; the signals recorded so far are on disk"
+                raise SimulationError(f"at a step of {_step_text(one)}: {why}")
+            folders.append(result.folder)
     found = _compared(trials, [load_run(folder) for folder in folders])
     write_json(folders[0] / CONVERGENCE, asdict(found))
     return folders[0], found

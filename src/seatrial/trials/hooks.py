@@ -5,8 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from ..errors import SimulationError
+
+if TYPE_CHECKING:
+    from ..cosim.system import System
 
 Progress = Callable[[float, float], None]
 """Called now and then with the simulated time that has passed, and that of the whole run, s."""
@@ -22,7 +27,12 @@ class Hooks:
 
     building: Callable[[str], None] = lambda _: None
     progress: Progress = lambda _passed, _whole: None
-    stop_requested: Callable[[], bool] = lambda: False
+    assembled: Callable[[System, dict[str, Any]], None] = lambda _system, _manifest: None
+    """Called with the rig and the run's manifest, before the components are started."""
+    claimed: Callable[[Path], None] = lambda _: None
+    """Called with the run's folder."""
+    stop_requested: Callable[[], int] = lambda: 0
+    """How often; what is requested a second time is to end at once."""
     interruptible: Callable[[], AbstractContextManager[object]] = nullcontext
     """Around what a component may never return from: elsewhere no signal raises anything."""
     reachable: Callable[[str, str], None] = lambda _name, _where: None

@@ -17,31 +17,33 @@ _RESERVE = 4096
 """Bytes kept for how a run ends."""
 
 
-def claim_folder(out: Path | None, name: str, index: str) -> Path:
+def claim_folder(out: Path | None, name: str, index: str, base: Path = Path()) -> Path:
     """Create the folder of a run for this process alone, and return it.
 
     None makes a new one, ``runs/NAME-DATE-TIME``; else ``out`` must not hold anything yet.
-    ``index`` is the file that claims the folder. Raises InputError.
+    ``index`` is the file that claims the folder; ``base`` is where relative paths start. Raises
+    InputError.
     """
     try:
         if out is None:
-            return _new_folder(name)
-        out.mkdir(parents=True, exist_ok=True)
-        if any(out.iterdir()):
+            return _new_folder(base, name)
+        folder = base / out
+        folder.mkdir(parents=True, exist_ok=True)
+        if any(folder.iterdir()):
             raise FileExistsError
-        (out / index).open("x").close()
+        (folder / index).open("x").close()
     except (FileExistsError, NotADirectoryError):
         message = f"{out} exists and is not an empty folder; name another with --out"
         raise InputError(message) from None
     except OSError as error:
         raise InputError(f"cannot create {out or 'runs'}: {error.strerror}") from None
-    return out
+    return folder
 
 
-def _new_folder(name: str) -> Path:
+def _new_folder(base: Path, name: str) -> Path:
     stamp = datetime.datetime.now().strftime("%Y%m%d-%H%M%S")
     for count in itertools.count(1):
-        folder = Path("runs") / (f"{name}-{stamp}" + (f"-{count}" if count > 1 else ""))
+        folder = base / "runs" / (f"{name}-{stamp}" + (f"-{count}" if count > 1 else ""))
         try:
             folder.mkdir(parents=True)
         except FileExistsError:

@@ -8,7 +8,6 @@ from collections.abc import Callable
 from ..component import NS
 from ..cosim.clock import Pacer
 from ..cosim.master import Master
-from ..cosim.recorder import Recorder
 from ..errors import SimulationError
 from .trial import RealTimeEntry
 
@@ -36,7 +35,7 @@ class Pace:
         self.pacer.factor = self._wanted()
         self.pacer.start(self._master.time_ns)
 
-    def step(self, recorder: Recorder, stop_requested: Callable[[], bool]) -> None:
+    def step(self, stop_requested: Callable[[], int]) -> None:
         """Take a step and wait until its end is due, or a stop is requested.
 
         Raises SimulationError if the step is late and must not be, or for a signal that is no
@@ -49,12 +48,7 @@ class Pace:
         paused = self._paused_s()
         pacer.pause(round((paused - self._paused) * NS))
         self._paused = paused
-
-        def interrupted() -> bool:
-            recorder.flush_if_due()  # a wait may be long
-            return stop_requested()
-
-        lateness = pacer.keep(master.time_ns, interrupted)
+        lateness = pacer.keep(master.time_ns, stop_requested)
         if lateness and pacer.policy == "abort":
             spent = {name: t.total_ns - before[name] for name, t in master.step_times.items()}
             slowest = max(spent, key=spent.__getitem__)

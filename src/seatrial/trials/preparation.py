@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 from ..cosim.assembly import assemble
 from ..cosim.master import Master
@@ -11,6 +13,7 @@ from ..cosim.unread import leave_out_unread
 from ..errors import InputError, SimulationError
 from .checks import check_criteria, check_events, check_plots, check_real_time
 from .hooks import Hooks
+from .manifest import manifest
 from .naming import by_path, named_components
 from .trial import Trial
 
@@ -24,6 +27,11 @@ class Prepared:
     system: System
     units: dict[str, str]
     """Of every output, ``component.port``."""
+
+    @cached_property
+    def manifest(self) -> dict[str, Any]:
+        """What decides the signals; see `manifest`."""
+        return manifest(self.trial, self.system, self.engine)
 
     def started(self) -> Master:
         """Return a master with all components at the start time.

@@ -55,13 +55,16 @@ def run_trial(
     """
     hooks = hooks or Hooks()
     wall: dict[str, float] = {}
+    here = Path.cwd()  # a component may change it
     with hooks.interruptible(), _timed(wall, "assemble"):
         prepared = prepare(trial, engine, hooks)
     try:
+        hooks.assembled(prepared.system, prepared.manifest)
         with hooks.interruptible(), _timed(wall, "initialise"):
             master = prepared.started()
         hooks.refuse_if_stopped()
-        folder = claim_folder(out, trial.name, "manifest.json")
+        folder = claim_folder(out, trial.name, "manifest.json", here)
+        hooks.claimed(folder)
         _set_run_folder(master, folder)
         run = Run(prepared, master, folder, hooks, wall)
         if trial.file.real_time is not None:

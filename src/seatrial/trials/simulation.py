@@ -15,7 +15,6 @@ from ..cosim.master import Master
 from ..cosim.recorder import Recorder
 from ..errors import SimulationError
 from .hooks import Hooks
-from .manifest import manifest
 from .output import write_json, write_json_into_reserve, write_json_with_reserve
 from .pacing import Pace
 from .preparation import Prepared
@@ -54,7 +53,6 @@ class Run:
             sorted(watched),
         )
         self._termination = TerminationConditions(trial, master, prepared.units)
-        self._content = manifest(trial, master.system, prepared.engine)
         self._pace = Pace(trial.file.real_time, master) if trial.file.real_time else None
         self._events = trial.events()
         self._floods: list[str] = []
@@ -139,7 +137,7 @@ class Run:
             write_json_into_reserve(self.folder / "manifest.json", self._manifest())
 
     def _manifest(self) -> dict[str, Any]:
-        return {**self._content, "status": self.status, "error": self.error}
+        return {**self.prepared.manifest, "status": self.status, "error": self.error}
 
     def _loop(self) -> str:
         """Step to the end; return the status."""
@@ -154,7 +152,7 @@ class Run:
                 where = f"event {event.key}"
                 action(master.system, event.action, event.key, event.written, where).apply(master)
             stopping, broken, over = stop_requested(), termination.broken(), master.steps >= steps
-            recorder.record(last=stopping or broken or over)
+            recorder.record(last=bool(stopping) or broken or over)
             if broken or over:
                 break
             if stopping:
@@ -162,7 +160,7 @@ class Run:
             if pace is None:
                 master.step()
             else:
-                pace.step(recorder, stop_requested)
+                pace.step(stop_requested)
             if pace is not None or master.steps % _LOOKED_EVERY == 0:
                 self._show_progress()
         self._hooks.progress(self._whole_s, self._whole_s)

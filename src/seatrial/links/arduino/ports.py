@@ -6,7 +6,7 @@ from typing import ClassVar
 
 from ...component import Component, Input, Output, Parameter, Reachable, Terminal, terminal
 from ...unit_table import STANDARD_GRAVITY
-from ..safe_state import UNSET, check_safe_state
+from ..safe_state_bytes import UNSET, check_safe_state
 from .mcus import MCUS
 from .uart_links import read_links, read_monitors
 from .wiring import OTHERS, SERVOS, UARTS, read_uarts, read_wires

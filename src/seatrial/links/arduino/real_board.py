@@ -5,7 +5,8 @@ from __future__ import annotations
 import struct
 
 from ...errors import InputError
-from ..safe_state import require_safe_state, safe_state_bytes
+from ..safe_state import HeldChannels
+from ..safe_state_bytes import require_safe_state, safe_state_bytes
 from .board import UART, Event, Inputs
 from .mcus import CLOCK
 from .uart_links import open_links, read_links
@@ -18,9 +19,10 @@ class RealBoard:
     """Serial ports in the place of a simulated board's UARTs; ``links`` are ``UART=URL``.
 
     ``safe_state`` (hexadecimal) are the safe-state bytes. They are sent to each at the end,
-    however the run ends; to one whose input has become stale, that is silent for ``timeout``
-    seconds after it was not; and to the others when one that has sent has been silent for as long:
-    its link is lost, and until it sends again nothing is sent to the others.
+    however the run ends, by whoever supervises it if this process cannot; to one whose input has
+    become stale, that is silent for ``timeout`` seconds after it was not; and to the others when
+    one that has sent has been silent for as long: its link is lost, and until it sends again
+    nothing is sent to the others.
 
     Raises InputError for links that cannot be or are not allowed, for a safe state that nobody
     gave, and for wires: pins of a real board are out of reach.
@@ -43,6 +45,8 @@ class RealBoard:
         self._ports = open_links(links)
         if not self._ports:
             raise InputError("links: the back end 'board' needs UART=URL of a serial port")
+        self._held = HeldChannels(name)
+        self._held.keep(list(self._ports.values()), lambda _: self._safe_state)
 
     @property
     def exceeded(self) -> int:
@@ -87,7 +91,9 @@ class RealBoard:
 
     def close(self) -> None:
         """Send the safe-state bytes and close the ports. Harmless when repeated."""
-        for uart, port in self._ports.items():
+        for uart in self._ports:
             self._send(uart, self._safe_state)
+        self._held.release()
+        for port in self._ports.values():
             port.close()
         self._ports = {}

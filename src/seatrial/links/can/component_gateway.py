@@ -12,6 +12,7 @@ from .gateway import Gateway
 from .gateway_url import check_link, open_gateway
 from .node import CanNode
 from .operations import BusError, Confirm, Transmit
+from .safe_state import check_frames, frames_of
 
 MOST_REQUESTED = 64
 """Frames requested and not yet confirmed: fewer than a controller's queue holds."""
@@ -44,6 +45,9 @@ class CanGateway(Reachable, Component):
     out, ``forgotten`` what came in and was not confirmed in 5 s: the node is off the bus, or
     never gets its turn.
 
+    ``safe_state`` are frames, as candump writes them, that are sent when it closes, and by whoever
+    supervises the run if that ends without closing it: what stops the thrusters of a real vehicle.
+
     It cannot be rolled back: what was sent has been sent. Raises InputError at the start for a
     gateway that is malformed or cannot be opened, or is hardware that is not allowed.
     """
@@ -55,6 +59,10 @@ class CanGateway(Reachable, Component):
 
     link = Parameter(
         "socketcand:127.0.0.1:29536", "1", "where programs outside connect to", check=check_link
+    )
+
+    safe_state = Parameter(
+        "", "1", "frames sent at the end, IDENTIFIER#DATA, separated by spaces", check=check_frames
     )
 
     rx = Input("1", "operations from the bus", type=str)
@@ -84,6 +92,7 @@ class CanGateway(Reachable, Component):
         self._waiting: deque[tuple[int, Frame]] = deque()
         self._requested: list[tuple[int, int, Frame]] = []
         self._in = self._out = self._forgotten = 0
+        self._hold()
 
     def step(self, t: float, h: float) -> None:
         """Carry frames out and in."""
@@ -102,6 +111,7 @@ class CanGateway(Reachable, Component):
             self._waiting.extend(arrived)
             self._in += len(arrived)
         self._forget()
+        self._hold()
         while self._waiting and len(self._requested) < MOST_REQUESTED:
             sender, frame = self._waiting.popleft()
             self._requested.append((self.now_ns, sender, frame))
@@ -118,12 +128,18 @@ class CanGateway(Reachable, Component):
         self.forgotten = self._forgotten
 
     def close(self) -> None:
-        """Close the gateway."""
+        """Send the frames of the safe state and close the gateway."""
         if self._gateway is not None:
+            for frame in frames_of(self.safe_state):
+                self._gateway.send(self.now_ns, frame)
             self._gateway.close()
         self._gateway = None
 
     # ------------------------------------------------------------------ inside
+
+    def _hold(self) -> None:
+        if self.safe_state and self._gateway is not None:
+            self._gateway.keep(self.name, self.safe_state)
 
     def _confirmed(self, when: int, identifier: int) -> None:
         """Send the other clients a frame of one of them."""

@@ -15,8 +15,10 @@ import sys
 
 from ...errors import InputError
 from ..endpoints.budget import MOST, Budget
+from ..safe_state import Held, hold
 from .frame import Frame
 from .gateway import FRAME_BYTES, LEAST, RATE, Gateway
+from .safe_state import frames_of
 
 GROUP, PORT = "239.65.82.{}", 57732
 MAGIC = 0x2934
@@ -73,6 +75,7 @@ class DroneCanMulticastGateway(Gateway):
         self.reached_at = f"mcast:{bus}"
         self._senders: dict[tuple[str, int], int] = {}
         self.budget = Budget(RATE, LEAST)
+        self._held: list[Held] = []
         self._receiving, self._sending = _socket(), _socket()
         try:
             self._receiving.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -118,8 +121,18 @@ class DroneCanMulticastGateway(Gateway):
             with contextlib.suppress(OSError):  # a datagram may be lost
                 self._sending.sendto(datagram, (self._group, PORT))
 
+    def keep(self, name: str, frames: str) -> None:
+        """Hold a datagram for each frame that this bus has."""
+        if not self._held:
+            target = (self._group, PORT)
+            for datagram in filter(None, map(packed, frames_of(frames))):
+                held = hold(name, self.reached_at, self._sending.fileno(), datagram, target)
+                self._held.append(held)
+
     def close(self) -> None:
         """Leave the bus."""
+        for held in self._held:
+            held.release()
         self._receiving.close()
         self._sending.close()
 

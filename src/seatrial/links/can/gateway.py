@@ -42,6 +42,14 @@ class Gateway(ABC):
         """Report an error frame to all, where the protocol can."""
         del time_ns, error
 
+    def keep(self, name: str, frames: str) -> None:
+        """Hold frames (`safe_state`) of the component ``name`` for whoever supervises this process.
+
+        Called every step, as clients come and go; `close` releases them. Where nobody but this
+        process can send anything, nothing is held.
+        """
+        del name, frames
+
     @abstractmethod
     def close(self) -> None:
         """Let go of sockets, ports and buses."""

@@ -8,9 +8,11 @@ from collections.abc import Callable, Sequence
 from ...errors import InputError
 from ..endpoints.budget import Budget
 from ..endpoints.endpoint import Channel, Endpoint
+from ..safe_state import HeldChannels, inherited
 from .frame import Frame
 from .gateway import LEAST, RATE, Gateway
 from .operations import Error
+from .safe_state import frames_of
 
 LONGEST_LINE = 1000
 """Characters without an end after which they are thrown away."""
@@ -62,8 +64,27 @@ class Client(ABC):
         """Report an error frame, if that is wanted and the protocol can."""
         del time_ns, error
 
+    def written(self, frames: Sequence[Frame]) -> bytes:
+        """Return what `send` would send of some frames now."""
+        channel, collected = self._channel, _Collecting()
+        self._channel = collected
+        try:
+            for frame in frames:
+                self.send(0, frame)
+        finally:
+            self._channel = channel
+        return bytes(collected.data)
+
     def tick(self) -> None:  # noqa: B027  most have nothing to do
         """Do what is due by wall time."""
+
+
+class _Collecting(Channel):
+    def __init__(self) -> None:
+        self.data = bytearray()
+
+    def send(self, data: bytes) -> None:
+        self.data += data
 
 
 class ClientsGateway(Gateway):
@@ -75,6 +96,7 @@ class ClientsGateway(Gateway):
         self._clients: dict[Channel, Client] = {}
         self._numbers: dict[Channel, int] = {}
         self._next = 0
+        self._held: HeldChannels | None = None
 
     @property
     def clients(self) -> int:
@@ -107,8 +129,19 @@ class ClientsGateway(Gateway):
         for client in self._clients.values():
             client.send_error(time_ns, error)
 
+    def keep(self, name: str, frames: str) -> None:
+        """Hold frames for every client, as far as it receives any."""
+        if not inherited():
+            return
+        self._greet(self._endpoint.channels())
+        self._held = self._held or HeldChannels(name)
+        wanted = frames_of(frames)
+        self._held.keep([self._endpoint], lambda channel: self._clients[channel].written(wanted))
+
     def close(self) -> None:
         """Close all connections."""
+        if self._held is not None:
+            self._held.release()
         self._endpoint.close()
 
     def _greet(self, present: Sequence[Channel]) -> None:

@@ -9,6 +9,7 @@ import can
 
 from ...errors import InputError
 from ..endpoints.budget import Budget
+from ..safe_state import Held, hold_bus
 from .frame import Frame
 from .gateway import FRAME_BYTES, LEAST, RATE, Gateway
 from .messages import error_message, frame_of, message
@@ -27,8 +28,10 @@ class PythonCanGateway(Gateway):
         options: dict[str, Any] = {} if bitrate is None else {"bitrate": bitrate}
         if interface == "virtual":
             options["preserve_timestamps"] = True
+        self._opened_by = {"channel": channel, "interface": interface, **options}
+        self._held: Held | None = None
         try:
-            self._bus = can.Bus(channel, interface, ignore_config=True, **options)
+            self._bus = can.Bus(**self._opened_by, ignore_config=True)
         except (can.CanError, NotImplementedError, OSError, TypeError, ValueError) as error:
             raise InputError(f"cannot open the gateway {url!r}: {error}") from None
         self._is_simulated = interface == "virtual"
@@ -67,8 +70,15 @@ class PythonCanGateway(Gateway):
         if self._is_simulated:
             self._put(error_message(error, time_ns / 1e9))
 
+    def keep(self, name: str, frames: str) -> None:
+        """Hold frames for a bus that is not of this process alone."""
+        if self._held is None and not self._is_simulated:
+            self._held = hold_bus(name, self.reached_at, self._opened_by, frames)
+
     def close(self) -> None:
         """Leave the bus."""
+        if self._held is not None:
+            self._held.release()
         with contextlib.suppress(can.CanError, OSError):
             self._bus.shutdown()
 

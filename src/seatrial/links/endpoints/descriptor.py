@@ -22,6 +22,10 @@ class DescriptorChannel(Channel):
             self._queue += data
             self.flush()
 
+    def target(self) -> tuple[int, None]:
+        """Return the descriptor."""
+        return self._descriptor, None
+
     def flush(self) -> None:
         """Write what the line takes now."""
         try:

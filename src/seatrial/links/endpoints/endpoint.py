@@ -45,6 +45,14 @@ class Channel(ABC):
     def send(self, data: bytes) -> None:
         """Send one frame; it is lost silently if the peer takes no more or is gone."""
 
+    def target(self) -> tuple[int, tuple[str, int] | None] | None:
+        """Return the descriptor that leads to the peer, and the address of a datagram.
+
+        Whoever supervises this process sends a safe state through it, if this process ends
+        without doing so. None if there is no such descriptor: then nobody can.
+        """
+        return None
+
 
 class Endpoint(ABC):
     """One URL. What has gone wrong on the way is no error here: protocols repeat themselves."""

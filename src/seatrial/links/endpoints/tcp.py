@@ -49,6 +49,9 @@ class _Stream(Channel):
             self.close()
         return data
 
+    def target(self) -> tuple[int, None]:
+        return self._socket.fileno(), None
+
     def close(self) -> None:
         self.is_open = False
         self._socket.close()

@@ -33,6 +33,9 @@ class _UdpPeer(Channel):
             else:
                 self.socket.sendto(data, self._address)
 
+    def target(self) -> tuple[int, _Address | None]:
+        return self.socket.fileno(), None if self._owned else self._address
+
     def close(self) -> None:
         if self._owned:
             self.socket.close()

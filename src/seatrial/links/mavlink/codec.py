@@ -6,7 +6,7 @@ from typing import Any
 
 from pymavlink.dialects.v20 import all as mavlink
 
-from .signing import Signing
+from .signing import UNIT_S, Signing
 
 Message = Any
 """A message of pymavlink: its fields are attributes."""
@@ -14,6 +14,7 @@ Message = Any
 UNSIGNED = frozenset({mavlink.MAVLINK_MSG_ID_RADIO_STATUS})
 """Messages that are received without a signature: of a radio, which has no key."""
 
+_AHEAD_S = 5.0
 _MOST_SENDERS = 64
 _LONGEST_REST = 1 << 13
 
@@ -48,6 +49,23 @@ class Codec:
         frame: bytes = message.pack(self._mav)
         self._mav.seq = (self._mav.seq + 1) % 256
         return frame
+
+    def encode_last(self, message: Message) -> bytes:
+        """Return a message as the frame that is still good if nothing follows for a while.
+
+        It takes no number of the sequence; its timestamp is ahead, so that it is no repetition.
+        """
+        guard = self._mav.guard
+        if guard is None:
+            return bytes(message.pack(self._mav))
+        guard.link_id = self._link_id
+        guard.tick()
+        now = guard.timestamp
+        guard.timestamp += round(_AHEAD_S / UNIT_S)
+        try:
+            return bytes(message.pack(self._mav))
+        finally:
+            guard.timestamp = now
 
     def decode(self, data: bytes) -> list[Message]:
         """Return the messages that are complete with ``data``; the rest waits for more."""

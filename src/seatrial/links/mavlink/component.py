@@ -87,6 +87,9 @@ class Mavlink(MavlinkPorts):
     Not here: radio channels with losses and delays, MAVLink FTP, cameras, logs on
     board. It cannot be rolled back: what was sent has been sent.
 
+    The last frame to every peer is a HEARTBEAT that says disarmed; whoever supervises the run sends
+    it if that ends without closing the links.
+
     It keeps a log of all frames, ``NAME.tlog``, in ``run_folder`` (`TelemetryLog`).
 
     Raises InputError at the start for a link, file, date, version, name or failsafe that cannot
@@ -184,8 +187,10 @@ class Mavlink(MavlinkPorts):
         self.paused = self._vehicle.paused_s
 
     def close(self) -> None:
-        """Close the links."""
+        """Send the last heartbeat, which says disarmed, and close the links."""
         if self._transport is not None:
+            if self._node is not None:
+                self._transport.broadcast(self._node.presence.last())
             self._transport.close()
         self._transport = self._node = None
         self._log.close()
@@ -210,6 +215,7 @@ class Mavlink(MavlinkPorts):
         for message, sender in arrived:
             self._node.receive(message, sender, now)
         self._node.tick(now)
+        self._transport.keep_last(self._node.presence.last())
         return bool(arrived)
 
     def _identity(self) -> Identity:
@@ -255,7 +261,9 @@ class Mavlink(MavlinkPorts):
                 )
             signing = Signing(read_key(Path(self.signing_key_file)), state)
         endpoints = open_endpoints("links", self.links)
-        return EndpointTransport(endpoints, identity.system, identity.component, signing, self._log)
+        return EndpointTransport(
+            endpoints, identity.system, identity.component, signing, self._log, self.name
+        )
 
     def _estimates(self) -> Estimates:
         measured = self.voltage > 0.0

@@ -87,6 +87,7 @@ class Node:
         )
         self.rally = rally
         self.failures = FailureService(vehicle, transport, settings, failures)
+        self.presence = PresenceService(vehicle, transport)
         self.services: list[Service] = [
             CommandService(vehicle, transport, handlers),
             arming,
@@ -110,7 +111,7 @@ class Node:
             SystemTelemetry(vehicle, transport),
             NavigationTelemetry(vehicle, transport, lambda: self.goal),
             # What the others changed is reported last.
-            PresenceService(vehicle, transport),
+            self.presence,
             StreamService(vehicle, transport, builders, intervals),
         ]
         self._receivers: dict[int, list[Receiver]] = {}

@@ -66,10 +66,17 @@ class PresenceService(Service):
                 self.transport.broadcast(message)
         self.vehicle.texts.clear()
 
+    def last(self) -> Message:
+        """Return the last HEARTBEAT: whatever the vehicle was, nobody drives it any more."""
+        return self._made(armed=False, failsafe=False)
+
     def _heartbeat(self, now: float) -> list[Message]:
+        return [self._made(armed=self.vehicle.armed, failsafe=self.vehicle.failsafe)]
+
+    def _made(self, *, armed: bool, failsafe: bool) -> Message:
         vehicle = self.vehicle
         flags = mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED
-        flags |= mavlink.MAV_MODE_FLAG_SAFETY_ARMED if vehicle.armed else 0
+        flags |= mavlink.MAV_MODE_FLAG_SAFETY_ARMED if armed else 0
         name = vehicle.mode.name
         if name in MANUAL_MODES:
             flags |= mavlink.MAV_MODE_FLAG_MANUAL_INPUT_ENABLED
@@ -77,17 +84,15 @@ class PresenceService(Service):
             flags |= mavlink.MAV_MODE_FLAG_GUIDED_ENABLED
         flags |= mavlink.MAV_MODE_FLAG_STABILIZE_ENABLED if name != "manual" else 0
         flags |= mavlink.MAV_MODE_FLAG_AUTO_ENABLED if name in ("auto", "return") else 0
-        status = mavlink.MAV_STATE_ACTIVE if vehicle.armed else mavlink.MAV_STATE_STANDBY
-        return [
-            mavlink.MAVLink_heartbeat_message(
-                vehicle.identity.vehicle_type,
-                vehicle.dialect.autopilot,
-                flags,
-                vehicle.mode.custom_mode,
-                mavlink.MAV_STATE_CRITICAL if vehicle.failsafe else status,
-                3,
-            )
-        ]
+        status = mavlink.MAV_STATE_ACTIVE if armed else mavlink.MAV_STATE_STANDBY
+        return mavlink.MAVLink_heartbeat_message(
+            vehicle.identity.vehicle_type,
+            vehicle.dialect.autopilot,
+            flags,
+            vehicle.mode.custom_mode,
+            mavlink.MAV_STATE_CRITICAL if failsafe else status,
+            3,
+        )
 
     def _version(self, now: float) -> list[Message]:
         identity = self.vehicle.identity

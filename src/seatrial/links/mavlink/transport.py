@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
 from ..endpoints.endpoint import Channel, Endpoint
+from ..safe_state import HeldChannels
 from .codec import Codec, Message
 from .signing import Signing
 from .tlog import TelemetryLog
+
+_KEPT_S = 1.0
 
 
 @dataclass(eq=False)
@@ -51,7 +55,7 @@ class EndpointTransport:
 
     Sent to are the peers that a URL names, and those that may command the vehicle: with
     ``signing`` they have sent a frame with a good signature, without it they have connected, or
-    have sent a message.
+    have sent a message. ``name`` is the component's, for messages.
     """
 
     def __init__(
@@ -61,12 +65,15 @@ class EndpointTransport:
         component: int,
         signing: Signing | None,
         log: TelemetryLog,
+        name: str = "mavlink",
     ) -> None:
         self.endpoints = list(endpoints)
         self._system, self._component, self._signing = system, component, signing
         self._log = log
         self._links: dict[Channel, Link] = {}
         self._made = 0
+        self._held = HeldChannels(name)
+        self._kept_for, self._kept_until = set[Channel](), 0.0
 
     def links(self) -> Sequence[int]:
         """Return the numbers of the links that there are now."""
@@ -97,8 +104,25 @@ class EndpointTransport:
             if link.admitted:
                 self._transmit(link, message)
 
+    def keep_last(self, message: Message) -> None:
+        """Hold a message for every link, for whoever supervises this process.
+
+        Anew as peers come, and every second: signatures have times.
+        """
+        now, present = time.monotonic(), {c for c, link in self._links.items() if link.admitted}
+        if present == self._kept_for and now < self._kept_until:
+            return
+        self._kept_for, self._kept_until = present, now + _KEPT_S
+        self._held.keep(
+            self.endpoints,
+            lambda channel: (
+                self._links[channel].codec.encode_last(message) if channel in present else b""
+            ),
+        )
+
     def close(self) -> None:
         """Close everything; the newest timestamp of signatures is kept."""
+        self._held.release()
         for endpoint in self.endpoints:
             endpoint.close()
         if self._signing is not None:

@@ -1,0 +1,174 @@
+"""A copy of this process that does what may kill it: its signals, its end and its safe states."""
+
+from __future__ import annotations
+
+import contextlib
+import faulthandler
+import os
+import re
+import select
+import signal
+import socket
+import tempfile
+import time
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+from typing import NoReturn
+
+from ..fmi.process import how_ended
+from ..links.safe_state import ENVIRONMENT
+from ..links.safe_state_keeper import SafeStates
+from .forked_child import ASKING, ORDER, Child, flush_c_streams
+from .journal import Journal
+from .link import Frame, Link
+
+_SLICE_MS = 50
+"""A stop is passed on within this time."""
+_EXIT_S = 10.0
+"""Wall time for a child that is to end at once; one that takes longer is killed."""
+_LAST_STREAM = 2
+_SHOWN_FRAMES = 3
+_FRAME = re.compile(r'^  File "(.+)", line (\d+) in (.+)$', re.MULTILINE)
+_OWN = str(Path(__file__).parents[1])
+
+
+class Forked:
+    """Runs ``body`` in a child of this process, whatever becomes of that. POSIX only.
+
+    The child heeds no signal of a terminal or a service manager: this process gets them too, and
+    passes on how urgently a stop is ``asked`` for. It ends in order if this process is killed.
+    The safe states that it and its own processes held are sent when they have ended without
+    doing so themselves; ``sent`` has a line for each.
+    """
+
+    def __init__(self, body: Callable[[Child], None]) -> None:
+        _fill_standard_streams()
+        self.journal, self.sent = Journal(), list[str]()
+        self._states = SafeStates()
+        ours, theirs = socket.socketpair()
+        self._stack = tempfile.TemporaryFile()  # noqa: SIM115  it lives as long as the child
+        parent = os.getpid()
+        # A handler of this process must not run in the child.
+        mask = signal.pthread_sigmask(signal.SIG_BLOCK, ASKING)
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", DeprecationWarning)  # of other threads
+                self._pid = os.fork()
+            if not self._pid:
+                ours.close()
+                self._be_child(body, Link(theirs), parent, mask)
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+        theirs.close()
+        self.link = Link(ours)
+        self._waiting = select.poll()
+        self._waiting.register(self.link.fileno(), select.POLLIN)
+        self._waiting.register(self._states.fileno(), select.POLLIN)
+        self._status: int | None = None
+        self._to_end_by = float("inf")
+
+    def frames(self, asked: int) -> list[Frame] | None:
+        """Return the frames that come within a moment; None once the child has ended.
+
+        ``asked`` is how urgently it is to stop: 1 after its step, 2 at once. It is killed if it
+        does not do the latter.
+        """
+        ended = self._has_ended()  # before it is looked whether there is anything left to read
+        if not ended:
+            self._ask(asked)
+        ready = {descriptor for descriptor, _ in self._waiting.poll(0 if ended else _SLICE_MS)}
+        self.sent += self._states.of_ended()
+        if self.link.fileno() in ready:
+            frames = self.link.receive()
+            if frames is None:
+                self._wait()
+            return frames
+        return None if ended else []
+
+    def how(self) -> str:
+        """Return how the child ended, and where in whose Python code if that is known."""
+        self._wait()
+        assert self._status is not None
+        self._stack.seek(0)
+        text = self._stack.read().decode("utf-8", "replace")
+        places = [
+            f"{Path(file).name}:{line} in {function}"
+            for file, line, function in _FRAME.findall(text)
+            if not file.startswith(_OWN) and "site-packages" not in file
+        ]
+        shown = f" ({', '.join(places[:_SHOWN_FRAMES])})" if places else ""
+        return how_ended(self._status) + shown
+
+    def end(self, asked: int = 0) -> None:
+        """Let the child end, which then waits for no more frames; kill it if it does not."""
+        mask = signal.pthread_sigmask(signal.SIG_BLOCK, ASKING)  # whatever is raised comes later
+        try:
+            if not self._has_ended():
+                self._ask(asked)
+            self.link.close()
+            self._wait()
+            self.sent += self._states.all()
+            self._states.close()
+            self._stack.close()
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+
+    # ------------------------------------------------------------------ inside
+
+    def _ask(self, level: int) -> None:
+        level = min(level, 2)
+        if level > self.journal.asked:
+            self.journal.asked = level
+            os.kill(self._pid, ORDER)
+            if level > 1:
+                self._to_end_by = time.monotonic() + _EXIT_S
+        if time.monotonic() > self._to_end_by:
+            self._kill()
+
+    def _has_ended(self) -> bool:
+        if self._status is None:
+            pid, status = os.waitpid(self._pid, os.WNOHANG)
+            if pid:
+                self._status = os.waitstatus_to_exitcode(status)
+        return self._status is not None
+
+    def _wait(self) -> None:
+        """Wait until the child, which closes its end, has ended."""
+        deadline = time.monotonic() + _EXIT_S
+        while not self._has_ended():
+            if time.monotonic() > deadline:
+                self._kill()
+            time.sleep(0.001)
+
+    def _kill(self) -> None:
+        if not self._has_ended():
+            os.kill(self._pid, signal.SIGKILL)
+
+    def _be_child(
+        self,
+        body: Callable[[Child], None],
+        link: Link,
+        parent: int,
+        mask: set[int | signal.Signals],
+    ) -> NoReturn:
+        """Run the body and end, whatever it does: nothing of the parent's may go on here."""
+        status = 1
+        try:
+            os.environ[ENVIRONMENT] = str(self._states.left_to_child())
+            faulthandler.enable(self._stack, all_threads=False)
+            child = Child(link, self.journal, parent)
+            signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+            body(child)
+            status = 0
+        finally:
+            with contextlib.suppress(BaseException):
+                flush_c_streams()
+            os._exit(status)
+
+
+def _fill_standard_streams() -> None:
+    """Let no descriptor that is opened from here on be 0, 1 or 2, which C code prints to."""
+    while (descriptor := os.open(os.devnull, os.O_RDWR)) <= _LAST_STREAM:
+        pass
+    os.close(descriptor)

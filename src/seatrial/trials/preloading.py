@@ -1,0 +1,30 @@
+"""Modules imported before a process is copied, so that the copies share them."""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+from collections.abc import Sequence
+
+from ..cosim.system import Engine
+from ..errors import InputError
+from ..fmi.source import ComponentSource, find_source
+from .trial import Trial
+
+_OF_FMUS = ("seatrial.fmi.export", "seatrial.fmi.load")
+
+
+def preload(trials: Sequence[Trial], engine: Engine) -> None:
+    """Import what the components of some trials need; of seatrial's own modules alone.
+
+    What others wrote is imported where it can do no harm, in the copy.
+    """
+    modules = set(_OF_FMUS if engine == "fmu" else ())
+    for trial in trials:
+        for placed in trial.rig.components.values():
+            with contextlib.suppress(InputError):  # it will be said when it is loaded
+                source = find_source(placed.entry.fmu, placed.scope.folder)
+                if isinstance(source, ComponentSource) and source.module.startswith("seatrial."):
+                    modules.add(source.module)
+    for module in sorted(modules):
+        importlib.import_module(module)

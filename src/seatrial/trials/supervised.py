@@ -1,0 +1,79 @@
+"""The child of a `Supervisor`: it runs the trials that it is ordered to."""
+
+from __future__ import annotations
+
+import os
+import traceback
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from ..cosim.system import Engine, System
+from ..errors import SeatrialError, SimulationError
+from .forked_child import Child, forward_output
+from .hooks import Hooks
+from .link import Frame
+from .run import Result, check_trial, run_trial
+from .trial import Trial
+
+
+def serve(trials: Sequence[Trial], engine: Engine, child: Child) -> None:
+    """Carry out orders until there are no more: ``check`` and ``run``, each by number.
+
+    Each ends with one frame: ``checked``, ``done`` or ``error``.
+    """
+    forward_output(child.link)
+    here = Path.cwd()
+    while (orders := child.link.receive()) is not None:
+        for order in orders:
+            os.chdir(here)  # a component may have left it
+            child.link.send(*_carried_out(order, trials, engine, child))
+
+
+def _carried_out(order: Frame, trials: Sequence[Trial], engine: Engine, child: Child) -> Frame:
+    what, number, *rest = order
+    try:
+        if what == "check":
+            check_trial(trials[number], engine, _hooks(child))
+            return ["checked"]
+        out = None if rest[0] is None else Path(rest[0])
+        result = run_trial(trials[number], out, engine=engine, hooks=_hooks(child))
+        return ["done", _written(result)]
+    except SeatrialError as error:
+        return ["error", type(error).__name__, str(error)]
+    except KeyboardInterrupt:
+        return ["error", KeyboardInterrupt.__name__, ""]
+    except BaseException as error:  # SystemExit too: nothing that a component does is an end
+        text = "".join(traceback.format_exception(error)).strip()
+        return ["error", SimulationError.__name__, f"an error of seatrial itself:\n{text}"]
+
+
+def _hooks(child: Child) -> Hooks:
+    link, journal = child.link, child.journal
+
+    def assembled(system: System, manifest: dict[str, Any]) -> None:
+        for number, part in enumerate(system.parts.values()):
+            part.instance = journal.journalled(part.instance, number)
+        link.send("assembled", manifest)
+
+    return Hooks(
+        building=lambda what: link.send("building", what),
+        progress=lambda passed, whole: link.send("progress", passed, whole),
+        reachable=lambda name, where: link.send("reachable", name, where),
+        assembled=assembled,
+        claimed=lambda folder: link.send("claimed", str(folder)),
+        stop_requested=child.asked,
+        interruptible=child.interruptible,
+    )
+
+
+def _written(result: Result) -> dict[str, object]:
+    verdicts = [(name, check, asdict(verdict)) for name, check, verdict in result.verdicts]
+    return {
+        "status": result.status,
+        "error": result.error,
+        "verdicts": verdicts,
+        "notes": result.notes,
+        "wall": result.wall,
+    }
