@@ -70,6 +70,7 @@ class Recorder:
         self._path = path
         self._file = path.open("w", newline="", encoding="utf-8")
         csv.writer(self._file, lineterminator="\n").writerow(["time", *self.names])
+        self._file.flush()
         # Text is always quoted: a lone carriage return in it would end the row otherwise.
         self._writer = csv.writer(self._file, lineterminator="\n", quoting=csv.QUOTE_NONNUMERIC)
         self._watched_places = {name: places[name] for name in watch}

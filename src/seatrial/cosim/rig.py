@@ -169,6 +169,14 @@ class Rig:
         check_rig_file(file, self.read_from.path)
         return Rig(file, self.read_from, replace(self.top, file=file))
 
+    def isolating(self, chosen: Mapping[str, bool]) -> Rig:
+        """Return the rig with its components ``chosen``, by path, in processes of their own or not.
+
+        Raises InputError for one that cannot be.
+        """
+        top = _isolating(self.top, chosen)
+        return Rig(top.file, self.read_from, top)
+
     @cached_property
     def components(self) -> dict[str, Placed]:
         """Components by path, those of inner rigs in the place of these."""
@@ -191,6 +199,19 @@ class Rig:
         """The files of the rigs inside, each once."""
         found = {scope.read_from.path: scope.read_from for scope in self.top.all()}
         return [source for path, source in found.items() if path != self.read_from.path]
+
+
+def _isolating(scope: Scope, chosen: Mapping[str, bool]) -> Scope:
+    components = {}
+    for name, entry in scope.file.components.items():
+        path = joined(scope.path, name)
+        if path in chosen:
+            entry = entry.model_copy(update={"isolated": chosen[path]})
+            _check_component(name, entry, f"{scope.read_from.path}: components.{name}")
+        components[name] = entry
+    file = scope.file.model_copy(update={"components": components})
+    inner = {name: _isolating(each, chosen) for name, each in scope.inner.items()}
+    return replace(scope, file=file, inner=inner)
 
 
 def _placed(scope: Scope) -> Iterator[tuple[str, Placed]]:

@@ -13,6 +13,7 @@ import tempfile
 import time
 import warnings
 from collections.abc import Callable
+from itertools import takewhile
 from pathlib import Path
 from typing import NoReturn
 
@@ -92,11 +93,11 @@ class Forked:
         assert self._status is not None
         self._stack.seek(0)
         text = self._stack.read().decode("utf-8", "replace")
-        places = [
-            f"{Path(file).name}:{line} in {function}"
-            for file, line, function in _FRAME.findall(text)
-            if not file.startswith(_OWN) and "site-packages" not in file
-        ]
+        called = takewhile(
+            lambda frame: not frame[0].startswith(_OWN) and "site-packages" not in frame[0],
+            _FRAME.findall(text),
+        )
+        places = [f"{Path(file).name}:{line} in {function}" for file, line, function in called]
         shown = f" ({', '.join(places[:_SHOWN_FRAMES])})" if places else ""
         return how_ended(self._status) + shown
 

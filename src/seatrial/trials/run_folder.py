@@ -74,7 +74,7 @@ def load_run(folder: Path | str) -> Run:
     """Read a run folder.
 
     A run that was killed may lack verdicts, timing and its last line; one that failed at its
-    start, the whole record, which then is empty.
+    start, the whole record, which then is empty, as is one whose file is.
 
     Raises InputError for a folder that is not a run, and for files that cannot be read or
     contradict each other.
@@ -82,11 +82,11 @@ def load_run(folder: Path | str) -> Run:
     folder = Path(folder)
     manifest = read_manifest(folder)
     files = (SIGNALS, VERDICTS, TIMING)
-    notes = [f"{name} is missing" for name in files if not (folder / name).is_file()]
+    notes = [f"{name} is missing" for name in files if not _has_content(folder / name)]
     time: FloatArray = np.empty(0)
     signals: dict[str, Any] = {}
     truncated = False
-    if (folder / SIGNALS).is_file():
+    if _has_content(folder / SIGNALS):
         time, signals, truncated = _read_signals(folder / SIGNALS, _texts(manifest))
         _check_signals(folder / SIGNALS, time, signals, manifest)
     elif manifest["status"] in ("complete", "ended", "stopped"):
@@ -104,6 +104,10 @@ def load_run(folder: Path | str) -> Run:
         truncated=truncated,
         notes=tuple(notes),
     )
+
+
+def _has_content(path: Path) -> bool:
+    return path.is_file() and path.stat().st_size > 0
 
 
 def _texts(manifest: dict[str, Any]) -> set[str]:

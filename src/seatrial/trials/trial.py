@@ -113,6 +113,8 @@ class Trial:
     """Settings from outside the file: (component.port, what was written, who says so)."""
     scales: tuple[tuple[str, float, str], ...] = ()
     """Parameters to multiply after all settings: (component.port, factor, who says so)."""
+    isolated: Mapping[str, bool] = field(default_factory=dict)
+    """Components, by path, that were said to run in processes of their own, or not to."""
     notes: tuple[str, ...] = ()
     """What was met in an SSP package and is not used."""
 
@@ -178,15 +180,18 @@ class Trial:
     def changed(self, changes: Mapping[str, Any], origin: str) -> Trial:
         """Return the trial with settings changed: ``component.port``, or a key of the trial.
 
-        Keys of the trial are variant, seed, start, stop and ``choices.NAME``; of its rig, step
-        and algorithm. Raises InputError.
+        Keys of the trial are variant, seed, start, stop and ``choices.NAME``; of its rig, step,
+        algorithm and ``component.isolated``. Raises InputError.
         """
         keys, rig_keys = ("variant", "seed", "start", "stop"), ("step", "algorithm")
         own, of_rig, overrides = dict[str, Any](), dict(self.rig_changes), list(self.overrides)
         choices = {**self.file.choices, **choices_in(changes, origin)}
+        isolated = dict(self.isolated)
         for key, value in changes.items():
             if key.startswith(_CHOICES):
                 own["choices"] = choices
+            elif key.endswith(_ISOLATED):
+                isolated[key.removesuffix(_ISOLATED)] = _switch(value, f"{origin}: {key}")
             elif "." in key:
                 overrides.append((key, value, origin))
             elif key in keys:
@@ -203,7 +208,14 @@ class Trial:
             rig = _rig(file, self.read_from.path)
         if of_rig:
             rig = rig.changed(of_rig)
-        changed = replace(self, file=file, rig=rig, rig_changes=of_rig)
+        for name in isolated:
+            if name not in rig.components:
+                raise InputError(
+                    f"{origin}: {name}{_ISOLATED}: {unknown('component', name, rig.components)}"
+                )
+        if isolated:
+            rig = rig.isolating(isolated)
+        changed = replace(self, file=file, rig=rig, rig_changes=of_rig, isolated=isolated)
         return _checked(replace(changed, overrides=tuple(overrides)))
 
 
@@ -240,8 +252,16 @@ def load_trial(
     return read(name, relative_to, changes, origin).changed(changes, origin)
 
 
+_ISOLATED = ".isolated"
+"""What the key of a component in a process of its own ends with, among settings."""
 _CHOICES = "choices."
 """What the key of a choice begins with, among settings."""
+
+
+def _switch(value: Any, where: str) -> bool:
+    if not isinstance(value, bool):
+        raise InputError(f"{where}: true or false is needed, found {value!r}")
+    return value
 
 
 def choices_in(changes: Mapping[str, Any], origin: str) -> dict[str, str]:
