@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import signal
+import os
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -13,15 +11,19 @@ import typer
 from rich.live import Live
 
 from ..component import Component
-from ..cosim.profile import load_profile
-from ..errors import INTERRUPTED, SimulationError
+from ..cosim.profile import Profile, load_profile
+from ..errors import INTERRUPTED, InputError, SeatrialError, SimulationError
 from ..links.hardware import allow_devices, allow_network
 from ..links.serial_gateway import SerialGateway
 from ..links.videoray.topside import Pro4Topside
-from .drive_keys import Gamepad, pressed_keys, raw_terminal
+from ..trials.forked import Forked
+from ..trials.forked_child import Child
+from ..trials.link import Frame
+from .drive_keys import Gamepad, pressed_keys, raw_terminal, restored_terminal
 from .drive_pilot import Pilot
 from .drive_screen import picture
 from .show import console
+from .stopping import stoppable
 
 _STEP = 0.01
 _PICTURES = 10
@@ -52,13 +54,50 @@ def drive(
     if network:
         allow_network()
     loaded = load_profile(profile)
+    if not hasattr(os, "fork"):
+        _drive(loaded, link, record, gamepad)
+        return
+
+    def driven(child: Child) -> None:
+        try:
+            with child.interruptible():
+                _drive(loaded, link, record, gamepad)
+            child.link.send("done", "", "")
+        except KeyboardInterrupt:
+            child.link.send("error", SimulationError.__name__, INTERRUPTED)
+        except SeatrialError as error:
+            child.link.send("error", type(error).__name__, str(error))
+        except BaseException as error:
+            child.link.send("error", SimulationError.__name__, repr(error))
+
+    _supervised(Forked(driven))
+
+
+def _supervised(forked: Forked) -> None:
+    """Wait for the end of a drive; the terminal, and the vehicle, are left as they should be."""
+    outcome: Frame | None = None
+    with stoppable() as stop, restored_terminal():
+        try:
+            while (frames := forked.frames(2 * stop.requested())) is not None:
+                outcome = frames[-1] if frames else outcome
+        finally:
+            forked.end(2)
+    if outcome is None:
+        raise SimulationError("; ".join([f"the process of the drive {forked.how()}", *forked.sent]))
+    kind, name, text = outcome
+    if kind == "error":
+        raise InputError(text) if name == InputError.__name__ else SimulationError(text)
+
+
+def _drive(loaded: Profile, link: str | None, record: Path | None, gamepad: Path | None) -> None:
+    """Drive until the pilot quits."""
     topside, gateway = Pro4Topside("topside"), SerialGateway("topside-port")
     _start(topside, {**loaded.parameters("links.topside"), "run_folder": str(record or "")})
     own = loaded.parameters("links.topside-port")
     pad = Gamepad(gamepad) if gamepad else None
     try:
         _start(gateway, {**own, "links": link} if link else own)
-        with _terminated(), raw_terminal():
+        with raw_terminal():
             _run(topside, gateway, Pilot(), pad)
     finally:
         gateway.close()  # sends what stops the thrusters
@@ -116,21 +155,3 @@ def _order(topside: Pro4Topside, pilot: Pilot, manual: tuple[float, float, float
         topside.set(name, getattr(pilot, name))
     topside.set("depth_wanted", pilot.depth_wanted)
     topside.set("heading_wanted", pilot.heading_wanted)
-
-
-@contextmanager
-def _terminated() -> Iterator[None]:
-    """Make a termination signal or a lost terminal end the loop in order, as Ctrl-C does."""
-
-    def end(_number: int, _frame: object) -> None:
-        raise SimulationError(INTERRUPTED)
-
-    numbers = [signal.SIGTERM, signal.SIGINT]
-    if hasattr(signal, "SIGHUP"):
-        numbers.append(signal.SIGHUP)
-    before = {number: signal.signal(number, end) for number in numbers}
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)

@@ -25,6 +25,8 @@ _SEQUENCES = {
     b"[6~": "page down",
 }
 _ESCAPE = 0x1B
+_OWN_SCREEN_ENDS = b"\x1b[?1049l\x1b[?25h"
+"""Back to the screen of before (xterm's control sequences), with its cursor."""
 
 _EVENT = struct.Struct("IhBB")
 """Linux's joystick interface (js_event): time ms, value, type, number."""
@@ -53,6 +55,25 @@ def raw_terminal() -> Iterator[None]:
     finally:
         os.set_blocking(descriptor, True)
         termios.tcsetattr(descriptor, termios.TCSADRAIN, before)
+
+
+@contextmanager
+def restored_terminal() -> Iterator[None]:
+    """Leave the terminal as it was, whatever became of the process that had it."""
+    if not sys.stdin.isatty() or not sys.stdout.isatty():
+        yield
+        return
+    import termios
+
+    descriptor = sys.stdin.fileno()
+    before, blocking = termios.tcgetattr(descriptor), os.get_blocking(descriptor)
+    try:
+        yield
+    finally:
+        os.set_blocking(descriptor, blocking)
+        if termios.tcgetattr(descriptor) != before:
+            termios.tcsetattr(descriptor, termios.TCSADRAIN, before)
+            os.write(sys.stdout.fileno(), _OWN_SCREEN_ENDS)
 
 
 def pressed_keys() -> list[str]:

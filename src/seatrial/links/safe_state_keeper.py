@@ -14,6 +14,8 @@ from typing import Any
 
 _SEND_S = 1.0
 """Wall time that one safe state may take to be sent."""
+_BUS_S = 5.0
+"""The same of a bus, which is opened first: drivers wait for adapters."""
 _IN_ORDER_S = 3.0
 """Wall time in which processes that the run started may end in order, and send it themselves."""
 _LONGEST = 1 << 17
@@ -167,7 +169,7 @@ def _bus(message: dict[str, Any]) -> bool:
             status = 0
         finally:
             os._exit(status)
-    deadline = time.monotonic() + 2 * _SEND_S
+    deadline = time.monotonic() + _BUS_S
     while time.monotonic() < deadline:
         done, status = os.waitpid(pid, os.WNOHANG)
         if done:

@@ -20,8 +20,8 @@ from typing import NoReturn
 from ..fmi.process import how_ended
 from ..links.safe_state import ENVIRONMENT
 from ..links.safe_state_keeper import SafeStates
+from .call_trace import CallTrace
 from .forked_child import ASKING, ORDER, Child, flush_c_streams
-from .journal import Journal
 from .link import Frame, Link
 
 _SLICE_MS = 50
@@ -45,7 +45,7 @@ class Forked:
 
     def __init__(self, body: Callable[[Child], None]) -> None:
         _fill_standard_streams()
-        self.journal, self.sent = Journal(), list[str]()
+        self.call_trace, self.sent = CallTrace(), list[str]()
         self._states = SafeStates()
         ours, theirs = socket.socketpair()
         self._stack = tempfile.TemporaryFile()  # noqa: SIM115  it lives as long as the child
@@ -119,8 +119,8 @@ class Forked:
 
     def _ask(self, level: int) -> None:
         level = min(level, 2)
-        if level > self.journal.asked:
-            self.journal.asked = level
+        if level > self.call_trace.asked:
+            self.call_trace.asked = level
             os.kill(self._pid, ORDER)
             if level > 1:
                 self._to_end_by = time.monotonic() + _EXIT_S
@@ -158,7 +158,7 @@ class Forked:
         try:
             os.environ[ENVIRONMENT] = str(self._states.left_to_child())
             faulthandler.enable(self._stack, all_threads=False)
-            child = Child(link, self.journal, parent)
+            child = Child(link, self.call_trace, parent)
             signal.pthread_sigmask(signal.SIG_SETMASK, mask)
             body(child)
             status = 0

@@ -13,7 +13,7 @@ from contextlib import contextmanager, suppress
 from typing import Any
 
 from ..fmi.orphan import end_with
-from .journal import Journal
+from .call_trace import CallTrace
 from .link import Link
 
 ASKING = [
@@ -30,15 +30,15 @@ _PR_SET_PDEATHSIG = 1
 
 
 class Child:
-    """What a child knows of its parent: orders to stop, in the journal, and whether it lives.
+    """What a child knows of its parent: orders to stop, in the trace, and whether it lives.
 
     A stop that is more urgent than 1 raises KeyboardInterrupt, once, where a component may hang.
     Signals alone do nothing: those of a terminal reach the parent too, which then passes on its
     orders with a signal of its own. It comes too when the parent is killed.
     """
 
-    def __init__(self, link: Link, journal: Journal, parent: int) -> None:
-        self.link, self.journal = link, journal
+    def __init__(self, link: Link, trace: CallTrace, parent: int) -> None:
+        self.link, self.call_trace = link, trace
         self._parent, self._own = parent, os.getpid()
         self._may_hang = self._interrupted = False
         for number in ASKING:
@@ -56,8 +56,8 @@ class Child:
         """Return how urgently a stop is requested; called once a step, between all calls."""
         if os.getpid() != self._own:
             os._exit(0)  # a copy of this process that a component made by fork, and that returned
-        self.journal.between_calls()
-        return self.journal.asked
+        self.call_trace.between_calls()
+        return self.call_trace.asked
 
     @contextmanager
     def interruptible(self) -> Iterator[None]:
@@ -71,11 +71,11 @@ class Child:
 
     def _heed(self, _number: int, _frame: object) -> None:
         if os.getppid() != self._parent:
-            self.journal.asked = 2
+            self.call_trace.asked = 2
         self._interrupt()
 
     def _interrupt(self) -> None:
-        if self.journal.asked > 1 and self._may_hang and not self._interrupted:
+        if self.call_trace.asked > 1 and self._may_hang and not self._interrupted:
             self._interrupted = True
             raise KeyboardInterrupt
 

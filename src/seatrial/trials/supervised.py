@@ -50,11 +50,11 @@ def _carried_out(order: Frame, trials: Sequence[Trial], engine: Engine, child: C
 
 
 def _hooks(child: Child) -> Hooks:
-    link, journal = child.link, child.journal
+    link, trace = child.link, child.call_trace
 
     def assembled(system: System, manifest: dict[str, Any]) -> None:
         for number, part in enumerate(system.parts.values()):
-            part.instance = journal.journalled(part.instance, number)
+            part.instance = trace.traced(part.instance, number)
         link.send("assembled", manifest)
 
     return Hooks(

@@ -166,16 +166,16 @@ class Supervisor:
         """Return the status of a run whose process has ended by itself, and the reason."""
         assert self._forked is not None
         forked, self._forked = self._forked, None
-        how, journal = forked.how(), forked.journal
+        how, trace = forked.how(), forked.call_trace
         forked.end()
-        component, call = journal.entry(list(self._manifest.get("components", [])))
+        component, call = trace.entry(list(self._manifest.get("components", [])))
         if component:
             error = f"{component}: the process of the run {how} in {call}"
         elif self._loading and not self._manifest:
             error = f"the process of the run {how} while it loaded {self._loading}"
         else:
             error = f"the process of the run {how} between two calls of components"
-        return "stopped" if journal.asked > 1 else "failed", "; ".join([error, *forked.sent])
+        return "stopped" if trace.asked > 1 else "failed", "; ".join([error, *forked.sent])
 
     def _note_sent(self, result: Result) -> None:
         assert self._forked is not None

@@ -1,4 +1,4 @@
-"""Journal of a run, in memory that two processes share: the call it is in, and orders to stop."""
+"""CallTrace of a run, in memory that two processes share: the call it is in, and orders to stop."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _WORDS = list(_CALLS.values())
 _ASKED, _CALL, _TIME = range(3)
 
 
-class Journal:
+class CallTrace:
     """Cells that a dead process leaves behind: no call costs more than a store or two."""
 
     def __init__(self) -> None:
@@ -55,9 +55,9 @@ class Journal:
             return "", ""
         return names[number], f"{_WORDS[kind]} at t = {self._times[_TIME]!r} s"
 
-    def journalled(self, instance: Instance, number: int) -> Instance:
+    def traced(self, instance: Instance, number: int) -> Instance:
         """Return ``instance``, component ``number``, with its calls noted before they are made."""
-        return cast(Instance, _Journalled(instance, number, self))
+        return cast(Instance, _Traced(instance, number, self))
 
     def _noted(self, number: int, kind: str, call: Callable[..., Any]) -> Callable[..., Any]:
         cells, code = self.cells, number * len(_WORDS) + _KINDS[kind] + 1
@@ -80,24 +80,24 @@ class Journal:
         return timed
 
 
-class _Journalled:
+class _Traced:
     """An instance whose calls are noted."""
 
-    def __init__(self, instance: Instance, number: int, journal: Journal) -> None:
-        self._instance, self._number, self._journal = instance, number, journal
+    def __init__(self, instance: Instance, number: int, trace: CallTrace) -> None:
+        self._instance, self._number, self._trace = instance, number, trace
         for kind in ("set_start", "begin", "get_state", "set_state", "free_state", "terminate",
                      "free"):  # fmt: skip
-            setattr(self, kind, journal._noted(number, kind, getattr(instance, kind)))
-        self.initialise = journal._timed(number, "initialise", instance.initialise)
-        self.step = journal._timed(number, "step", instance.step)
+            setattr(self, kind, trace._noted(number, kind, getattr(instance, kind)))
+        self.initialise = trace._timed(number, "initialise", instance.initialise)
+        self.step = trace._timed(number, "step", instance.step)
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._instance, name)
 
     def reader(self, names: Sequence[str]) -> Reader:
-        bind = self._journal._noted(self._number, "reader", self._instance.reader)
-        return self._journal._noted(self._number, "read", bind(names))
+        bind = self._trace._noted(self._number, "reader", self._instance.reader)
+        return self._trace._noted(self._number, "read", bind(names))
 
     def writer(self, names: Sequence[str]) -> Writer:
-        bind = self._journal._noted(self._number, "writer", self._instance.writer)
-        return self._journal._noted(self._number, "write", bind(names))
+        bind = self._trace._noted(self._number, "writer", self._instance.writer)
+        return self._trace._noted(self._number, "write", bind(names))
