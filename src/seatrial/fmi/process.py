@@ -18,6 +18,8 @@ from .pipe import MESSAGE, MOST_BYTES, Frame, Frames
 _SLICE_S = 0.2
 """A wait looks up so often: a signal that comes just before it begins must not be missed."""
 _EXIT_S = 5.0
+_IN_ORDER_S = 2.0
+"""Wall time for the end of a call that was interrupted, and what the component does then."""
 _LAST_STREAM = 2
 _STACK_S = 0.5
 _KEPT_BYTES = 8192
@@ -101,18 +103,21 @@ class WorkerProcess:
                     how = f"was ended for not answering within {timeout_s:g} s"
                     raise self._gone(how, timed_out=True)
                 unsent = self._wait(unsent, min(_SLICE_S, left))
-        except BaseException:
+        except EndedError:
             self.end()
+            raise
+        except BaseException:  # the component may hang, or be a link that has to stop something
+            self.wait(_IN_ORDER_S)
             raise
         self._output.release()
         return answer
 
-    def wait(self) -> None:
+    def wait(self, within_s: float = _EXIT_S) -> None:
         """Let the process, whose end was requested, end by itself; end it if it does not."""
         self._close_requests()
         try:
             with contextlib.suppress(subprocess.TimeoutExpired):
-                self._process.wait(_EXIT_S)
+                self._process.wait(within_s)
         finally:
             self.end()
             self._output.release()

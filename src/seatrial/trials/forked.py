@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import faulthandler
+import gc
 import os
 import re
 import select
@@ -155,6 +156,7 @@ class Forked:
     ) -> NoReturn:
         """Run the body and end, whatever it does: nothing of the parent's may go on here."""
         status = 1
+        gc.freeze()  # what it looks through, it would copy: the memory is shared
         try:
             os.environ[ENVIRONMENT] = str(self._states.left_to_child())
             faulthandler.enable(self._stack, all_threads=False)
