@@ -79,6 +79,7 @@ benchmark: $(INSTALLED)
 	$(BIN)/python -m benchmarks.arduino --write
 	$(BIN)/python -m benchmarks.start --write
 	$(BIN)/python -m benchmarks.floods --write
+	$(BIN)/python -m benchmarks.supervision --write
 
 fmus: $(INSTALLED)
 	$(BIN)/seatrial fmu build --out build/fmus

@@ -1,4 +1,4 @@
-"""What it costs to run a trial in a supervised process: ``python -m benchmarks.supervision``.
+"""Wall time of supervised trials beside unsupervised ones: ``python -m benchmarks.supervision``.
 
 The same trial runs supervised and in the calling process, in turn, for some rounds: each in a
 fresh Python, whose wall time from start to end is compared for a trial of 0.1 s, and the wall time

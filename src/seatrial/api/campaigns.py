@@ -112,7 +112,8 @@ def run_campaign(
 
     ``campaign`` is a name or the path of a ``.toml`` file; ``out`` and ``engine`` are as for
     `run_trial`. ``progress`` is called after each case with how many are done, and of how many.
-    A case that could not go on has the status ``failed`` and does not end the campaign.
+    A case that could not go on, or whose process died, has the status ``failed`` and does not end
+    the campaign.
 
     Raises InputError for bad input in any case, before the first one runs; KeyboardInterrupt for
     a campaign that was interrupted: its folder holds the cases so far, for

@@ -138,6 +138,9 @@ def run_trial(
     second with the simulated time that has passed and that of the whole run, s. No device is
     opened and no other host reached; ``seatrial run`` can.
 
+    The trial runs in a process of its own: a component that crashes or exits ends that, and the
+    run has failed. On Windows it runs in this one.
+
     Raises InputError for bad input, before anything is written. Raises SimulationError for a run
     that could not go on, and KeyboardInterrupt for one that was interrupted; its folder holds
     what was recorded so far, for `load_result`.

@@ -51,9 +51,10 @@ class Simulation:
     The simulation is at a communication point between any two calls. The same calls give the
     same numbers, those of a trial with events at the same times.
 
-    A component that crashes, such as a native FMU, ends the process, unless the rig says
-    ``isolated = true`` for it. No device is opened and no other host reached: a rig whose links
-    need one is refused. Use it from one thread, and close it, or use it as a context manager.
+    A component that crashes, such as a native FMU, or that calls C's ``exit`` ends the process,
+    unless the rig says ``isolated = true`` for it; `run_trial` survives that. No device is opened
+    and no other host reached: a rig whose links need one is refused. Use it from one thread, and
+    close it, or use it as a context manager.
 
     Raises InputError for bad input, or a rig that cannot start with it.
     """
