@@ -160,7 +160,7 @@ def test_an_interrupted_run_raises_and_is_whole(
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        seatrial.run_trial(trial, out=tmp_path / "run", progress=interrupt)
+        seatrial.run_trial(trial, set={"stop": "2000 s"}, out=tmp_path / "run", progress=interrupt)
     assert seatrial.load_result(tmp_path / "run").status == "stopped"
 
 
