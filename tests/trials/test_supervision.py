@@ -232,6 +232,9 @@ def test_a_component_of_a_package_can_be_isolated(native_fmu, tmp_path: Path) ->
         done = seatrial("run", "boat.ssp", *chosen, cwd=tmp_path)
         assert done.returncode == 3
         assert said in done.stderr
+    done = seatrial("run", "boat.ssp", "--set", "boat.isolated=jailed", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "--set: boat.isolated: true, false or 'sandboxed' is needed" in done.stderr
 
 
 def test_a_component_that_leaves_the_folder_moves_nothing(trial, tmp_path: Path) -> None:

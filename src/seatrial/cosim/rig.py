@@ -44,6 +44,10 @@ class ConnectionEntry(FileModel):
     """Units are converted, and must measure the same."""
 
 
+Isolated = bool | Literal["sandboxed"]
+"""Whether a component runs in a process of its own, and whether that is confined."""
+
+
 class ComponentEntry(FileModel):
     """One component of a rig: an FMU, or another rig."""
 
@@ -62,7 +66,7 @@ class ComponentEntry(FileModel):
     """By port; of a rig, by component.port inside it."""
     step: str | None = None
     """Of a rig, that of all components in it that say none themselves."""
-    isolated: bool | Literal["sandboxed"] = False
+    isolated: Isolated = False
     """It runs in a process of its own; in a sandbox, without network and files of others."""
     timeout: str | None = None
     """Longest wall time of one call of an isolated component."""
@@ -169,7 +173,7 @@ class Rig:
         check_rig_file(file, self.read_from.path)
         return Rig(file, self.read_from, replace(self.top, file=file))
 
-    def isolating(self, chosen: Mapping[str, bool]) -> Rig:
+    def isolating(self, chosen: Mapping[str, Isolated]) -> Rig:
         """Return the rig with its components ``chosen``, by path, in processes of their own or not.
 
         Raises InputError for one that cannot be.
@@ -201,7 +205,7 @@ class Rig:
         return [source for path, source in found.items() if path != self.read_from.path]
 
 
-def _isolating(scope: Scope, chosen: Mapping[str, bool]) -> Scope:
+def _isolating(scope: Scope, chosen: Mapping[str, Isolated]) -> Scope:
     components = {}
     for name, entry in scope.file.components.items():
         path = joined(scope.path, name)

@@ -13,7 +13,7 @@ from pydantic_core import PydanticCustomError
 from ..cosim.clock import OverrunPolicy
 from ..cosim.files import FileModel, Source, find_file, read_toml, validated
 from ..cosim.flattening import load_rig
-from ..cosim.rig import Rig, duration_ns
+from ..cosim.rig import Isolated, Rig, duration_ns
 from ..errors import InputError, unknown
 from ..shipped import available
 from .criteria import Criterion, parse
@@ -113,7 +113,7 @@ class Trial:
     """Settings from outside the file: (component.port, what was written, who says so)."""
     scales: tuple[tuple[str, float, str], ...] = ()
     """Parameters to multiply after all settings: (component.port, factor, who says so)."""
-    isolated: Mapping[str, bool] = field(default_factory=dict)
+    isolated: Mapping[str, Isolated] = field(default_factory=dict)
     """Components, by path, that were said to run in processes of their own, or not to."""
     notes: tuple[str, ...] = ()
     """What was met in an SSP package and is not used."""
@@ -191,7 +191,7 @@ class Trial:
             if key.startswith(_CHOICES):
                 own["choices"] = choices
             elif key.endswith(_ISOLATED):
-                isolated[key.removesuffix(_ISOLATED)] = _switch(value, f"{origin}: {key}")
+                isolated[key.removesuffix(_ISOLATED)] = _isolated(value, f"{origin}: {key}")
             elif "." in key:
                 overrides.append((key, value, origin))
             elif key in keys:
@@ -258,10 +258,12 @@ _CHOICES = "choices."
 """What the key of a choice begins with, among settings."""
 
 
-def _switch(value: Any, where: str) -> bool:
-    if not isinstance(value, bool):
-        raise InputError(f"{where}: true or false is needed, found {value!r}")
-    return value
+def _isolated(value: Any, where: str) -> Isolated:
+    if isinstance(value, bool):
+        return value
+    if value == "sandboxed":
+        return "sandboxed"
+    raise InputError(f"{where}: true, false or 'sandboxed' is needed, found {value!r}")
 
 
 def choices_in(changes: Mapping[str, Any], origin: str) -> dict[str, str]:
