@@ -111,6 +111,7 @@ def start(write, tmp_path: Path, vehicle: Vehicle) -> Iterator[Start]:
         ))  # fmt: skip
         write("trial.toml", 'rig = "rig.toml"\nstop = "1000 s"\n')
         command = [SEATRIAL, "run", "trial.toml", "--engine", "direct", "--realtime", "--out", out]
+        command.append("--hardware")  # the terminal is this test's, which a run cannot know
         pipe = subprocess.PIPE
         processes.append(
             subprocess.Popen(command, cwd=tmp_path, stdout=pipe, stderr=pipe, text=True)
@@ -257,6 +258,7 @@ def test_a_can_bus_gets_its_frames(whose: str, number: int, write, tmp_path: Pat
     write("rig.toml", CAN_RIG.format(link=f"python-can:slcan:{vehicle.device}:250000"))
     write("trial.toml", 'rig = "rig.toml"\nstop = "1000 s"\n')
     command = [SEATRIAL, "run", "trial.toml", "--engine", "direct", "--realtime", "--out", "run"]
+    command.append("--hardware")
     pipe = subprocess.PIPE
     process = subprocess.Popen(command, cwd=tmp_path, stdout=pipe, stderr=pipe, text=True)
     try:
