@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -11,6 +12,9 @@ import pytest
 from hypothesis import settings
 
 from tests.fmi.native import build_native_fmu
+
+if hasattr(signal, "SIGHUP"):
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)  # tests send it, also when nohup runs them
 
 # A busy machine is no failure; other examples are tried in every run.
 settings.register_profile("any-machine", settings(), deadline=None, max_examples=30)

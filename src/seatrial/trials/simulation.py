@@ -119,11 +119,12 @@ class Run:
 
     def _end(self, started: str) -> None:
         """Write how the run ended; what a full disk does not take is the reason that it failed."""
-        try:
-            self._recorder.close()
-            write_json(self.folder / "timing.json", self._timing(started))
-        except OSError as problem:
-            self._broken_disk(problem)
+        timing = self.folder / "timing.json"
+        for write in (self._recorder.close, lambda: write_json(timing, self._timing(started))):
+            try:
+                write()
+            except OSError as problem:
+                self._broken_disk(problem)
         self._write_end()
 
     def _broken_disk(self, problem: OSError) -> None:

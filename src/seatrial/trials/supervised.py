@@ -42,6 +42,9 @@ def _carried_out(order: Frame, trials: Sequence[Trial], engine: Engine, child: C
         return ["done", _written(result)]
     except SeatrialError as error:
         return ["error", type(error).__name__, str(error)]
+    except OSError as error:
+        what = f"cannot read or write {error.filename or 'a file'}: {error.strerror}"
+        return ["error", SimulationError.__name__, what]
     except KeyboardInterrupt:
         return ["error", KeyboardInterrupt.__name__, ""]
     except BaseException as error:  # SystemExit too: nothing that a component does is an end

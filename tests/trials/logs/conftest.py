@@ -88,9 +88,9 @@ def foreign(tmp_path: Path) -> Run:
         csv.writer(file, lineterminator="\n").writerows([["time", *signals], *rows])
     manifest = {
         "format": 1,
-        "trial": {"name": "foreign"},
-        "rig": {"name": "foreign"},
-        "components": {"box": {"fmu": "box.fmu", "parameters": {}}},
+        "trial": {"name": "foreign", "file": "foreign.toml", "sha256": ""},
+        "rig": {"name": "foreign", "file": "foreign.toml", "sha256": ""},
+        "components": {"box": {"fmu": "box.fmu", "sha256": "", "step": 0.1, "parameters": {}}},
         "connections": [],
         "signals": {
             name: {"type": kind, "unit": unit, "description": f"about {name}"}
