@@ -60,12 +60,11 @@ ENDS = [
     pytest.param("supervisor", signal.SIGINT, id="int"),
     pytest.param("supervisor", signal.SIGTERM, id="term", marks=pytest.mark.interop),
     pytest.param("supervisor", signal.SIGHUP, id="hup"),
-    pytest.param("supervisor", signal.SIGQUIT, id="quit"),
-    pytest.param("supervisor", signal.SIGKILL, id="supervisor-killed"),
+    pytest.param("supervisor", signal.SIGQUIT, id="quit", marks=pytest.mark.interop),
+    pytest.param("supervisor", signal.SIGKILL, id="supervisor-killed", marks=pytest.mark.interop),
     pytest.param("child", signal.SIGKILL, id="killed"),
-    pytest.param("child", signal.SIGSEGV, id="segfault"),
+    pytest.param("child", signal.SIGSEGV, id="segfault", marks=pytest.mark.interop),
 ]
-STATUSES = {signal.SIGKILL: -signal.SIGKILL}
 
 
 class Vehicle:
@@ -136,7 +135,13 @@ def ended(process: subprocess.Popen[str], whose: str, number: int) -> str:
     return message
 
 
-@pytest.mark.parametrize("isolated", [False, True], ids=["in-process", "isolated"])
+@pytest.mark.parametrize(
+    "isolated",
+    [
+        pytest.param(False, id="in-process"),
+        pytest.param(True, id="isolated", marks=pytest.mark.interop),
+    ],
+)
 @pytest.mark.parametrize(("whose", "number"), ENDS)
 def test_the_vehicle_gets_its_safe_state_last(
     whose: str, number: int, isolated: bool, start, vehicle: Vehicle, tmp_path: Path
@@ -251,7 +256,11 @@ gateway = {{ fmu = "can-gateway", set = {{ link = "{link}", safe_state = "09F10D
 
 
 @pytest.mark.parametrize(
-    ("whose", "number"), [("supervisor", signal.SIGHUP), ("child", signal.SIGKILL)]
+    ("whose", "number"),
+    [
+        pytest.param("supervisor", signal.SIGHUP, marks=pytest.mark.interop),
+        ("child", signal.SIGKILL),
+    ],
 )
 def test_a_can_bus_gets_its_frames(whose: str, number: int, write, tmp_path: Path) -> None:
     vehicle = Vehicle()
