@@ -139,7 +139,7 @@ def test_libcosim_runs_it(fmu, station):
     beats = 0
     while (message := connection.recv_match()) is not None:
         beats += message.get_type() == "HEARTBEAT"
-    assert beats == 2  # at 0 and at 1 s of 1.5
+    assert beats == 3  # at 0 and at 1 s of 1.5, and the last when it closes
 
 
 @pytest.mark.parametrize("engine", ["direct", "fmu"])

@@ -9,12 +9,12 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Collection, Hashable
 
-RATE, LEAST = 12_000.0, 64
-"""Bytes per second of wall time, and in one poll at least, where messages are read: a full line of
-115 200 baud. A message of 20 bytes takes some 30 to 50 us."""
-RAW_RATE, RAW_LEAST = 100_000.0, 1024
-"""The same where bytes are passed on alone: a line of 1 Mbaud."""
-MOST = 4096
+RATE = 100_000.0
+"""Bytes per second of wall time: a line of 1 Mbaud. Two thousand messages of MAVLink are as much;
+one takes some 30 to 50 us."""
+LEAST, RAW_LEAST = 64, 1024
+"""Bytes in one poll at least, where messages are read and where bytes are passed on alone."""
+MOST = 16_384
 """Bytes in one poll, and of one peer."""
 SMALLEST_SHARE = 64
 """Bytes in one poll that each of many peers has."""
@@ -44,7 +44,7 @@ class Budget:
     @classmethod
     def of_raw_bytes(cls) -> Budget:
         """Return one for bytes that nobody reads here."""
-        return cls(RAW_RATE, RAW_LEAST)
+        return cls(RATE, RAW_LEAST)
 
     def renew(self, peers: Collection[Hashable]) -> None:
         """Begin a poll of these peers, which share what it may take in."""

@@ -14,7 +14,7 @@ MOST_PEERS = 16
 """Senders that a listener answers; a new one takes the place of the one silent longest."""
 MOST_NEW = 8
 """Senders that one poll gets to know; more wait for the next."""
-MOST_READS = 16
+MOST_READS = 32
 """Datagrams read from one socket in one poll, most of them only to be dropped in a flood."""
 
 _Address = tuple[str, int]
