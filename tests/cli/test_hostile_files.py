@@ -127,6 +127,9 @@ def test_a_record_that_cannot_grow_fails_the_run(tmp_path: Path) -> None:
     manifest = json.loads((run / "manifest.json").read_text())
     assert manifest["status"] == "failed"
     assert manifest["error"] == f"cannot write {run / 'signals.csv'}: File too large"
+    lines = (run / "signals.csv").read_text().splitlines(keepends=True)
+    assert len(lines) > 2
+    assert {(line.count(","), line[-1]) for line in lines} == {(lines[0].count(","), "\n")}
     # The page carries more than the limit: there is none, rather than the half of one.
     assert {path.name for path in run.iterdir()} == {"manifest.json", "signals.csv", "timing.json"}
 

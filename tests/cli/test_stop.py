@@ -6,6 +6,7 @@ import json
 import os
 import signal
 import subprocess
+import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -264,3 +265,29 @@ def test_a_run_of_which_all_is_killed_is_whole_up_to_its_last_row(
     page = (tmp_path / "run" / "report.html").read_text("utf-8")
     assert "The run has not ended, or was killed." in page
     assert "timing.json is missing" in page
+
+
+def test_nobody_reads_what_is_printed_and_the_status_is_the_verdict(write, tmp_path: Path) -> None:
+    write("still.py", COMPONENT)
+    write("rig.toml", 'step = "10 ms"\n[components]\nboat = { fmu = "still.py:Slow" }\n')
+    criterion = '[[criteria]]\nname = "it ends"\ncheck = "finally boat.y > 0 m"\n'
+    write("trial.toml", f'rig = "rig.toml"\nstop = "20 ms"\n{criterion}')
+    ours, theirs = os.pipe()
+    os.close(ours)
+    command = [SEATRIAL, "run", "trial.toml", "--engine", "direct", "--out", "run"]
+    done = subprocess.run(command, cwd=tmp_path, stdout=theirs, stderr=subprocess.PIPE, text=True)
+    os.close(theirs)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert (tmp_path / "run" / "report.html").is_file()
+
+
+def test_a_signal_before_a_command_heeds_any_is_one_message(tmp_path: Path) -> None:
+    code = (
+        "import os, signal, seatrial.cli.run as run\n"
+        "from seatrial.cli import main\n"
+        "run.load_trial = lambda *_, **__: os.kill(os.getpid(), signal.SIGINT)\n"
+        "main()\n"
+    )
+    command = [sys.executable, "-c", code, "run", "x"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (3, "seatrial: stopped\n")

@@ -17,6 +17,9 @@ from .commands import LazyGroup
 from .starting import interrupting
 from .statuses import BAD_INPUT, BROKEN
 
+_INTERRUPTED = 130
+"""Status of Typer's own for a command that was interrupted."""
+
 app = typer.Typer(
     cls=LazyGroup,
     no_args_is_help=True,
@@ -51,6 +54,10 @@ def _run() -> None:
         _complain(SimulationError(f"cannot read or write{where}: {error.strerror}"), BROKEN)
     except KeyboardInterrupt:
         _complain(SimulationError("stopped"), BROKEN)
+    except SystemExit as end:
+        if end.code == _INTERRUPTED:
+            _complain(SimulationError("stopped"), BROKEN)
+        raise
     except Exception as error:  # Python's own status 1 would say that a criterion failed
         print(printable(traceback.format_exc()), file=sys.stderr)
         what = f"an error of seatrial itself, please report it: {type(error).__name__}: {error}"

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import csv
+import io
 from array import array
 from collections.abc import Sequence
+from contextlib import suppress
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
@@ -44,8 +46,8 @@ class Recorder:
 
     Numbers are written so that they read back exactly; Booleans as 0 and 1; text quoted where
     it must be; bytes as base64 text. Each row is handed to the system at once: the file is whole
-    up to the last one if the process is killed. What cannot be written raises OSError with the
-    file's name.
+    up to the last one if the process is killed, and a row of which a full disk takes a part is
+    taken back. What cannot be written raises OSError with the file's name.
     """
 
     def __init__(
@@ -68,11 +70,14 @@ class Recorder:
             column for column, i in enumerate(self._places) if isinstance(master.signals[i], bytes)
         ]
         self._path = path
-        self._file = path.open("w", newline="", encoding="utf-8")
-        csv.writer(self._file, lineterminator="\n").writerow(["time", *self.names])
-        self._file.flush()
+        self._file = path.open("wb", buffering=0)
+        self._whole = 0
+        """Bytes of the rows that were written whole."""
+        self._row = io.StringIO(newline="")
+        csv.writer(self._row, lineterminator="\n").writerow(["time", *self.names])
+        self._write()
         # Text is always quoted: a lone carriage return in it would end the row otherwise.
-        self._writer = csv.writer(self._file, lineterminator="\n", quoting=csv.QUOTE_NONNUMERIC)
+        self._writer = csv.writer(self._row, lineterminator="\n", quoting=csv.QUOTE_NONNUMERIC)
         self._watched_places = {name: places[name] for name in watch}
         self._watched: dict[str, array[float]] = {name: array("d") for name in watch}
         self._times = array("d")
@@ -92,11 +97,8 @@ class Recorder:
             row[column] = int(row[column])
         for column in self._binaries:
             row[column] = storable(row[column])
-        try:
-            self._writer.writerow([master.time, *row])
-            self._file.flush()
-        except OSError as error:
-            raise self._named(error) from None
+        self._writer.writerow([master.time, *row])
+        self._write()
 
     def watched(self) -> tuple[NDArray[np.float64], dict[str, NDArray[np.float64]]]:
         """Return time and watched signals at every communication step so far."""
@@ -108,6 +110,21 @@ class Recorder:
             self._file.close()
         except OSError as error:
             raise self._named(error) from None
+
+    def _write(self) -> None:
+        """Write the row that was made, or nothing."""
+        data = self._row.getvalue().encode()
+        self._row.seek(0)
+        self._row.truncate()
+        written = 0
+        try:
+            while written < len(data):
+                written += self._file.write(data[written:])
+        except OSError as error:
+            with suppress(OSError):
+                self._file.truncate(self._whole)
+            raise self._named(error) from None
+        self._whole += written
 
     def _named(self, error: OSError) -> OSError:
         return OSError(error.errno, error.strerror, str(self._path))
