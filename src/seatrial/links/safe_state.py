@@ -7,9 +7,9 @@ sends the data if the process ends without having released them, whatever ends i
 
 from __future__ import annotations
 
-import itertools
 import json
 import os
+import secrets
 import socket
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
@@ -20,7 +20,7 @@ from .endpoints.endpoint import Channel, Endpoint
 ENVIRONMENT = "SEATRIAL_SAFE_STATE"
 """Environment variable with the number of the socket's descriptor; without it nobody supervises."""
 
-_numbers = itertools.count()
+_NUMBER_BITS = 63
 
 
 def inherited() -> tuple[int, ...]:
@@ -33,7 +33,8 @@ class Held:
     """What the supervisor sends in the place of this process."""
 
     def __init__(self, name: str, where: str, content: dict[str, Any], fds: Sequence[int]) -> None:
-        self._number = next(_numbers)
+        # Not counted: each FMU in this process has a copy of this module, with counts of its own.
+        self._number = secrets.randbits(_NUMBER_BITS)
         _send({"number": self._number, "name": name, "where": where, **content}, fds)
 
     def update(self, data: bytes) -> None:
