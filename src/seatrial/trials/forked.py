@@ -110,10 +110,10 @@ class Forked:
                 self._ask(asked)
             self.link.close()
             self._wait()
+        finally:  # whatever went wrong, the vehicle gets its neutral
             self.sent += self._states.all()
             self._states.close()
             self._stack.close()
-        finally:
             signal.pthread_sigmask(signal.SIG_SETMASK, mask)
 
     # ------------------------------------------------------------------ inside
