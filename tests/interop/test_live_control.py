@@ -68,10 +68,10 @@ class Station:
         (first, begun), (last, ended) = clock[0], clock[-1]
         return (last - first) / 1e3 / (ended - begun)
 
-    def comes_to(self, pace: float) -> None:
-        """Wait for a pace; it is never faster. A busy machine does not keep up at once."""
+    def comes_to(self, pace: float, least: float = 0.7) -> None:
+        """Wait for that share of a pace; it is never faster. A busy machine is not at once."""
         end, found = time.monotonic() + WAIT_S, 0.0
-        while found < 0.7 * pace:
+        while found < least * pace:
             assert time.monotonic() < end, found
             found = self.pace(2.0)
             assert found < 1.3 * pace
@@ -96,8 +96,8 @@ def controlled(trial: RunningTrial, station: Station) -> None:
     station.receive("GPS_RAW_INT", lambda m: m.fix_type == mavlink.GPS_FIX_TYPE_3D_FIX)
     station.comes_to(1.0)
     station.speed_up(4.0)
-    # A busy machine may not keep up with it.
-    assert 1.5 < station.pace(3.0) < 4.8
+    # A busy machine may not keep up with it, but it is faster than before.
+    station.comes_to(4.0, least=1.5 / 4.0)
     station.speed_up(0.0)
     still = station.during(3.5)
     assert sum(m.get_type() == "HEARTBEAT" for m in still) >= 2
