@@ -1,5 +1,7 @@
 """Floods, in a bounded number of polls: bytes that one poll takes in, and that others are served."""
 
+import contextlib
+import functools
 import os
 import socket
 import time
@@ -83,6 +85,56 @@ def test_what_a_peer_does_not_use_it_has_later_and_a_datagram_comes_whole():
     assert budget.left(1) == SMALLEST_SHARE
 
 
+def test_messages_count_beside_their_bytes_and_are_made_up_for():
+    budget = Budget(0.0, 100)
+    budget.renew(["peer"])
+    assert budget.take("peer", 100)
+    budget.charge("peer", 5, 30)
+    for _ in range(1 + 150 // 100):
+        budget.renew(["peer"])
+    assert budget.left("peer") == 50
+    budget.charge("gone", 5, 30)
+    assert budget.left("gone") == 100
+
+
+def test_peers_with_nothing_to_say_leave_their_share_to_the_others():
+    budget = Budget(0.0, 1000)
+    for _ in range(2 * MOST // 1000 + 2):
+        budget.renew(["talks", "silent"])
+        budget.take("talks", budget.left("talks"))
+    budget.renew(["talks", "silent"])
+    assert (budget.left("talks"), budget.left("silent")) == (1000, MOST)
+
+
+@pytest.mark.parametrize("kind", ["tcpin", "tcpout", "pty"])
+def test_a_peer_that_has_nothing_left_is_neither_read_nor_cut_off(opened, kind):
+    with contextlib.ExitStack() as stack:
+        if kind == "tcpout":
+            server = stack.enter_context(socket.create_server(("127.0.0.1", 0)))
+            endpoint = opened(f"tcpout:127.0.0.1:{server.getsockname()[1]}")
+            endpoint.poll()
+            peer = stack.enter_context(server.accept()[0])
+            send = peer.sendall
+        elif kind == "tcpin":
+            endpoint = opened("tcpin:127.0.0.1:0")
+            peer = stack.enter_context(socket.create_connection(place(endpoint)))
+            send = peer.sendall
+        else:
+            endpoint = opened("pty")
+            peer = os.open(endpoint.url, os.O_RDWR | os.O_NOCTTY)
+            stack.callback(os.close, peer)
+            send = functools.partial(os.write, peer)
+        send(b"first")
+        until(endpoint, b"first")
+        (channel,) = endpoint.channels()
+        endpoint.budget.charge(channel, 1, endpoint.budget.left(channel) + 2 * LEAST)
+        send(HONEST)
+        assert [endpoint.poll() for _ in range(2)] == [[], []]
+        assert endpoint.budget.exceeded == 0
+        until(endpoint, HONEST)
+        assert list(endpoint.channels()) == [channel]
+
+
 def test_a_tcp_client_that_floods_is_read_by_and_by_and_others_are_served(opened):
     endpoint = opened("tcpin:127.0.0.1:0")
     flood, other = (socket.create_connection(place(endpoint)) for _ in range(2))
@@ -129,7 +181,7 @@ def test_a_udp_sender_that_floods_loses_its_own_datagrams_alone(opened):
         assert [d for poll in polls for _, d in poll if d != PIECE] == [b"now"]
         assert set(endpoint.channels()) == channels
         polls += [endpoint.poll() for _ in range(10)]
-        assert len(PIECE) < brought(polls) <= MOST + 11 * LEAST // 2 + len(PIECE)
+        assert len(PIECE) < brought(polls) <= MOST + 11 * LEAST + len(PIECE)
         assert endpoint.budget.exceeded > 0
 
 

@@ -10,8 +10,7 @@ import time
 from collections.abc import Callable, Collection, Hashable
 
 RATE = 80_000.0
-"""Bytes per second of wall time where messages are read: more than a thousand of MAVLink, of which
-one takes some 30 to 50 us."""
+"""Bytes per second of wall time where messages are read, with what each costs beside its bytes."""
 RAW_RATE = 100_000.0
 """The same where bytes are passed on alone: a line of 1 Mbaud."""
 LEAST, RAW_LEAST = 64, 1024
@@ -26,7 +25,7 @@ class Budget:
     """What one poll may take in; ``exceeded`` is in how many polls a peer brought more.
 
     What a peer does not use it has later, up to `MOST`: an honest one may send at once what it had
-    to say.
+    to say. Peers that have that much leave their share to the others.
 
     ``rate`` is in bytes per second, ``least`` in bytes per poll; ``clock`` is wall time, s.
     """
@@ -53,7 +52,8 @@ class Budget:
         now = self._clock()
         whole = min(max(self._rate * (now - self._last), self._least), MOST)
         self._last, self._is_exceeded = now, False
-        self._share = max(round(whole) // max(len(peers), 1), SMALLEST_SHARE)
+        needy = sum(self._left.get(peer, 0) < MOST for peer in peers)
+        self._share = max(round(whole) // max(needy, 1), SMALLEST_SHARE)
         self._left = {peer: min(self._left.get(peer, 0) + self._share, MOST) for peer in peers}
 
     def left(self, peer: Hashable) -> int:
@@ -71,6 +71,14 @@ class Budget:
         else:
             self.exceed()
         return left > 0
+
+    def charge(self, peer: Hashable, messages: int, each: int) -> None:
+        """Count messages that a peer's bytes turned out to hold as ``each`` bytes more.
+
+        It is made up for in the polls that follow: short messages cost no less than long ones.
+        """
+        if peer in self._left:
+            self._left[peer] -= messages * each
 
     def exceed(self) -> None:
         """Note that a peer brought more than this poll takes in."""

@@ -55,6 +55,8 @@ class DescriptorEndpoint(Endpoint):
         peer.flush()
         self.budget.renew(self._peers)
         most = self.budget.left(peer)
+        if not most:
+            return []
         try:
             data = os.read(self._descriptor, most)
         except OSError:  # nothing there, or unplugged

@@ -38,6 +38,8 @@ class _Stream(Channel):
     def receive(self, most: int) -> bytes:
         """Return what has arrived; the stream is closed if its other end is."""
         self._flush()
+        if not most:
+            return b""
         try:
             data = self._socket.recv(most)
         except BlockingIOError:
@@ -78,7 +80,7 @@ def _read(streams: Sequence[_Stream], budget: Budget) -> list[tuple[Channel, byt
         if data:
             budget.take(stream, len(data))
             arrived.append((stream, data))
-        if len(data) == most:
+        if most and len(data) == most:
             budget.exceed()
     return arrived
 

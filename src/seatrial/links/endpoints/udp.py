@@ -14,8 +14,8 @@ MOST_PEERS = 16
 """Senders that a listener answers; a new one takes the place of the one silent longest."""
 MOST_NEW = 8
 """Senders that one poll gets to know; more wait for the next."""
-MOST_READS = 32
-"""Datagrams read from one socket in one poll, most of them only to be dropped in a flood."""
+MOST_READS = 128
+"""Datagrams read from one socket in one poll: empty ones take nothing of a budget."""
 
 _Address = tuple[str, int]
 
@@ -39,6 +39,22 @@ class _UdpPeer(Channel):
     def close(self) -> None:
         if self._owned:
             self.socket.close()
+
+
+def _of_peer(peer: _UdpPeer, budget: Budget) -> list[tuple[Channel, bytes]]:
+    """Read from a peer's own socket what it may bring; the rest waits in the system's queue."""
+    found: list[tuple[Channel, bytes]] = []
+    waiting = _datagrams(peer.socket)
+    while budget.left(peer):
+        data, _ = next(waiting, (None, None))
+        if data is None:
+            return found
+        budget.take(peer, len(data))
+        found.append((peer, data))
+    with contextlib.suppress(OSError):
+        peer.socket.recv(1, socket.MSG_PEEK)
+        budget.exceed()
+    return found
 
 
 def _datagrams(opened: socket.socket) -> Iterator[tuple[bytes, _Address]]:
@@ -78,10 +94,8 @@ class UdpSender(Endpoint):
 
     def poll(self) -> list[tuple[Channel, bytes]]:
         """Return the datagrams that have arrived."""
-        peer = self._peers[0]
         self.budget.renew(self._peers)
-        found = _datagrams(peer.socket)
-        return [(peer, data) for data, _ in found if self.budget.take(peer, len(data))]
+        return _of_peer(self._peers[0], self.budget)
 
     def close(self) -> None:
         """Close the socket."""
@@ -118,17 +132,21 @@ class UdpListener(Endpoint):
         """Return the datagrams that have arrived, and know their senders."""
         arrived: list[tuple[Channel, bytes]] = []
         self.budget.renew(self._peers.values())
+        for address, peer in list(self._peers.items()):
+            if peer.socket is not self._socket:
+                found = _of_peer(peer, self.budget)
+                arrived += found
+                if found:
+                    self._known(address)
         new = 0
-        known = [peer.socket for peer in self._peers.values() if peer.socket is not self._socket]
-        for opened in (*known, self._socket):
-            for data, address in _datagrams(opened):
-                new += address not in self._peers
-                peer = self._known(address)
-                if self.budget.take(peer, len(data)):
-                    arrived.append((peer, data))
-                if new == MOST_NEW:
-                    self.budget.exceed()
-                    break
+        for data, address in _datagrams(self._socket):
+            new += address not in self._peers
+            peer = self._known(address)
+            if self.budget.take(peer, len(data)):
+                arrived.append((peer, data))
+            if new == MOST_NEW:
+                self.budget.exceed()
+                break
         return arrived
 
     def close(self) -> None:

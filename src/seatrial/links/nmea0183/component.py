@@ -22,6 +22,9 @@ from .readings import Readings
 from .schedule import schedule
 from .sentences import SENTENCES
 
+SENTENCE_COST = 100
+"""Bytes that a sentence takes of its link's budget beside its own: reading one takes some 40 us."""
+
 
 class Nmea0183(Nmea0183Ports):
     """A talker and a listener on NMEA 0183: over UDP, TCP, serial lines, and as text on ports.
@@ -112,7 +115,9 @@ class Nmea0183(Nmea0183Ports):
             for channel, data in endpoint.poll():
                 lines = self._collected.setdefault(channel, Lines())
                 end = b"\n" if endpoint.url.startswith("udp") else b""
-                self._read(lines.take(data + end), now_ns)
+                whole = lines.take(data + end)
+                endpoint.budget.charge(channel, len(whole), SENTENCE_COST)
+                self._read(whole, now_ns)
         readings: Readings | None = None
         for number, each in enumerate(self._schedule):
             if now_ns < self._begun_ns + self._counts[number] * each.period_ns:
