@@ -8,9 +8,9 @@ import time
 
 import pytest
 
-from seatrial.links.endpoints.budget import MOST, SMALLEST_SHARE, Budget
+from seatrial.links.endpoints.budget import ALL_RATE, MOST, RATE, SMALLEST_SHARE, Budget
 from seatrial.links.endpoints.udp import MOST_NEW
-from seatrial.links.endpoints.url import open_endpoint
+from seatrial.links.endpoints.url import open_endpoint, open_endpoints
 
 WAIT_S = 10.0
 LEAST = 1024
@@ -95,6 +95,20 @@ def test_messages_count_beside_their_bytes_and_are_made_up_for():
     assert budget.left("peer") == 50
     budget.charge("gone", 5, 30)
     assert budget.left("gone") == 100
+
+
+@pytest.mark.parametrize("number", [1, 2, 3, 4])
+def test_the_links_of_a_component_share_what_it_takes_in(number):
+    endpoints = open_endpoints("links", " ".join(["udpin:127.0.0.1:0"] * number))
+    now, together = [0.0], 0
+    for endpoint in endpoints:
+        endpoint.close()
+        endpoint.budget._clock = lambda: now[0]
+        now[0] = endpoint.budget._last
+        now[0] += 0.1
+        endpoint.budget.renew(["peer"])
+        together += endpoint.budget.left("peer")
+    assert together == pytest.approx(0.1 * min(number * RATE, ALL_RATE), rel=1e-3)
 
 
 def test_peers_with_nothing_to_say_leave_their_share_to_the_others():

@@ -11,6 +11,8 @@ from collections.abc import Callable, Collection, Hashable
 
 RATE = 80_000.0
 """Bytes per second of wall time where messages are read, with what each costs beside its bytes."""
+ALL_RATE = 2 * RATE
+"""The same of all links of a component."""
 RAW_RATE = 100_000.0
 """The same where bytes are passed on alone: a line of 1 Mbaud."""
 LEAST, RAW_LEAST = 64, 1024

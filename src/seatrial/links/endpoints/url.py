@@ -25,6 +25,7 @@ from ...errors import InputError
 from ...plugins import Registry
 from ..hardware import check_host, check_listening, check_serial_port, resolved
 from ..own_terminals import is_own
+from .budget import ALL_RATE, RATE, Budget
 from .endpoint import Endpoint
 from .pseudo_terminal import PseudoTerminal
 from .serial_port import SerialEndpoint
@@ -85,6 +86,8 @@ _BY_ADDRESS: dict[str, tuple[Callable[[str, str], None], Callable[[tuple[str, in
 def open_endpoints(key: str, urls: str) -> list[Endpoint]:
     """Open all ``urls``, separated by spaces, of the parameter ``key``.
 
+    They share what a component takes in: many links flooded at once cost no more than two.
+
     Raises InputError, with the key, and leaves none open, if one cannot be.
     """
     endpoints: list[Endpoint] = []
@@ -95,6 +98,9 @@ def open_endpoints(key: str, urls: str) -> list[Endpoint]:
         for endpoint in endpoints:
             endpoint.close()
         raise InputError(f"{key}: {error}") from None
+    if len(endpoints) > ALL_RATE / RATE:
+        for endpoint in endpoints:
+            endpoint.budget = Budget(ALL_RATE / len(endpoints))
     return endpoints
 
 
