@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -15,6 +16,8 @@ from ..cosim.profile import Profile, load_profile
 from ..errors import INTERRUPTED, InputError, SeatrialError, SimulationError
 from ..links.hardware import allow_devices, allow_network
 from ..links.serial_gateway import SerialGateway
+from ..links.videoray.frame import encode
+from ..links.videoray.station import NEUTRAL
 from ..links.videoray.topside import Pro4Topside
 from ..trials.forked import Forked
 from ..trials.forked_child import Child
@@ -80,20 +83,22 @@ def _supervised(forked: Forked) -> None:
         try:
             while (frames := forked.frames(2 * stop.requested())) is not None:
                 outcome = frames[-1] if frames else outcome
+            how = forked.how()  # which the end below forgets
         finally:
             forked.end(2)
     if outcome is None:
-        raise SimulationError("; ".join([f"the process of the drive {forked.how()}", *forked.sent]))
+        raise SimulationError("; ".join([f"the process of the drive {how}", *forked.sent]))
     kind, name, text = outcome
     if kind == "error":
         raise InputError(text) if name == InputError.__name__ else SimulationError(text)
 
 
 def _drive(loaded: Profile, link: str | None, record: Path | None, gamepad: Path | None) -> None:
-    """Drive until the pilot quits."""
+    """Drive until the pilot quits; a port without a safe state gets the protocol's own."""
     topside, gateway = Pro4Topside("topside"), SerialGateway("topside-port")
     _start(topside, {**loaded.parameters("links.topside"), "run_folder": str(record or "")})
-    own = loaded.parameters("links.topside-port")
+    neutral = encode(replace(NEUTRAL, id=int(topside.node_id)))
+    own = {"safe_state": neutral.hex(), **loaded.parameters("links.topside-port")}
     pad = Gamepad(gamepad) if gamepad else None
     try:
         _start(gateway, {**own, "links": link} if link else own)
