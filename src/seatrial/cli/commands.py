@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import typer
 from typer.core import TyperCommand, TyperGroup
 
+from ..errors import SimulationError
 from .starting import ending_at_once
 
 
@@ -72,6 +73,13 @@ class LazyGroup(TyperGroup):
         self.commands.update(
             {name: TyperCommand(name, help=command.help) for name, command in COMMANDS.items()}
         )
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run the command; for a pipe that breaks, Typer would have the status of a verdict."""
+        try:
+            return super().invoke(ctx)
+        except BrokenPipeError as error:
+            raise SimulationError(f"cannot write: {error.strerror}") from None
 
     def resolve_command(self, ctx: Any, args: list[str]) -> tuple[str | None, Any, list[str]]:
         """Return the command that ``args`` begin with, imported, and its own arguments."""

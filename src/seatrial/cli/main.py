@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import os
 import sys
 import traceback
 from typing import Annotated
@@ -16,6 +15,7 @@ from ..printable import PrintableFormatter, printable
 from .commands import LazyGroup
 from .starting import interrupting
 from .statuses import BAD_INPUT, BROKEN
+from .unread import dropping_unread
 
 _INTERRUPTED = 130
 """Status of Typer's own for a command that was interrupted."""
@@ -38,7 +38,7 @@ def main() -> None:
     """
     if logging.lastResort is not None:
         logging.lastResort.setFormatter(PrintableFormatter())
-    with interrupting():
+    with interrupting(), dropping_unread():
         _run()
 
 
@@ -62,20 +62,6 @@ def _run() -> None:
         print(printable(traceback.format_exc()), file=sys.stderr)
         what = f"an error of seatrial itself, please report it: {type(error).__name__}: {error}"
         _complain(SimulationError(what), BROKEN)
-    finally:
-        _forget_closed_streams()
-
-
-def _forget_closed_streams() -> None:
-    """Drop what was printed to readers that are gone: Python would end with status 120."""
-    for stream in (sys.stdout, sys.stderr):
-        try:
-            if stream is not None:
-                stream.flush()
-        except OSError:
-            nowhere = os.open(os.devnull, os.O_WRONLY)
-            os.dup2(nowhere, stream.fileno())
-            os.close(nowhere)
 
 
 def _complain(error: SeatrialError, status: int) -> None:

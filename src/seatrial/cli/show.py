@@ -26,10 +26,6 @@ class SafeConsole(Console):
         for text, style, control in super().render(renderable, options):
             yield Segment(text if control else printable(text), style, control)
 
-    def on_broken_pipe(self) -> None:
-        """Print no more: nobody reads it, but the status is still what came of the command."""
-        self.quiet = True
-
 
 console = SafeConsole(highlight=False, emoji=False)
 
