@@ -277,7 +277,8 @@ def test_nobody_reads_what_is_printed_and_the_status_is_the_verdict(write, tmp_p
     command = [SEATRIAL, "run", "trial.toml", "--engine", "direct", "--out", "run"]
     done = subprocess.run(command, cwd=tmp_path, stdout=theirs, stderr=subprocess.PIPE, text=True)
     os.close(theirs)
-    assert (done.returncode, done.stderr) == (0, "")
+    assert done.returncode == 0, done.stderr
+    assert "seatrial:" not in done.stderr  # a slow machine shows its progress there
     assert (tmp_path / "run" / "report.html").is_file()
 
 

@@ -33,6 +33,7 @@ import logging
 import os
 import signal
 import sys
+from pathlib import Path
 
 from seatrial.component import Component, Output, Parameter
 
@@ -75,6 +76,10 @@ class Deadly(Component):
                 ctypes.string_at(0)
             case "kill":
                 os.kill(os.getpid(), signal.SIGKILL)
+            case "spoil":
+                with sorted(Path().glob("**/signals.csv"))[-1].open("a") as record:
+                    record.write("nonsense\\n" * 2)
+                os._exit(0)
             case "leave":
                 os.chdir("/")
             case "fork":
@@ -217,6 +222,18 @@ def test_a_case_that_dies_does_not_end_its_campaign(where: str, trial, write, tm
     done = seatrial("run", "campaign.toml", "--out", "b", "--engine", "direct", cwd=tmp_path)
     assert done.returncode == 3
     assert "3 of 4 cases pass" in done.stdout
+
+
+def test_a_failed_run_stays_one_if_its_report_cannot_be_made(trial, write, tmp_path: Path) -> None:
+    trial("spoil")
+    done = seatrial("run", "trial.toml", "--out", "run", "--engine", "direct", cwd=tmp_path)
+    assert done.returncode == 3
+    assert done.stderr.startswith("seatrial: boat: the process of the run exited with status 0")
+    assert "note: cannot write the report: run/signals.csv, line" in done.stdout
+    write("campaign.toml", 'trials = ["trial.toml"]\n[grid]\n"boat.how" = ["spoil", "fine"]\n')
+    done = seatrial("run", "campaign.toml", "--out", "all", "--engine", "direct", cwd=tmp_path)
+    assert done.returncode == 3
+    assert "1 of 2 cases pass" in done.stdout
 
 
 def test_a_component_of_a_package_can_be_isolated(native_fmu, tmp_path: Path) -> None:

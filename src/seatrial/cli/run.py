@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -99,7 +100,7 @@ def run(
             )
             result = run_supervised(loaded, out, engine=chosen, hooks=hooks)
         print_verdicts(result)
-        _report(result)
+        _print_page(_page(lambda: write_report(result.folder), [result]))
     _exit_with([result])
 
 
@@ -110,7 +111,7 @@ def _run_campaign(campaign: Campaign, out: Path | None, engine: Engine) -> None:
 
             def done(case: Case, result: Result) -> None:
                 watch.log(lambda: print_case(case, result))
-                write_report(result.folder)
+                _page(lambda: write_report(result.folder), [result])
 
             hooks = Hooks(
                 building=watch.building,
@@ -120,23 +121,33 @@ def _run_campaign(campaign: Campaign, out: Path | None, engine: Engine) -> None:
             )
             watch.expect(len(cases))
             folder, finished = run_campaign(campaign, out, engine=engine, hooks=hooks, done=done)
-        page = write_campaign_report(folder)
+        page = _page(lambda: write_campaign_report(folder), [result for _, result in finished])
     passed = sum(result.passed for _, result in finished)
     console.print(f"{passed} of {len(cases)} cases pass")
-    console.print(f"report: {page}", soft_wrap=True)
+    _print_page(page)
     if len(finished) < len(cases):
         raise SimulationError(f"stopped; {len(finished)} of {len(cases)} cases are on disk")
     _exit_with([result for _, result in finished])
 
 
-def _report(result: Result) -> None:
-    """Write the page; where a full disk ended the run, that is the error, not the missing page."""
+def _page(write: Callable[[], Path], results: list[Result]) -> Path | None:
+    """Write a page and return where; None if it cannot be, of runs that say already what failed.
+
+    Raises SimulationError: nothing that a person wrote is wrong with it.
+    """
     try:
-        page = write_report(result.folder)
-    except OSError:
-        if result.status != "failed":
-            raise
-    else:
+        return write()
+    except (OSError, InputError) as error:
+        why = f"{error.filename}: {error.strerror}" if isinstance(error, OSError) else str(error)
+        message = f"cannot write the report: {why}"
+        if not any(result.status == "failed" for result in results):
+            raise SimulationError(message) from None
+        print_notes([message])
+        return None
+
+
+def _print_page(page: Path | None) -> None:
+    if page is not None:
         console.print(f"report: {page}", soft_wrap=True)
 
 
