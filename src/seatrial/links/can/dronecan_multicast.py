@@ -24,6 +24,10 @@ GROUP, PORT = "239.65.82.{}", 57732
 MAGIC = 0x2934
 LOOPBACK = "127.0.0.1"
 
+MOST_SENDERS = 128
+"""Senders that are known, as many as a bus has nodes; a new one takes the place of the one silent
+longest, of which nothing but its share of the next poll is lost."""
+
 _HEAD, _BODY = struct.Struct("<HH"), struct.Struct("<HI")
 _FD, _EXTENDED = 1, 1 << 31
 _REMOTE, _ERROR = 1 << 30, 1 << 29
@@ -74,6 +78,8 @@ class DroneCanMulticastGateway(Gateway):
         self._group = GROUP.format(bus)
         self.reached_at = f"mcast:{bus}"
         self._senders: dict[tuple[str, int], int] = {}
+        """Their numbers, which are never used again; the last one is the one received last."""
+        self._next = 0
         self.budget = Budget(RATE, LEAST)
         self._held: list[Held] = []
         self._receiving, self._sending = _socket(), _socket()
@@ -96,7 +102,7 @@ class DroneCanMulticastGateway(Gateway):
 
     @property
     def clients(self) -> int:
-        """Return how many have sent something."""
+        """Return how many have sent something, the latest `MOST_SENDERS` at most."""
         return len(self._senders)
 
     def poll(self) -> list[tuple[int, Frame]]:
@@ -111,7 +117,7 @@ class DroneCanMulticastGateway(Gateway):
                 break
             frame = unpacked(datagram) if sender != own else None
             if frame is not None and self.budget.take(sender, FRAME_BYTES):
-                found.append((self._senders.setdefault(sender, len(self._senders)), frame))
+                found.append((self._number(sender), frame))
         return found
 
     def send(self, time_ns: int, frame: Frame, sender: int | None = None) -> None:
@@ -135,6 +141,14 @@ class DroneCanMulticastGateway(Gateway):
             held.release()
         self._receiving.close()
         self._sending.close()
+
+    def _number(self, sender: tuple[str, int]) -> int:
+        number = self._senders.pop(sender, self._next)
+        self._next += number == self._next
+        if len(self._senders) >= MOST_SENDERS:
+            del self._senders[next(iter(self._senders))]
+        self._senders[sender] = number
+        return number
 
 
 def _socket() -> socket.socket:
