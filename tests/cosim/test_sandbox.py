@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import os
+import re
 import shutil
 import struct
 import subprocess
@@ -17,6 +18,8 @@ from seatrial.fmi import sandbox
 from seatrial.fmi.pipe import FAILURE, RESULT, frame
 from seatrial.trials.run import run_trial
 from seatrial.trials.trial import load_trial
+
+from ..command import seatrial
 
 CURIOUS = '''
 import json
@@ -130,6 +133,74 @@ def test_its_end_is_ours(write, tmp_path: Path) -> None:
     assert "was ended for not answering within 1 s" in (result.error or "")
     listed = subprocess.run(["ps", "-eo", "args"], capture_output=True, text=True).stdout
     assert str(tmp_path) not in listed
+
+
+GREEDY = """
+import ctypes
+
+import numpy
+
+from seatrial.component import Component, Output
+
+
+class Greedy(Component):
+    \"\"\"Takes memory up to 4 GiB, and writes to none of it.\"\"\"
+
+    y = Output("m", "output")
+
+    def start(self, t):
+        self.kept = []
+
+    def step(self, t, h):
+        for _ in range(16 if t > 0.05 else 0):
+            {takes}
+
+    def outputs(self, t):
+        self.y = t
+"""
+LIBC = "import ctypes; libc = ctypes.CDLL(None); libc.malloc.restype = ctypes.c_void_p"
+
+
+@needs_bwrap
+@pytest.mark.parametrize(
+    ("takes", "said"),
+    [
+        ("self.kept.append(numpy.empty(1 << 28, 'u1'))", "MemoryError"),
+        # As C code does that does not look at what it gets.
+        (
+            "p = libc.malloc(ctypes.c_size_t(1 << 28)); ctypes.memset(p or 0, 1, 1)",
+            "was ended by SIGSEGV|exited with status 139",
+        ),
+    ],
+)
+def test_its_memory_is_bounded(takes: str, said: str, write, tmp_path: Path) -> None:
+    write("greedy.py", f"{LIBC}\n{GREEDY.format(takes=takes)}")
+    write("rig.toml", RIG.format('"sandboxed"').replace("curious.py:Curious", "greedy.py:Greedy"))
+    write("trial.toml", TRIAL.replace("0.2 s", "1 s"))
+    done = seatrial("run", "trial.toml", "--out", "run", cwd=tmp_path)
+    assert done.returncode == 3
+    assert re.search(f"boat: .*({said})", done.stderr)
+    assert "(its sandbox has 4 GiB of memory)" in done.stderr
+    lines = (tmp_path / "run" / "signals.csv").read_text().splitlines()
+    assert lines == ["time,boat.y", "0.0,0.0", "0.1,0.1"]
+
+
+@needs_bwrap
+def test_its_files_in_memory_are_bounded(write, tmp_path: Path) -> None:
+    """What /tmp and /dev/shm hold, and that nothing else of it can be written."""
+    source = CURIOUS.replace(
+        '"own": Path(f"/tmp/seatrial-{PORT}").write_text("x"),',
+        '"own": [os.statvfs(p).f_blocks * os.statvfs(p).f_frsize for p in ("/tmp", "/dev/shm")],'
+        ' "dev": reached(lambda: Path("/dev/own").write_text("x")),',
+    )
+    write("curious.py", f"HOME, PORT = '/', 1\n{source}")
+    write("rig.toml", RIG.format('"sandboxed"'))
+    result = run_trial(load_trial(str(write("trial.toml", TRIAL))), tmp_path / "run")
+    assert result.status == "complete", result.error
+    with (tmp_path / "run" / "signals.csv").open(newline="") as file:
+        found = json.loads(list(csv.DictReader(file))[-1]["boat.found"])
+    assert found["own"] == [1 << 30] * 2
+    assert found["dev"] == "not: 30"
 
 
 def test_where_there_is_no_bubblewrap(write, tmp_path: Path, monkeypatch) -> None:

@@ -20,7 +20,7 @@ from .instance import Reader, Value, Writer
 from .loaded import LoadedFmu
 from .pipe import CALL, INTERVAL, READ, RESULT, STEP, WRITE, Codec, Frames, frame
 from .process import EndedError, WorkerProcess
-from .sandbox import PARENT, sandbox_command, sandbox_environment
+from .sandbox import MEMORY_GIB, PARENT, sandbox_command, sandbox_environment
 from .worker import shortened
 
 _BOOT_S = 60.0
@@ -62,6 +62,7 @@ class IsolatedInstance:
         # The worker finds the FMU unpacked where it is now.
         environment = {**os.environ, "SEATRIAL_CACHE": str(fmu.folder.parent.parent)}
         sandbox, parent = list[str](), None
+        self._memory = f" (its sandbox has {MEMORY_GIB} GiB of memory)" if sandboxed else ""
         if sandboxed:
             sandbox, parent = sandbox_command(fmu), PARENT
             environment = sandbox_environment(fmu)
@@ -211,7 +212,7 @@ class IsolatedInstance:
             code, _, answer = self._process.exchange(request, self._timeout_s)
         except EndedError as end:
             before = f" or the write of {'; '.join(written)} before it" if written else ""
-            how = end.how + (self._limit if end.timed_out else "")
+            how = end.how + (self._limit if end.timed_out else self._memory)
             raise self._end(how, what() + before, end.printed) from None
         except ValueError:  # something wrote into the pipe that does not belong there
             raise self._end("was ended for an answer that is none", what()) from None
@@ -226,6 +227,8 @@ class IsolatedInstance:
             raise self._misunderstood(what()) from None
         if kind == KeyboardInterrupt.__name__:
             raise KeyboardInterrupt
+        if MemoryError.__name__ in text:
+            text += self._memory
         if kind not in _ERRORS:
             raise SimulationError(f"{self.name}: {what()} raised\n{text}")
         raise _ERRORS[kind](text)

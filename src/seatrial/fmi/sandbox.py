@@ -16,6 +16,13 @@ from .loaded import LoadedFmu
 
 PARENT = 1
 """Process that a sandboxed one ends with, as it sees it: bubblewrap's, which ends with ours."""
+MEMORY = "SEATRIAL_MEMORY"
+"""Environment variable with the bytes of memory that a worker may have for itself."""
+MEMORY_GIB = 4
+"""Of a process in a sandbox: its heap, stacks and private mappings."""
+_GIB = 1 << 30
+_FILES = str(_GIB)
+"""Bytes of files in memory, in /tmp and in /dev/shm each."""
 _SYSTEM = ("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/etc/ld.so.cache")
 _ENVIRONMENT = ("LANG", "LC_ALL", "LD_LIBRARY_PATH", "PATH", "PYTHONDONTWRITEBYTECODE", "TZ")
 """What of the environment it gets: others may hold secrets."""
@@ -25,7 +32,9 @@ _ISOLATION = (
     "--die-with-parent",
     *("--proc", "/proc"),
     *("--dev", "/dev"),
-    *("--tmpfs", "/tmp"),
+    *("--size", _FILES, "--tmpfs", "/tmp"),
+    *("--size", _FILES, "--tmpfs", "/dev/shm"),
+    *("--remount-ro", "/dev"),  # a file system in memory too
 )
 
 
@@ -33,7 +42,8 @@ def sandbox_command(fmu: LoadedFmu) -> list[str]:
     """Return the command that a worker's command is an argument of, to run it in a sandbox.
 
     The worker sees, read-only, the system's libraries, Python with its packages, seatrial and
-    ``fmu`` with its unpacked folder; a /tmp of its own, which goes with it; nothing else.
+    ``fmu`` with its unpacked folder; a /tmp of its own, which goes with it; nothing else. Its
+    environment has a limit for its memory, which it sets itself before it loads the FMU.
 
     Raises InputError if bubblewrap is not there or cannot make a sandbox here.
     """
@@ -55,7 +65,8 @@ def sandbox_environment(fmu: LoadedFmu) -> dict[str, str]:
     kept = {name: os.environ[name] for name in _ENVIRONMENT if name in os.environ}
     package = Path(__file__).resolve().parents[2]
     cache_folder = fmu.folder.parent.parent
-    return {**kept, "PYTHONPATH": str(package), "SEATRIAL_CACHE": str(cache_folder)}
+    own = {"SEATRIAL_CACHE": str(cache_folder), MEMORY: str(MEMORY_GIB * _GIB)}
+    return {**kept, "PYTHONPATH": str(package), **own}
 
 
 @cache

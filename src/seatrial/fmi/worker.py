@@ -39,6 +39,7 @@ from .pipe import (
     Frames,
     frame,
 )
+from .sandbox import MEMORY
 
 _PR_SET_PDEATHSIG = 1
 _C_LINE_BUFFERED = 1
@@ -282,10 +283,20 @@ def _write_lines_at_once() -> None:
         libc.setvbuf(ctypes.c_void_p.in_dll(libc, "stdout"), None, _C_LINE_BUFFERED, 0)
 
 
+def _limit_memory() -> None:
+    """Let allocations fail from the limit on that the environment has, for good."""
+    if limit := os.environ.get(MEMORY):
+        import resource  # not on Windows, where there is no sandbox
+
+        # Not RLIMIT_AS: libraries reserve address space by the processor, and use little of it.
+        resource.setrlimit(resource.RLIMIT_DATA, (int(limit), int(limit)))
+
+
 def main() -> None:
     """Serve the parent until it closes its end."""
     requests, answers, parent = (int(text) for text in sys.argv[1:4])
     _live_as_long_as(parent)
+    _limit_memory()
     _write_lines_at_once()
     for descriptor in (requests, answers, *inherited()):
         os.set_inheritable(descriptor, False)  # not for processes that a component starts
