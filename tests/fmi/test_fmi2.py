@@ -108,6 +108,16 @@ def test_what_a_refused_step_says(fmi2, trouble: int, message: str, kind: type) 
     assert type(caught.value) is kind
 
 
+def test_nothing_is_asked_of_an_instance_that_returned_fatal(fmi2) -> None:
+    instance = fmi2(trouble=FATAL, trouble_time=0.2)
+    with pytest.raises(FatalError, match="returned fatal, without a message"):
+        instance.step(0.0, 0.25)
+    for call in (lambda: read(instance, "x"), lambda: instance.writer(["k"]), instance.get_state):
+        with pytest.raises(FatalError, match="boat: it has returned fatal"):
+            call()
+    instance.terminate()
+
+
 def test_a_bad_start_and_a_warning(fmi2, caplog) -> None:
     with pytest.raises(
         SimulationError, match="fmi2EnterInitializationMode returned error: there is no start"

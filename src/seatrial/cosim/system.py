@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass, field
 from typing import Any, Literal, Protocol
 
@@ -216,9 +217,10 @@ class System:
                     )
 
     def free(self) -> None:
-        """Release all instances."""
-        for part in self.parts.values():
-            part.instance.free()
+        """Release all instances, in their order; the rest too if the release of one raises."""
+        with ExitStack() as releases:
+            for part in reversed(self.parts.values()):
+                releases.callback(part.instance.free)
 
 
 def settable(variables: Variables, port: str, where: str) -> list[Variable]:

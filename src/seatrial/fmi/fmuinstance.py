@@ -10,9 +10,12 @@ from typing import Any, ClassVar
 
 from ..errors import INTERRUPTED, DiscardError, FatalError, InputError, SimulationError
 from ..serialisation import is_c_text
-from .instance import ByType, Value, Variable
+from .instance import ByType, Reader, Value, Variable, Writer
 from .loaded import LoadedFmu
 from .messages import ACCEPTED, DISCARD, FATAL, Messages, word
+
+_INTERRUPTIONS = INTERRUPTED, f"{KeyboardInterrupt()!r}"
+"""How our own FMUs say that one was interrupted: a component, or pythonfmu beside it (fatal)."""
 
 
 class FmuInstance(ByType):
@@ -66,6 +69,16 @@ class FmuInstance(ByType):
     @abstractmethod
     def _instantiate(self) -> None:
         """Instantiate the slave, with its messages going to ours."""
+
+    def reader(self, names: Sequence[str]) -> Reader:
+        """Return a callable that returns the values of ``names``, in that order."""
+        self._refuse_fatal()
+        return super().reader(names)
+
+    def writer(self, names: Sequence[str]) -> Writer:
+        """Return a callable that sets ``names`` to a sequence of values."""
+        self._refuse_fatal()
+        return super().writer(names)
 
     def set_start(self, values: Mapping[str, Value]) -> None:
         """Set parameters and start values by variable name, before `initialise`."""
@@ -130,6 +143,7 @@ class FmuInstance(ByType):
             ) from None
 
     def _call(self, function: str, *arguments: Any) -> None:
+        self._refuse_fatal()
         status = self._functions[function](self._c, *arguments)
         if status not in ACCEPTED:
             self._refuse(function, status)
@@ -137,9 +151,7 @@ class FmuInstance(ByType):
     def _refuse(self, what: str, status: int) -> None:
         """Raise for a status that is neither ok nor a warning."""
         self._fatal = status == FATAL
-        said = self._messages.said()
-        if self._ours and said.endswith(INTERRUPTED):
-            raise KeyboardInterrupt
+        said = self._said()
         kinds = {DISCARD: DiscardError, FATAL: FatalError}
         raise kinds.get(status, SimulationError)(
             f"{self.name}: {self._prefix}{what} returned {word(status)}{said}"
@@ -148,10 +160,20 @@ class FmuInstance(ByType):
     def _refuse_logged_errors(self, what: str) -> None:
         """Raise for an error that our own FMUs log instead of returning it (see `Slave`)."""
         if self._ours and self._messages.has_error():
-            raise SimulationError(
-                f"{self.name}: {self._prefix}{what} failed{self._messages.said()}"
-            )
+            raise SimulationError(f"{self.name}: {self._prefix}{what} failed{self._said()}")
         self._messages.forward()
+
+    def _said(self) -> str:
+        """Return what the FMU said. Raises KeyboardInterrupt if that is what it met."""
+        said = self._messages.said()
+        if self._ours and said.endswith(_INTERRUPTIONS):
+            raise KeyboardInterrupt
+        return said
+
+    def _refuse_fatal(self) -> None:
+        """Raise FatalError for an instance of which FMI allows no call any more."""
+        if self._fatal:
+            raise FatalError(f"{self.name}: it has returned fatal, and may not be called again")
 
     def _refuse_excess(self, variables: Sequence[Variable], values: Sequence[int]) -> None:
         """Raise SimulationError for an integer that C would cut to fit its type."""

@@ -75,7 +75,8 @@ class Run:
             self._broken_disk(problem)
         finally:
             self.wall["run"] = time.perf_counter() - begun
-            with contextlib.suppress(SimulationError):  # a component may have crashed
+            # A component may have crashed, or say only now that it was interrupted.
+            with contextlib.suppress(SimulationError, KeyboardInterrupt):
                 self._floods = list(self._master.system.floods())
             self._end(started)
 
