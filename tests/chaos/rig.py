@@ -117,6 +117,7 @@ class Episode:
         self.mark = f"{os.getpid()}-{number}"
         self.clock, self.temporary = folder / "clock", folder / "tmp"
         self.places: dict[str, list[str]] = {}
+        self._memory = _shared_memory()
         self.out, self.output = folder / "run", ""
         self._write(chance)
         engine = chance.choice(["fmu", "direct"])
@@ -173,6 +174,10 @@ class Episode:
     def left_processes(self) -> list[str]:
         """Return the command lines of processes that live."""
         return [_command_line(pid) for pid, _ in _marked(self.mark)]
+
+    def left_memory(self) -> list[str]:
+        """Return the names of shared memory that is there since it began, POSIX and System V."""
+        return sorted(_shared_memory() - self._memory)
 
     def close(self) -> None:
         self.process.wait()
@@ -252,6 +257,11 @@ def _marked(mark: str) -> list[tuple[int, int]]:
         except OSError:  # it has ended meanwhile
             continue
     return found
+
+
+def _shared_memory() -> set[str]:
+    segments = Path("/proc/sysvipc/shm").read_text().splitlines()[1:]
+    return {*os.listdir("/dev/shm"), *(f"System V {line.split()[1]}" for line in segments)}
 
 
 def _is_run(line: str) -> bool:

@@ -22,6 +22,8 @@ from .rig import SAFE, WAIT_S, Episode, prepare
 
 SECONDS = float(os.environ.get("SEATRIAL_CHAOS_S", "3600"))
 SEED = int(os.environ.get("SEATRIAL_CHAOS_SEED", "17"))
+EPISODE = os.environ.get("SEATRIAL_CHAOS_EPISODE")
+"""The number of the only episode to run, which repeats one."""
 _SETTLE_S = 15.0
 """Wall time in which what a killed supervisor leaves ends in order."""
 
@@ -33,22 +35,25 @@ def test_every_episode_ends_clearly_and_leaves_nothing(tmp_path: Path) -> None:
         need(backend)
     prepare(tmp_path)
     names = subprocess.run(["unshare", "-Urm", "true"], check=False, capture_output=True)
-    ends = ["none", *LAST, *(["full disk"] if names.returncode == 0 else [])]
-    until, number = time.monotonic() + SECONDS, 0
+    ends = ["none", *LAST, "full disk" if names.returncode == 0 else "none"]
+    until = time.monotonic() + SECONDS
     problems: list[str] = []
     done: Counter[str] = Counter()
-    while time.monotonic() < until:
+    for number in itertools.count() if EPISODE is None else [int(EPISODE)]:
+        if time.monotonic() > until:
+            break
         chance = random.Random(f"{SEED}-{number}")
         kinds = chance.sample(list(MILD), chance.randint(0, 3))
         end = ends[number % len(ends)]
         found = episode(tmp_path / str(number), number, chance, kinds, end)
-        problems += [f"seed {SEED}, episode {number}, {kinds} {end}: {each}" for each in found]
-        done.update([*kinds, end])
-        if not found:
-            shutil.rmtree(tmp_path / str(number))
-        number += 1
+        done.update(["episodes", *kinds, end])
         print(number, kinds, end, found, flush=True)
-    print(f"{number} episodes: {dict(done)}")
+        if found:
+            again = f"SEATRIAL_CHAOS_SEED={SEED} SEATRIAL_CHAOS_EPISODE={number}"
+            problems += [f"{again} ({[*kinds, end]}, {tmp_path / str(number)}):", *found]
+        else:
+            shutil.rmtree(tmp_path / str(number))
+    print(dict(done))
     assert not problems, "\n".join(problems)
 
 
@@ -81,10 +86,11 @@ def episode(
 def wrong(run: Episode, end: str) -> list[str]:
     """Return what an ended run should not have left, or should have."""
     deadline = time.monotonic() + _SETTLE_S
-    while run.left_processes() and time.monotonic() < deadline:
+    while (run.left_processes() or run.left_memory()) and time.monotonic() < deadline:
         time.sleep(0.05)
     time.sleep(0.2)  # the vehicle is read meanwhile
     found = [f"it left the process {line}" for line in run.left_processes()]
+    found += [f"it left the shared memory {name}" for name in run.left_memory()]
     found += [f"it left {path}" for path in run.temporary.rglob("*")]
     cache = Path(os.environ["SEATRIAL_CACHE"])
     found += [f"it left {path}" for path in cache.glob("*/unpacking-*")]
