@@ -282,11 +282,22 @@ def test_nobody_reads_what_is_printed_and_the_status_is_the_verdict(write, tmp_p
     assert (tmp_path / "run" / "report.html").is_file()
 
 
-def test_a_signal_before_a_command_heeds_any_is_one_message(tmp_path: Path) -> None:
+INTERRUPTED = {
+    "function": "lambda *_, **__: os.kill(os.getpid(), signal.SIGINT)",
+    # What Python 3.11 makes an error of its own of: modules that are imported late have many.
+    "class body": "lambda *_, **__: type('A', (), {'field': Field()})",
+}
+
+
+@pytest.mark.parametrize("where", INTERRUPTED)
+def test_a_signal_before_a_command_heeds_any_is_one_message(where: str, tmp_path: Path) -> None:
     code = (
         "import os, signal, seatrial.cli.run as run\n"
         "from seatrial.cli import main\n"
-        "run.load_trial = lambda *_, **__: os.kill(os.getpid(), signal.SIGINT)\n"
+        "class Field:\n"
+        "    def __set_name__(self, *_):\n"
+        "        os.kill(os.getpid(), signal.SIGINT)\n"
+        f"run.load_trial = {INTERRUPTED[where]}\n"
         "main()\n"
     )
     command = [sys.executable, "-c", code, "run", "x"]

@@ -59,9 +59,18 @@ def _run() -> None:
             _complain(SimulationError("stopped"), BROKEN)
         raise
     except Exception as error:  # Python's own status 1 would say that a criterion failed
+        if _comes_of_interruption(error):
+            _complain(SimulationError("stopped"), BROKEN)
         print(printable(traceback.format_exc()), file=sys.stderr)
         what = f"an error of seatrial itself, please report it: {type(error).__name__}: {error}"
         _complain(SimulationError(what), BROKEN)
+
+
+def _comes_of_interruption(error: BaseException | None) -> bool:
+    """Say if an error was made of a KeyboardInterrupt, as Python 3.11 does in class bodies."""
+    while error is not None and not isinstance(error, KeyboardInterrupt):
+        error = error.__cause__
+    return error is not None
 
 
 def _complain(error: SeatrialError, status: int) -> None:
