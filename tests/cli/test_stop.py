@@ -245,6 +245,21 @@ def test_a_run_whose_supervisor_is_killed_ends_in_order(
     assert_whole(tmp_path / "run", rows)
 
 
+def test_a_suspended_run_whose_supervisor_is_killed_ends_when_it_goes_on(
+    start, tmp_path: Path
+) -> None:
+    process = start("run", "trial.toml", "--out", "run", "--engine", "direct")
+    wait_for(lambda: rows_of(tmp_path / "run") >= 10)
+    (child,) = children_of(process)
+    os.kill(child, signal.SIGSTOP)
+    os.kill(process.pid, signal.SIGKILL)
+    assert process.wait(60) == -signal.SIGKILL
+    assert has_status(tmp_path / "run", "running")
+    os.kill(child, signal.SIGCONT)
+    wait_for(lambda: has_ended(child))
+    assert has_status(tmp_path / "run", "stopped")
+
+
 @pytest.mark.parametrize(("pace", "rows"), PACES)
 def test_a_run_of_which_all_is_killed_is_whole_up_to_its_last_row(
     pace, rows: int, start, tmp_path: Path
