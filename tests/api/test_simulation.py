@@ -5,6 +5,8 @@ from __future__ import annotations
 import csv
 import math
 import os
+import signal
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -13,7 +15,7 @@ import numpy as np
 import pytest
 from pythonfmu import FmuBuilder
 
-from seatrial import InputError, Simulation
+from seatrial import InputError, Simulation, SimulationError
 from seatrial.links.hardware import ALLOWED
 from tests.command import seatrial
 
@@ -302,3 +304,41 @@ def test_an_fmu_of_somebody_else_is_stepped_without_a_stop_time(
         sim.set("slave.u", 2.0)
         sim.run("500 ms")
         assert sim.get("slave.y") == pytest.approx(1.0, rel=1e-12)
+
+
+PROCESS = '''
+"""Says in which process it is."""
+import os
+
+from seatrial.component import Component, Output
+
+
+class Process(Component):
+    """Its process."""
+
+    pid = Output("1", "process", type=int)
+
+    def outputs(self, t):
+        self.pid = os.getpid()
+'''
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="POSIX pipes")
+@pytest.mark.parametrize("written", [True, "true"])
+def test_a_setting_gives_a_component_a_process_of_its_own(written: object, write) -> None:
+    write("process.py", PROCESS)
+    entry = 'fmu = "process.py:Process"'
+    path = write(
+        "rig.toml", f'step = "0.1 s"\n[components]\na = {{ {entry} }}\nb = {{ {entry} }}\n'
+    )
+    with Simulation(path, set={"b.isolated": written}) as sim:
+        sim.step()
+        pid = int(sim.get("b.pid"))
+        assert sim.get("a.pid") == os.getpid() != pid
+        os.kill(pid, signal.SIGKILL)
+        with pytest.raises(SimulationError, match="b: its process was ended by SIGKILL"):
+            sim.step()
+    with pytest.raises(InputError, match=r"set: b\.isolated: true, false or 'sandboxed' is needed"):
+        Simulation(path, set={"b.isolated": "jailed"})
+    with pytest.raises(InputError, match=r"set: bb\.isolated: unknown component 'bb'"):
+        Simulation(path, set={"bb.isolated": True})

@@ -44,7 +44,8 @@ class Simulation:
     criteria), or the path of a ``.toml`` or ``.ssp`` file. ``set`` gives parameters, and start
     values of inputs, by ``component.port`` as a rig's file does: numbers in the port's unit (SI),
     text with a unit (``"10 deg"``) or the name of a preset, sequences and arrays with one element
-    per axis. ``seed`` is what all noise derives from, ``variant`` one of the vehicle's,
+    per axis; ``component.isolated`` gives a component a process of its own (true, false or
+    "sandboxed"). ``seed`` is what all noise derives from, ``variant`` one of the vehicle's,
     ``engine`` as for `run_trial`, ``step`` the communication step in s or as text in place of
     the rig's, ``choices`` those of the rig: ``{"vehicle": "gloria"}``. Time starts at 0.
 
@@ -52,9 +53,9 @@ class Simulation:
     same numbers, those of a trial with events at the same times.
 
     A component that crashes, such as a native FMU, or that calls C's ``exit`` ends the process,
-    unless the rig says ``isolated = true`` for it; `run_trial` survives that. No device is opened
-    and no other host reached: a rig whose links need one is refused. Use it from one thread, and
-    close it, or use it as a context manager.
+    unless the rig or ``set`` says that it is isolated; `run_trial` survives that. No device is
+    opened and no other host reached: a rig whose links need one is refused. Use it from one
+    thread, and close it, or use it as a context manager.
 
     Raises InputError for bad input, or a rig that cannot start with it.
     """
@@ -71,17 +72,21 @@ class Simulation:
         choices: Mapping[str, str] | None = None,
     ) -> None:
         from ..cosim.assembly import assemble
+        from ..cosim.isolation import KEY_END, isolated_in, isolating
         from ..links.hardware import confined
 
         self._observers: list[Callable[[Simulation], object]] = []
         self._error = ""
-        loaded = _loaded_rig(str(rig), as_duration(step), choices)
+        settings = as_settings(set)
+        isolated = isolated_in(settings, "set")
+        loaded = isolating(_loaded_rig(str(rig), as_duration(step), choices), isolated, "set")
         chosen = as_engine(engine)
         with confined():
             system = assemble(loaded, chosen, variant=variant, seed=int(seed))
             try:
-                for key, written in as_settings(set).items():
-                    system.set(key, written, "set")
+                for key, written in settings.items():
+                    if not key.endswith(KEY_END):
+                        system.set(key, written, "set")
                 self._master = _started(system)
             except BaseException:
                 system.free()

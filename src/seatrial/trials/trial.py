@@ -13,6 +13,7 @@ from pydantic_core import PydanticCustomError
 from ..cosim.clock import OverrunPolicy
 from ..cosim.files import FileModel, Source, find_file, read_toml, validated
 from ..cosim.flattening import load_rig
+from ..cosim.isolation import KEY_END, isolated_in, isolating
 from ..cosim.rig import Isolated, Rig, duration_ns
 from ..errors import InputError, unknown
 from ..shipped import available
@@ -186,12 +187,12 @@ class Trial:
         keys, rig_keys = ("variant", "seed", "start", "stop"), ("step", "algorithm")
         own, of_rig, overrides = dict[str, Any](), dict(self.rig_changes), list(self.overrides)
         choices = {**self.file.choices, **choices_in(changes, origin)}
-        isolated = dict(self.isolated)
+        of_processes = dict[str, Any]()
         for key, value in changes.items():
             if key.startswith(_CHOICES):
                 own["choices"] = choices
-            elif key.endswith(_ISOLATED):
-                isolated[key.removesuffix(_ISOLATED)] = _isolated(value, f"{origin}: {key}")
+            elif key.endswith(KEY_END):
+                of_processes[key] = value
             elif "." in key:
                 overrides.append((key, value, origin))
             elif key in keys:
@@ -208,13 +209,8 @@ class Trial:
             rig = _rig(file, self.read_from.path)
         if of_rig:
             rig = rig.changed(of_rig)
-        for name in isolated:
-            if name not in rig.components:
-                raise InputError(
-                    f"{origin}: {name}{_ISOLATED}: {unknown('component', name, rig.components)}"
-                )
-        if isolated:
-            rig = rig.isolating(isolated)
+        isolated = {**self.isolated, **isolated_in(of_processes, origin)}
+        rig = isolating(rig, isolated, origin)
         changed = replace(self, file=file, rig=rig, rig_changes=of_rig, isolated=isolated)
         return _checked(replace(changed, overrides=tuple(overrides)))
 
@@ -252,18 +248,8 @@ def load_trial(
     return read(name, relative_to, changes, origin).changed(changes, origin)
 
 
-_ISOLATED = ".isolated"
-"""What the key of a component in a process of its own ends with, among settings."""
 _CHOICES = "choices."
 """What the key of a choice begins with, among settings."""
-
-
-def _isolated(value: Any, where: str) -> Isolated:
-    if isinstance(value, bool):
-        return value
-    if value == "sandboxed":
-        return "sandboxed"
-    raise InputError(f"{where}: true, false or 'sandboxed' is needed, found {value!r}")
 
 
 def choices_in(changes: Mapping[str, Any], origin: str) -> dict[str, str]:
