@@ -1,4 +1,4 @@
-"""Ground stations, pymavlink's own, of a vehicle whose process is killed: the last they hear."""
+"""Ground stations, pymavlink's own, of a vehicle whose process is killed: the last they receive."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def station(url: str, signed: bool) -> Any:
     return found
 
 
-def heard(stations: list[Any]) -> list[list[Any]]:
+def received_by(stations: list[Any]) -> list[list[Any]]:
     """Return the heartbeats that have arrived at each; pymavlink drops what is badly signed."""
     found = []
     for each in stations:
@@ -115,13 +115,14 @@ def test_the_last_heartbeat_says_disarmed(signed: bool, isolated: bool, run, mon
         stations[0].mav.command_long_send(1, 1, 400, 0, 1, FORCED, 0, 0, 0, 0, 0)
         time.sleep(0.1)
         last = [
-            (beats or [before])[-1] for beats, before in zip(heard(stations), last, strict=True)
+            (beats or [before])[-1]
+            for beats, before in zip(received_by(stations), last, strict=True)
         ]
     (child,) = children_of(process)
     os.kill(child, signal.SIGKILL)
     _, message = process.communicate(timeout=60)
     assert process.returncode == 3, message
-    for each, beats, url in zip(stations, heard(stations), urls, strict=True):
+    for each, beats, url in zip(stations, received_by(stations), urls, strict=True):
         assert beats, message
         assert not is_armed(beats[-1])
         assert beats[-1].system_status == mavlink.MAV_STATE_STANDBY
