@@ -151,7 +151,8 @@ def test_a_death_in_a_step_is_a_failed_run(how: str, engine: str, trial, tmp_pat
     trial(how)
     done = seatrial("run", "trial.toml", "--out", "run", "--engine", engine, cwd=tmp_path)
     assert done.returncode == 3
-    (message,) = done.stderr.splitlines()
+    *progress, message = done.stderr.splitlines()
+    assert all(" % of " in line or " %, " in line for line in progress), done.stderr
     assert message.startswith(f"seatrial: boat: the process of the run {DEATHS[how]}")
     assert message.endswith("in its step at t = 0.3 s")
     if how in ("abort", "segfault"):  # Python says where it was
