@@ -168,6 +168,33 @@ def test_a_rig_without_a_craft(write_run):
     assert "deck" not in page.text
 
 
+def test_a_model_with_thousands_of_signals_and_parameters_has_a_page_that_opens(write_run):
+    parameters = {
+        f"gain[{k}]": {"value": 1.0, "unit": "1", "from": "", "source": "", "mark": ""}
+        for k in range(3000)
+    }
+    plant = {"fmu": "plant", "sha256": "4" * 64, "step": 0.01, "parameters": parameters}
+    names = [f"plant.x[{k}]" for k in range(3000)] + [f"plant.pipe.f[{k}]" for k in range(2000)]
+    signals = {name: {"unit": "N", "description": ""} for name in names}
+    folder = write_run(
+        changes={
+            "components": {"plant": plant},
+            "connections": [],
+            "signals": signals,
+            "criteria": [],
+        }
+    )
+    row = ",".join(map(str, range(len(names))))
+    (folder / "signals.csv").write_text(f"time,{','.join(names)}\n0.0,{row}\n0.1,{row}\n")
+    (folder / "verdicts.json").write_text("[]")
+    page = Page(write_report(folder))
+    assert_self_contained(page)
+    drawn = sum(len(figure["data"]) for figure in page.figures)
+    assert drawn == 2 * 500
+    assert "and 4000 more signals, see signals.csv" in page.text
+    assert "and 2500 more, see manifest.json" in page.text
+
+
 def test_ships_in_the_plane_show_no_heave(write_run):
     ship = {"fmu": "ship", "sha256": "4" * 64, "step": 0.01, "parameters": {}}
     names = [f"{one}.position.{axis}" for one in ("port", "twin") for axis in "xyz"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -21,6 +21,7 @@ from .accuracy_section import accuracy_section
 from .convergence import load_convergence
 from .decks import deck, pads
 from .expressions import FloatArray
+from .parameter_tables import parameter_tables, value_text
 from .plotly_js import plotly_js
 from .plots import MAX_POINTS, Line, Mark, Panel, deck_figure, time_figure, track_figure
 from .readable import from_si, number, person_scale
@@ -36,6 +37,8 @@ _TEXT_ROWS = 20
 _POINTS = 100_000
 """Points of all signals in a page, of 11 bytes each; those of the trial's plots come again."""
 _FEWEST_POINTS = 500
+_MOST_DRAWN = 500
+"""Signals of one component that are drawn below "Other signals"."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +50,8 @@ class Section:
     """JSON for Plotly."""
     texts: Sequence[TextSignal] = ()
     folded: bool = False
+    left: int = 0
+    """Signals that are not drawn: there are too many."""
 
 
 @dataclass(frozen=True)
@@ -83,7 +88,7 @@ def write_report(folder: Path | str) -> Path:
         title=run.manifest["trial"].get("title") or run.name,
         verdicts=run.verdicts,
         sections=list(_sections(run)),
-        parameters=_parameter_tables(run),
+        parameters=list(parameter_tables(run)),
         timing=list(_flat({k: v for k, v in run.timing.items() if k != "step_times"})),
         step_times=step_times(run.timing),
         pacing=pacing(run.timing),
@@ -125,7 +130,9 @@ def _sections(run: Run) -> Iterator[Section]:
     motion = [p for p in numeric if p.name in _MOTION]
     units = {p: run.units[p.signals[0]] for p in numeric}
     speeds = [p for p in numeric if p.component in craft and units[p] in ("m/s", "rad/s")]
-    forces = [p for p in numeric if units[p] in _FORCE_UNITS]
+    whole = set(numeric)
+    forces = _first([p for p in numeric if units[p] in _FORCE_UNITS], _MOST_DRAWN)
+    forces = [p for p in forces if p in whole]
 
     pads_found = pads(run.manifest)
     if pads_found:
@@ -169,6 +176,9 @@ def _sections(run: Run) -> Iterator[Section]:
 def _rest(run: Run, ports: Sequence[Port]) -> Iterator[Section]:
     for component in dict.fromkeys(p.component for p in ports):
         own = [p for p in ports if p.component == component]
+        left = sum(len(port.signals) for port in own)
+        own = _first(own, _MOST_DRAWN)
+        left -= sum(len(port.signals) for port in own)
         texts = [
             _text_signal(run, signal)
             for port in own
@@ -178,7 +188,16 @@ def _rest(run: Run, ports: Sequence[Port]) -> Iterator[Section]:
         panels = [p for port in own for p in _panels_by_unit(run, port)]
         columns = [column for column in (panels[::2], panels[1::2]) if column]
         figure = _over_time(run, columns) if columns else None
-        yield Section(f"Other signals of {component}", figure, texts, folded=True)
+        yield Section(f"Other signals of {component}", figure, texts, folded=True, left=left)
+
+
+def _first(ports: Iterable[Port], signals: int) -> list[Port]:
+    """Return as many of some ports' signals, in their order."""
+    found = []
+    for port in ports:
+        found.append(replace(port, signals=port.signals[: max(signals, 0)]))
+        signals -= len(port.signals)
+    return [port for port in found if port.signals]
 
 
 def _ports(run: Run) -> Iterator[Port]:
@@ -300,69 +319,6 @@ def _text_signal(run: Run, signal: str) -> TextSignal:
 # ---------------------------------------------------------------------- tables
 
 
-@dataclass
-class ParameterRow:
-    """A parameter, whole: the values of all its axes and where they come from."""
-
-    name: str
-    axes: list[str]
-    values: list[str]
-    unit: str
-    origin: str
-    source: str
-    mark: str
-
-
-def _parameter_tables(run: Run) -> list[tuple[str, list[ParameterRow]]]:
-    return [
-        (name, _parameter_rows(component["parameters"]))
-        for name, component in run.manifest["components"].items()
-    ]
-
-
-def _parameter_rows(parameters: dict[str, dict[str, Any]]) -> list[ParameterRow]:
-    """Return one row per port: scalars that share name, unit and origin are put together."""
-    rows: list[ParameterRow] = []
-    for name, entry in parameters.items():
-        base, _, axis = name.partition(".")
-        value, unit = _for_person(entry["value"], entry["unit"])
-        row = ParameterRow(
-            base,
-            [axis] if axis else [],
-            [_value_text(value)],
-            unit,
-            entry.get("from") or "",
-            entry.get("source") or "",
-            entry.get("mark") or "",
-        )
-        last = rows[-1] if rows else None
-        if last and axis and _alike(last, row):
-            last.axes += row.axes
-            last.values += row.values
-        else:
-            rows.append(row)
-    return rows
-
-
-def _alike(a: ParameterRow, b: ParameterRow) -> bool:
-    return (a.name, a.unit, a.origin, a.source, a.mark) == (
-        b.name, b.unit, b.origin, b.source, b.mark,
-    )  # fmt: skip
-
-
-def _for_person(value: Any, unit: str) -> tuple[Any, str]:
-    if not isinstance(value, float):
-        return value, unit
-    factor, readable = person_scale(unit)
-    return value * factor, readable
-
-
-def _value_text(value: Any) -> str:
-    if value is None:  # it comes over a connection
-        return ""
-    return number(value, 8) if isinstance(value, float) else str(value)
-
-
 def _event_time(event: Any) -> float | None:
     try:
         return quantity(event["at"], "s")
@@ -387,4 +343,4 @@ def _flat(content: Any, prefix: str = "") -> Iterator[tuple[str, str]]:
         for key, value in content.items():
             yield from _flat(value, f"{prefix}.{key}" if prefix else str(key))
     else:
-        yield prefix, _value_text(np.round(content, 6) if isinstance(content, float) else content)
+        yield prefix, value_text(np.round(content, 6) if isinstance(content, float) else content)
