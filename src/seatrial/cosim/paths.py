@@ -20,6 +20,15 @@ def split_path(components: Container[str], written: str) -> tuple[str, str]:
     return name, port
 
 
+def split_axis(scalar: str) -> tuple[str, str]:
+    """Return the port that a scalar belongs to, and its axis: empty if it is the port itself.
+
+    ``position.x`` is ``("position", "x")``; ``pump.flow[3]``, as others call theirs, has no axis.
+    """
+    port, _, axis = scalar.rpartition(".")
+    return (port, axis) if port and axis.isidentifier() else (scalar, "")
+
+
 def joined(path: str, name: str) -> str:
     """Return the path of ``name`` inside the assembly at ``path``; empty is the top."""
     return f"{path}.{name}" if path else name

@@ -16,7 +16,7 @@ from typing import Literal
 
 import numpy as np
 
-from ..cosim.paths import split_path
+from ..cosim.paths import split_axis, split_path
 from .expressions import FloatArray
 
 ROUND_OFF = 1e-11
@@ -96,5 +96,5 @@ def by_port(outputs: Sequence[Accuracy], components: Sequence[str]) -> list[Accu
     worst: dict[tuple[str, str], Accuracy] = {}
     for output in ranked(outputs):
         component, port = split_path(components, output.signal)
-        worst.setdefault((component, port.partition(".")[0]), output)
+        worst.setdefault((component, split_axis(port)[0]), output)
     return list(worst.values())

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from ..cosim.paths import split_axis
 from .readable import number, person_scale
 from .run_folder import Run
 
@@ -46,7 +47,7 @@ def _parameter_rows(parameters: dict[str, dict[str, Any]]) -> list[ParameterRow]
     """Return one row per port: scalars that share name, unit and origin are put together."""
     rows: list[ParameterRow] = []
     for name, entry in parameters.items():
-        base, _, axis = name.partition(".")
+        base, axis = split_axis(name)
         value, unit = _for_person(entry["value"], entry["unit"])
         row = ParameterRow(
             base,

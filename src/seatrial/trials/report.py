@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from jinja2 import Environment, FileSystemBytecodeCache, FileSystemLoader, StrictUndefined
 
-from ..cosim.paths import split_path
+from ..cosim.paths import split_axis, split_path
 from ..errors import InputError
 from ..fmi.cache import cache_folder
 from ..units import quantity
@@ -204,7 +204,7 @@ def _ports(run: Run) -> Iterator[Port]:
     grouped: dict[tuple[str, str], list[str]] = {}
     for signal in run.signals:
         component, rest = split_path(run.manifest["components"], signal)
-        grouped.setdefault((component, rest.partition(".")[0]), []).append(signal)
+        grouped.setdefault((component, split_axis(rest)[0]), []).append(signal)
     for (component, name), signals in grouped.items():
         yield Port(component, name, tuple(signals))
 
