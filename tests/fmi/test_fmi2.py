@@ -178,6 +178,6 @@ def test_a_missing_binary_is_named_with_those_there(native_fmu, tmp_path: Path) 
     )
     with pytest.raises(
         InputError,
-        match=rf"x\.fmu: cannot be loaded .*{fmpy.platform}; the FMU has binaries for {fmpy.platform}",
+        match=rf"x\.fmu: binaries/{fmpy.platform} has no y\.so",
     ):
         open_instance(load_fmu(other_machine), "x")

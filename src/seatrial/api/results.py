@@ -62,14 +62,20 @@ class TrialResult:
 
     @property
     def status(self) -> str:
-        """``complete``; ``ended`` by a criterion; ``stopped``, ``failed`` or still ``running``."""
+        """How it ended.
+
+        ``complete``; ``ended`` by a criterion; ``ended by COMPONENT``; ``stopped``, ``failed`` or
+        still ``running``.
+        """
         return str(self.manifest["status"])
 
     @property
     def passed(self) -> bool:
-        """True if the run is complete and every criterion holds: exit status 0 of the command."""
+        """True if the run came to its end and every criterion holds: exit status 0."""
+        from ..trials.ending import is_whole
+
         counted = len(self.verdicts) == len(self.manifest["criteria"])
-        return self.status == "complete" and counted and all(v.passed for v in self.verdicts)
+        return is_whole(self.status) and counted and all(v.passed for v in self.verdicts)
 
     @cached_property
     def signals(self) -> Signals:
@@ -109,7 +115,7 @@ class TrialResult:
     def __repr__(self) -> str:
         failed = [verdict.name for verdict in self.verdicts if not verdict.passed]
         said = f"{len(failed)} of {len(self.verdicts)} criteria do not hold" if failed else "passed"
-        if self.status != "complete" and not failed:
+        if not self.passed and not failed:
             said = "not passed"
         return f"<{self.name}: {self.status}, {said}; {self.folder}>"
 

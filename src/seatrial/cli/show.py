@@ -10,6 +10,7 @@ from rich.markup import escape
 from rich.segment import Segment
 
 from ..printable import printable
+from ..trials.ending import is_whole
 
 if TYPE_CHECKING:
     from ..trials.campaign import Case
@@ -49,17 +50,18 @@ def print_verdicts(result: Result) -> None:
     for name, _, verdict in result.verdicts:
         mark = "[green]PASS[/green]" if verdict.passed else "[red]FAIL[/red]"
         console.print(f"{mark}  {escape(name)}: {escape(verdict.detail)}", soft_wrap=True)
-    if not result.verdicts and result.status == "complete":
+    if not result.verdicts and is_whole(result.status):
         console.print("the trial has no criteria")
     if result.status != "complete":
-        console.print(f"[red]{result.status.upper()}[/red]")
+        colour = "yellow" if is_whole(result.status) else "red"
+        console.print(f"[{colour}]{escape(result.status.upper())}[/{colour}]", soft_wrap=True)
 
 
 def print_case(case: Case, result: Result) -> None:
     """Print one line for a finished case of a campaign."""
     failed = [name for name, _, verdict in result.verdicts if not verdict.passed]
     mark = "[green]PASS[/green]" if result.passed else "[red]FAIL[/red]"
-    if result.status != "complete":
+    if not is_whole(result.status):
         mark = f"[red]{result.status.upper()}[/red]"
     why = f"  ({', '.join(failed)})" if failed else ""
     console.print(f"{mark}  {escape(case.name)}{escape(why)}", soft_wrap=True)

@@ -33,7 +33,11 @@ def give_parameters(system: System, part: Part, profiles: Profiles) -> None:
         if section.startswith("links."):
             _give_home(part, placed.scope)
     for port, written in entry.set.items():
-        system.set(f"{part.name}.{port}", written, f"{where}.set")
+        variable = part.instance.variables.get(port)
+        if variable is not None and variable.causality == "structuralParameter":
+            part.given.update(from_written(written, [variable], {}, f"{where}.set: {port}"))
+        else:
+            system.set(f"{part.name}.{port}", written, f"{where}.set")
 
 
 def variants_of(placed: Placed) -> list[str]:

@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ..component import seconds
 from ..errors import InputError
 from ..fmi.bundle_name import bundle_name
 from ..fmi.direct import DirectInstance
 from ..fmi.instance import Instance
+from ..fmi.options import FmuOptions
 from ..fmi.source import find_source
 from .part import Part
 from .rig import ComponentEntry, Rig, duration_ns
 from .system import Engine
+from .values import from_written
+
+if TYPE_CHECKING:
+    from ..fmi.loaded import LoadedFmu
 
 _TIMEOUT_S = 60.0
 """Longest wall time of a call of an isolated component, where the rig says nothing else."""
@@ -54,6 +60,17 @@ def _timeout_s(entry: ComponentEntry, where: str) -> float:
     return seconds(timeout_ns)
 
 
+def _options(entry: ComponentEntry, loaded: LoadedFmu) -> FmuOptions:
+    """Return how a rig uses an FMU; structural parameters are set before anything has a size."""
+    structure = {}
+    for name, written in entry.set.items():
+        variable = loaded.variables.get(name)
+        if variable is not None and variable.causality == "structuralParameter":
+            given = from_written(written, [variable], {}, f"set.{name}")
+            structure[name] = int(given[name].value)
+    return FmuOptions(entry.interface, entry.tolerance, structure)
+
+
 def _instance(
     entry: ComponentEntry,
     name: str,
@@ -68,6 +85,12 @@ def _instance(
     of the components in this process whose FMU allows one instance only.
     """
     source = find_source(entry.fmu, folder)
+    if not isinstance(source, Path):
+        for key in ("interface", "tolerance"):
+            if getattr(entry, key) is not None:
+                raise InputError(
+                    f"{entry.fmu} is a component in Python: the key {key!r} is for FMUs of others"
+                )
     in_process = engine == "direct" and not entry.isolated
     code = "" if isinstance(source, Path) else bundle_name(source)
     if in_process:
@@ -82,11 +105,13 @@ def _instance(
     from ..fmi.load import load_fmu, open_instance
 
     loaded = load_fmu(source if isinstance(source, Path) else cached_fmu(source, code))
+    if isinstance(source, Path):
+        loaded = load_fmu(source, _options(entry, loaded))
     if entry.isolated:
         sandboxed = entry.isolated == "sandboxed"
         instance = IsolatedInstance(loaded, name, timeout_s, sandboxed=sandboxed)
         return instance, loaded.sha256, code
-    if loaded.description.coSimulation.canBeInstantiatedOnlyOncePerProcess:
+    if loaded.only_once:
         if loaded.sha256 in once:
             raise InputError(
                 f"{loaded.path.name} says that a process can have one instance of it only, and "

@@ -102,6 +102,21 @@ class Master:
         self.steps += 1
         self._watch.look(self.steps)
 
+    def ended(self) -> list[str]:
+        """Return the components that have asked to end the simulation."""
+        return [
+            name for name, part in self.system.parts.items() if part.instance.ended_at is not None
+        ]
+
+    def endings(self) -> list[str]:
+        """Return a note on every component that has asked to end the simulation."""
+        ended = {name: part.instance.ended_at for name, part in self.system.parts.items()}
+        return [
+            f"{name} ended the simulation at t = {at!r} s; the last row has its outputs of then"
+            for name, at in ended.items()
+            if at is not None
+        ]
+
     def set(self, component: str, names: Sequence[str], values: Sequence[Any]) -> None:
         """Set tunable parameters or unconnected inputs now; outputs follow at once.
 

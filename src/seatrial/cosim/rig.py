@@ -13,6 +13,7 @@ from pydantic import Field
 
 from ..component import NS
 from ..errors import InputError
+from ..fmi.options import Interface
 from ..units import quantity
 from .files import FileModel, Source, validated
 from .paths import joined
@@ -70,6 +71,10 @@ class ComponentEntry(FileModel):
     """It runs in a process of its own; in a sandbox, without network and files of others."""
     timeout: str | None = None
     """Longest wall time of one call of an isolated component."""
+    interface: Interface | None = None
+    """Of an FMU that has several; co-simulation if it has that."""
+    tolerance: float | None = Field(default=None, gt=0.0, le=0.1, allow_inf_nan=False)
+    """Relative tolerance of the solver of an FMU in model exchange."""
 
 
 Shown = str | dict[str, str] | list[str | dict[str, str]]
@@ -239,7 +244,7 @@ def check_rig_file(file: RigFile, path: Path) -> None:
     _check_algorithm(path, file)
 
 
-_OF_FMUS = ("parameters", "profile", "isolated", "timeout")
+_OF_FMUS = ("parameters", "profile", "isolated", "timeout", "interface", "tolerance")
 _OF_RIGS = ("choices", "home", "variant")
 
 

@@ -230,5 +230,10 @@ def settable(variables: Variables, port: str, where: str) -> list[Variable]:
         raise InputError(f"{where}: {unknown('port', port, port_names(variables))}")
     if scalars[0].causality not in ("parameter", "input"):
         kind = scalars[0].causality
+        if kind == "structuralParameter":
+            raise InputError(
+                f"{where}.{port} is a structural parameter, which sizes follow from: set it in the "
+                "component's own table of its rig"
+            )
         raise InputError(f"{where}.{port} has the causality {kind} and cannot be set")
     return scalars

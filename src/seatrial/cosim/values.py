@@ -168,7 +168,9 @@ def _converted(value: float, unit: str, variable: Variable, origin: str) -> floa
 def _check_limits(variable: Variable, value: Value, origin: str) -> None:
     """Raise InputError for a parameter outside what its FMU allows."""
     low, high = variable.minimum, variable.maximum
-    if variable.causality != "parameter" or not isinstance(value, (int, float)):
+    if variable.causality not in ("parameter", "structuralParameter") or not isinstance(
+        value, (int, float)
+    ):
         return
     if (low is not None and value < low) or (high is not None and value > high):
         least, most = "" if low is None else f"{low!r} <= ", "" if high is None else f" <= {high!r}"

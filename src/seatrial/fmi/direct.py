@@ -22,6 +22,7 @@ class DirectInstance(ByType):
         self.variables = Variables({s.name: _variable(component, s) for s in component.scalars})
         self.feedthrough = scalar_feedthrough(component)
         self.rolls_back, self.any_step = component.rolls_back, True
+        self.ended_at: float | None = None
         self.terminals, self.views = component.terminals, component.views
 
     def set_start(self, values: Mapping[str, Value]) -> None:

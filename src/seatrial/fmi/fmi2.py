@@ -1,4 +1,4 @@
-"""Instances of FMI 2.0 co-simulation FMUs."""
+"""FMI 2.0: variables in one get and one set per type, and co-simulation."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from fmpy import fmi2
 from .fmuinstance import FmuInstance
 from .instance import Reader, Variable, Writer
 from .loaded import LoadedFmu
-from .messages import ACCEPTED, listening_callbacks, stop_listening
+from .messages import ACCEPTED, DISCARD, OK, listening_callbacks, stop_listening
 
 _CTYPES: dict[type, Any] = {
     float: ctypes.c_double,
@@ -22,44 +22,16 @@ _CTYPES: dict[type, Any] = {
     str: ctypes.c_char_p,
 }
 _NAMES = {float: "Real", int: "Integer", bool: "Boolean", str: "String"}
+_LAST_SUCCESSFUL_TIME, _TERMINATED = 2, 3
+"""Of fmi2StatusKind."""
 
 
-class Fmi2Instance(FmuInstance):
-    """An instance of an FMI 2.0 FMU: one get and one set per type, in arrays allocated once."""
+class Fmi2Access(FmuInstance):
+    """What both interfaces of FMI 2.0 have in common, in arrays allocated once."""
 
     _prefix: ClassVar[str] = "fmi2"
     _state_word: ClassVar[str] = "FMUstate"
     _platform: ClassVar[str] = fmpy.platform
-    _library: ClassVar[type[Any]] = fmi2.FMU2Slave
-
-    def __init__(self, fmu: LoadedFmu, name: str) -> None:
-        super().__init__(fmu, name)
-        self._do_step = self._functions["DoStep"]
-        self._never_back = int(not self.rolls_back)
-
-    def initialise(self, start_time: float, stop_time: float) -> None:
-        """Start at ``start_time``."""
-        stops = math.isfinite(stop_time)
-        self._call("SetupExperiment", 0, 0.0, start_time, int(stops), stop_time if stops else 0.0)
-        self._call("EnterInitializationMode")
-        self._refuse_logged_errors("EnterInitializationMode")
-
-    def begin(self) -> None:
-        """End the initialisation."""
-        self._call("ExitInitializationMode")
-        self._refuse_logged_errors("ExitInitializationMode")
-
-    def step(self, t: float, h: float) -> None:
-        """Advance from ``t`` to ``t + h``, s.
-
-        Every discarded step may be tried in smaller ones: pythonfmu's binary says of each that
-        the FMU wants to end, so that looks like an error.
-        """
-        status = self._do_step(self._c, t, h, self._never_back)
-        if status not in ACCEPTED:
-            self._refuse(f"DoStep(t = {t!r} s, h = {h!r} s)", status)
-        if self._messages:
-            self._messages.forward()
 
     def free(self) -> None:
         """Release the instance."""
@@ -72,7 +44,17 @@ class Fmi2Instance(FmuInstance):
         self._callbacks = listening_callbacks(self._messages)
         self._slave.instantiate(callbacks=self._callbacks, loggingOn=True)
 
-    def _reader(self, variables: list[Variable], kind: type) -> Reader:
+    def _enter_initialisation(self, tolerance: float | None, start: float, stop: float) -> None:
+        """Set up the experiment, of which an infinite ``stop`` is none."""
+        stops = math.isfinite(stop)
+        self._call(
+            "SetupExperiment", int(tolerance is not None), tolerance or 0.0,
+            start, int(stops), stop if stops else 0.0,
+        )  # fmt: skip
+        self._call("EnterInitializationMode")
+        self._refuse_logged_errors("EnterInitializationMode")
+
+    def _getter(self, variables: list[Variable], kind: Any) -> Reader:
         count = len(variables)
         vr = (ctypes.c_uint * count)(*(v.reference for v in variables))
         values = (_CTYPES[kind] * count)()
@@ -94,7 +76,7 @@ class Fmi2Instance(FmuInstance):
 
         return read
 
-    def _writer(self, variables: list[Variable], kind: type) -> Writer:
+    def _setter(self, variables: list[Variable], kind: Any) -> Writer:
         count = len(variables)
         vr = (ctypes.c_uint * count)(*(v.reference for v in variables))
         own = (_CTYPES[kind] * count)()
@@ -102,9 +84,8 @@ class Fmi2Instance(FmuInstance):
         put, c, messages = self._functions[function], self._c, self._messages
 
         def write(values: Sequence[Any]) -> None:
-            if kind is int:
-                self._refuse_excess(variables, values)
-            own[:] = self._encoded(variables, values) if kind is str else values
+            self._refuse_unfit(variables, kind, values)
+            own[:] = [v.encode() for v in values] if kind is str else values
             status = put(c, vr, count, own)
             if status not in ACCEPTED:
                 self._refuse(function, status)
@@ -112,3 +93,50 @@ class Fmi2Instance(FmuInstance):
                 self._refuse_logged_errors(function)
 
         return write
+
+
+class Fmi2Slave(Fmi2Access):
+    """An instance of an FMI 2.0 FMU in co-simulation."""
+
+    _library: ClassVar[type[Any]] = fmi2.FMU2Slave
+
+    def __init__(self, fmu: LoadedFmu, name: str) -> None:
+        super().__init__(fmu, name)
+        self._do_step = self._functions["DoStep"]
+        self._never_back = int(not self.rolls_back)
+        tool = fmu.description.generationTool or ""
+        self._is_pythonfmu = tool.startswith(("seatrial", "PythonFMU"))
+
+    def initialise(self, start_time: float, stop_time: float) -> None:
+        """Start at ``start_time``."""
+        self._enter_initialisation(None, start_time, stop_time)
+
+    def begin(self) -> None:
+        """End the initialisation."""
+        self._call("ExitInitializationMode")
+        self._refuse_logged_errors("ExitInitializationMode")
+
+    def step(self, t: float, h: float) -> None:
+        """Advance from ``t`` to ``t + h``, s, or to where the FMU asks to end the simulation."""
+        if self.ended_at is not None:
+            return
+        status = self._do_step(self._c, t, h, self._never_back)
+        if status not in ACCEPTED and not (status == DISCARD and self._ends(t)):
+            self._refuse(f"DoStep(t = {t!r} s, h = {h!r} s)", status)
+        if self._messages:
+            self._messages.forward()
+
+    def _ends(self, t: float) -> bool:
+        """Say if a discarded step is the FMU's end, which it may have in the midst of a step.
+
+        pythonfmu's binary says so of every discarded step, which may do in smaller ones.
+        """
+        ends, reached = ctypes.c_int(), ctypes.c_double()
+        statuses = [
+            self._functions["GetBooleanStatus"](self._c, _TERMINATED, ctypes.byref(ends)),
+            self._functions["GetRealStatus"](self._c, _LAST_SUCCESSFUL_TIME, ctypes.byref(reached)),
+        ]
+        if statuses != [OK, OK] or not ends.value or self._is_pythonfmu:
+            return False
+        self.ended_at = reached.value
+        return True

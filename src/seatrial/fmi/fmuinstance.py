@@ -1,4 +1,4 @@
-"""Base of instances of FMI 2.0 and FMI 3.0: library, statuses, messages, life."""
+"""Base of instances of every version of FMI: library, statuses, messages, life."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ import os
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar
+
+from fmpy import sharedLibraryExtension
 
 from ..errors import INTERRUPTED, DiscardError, FatalError, InputError, SimulationError
 from ..serialisation import is_c_text
@@ -26,9 +28,12 @@ class FmuInstance(ByType):
     """
 
     _prefix: ClassVar[str]
-    """Of the names of FMI's functions."""
+    """Of the names of FMI's functions, as FMPy has them."""
     _state_word: ClassVar[str]
     """How this version of FMI writes the state in names of functions."""
+    _free_word: ClassVar[str] = "FreeInstance"
+    _terminate_word: ClassVar[str] = "Terminate"
+    """How this version of FMI calls these functions."""
     _platform: ClassVar[str]
     """Folder of an FMU with the binaries for this machine."""
     _library: ClassVar[type[Any]]
@@ -39,13 +44,12 @@ class FmuInstance(ByType):
         self.fmu = fmu
         self.variables, self.feedthrough = fmu.variables, fmu.feedthrough
         self.terminals, self.views = fmu.terminals, fmu.views
-        simulation = fmu.description.coSimulation
-        self.rolls_back = bool(simulation.canGetAndSetFMUstate)
-        self.any_step = bool(simulation.canHandleVariableCommunicationStepSize)
+        self.rolls_back, self.any_step = fmu.rolls_back, fmu.any_step
+        self.ended_at: float | None = None
         self._ours = (fmu.description.generationTool or "").startswith("seatrial")
         self._fatal = False
         self._messages = Messages(name)
-        self._slave = self._opened(simulation.modelIdentifier)
+        self._slave = self._opened(fmu.simulation.modelIdentifier)
         self._functions: dict[str, Any] = {
             function.removeprefix(self._prefix): call
             for function, call in self._slave._functions.items()
@@ -98,6 +102,7 @@ class FmuInstance(ByType):
 
     def set_state(self, state: Any) -> None:
         """Restore a state; the handle stays valid."""
+        self.ended_at = None
         self._call(f"Set{self._state_word}", state)
         self._refuse_logged_errors(f"Set{self._state_word}")
 
@@ -109,8 +114,8 @@ class FmuInstance(ByType):
     def terminate(self) -> None:
         """End the run."""
         if not self._fatal:
-            self._call("Terminate")
-            self._refuse_logged_errors("Terminate")
+            self._call(self._terminate_word)
+            self._refuse_logged_errors(self._terminate_word)
 
     def free(self) -> None:
         """Release the instance; never after a fatal status, which has released it already.
@@ -118,14 +123,17 @@ class FmuInstance(ByType):
         The library stays loaded: unloading pythonfmu's is not safe in every process.
         """
         if self._c is not None and not self._fatal:
-            self._functions["FreeInstance"](self._c)
+            self._functions[self._free_word](self._c)
         self._c = None
 
     # ------------------------------------------------------------------ inside
 
     def _opened(self, identifier: str) -> Any:
-        """Return FMPy's slave with the library loaded."""
+        """Return FMPy's class with the library loaded."""
         description, folder = self.fmu.description, self.fmu.folder
+        library = folder / "binaries" / self._platform / f"{identifier}{sharedLibraryExtension}"
+        if not library.is_file():
+            raise InputError(f"{self.fmu.path}: {self._missing(library.name)}")
         before = os.getcwd()
         try:
             return self._library(
@@ -136,11 +144,27 @@ class FmuInstance(ByType):
             )
         except Exception as error:
             os.chdir(before)  # FMPy stays in the library's folder when it cannot be loaded
-            binaries = sorted(p.name for p in (folder / "binaries").glob("*"))
             raise InputError(
-                f"{self.fmu.path}: cannot be loaded on this machine ({self._platform}; the FMU "
-                f"has binaries for {', '.join(binaries) or 'none'}): {error}"
+                f"{self.fmu.path}: binaries/{self._platform}/{library.name} cannot be loaded on "
+                f"this machine: {error}"
             ) from None
+
+    def _missing(self, library: str) -> str:
+        """Return what platforms an FMU has whose library for this machine is not there."""
+        binaries = self.fmu.folder / "binaries"
+        having = sorted({path.parent.name for path in binaries.glob("*/*") if path.is_file()})
+        if self._platform in having:
+            return f"binaries/{self._platform} has no {library}"
+        return (
+            f"cannot be loaded on this machine, which needs binaries for {self._platform}; the "
+            f"FMU has binaries for {', '.join(having) or 'no platform'}"
+            + (", and sources to be compiled" if (self.fmu.folder / "sources").is_dir() else "")
+        )
+
+    @property
+    def _fmi(self) -> str:
+        """The prefix as the standard has it."""
+        return self._prefix.removesuffix("1")
 
     def _call(self, function: str, *arguments: Any) -> None:
         self._refuse_fatal()
@@ -154,13 +178,13 @@ class FmuInstance(ByType):
         said = self._said()
         kinds = {DISCARD: DiscardError, FATAL: FatalError}
         raise kinds.get(status, SimulationError)(
-            f"{self.name}: {self._prefix}{what} returned {word(status)}{said}"
+            f"{self.name}: {self._fmi}{what} returned {word(status)}{said}"
         )
 
     def _refuse_logged_errors(self, what: str) -> None:
         """Raise for an error that our own FMUs log instead of returning it (see `Slave`)."""
         if self._ours and self._messages.has_error():
-            raise SimulationError(f"{self.name}: {self._prefix}{what} failed{self._said()}")
+            raise SimulationError(f"{self.name}: {self._fmi}{what} failed{self._said()}")
         self._messages.forward()
 
     def _said(self) -> str:
@@ -174,6 +198,36 @@ class FmuInstance(ByType):
         """Raise FatalError for an instance of which FMI allows no call any more."""
         if self._fatal:
             raise FatalError(f"{self.name}: it has returned fatal, and may not be called again")
+
+    @abstractmethod
+    def _getter(self, variables: list[Variable], kind: Any) -> Reader:
+        """Return a callable that reads variables of one kind in one call."""
+
+    @abstractmethod
+    def _setter(self, variables: list[Variable], kind: Any) -> Writer:
+        """Return a callable that sets variables of one kind in one call."""
+
+    def _type(self, variable: Variable) -> Any:
+        """Return what chooses the functions for a variable: its type."""
+        return variable.type
+
+    def _kind(self, variable: Variable) -> Any:
+        return self._type(variable)
+
+    def _reader(self, variables: list[Variable], kind: Any) -> Reader:
+        return self._getter(variables, kind)
+
+    def _writer(self, variables: list[Variable], kind: Any) -> Writer:
+        return self._setter(variables, kind)
+
+    def _refuse_unfit(
+        self, variables: Sequence[Variable], kind: Any, values: Sequence[Any]
+    ) -> None:
+        """Raise SimulationError for a value that C would change to fit its type."""
+        if kind is int:
+            self._refuse_excess(variables, values)
+        elif kind is str:
+            self._encoded(variables, values)
 
     def _refuse_excess(self, variables: Sequence[Variable], values: Sequence[int]) -> None:
         """Raise SimulationError for an integer that C would cut to fit its type."""

@@ -46,6 +46,8 @@ class Variable:
     """Names and values of an enumeration."""
     element: int = 0
     """Place in its array, row by row."""
+    negated: bool = False
+    """In FMI 1.0: what its value reference has is the negative of it."""
     optional: bool = False
     """An input that is normally not connected."""
     frame: str = ""
@@ -131,6 +133,13 @@ class Instance(Protocol):
     @property
     def any_step(self) -> bool:
         """Whether it takes steps of different lengths."""
+
+    @property
+    def ended_at(self) -> float | None:
+        """Time at which it asked to end the simulation, s; None: it did not.
+
+        It stands there: outputs can be read, steps do nothing.
+        """
 
     @property
     def feedthrough(self) -> Mapping[str, Sequence[str]]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import logging
+import math
 import os
 import struct
 import sys
@@ -18,7 +19,7 @@ from typing import Any
 from ..errors import DiscardError, InputError, SimulationError
 from .instance import Reader, Value, Writer
 from .loaded import LoadedFmu
-from .pipe import CALL, INTERVAL, READ, RESULT, STEP, WRITE, Codec, Frames, frame
+from .pipe import CALL, ENDED, INTERVAL, READ, RESULT, STEP, WRITE, Codec, Frames, frame
 from .process import EndedError, WorkerProcess
 from .sandbox import MEMORY_GIB, PARENT, sandbox_command, sandbox_environment
 from .worker import shortened
@@ -51,6 +52,7 @@ class IsolatedInstance:
         self.terminals, self.views = fmu.terminals, fmu.views
         self._timeout_s, self._limit = _BOOT_S, ""
         self._time: float | None = None
+        self.ended_at: float | None = None
         self._ended = ""
         self._writes: list[bytes] = []
         self._written: list[str] = []
@@ -74,7 +76,13 @@ class IsolatedInstance:
             self._call("wait", "its start")
             self._timeout_s, self._limit = timeout_s, " (the component's key 'timeout')"
             able = self._call(
-                "open", "its instantiation", str(fmu.path), fmu.sha256, name, sys.path
+                "open",
+                "its instantiation",
+                str(fmu.path),
+                fmu.sha256,
+                name,
+                sys.path,
+                fmu.options.as_json(),
             )
             if not (isinstance(able, list) and len(able) == 2):
                 raise self._misunderstood("its instantiation")
@@ -102,7 +110,8 @@ class IsolatedInstance:
 
     def begin(self) -> None:
         """End the initialisation."""
-        self._call("begin", "the end of its initialisation")
+        ended_at = self._call("begin", "the end of its initialisation")
+        self.ended_at = None if ended_at is None else self._time_of(ended_at)
 
     def reader(self, names: Sequence[str]) -> Reader:
         """Return a callable that returns the values of ``names``, in that order."""
@@ -136,7 +145,12 @@ class IsolatedInstance:
         payload = INTERVAL.pack(t, h) + struct.pack(f"<{len(wanted)}I", *wanted)
         self._touched()
         answer = self._ask(frame(STEP, 0, payload), lambda: f"step(t = {t!r} s, h = {h!r} s)")
-        self._ahead = _by_number(answer)
+        try:
+            (ended_at,) = ENDED.unpack_from(answer)
+            self._ahead = _by_number(answer[ENDED.size :])
+        except _NO_ANSWER:
+            raise self._misunderstood("a step") from None
+        self.ended_at = None if math.isnan(ended_at) else ended_at
         self._time, self._just_stepped = t + h, True
 
     def get_state(self) -> Any:
@@ -146,6 +160,7 @@ class IsolatedInstance:
     def set_state(self, state: Any) -> None:
         """Restore a state; the handle stays valid."""
         self._touched()
+        self.ended_at = None
         self._call("set_state", "the restoring of a state", state)
 
     def free_state(self, state: Any) -> None:
@@ -184,6 +199,12 @@ class IsolatedInstance:
     def _bound(self, kind: str, names: Sequence[str]) -> tuple[int, Codec]:
         number = self._call(kind, "the binding of its variables", list(names))
         return number, Codec([self.variables[name].type for name in names])
+
+    def _time_of(self, answer: Any) -> float:
+        try:
+            return float(answer)
+        except _NO_ANSWER:
+            raise self._misunderstood("the end of its initialisation") from None
 
     def _touched(self) -> None:
         """Forget what was read ahead: it is no longer what a reader would read."""

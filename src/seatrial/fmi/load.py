@@ -1,8 +1,9 @@
-"""FMU files loaded: unpacked once, described, and instantiated by their version of FMI."""
+"""FMI 1.0, 2.0 and 3.0 FMUs loaded: unpacked once, described, and instantiated."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
@@ -12,39 +13,53 @@ from fmpy.model_description import ModelDescription, ValidationError, read_model
 
 from ..errors import InputError
 from .archive import content_hash, unpacked
-from .fmi2 import Fmi2Instance
-from .fmi3 import Fmi3Instance
+from .fmi1 import Fmi1Slave
+from .fmi1model import Fmi1Model
+from .fmi2 import Fmi2Slave
+from .fmi2model import Fmi2Model
+from .fmi3model import Fmi3Model
+from .fmi3slave import Fmi3Slave
 from .instance import Instance
 from .loaded import LoadedFmu
+from .options import DEFAULTS, FmuOptions, Interface
 from .osp import read_osp
 from .terminals import read_terminals
 from .variables import described, views_of
 from .xmlfile import read_xml
 
-_NEEDED = "co-simulation of FMI 2.0 or 3.0 is needed"
+_NEEDED = "co-simulation or model exchange of FMI 1.0, 2.0 or 3.0 is needed"
 _INTERFACES = {
     "CoSimulation": "co-simulation",
     "ModelExchange": "model exchange",
     "ScheduledExecution": "scheduled execution",
-    "Implementation": "co-simulation",  # of FMI 1.0
+}
+_INSTANCES: dict[tuple[int, Interface], Callable[[LoadedFmu, str], Instance]] = {
+    (1, "co-simulation"): Fmi1Slave,
+    (2, "co-simulation"): Fmi2Slave,
+    (3, "co-simulation"): Fmi3Slave,
+    (1, "model exchange"): Fmi1Model,
+    (2, "model exchange"): Fmi2Model,
+    (3, "model exchange"): Fmi3Model,
 }
 _MOST_PROBLEMS = 3
 
 
-def load_fmu(path: Path) -> LoadedFmu:
-    """Unpack and read the FMU at ``path``.
+def load_fmu(path: Path, options: FmuOptions = DEFAULTS) -> LoadedFmu:
+    """Unpack and read the FMU at ``path``, to be used as ``options`` say.
 
     Its terminals are those inside; if there are none, the variable groups in the
     OspModelDescription.xml beside it.
 
-    Raises InputError if it is no co-simulation FMU of FMI 2.0 or 3.0, or is damaged, and for a
-    mistake in a file of terminals.
+    Raises InputError if it has no interface that is used here, or is damaged, for a mistake in a
+    file of terminals, and for options that do not fit the FMU.
     """
     try:
         status = path.stat()
     except OSError as error:
         raise InputError(f"{path}: {error.strerror}") from None
     fmu = _load(path.resolve(), (status.st_mtime_ns, status.st_size))
+    if options != DEFAULTS:
+        fmu = _with_options(fmu, options)
     if fmu.terminals:
         return fmu
     others = _names(fmu.description)
@@ -58,9 +73,35 @@ def open_instance(fmu: LoadedFmu, name: str) -> Instance:
     Raises InputError if it has no binary that this machine can load, and SimulationError if
     it cannot be instantiated.
     """
-    if fmu.description.fmiMajorVersion == 3:
-        return Fmi3Instance(fmu, name)
-    return Fmi2Instance(fmu, name)
+    return _INSTANCES[fmu.version, fmu.interface](fmu, name)
+
+
+def _with_options(fmu: LoadedFmu, options: FmuOptions) -> LoadedFmu:
+    """Return the FMU to be used as ``options`` say; sizes of arrays follow them."""
+    if options.interface and options.interface not in fmu.interfaces:
+        raise InputError(
+            f"{fmu.path.name} has no {options.interface}, only {' and '.join(fmu.interfaces)}"
+        )
+    chosen = replace(fmu, options=options)
+    if options.tolerance is not None and chosen.interface != "model exchange":
+        raise InputError(
+            f"{fmu.path.name}: a tolerance has no effect in co-simulation, only with "
+            'interface = "model exchange"'
+        )
+    if not options.structure:
+        return chosen
+    try:
+        content = described(fmu.description, fmu.root, options.structure)
+    except InputError as error:
+        raise InputError(f"{fmu.path}: {error}") from None
+    names = _names(fmu.description)
+    return replace(
+        chosen,
+        variables=content.variables,
+        arrays=content.arrays,
+        feedthrough=content.feedthrough,
+        terminals=read_terminals(fmu.folder, fmu.path, content.variables, names),
+    )
 
 
 @lru_cache(maxsize=256)
@@ -79,12 +120,15 @@ def _load(path: Path, _stamp: tuple[int, int]) -> LoadedFmu:
     except Exception as error:  # whatever FMPy meets in a description that is no valid one
         why = _problems(file) or f"{type(error).__name__}: {error}"
         raise InputError(f"{path}: cannot read its model description: {why}") from None
-    _refuse_identifier(path, description.coSimulation.modelIdentifier)
+    for interface in (description.coSimulation, description.modelExchange):
+        if interface is not None:
+            _refuse_identifier(path, interface.modelIdentifier)
     return LoadedFmu(
         path,
         folder,
         sha256,
         description,
+        root,
         content.variables,
         content.arrays,
         content.feedthrough,
@@ -99,7 +143,7 @@ def _names(description: ModelDescription) -> set[str]:
 
 
 def _refuse_other_kinds(path: Path, root: Any) -> None:
-    """Raise InputError for what is no co-simulation FMU of FMI 2.0 or 3.0."""
+    """Raise InputError for what has neither co-simulation nor model exchange."""
     version = root.get("fmiVersion")
     if root.tag != "fmiModelDescription" or version is None:
         raise InputError(
@@ -107,10 +151,8 @@ def _refuse_other_kinds(path: Path, root: Any) -> None:
             f"needed, found {root.tag} with fmiVersion {version!r}"
         )
     kinds = [text for tag, text in _INTERFACES.items() if root.find(tag) is not None]
-    if version == "1.0" and not kinds:
-        kinds = ["model exchange"]
-    known = version == "2.0" or re.fullmatch(r"3\.\d+(\.\d+)?", version)
-    if not known or root.find("CoSimulation") is None:
+    known = version in ("1.0", "2.0") or re.fullmatch(r"3\.\d+(\.\d+)?", version)
+    if not known or (version != "1.0" and not {"co-simulation", "model exchange"} & set(kinds)):
         raise InputError(f"{path}: FMI {version}, {' and '.join(kinds) or 'nothing'}; {_NEEDED}")
     if root.find("ModelVariables") is None:
         raise InputError(f"{path}: modelDescription.xml: has no ModelVariables")

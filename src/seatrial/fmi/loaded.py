@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from fmpy.model_description import ModelDescription
 
 from ..terminals import Terminal
 from .instance import Variables
+from .options import DEFAULTS, INTERFACES, FmuOptions, Interface
 from .variables import Array
 
 
@@ -21,6 +23,8 @@ class LoadedFmu:
     folder: Path
     sha256: str
     description: ModelDescription
+    root: Any
+    """The XML element that ``description`` was read from, which has more."""
     variables: Variables
     arrays: Mapping[int, Array]
     """What each value reference of an FMI 3 FMU stands for."""
@@ -31,3 +35,56 @@ class LoadedFmu:
     """What reports draw of it; see `ports.VIEWS`."""
     notes: tuple[str, ...]
     """What this FMU has that cannot be used here, for its user."""
+    options: FmuOptions = DEFAULTS
+
+    @property
+    def version(self) -> int:
+        """Major version of FMI."""
+        return int(self.description.fmiMajorVersion)
+
+    @property
+    def interfaces(self) -> list[Interface]:
+        """What it has of the interfaces that are used here."""
+        has = (self.description.coSimulation, self.description.modelExchange)
+        return [name for name, one in zip(INTERFACES, has, strict=True) if one is not None]
+
+    @property
+    def interface(self) -> Interface:
+        """The one that instances use."""
+        return self.options.interface or self.interfaces[0]
+
+    @property
+    def simulation(self) -> Any:
+        """What its model description says of that interface."""
+        description = self.description
+        of = {
+            "co-simulation": description.coSimulation,
+            "model exchange": description.modelExchange,
+        }
+        return of[self.interface]
+
+    @property
+    def rolls_back(self) -> bool:
+        """Whether the whole state can be saved and restored."""
+        return bool(self.simulation.canGetAndSetFMUstate)
+
+    @property
+    def any_step(self) -> bool:
+        """Whether it takes steps of different lengths."""
+        if self.interface == "model exchange":
+            return True
+        if self.version == 1:
+            return self._says("canHandleVariableCommunicationStepSize")
+        return bool(self.simulation.canHandleVariableCommunicationStepSize)
+
+    @property
+    def only_once(self) -> bool:
+        """Whether a process can have one instance only."""
+        if self.version == 1:
+            return self._says("canBeInstantiatedOnlyOncePerProcess")
+        return bool(self.simulation.canBeInstantiatedOnlyOncePerProcess)
+
+    def _says(self, capability: str) -> bool:
+        """Return a capability of FMI 1.0 co-simulation, which FMPy leaves out."""
+        found = self.root.find("Implementation//Capabilities")
+        return found is not None and found.get(capability) in ("true", "1")

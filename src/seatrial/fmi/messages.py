@@ -8,10 +8,10 @@ import logging
 from collections.abc import Callable
 from typing import Any
 
-from fmpy import fmi2
+from fmpy import fmi1, fmi2
 from fmpy.logging import addLoggerProxy
 
-# Equal in FMI 2.0 and 3.0.
+# Equal in all versions of FMI.
 OK, WARNING, DISCARD, ERROR, FATAL, PENDING = range(6)
 ACCEPTED = (OK, WARNING)
 """With any other status, one that FMI does not have included, a call has failed."""
@@ -31,6 +31,7 @@ class Messages:
     """The messages of one instance since somebody last asked."""
 
     def __init__(self, name: str) -> None:
+        self.name = name
         self._logger = logging.getLogger(f"seatrial.fmu.{name}")
         self._kept: list[tuple[int, str]] = []
         self._lost = 0
@@ -90,10 +91,31 @@ def stop_listening(callbacks: fmi2.fmi2CallbackFunctions) -> None:
     _listening.pop(callbacks.componentEnvironment, None)
 
 
+_listening_by_name: dict[bytes, Callable[[int, bytes | None], None]] = {}
+"""The same of FMI 1.0, which has no environment: the last instance of each name."""
+
+
+def listening_callbacks1(messages: Messages) -> fmi1.fmi1CallbackFunctions:
+    """Return FMI 1.0 callbacks that keep in ``messages`` what the instance of that name says."""
+    callbacks = fmi1.fmi1CallbackFunctions()
+    callbacks.logger = _logger_proxy()
+    callbacks.allocateMemory = fmi1.defaultCallbacks.allocateMemory
+    callbacks.freeMemory = fmi1.defaultCallbacks.freeMemory
+    _listening_by_name[messages.name.encode()] = messages.keep
+    return callbacks
+
+
+def stop_listening1(messages: Messages) -> None:
+    """Forget an instance of FMI 1.0 that is gone."""
+    name = messages.name.encode()
+    if _listening_by_name.get(name) == messages.keep:
+        del _listening_by_name[name]
+
+
 def _dispatch(
     environment: int | None, instance: bytes, status: int, category: bytes, message: bytes
 ) -> None:
-    listener = _listening.get(environment or 0)
+    listener = _listening.get(environment or 0) or _listening_by_name.get(instance or b"")
     if listener is None:  # an instance of somebody else in this process
         fmi2.printLogMessage(environment, instance, status, category, message)
     else:

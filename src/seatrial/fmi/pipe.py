@@ -22,6 +22,8 @@ LARGEST = 1 << 30
 """Bytes of a payload."""
 INTERVAL = struct.Struct("<dd")
 """Begin and length of a step, s."""
+ENDED = struct.Struct("<d")
+"""First in the answer of a step: when the component asked to end the simulation, s; or NaN."""
 
 Frame = tuple[int, int, bytes]
 """Code, number and payload."""

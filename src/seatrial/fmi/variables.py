@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 from typing import Any
@@ -61,19 +61,22 @@ class Described:
     """What this FMU has that cannot be used here."""
 
 
-def described(description: ModelDescription, root: Any) -> Described:
+def described(
+    description: ModelDescription, root: Any, structure: Mapping[str, int] | None = None
+) -> Described:
     """Return the signals of ``description``, read from the XML element ``root``.
 
-    Raises InputError, without the file's name, for a variable that cannot be used.
+    ``structure`` has structural parameters that are to differ from their start values. Raises
+    InputError, without the file's name, for a variable that cannot be used.
     """
-    for name, count in Counter(v.name for v in description.modelVariables).items():
-        if count > 1:
-            raise InputError(f"two variables are called {name!r}")
-    reading = _Reading(description, root)
+    ambiguous = _ambiguous_names(description)
+    reading = _Reading(description, root, structure or {})
     variables, clocked = Variables(), []
     arrays: dict[int, Array] = {}
     by_name: dict[str, list[str]] = {}
     for v in description.modelVariables:
+        if v.name in ambiguous:
+            continue
         if v.type == "Clock" or v.clocks:
             clocked.append(v.name)
             continue
@@ -89,13 +92,17 @@ def described(description: ModelDescription, root: Any) -> Described:
             raise InputError(f"more than {_MOST_SCALARS} scalar variables")
         arrays.setdefault(v.valueReference, Array(v.type, tuple(scalars)))
         by_name[v.name] = [scalar.name for scalar in scalars]
-    return Described(variables, arrays, _feedthrough(description, by_name), _notes(clocked))
+    feedthrough = _feedthrough(description, root, by_name)
+    return Described(variables, arrays, feedthrough, _notes(clocked, ambiguous))
 
 
 class _Reading:
     """What has to be known of a whole model description to read one of its variables."""
 
-    def __init__(self, description: ModelDescription, root: Any) -> None:
+    def __init__(
+        self, description: ModelDescription, root: Any, structure: Mapping[str, int]
+    ) -> None:
+        self._structure = structure
         self._elements = {e.get("name"): e for e in root.find("ModelVariables")}
         self._units = {u.name: u.baseUnit for u in description.unitDefinitions}
         self._definitions: dict[str, Unit | None] = {"": None}
@@ -111,7 +118,7 @@ class _Reading:
         element = self._elements[(v.alias or v).name]
         if element.tag == "ScalarVariable" and element.find(v.type) is None:
             raise InputError("it has no type")  # FMPy takes that of the one before
-        kind, declared, names = _TYPES[v.type], v.declaredType, _element_names(v)
+        kind, declared, names = _TYPES[v.type], v.declaredType, self._element_names(v)
         inherited = {a: getattr(v, a) or getattr(declared, a, None) for a in _INHERITED}
         limits = {a: _number(inherited[a]) if kind in (int, float) else None for a in _LIMITS}
         unit = (inherited["unit"] or "") if kind is float else ""
@@ -135,6 +142,7 @@ class _Reading:
                 integers=self._integers.get(v.type, INTEGERS["Int32"]),
                 items={item.name: int(item.value) for item in getattr(declared, "items", ())},
                 element=place,
+                negated=element.get("alias") == "negatedAlias",
                 optional=said.get("optional") == "true",
                 frame=said.get("frame", ""),
                 term_of=said.get("term_of", ""),
@@ -143,15 +151,35 @@ class _Reading:
             for place, name in enumerate(names)
         ]
 
+    def _shape(self, v: Any) -> tuple[int, ...]:
+        """Return an array's sizes, as the structural parameters have them."""
+        return tuple(
+            size if d.variable is None else self._structure.get(d.variable.name, size)
+            for size, d in zip(v.shape, v.dimensions, strict=True)
+        )
+
+    def _element_names(self, v: Any) -> list[str]:
+        if not v.dimensions:
+            return [v.name]
+        shape = self._shape(v)
+        if min(shape) < 0 or math.prod(shape) > _MOST_SCALARS:
+            raise InputError(f"an array of {' by '.join(map(str, shape))}")
+        indices = product(*(range(1, size + 1) for size in shape))
+        return [f"{v.name}[{','.join(map(str, index))}]" for index in indices]
+
     def _starts(self, v: Any, element: Any, count: int) -> Sequence[Value | None]:
         """Return one start value per element; one that is given alone holds for all."""
         kind = _TYPES[v.type]
+        if v.name in self._structure:
+            return [self._structure[v.name]]
         if element.tag in ("String", "Binary"):  # FMI 3; FMPy knows the first one only
             texts = [start.get("value") for start in element.findall("Start")]
         elif v.start is None or kind is str or not v.dimensions:
             texts = [] if v.start is None else [v.start]
         else:
             texts = v.start.split()
+        if v.dimensions and self._shape(v) != v.shape and len(texts) > 1:
+            return [None] * count  # the description has those of its own size
         if len(texts) not in (0, 1, count):
             raise InputError(f"{len(texts)} start values for {count} elements")
         values: list[Value | None] = [_parsed(text, kind) for text in texts]
@@ -172,15 +200,6 @@ _BASE_UNITS = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 _LIMITS = ("min", "max", "nominal")
 _INHERITED = ("unit", *_LIMITS)
 """What a variable has from its declared type if it does not say it itself."""
-
-
-def _element_names(v: Any) -> list[str]:
-    if not v.dimensions:
-        return [v.name]
-    if min(v.shape) < 0 or math.prod(v.shape) > _MOST_SCALARS:
-        raise InputError(f"an array of {' by '.join(map(str, v.shape))}")
-    indices = product(*(range(1, size + 1) for size in v.shape))
-    return [f"{v.name}[{','.join(map(str, index))}]" for index in indices]
 
 
 def _variability(written: str | None, kind: type) -> str:
@@ -204,12 +223,14 @@ def _parsed(text: str, kind: type) -> Value:
 
 
 def _feedthrough(
-    description: ModelDescription, by_name: dict[str, list[str]]
+    description: ModelDescription, root: Any, by_name: dict[str, list[str]]
 ) -> dict[str, Sequence[str]]:
     """Return the inputs each output depends on; on all, where the FMU says nothing."""
     inputs = [v for v in description.modelVariables if v.causality == "input"]
     all_inputs = [name for v in inputs for name in by_name.get(v.name, ())]
     said = {unknown.variable.name: unknown.dependencies for unknown in description.outputs}
+    if description.fmiMajorVersion == 1:
+        said = _direct_dependencies(description, root)
     result: dict[str, Sequence[str]] = {}
     for v in description.modelVariables:
         if v.causality != "output":
@@ -224,11 +245,45 @@ def _feedthrough(
     return result
 
 
-def _notes(clocked: list[str]) -> tuple[str, ...]:
-    if not clocked:
-        return ()
-    shown = ", ".join(clocked[:10]) + (", ..." if len(clocked) > 10 else "")
-    return (f"clocks, and variables that belong to one, are no signals here: {shown}",)
+def _direct_dependencies(description: ModelDescription, root: Any) -> dict[str, list[Any]]:
+    """Return what an FMI 1.0 description says, which FMPy leaves out."""
+    variables = {v.name: v for v in description.modelVariables}
+    return {
+        element.get("name"): [
+            variables[name.text] for name in through.iterfind("Name") if name.text in variables
+        ]
+        for element in root.find("ModelVariables")
+        if (through := element.find("DirectDependency")) is not None
+    }
+
+
+def _ambiguous_names(description: ModelDescription) -> list[str]:
+    """Return names of several local variables each: FMI forbids them, tools write them.
+
+    Raises InputError for a name that a signal or a parameter shares.
+    """
+    counts = Counter(v.name for v in description.modelVariables)
+    for v in description.modelVariables:
+        if counts[v.name] > 1 and v.causality != "local":
+            raise InputError(f"two variables are called {v.name!r}")
+    return [name for name, count in counts.items() if count > 1]
+
+
+def _notes(clocked: list[str], ambiguous: list[str]) -> tuple[str, ...]:
+    notes = []
+    if clocked:
+        notes.append(
+            f"clocks, and variables that belong to one, are no signals here: {_shown(clocked)}"
+        )
+    if ambiguous:
+        notes.append(
+            "local variables that share a name with another are left out: " + _shown(ambiguous)
+        )
+    return tuple(notes)
+
+
+def _shown(names: list[str]) -> str:
+    return ", ".join(names[:10]) + (", ..." if len(names) > 10 else "")
 
 
 def views_of(root: Any) -> dict[str, dict[str, str]]:

@@ -12,6 +12,7 @@ import faulthandler
 import io
 import json
 import logging
+import math
 import os
 import signal
 import struct
@@ -25,9 +26,11 @@ from ..errors import InputError, SeatrialError, SimulationError
 from ..links.safe_state import inherited
 from .instance import Instance, Reader
 from .load import load_fmu, open_instance
+from .options import FmuOptions
 from .orphan import end_with
 from .pipe import (
     CALL,
+    ENDED,
     FAILURE,
     INTERVAL,
     MESSAGE,
@@ -111,7 +114,8 @@ class Worker:
     def _step(self, payload: bytes) -> bytes:
         """Step, and read ahead what the parent has read after earlier steps."""
         self._instance.step(*INTERVAL.unpack_from(payload))
-        ahead = []
+        ended_at = self._instance.ended_at
+        ahead = [ENDED.pack(math.nan if ended_at is None else ended_at)]
         for (number,) in struct.iter_unpack("<I", payload[INTERVAL.size :]):
             try:
                 ahead.append(frame(RESULT, number, self._read(number)))
@@ -133,14 +137,21 @@ class Worker:
 
     # ------------------------------------------------------------------ calls in JSON
 
-    def call_open(self, path: str, sha256: str, name: str, module_path: list[str]) -> list[bool]:
+    def call_open(
+        self,
+        path: str,
+        sha256: str,
+        name: str,
+        module_path: list[str],
+        options: dict[str, Any],
+    ) -> list[bool]:
         """Load the FMU; return whether it rolls back, and takes steps of any length."""
         sys.path[:] = module_path
         logger = logging.getLogger(f"seatrial.fmu.{name}")
         logger.addHandler(_Forwarder(self._send))
         logger.setLevel(1)
         logger.propagate = False
-        fmu = load_fmu(Path(path))
+        fmu = load_fmu(Path(path), FmuOptions(**options))
         if fmu.sha256 != sha256:
             raise InputError(f"{path} was changed while it was being loaded")
         self._instance = open_instance(fmu, name)
@@ -179,9 +190,10 @@ class Worker:
         """Start at ``start_time``."""
         self._instance.initialise(start_time, stop_time)
 
-    def call_begin(self) -> None:
-        """End the initialisation."""
+    def call_begin(self) -> float | None:
+        """End the initialisation; return when the component asked to end the simulation."""
         self._instance.begin()
+        return self._instance.ended_at
 
     def call_get_state(self) -> int:
         """Keep the whole state; return its number."""

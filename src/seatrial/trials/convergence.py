@@ -85,7 +85,7 @@ def run_convergence(
             result = supervisor.run(number, folders[0] / _folder_name(one) if folders else out)
             done(result)
             if result.status != "complete":
-                why = result.error or "stopped; the signals recorded so far are on disk"
+                why = result.error or f"{result.status}; the signals recorded so far are on disk"
                 raise SimulationError(f"at a step of {_step_text(one)}: {why}")
             folders.append(result.folder)
     found = _compared(trials, [load_run(folder) for folder in folders])

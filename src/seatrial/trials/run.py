@@ -10,6 +10,7 @@ from pathlib import Path
 
 from ..cosim.master import Master
 from ..cosim.system import Engine
+from .ending import is_whole
 from .hooks import Hooks, StoppedError
 from .output import claim_folder
 from .preparation import prepare
@@ -26,7 +27,7 @@ class Result:
 
     folder: Path
     status: str
-    """complete, ended (by a criterion), stopped or failed."""
+    """complete, ended (by a criterion), ended by COMPONENT, stopped or failed."""
     error: str | None
     verdicts: list[tuple[str, str, Verdict]]
     """(name, check, verdict) of each criterion; empty if the run failed."""
@@ -36,8 +37,8 @@ class Result:
 
     @property
     def passed(self) -> bool:
-        """True if the run is complete and every criterion holds."""
-        return self.status == "complete" and all(v.passed for _, _, v in self.verdicts)
+        """True if the run came to an end of its own and every criterion holds."""
+        return is_whole(self.status) and all(v.passed for _, _, v in self.verdicts)
 
 
 def run_trial(

@@ -14,6 +14,7 @@ import numpy as np
 from ..cosim.rig import LONGEST_S
 from ..errors import InputError
 from . import run_schema
+from .ending import is_whole
 from .expressions import FloatArray
 from .run_schema import checked_json
 
@@ -52,8 +53,8 @@ class Run:
 
     @property
     def passed(self) -> bool | None:
-        """Whether the run is complete and every criterion passed; None without criteria."""
-        if self.manifest["status"] != "complete":
+        """Whether the run came to an end of its own and all criteria passed; None without any."""
+        if not is_whole(self.manifest["status"]):
             return False
         if not self.manifest["criteria"]:
             return None
@@ -89,7 +90,7 @@ def load_run(folder: Path | str) -> Run:
     if _has_content(folder / SIGNALS):
         time, signals, truncated = _read_signals(folder / SIGNALS, _texts(manifest))
         _check_signals(folder / SIGNALS, time, signals, manifest)
-    elif manifest["status"] in ("complete", "ended", "stopped"):
+    elif is_whole(manifest["status"]) or manifest["status"] in ("ended", "stopped"):
         raise InputError(f"{folder} has no {SIGNALS}")
     if truncated:
         notes.append(f"the last line of {SIGNALS} is cut and was dropped")

@@ -11,6 +11,7 @@ from pydantic import (
     ConfigDict,
     Field,
     Strict,
+    StringConstraints,
     TypeAdapter,
     ValidationError,
     model_validator,
@@ -106,7 +107,10 @@ class Manifest(_Entry):
     connections: list[_Connection]
     signals: dict[str, _Signal]
     criteria: list[_Criterion]
-    status: Literal["running", "complete", "ended", "stopped", "failed"]
+    status: (
+        Literal["running", "complete", "ended", "stopped", "failed"]
+        | Annotated[str, StringConstraints(pattern="^ended by .")]
+    )
     error: str | None = None
     step: Number | None = None
     versions: dict[str, Any] = Field(default_factory=dict)

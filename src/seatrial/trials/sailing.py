@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from .ending import is_whole
 from .figure import Figure
 from .plots import COLOURS, layout
 from .run_folder import Run, viewed
@@ -63,7 +64,7 @@ def polar_point(run: Run, label: str, series: str) -> PolarPoint | None:
     wind, psi = _wind_signals(run), ".attitude.psi"
     craft = [name.removesuffix(psi) for name in run.signals if name.endswith(psi)]
     needed = [f"{name}.velocity.{axis}" for name in craft for axis in ("u", "v")]
-    complete = run.manifest["status"] == "complete" and set(needed) <= set(run.signals)
+    complete = is_whole(run.manifest["status"]) and set(needed) <= set(run.signals)
     if wind is None or len(craft) != 1 or not complete:
         return None
     last = run.time >= run.time[-1] - _STEADY * (run.time[-1] - run.time[0])

@@ -14,6 +14,7 @@ from ..cosim.actions import action
 from ..cosim.master import Master
 from ..cosim.recorder import Recorder
 from ..errors import SimulationError
+from .ending import ended_by
 from .hooks import Hooks
 from .output import write_json, write_json_into_reserve, write_json_with_reserve
 from .pacing import Pace
@@ -40,7 +41,7 @@ class Run:
     ) -> None:
         self.prepared, self.folder, self.wall = prepared, folder, wall
         self.status = "running"
-        """complete, ended (by a criterion), stopped or failed, once it is over."""
+        """complete, ended (by a criterion), ended by COMPONENT, stopped or failed, once over."""
         self.error: str | None = None
         trial = prepared.trial
         self._master, self._hooks = master, hooks
@@ -104,6 +105,7 @@ class Run:
         pace = [] if self._pace is None else [self._pace.pacer.note()]
         prepared = self.prepared
         notes = [*prepared.system.notes, *prepared.loose_inputs(), *self._master.notes()]
+        notes += self._master.endings()
         return [*notes, *self._floods, *pace]
 
     # ------------------------------------------------------------------ inside
@@ -154,8 +156,9 @@ class Run:
                 where = f"event {event.key}"
                 action(master.system, event.action, event.key, event.written, where).apply(master)
             stopping, broken, over = stop_requested(), termination.broken(), master.steps >= steps
-            recorder.record(last=bool(stopping) or broken or over)
-            if broken or over:
+            enders = master.ended()
+            recorder.record(last=bool(stopping or broken or over or enders))
+            if broken or over or enders:
                 break
             if stopping:
                 return "stopped"
@@ -167,7 +170,9 @@ class Run:
                 self._show_progress()
         self._hooks.progress(self._whole_s, self._whole_s)
         master.terminate()
-        return "ended" if broken else "complete"
+        if broken:
+            return "ended"
+        return ended_by(enders) if enders and not over else "complete"
 
     @property
     def _whole_s(self) -> float:

@@ -15,6 +15,7 @@ from typing import Any, NoReturn
 
 from ..cosim.system import Engine
 from ..errors import InputError, SimulationError
+from .ending import is_whole
 from .expressions import Limit
 from .forked import Forked
 from .hooks import Hooks, StoppedError
@@ -78,7 +79,7 @@ class Supervisor:
         folder = self._shown(out)
         result = _result(folder, content)
         self._note_sent(result)
-        if result.status in ("complete", "ended"):
+        if is_whole(result.status) or result.status == "ended":
             said = read_manifest(folder)["status"]
             if said != result.status:
                 raise SimulationError(f"{folder / MANIFEST} says {said!r} of a run that has ended")
