@@ -17,7 +17,7 @@ def build_native_fmu(name: str, folder: Path) -> Path:
     """Compile ``slaves/NAME.c`` into ``folder/NAME.fmu``, described by ``slaves/NAME.xml``."""
     folder.mkdir(parents=True, exist_ok=True)
     library, path = folder / f"{name}.so", folder / f"{name}.fmu"
-    _compile(SLAVES / f"{name}.c", library)
+    compiled(SLAVES / f"{name}.c", library)
     description = (SLAVES / f"{name}.xml").read_bytes()
     platform = fmpy.platform_tuple if b'fmiVersion="3.0"' in description else fmpy.platform
     with zipfile.ZipFile(path, "w") as archive:
@@ -35,7 +35,7 @@ def forgetful(path: Path, to: Path) -> Path:
         source = source.replace(lost, "")
     changed_source, library = to.with_suffix(".c"), to.with_suffix(".so")
     changed_source.write_text(source, "utf-8")
-    _compile(changed_source, library)
+    compiled(changed_source, library)
     with zipfile.ZipFile(path) as old, zipfile.ZipFile(to, "w") as new:
         for member in old.infolist():
             is_library = member.filename.endswith(".so")
@@ -43,12 +43,26 @@ def forgetful(path: Path, to: Path) -> Path:
     return to
 
 
-def _compile(source: Path, library: Path) -> None:
+def compiled(source: Path, library: Path, *flags: str) -> Path:
+    """Compile a C file with FMI's headers; return the library."""
     headers = Path(fmpy.__file__).parent / "c-code"
     subprocess.run(
-        ["cc", "-shared", "-fPIC", "-O1", "-w", f"-I{headers}", source, "-o", library, "-lm"],
+        [
+            "cc",
+            "-shared",
+            "-fPIC",
+            "-O1",
+            "-w",
+            *flags,
+            f"-I{headers}",
+            source,
+            "-o",
+            library,
+            "-lm",
+        ],
         check=True,
     )
+    return library
 
 
 def changed(path: Path, to: Path, *changes: tuple[str, str]) -> Path:

@@ -11,6 +11,7 @@ import pytest
 
 from seatrial.errors import DiscardError, SimulationError
 from seatrial.fmi.load import load_fmu, open_instance
+from seatrial.fmi.options import FmuOptions
 from seatrial.fmi.variables import INTEGERS
 
 from .native import changed, read, started
@@ -229,10 +230,42 @@ def test_inputs_that_change_together_are_one_event(native_fmu) -> None:
 def test_an_fmu_that_wants_to_end(fmi3) -> None:
     instance = fmi3(end_time=0.15)
     instance.step(0.0, 0.1)
-    with pytest.raises(
-        SimulationError, match=r"boat: the FMU asks to end the simulation at t = 0\.2 s"
-    ):
-        instance.step(0.1, 0.1)
+    state = instance.get_state()
+    assert instance.ended_at is None
+    instance.step(0.1, 0.1)
+    assert instance.ended_at == pytest.approx(0.2)
+    assert read(instance, "x") == [pytest.approx(math.exp(-0.2))]
+    instance.step(0.2, 0.1)  # it stands
+    assert read(instance, "x") == [pytest.approx(math.exp(-0.2))]
+    instance.set_state(state)
+    assert instance.ended_at is None
+    instance.free_state(state)
+
+
+# ---------------------------------------------------------------------- structural parameters
+
+
+def test_sizes_follow_structural_parameters(native_fmu) -> None:
+    fmu = load_fmu(native_fmu("fmi3"), FmuOptions(structure={"rows": 2}))
+    assert [v.name for v in fmu.variables.ports["matrix"]] == [
+        "matrix[1,1]", "matrix[1,2]", "matrix[2,1]", "matrix[2,2]",
+    ]  # fmt: skip
+    assert fmu.variables["matrix[1,1]"].start is None  # the FMU says those of three rows
+    assert fmu.variables["rows"].start == 2
+    assert "transpose[1,3]" not in fmu.variables
+    instance = started(open_instance(fmu, "boat"), rows=2, **{"matrix[2,1]": 5.0})
+    assert read(instance, "rows") == [2]
+    instance.writer(["matrix[1,1]", "matrix[1,2]"])([1.0, 2.0])
+    assert read(instance, *(f"transpose[{c},{r}]" for c in (1, 2) for r in (1, 2))) == [
+        1.0, 5.0, 2.0, 0.0,
+    ]  # fmt: skip
+    instance.free()
+
+
+def test_a_size_that_the_fmu_refuses(native_fmu) -> None:
+    fmu = load_fmu(native_fmu("fmi3"), FmuOptions(structure={"rows": 9}))
+    with pytest.raises(SimulationError, match=r"fmi3ExitConfigurationMode .*too many rows"):
+        open_instance(fmu, "boat")
 
 
 def test_a_discarded_step(fmi3) -> None:

@@ -16,7 +16,7 @@ enum { X = 10, HEIGHT, SPEED, STEPS, EVENTS };
 enum { MATRIX = 120, TRANSPOSE = 220, MOST = 8 };
 enum { FLOAT32, FLOAT64, INT8, UINT8, INT16, UINT16, INT32, UINT32, INT64, UINT64, BOOLEAN,
        STRING, BINARY, ENUMERATION };
-enum { INSTANTIATED, INITIALISING, STEPPING, EVENT };
+enum { INSTANTIATED, INITIALISING, STEPPING, EVENT, CONFIGURATION };
 
 typedef struct {
     fmi3LogMessageCallback log;
@@ -62,6 +62,18 @@ fmi3Instance fmi3InstantiateCoSimulation(
     return s;
 }
 void fmi3FreeInstance(fmi3Instance c) { free(c); }
+
+fmi3Status fmi3EnterConfigurationMode(fmi3Instance c) {
+    Slave *s = c;
+    if (s->state != INSTANTIATED) return fail(s, "configured at a wrong time");
+    s->state = CONFIGURATION;
+    return fmi3OK;
+}
+fmi3Status fmi3ExitConfigurationMode(fmi3Instance c) {
+    Slave *s = c;
+    s->state = INSTANTIATED;
+    return s->rows <= MOST ? fmi3OK : fail(s, "too many rows");
+}
 
 fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean b, fmi3Float64 tolerance,
                                        fmi3Float64 start, fmi3Boolean stops, fmi3Float64 stop) {
@@ -240,6 +252,7 @@ fmi3Status fmi3SetFloat32(fmi3Instance c, const fmi3ValueReference r[], size_t n
                              const fmi3##Type v[], size_t size) {                                  \
         Slave *s = c;                                                                              \
         for (size_t i = 0; i < n; i++) {                                                           \
+            if (r[i] == ROWS && s->state == CONFIGURATION) { s->rows = *v++; continue; }           \
             if (!settable(s, r[i], false)) return fail(s, "a " #Type " set at a wrong time");      \
             if (r[i] % 100 == ENUMERATION) s->integer[ENUMERATION - 1][0] = *v++;                  \
             else for (int k = 0; k < 3; k++) s->integer[own][k] = *v++;                            \
@@ -336,8 +349,6 @@ UNUSED(fmi3SerializeFMUState)
 UNUSED(fmi3DeserializeFMUState)
 UNUSED(fmi3GetDirectionalDerivative)
 UNUSED(fmi3GetAdjointDerivative)
-UNUSED(fmi3EnterConfigurationMode)
-UNUSED(fmi3ExitConfigurationMode)
 UNUSED(fmi3GetIntervalDecimal)
 UNUSED(fmi3GetIntervalFraction)
 UNUSED(fmi3GetShiftDecimal)
