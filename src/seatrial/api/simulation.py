@@ -108,8 +108,8 @@ class Simulation:
     def step(self, count: int = 1) -> None:
         """Take ``count`` communication steps, calling the observers after each.
 
-        Raises SimulationError if a component cannot go on; the simulation can only be restored
-        or closed then.
+        Raises SimulationError if a component cannot go on, or has ended the simulation in the
+        step before; the simulation can only be read, restored or closed then.
         """
         if count < 0:
             raise InputError(f"step: the count is {count}, it cannot be negative")
@@ -292,6 +292,8 @@ class Simulation:
         self._refuse_closed()
         if self._error:
             raise SimulationError(f"this simulation ended at t = {self.time!r} s: {self._error}")
+        if ended := self._master.endings():
+            raise SimulationError("; ".join(ended))
 
     def _act(self, kind: ActionKind, name: str, value: Any) -> None:
         from ..cosim.actions import action

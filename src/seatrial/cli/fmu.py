@@ -104,6 +104,10 @@ def describe(name: Named) -> None:
         fmu = load_fmu(found)
         title, variables = fmu.description.description or found.name, fmu.variables
         through, notes, terminals = fmu.feedthrough, fmu.notes, fmu.terminals
+        title += (
+            f"\nFMI {fmu.description.fmiVersion}, {' and '.join(fmu.interfaces)}; binaries for "
+            f"{', '.join(fmu.platforms) or 'no platform'}"
+        )
     else:
         instance = DirectInstance(found.component_class()(found.name))
         title, variables = summary(type(instance.component)), instance.variables

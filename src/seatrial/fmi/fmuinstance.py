@@ -151,8 +151,7 @@ class FmuInstance(ByType):
 
     def _missing(self, library: str) -> str:
         """Return what platforms an FMU has whose library for this machine is not there."""
-        binaries = self.fmu.folder / "binaries"
-        having = sorted({path.parent.name for path in binaries.glob("*/*") if path.is_file()})
+        having = self.fmu.platforms
         if self._platform in having:
             return f"binaries/{self._platform} has no {library}"
         return (

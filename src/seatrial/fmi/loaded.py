@@ -84,6 +84,12 @@ class LoadedFmu:
             return self._says("canBeInstantiatedOnlyOncePerProcess")
         return bool(self.simulation.canBeInstantiatedOnlyOncePerProcess)
 
+    @property
+    def platforms(self) -> list[str]:
+        """Platforms that it has binaries for, as its folders call them."""
+        binaries = (self.folder / "binaries").glob("*/*")
+        return sorted({path.parent.name for path in binaries if path.is_file()})
+
     def _says(self, capability: str) -> bool:
         """Return a capability of FMI 1.0 co-simulation, which FMPy leaves out."""
         found = self.root.find("Implementation//Capabilities")
