@@ -292,7 +292,7 @@ class Simulation:
         self._refuse_closed()
         if self._error:
             raise SimulationError(f"this simulation ended at t = {self.time!r} s: {self._error}")
-        if ended := self._master.endings():
+        if ended := self._master.end_notes():
             raise SimulationError("; ".join(ended))
 
     def _act(self, kind: ActionKind, name: str, value: Any) -> None:

@@ -108,7 +108,7 @@ class Master:
             name for name, part in self.system.parts.items() if part.instance.ended_at is not None
         ]
 
-    def endings(self) -> list[str]:
+    def end_notes(self) -> list[str]:
         """Return a note on every component that has asked to end the simulation."""
         ended = {name: part.instance.ended_at for name, part in self.system.parts.items()}
         return [

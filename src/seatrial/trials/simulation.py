@@ -105,7 +105,7 @@ class Run:
         pace = [] if self._pace is None else [self._pace.pacer.note()]
         prepared = self.prepared
         notes = [*prepared.system.notes, *prepared.loose_inputs(), *self._master.notes()]
-        notes += self._master.endings()
+        notes += self._master.end_notes()
         return [*notes, *self._floods, *pace]
 
     # ------------------------------------------------------------------ inside
