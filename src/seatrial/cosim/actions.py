@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from ..errors import InputError, unknown
-from ..fmi.instance import Value
+from ..fmi.instance import Value, Variable
 from .master import Master
 from .part import Part
 from .system import System, settable
@@ -54,6 +54,11 @@ def action(system: System, kind: ActionKind, key: str, written: Any, where: str)
     return Action(kind, tuple(_change(system, kind, each, key, written, where) for each in located))
 
 
+def _can_change(variable: Variable) -> bool:
+    """Say if a variable that can be set before a run can be during it, too."""
+    return variable.causality == "input" or variable.variability == "tunable"
+
+
 def _change(
     system: System, kind: ActionKind, place: tuple[Part, str], key: str, written: Any, where: str
 ) -> Change:
@@ -70,8 +75,10 @@ def _change(
         if any(connected):
             feeder = next(fed[variable.name] for variable in scalars if variable.name in fed)
             raise InputError(f"{where}: {key} is fed by {feeder}; override it instead")
-        if scalars[0].causality == "parameter" and scalars[0].variability != "tunable":
+        if not _can_change(scalars[0]):
             raise InputError(f"{where}: {key} is fixed and cannot change during a run")
+    elif {(component, scalars[0].name)} & {one.target for one in system.initial}:
+        raise InputError(f"{where}: {key} has its value from the start and cannot change")
     elif not (all(connected) or scalars[0].causality == "output"):
         raise InputError(
             f"{where}: {key} is neither an output nor an input that is wholly connected"

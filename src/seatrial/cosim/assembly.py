@@ -71,7 +71,8 @@ def _yield_to_connections(system: System) -> None:
 
     The vehicle's file speaks of all its rigs. What tunables set is where these start: it stays.
     """
-    fed = {connection.target for connection in system.connections} - system.tuned
+    made = (*system.connections, *system.initial)
+    fed = {connection.target for connection in made} - system.tuned
     for name, part in system.parts.items():
         for variable in [v for v in part.given if part.given[v].mark and (name, v) in fed]:
             del part.given[variable]

@@ -67,8 +67,8 @@ class _Making:
 
     def _join(self, a: Group, b: Group, written: str, entry: ConnectionEntry, where: str) -> bool:
         """Connect two terminals, each member from its output to its inputs; say if any was."""
-        if (entry.factor, entry.offset, entry.convert) != (1.0, 0.0, True):
-            raise InputError(f"{where}: terminals take no factor, offset or convert")
+        if (entry.factor, entry.offset, entry.convert) != (1.0, 0.0, True) or entry.mapping:
+            raise InputError(f"{where}: terminals take no factor, offset, convert or mapping")
         met: set[str] = set()
         for member in (m for m in a.members if m in b.members):
             for here, there in ((a, b), (b, a)):
@@ -116,8 +116,10 @@ class _Making:
         """Connect two ports, scalar by scalar; of a sum, the first term that is free."""
         if target.sum_of:
             target = self._free_term(target, where)
-        sources = self._scalars(source, _SOURCES, where)
-        targets = self._scalars(target, _TARGETS, where)
+        sources = self._scalars(source, _SOURCES, where, "calculatedParameter")
+        # A fixed parameter takes what has its value before the run.
+        fixed = "fixed parameter" if all(map(_is_initial, sources)) else ""
+        targets = self._scalars(target, _TARGETS, where, fixed)
         if len(sources) != len(targets):
             raise InputError(
                 f"{where}: {source.name} has {len(sources)} scalars, "
@@ -132,7 +134,10 @@ class _Making:
                     "an input takes one connection"
                 )
             self.feeders[place] = f"{source.component}.{one.name}"
-            self.system.connections.append(_scalar(source, one, target, other, entry, where))
+            made = _scalar(source, one, target, other, entry, where)
+            # An output that never changes may still be overridden during the run.
+            once = one.causality != "output" or kind_of(other) == "fixed parameter"
+            (self.system.initial if once else self.system.connections).append(made)
 
     def _free_term(self, target: End, where: str) -> End:
         variables = self.system.parts[target.component].instance.variables
@@ -148,13 +153,20 @@ class _Making:
             f"{', '.join(feeders)}; it takes no more"
         )
 
-    def _scalars(self, end: End, wanted: tuple[str, ...], where: str) -> list[Variable]:
+    def _scalars(
+        self, end: End, wanted: tuple[str, ...], where: str, also: str = ""
+    ) -> list[Variable]:
         scalars = self.resolver.variables(end)
         for variable in scalars:
-            if kind_of(variable) not in wanted:
+            if kind_of(variable) not in (*wanted, also):
                 needed = " or ".join(wanted)
                 raise InputError(f"{where}: {end.name} is {kind_of(variable)}, {needed} is needed")
         return scalars
+
+
+def _is_initial(source: Variable) -> bool:
+    """Say if a source has its value once the system is initialised, and keeps it."""
+    return source.causality == "calculatedParameter" or source.variability in ("constant", "fixed")
 
 
 def _one(ends: list[End], written: str, where: str) -> End:
@@ -176,7 +188,20 @@ def _scalar(
         raise InputError(f"{where}: {target.name} is no real number to transform")
     to_real = (one.type, other.type) == (int, float)
     ends = (source.component, one.name), (target.component, other.name)
-    return Connection(*ends, factor, offset, to_real)
+    return Connection(*ends, factor, offset, to_real, _mapping(one, entry, where))
+
+
+def _mapping(source: Variable, entry: ConnectionEntry, where: str) -> dict[bool | int, bool | int]:
+    """Return what values of an integer or a switch become. Raises InputError."""
+    found: dict[bool | int, bool | int] = {}
+    for pair in entry.mapping:
+        if len(pair) != 2 or not all(type(value) is source.type for value in pair):
+            kind = {int: "integers", bool: "switches"}.get(source.type, "nothing: it is a number")
+            raise InputError(f"{where}: mapping: pairs of {kind} are needed, found {pair!r}")
+        if pair[0] in found:
+            raise InputError(f"{where}: mapping: {pair[0]!r} is mapped twice")
+        found[pair[0]] = pair[1]
+    return found
 
 
 def _converting(

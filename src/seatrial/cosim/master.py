@@ -89,6 +89,7 @@ class Master:
             instance.initialise(self.start_ns / NS, stop)
         self._feedthrough = Feedthrough(self._network)
         self._settle()
+        self._carry_initial()
         for instance in instances:
             instance.begin()
         self._settle()
@@ -209,6 +210,21 @@ class Master:
                 f"which is not derived from {Algorithm.__module__}.Algorithm"
             )
         return made(self._network, self._feedthrough)
+
+    def _carry_initial(self) -> None:
+        """Carry calculated parameters to what they feed, until one that follows another does."""
+        parts, made = self.system.parts, self.system.initial
+        reads = [parts[one.source[0]].instance.reader([one.source[1]]) for one in made]
+        writes = [parts[one.target[0]].instance.writer([one.target[1]]) for one in made]
+        before: list[Any] = []
+        for _ in range(len(made) + 1):
+            values = [one.value(read()[0]) for one, read in zip(made, reads, strict=True)]
+            if values == before:
+                break
+            for write, value in zip(writes, values, strict=True):
+                write([value])
+            before = values
+            self._settle()
 
     def _settle(self) -> None:
         network, nodes = self._network, self._network.nodes.values()

@@ -51,10 +51,15 @@ class Writes:
     """Inputs that change continuously between two communication points."""
     gather: Callable[[list[Any]], Sequence[Any]]
     scales: list[tuple[int, float, float]]
+    mappings: list[tuple[int, Mapping[Any, Any]]] = field(default_factory=list)
 
     def values(self, signals: list[Any]) -> Sequence[Any]:
         """Return the inputs' values, converted."""
         values = self.gather(signals)
+        if self.mappings:
+            values = list(values)
+            for i, mapping in self.mappings:
+                values[i] = mapping.get(values[i], values[i])
         if self.scales:
             values = list(values)
             for i, factor, offset in self.scales:
@@ -150,8 +155,9 @@ class Network:
         writes.scales = [
             (i, connection.factor, connection.offset)
             for i, connection in connected
-            if connection.converts
+            if connection.scales
         ]
+        writes.mappings = [(i, one.mapping) for i, one in connected if one.mapping]
         writes.continuous = [i for i, connection in connected if self._is_continuous(connection)]
 
     def _is_continuous(self, connection: Connection) -> bool:

@@ -43,6 +43,8 @@ class ConnectionEntry(FileModel):
     offset: float = Field(default=0.0, allow_inf_nan=False)
     convert: bool = True
     """Units are converted, and must measure the same."""
+    mapping: list[list[bool | int]] = Field(default_factory=list)
+    """Pairs of values, from and to, of integers, enumerations and switches; others stay."""
 
 
 Isolated = bool | Literal["sandboxed"]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from typing import Any, Literal, Protocol
@@ -28,11 +28,19 @@ class Connection:
     offset: float = 0.0
     to_real: bool = False
     """An Integer output feeds a Real input."""
+    mapping: Mapping[bool | int, bool | int] = field(default_factory=dict)
+    """What integers and switches become before factor and offset; others stay."""
 
     @property
-    def converts(self) -> bool:
-        """Say if a value changes on its way."""
+    def scales(self) -> bool:
+        """Say if a number is multiplied, moved, or made a real one on its way."""
         return self.to_real or (self.factor, self.offset) != (1.0, 0.0)
+
+    def value(self, value: Any) -> Any:
+        """Return what the target gets of a value of the source."""
+        if self.mapping:
+            value = self.mapping.get(value, value)
+        return value * self.factor + self.offset if self.scales else value
 
 
 @dataclass(frozen=True)
@@ -70,6 +78,8 @@ class System:
     variant: str | None
     parts: dict[str, Part] = field(default_factory=dict)
     connections: list[Connection] = field(default_factory=list)
+    initial: list[Connection] = field(default_factory=list)
+    """Those that carry a value once, while the system is initialised: calculated parameters."""
     joints: list[Joint] = field(default_factory=list)
     """The same, port by port."""
     open: list[str] = field(default_factory=list)
@@ -127,7 +137,7 @@ class System:
     def refuse_connected(self, component: str, variable: str, origin: str) -> None:
         """Raise InputError if a connection feeds the input: a value set there would do nothing."""
         parameter = self.parts[component].instance.variables[variable].causality == "parameter"
-        for connection in self.connections:
+        for connection in (*self.connections, *self.initial):
             if connection.target == (component, variable):
                 source = self.parts[connection.source[0]].instance.variables[connection.source[1]]
                 if parameter and source.role == "tunable":
@@ -163,7 +173,9 @@ class System:
     def feeders(self, component: str) -> dict[str, str]:
         """Return which outputs feed the inputs and parameters of a component, by their names."""
         return {
-            w.target[1]: ".".join(w.source) for w in self.connections if w.target[0] == component
+            w.target[1]: ".".join(w.source)
+            for w in (*self.connections, *self.initial)
+            if w.target[0] == component
         }
 
     def unconnected_inputs(self, *, optional: bool = False) -> list[str]:
@@ -171,7 +183,7 @@ class System:
 
         Those that are normally not connected, if ``optional``, otherwise the others.
         """
-        connected = {connection.target for connection in self.connections}
+        connected = {connection.target for connection in (*self.connections, *self.initial)}
         found: dict[str, None] = {}
         for name, part in self.parts.items():
             variables = part.instance.variables
@@ -193,6 +205,7 @@ class System:
             self.parts.pop(name).instance.free()
         self.left_out += names
         self.connections = [c for c in self.connections if c.target[0] in self.parts]
+        self.initial = [c for c in self.initial if c.target[0] in self.parts]
         gone = tuple(f"{name}." for name in names)
         self.joints = [joint for joint in self.joints if not joint.target.startswith(gone)]
 
@@ -224,11 +237,14 @@ class System:
 
 
 def settable(variables: Variables, port: str, where: str) -> list[Variable]:
-    """Return the scalars of a parameter or input port. Raises InputError."""
+    """Return the scalars of a parameter, an input, or what has a start value in another FMU.
+
+    Raises InputError.
+    """
     scalars = port_scalars(variables, port)
     if not scalars:
         raise InputError(f"{where}: {unknown('port', port, port_names(variables))}")
-    if scalars[0].causality not in ("parameter", "input"):
+    if not is_settable(scalars[0]):
         kind = scalars[0].causality
         if kind == "structuralParameter":
             raise InputError(
@@ -237,3 +253,13 @@ def settable(variables: Variables, port: str, where: str) -> list[Variable]:
             )
         raise InputError(f"{where}.{port} has the causality {kind} and cannot be set")
     return scalars
+
+
+def is_settable(variable: Variable) -> bool:
+    """Say if a variable can be given a value before the run.
+
+    An output or a local variable with a start value is one that its FMU starts from, a state say.
+    """
+    if variable.causality in ("output", "local"):
+        return variable.start is not None and variable.variability != "constant"
+    return variable.causality in ("parameter", "input")

@@ -16,7 +16,8 @@ def leave_out_unread(system: System, named: Set[str]) -> None:
     no tie to the world outside, is not shown by the whole rig and not ``named`` by who runs it.
     Who made a package alone knows what its parts are for: they all stay.
     """
-    kept = {connection.source[0] for connection in system.connections} | named
+    made = (*system.connections, *system.initial)
+    kept = {connection.source[0] for connection in made} | named
     kept |= {component for component, _ in system.tuned}
     kept |= {end.component for end in Resolver(system.parts, system.rig.top).shown_outside()}
     unread = [
