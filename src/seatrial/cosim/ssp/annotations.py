@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,6 +10,7 @@ from lxml import etree
 from ...errors import InputError
 from ..rig import LONGEST_S
 from .documents import NAMESPACES, child, children, needed, number, tag, where
+from .notes import Notes
 
 OSP = "com.opensimulationplatform"
 OMS = "org.openmodelica"
@@ -24,15 +24,15 @@ class StepSizes:
     oms: float | None = None
 
 
-def read_steps(experiment: Any | None, system: Any, note: Callable[[str], None]) -> StepSizes:
+def read_steps(experiment: Any | None, system: Any, notes: Notes) -> StepSizes:
     """Return the step sizes that OSP's and OMSimulator's annotations give.
 
-    ``note`` gets what is met and not used. Raises InputError for a size that is no number
+    ``notes`` gets what is met and not used. Raises InputError for a size that is no number
     above 0.
     """
     osp = oms = None
     for holder in (experiment, system):
-        for kind, one in _annotations(holder, note):
+        for kind, one in _annotations(holder, notes):
             for element in one.iter(etree.Element):
                 if kind == OSP and tag(element) == "osp:FixedStepAlgorithm":
                     osp = _positive(element, "baseStepSize")
@@ -40,24 +40,26 @@ def read_steps(experiment: Any | None, system: Any, note: Callable[[str], None])
                     oms = _positive(element, "stepSize")
                 elif etree.QName(element).localname in _SOLVERS:
                     name = etree.QName(element).localname
-                    note(f"{name} of the annotation {kind!r} is not used")
+                    notes.pass_over(
+                        where(element), f"{name} of the annotation {kind!r} is not used"
+                    )
     return StepSizes(osp, oms)
 
 
 _SOLVERS = {"VariableStepSolver", "VariableStepMaster", "FixedStepSolver", "EccoAlgorithm"}
 
 
-def read_step_hint(component: Any, note: Callable[[str], None]) -> float | None:
+def read_step_hint(component: Any, notes: Notes) -> float | None:
     """Return a component's own communication step, s, if OSP's annotation gives one."""
     found = None
-    for kind, one in _annotations(component, note):
+    for kind, one in _annotations(component, notes):
         for element in one.iter(etree.Element):
             if kind == OSP and tag(element) == "osp:StepSizeHint":
                 found = _positive(element, "value")
     return found
 
 
-def _annotations(holder: Any | None, note: Callable[[str], None]) -> list[tuple[str, Any]]:
+def _annotations(holder: Any | None, notes: Notes) -> list[tuple[str, Any]]:
     listed = child(holder, "ssd:Annotations") if holder is not None else None
     found = []
     for one in children(listed) if listed is not None else ():
@@ -65,7 +67,7 @@ def _annotations(holder: Any | None, note: Callable[[str], None]) -> list[tuple[
         if kind in (OSP, OMS):
             found.append((kind, one))
         else:
-            note(f"annotations of type {kind!r} are not read")
+            notes.pass_over(where(one), f"annotations of type {kind!r} are not read")
     return found
 
 

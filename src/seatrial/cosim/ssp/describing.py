@@ -21,8 +21,8 @@ from .annotations import write_oms, write_osp
 from .definitions import write_units
 from .documents import NAMESPACES
 from .layout import End, Level
+from .model import FMU
 from .parameters import type_name
-from .structure import FMU
 
 _PREFIXES = ("ssd", "ssc", "ssv", "osp", "oms")
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
+from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
 from typing import Any, overload
@@ -10,8 +11,9 @@ from typing import Any, overload
 import fmpy
 from lxml import etree
 
-from ...errors import InputError, unknown
+from ...errors import InputError
 from ...fmi.xmlfile import read_xml
+from .notes import Notes
 
 _STANDARD = "http://ssp-standard.org/SSP1/SystemStructure"
 NAMESPACES = {
@@ -28,45 +30,59 @@ NAMESPACES = {
 SCHEMAS = {
     "ssd:SystemStructureDescription": "SystemStructureDescription.xsd",
     "ssv:ParameterSet": "SystemStructureParameterValues.xsd",
+    "ssm:ParameterMapping": "SystemStructureParameterMapping.xsd",
+    "ssb:SignalDictionary": "SystemStructureSignalDictionary.xsd",
 }
 """Root elements that are read, and the schemas of version 1.0."""
 
 _SCHEMA_FOLDER = Path(fmpy.__file__).parent / "ssp" / "schema"
 _PREFIXES = {uri: prefix for prefix, uri in NAMESPACES.items()}
+_ABOUT = {"ssc:MetaData", "ssc:Signature"}
+"""What says something about any element."""
 _META = {
     "id", "description", "author", "fileversion", "copyright", "license", "generationTool",
     "generationDateAndTime",
 }  # fmt: skip
 
 
-def read_document(path: Path, label: str, root: str) -> Any:
+def read_document(path: Path, label: str, root: str, notes: Notes) -> Any:
     """Return the root element of the XML file at ``path``, which must be a ``root``.
 
     ``label`` names the file in messages. Raises InputError for what is no XML, has a document
-    type (and so could have entities), is of another kind or version, or breaks the schema.
+    type (and so could have entities), or is of another kind or version.
     """
     element = read_xml(path, label)
     element.getroottree().docinfo.URL = label
+    return checked(element, root, notes)
+
+
+def checked(element: Any, root: str, notes: Notes) -> Any:
+    """Return ``element`` if it is a ``root`` of a version that is read. Raises InputError.
+
+    What does not fit the schema of version 1 is noted: what matters of it, the readers refuse.
+    There is no schema of version 2 here.
+    """
     if tag(element) != root:
         raise InputError(f"{where(element)}: {root} is needed, found {tag(element)}")
-    check_version(element, root)
+    version = needed(element, "version")
+    if not version.startswith(("1.", "2.")):
+        raise InputError(f"{where(element)}: SSP version {version!r}; 1.0 and 2.0 are read")
+    problems = schema_problems(element, root)
+    if problems:
+        more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
+        place, _, text = problems[0].partition(": Element ")
+        notes.pass_over(place, f"does not fit the schema of SSP 1.0: Element {text}{more}")
     return element
 
 
-def check_version(element: Any, root: str) -> None:
-    """Raise InputError unless ``element`` is version 2 of ``root``, or 1 and fits its schema."""
-    version = needed(element, "version")
-    if version.startswith("2."):
-        return  # there is no schema of 2.0 here: the readers refuse what they do not know
-    if not version.startswith("1."):
-        raise InputError(f"{where(element)}: SSP version {version!r}; 1.0 and 2.0 are read")
+def schema_problems(element: Any, root: str) -> list[str]:
+    """Return where and how ``element``, a ``root`` of version 1, does not fit its schema."""
     schema = _schema(SCHEMAS[root])
-    if not schema.validate(element):
-        problems = [
-            f"{base(element)}: line {p.line}: {_with_prefixes(p.message)}" for p in schema.error_log
-        ]
-        more = [f"and {len(problems) - 10} more"] if len(problems) > 10 else []
-        raise InputError("\n".join(problems[:10] + more))
+    if not str(element.get("version")).startswith("1.") or schema.validate(element):
+        return []
+    return [
+        f"{base(element)}: line {p.line}: {_with_prefixes(p.message)}" for p in schema.error_log
+    ]
 
 
 def _with_prefixes(message: str) -> str:
@@ -108,18 +124,38 @@ def child(element: Any, name: str) -> Any | None:
     return found[0] if found else None
 
 
-def known(element: Any, attributes: Collection[str], elements: Collection[str]) -> None:
-    """Raise InputError if ``element`` has anything else: what is not read could matter."""
+def known(
+    element: Any, attributes: Collection[str], elements: Collection[str], notes: Notes
+) -> None:
+    """Note what else ``element`` has; raise InputError for an element of SSP: it could matter."""
     for name in element.attrib:
-        if not name.startswith("{") and name not in _META and name not in attributes:
-            message = unknown("attribute", name, [*attributes, *_META])
-            raise InputError(f"{where(element)}: {tag(element)}: {message}")
+        if name not in _META and name not in attributes:
+            near = get_close_matches(name, [*attributes, *_META], 1)
+            hint = f"; {near[0]!r} is one that is known" if near else ""
+            notes.pass_over(
+                where(element), f"attribute {name!r} of {tag(element)} is not known, not used{hint}"
+            )
     for one in children(element):
-        if tag(one) not in elements:
+        if tag(one) in elements:
+            continue
+        if etree.QName(one).namespace == NAMESPACES["ssc"] and tag(one) in _ABOUT:
+            notes.pass_over(where(one), f"{tag(one)} of {tag(element)} is not read")
+        elif str(etree.QName(one).namespace).startswith(_STANDARD):
             raise InputError(
                 f"{where(one)}: {tag(one)} in {tag(element)} is not supported "
                 f"(read are: {', '.join(sorted(elements)) or 'none'})"
             )
+        else:
+            notes.pass_over(where(one), f"{tag(one)} in {tag(element)} is not known, not used")
+
+
+def listed(element: Any, name: str, allowed: Collection[str], notes: Notes) -> list[Any]:
+    """Return the children of the child ``name`` that are ``allowed``. Raises InputError."""
+    holder = child(element, name)
+    if holder is None:
+        return []
+    known(holder, (), allowed, notes)
+    return [one for one in children(holder) if tag(one) in allowed]
 
 
 def needed(element: Any, name: str) -> str:
@@ -139,14 +175,17 @@ def number(element: Any, name: str, default: float | None = None) -> float | Non
     text = element.get(name)
     if text is None:
         return default
+    return finite(text, f"{where(element)}: {tag(element)}: {name}")
+
+
+def finite(text: str, place: str) -> float:
+    """Return ``text`` as a finite number. Raises InputError naming ``place``."""
     try:
         value = float(text)
         if value - value != 0.0 or "_" in text:
             raise ValueError
     except ValueError:
-        raise InputError(
-            f"{where(element)}: {tag(element)}: {name}: a finite number is needed, found {text!r}"
-        ) from None
+        raise InputError(f"{place}: a finite number is needed, found {text!r}") from None
     return value
 
 

@@ -6,233 +6,44 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ...errors import InputError, unknown
-from ...fmi.instance import Variable
 from ...fmi.load import load_fmu
-from ...fmi.loaded import LoadedFmu
-from .definitions import Measure, converted
-from .package import DEFAULT, open_package
-from .parameters import Parameter, Value, value_for
-from .structure import (
+from .binding import Bound
+from .dictionaries import Dictionaries
+from .graph import Edge, Graph, Node, Origin, Path_
+from .leaf import Leaf, as_variable, connectors_of
+from .model import (
+    DEEPEST,
     FMU,
+    MOST_SYSTEMS,
     PACKAGE,
     Component,
     Connection,
     Connector,
-    Notes,
+    End,
+    Reference,
     Structure,
     System,
-    read_structure,
 )
+from .notes import Notes
+from .package import DEFAULT, open_package
+from .structure import read_structure
+from .transformations import Way
 
-Path_ = tuple[str, ...]
-"""Where an element is: the names of the systems around it, and its own."""
-Node = tuple[Path_, str]
-"""A connector: its element, its name."""
-
-_DEEPEST = 32
 _MOST_COMPONENTS = 1000
-_MOST_SYSTEMS = 1000
 
-
-@dataclass
-class Leaf:
-    """One FMU of the flat system."""
-
-    path: Path_
-    fmu: LoadedFmu
-    step: float | None
-    parameters: dict[str, Parameter] = field(default_factory=dict)
-
-    def values(self) -> dict[str, Value]:
-        """Return the values set, in the variables' own units. Raises InputError."""
-        variables = self.fmu.variables
-        return {name: value_for(one, variables[name]) for name, one in self.parameters.items()}
+_OUT = {"output", "calculatedParameter", "constant", "local", "independent"}
+"""Kinds of connectors of an element that give a value; seen from inside, a system's take it."""
+_EITHER = {"inout", "unspecified"}
 
 
 @dataclass(frozen=True)
 class FlatConnection:
-    """A connection between two FMUs; the target gets factor * value + offset."""
+    """A connection between two variables of FMUs."""
 
     source: Node
     target: Node
-    factor: float
-    offset: float
-
-
-class Flat:
-    """The FMUs and connections of a structure, and of all that it refers to."""
-
-    def __init__(self, structure: Structure, root: Path, label: str, notes: Notes) -> None:
-        self.leaves: dict[Path_, Leaf] = {}
-        self.elements: dict[Path_, list[str]] = {}
-        """The names of what each system has inside, by where it is."""
-        self._notes = notes
-        self._connectors: dict[Node, Connector] = {}
-        self._edges: dict[Node, tuple[Node, Connection]] = {}
-        description = (root / DEFAULT).resolve()
-        self._add_system(structure.system, (), _Place(root, label, (description,)))
-
-    def connections(self) -> list[FlatConnection]:
-        """Return all connections. Raises InputError for connections that make no sense."""
-        found = []
-        for path, name in list(self._edges):
-            if path in self.leaves:
-                connection = self._connection((path, name))
-                if connection is not None:
-                    found.append(connection)
-        return found
-
-    def _add_system(self, system: System, path: Path_, place: _Place) -> None:
-        if len(path) > _DEEPEST:
-            raise InputError(f"{system.where}: systems nest deeper than {_DEEPEST} levels")
-        if len(self.elements) >= _MOST_SYSTEMS:  # references can double at each level
-            raise InputError(f"{system.where}: more than {_MOST_SYSTEMS} systems")
-        self.elements[path] = list(system.elements)
-        self._connectors.update({(path, name): c for name, c in system.connectors.items()})
-        for name, element in system.elements.items():
-            inner = (*path, name)
-            if isinstance(element, System):
-                self._add_system(element, inner, place)
-            elif element.kind == FMU:
-                self._add_leaf(element, inner, place)
-            else:
-                self._add_reference(element, inner, place)
-        for connection in system.connections:
-            self._add_connection(connection, path)
-        self._bind(system.parameters, path)
-
-    def _add_reference(self, component: Component, path: Path_, place: _Place) -> None:
-        """Add another package or description as if its system stood here."""
-        inside = component.source.relative_to(place.root.resolve()).as_posix()
-        if component.kind == PACKAGE:
-            root = open_package(component.source, f"{place.label}: {inside}", self._notes)
-            label, description = f"{place.label}: {inside}", root / DEFAULT
-        else:
-            root, label, description = place.root, place.label, component.source
-        if description.resolve() in place.chain:
-            raise InputError(f"{component.where}: {inside} refers to itself")
-        structure = read_structure(description, root, label, self._notes)
-        chain = (*place.chain, description.resolve())
-        self._add_system(structure.system, path, _Place(root, label, chain))
-        self._bind(component.parameters, path)
-
-    def _add_leaf(self, component: Component, path: Path_, place: _Place) -> None:
-        if len(self.leaves) >= _MOST_COMPONENTS:
-            raise InputError(f"{component.where}: more than {_MOST_COMPONENTS} FMUs")
-        if component.source.suffix != ".fmu":
-            raise InputError(f"{component.where}: the name of an FMU must end in .fmu")
-        try:
-            leaf = Leaf(path, load_fmu(component.source), component.step)
-        except InputError as error:
-            raise InputError(f"{component.where}: {error}") from None
-        self.leaves[path], variables = leaf, leaf.fmu.variables
-        for name, connector in component.connectors.items():
-            if name not in variables:
-                raise InputError(f"{connector.where}: {unknown('variable', name, variables)}")
-            if connector.type not in (None, variables[name].type):
-                raise InputError(
-                    f"{connector.where}: connector {name!r} is not of the type of the FMU's "
-                    f"variable, {variables[name].type.__name__}"
-                )
-            self._connectors[path, name] = connector
-            self._check_unit(variables[name], connector)
-        self._bind(component.parameters, path)
-
-    def _check_unit(self, variable: Variable, connector: Connector) -> None:
-        if variable.type is not float or not variable.unit or connector.unit is None:
-            return
-        if converted(connector.unit, variable.measure, connector.where) != (1.0, 0.0):
-            raise InputError(
-                f"{connector.where}: connector {connector.name!r} is in another unit than the "
-                f"FMU's variable, which is in {variable.unit}"
-            )
-
-    def _add_connection(self, connection: Connection, path: Path_) -> None:
-        ends = []
-        for element, name in (connection.start, connection.end):
-            node = ((*path, element) if element else path, name)
-            if element and element not in self.elements[path]:
-                message = unknown("element", element, self.elements[path])
-                raise InputError(f"{connection.where}: {message}")
-            if node not in self._connectors:
-                names = [n for p, n in self._connectors if p == node[0]]
-                raise InputError(f"{connection.where}: {unknown('connector', name, names)}")
-            kind = self._connectors[node].kind
-            if kind not in ("input", "output"):
-                raise InputError(
-                    f"{connection.where}: connections of kind {kind!r} are not supported; bind "
-                    "the value to each component instead"
-                )
-            # Seen from inside, an input of the system itself is where values come from.
-            ends.append((node, (kind == "output") == bool(element)))
-        if ends[0][1] == ends[1][1]:
-            kinds = "sources" if ends[0][1] else "targets"
-            raise InputError(f"{connection.where}: both ends are {kinds}")
-        (source, _), (target, _) = ends if ends[0][1] else reversed(ends)
-        if target in self._edges:
-            before = self._edges[target][1].where
-            raise InputError(f"{connection.where}: {target[1]} is fed twice, first by {before}")
-        self._edges[target] = (source, connection)
-
-    def _bind(self, parameters: list[Parameter], path: Path_) -> None:
-        """Give values to the variables below ``path``; they win over those given before."""
-        for parameter in parameters:
-            found = self._variables(parameter, parameter.name, path)
-            if not found:
-                self._notes.add(
-                    f"{parameter.where}: {parameter.name!r} fits no variable; SSP has it ignored"
-                )
-            for leaf, variable in found:
-                leaf.parameters[variable] = parameter
-
-    def _variables(self, parameter: Parameter, name: str, path: Path_) -> list[tuple[Leaf, str]]:
-        """Return the variables with the hierarchical name ``name`` seen from ``path``."""
-        if path in self.leaves:
-            leaf = self.leaves[path]
-            return [(leaf, name)] if name in leaf.fmu.variables else []
-        if (path, name) in self._connectors:
-            raise InputError(
-                f"{parameter.where}: {parameter.name!r} is a connector of a system; values for "
-                "those are not supported, bind them to the components"
-            )
-        found = []
-        for element in self.elements[path]:
-            if name.startswith(f"{element}."):
-                rest = name.removeprefix(f"{element}.")
-                found += self._variables(parameter, rest, (*path, element))
-        return found
-
-    def _connection(self, target: Node) -> FlatConnection | None:
-        """Return the connection that ends at an FMU's input; None if it starts at no FMU."""
-        chain, node = [], target
-        while node in self._edges:
-            source, connection = self._edges[node]
-            chain.append((node, connection))
-            if len(chain) > len(self._edges):
-                raise InputError(f"{connection.where}: the connection leads back to itself")
-            node = source
-        if node[0] not in self.leaves:
-            shown = ".".join((*node[0], node[1]))
-            self._notes.add(f"connector {shown} of the system: nothing feeds it")
-            return None
-        unit = self._unit(node)
-        factor, offset = 1.0, 0.0
-        for end, connection in reversed(chain):
-            there = self._unit(end)
-            if connection.converts and unit is not None and there is not None:
-                scale, shift = converted(unit, there, connection.where)
-                factor, offset = scale * factor, scale * offset + shift
-            factor = connection.factor * factor
-            offset = connection.factor * offset + connection.offset
-            unit = there or unit
-        return FlatConnection(node, target, factor, offset)
-
-    def _unit(self, node: Node) -> Measure | None:
-        unit = self._connectors[node].unit
-        if unit is None and node[0] in self.leaves:
-            variable = self.leaves[node[0]].fmu.variables[node[1]]
-            return variable.measure if variable.type is float and variable.unit else None
-        return unit
+    way: Way
+    where: str
 
 
 @dataclass(frozen=True)
@@ -242,3 +53,204 @@ class _Place:
     root: Path
     label: str
     chain: tuple[Path, ...]
+
+
+@dataclass
+class Flat:
+    """The FMUs and connections of a structure, and of all that it refers to."""
+
+    notes: Notes
+    leaves: dict[Path_, Leaf] = field(default_factory=dict)
+    elements: dict[Path_, list[str]] = field(default_factory=dict)
+    """The names of what each system has inside, by where it is."""
+    graph: Graph = field(default_factory=Graph)
+    _dictionaries: Dictionaries = field(default_factory=Dictionaries)
+    _bound: Bound = field(default_factory=Bound)
+
+    @classmethod
+    def of(cls, structure: Structure, root: Path, label: str, notes: Notes) -> Flat:
+        """Return what ``structure`` of the package unpacked at ``root`` is, made flat.
+
+        Raises InputError for what does not fit together.
+        """
+        made = cls(notes)
+        description = (root / DEFAULT).resolve()
+        made._add_system(structure.system, (), _Place(root, label, (description,)))
+        made._dictionaries.connect(made.graph)
+        return made
+
+    def connections(self) -> list[FlatConnection]:
+        """Return all connections, and give FMUs the values that come from systems' connectors.
+
+        Raises InputError for connections that make no sense.
+        """
+        found = []
+        for path, name in self.graph.fed():
+            if path in self.leaves:
+                for indices, variable in self.leaves[path].scalars(name).items():
+                    origin = self.graph.origin((path, name), indices)
+                    if origin.steps:
+                        found += self._connected(origin, (path, variable), len(indices))
+        self._bound.note_unused(self.graph, self.notes)
+        return found
+
+    # ------------------------------------------------------------------ elements
+
+    def _add_system(self, system: System, path: Path_, place: _Place) -> None:
+        if len(path) > DEEPEST:
+            raise InputError(f"{system.where}: systems nest deeper than {DEEPEST} levels")
+        if len(self.elements) >= MOST_SYSTEMS:  # references can double at each level
+            raise InputError(f"{system.where}: more than {MOST_SYSTEMS} systems")
+        self.elements[path] = [
+            name for name, one in system.elements.items() if not isinstance(one, Reference)
+        ]
+        self.graph.connectors.update({(path, name): c for name, c in system.connectors.items()})
+        self._dictionaries.add(system.dictionaries, path, self.graph)
+        for name, element in system.elements.items():
+            inner = (*path, name)
+            if isinstance(element, Reference):
+                self._dictionaries.refer(element, inner, self.graph)
+            elif isinstance(element, System):
+                self._add_system(element, inner, place)
+            else:
+                self._add_component(element, inner, place)
+        known = list(system.elements)
+        for connection in system.connections:
+            self._add_connection(connection, path, known)
+        self._bound.bind(system.parameters, path, self)
+
+    def _add_component(self, component: Component, path: Path_, place: _Place) -> None:
+        if component.inner is not None:
+            self._add_system(component.inner, path, place)
+            self._bound.bind(component.parameters, path, self)
+        elif component.source is None:
+            self.elements[path] = []
+            connectors = {(path, name): c for name, c in component.connectors.items()}
+            self.graph.connectors.update(connectors)
+            self._bound.bind(component.parameters, path, self)
+        elif component.kind == FMU:
+            self._add_leaf(component, component.source, path)
+        else:
+            self._add_reference(component, component.source, path, place)
+
+    def _add_reference(
+        self, component: Component, source: Path, path: Path_, place: _Place
+    ) -> None:
+        """Add another package or description as if its system stood here."""
+        inside = source.relative_to(place.root.resolve()).as_posix()
+        if component.kind == PACKAGE:
+            label = f"{place.label}: {inside}"
+            root = open_package(source, label, self.notes)
+            description = root / (component.variant or DEFAULT)
+            if not description.is_file() or description.parent != root:
+                raise InputError(f"{component.where}: {label} has no {component.variant!r}")
+        else:
+            root, label, description = place.root, place.label, source
+        if description.resolve() in place.chain:
+            raise InputError(f"{component.where}: {inside} refers to itself")
+        structure = read_structure(description, root, label, self.notes)
+        chain = (*place.chain, description.resolve())
+        self._add_system(structure.system, path, _Place(root, label, chain))
+        self._bound.bind(component.parameters, path, self)
+
+    def _add_leaf(self, component: Component, source: Path, path: Path_) -> None:
+        if len(self.leaves) >= _MOST_COMPONENTS:
+            raise InputError(f"{component.where}: more than {_MOST_COMPONENTS} FMUs")
+        if source.suffix != ".fmu":
+            raise InputError(f"{component.where}: the name of an FMU must end in .fmu")
+        try:
+            fmu = load_fmu(source)
+        except InputError as error:
+            raise InputError(f"{component.where}: {error}") from None
+        if component.implementation == "ScheduledExecution":
+            raise InputError(f"{component.where}: ScheduledExecution is not supported")
+        if component.implementation == "ModelExchange":
+            self.notes.pass_over(
+                component.where,
+                f"ModelExchange is wanted: the co-simulation of {source.name} is run instead",
+            )
+        leaf = self.leaves[path] = Leaf(path, fmu, component.step, component.where)
+        connectors = connectors_of(leaf, component, self.notes)
+        self.graph.connectors.update({(path, name): c for name, c in connectors.items()})
+        self._bound.bind(component.parameters, path, self)
+
+    # ------------------------------------------------------------------ connections
+
+    def _add_connection(self, connection: Connection, path: Path_, known: list[str]) -> None:
+        ends = []
+        for end in (connection.start, connection.end):
+            if end.element and end.element not in known:
+                message = unknown("element", end.element, known)
+                raise InputError(f"{connection.where}: {message}")
+            node = ((*path, end.element) if end.element else path, end.connector)
+            kind = self._connector(node, connection.where).kind
+            # Seen from inside, an input of the system itself is where values come from.
+            gives = None if kind in _EITHER else (kind in _OUT) == bool(end.element)
+            ends.append((node, end, gives))
+        (first, start, gives), (second, end, takes) = ends
+        if gives is not None and gives == takes:
+            kinds = "sources" if gives else "targets"
+            raise InputError(f"{connection.where}: both ends are {kinds}")
+        if gives is False or takes is True:
+            (first, start), (second, end) = (second, end), (first, start)
+        self.graph.feed(second, self._edge(first, start, end, connection))
+
+    def _edge(self, source: Node, start: End, end: End, connection: Connection) -> Edge:
+        return Edge(
+            source,
+            start.indices,
+            end.indices,
+            connection.transformation,
+            connection.converts,
+            connection.where,
+        )
+
+    def _connector(self, node: Node, where: str) -> Connector:
+        """Return a connector; one of an FMU need not be declared. Raises InputError."""
+        connectors = self.graph.connectors
+        if node not in connectors:
+            leaf = self.leaves.get(node[0])
+            scalars = {} if leaf is None else leaf.scalars(node[1])
+            if leaf is None or not scalars:
+                names = [n for p, n in connectors if p == node[0]]
+                raise InputError(f"{where}: {unknown('connector', node[1], names)}")
+            self.notes.pass_over(where, f"{node[1]!r} is no connector, but a variable of the FMU")
+            variable = leaf.fmu.variables[next(iter(scalars.values()))]
+            bare = Connector(node[1], "", None, None, {}, (), False, where)
+            connectors[node] = as_variable(bare, variable)
+        if connectors[node].is_clock:
+            raise InputError(f"{where}: connections of clocks are not supported: {node[1]!r}")
+        if connectors[node].problem:
+            raise InputError(f"{connectors[node].where}: {connectors[node].problem}")
+        return connectors[node]
+
+    def _connected(self, origin: Origin, target: Node, dimensions: int) -> list[FlatConnection]:
+        """Return the connection that ends at a variable; a start value instead, if that comes."""
+        leaf, place = self.leaves.get(origin.node[0]), origin.steps[-1][1].where
+        if leaf is None:
+            self._bound.carry(origin, self.leaves[target[0]], target[1], self)
+            return []
+        scalars = leaf.scalars(origin.node[1])
+        count = len(self.leaves[target[0]].scalars(origin.steps[-1][0][1]))
+        if origin.indices not in scalars or (origin.whole and len(scalars) != count):
+            raise InputError(
+                f"{place}: {origin.node[1]!r} has {len(scalars)} values, {target[1]!r} is one of "
+                f"{count}; an element needs its indices"
+            )
+        self._refuse_fixed(leaf, scalars[origin.indices], target, place)
+        way = self.graph.way(origin, Way(), self.graph.connectors[origin.node].unit)
+        return [FlatConnection((leaf.path, scalars[origin.indices]), target, way, place)]
+
+    def _refuse_fixed(self, leaf: Leaf, output: str, target: Node, place: str) -> None:
+        source = leaf.fmu.variables[output]
+        variable = self.leaves[target[0]].fmu.variables[target[1]]
+        if source.causality == "local":
+            raise InputError(
+                f"{place}: connections of local variables are not supported: {output!r}"
+            )
+        if variable.causality != "parameter" or source.causality == "calculatedParameter":
+            return
+        if variable.variability == "fixed" and source.variability not in ("constant", "fixed"):
+            raise InputError(
+                f"{place}: {output!r}, an output, cannot feed {target[1]!r}, a fixed parameter"
+            )

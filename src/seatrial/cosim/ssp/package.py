@@ -6,7 +6,9 @@ from pathlib import Path
 
 from ...errors import InputError
 from ...fmi.archive import unpacked
-from .structure import Notes
+from ...fmi.load import load_fmu
+from .model import FMU, PACKAGE
+from .notes import Notes
 
 DEFAULT = "SystemStructure.ssd"
 """The description that every package has."""
@@ -24,3 +26,17 @@ def open_package(path: Path, label: str, notes: Notes) -> Path:
     if others:
         notes.add(f"{label}: variants are not read: {', '.join(others)}")
     return folder
+
+
+def folder_inside(kind: str, source: Path | None, where: str) -> tuple[Path, str]:
+    """Return where what a component refers to is unpacked, and its name.
+
+    Raises InputError, with ``where``, if it refers to nothing or to what cannot be read.
+    """
+    if source is None:
+        raise InputError(f"{where}: sourceBase 'component' needs a component with a source")
+    if kind == FMU:
+        return load_fmu(source).folder.resolve(), source.name
+    if kind == PACKAGE:
+        return unpacked(source, "SSP").resolve(), source.name
+    return source.parent, source.name

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -9,11 +10,22 @@ from typing import Any
 from lxml import etree
 
 from ...errors import InputError
-from ...fmi.instance import Variable
 from ...ports import Scalar
 from ...units import Unit
-from .definitions import Enumerations, Measure, converted, read_enumerations, read_units
-from .documents import NAMESPACES, boolean, child, children, known, needed, number, tag, where
+from .definitions import Enumerations, Measure, measured, read_enumerations, read_units
+from .documents import (
+    NAMESPACES,
+    boolean,
+    child,
+    children,
+    finite,
+    known,
+    listed,
+    needed,
+    tag,
+    where,
+)
+from .notes import Notes
 
 Value = Scalar | bytes
 
@@ -31,73 +43,116 @@ KINDS: dict[str, type] = {
 
 
 @dataclass(frozen=True)
-class Parameter:
-    """One value of a parameter set, in the unit that the set says."""
+class Item:
+    """A value of an enumeration: the number is what the file of the parameter set says."""
 
     name: str
-    value: Value
+    number: int | None
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A value of a parameter set, or those of an array's elements, in the unit of the set."""
+
+    name: str
+    values: tuple[Value | Item, ...]
     unit: Measure | None
     """None: the unit of the variable."""
     where: str
+    converts: bool = True
+    factor: float = 1.0
+    """Applies, as the offset, in the unit of the variable."""
+    offset: float = 0.0
 
 
-def read_parameter_set(root: Any, enumerations: Enumerations, prefix: str = "") -> list[Parameter]:
+def read_parameter_set(
+    root: Any, enumerations: Enumerations, notes: Notes, prefix: str = ""
+) -> list[Parameter]:
     """Return the values of an ``ssv:ParameterSet``, ``prefix`` before every name.
 
     ``enumerations`` are those of the enclosing file. Raises InputError.
     """
     sections = ("ssv:Parameters", "ssv:Enumerations", "ssv:Units", "ssv:Annotations")
-    known(root, {"name", "version"}, {*sections, "ssc:MetaData"})
-    units = read_units(root, "ssv:Units")
-    items = {**enumerations, **read_enumerations(root, "ssv:Enumerations")}
-    listed = child(root, "ssv:Parameters")
-    if listed is None:
+    known(root, {"name", "version"}, sections, notes)
+    units = read_units(root, "ssv:Units", notes)
+    items = {**enumerations, **read_enumerations(root, "ssv:Enumerations", notes)}
+    if child(root, "ssv:Parameters") is None:
         raise InputError(f"{where(root)}: ssv:ParameterSet has no ssv:Parameters")
-    known(listed, (), {"ssv:Parameter"})
-    return [_parameter(element, units, items, prefix) for element in children(listed)]
+    elements = listed(root, "ssv:Parameters", {"ssv:Parameter"}, notes)
+    return [_parameter(element, units, items, notes, prefix) for element in elements]
 
 
 def _parameter(
-    element: Any, units: Mapping[str, Unit], enumerations: Enumerations, prefix: str
+    element: Any,
+    units: Mapping[str, Unit],
+    enumerations: Enumerations,
+    notes: Notes,
+    prefix: str,
 ) -> Parameter:
-    known(element, {"name"}, {*(f"ssv:{kind}" for kind in KINDS), "ssv:Annotations"})
+    types = {f"ssv:{kind}" for kind in KINDS}
+    dimension = f"{{{NAMESPACES['ssc']}}}Dimension"
+    known(element, {"name"}, {*types, "ssv:Annotations", "ssc:Dimension"}, notes)
     name = needed(element, "name")
-    values = [one for one in children(element) if tag(one) != "ssv:Annotations"]
-    if len(values) != 1:
+    found = [one for one in children(element) if tag(one) in types]
+    if len(found) != 1:
         raise InputError(
-            f"{where(element)}: parameter {name!r}: one value is needed, found {len(values)}"
+            f"{where(element)}: parameter {name!r}: one value is needed, found {len(found)}"
         )
-    one = values[0]
-    known(one, {"value", "unit", "name", "mime-type"}, ())
-    unit = one.get("unit")
-    measure = None if unit is None else units.get(unit, unit)
-    return Parameter(prefix + name, _value(one, enumerations), measure, where(element))
+    one = found[0]
+    known(one, {"value", "unit", "name", "mime-type"}, {"ssv:Value"}, notes)
+    values = _values(one, enumerations)
+    sizes = [_size(each) for each in element.iterfind(dimension)]
+    if sizes and math.prod(sizes) != len(values):
+        shape = " by ".join(map(str, sizes))
+        raise InputError(
+            f"{where(element)}: parameter {name!r}: an array of {shape} has {len(values)} values"
+        )
+    return Parameter(prefix + name, values, measured(one, units, notes), where(element))
 
 
-def _value(element: Any, enumerations: Enumerations) -> Value:
-    kind, text = tag(element).partition(":")[2], needed(element, "value")
-    python = KINDS[kind]
-    if kind == "Enumeration":
-        return _item(element, text, enumerations)
-    if python is bytes:
-        return _binary(element, text)
-    if python is str:
+def _size(dimension: Any) -> int:
+    return int(_whole(needed(dimension, "size"), where(dimension)))
+
+
+def _values(element: Any, enumerations: Enumerations) -> tuple[Value | Item, ...]:
+    """Return the value, or those of an array: words of numbers, elements of all else."""
+    kind = tag(element).partition(":")[2]
+    elements = list(element.iterfind(f"{{{NAMESPACES['ssv']}}}Value"))
+    if elements and element.get("value") is not None:
+        raise InputError(f"{where(element)}: either a value or elements ssv:Value are needed")
+    if KINDS[kind] in (str, bytes) or kind == "Enumeration":
+        return tuple(_text(one, kind, element, enumerations) for one in elements or [element])
+    words = needed(element, "value").split()
+    if not words:
+        raise InputError(f"{where(element)}: a value is needed, found {element.get('value')!r}")
+    return tuple(_number(word, KINDS[kind], where(element)) for word in words)
+
+
+def _text(one: Any, kind: str, element: Any, enumerations: Enumerations) -> Value | Item:
+    text = needed(one, "value")
+    if kind == "Binary":
+        return _binary(one, text)
+    if kind == "String":
         return text
-    if len(text.split()) > 1:
-        raise InputError(f"{where(element)}: arrays are not supported, found {text!r}")
-    if python is bool:
-        return boolean(text, where(element))
-    if python is float:
-        value = number(element, "value")
-        assert value is not None
-        return value
+    name = element.get("name")
+    if name is None and len(enumerations) == 1:
+        name = next(iter(enumerations))
+    return Item(text, enumerations.get(name or "", {}).get(text))
+
+
+def _number(word: str, kind: type, place: str) -> Value:
+    if kind is bool:
+        return boolean(word, place)
+    return finite(word, place) if kind is float else _whole(word, place)
+
+
+def _whole(word: str, place: str) -> int:
     try:
-        if "_" in text:
+        if "_" in word:
             raise ValueError
-        return int(text)
+        return int(word)
     except ValueError:
-        message = f"{where(element)}: a whole number is needed, found {text!r}"
-        raise InputError(message) from None
+        raise InputError(f"{place}: a whole number is needed, found {word!r}") from None
 
 
 def _binary(element: Any, text: str) -> bytes:
@@ -107,50 +162,15 @@ def _binary(element: Any, text: str) -> bytes:
         raise InputError(f"{where(element)}: hexadecimal digits are needed") from None
 
 
-def _item(element: Any, text: str, enumerations: Enumerations) -> Value:
-    """Return an item's number, or its name where only the FMU can know the number."""
-    name = element.get("name")
-    if name is None and len(enumerations) == 1:
-        name = next(iter(enumerations))
-    return enumerations.get(name or "", {}).get(text, text)
-
-
-def value_for(parameter: Parameter, variable: Variable) -> Value:
-    """Return the value in the unit of ``variable``; InputError if type or unit do not fit."""
-    value, kind = parameter.value, variable.type
-    if type(value) is int and kind is float:
-        try:
-            value = float(value)
-        except OverflowError:
-            message = f"{parameter.where}: {parameter.name}: beyond the range of doubles"
-            raise InputError(message) from None
-    if isinstance(value, str) and kind is int:
-        if value not in variable.items:
-            raise InputError(
-                f"{parameter.where}: {parameter.name}: item {value!r} is of no enumeration that "
-                "the file or the FMU defines"
-            )
-        return variable.items[value]
-    if type(value) is not kind:
-        raise InputError(
-            f"{parameter.where}: {parameter.name} is of type {type(value).__name__}, "
-            f"its variable is of type {kind.__name__}"
-        )
-    if not isinstance(value, float) or parameter.unit is None or not variable.unit:
-        return value
-    factor, offset = converted(parameter.unit, variable.measure, parameter.where)
-    return value if (factor, offset) == (1.0, 0.0) else factor * value + offset
-
-
 def parameter_set(name: str, values: Mapping[str, Value]) -> Any:
     """Return an ``ssv:ParameterSet`` of version 1.0 with values by variable name."""
     uri = NAMESPACES["ssv"]
     root = etree.Element(
         f"{{{uri}}}ParameterSet", {"name": name, "version": "1.0"}, nsmap={"ssv": uri}
     )
-    listed = etree.SubElement(root, f"{{{uri}}}Parameters")
+    holder = etree.SubElement(root, f"{{{uri}}}Parameters")
     for variable, value in sorted(values.items()):
-        parameter = etree.SubElement(listed, f"{{{uri}}}Parameter", name=variable)
+        parameter = etree.SubElement(holder, f"{{{uri}}}Parameter", name=variable)
         etree.SubElement(parameter, f"{{{uri}}}{type_name(type(value))}", value=written(value))
     return root
 

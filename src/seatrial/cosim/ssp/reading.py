@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import os
-from base64 import b64encode
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,15 +11,20 @@ from typing import Any
 from ...component import NS, seconds
 from ...errors import InputError
 from ...fmi.archive import content_hash
+from ...ports import Scalar
 from ..files import Source
 from ..flattening import rig_of
 from ..paths import joined
 from ..rig import Rig
-from .flat import Flat, FlatConnection, Leaf, Node, Path_
+from ..values import storable
+from .flat import Flat, FlatConnection
+from .graph import Node, Path_
 from .layout import unused
+from .leaf import Leaf
+from .model import Structure
+from .notes import Notes
 from .package import DEFAULT, open_package
-from .parameters import Value
-from .structure import Notes, Structure, read_structure
+from .structure import read_structure
 
 _USUAL_STEP = "10 ms"
 
@@ -36,16 +40,17 @@ class SspSystem:
     notes: tuple[str, ...]
 
 
-def read_ssp(path: Path, step: Any = None) -> SspSystem:
+def read_ssp(path: Path, step: Any = None, *, strict: bool = False) -> SspSystem:
     """Read the SSP package at ``path``, version 1.0 or 2.0.
 
     ``step`` is a communication step that replaces the package's. Raises InputError naming file
-    and line for what is wrong, and for what could change the result and is not supported.
+    and line for what is wrong, and for what could change the result and is not supported; if
+    ``strict``, for all that is not used.
     """
-    notes = Notes()
+    notes = Notes(strict)
     folder = open_package(path, path.name, notes)
     structure = read_structure(folder / DEFAULT, folder, path.name, notes)
-    flat = Flat(structure, folder, path.name, notes)
+    flat = Flat.of(structure, folder, path.name, notes)
     if not flat.leaves:
         raise InputError(f"{path}: {DEFAULT} has no component")
     names = _names(flat, notes)
@@ -61,7 +66,7 @@ def read_ssp(path: Path, step: Any = None) -> SspSystem:
     rig = rig_of(content, Source(path.stem, path, content_hash(path)), folder, inside)
     start = None if structure.start is None else f"{structure.start!r} s"
     stop = None if structure.stop is None else f"{structure.stop!r} s"
-    return SspSystem(structure.name, rig, start, stop, tuple(notes.texts))
+    return SspSystem(structure.name, rig, start, stop, notes.texts)
 
 
 def _names(flat: Flat, notes: Notes) -> dict[Path_, str]:
@@ -99,16 +104,12 @@ def _components(
 
 
 def _component(leaf: Leaf, folder: Path, fed: set[Node], notes: Notes) -> dict[str, Any]:
-    values: dict[str, Value] = {}
-    for variable, value in leaf.values().items():
+    values: dict[str, Scalar] = {}
+    for variable, (value, where) in leaf.values.items():
         if (leaf.path, variable) in fed:
-            notes.add(
-                f"{leaf.parameters[variable].where}: {variable!r} is fed by a connection; "
-                "its start value is not used"
-            )
+            notes.add(f"{where}: {variable!r} is fed by a connection; its start value is not used")
         else:
-            # A rig's file has bytes as base64 text.
-            values[variable] = b64encode(value).decode() if type(value) is bytes else value
+            values[variable] = storable(value)
     entry: dict[str, Any] = {"fmu": os.path.relpath(leaf.fmu.path, folder), "set": values}
     if leaf.step is not None:
         entry["step"] = f"{leaf.step!r} s"
@@ -121,8 +122,9 @@ def _connections(flat: list[FlatConnection], names: dict[Path_, str]) -> dict[st
         (source, output), (target, variable) = connection.source, connection.target
         entry = {
             "to": f"{names[target]}.{variable}",
-            "factor": connection.factor,
-            "offset": connection.offset,
+            "factor": connection.way.factor,
+            "offset": connection.way.offset,
+            "mapping": [[one, other] for one, other in connection.way.table.items()],
             "convert": False,  # what units need is in factor and offset already
         }
         connections.setdefault(f"{names[source]}.{output}", []).append(entry)

@@ -13,9 +13,9 @@ from lxml import etree
 
 from ...errors import InputError
 from ...fmi.xmlfile import read_xml
-from .documents import NAMESPACES, check_version, child, children, tag
+from .documents import NAMESPACES, child, children, schema_problems, tag
+from .model import FMU
 from .parameters import KINDS
-from .structure import FMU
 
 _IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 
@@ -74,10 +74,7 @@ def version_2(view: View) -> Iterator[Any]:
 
 def breaks_schema(view: View) -> Iterator[Any]:
     """Yield the root of a description of version 1 that its schema does not allow."""
-    try:
-        if not list(version_2(view)):
-            check_version(view.root, "ssd:SystemStructureDescription")
-    except InputError:
+    if schema_problems(view.root, "ssd:SystemStructureDescription"):
         yield view.root
 
 

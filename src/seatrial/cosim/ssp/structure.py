@@ -2,118 +2,61 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
-from urllib.parse import unquote, urlsplit
 
 from ...errors import InputError
-from ...units import Unit
-from .annotations import StepSizes, read_step_hint, read_steps
-from .definitions import Enumerations, Measure, read_enumerations, read_units
+from .annotations import read_step_hint, read_steps
+from .bindings import BindingsReader
+from .connectors import ConnectorsReader
+from .definitions import read_enumerations, read_units
 from .documents import (
     NAMESPACES,
-    check_version,
+    checked,
     child,
     children,
     flag,
     known,
+    listed,
     needed,
     number,
     read_document,
     tag,
     where,
 )
-from .parameters import KINDS, Parameter, read_parameter_set
-
-FMU = "application/x-fmu-sharedlibrary"
-PACKAGE = "application/x-ssp-package"
-DEFINITION = "application/x-ssp-definition"
+from .model import (
+    DEEPEST,
+    DEFINITION,
+    FMU,
+    MOST_SYSTEMS,
+    PACKAGE,
+    Component,
+    Connection,
+    Dictionary,
+    End,
+    Indices,
+    Reference,
+    Structure,
+    System,
+)
+from .notes import Notes
+from .package import folder_inside
+from .sources import Sources
+from .transformations import KINDS, read_transformation
 
 _DRAWN = {
-    "ssd:ElementGeometry", "ssd:SystemGeometry", "ssd:ConnectorGeometry",
-    "ssd:ConnectionGeometry", "ssd:GraphicalElements",
+    "ssd:ElementGeometry", "ssd:SystemGeometry", "ssd:ConnectionGeometry",
+    "ssd:GraphicalElements",
 }  # fmt: skip
-_PLAIN = {"ssd:Connector", "ssd:Connection", "ssd:ParameterBinding"}
+_PLAIN = {"ssd:Connection", "ssd:SignalDictionaryReference"}
 """Elements in which no annotation that is read can stand."""
-_TYPES = {f"ssc:{kind}" for kind in KINDS}
 _SYSTEM = {
     "ssd:Connectors", "ssd:ParameterBindings", "ssd:Elements", "ssd:Connections",
-    "ssd:ElementGeometry", "ssd:SystemGeometry", "ssd:GraphicalElements", "ssd:Annotations",
-    "ssc:MetaData",
+    "ssd:SignalDictionaries", "ssd:ElementGeometry", "ssd:SystemGeometry",
+    "ssd:GraphicalElements", "ssd:Annotations",
 }  # fmt: skip
-
-
-@dataclass(frozen=True)
-class Connector:
-    """A connector of a component or system."""
-
-    name: str
-    kind: str
-    """input, output, parameter, calculatedParameter or inout."""
-    type: type | None
-    unit: Measure | None
-    where: str
-
-
-@dataclass(frozen=True)
-class Connection:
-    """A connection; an end without element is a connector of the system itself."""
-
-    start: tuple[str, str]
-    end: tuple[str, str]
-    factor: float
-    offset: float
-    converts: bool
-    """Units are converted, before factor and offset apply."""
-    where: str
-
-
-@dataclass(frozen=True)
-class Component:
-    """A reference to an FMU, a package or another system structure description."""
-
-    name: str
-    kind: str
-    source: Path
-    connectors: dict[str, Connector]
-    parameters: list[Parameter]
-    step: float | None
-    where: str
-
-
-@dataclass(frozen=True)
-class System:
-    """A system; its parameters are in the order in which later ones win."""
-
-    name: str
-    connectors: dict[str, Connector]
-    parameters: list[Parameter]
-    elements: dict[str, Component | System]
-    connections: list[Connection]
-    where: str
-
-
-@dataclass(frozen=True)
-class Structure:
-    """A whole description."""
-
-    name: str
-    system: System
-    start: float | None
-    stop: float | None
-    steps: StepSizes
-
-
-@dataclass
-class Notes:
-    """What a reader met and does not use, once each."""
-
-    texts: dict[str, None] = field(default_factory=dict)
-
-    def add(self, text: str) -> None:
-        """Keep ``text``."""
-        self.texts.setdefault(text)
+_ELEMENTS = {"ssd:Component", "ssd:System", "ssd:SignalDictionaryReference"}
+_IMPLEMENTATIONS = ("any", "CoSimulation", "ModelExchange", "ScheduledExecution")
 
 
 def read_structure(path: Path, root: Path, label: str, notes: Notes) -> Structure:
@@ -122,200 +65,215 @@ def read_structure(path: Path, root: Path, label: str, notes: Notes) -> Structur
     ``label`` names the package in messages. Raises InputError for anything in the file that
     could change the result and is not supported; the rest of what is not read goes to ``notes``.
     """
-    name = path.relative_to(root).as_posix()
-    document = read_document(path, f"{label}: {name}", "ssd:SystemStructureDescription")
-    return _Reader(path.parent, root, label, notes).structure(document)
+    sources = Sources(path.parent, root, label)
+    name = f"{label}: {path.relative_to(root).as_posix()}"
+    document = read_document(path, name, "ssd:SystemStructureDescription", notes)
+    return _Reader(document, sources, notes).structure()
 
 
 class _Reader:
     """Reads the elements of one description."""
 
-    def __init__(self, folder: Path, root: Path, label: str, notes: Notes) -> None:
-        self._folder, self._root, self._label, self._notes = folder, root, label, notes
-        self._units: dict[str, Unit] = {}
-        self._enumerations: Enumerations = {}
+    def __init__(self, document: Any, sources: Sources, notes: Notes) -> None:
+        self._document, self._sources, self._notes = document, sources, notes
+        units = read_units(document, "ssd:Units", notes)
+        enumerations = read_enumerations(document, "ssd:Enumerations", notes)
+        self._bindings = BindingsReader(sources, enumerations, notes)
+        self._connectors = ConnectorsReader(units, enumerations, notes)
+        self._around: list[Any] = []
+        """Systems that are being read because a component refers to them by their id."""
+        self._systems = 0
 
-    def structure(self, document: Any) -> Structure:
+    def structure(self) -> Structure:
+        document = self._document
         parts = {"ssd:System", "ssd:Enumerations", "ssd:Units", "ssd:DefaultExperiment"}
-        known(document, {"version", "name"}, {*parts, "ssd:Annotations", "ssc:MetaData"})
-        self._units = read_units(document, "ssd:Units")
-        self._enumerations = read_enumerations(document, "ssd:Enumerations")
+        known(document, {"version", "name"}, {*parts, "ssd:Annotations"}, self._notes)
         top = child(document, "ssd:System")
         if top is None:
             raise InputError(f"{where(document)}: there is no ssd:System")
         experiment = child(document, "ssd:DefaultExperiment")
         start = stop = None
         if experiment is not None:
-            known(experiment, {"startTime", "stopTime"}, {"ssd:Annotations"})
+            known(experiment, {"startTime", "stopTime"}, {"ssd:Annotations"}, self._notes)
             start, stop = number(experiment, "startTime"), number(experiment, "stopTime")
-        steps = read_steps(experiment, top, self._notes.add)
+        steps = read_steps(experiment, top, self._notes)
         for nested in top.iterdescendants(f"{{{NAMESPACES['ssd']}}}System"):
             if child(nested, "ssd:Annotations") is not None:
-                self._notes.add("annotations of systems inside the system are not read")
-        system = self._system(top)
-        return Structure(needed(document, "name"), system, start, stop, steps)
+                self._notes.pass_over(
+                    where(nested), "annotations of systems inside the system are not read"
+                )
+        return Structure(needed(document, "name"), self._system(top), start, stop, steps)
 
     def _system(self, element: Any) -> System:
+        self._systems += 1
+        if self._systems > MOST_SYSTEMS or len(self._around) > DEEPEST:
+            raise InputError(
+                f"{where(element)}: more than {MOST_SYSTEMS} systems, or deeper than {DEEPEST}"
+            )
         self._read_only(element, {"name"}, _SYSTEM)
-        elements: dict[str, Component | System] = {}
-        for one in self._listed(element, "ssd:Elements", {"ssd:Component", "ssd:System"}):
-            read = self._component(one) if tag(one) == "ssd:Component" else self._system(one)
+        elements: dict[str, Component | System | Reference] = {}
+        for one in listed(element, "ssd:Elements", _ELEMENTS, self._notes):
+            read = self._element(one)
             if read.name in elements:
                 raise InputError(f"{read.where}: a second element is called {read.name!r}")
             elements[read.name] = read
-        connections = self._listed(element, "ssd:Connections", {"ssd:Connection"})
+        connections = listed(element, "ssd:Connections", {"ssd:Connection"}, self._notes)
         return System(
             needed(element, "name"),
-            self._connectors(element),
-            self._parameters(element),
+            self._connectors.connectors(element),
+            self._bindings.read(element),
             elements,
             [self._connection(one) for one in connections],
             where(element),
+            self._dictionaries(element),
+        )
+
+    def _element(self, element: Any) -> Component | System | Reference:
+        if tag(element) == "ssd:System":
+            return self._system(element)
+        return (
+            self._component(element)
+            if tag(element) == "ssd:Component"
+            else self._reference(element)
         )
 
     def _component(self, element: Any) -> Component:
         parts = {"ssd:Connectors", "ssd:ParameterBindings", "ssd:ElementGeometry"}
         self._read_only(
-            element,
-            {"name", "type", "source", "implementation"},
-            {*parts, "ssd:Annotations", "ssc:MetaData"},
+            element, {"name", "type", "source", "implementation"}, {*parts, "ssd:Annotations"}
         )
         kind = element.get("type", FMU)
+        implementation = element.get("implementation", "any")
+        if implementation not in _IMPLEMENTATIONS:
+            raise InputError(
+                f"{where(element)}: implementation: one of {', '.join(_IMPLEMENTATIONS)} is "
+                f"needed, found {implementation!r}"
+            )
+        path, variant, inner = self._referred(element, kind)
+        return Component(
+            needed(element, "name"),
+            kind,
+            path,
+            variant,
+            inner,
+            implementation,
+            self._connectors.connectors(element),
+            self._bindings.read(element, lambda: folder_inside(kind, path, where(element))),
+            read_step_hint(element, self._notes),
+            where(element),
+        )
+
+    def _referred(self, element: Any, kind: str) -> tuple[Path | None, str, System | None]:
+        """Return the file of a component, the variant in it, or a system of this description."""
+        if element.get("source") is None:
+            self._notes.pass_over(
+                where(element), "a component without source is an empty system: nothing computes it"
+            )
+            return None, "", None
         if kind not in (FMU, PACKAGE, DEFINITION):
             raise InputError(
                 f"{where(element)}: components of type {kind!r} are not supported "
                 f"(read are: {FMU}, {PACKAGE}, {DEFINITION})"
             )
-        implementation = element.get("implementation", "any")
-        if implementation not in ("any", "CoSimulation"):
-            raise InputError(f"{where(element)}: {implementation} is not supported")
-        return Component(
-            needed(element, "name"),
-            kind,
-            self._source(element),
-            self._connectors(element),
-            self._parameters(element),
-            read_step_hint(element, self._notes.add),
-            where(element),
-        )
-
-    def _connectors(self, element: Any) -> dict[str, Connector]:
-        found: dict[str, Connector] = {}
-        for one in self._listed(element, "ssd:Connectors", {"ssd:Connector"}):
-            self._read_only(
-                one,
-                {"name", "kind"},
-                {*_TYPES, "ssd:ConnectorGeometry", "ssd:Annotations", "ssc:MetaData"},
+        source = self._sources.source(element)
+        if source.file is None:
+            return None, "", self._same_document(element, source.fragment)
+        if source.fragment and kind != PACKAGE:
+            written = element.get("source")
+            raise InputError(
+                f"{where(element)}: source {written!r}: a plain path is needed: only a package "
+                "has variants"
             )
-            name, kind, python, unit = needed(one, "name"), needed(one, "kind"), None, None
-            for typed in (c for c in children(one) if tag(c) in _TYPES):
-                known(typed, {"unit", "name", "mime-type"}, ())
-                python = KINDS[tag(typed).partition(":")[2]]
-                unit = self._units.get(typed.get("unit"), typed.get("unit"))
+        return source.file, source.fragment, None
+
+    def _same_document(self, element: Any, fragment: str) -> System:
+        """Return the system of this description that has the id ``fragment``."""
+        systems = self._document.iter(f"{{{NAMESPACES['ssd']}}}System")
+        found = [one for one in systems if one.get("id") == fragment]
+        if len(found) != 1:
+            raise InputError(
+                f"{where(element)}: source '#{fragment}': one system with this id is needed, "
+                f"found {len(found)}"
+            )
+        if found[0] in self._around or found[0] in element.iterancestors():
+            raise InputError(f"{where(element)}: #{fragment} refers to itself")
+        self._around.append(found[0])
+        system = self._system(found[0])
+        self._around.pop()
+        return system
+
+    def _reference(self, element: Any) -> Reference:
+        parts = {"ssd:Connectors", "ssd:ElementGeometry", "ssd:Annotations"}
+        self._read_only(element, {"name", "dictionary"}, parts)
+        connectors = self._connectors.connectors(element)
+        dictionary = needed(element, "dictionary")
+        return Reference(needed(element, "name"), dictionary, connectors, where(element))
+
+    def _dictionaries(self, element: Any) -> dict[str, Dictionary]:
+        found: dict[str, Dictionary] = {}
+        for one in listed(element, "ssd:SignalDictionaries", {"ssd:SignalDictionary"}, self._notes):
+            known(one, {"name", "type", "source"}, {"ssb:SignalDictionary"}, self._notes)
+            name, kind = needed(one, "name"), one.get("type", "application/x-ssp-signal-dictionary")
+            if kind != "application/x-ssp-signal-dictionary":
+                raise InputError(f"{where(one)}: dictionaries of type {kind!r} are not supported")
             if name in found:
-                raise InputError(f"{where(one)}: a second connector is called {name!r}")
-            found[name] = Connector(name, kind, python, unit, where(one))
+                raise InputError(f"{where(one)}: a second dictionary is called {name!r}")
+            found[name] = Dictionary(name, self._signals(one), where(one))
         return found
 
+    def _signals(self, element: Any) -> Any:
+        inline, root = child(element, "ssb:SignalDictionary"), "ssb:SignalDictionary"
+        if (inline is None) == (not element.get("source")):
+            raise InputError(f"{where(element)}: either a source or an inline {root} is needed")
+        if inline is None:
+            path = self._sources.file(element)
+            inline = read_document(path, self._sources.shown(path), root, self._notes)
+        else:
+            checked(inline, root, self._notes)
+        parts = {"ssb:DictionaryEntry", "ssb:Enumerations", "ssb:Units", "ssb:Annotations"}
+        known(inline, {"version"}, parts, self._notes)
+        units = read_units(inline, "ssb:Units", self._notes)
+        enumerations = read_enumerations(inline, "ssb:Enumerations", self._notes)
+        return ConnectorsReader(units, enumerations, self._notes).signals(inline)
+
     def _connection(self, element: Any) -> Connection:
-        transformation = "ssc:LinearTransformation"
+        ends = {f"{side}{what}" for side in ("start", "end") for what in _OF_ENDS}
         self._read_only(
             element,
-            {"startElement", "startConnector", "endElement", "endConnector",
-             "suppressUnitConversion"},
-            {transformation, "ssd:ConnectionGeometry", "ssd:Annotations", "ssc:MetaData"},
-        )  # fmt: skip
-        factor, offset = 1.0, 0.0
-        linear = child(element, transformation)
-        if linear is not None:
-            known(linear, {"factor", "offset"}, ())
-            factor = number(linear, "factor", 1.0)
-            offset = number(linear, "offset", 0.0)
+            {*ends, "suppressUnitConversion"},
+            {*KINDS, "ssd:ConnectionGeometry", "ssd:Annotations"},
+        )
         return Connection(
-            (element.get("startElement", ""), needed(element, "startConnector")),
-            (element.get("endElement", ""), needed(element, "endConnector")),
-            factor,
-            offset,
+            _end(element, "start"),
+            _end(element, "end"),
+            read_transformation(element, self._notes),
             not flag(element, "suppressUnitConversion"),
             where(element),
         )
 
-    def _parameters(self, element: Any) -> list[Parameter]:
-        found = []
-        for one in self._listed(element, "ssd:ParameterBindings", {"ssd:ParameterBinding"}):
-            self._read_only(
-                one,
-                {"type", "source", "sourceBase", "prefix"},
-                {"ssd:ParameterValues", "ssd:Annotations", "ssc:MetaData"},
-            )
-            kind = one.get("type", "application/x-ssp-parameter-set")
-            if kind != "application/x-ssp-parameter-set":
-                raise InputError(f"{where(one)}: parameters of type {kind!r} are not supported")
-            if one.get("sourceBase", "SSD") != "SSD":
-                raise InputError(
-                    f"{where(one)}: sourceBase={one.get('sourceBase')!r} is not supported"
-                )
-            sets = self._parameter_set(one)
-            found += read_parameter_set(sets, self._enumerations, one.get("prefix", ""))
-        return found
-
-    def _parameter_set(self, binding: Any) -> Any:
-        """Return the parameter set of a binding: of its file, or inline."""
-        inline = child(binding, "ssd:ParameterValues")
-        if (inline is None) == (binding.get("source") is None):
-            raise InputError(f"{where(binding)}: either a source or ParameterValues is needed")
-        if inline is None:
-            path = self._source(binding)
-            name = path.relative_to(self._root).as_posix()
-            return read_document(path, f"{self._label}: {name}", "ssv:ParameterSet")
-        known(inline, (), {"ssv:ParameterSet"})
-        sets = list(children(inline))
-        if len(sets) != 1:
-            raise InputError(f"{where(inline)}: one ParameterSet is needed, found {len(sets)}")
-        check_version(sets[0], "ssv:ParameterSet")
-        return sets[0]
-
-    def _source(self, element: Any) -> Path:
-        """Return the file that ``source`` names, in the package. Raises InputError."""
-        written = needed(element, "source")
-        try:
-            uri = urlsplit(written)
-        except ValueError as error:
-            raise InputError(f"{where(element)}: source {written!r}: {error}") from None
-        if uri.scheme or uri.netloc or uri.path.startswith("/"):
-            raise InputError(
-                f"{where(element)}: source {written!r}: only files in the package are read"
-            )
-        if uri.fragment or uri.query or not uri.path:
-            raise InputError(f"{where(element)}: source {written!r}: a plain path is needed")
-        if "\0" in unquote(uri.path):
-            raise InputError(f"{where(element)}: source {written!r} is no path")
-        path = (self._folder / unquote(uri.path)).resolve()
-        if not path.is_relative_to(self._root.resolve()):
-            raise InputError(f"{where(element)}: source {written!r} is outside the package")
-        try:
-            found = path.is_file()
-        except OSError as error:
-            message = f"{where(element)}: source {written!r}: {error.strerror}"
-            raise InputError(message) from None
-        if not found:
-            raise InputError(f"{where(element)}: source {written!r}: there is no such file")
-        return path
-
-    def _listed(self, element: Any, name: str, allowed: set[str]) -> list[Any]:
-        """Return the children of the child ``name``, which holds only ``allowed``."""
-        listed = child(element, name)
-        if listed is None:
-            return []
-        known(listed, (), allowed)
-        return list(children(listed))
-
     def _read_only(self, element: Any, attributes: set[str], elements: set[str]) -> None:
-        known(element, attributes, elements)
+        known(element, attributes, elements, self._notes)
         for one in children(element):
             if tag(one) in _DRAWN:
-                self._notes.add("geometry and drawings are not read")
-            elif tag(one) == "ssc:MetaData":
-                self._notes.add("metadata is not read")
+                self._notes.pass_over(where(one), "geometry and drawings are not read")
             elif tag(one) == "ssd:Annotations" and tag(element) in _PLAIN:
-                self._notes.add(f"annotations of {tag(element)} are not read")
+                self._notes.pass_over(where(one), f"annotations of {tag(element)} are not read")
+
+
+_OF_ENDS = ("Element", "Connector", "Indices")
+
+
+def _end(element: Any, side: str) -> End:
+    indices = element.get(f"{side}Indices")
+    return End(
+        element.get(f"{side}Element", ""),
+        needed(element, f"{side}Connector"),
+        None if indices is None else _indices(element, indices),
+    )
+
+
+def _indices(element: Any, text: str) -> Indices:
+    words = text.split()
+    if not words or not all(word.isascii() and word.isdigit() for word in words):
+        raise InputError(f"{where(element)}: indices: whole numbers are needed, found {text!r}")
+    return tuple(map(int, words))

@@ -11,8 +11,8 @@ from ...errors import InputError, unknown
 from ...fmi.xmlfile import read_xml
 from . import rules
 from .documents import where
+from .notes import Notes
 from .package import DEFAULT, open_package
-from .structure import Notes
 
 TOOLS = ("omsimulator", "libcosim", "ecos", "fmpy")
 
