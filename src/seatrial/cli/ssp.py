@@ -9,12 +9,15 @@ import typer
 from rich.markup import escape
 
 from ..cosim.ssp.reading import read_ssp
+from ..cosim.ssp.shapes import Version
 from ..cosim.ssp.tools import TOOLS, findings
 from ..errors import InputError, unknown
 from ..trials.export import export_ssp
 from ..trials.trial import choices_in
 from .options import Autopilot, Choices, Vehicle, changes_of
 from .show import console, print_notes
+
+_VERSIONS: dict[str, Version] = {"1.0": "1.0", "2.0": "2.0"}
 
 ssp_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
 
@@ -37,15 +40,20 @@ def export(
         str | None,
         typer.Option("--for", help=f"A tool that must take it: {', '.join(TOOLS)}."),
     ] = None,
+    version: Annotated[
+        str, typer.Option(help="Version of SSP: 1.0, or 2.0 with the types and arrays of FMI 3.")
+    ] = "1.0",
 ) -> None:
-    """Write a rig, or a trial with its settings, as an SSP 1.0 package.
+    """Write a rig, or a trial with its settings, as an SSP package.
 
     Rigs inside rigs are systems inside systems. For a tool that takes none of these, all
     components stand in one system.
     """
     _refuse_unknown(tool)
     chosen = choices_in(changes_of(None, choices, vehicle, autopilot), "--choose")
-    path, notes = export_ssp(name, out, variant, choices=chosen, tool=tool)
+    path, notes = export_ssp(
+        name, out, variant, choices=chosen, tool=tool, version=_version(version)
+    )
     print_notes(notes)
     console.print(f"{path}  ({path.stat().st_size / 1000:.0f} kB)", soft_wrap=True)
 
@@ -56,11 +64,16 @@ def check(
     tool: Annotated[
         str | None, typer.Option("--for", help=f"One tool: {', '.join(TOOLS)}; default: all.")
     ] = None,
+    strict: Annotated[
+        bool, typer.Option("--strict", help="Reject also what seatrial notes and passes over.")
+    ] = False,
 ) -> None:
     """Say what seatrial and other tools reject or ignore in a package; status 1 if any rejects."""
     _refuse_unknown(tool)
+    if strict and tool is not None:
+        raise InputError("--strict is about seatrial's own reader: it has no effect with --for")
     found = [one for one in findings(package) if tool in (None, one.tool)]
-    rejected = _own_view(package) if tool is None else False
+    rejected = _own_view(package, strict) if tool is None else False
     for one in TOOLS if tool is None else (tool,):
         mine = [finding for finding in found if finding.tool == one]
         console.print(f"[bold]{one}[/bold]: {'' if mine else 'nothing found'}", soft_wrap=True)
@@ -73,15 +86,21 @@ def check(
         raise typer.Exit(1)
 
 
+def _version(text: str) -> Version:
+    if text not in _VERSIONS:
+        raise InputError(f"--version: 1.0 or 2.0 is needed, found {text!r}")
+    return _VERSIONS[text]
+
+
 def _refuse_unknown(tool: str | None) -> None:
     if tool is not None and tool not in TOOLS:
         raise InputError(f"--for: {unknown('tool', tool, TOOLS)}")
 
 
-def _own_view(package: Path) -> bool:
+def _own_view(package: Path, strict: bool) -> bool:
     """Show what seatrial says of a package; return whether it rejects it."""
     try:
-        notes = read_ssp(package.resolve()).notes
+        notes = read_ssp(package.resolve(), strict=strict).notes
     except InputError as error:
         console.print("[bold]seatrial[/bold]:", soft_wrap=True)
         for line in str(error).splitlines():

@@ -9,6 +9,7 @@ from ..component import seconds
 from ..cosim.assembly import assemble
 from ..cosim.flattening import load_rig
 from ..cosim.ssp.describing import Experiment
+from ..cosim.ssp.shapes import Version
 from ..cosim.ssp.tools import takes_systems
 from ..cosim.ssp.writing import write_ssp
 from ..cosim.system import System
@@ -26,8 +27,9 @@ def export_ssp(
     *,
     choices: Mapping[str, str] | None = None,
     tool: str | None = None,
+    version: Version = "1.0",
 ) -> tuple[Path, list[str]]:
-    """Write the trial or rig ``name`` as an SSP 1.0 package; return its path and notes.
+    """Write the trial or rig ``name`` as an SSP package of ``version``; return its path and notes.
 
     ``name`` is a shipped name or a path; where a trial and a rig share it, the trial is meant.
     The package is ``out``, or ``NAME.ssp`` in the current folder. ``choices`` are of the rig.
@@ -52,7 +54,9 @@ def export_ssp(
     try:
         if path.resolve() == Path(name).resolve():
             raise InputError(f"{path} would replace what it is made from; name another with --out")
-        notes += write_ssp(system, Experiment(title, start, stop), path, in_one=in_one)
+        notes += write_ssp(
+            system, Experiment(title, start, stop), path, in_one=in_one, version=version
+        )
     finally:
         system.free()
     return path, notes

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,8 +21,9 @@ from .annotations import write_oms, write_osp
 from .definitions import write_units
 from .documents import NAMESPACES
 from .layout import End, Level
-from .model import FMU
-from .parameters import type_name
+from .model import FMU, Indices
+from .shapes import Shapes, Version
+from .transformations import write_table
 
 _PREFIXES = ("ssd", "ssc", "ssv", "osp", "oms")
 
@@ -39,11 +40,15 @@ class Experiment:
 class Describer:
     """Describes a rig whose components are connected by ``connections``.
 
+    ``shapes`` says what the version of SSP can say of each component.
     ``notes`` has what could not be written. Raises InputError for texts that XML cannot hold.
     """
 
-    def __init__(self, system: System, connections: Sequence[Connection]) -> None:
+    def __init__(
+        self, system: System, connections: Sequence[Connection], shapes: Mapping[str, Shapes]
+    ) -> None:
         self.notes: list[str] = []
+        self._shapes = shapes
         self._system = system
         self._defined: dict[str, Unit] = {}
         ends = {end for connection in connections for end in (connection.source, connection.target)}
@@ -55,14 +60,14 @@ class Describer:
         }
         """The attribute that names the unit of a connector."""
 
-    def document(self, top: Level, experiment: Experiment) -> Any:
+    def document(self, top: Level, experiment: Experiment, version: Version) -> Any:
         """Return the whole description of a package with the system ``top``."""
         prefixes: Any = {prefix: NAMESPACES[prefix] for prefix in _PREFIXES}
         document = etree.Element(
             _name("ssd", "SystemStructureDescription"),
             {
                 "name": re.sub(r"[^A-Za-z0-9_]", "_", re.sub(r"^(?=\d)", "_", experiment.name)),
-                "version": "1.0",
+                "version": version,
                 "generationTool": f"seatrial {__version__}",
             },
             nsmap=prefixes,
@@ -91,7 +96,8 @@ class Describer:
         if level.connections:
             connections = _add(system, "ssd", "Connections")
             for (start, end), connection in level.connections.items():
-                self._add_connection(connections, start, end, connection)
+                attributes = {**self._end(level, "start", start), **self._end(level, "end", end)}
+                self._add_connection(connections, attributes, connection)
         return system
 
     def _add_component(self, elements: Any, name: str, part: Part, file: str) -> None:
@@ -99,9 +105,11 @@ class Describer:
         variables = self._declared[part.name]
         if variables:
             connectors = _add(component, "ssd", "Connectors")
-            for variable in variables:
+            shapes = self._shapes[part.name]
+            for name, variable in {shapes.connector(v.name)[0]: v for v in variables}.items():
+                sizes = shapes.sizes.get(name, ())
                 kind = variable.causality
-                self._add_connector(connectors, variable.name, kind, part.name, variable)
+                self._add_connector(connectors, name, kind, part.name, variable, sizes)
         if part.given:
             _add(
                 _add(component, "ssd", "ParameterBindings"),
@@ -115,28 +123,45 @@ class Describer:
             write_osp(component, "StepSizeHint", {"value": repr(own)})
 
     def _add_connector(
-        self, connectors: Any, name: str, kind: str, component: str, variable: Variable
+        self,
+        connectors: Any,
+        name: str,
+        kind: str,
+        component: str,
+        variable: Variable,
+        sizes: Indices = (),
     ) -> None:
         """Add a connector for values of a component's variable."""
         connector = _add(connectors, "ssd", "Connector", name=name, kind=kind)
-        _add(connector, "ssc", type_name(variable.type), **self._units[component, variable.name])
+        kind = self._shapes[component].type(variable)
+        _add(connector, "ssc", kind, **self._units[component, variable.name])
+        for size in sizes:
+            _add(connector, "ssc", "Dimension", size=str(size))
+
+    def _end(self, level: Level, side: str, end: End) -> dict[str, str]:
+        """Return the attributes of one end of a connection."""
+        element, connector = end
+        if not element:
+            return {f"{side}Connector": connector}
+        part, indices = level.elements[element], None
+        if isinstance(part, Part):
+            connector, indices = self._shapes[part.name].connector(connector)
+        attributes = {f"{side}Element": element, f"{side}Connector": connector}
+        if indices is not None:
+            attributes[f"{side}Indices"] = " ".join(map(str, indices))
+        return attributes
 
     def _add_connection(
-        self, connections: Any, start: End, end: End, made: Connection | None
+        self, connections: Any, attributes: dict[str, str], made: Connection | None
     ) -> None:
         """Add a connection; one that passes a value on has nothing ``made`` of it."""
-        attributes = {
-            "startElement": start[0],
-            "startConnector": start[1],
-            "endElement": end[0],
-            "endConnector": end[1],
-        }
-        attributes = {key: text for key, text in attributes.items() if text}
         plain = made is None or (made.factor, made.offset) == (1.0, 0.0)
         # Not every tool converts units: the transformation says all, for all of them.
         if made is not None and not (plain and self._alike(made)):
             attributes["suppressUnitConversion"] = "true"
         element = _add(connections, "ssd", "Connection", **attributes)
+        if made is not None and made.mapping:
+            write_table(element, made.mapping)
         if made is None or plain:
             return
         numbers = {"factor": repr(made.factor), "offset": repr(made.offset)}

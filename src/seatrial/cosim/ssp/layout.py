@@ -19,10 +19,13 @@ End = tuple[str, str]
 Path_ = tuple[str, ...]
 
 
+Kind = Literal["input", "output", "parameter", "calculatedParameter"]
+
+
 class Boundary(NamedTuple):
     """A connector of a system: what goes through it."""
 
-    kind: Literal["input", "output"]
+    kind: Kind
     carries: Output
 
 
@@ -47,9 +50,7 @@ class Level:
             else:
                 yield joined(path, name), element
 
-    def connector(
-        self, kind: Literal["input", "output"], carried: Output, path: Path_, variable: str
-    ) -> str:
+    def connector(self, kind: Kind, carried: Output, path: Path_, variable: str) -> str:
         """Return the connector through which a value goes; a new one is called by what it is of.
 
         Dots of the path become ``_``: with them it would be called as a variable inside is in
@@ -91,8 +92,9 @@ def nested(system: System, connections: Iterable[Connection]) -> Level:
     top = _level(system, system.rig.top, "root", (), levels)
     if system.rig.top.inner:  # the same names for the same system, in whatever order it was written
         connections = sorted(connections, key=_place_of_targets(system))
+    once = {connection.target for connection in system.initial}
     for connection in connections:
-        _route(connection, levels)
+        _route(connection, levels, calculated=connection.target in once)
     return top
 
 
@@ -132,20 +134,22 @@ def _place_of_targets(system: System) -> Callable[[Connection], tuple[int, int]]
     return lambda one: (parts[one.target[0]], variables[one.target[0]][one.target[1]])
 
 
-def _route(connection: Connection, levels: dict[Path_, Level]) -> None:
+def _route(connection: Connection, levels: dict[Path_, Level], *, calculated: bool) -> None:
     """Take a value up to the system that has both ends inside, and down from there."""
+    upwards: Kind = "calculatedParameter" if calculated else "output"
+    downwards: Kind = "parameter" if calculated else "input"
     source, target = (tuple(name.split(".")) for name, _ in (connection.source, connection.target))
     output, variable = connection.source[1], connection.target[1]
     shared = _shared(source[:-1], target[:-1])
     start = (source[-1], output)
     for depth in range(len(source) - 1, shared, -1):
         level = levels[source[:depth]]
-        name = level.connector("output", connection.source, source[depth:], output)
+        name = level.connector(upwards, connection.source, source[depth:], output)
         level.connections[start, ("", name)] = None
         start = (source[depth - 1], name)
     for depth in range(shared + 1, len(target)):
         level = levels[target[:depth]]
-        name = level.connector("input", connection.source, target[depth:], variable)
+        name = level.connector(downwards, connection.source, target[depth:], variable)
         levels[target[: depth - 1]].connections[start, (target[depth - 1], name)] = None
         start = ("", name)
     levels[target[:-1]].connections[start, (target[-1], variable)] = connection

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -40,6 +40,15 @@ KINDS: dict[str, type] = {
     "Binary": bytes,
 }
 """Types of SSP 1.0 and 2.0, and what they are here."""
+
+
+@dataclass(frozen=True)
+class Written:
+    """A value to write, or those of an array, row by row."""
+
+    type: str
+    values: Sequence[Value]
+    sizes: Sequence[int] = ()
 
 
 @dataclass(frozen=True)
@@ -162,17 +171,32 @@ def _binary(element: Any, text: str) -> bytes:
         raise InputError(f"{where(element)}: hexadecimal digits are needed") from None
 
 
-def parameter_set(name: str, values: Mapping[str, Value]) -> Any:
-    """Return an ``ssv:ParameterSet`` of version 1.0 with values by variable name."""
+def parameter_set(name: str, values: Mapping[str, Written], version: str) -> Any:
+    """Return an ``ssv:ParameterSet`` of a version with values by the names of variables."""
     uri = NAMESPACES["ssv"]
     root = etree.Element(
-        f"{{{uri}}}ParameterSet", {"name": name, "version": "1.0"}, nsmap={"ssv": uri}
+        f"{{{uri}}}ParameterSet",
+        {"name": name, "version": version},
+        nsmap={"ssv": uri} | ({"ssc": NAMESPACES["ssc"]} if version != "1.0" else {}),
     )
     holder = etree.SubElement(root, f"{{{uri}}}Parameters")
     for variable, value in sorted(values.items()):
         parameter = etree.SubElement(holder, f"{{{uri}}}Parameter", name=variable)
-        etree.SubElement(parameter, f"{{{uri}}}{type_name(type(value))}", value=written(value))
+        _write_values(etree.SubElement(parameter, f"{{{uri}}}{value.type}"), value.values)
+        for size in value.sizes:
+            attributes = {"size": str(size)}
+            etree.SubElement(parameter, f"{{{NAMESPACES['ssc']}}}Dimension", attributes)
     return root
+
+
+def _write_values(element: Any, values: Sequence[Value]) -> None:
+    """Give an element its value; of an array, words of numbers, else elements."""
+    if len(values) == 1 or isinstance(values[0], (bool, int, float)):
+        element.set("value", " ".join(map(written, values)))
+        return
+    for value in values:
+        holder = etree.SubElement(element, f"{{{NAMESPACES['ssv']}}}Value")
+        holder.set("value", written(value))
 
 
 def type_name(kind: type) -> str:

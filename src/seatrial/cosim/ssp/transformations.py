@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from lxml import etree
+
 from ...errors import InputError
 from .documents import NAMESPACES, boolean, child, known, needed, number, tag, where
 from .notes import Notes
@@ -91,6 +93,16 @@ def _entry(element: Any, side: str, kind: str) -> bool | int | str:
         return int(text)
     except ValueError:
         raise InputError(f"{where(element)}: a whole number is needed, found {text!r}") from None
+
+
+def write_table(parent: Any, table: Mapping[bool | int, bool | int]) -> None:
+    """Append the mapping transformation of integers or switches."""
+    uri = NAMESPACES["ssc"]
+    kind = "Boolean" if all(type(one) is bool for one in table) else "Integer"
+    holder = etree.SubElement(parent, f"{{{uri}}}{kind}MappingTransformation")
+    for one, other in table.items():
+        entry = {"source": str(one).lower(), "target": str(other).lower()}
+        etree.SubElement(holder, f"{{{uri}}}MapEntry", entry)
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Assembled rigs as SSP 1.0 packages, in the subset that other tools read."""
+"""Assembled rigs as SSP packages, in the subset that other tools read."""
 
 from __future__ import annotations
 
@@ -8,21 +8,29 @@ from pathlib import Path
 from ...errors import InputError
 from ...fmi.cache import write_named
 from ...fmi.export import fmu_bytes, zipped
+from ...fmi.instance import Variable
 from ...fmi.source import find_source
 from ..part import Part
 from ..system import Connection, System
 from .describing import Describer, Experiment, as_xml
 from .layout import flat, nested
 from .package import DEFAULT
-from .parameters import Value, parameter_set
+from .parameters import Value, Written, parameter_set
+from .shapes import Shapes, Version, shapes_of
 
 
 def write_ssp(
-    system: System, experiment: Experiment, path: Path, *, in_one: bool = False
+    system: System,
+    experiment: Experiment,
+    path: Path,
+    *,
+    in_one: bool = False,
+    version: Version = "1.0",
 ) -> list[str]:
     """Write ``system`` as an SSP package and return what other tools must know of it.
 
     A rig inside a rig is a system inside a system; ``in_one`` puts all components into one.
+    Version 2.0 has the types and arrays of FMI 3.
     Every value set is in a parameter set of its component and, where the FMU is built here,
     its start value too. The same input gives the same bytes. Raises InputError for what SSP
     cannot hold; nothing is written then.
@@ -30,19 +38,44 @@ def write_ssp(
     tuned = system.tuned
     connections = [one for one in system.connections if one.target not in tuned]
     _refuse_fed_parameters(system, connections)
+    connections += system.initial
+    shapes = {name: shapes_of(system, part, version) for name, part in system.parts.items()}
     top = (flat if in_one else nested)(system, connections)
-    notes: list[str] = []
+    notes = _beyond_version_1(system) if version == "1.0" else []
     files: dict[str, bytes] = {}
     for name, part in top.parts():
         values = {variable: given.value for variable, given in part.given.items()}
         files[f"resources/{name}.fmu"] = _fmu(system, part, values, notes)
         if values:
-            files[f"resources/{name}.ssv"] = as_xml(parameter_set(name, values))
-    describer = Describer(system, connections)
-    files[DEFAULT] = as_xml(describer.document(top, experiment))
+            to_write = _written(part, values, shapes[part.name])
+            files[f"resources/{name}.ssv"] = as_xml(parameter_set(name, to_write, version))
+    describer = Describer(system, connections, shapes)
+    files[DEFAULT] = as_xml(describer.document(top, experiment, version))
     path.parent.mkdir(parents=True, exist_ok=True)
     write_named(path, zipped(files))
     return [*notes, *describer.notes, *_unsaid(system)]
+
+
+def _written(part: Part, values: Mapping[str, Value], shapes: Shapes) -> dict[str, Written]:
+    """Return the values of a component as its parameter set has them; arrays are whole."""
+    found: dict[str, Written] = {}
+    variables = part.instance.variables
+    for name in values:
+        whole, indices = shapes.connector(name)
+        kind = shapes.type(variables[name])
+        if indices is None:
+            found[name] = Written(kind, [values[name]])
+        elif whole not in found:
+            elements = [variables[one] for one in variables if shapes.connector(one)[0] == whole]
+            listed = [_or_zero(values.get(one.name, one.start), one) for one in elements]
+            found[whole] = Written(kind, listed, shapes.sizes[whole])
+    return found
+
+
+def _or_zero(value: Value | None, variable: Variable) -> Value:
+    """Return an element's value; FMI starts from zero where an FMU gives none."""
+    zero: Value = variable.type()
+    return zero if value is None else value
 
 
 def _refuse_fed_parameters(system: System, connections: Sequence[Connection]) -> None:
@@ -65,6 +98,24 @@ def _fmu(system: System, part: Part, values: Mapping[str, Value], notes: list[st
             "set only, for tools that read it"
         )
     return source.read_bytes()
+
+
+def _beyond_version_1(system: System) -> list[str]:
+    """Return what only version 2.0 says better. Raises InputError for what only that can say."""
+    notes = []
+    for name, part in system.parts.items():
+        if any(shapes_of(system, part, "2.0").arrays):
+            notes.append(
+                f"{name}: SSP 1.0 has no arrays: their elements, x[1], stand as connectors; "
+                "write version 2.0"
+            )
+        for variable, given in part.given.items():
+            if type(given.value) is int and not -(2**31) <= given.value < 2**31:
+                raise InputError(
+                    f"{name}.{variable} = {given.value}: integers of SSP 1.0 have 32 bits; "
+                    "write version 2.0"
+                )
+    return notes
 
 
 def _unsaid(system: System) -> list[str]:
