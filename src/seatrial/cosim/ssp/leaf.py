@@ -133,7 +133,8 @@ def connectors_of(leaf: Leaf, component: Component, notes: Notes) -> dict[str, C
                 f"connector {name!r} is not of the kind of the FMU's variable, "
                 f"{variable.causality}, which holds",
             )
-        if None not in connector.sizes and math.prod(filter(None, connector.sizes)) != len(scalars):
+        sizes = [size for size in connector.sizes if size is not None]
+        if len(sizes) == len(connector.sizes) > 0 and math.prod(sizes) != len(scalars):
             notes.pass_over(
                 connector.where,
                 f"connector {name!r} has other dimensions than the FMU's variable, which hold",

@@ -113,6 +113,62 @@ def equal_paths(view: View) -> Iterator[Any]:
         found.add(path)
 
 
+def dictionaries(view: View) -> Iterator[Any]:
+    """Yield references to signal dictionaries."""
+    yield from view.all("ssd:SignalDictionaryReference")
+
+
+def sourceless(view: View) -> Iterator[Any]:
+    """Yield components without source."""
+    yield from (one for one in view.all("ssd:Component") if one.get("source") is None)
+
+
+def own_to_own(view: View) -> Iterator[Any]:
+    """Yield connections between two connectors of the system itself."""
+    for one in view.all("ssd:Connection"):
+        if one.get("startElement") is None and one.get("endElement") is None:
+            yield one
+
+
+def empty_elements(view: View) -> Iterator[Any]:
+    """Yield connections that name the system itself by an empty text."""
+    for one in view.all("ssd:Connection"):
+        if "" in (one.get("startElement"), one.get("endElement")):
+            yield one
+
+
+def backwards_outside(view: View) -> Iterator[Any]:
+    """Yield connections of the system's connectors that start at the wrong end."""
+    for one, start, end in view.connections():
+        kinds = [None if side is None else side.get("kind") for side in (start, end)]
+        inwards = one.get("startElement") is None and kinds[1] == "output"
+        if inwards or (one.get("endElement") is None and kinds[0] == "input"):
+            yield one
+
+
+def calculated(view: View) -> Iterator[Any]:
+    """Yield connections of calculated parameters."""
+    for one, start, end in view.connections():
+        if any(side is not None and side.get("kind") == _CALCULATED for side in (start, end)):
+            yield one
+
+
+def element_connections(view: View) -> Iterator[Any]:
+    """Yield connections of elements of arrays."""
+    for one in view.all("ssd:Connection"):
+        if one.get("startIndices") or one.get("endIndices"):
+            yield one
+
+
+def no_outputs(view: View) -> Iterator[Any]:
+    """Yield the system of a description if it has no output connector of its own."""
+    top = child(view.root, "ssd:System")
+    if top is not None:
+        kinds = [one.get("kind") for one in _listed(top, "ssd:Connectors")]
+        if "output" not in kinds:
+            yield top
+
+
 def inner_packages(view: View) -> Iterator[Any]:
     """Yield components that are no FMUs."""
     yield from (one for one in view.all("ssd:Component") if one.get("type", FMU) != FMU)
@@ -263,6 +319,7 @@ def experiment(view: View) -> Iterator[Any]:
 
 
 _SIDES = ("start", "end")
+_CALCULATED = "calculatedParameter"
 
 
 def _full(name: str) -> str:

@@ -14,7 +14,7 @@ from .documents import where
 from .notes import Notes
 from .package import DEFAULT, open_package
 
-TOOLS = ("omsimulator", "libcosim", "ecos", "fmpy")
+TOOLS = ("omsimulator", "libcosim", "ecos", "fmpy", "fmucontainer")
 
 Finder = Callable[[Any], Iterator[Any]]
 """Yields the elements of a description that a fact is about."""
@@ -39,6 +39,7 @@ class Finding:
     text: str
 
 
+_ALL_RUN = ("libcosim", "ecos", "fmpy", "fmucontainer")
 _PREFIX = "needs the prefixes ssd, ssc, ssv and osp, literally"
 _FLAT = "takes components only: no systems in systems, no signal dictionaries"
 _OWN = "takes connections between components only, none of the system's own connectors"
@@ -74,8 +75,24 @@ FACTS = (
     ),
     Fact(
         rules.inner_packages,
-        dict.fromkeys(("libcosim", "ecos", "fmpy"), "takes FMUs only, no packages in packages"),
+        dict.fromkeys(_ALL_RUN, "takes FMUs only, no packages in packages"),
         {},
+    ),
+    Fact(rules.dictionaries, {"fmucontainer": "takes no signal dictionaries"}, {}),
+    Fact(rules.sourceless, {"fmucontainer": "needs a source in every component"}, {}),
+    Fact(rules.own_to_own, {"fmucontainer": "needs an element in every connection"}, {}),
+    Fact(rules.empty_elements, {"fmucontainer": "takes no empty startElement or endElement"}, {}),
+    Fact(
+        rules.backwards_outside,
+        {"fmucontainer": "needs the element's output at the start of a connection to the system"},
+        {},
+    ),
+    Fact(rules.calculated, {"fmucontainer": "connects outputs only, no calculated parameters"}, {}),
+    Fact(rules.element_connections, {"fmucontainer": "connects no elements of arrays"}, {}),
+    Fact(
+        rules.no_outputs,
+        {},
+        {"fmucontainer": "shows nothing but what output connectors of the system carry"},
     ),
     Fact(rules.own_connections, {"libcosim": _OWN, "ecos": _OWN}, {}),
     Fact(rules.undeclared, dict.fromkeys(("libcosim", "ecos", "fmpy"), _UNDECLARED), {}),
@@ -114,21 +131,26 @@ FACTS = (
     Fact(
         rules.transformations,
         {},
-        {"fmpy": "ignores transformations", "omsimulator": "version 2 ignores transformations"},
+        {
+            "fmpy": "ignores transformations",
+            "fmucontainer": "ignores transformations",
+            "omsimulator": "version 2 ignores transformations",
+        },
     ),
-    Fact(rules.unlike_units, {}, dict.fromkeys(("libcosim", "ecos", "fmpy"), _UNITS)),
+    Fact(rules.unlike_units, {}, dict.fromkeys(_ALL_RUN, _UNITS)),
     Fact(
         rules.component_bindings,
         {},
         {
             "fmpy": "ignores parameter bindings: FMUs keep their own start values",
+            "fmucontainer": "ignores parameter bindings: FMUs keep their own start values",
             "ecos": "applies a parameter set only if its caller names it",
         },
     ),
     Fact(
         rules.system_bindings,
         {},
-        dict.fromkeys(("libcosim", "ecos", "fmpy"), "ignores parameter bindings of systems"),
+        dict.fromkeys(_ALL_RUN, "ignores parameter bindings of systems"),
     ),
     Fact(
         rules.second_bindings,
@@ -143,7 +165,7 @@ FACTS = (
     Fact(
         rules.mappings,
         {},
-        dict.fromkeys(("libcosim", "ecos", "fmpy"), "ignores parameter mappings"),
+        dict.fromkeys(_ALL_RUN, "ignores parameter mappings"),
     ),
     Fact(
         rules.measured_values,
@@ -152,7 +174,7 @@ FACTS = (
     ),
     Fact(rules.experiment, {}, {"fmpy": "ignores the default experiment's times and step"}),
 )
-"""All measured with libcosim 0.11, ecos 0.7 and FMPy 0.3; OMSimulator's are read, not run."""
+"""All measured with the versions that docs/how-to/ssp.md names; OMSimulator's are read, not run."""
 
 
 def takes_systems(tool: str) -> bool:
