@@ -320,3 +320,10 @@ def test_a_connector_in_another_unit_is_refused_only_where_it_is_connected(made)
         component("a", speed), component("b", Y), connections=connection("b/y", "a/speed")
     )
     assert "in another unit than the FMU's variable, which is in knot_x" in refused(made(fed))
+
+
+def test_where_the_schema_is_said_to_be_is_no_news(made) -> None:
+    there = 'xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xsi:schemaLocation="a b"'
+    first = made(elements(component("a", U, more=there)))
+    notes = read_ssp(first, strict=True).notes
+    assert [note for note in notes if "schema" in note] == []

@@ -39,6 +39,8 @@ _SCHEMA_FOLDER = Path(fmpy.__file__).parent / "ssp" / "schema"
 _PREFIXES = {uri: prefix for prefix, uri in NAMESPACES.items()}
 _ABOUT = {"ssc:MetaData", "ssc:Signature"}
 """What says something about any element."""
+_OF_XML = ("{http://www.w3.org/2001/XMLSchema-instance}", "{http://www.w3.org/XML/")
+"""Attributes that any XML file may have: where its schema is, its language."""
 _META = {
     "id", "description", "author", "fileversion", "copyright", "license", "generationTool",
     "generationDateAndTime",
@@ -129,7 +131,7 @@ def known(
 ) -> None:
     """Note what else ``element`` has; raise InputError for an element of SSP: it could matter."""
     for name in element.attrib:
-        if name not in _META and name not in attributes:
+        if name not in _META and name not in attributes and not name.startswith(_OF_XML):
             near = get_close_matches(name, [*attributes, *_META], 1)
             hint = f"; {near[0]!r} is one that is known" if near else ""
             notes.pass_over(
