@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import subprocess
+import zipfile
 from pathlib import Path
 
+import fmpy
 import pytest
 
 from seatrial.cosim.actions import action
@@ -12,6 +15,7 @@ from seatrial.cosim.flattening import load_rig
 from seatrial.cosim.master import Master
 from seatrial.errors import InputError
 
+from ..fmi.native import SLAVES
 from .ssp_natives import build
 
 RIG = """
@@ -76,3 +80,30 @@ def test_mistakes_are_named(connection: str, reason: str, started) -> None:
     with pytest.raises(InputError) as caught:
         started(connection)
     assert reason in str(caught.value)
+
+
+def test_parameters_that_an_fmu_loses_on_its_way_are_given_again(tmp_path: Path) -> None:
+    # 20-sim's FMUs, such as the crane of libcosim's demo, return to their own start values.
+    source = (SLAVES / "fmi2.c").read_text("utf-8")
+    entering = "fmi2EnterInitializationMode(fmi2Component c) {\n    Slave *s = c;\n"
+    assert entering in source
+    lossy = source.replace(entering, f"{entering}    s->real[K] = 1.0; s->real[GAIN] = 2.0;\n")
+    (tmp_path / "fmi2.c").write_text(lossy, "utf-8")
+    headers = Path(fmpy.__file__).parent / "c-code"
+    library = tmp_path / "fmi2.so"
+    subprocess.run(
+        ["cc", "-shared", "-fPIC", "-w", f"-I{headers}", tmp_path / "fmi2.c", "-o", library, "-lm"],
+        check=True,
+    )
+    with zipfile.ZipFile(tmp_path / "two.fmu", "w") as archive:
+        archive.write(SLAVES / "fmi2.xml", "modelDescription.xml")
+        archive.write(library, f"binaries/{fmpy.platform}/fmi2.so")
+    rig = 'step = "10 ms"\n[components]\na = { fmu = "two.fmu", set = { k = 3.0, u = 1.0 } }\n'
+    (tmp_path / "rig.toml").write_text(rig, "utf-8")
+    system = assemble(load_rig(str(tmp_path / "rig.toml")))
+    try:
+        master = Master(system)
+        master.initialise()
+        assert master.values("a", ["k", "gain", "y"]) == [3.0, 2.0, 2.0]
+    finally:
+        system.free()

@@ -18,6 +18,7 @@ from .algorithms import Algorithm
 from .divergence import DivergenceWatch
 from .feedthrough import Feedthrough
 from .network import Name, Network
+from .part import Part
 from .registry import ALGORITHMS
 from .rollback import Checkpoint, Rollback
 from .system import System
@@ -87,6 +88,8 @@ class Master:
             part.instance.set_start({name: given.value for name, given in part.given.items()})
         for instance in instances:
             instance.initialise(self.start_ns / NS, stop)
+        for part in self.system.parts.values():
+            _give_again(part)
         self._feedthrough = Feedthrough(self._network)
         self._settle()
         self._carry_initial()
@@ -240,3 +243,19 @@ class Master:
         self._rollback.forget()
         self._algorithm.forget()
         self._feedthrough.propagate(self.steps)
+
+
+def _give_again(part: Part) -> None:
+    """Set parameters of another tool's FMU again that it has lost on its way to initialisation.
+
+    Some return to their own start values there; FMI lets parameters be set until its end.
+    """
+    variables = part.instance.variables
+    parameters = [name for name in part.given if variables[name].causality == "parameter"]
+    if part.code or not parameters:
+        return
+    wanted = [part.given[name].value for name in parameters]
+    found = part.instance.reader(parameters)()
+    lost = [i for i, value in enumerate(found) if value != wanted[i]]
+    if lost:
+        part.instance.writer([parameters[i] for i in lost])([wanted[i] for i in lost])
