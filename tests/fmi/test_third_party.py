@@ -175,7 +175,7 @@ def test_units_that_nobody_defines(rig, native_fmu, tmp_path: Path) -> None:
         ("in_Float64 = [1, 2]", r"3 values are needed \(in_Float64\[1\], .*found 2"),
         ("rows = 2", "rows has the causality structuralParameter and cannot be set"),
         ("tick = true", "unknown port 'tick'"),
-        ("x = 1", "x has the causality output and cannot be set"),
+        ("steps = 1", "steps has the causality output and cannot be set"),
     ],
 )
 def test_values_that_do_not_fit(setting: str, message: str, rig) -> None:
