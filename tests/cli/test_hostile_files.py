@@ -94,7 +94,7 @@ def test_an_error_of_ours_is_never_a_criterion_that_failed(tmp_path: Path, monke
     def broken(_run: object) -> None:
         raise ValueError("a defect")
 
-    monkeypatch.setattr(report, "_parameter_tables", broken)
+    monkeypatch.setattr(report, "parameter_tables", broken)
     write_run_folder(tmp_path / "run")
     done = seatrial("report", "run", cwd=tmp_path)
     assert done.returncode == 3

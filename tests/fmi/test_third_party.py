@@ -173,7 +173,7 @@ def test_units_that_nobody_defines(rig, native_fmu, tmp_path: Path) -> None:
         ('in_Binary = "not base64!"', "bytes as base64 text are needed"),
         ("in_Binary = 5", "bytes as base64 text are needed"),
         ("in_Float64 = [1, 2]", r"3 values are needed \(in_Float64\[1\], .*found 2"),
-        ("rows = 2", "rows has the causality structuralParameter and cannot be set"),
+        ("rows = -2", "set.rows: a whole number from 0 to"),
         ("tick = true", "unknown port 'tick'"),
         ("steps = 1", "steps has the causality output and cannot be set"),
     ],

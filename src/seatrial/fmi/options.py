@@ -1,4 +1,4 @@
-"""What a rig says of an FMU besides its values: interface, tolerance, structural parameters."""
+"""Settings of an FMU in a rig besides its values: interface, tolerance, structural parameters."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How a run ended, in the word that its manifest has as status."""
+"""Ends of runs, each in the word that its manifest has as status."""
 
 from __future__ import annotations
 
