@@ -89,3 +89,13 @@ def test_runs_without_wind_have_no_point(tmp_path: Path) -> None:
     trial = load_trial("hydrone-open-landing").changed({"stop": "1 s"}, "test")
     run = load_run(run_trial(trial, tmp_path / "out", engine="direct").folder)
     assert polar_point(run, "", "") is None
+
+
+@pytest.mark.parametrize("spoiled", ["velocity.u", "attitude.psi"])
+def test_a_record_with_text_where_numbers_belong_has_no_point(spoiled: str, tmp_path: Path) -> None:
+    trial = load_trial("gloria-steady").changed({"stop": "1 s"}, "test")
+    run = load_run(run_trial(trial, tmp_path / "out", engine="direct").folder)
+    assert polar_point(run, "", "") is not None
+    (name, *_) = [name for name in run.signals if spoiled in name]
+    run.signals[name] = ["text"] * len(run.time)
+    assert polar_point(run, "", "") is None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 from typing import Any
@@ -64,8 +64,10 @@ def polar_point(run: Run, label: str, series: str) -> PolarPoint | None:
     wind, psi = _wind_signals(run), ".attitude.psi"
     craft = [name.removesuffix(psi) for name in run.signals if name.endswith(psi)]
     needed = [f"{name}.velocity.{axis}" for name in craft for axis in ("u", "v")]
-    complete = is_whole(run.manifest["status"]) and set(needed) <= set(run.signals)
+    complete = is_whole(run.manifest["status"]) and len(run.time)
     if wind is None or len(craft) != 1 or not complete:
+        return None
+    if not _are_numbers(run, (craft[0] + psi, *needed)):
         return None
     last = run.time >= run.time[-1] - _STEADY * (run.time[-1] - run.time[0])
     north, east = (run.signals[name][last] for name in wind)
@@ -108,9 +110,14 @@ def _wind_signals(run: Run) -> tuple[str, str] | None:
     """Return the signals of the wind's velocity, north and east, if they were recorded."""
     for name, _, ports in viewed(run.manifest, "wind"):
         north, east = (f"{name}.{ports['velocity']}.{axis}" for axis in ("north", "east"))
-        if {north, east} <= set(run.signals):
+        if _are_numbers(run, (north, east)):
             return north, east
     return None
+
+
+def _are_numbers(run: Run, signals: Iterable[str]) -> bool:
+    """Say if signals were recorded, and as numbers: somebody else may have written the record."""
+    return all(isinstance(run.signals.get(name), np.ndarray) for name in signals)
 
 
 def _mean_wind(run: Run) -> tuple[float, float] | None:

@@ -98,6 +98,12 @@ def test_services_of_others_are_not_received(receiver):
     assert receiver.receive(Frame(frame.identifier, b"\xc1", True), node=6) == []
 
 
+def test_a_request_of_nobody_is_not_received(receiver):
+    # GetNodeInfo to 5 from the source 0, which only a message may have.
+    frame = Frame((20 << 24) | (1 << 16) | 0x8000 | (5 << 8) | 0x80, b"\xc0", True)
+    assert receiver.receive(frame) == []
+
+
 def test_frames_that_are_not_dronecans_are_passed_over(receiver):
     (frame,) = packages_frames(uavcan.protocol.NodeStatus())
     assert receiver.receive(Frame(0x123, bytes(8)), Frame(frame.identifier, b"", True)) == []

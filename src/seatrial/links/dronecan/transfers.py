@@ -136,6 +136,8 @@ def _is_for(node: int, frame: Frame, wanted: frozenset[Kind]) -> bool:
     if not frame.extended or not frame.data or frame.fd:
         return False
     if identifier & 0x80:
+        if not identifier & 0x7F:  # of nobody, to whom no answer can go
+            return False
         return identifier >> 8 & 0x7F == node and (identifier >> 16 & 0xFF, True) in wanted
     if identifier & 0x7F:
         return (identifier >> 8 & 0xFFFF, False) in wanted
