@@ -198,7 +198,7 @@ def test_a_choice_without_a_value_is_named(yard) -> None:
          "reader.total.x is already fed by a.body.total.x"),
         ('rig = "inner/body" }', 'rig = "top" }', "a rig contains itself: top -> top"),
         ('rig = "inner/body" }', 'rig = "inner/body", fmu = "users.py:Body" }',
-         "components.a: either fmu or rig is needed"),
+         "components.a: either fmu, rig or sum is needed"),
         ('rig = "inner/body" }', 'rig = "inner/body", isolated = true }',
          "components.a.isolated: has no effect beside rig"),
         ('reader = { fmu = "users.py:Reader" }', 'reader = { fmu = "users.py:Reader", home = ["1 deg", "1 deg", "0 m"] }',

@@ -154,6 +154,29 @@ def test_override_and_release_of_outputs_and_inputs(bench: Bench) -> None:
     assert value(master, "sum.x") == pytest.approx(before + 100.0 * 0.1 * 0.2, abs=1e-12)
 
 
+def test_a_bias_is_added_until_it_is_released(bench: Bench) -> None:
+    master = bench.master(
+        'ramp = { fmu = "users.py:Ramp" }\nadd = { fmu = "users.py:Add" }\nsum = { fmu = "users.py:Sum" }',
+        '"ramp.y" = ["add.u", "sum.u"]',
+    )
+    master.override("ramp", "y", 5.0, is_bias=True)
+    master.override("add", "u", 0.25, is_bias=True)
+    assert (value(master, "ramp.y"), value(master, "add.y")) == (5.0, 6.25)
+    state = master.save()
+    for _ in range(2):
+        master.step()
+    assert (value(master, "ramp.y"), value(master, "add.y")) == (5.2, 6.45)
+    assert value(master, "sum.x") == pytest.approx(0.1 * (5.0 + 5.1), rel=1e-15)
+    master.release("ramp", "y")
+    assert (value(master, "ramp.y"), value(master, "add.y")) == (0.2, 1.45)
+    master.override("add", "u", -1.0)  # instead of the bias
+    assert value(master, "add.y") == 0.0
+    master.restore(state)
+    assert (value(master, "ramp.y"), value(master, "add.y")) == (5.0, 6.25)
+    master.step()
+    assert (value(master, "ramp.y"), value(master, "add.y")) == (5.1, 6.35)
+
+
 def test_release_between_the_steps_of_a_slow_component_shows_no_future(bench: Bench) -> None:
     master = bench.master(
         'ramp = { fmu = "users.py:Ramp", step = "500 ms" }\nadd = { fmu = "users.py:Add" }',

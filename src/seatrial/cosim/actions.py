@@ -1,4 +1,4 @@
-"""Actions: ports set, overridden or released while a system runs."""
+"""Actions: ports set, overridden, biased or released while a system runs."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .part import Part
 from .system import System, settable
 from .values import from_written, port_names, port_scalars
 
-ActionKind = Literal["set", "override", "release"]
+ActionKind = Literal["set", "override", "bias", "release"]
 
 
 @dataclass(frozen=True)
@@ -37,8 +37,8 @@ class Action:
             if self.kind == "set":
                 master.set(change.component, list(change.values), list(change.values.values()))
             for name, value in change.values.items():
-                if self.kind == "override":
-                    master.override(change.component, name, value)
+                if self.kind in ("override", "bias"):
+                    master.override(change.component, name, value, is_bias=self.kind == "bias")
                 elif self.kind == "release":
                     master.release(change.component, name)
 
@@ -47,8 +47,8 @@ def action(system: System, kind: ActionKind, key: str, written: Any, where: str)
     """Return the action on ``component.port`` of what a person wrote.
 
     Inputs that nothing feeds and tunable parameters can be set; outputs and inputs that are
-    wholly connected, overridden and released. What a rig inside shows stands for all ports
-    that it means. Raises InputError, naming ``where``.
+    wholly connected, overridden, biased (no texts) and released. What a rig inside shows stands
+    for all ports that it means. Raises InputError, naming ``where``.
     """
     located = system.located(key, where)
     return Action(kind, tuple(_change(system, kind, each, key, written, where) for each in located))
@@ -83,6 +83,8 @@ def _change(
         raise InputError(
             f"{where}: {key} is neither an output nor an input that is wholly connected"
         )
+    if kind == "bias" and scalars[0].type not in (float, int, bool):
+        raise InputError(f"{where}: {key} is no number to add to")
     if kind == "release":
         return Change(component, dict.fromkeys(variable.name for variable in scalars))
     given = from_written(written, scalars, part.presets.get(port, {}), where)

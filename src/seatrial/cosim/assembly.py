@@ -32,7 +32,7 @@ def assemble(
     once: dict[str, str] = {}
     try:
         for name, placed in rig.components.items():
-            progress(f"{name} ({placed.entry.fmu})")
+            progress(f"{name} ({placed.entry.what})")
             system.parts[name] = load_part(rig, name, engine, once)
             scope = placed.scope
             if scope.path not in profiles:

@@ -83,10 +83,12 @@ class Feedthrough:
                         self._network.read(visit.chunks)
 
     def forget(self) -> None:
-        """Visit nothing any more: values move by steps alone."""
-        self._groups = []
+        """Visit nothing any more but sums, which take no step: values move by steps alone."""
+        visits = [v for group in self._groups for v in group.visits if v.node.part.is_sum]
+        self._groups = [_Group([], is_loop=False, visits=[visit]) for visit in visits]
         for node in self._network.nodes.values():
-            node.reads, node.written_by_visit = node.chunks, False
+            if not node.part.is_sum:
+                node.reads, node.written_by_visit = node.chunks, False
 
     def save(self) -> list[float]:
         """Return what the loops have learned, for a rollback."""

@@ -14,6 +14,7 @@ from ..fmi.options import FmuOptions
 from ..fmi.source import find_source
 from .part import Part
 from .rig import ComponentEntry, Rig, duration_ns
+from .sums import SumInstance
 from .system import Engine
 from .values import from_written
 
@@ -32,6 +33,9 @@ def load_part(rig: Rig, name: str, engine: Engine, once: dict[str, str]) -> Part
     """
     placed = rig.components[name]
     entry, where, every = placed.entry, placed.where, 1
+    if entry.sum is not None:
+        adding = SumInstance(name, entry.sum.inputs, entry.sum.dimension)
+        return Part(name, entry.what, adding, sha256="", code="", every=1, is_sum=True)
     stepped = placed.scope.step if entry.step is None else (entry.step, f"{where}.step")
     if stepped is not None:
         written, place = stepped

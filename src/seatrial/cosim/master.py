@@ -133,13 +133,16 @@ class Master:
             self._network.read(node.chunks)
         self._changed()
 
-    def override(self, component: str, name: str, value: Any) -> None:
-        """Replace an output for all its readers, or one connected input, until `release`."""
-        self._network.override(component, name, value)
+    def override(self, component: str, name: str, value: Any, *, is_bias: bool = False) -> None:
+        """Replace an output for all its readers, or one connected input, until `release`.
+
+        A bias is added to it instead.
+        """
+        self._network.override(component, name, value, is_bias=is_bias)
         self._changed()
 
     def release(self, component: str, name: str) -> None:
-        """End an override: the connection carries its own value again."""
+        """End an override or a bias: the connection carries its own value again."""
         self._network.override(component, name, None)
         self._changed()
 

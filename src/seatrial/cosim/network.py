@@ -52,6 +52,8 @@ class Writes:
     gather: Callable[[list[Any]], Sequence[Any]]
     scales: list[tuple[int, float, float]]
     mappings: list[tuple[int, Mapping[Any, Any]]] = field(default_factory=list)
+    biases: dict[int, Any] = field(default_factory=dict)
+    """What is added to an input, once converted."""
 
     def values(self, signals: list[Any]) -> Sequence[Any]:
         """Return the inputs' values, converted."""
@@ -60,10 +62,12 @@ class Writes:
             values = list(values)
             for i, mapping in self.mappings:
                 values[i] = mapping.get(values[i], values[i])
-        if self.scales:
+        if self.scales or self.biases:
             values = list(values)
             for i, factor, offset in self.scales:
                 values[i] = values[i] * factor + offset
+            for i, bias in self.biases.items():
+                values[i] = biased(values[i], bias)
         return values
 
 
@@ -86,10 +90,16 @@ class Node:
 
 @dataclass
 class _Override:
-    """An overridden output: what its readers get, and what it last was by itself."""
+    """An output with an override or a bias, and what it last was by itself."""
 
     value: Any
     own: Any
+    is_bias: bool = False
+
+    @property
+    def read(self) -> Any:
+        """What its readers get."""
+        return biased(self.own, self.value) if self.is_bias else self.value
 
 
 class Network:
@@ -229,8 +239,11 @@ class Network:
 
     # ------------------------------------------------------------------ overrides
 
-    def override(self, component: str, name: str, value: Any) -> None:
-        """Replace an output for all its readers, or one connected input; None ends that."""
+    def override(self, component: str, name: str, value: Any, *, is_bias: bool = False) -> None:
+        """Replace an output for all its readers, or one connected input; None ends that.
+
+        A bias is added instead. Either ends the other.
+        """
         if (component, name) in self.places:
             place = self.places[component, name]
             own = (
@@ -238,15 +251,17 @@ class Network:
             )
             self.signals[place] = own
             if value is not None:
-                self._overrides[place] = _Override(value, own)
-                self.signals[place] = value
+                self._overrides[place] = _Override(value, own, is_bias)
+                self.signals[place] = self._overrides[place].read
             return
         for writes in self.nodes[component].writes:
             for index, connection in enumerate(writes.connections):
                 if connection.target == (component, name):
-                    if value is None:
-                        writes.places[index] = self.places[connection.source]
-                    else:
+                    writes.places[index] = self.places[connection.source]
+                    writes.biases.pop(index, None)
+                    if is_bias and value is not None:
+                        writes.biases[index] = value
+                    elif value is not None:
                         writes.places[index] = len(self.signals)
                         self.signals.append(value)
             self._bind(writes)
@@ -255,7 +270,7 @@ class Network:
         for place, override in self._overrides.items():
             if start <= place < stop:
                 override.own = self.signals[place]
-                self.signals[place] = override.value
+                self.signals[place] = override.read
 
     def values(self, component: str, names: Sequence[str]) -> list[Any]:
         """Return current values of a component's variables, whatever their causality.
@@ -282,17 +297,23 @@ class Network:
 
     def save_overrides(self) -> Any:
         """Return which overrides there are, for `restore_overrides`."""
-        places = [list(w.places) for node in self.nodes.values() for w in node.writes]
-        return {place: override.value for place, override in self._overrides.items()}, places
+        inputs = [
+            (list(w.places), dict(w.biases)) for node in self.nodes.values() for w in node.writes
+        ]
+        outputs = {place: (one.value, one.is_bias) for place, one in self._overrides.items()}
+        return outputs, inputs
 
     def restore_overrides(self, memory: Any) -> None:
         """Restore what `save_overrides` returned, before `restore` of the same instant."""
-        values, places = memory
-        self._overrides = {place: _Override(value, None) for place, value in values.items()}
+        outputs, inputs = memory
+        self._overrides = {
+            place: _Override(value, None, is_bias) for place, (value, is_bias) in outputs.items()
+        }
         writes = [w for node in self.nodes.values() for w in node.writes]
-        for one, before in zip(writes, places, strict=True):
-            if one.places != before:
-                one.places = list(before)
+        for one, (places, biases) in zip(writes, inputs, strict=True):
+            one.biases = dict(biases)
+            if one.places != places:
+                one.places = list(places)
                 self._bind(one)
 
     # ------------------------------------------------------------------ rollback
@@ -325,6 +346,11 @@ class Network:
                         f"{output} was {was!r} when it was saved at t = {self.time_ns / NS!r} s, "
                         f"and is {value!r} now that it has been restored"
                     )
+
+
+def biased(value: Any, bias: Any) -> Any:
+    """Return a value with a bias, of the value's type: of truth values, whether one is true."""
+    return type(value)(value + bias)
 
 
 def _gatherer(places: Sequence[int]) -> Callable[[list[Any]], Sequence[Any]]:

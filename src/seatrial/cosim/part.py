@@ -29,3 +29,5 @@ class Part:
     outline: Outline | None = None
     """Of the vehicle whose parameters it has, if its file has one."""
     presets: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    is_sum: bool = False
+    """It takes no step: every algorithm evaluates it where values move."""

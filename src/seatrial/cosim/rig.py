@@ -51,12 +51,21 @@ Isolated = bool | Literal["sandboxed"]
 """Whether a component runs in a process of its own, and whether that is confined."""
 
 
+class SumEntry(FileModel):
+    """A sum of real signals; with a dimension, of vectors."""
+
+    inputs: int = Field(ge=1, le=1000)
+    dimension: int | None = Field(default=None, ge=1, le=1000)
+
+
 class ComponentEntry(FileModel):
-    """One component of a rig: an FMU, or another rig."""
+    """One component of a rig: an FMU, another rig, or a sum."""
 
     fmu: str = ""
     rig: str = ""
     """Another rig in the place of an FMU; it takes ``choices``, ``home``, ``variant``, ``set``."""
+    sum: SumEntry | None = None
+    """A sum in the place of an FMU."""
     choices: dict[str, str] = Field(default_factory=dict)
     home: list[str] | None = Field(default=None, min_length=3, max_length=3)
     """Latitude, longitude and altitude of the origin of all links in it."""
@@ -77,6 +86,14 @@ class ComponentEntry(FileModel):
     """Of an FMU that has several; co-simulation if it has that."""
     tolerance: float | None = Field(default=None, gt=0.0, le=0.1, allow_inf_nan=False)
     """Relative tolerance of the solver of an FMU in model exchange."""
+
+    @property
+    def what(self) -> str:
+        """What it is: the FMU as written, or a sum."""
+        if self.sum is None:
+            return self.fmu
+        of = "" if self.sum.dimension is None else f" vectors of {self.sum.dimension}"
+        return f"sum of {self.sum.inputs}{of}"
 
 
 Shown = str | dict[str, str] | list[str | dict[str, str]]
@@ -248,6 +265,7 @@ def check_rig_file(file: RigFile, path: Path) -> None:
 
 _OF_FMUS = ("parameters", "profile", "isolated", "timeout", "interface", "tolerance")
 _OF_RIGS = ("choices", "home", "variant")
+_NOT_OF_SUMS = (*_OF_FMUS, *_OF_RIGS, "set", "step")
 
 
 def _check_component(name: str, component: ComponentEntry, where: str) -> None:
@@ -256,9 +274,12 @@ def _check_component(name: str, component: ComponentEntry, where: str) -> None:
             f"{where}: a component's name has letters, digits and '_' "
             "and starts with a letter or '_'"
         )
-    if bool(component.fmu) == bool(component.rig):
-        raise InputError(f"{where}: either fmu or rig is needed")
-    kind, alien = ("rig", _OF_FMUS) if component.rig else ("fmu", _OF_RIGS)
+    kinds = {"fmu": _OF_RIGS, "rig": _OF_FMUS, "sum": _NOT_OF_SUMS}
+    written = [kind for kind in kinds if getattr(component, kind)]
+    if len(written) != 1:
+        raise InputError(f"{where}: either fmu, rig or sum is needed")
+    (kind,) = written
+    alien = kinds[kind]
     for key in alien:
         if key in component.model_fields_set:
             raise InputError(f"{where}.{key}: has no effect beside {kind}")

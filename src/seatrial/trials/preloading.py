@@ -21,7 +21,7 @@ def preload(trials: Sequence[Trial], engine: Engine) -> None:
     """
     modules = set(_OF_FMUS if engine == "fmu" else ())
     for trial in trials:
-        for placed in trial.rig.components.values():
+        for placed in (p for p in trial.rig.components.values() if p.entry.fmu):
             with contextlib.suppress(InputError):  # it will be said when it is loaded
                 source = find_source(placed.entry.fmu, placed.scope.folder)
                 if isinstance(source, ComponentSource) and source.module.startswith("seatrial."):
