@@ -1,4 +1,4 @@
-"""TOML and JSON that anybody may have written, as content that is safe to walk through."""
+"""TOML, JSON and YAML that anybody may have written, as content that is safe to walk through."""
 
 from __future__ import annotations
 
@@ -55,6 +55,41 @@ def json_content(data: bytes, called: str) -> Any:
         raise _too_deep(called) from None
     except ValueError as error:
         raise InputError(f"{called}: not JSON: {error}") from None
+    _refuse_odd(content, called)
+    return content
+
+
+def yaml_content(data: bytes, called: str) -> Any:
+    """Return what one document of YAML says, as `toml_content` does; numbers are texts here.
+
+    Aliases and keys that stand twice are refused.
+    """
+    import yaml  # few runs need it
+
+    class Loader(yaml.BaseLoader):  # type: ignore[misc]
+        """Takes every scalar for a text: versions of YAML differ in what is a number."""
+
+        def compose_node(self, parent: Any, index: Any) -> Any:
+            if self.check_event(yaml.AliasEvent):
+                mark = self.peek_event().start_mark
+                raise InputError(f"{called}: line {mark.line + 1}: aliases are not read")
+            return super().compose_node(parent, index)
+
+        def construct_mapping(self, node: Any, deep: bool = False) -> Any:
+            keys = [key.value for key, _ in node.value]
+            for i, (key, _) in enumerate(node.value):
+                if key.value in keys[:i]:
+                    line = key.start_mark.line + 1
+                    raise InputError(f"{called}: line {line}: a second key {key.value!r}")
+            return super().construct_mapping(node, deep)
+
+    _refuse_large(data, LARGEST_TOML, called)
+    try:
+        content = Loader(data).get_single_data()
+    except RecursionError:
+        raise _too_deep(called) from None
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        raise InputError(f"{called}: not YAML: {' '.join(str(error).split())}") from None
     _refuse_odd(content, called)
     return content
 

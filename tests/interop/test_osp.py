@@ -69,7 +69,7 @@ def test_libcosim_connects_terms(group: str, expected: list[float], write, tmp_p
     variables = load_fmu(tmp_path / "Barge.fmu").variables
     names = ("position.x", "position.y", "position.z", "depth.a")
     references = [variables[name].reference for name in names]
-    job = {"file": str(file), "slave": "barge", "references": references, "steps": 3}
+    job = {"file": str(file), "watch": [["barge", "real", references]], "steps": 3}
     run = subprocess.run(
         [sys.executable, Path(__file__).with_name("osp_libcosim_run.py")],
         input=json.dumps(job),
@@ -78,4 +78,4 @@ def test_libcosim_connects_terms(group: str, expected: list[float], write, tmp_p
         timeout=120,
     )
     assert run.returncode == 0, run.stderr
-    assert json.loads(run.stdout.splitlines()[-1]) == expected
+    assert json.loads(run.stdout.splitlines()[-1])[-1] == expected

@@ -233,6 +233,7 @@ def test_plots_of_a_trial_come_first_in_its_report(bench, tmp_path: Path) -> Non
         (TRIAL + '[[events]]\nat = "15 ms"\nset = { "boat.push" = "1 N" }', "whole number"),
         (TRIAL + '[[events]]\nat = "0.5 s"\nset = { "boat.mode" = "storm" }', "is fixed"),
         (TRIAL + '[[events]]\nat = "0.5 s"\noverride = { "boat.push" = "1 N" }', "neither"),
+        (TRIAL + '[[events]]\nat = "0.5 s"\nbias = { "boat.label" = "x" }', "no number to add to"),
         (TRIAL + '[[events]]\nat = "0.5 s"\nset = { "boat.push" = "1 rad" }', "'rad' cannot"),
         (PLOT.format('"boat.y"'), "plot 'both': unknown signal 'boat.y'"),
         (PLOT.format('"boat.label"'), "plot 'both': boat.label is a text"),

@@ -130,10 +130,10 @@ def run_trial(
 ) -> TrialResult:
     """Run a trial as ``seatrial run`` does, and return what it left.
 
-    ``trial`` is a name, or a path of a ``.toml`` or ``.ssp`` file. ``set`` changes it as
-    ``--set`` does: ``component.port`` or ``variant``, ``seed``, ``start``, ``stop``, ``step``,
-    ``algorithm``, ``choices.NAME``; numbers in the port's unit (SI; s), text with a unit
-    (``"10 deg"``), sequences and arrays with one element per axis.
+    ``trial`` is a name, or a path of a ``.toml`` file, or of an SSP or OSP-IS package. ``set``
+    changes it as ``--set`` does: ``component.port`` or ``variant``, ``seed``, ``start``, ``stop``,
+    ``scenario``, ``step``, ``algorithm``, ``choices.NAME``; numbers in the port's unit (SI; s),
+    text with a unit (``"10 deg"``), sequences and arrays with one element per axis.
 
     The run leaves a folder, because a result without its manifest cannot be repeated: ``out``,
     which must not hold anything yet, or else a new one, ``runs/NAME-DATE-TIME``, below the

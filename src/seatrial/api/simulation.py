@@ -41,13 +41,13 @@ class Simulation:
     """A rig that the caller steps, in the caller's process.
 
     ``rig`` is the name of a rig (not of a trial: `run_trial` runs those, with their events and
-    criteria), or the path of a ``.toml`` or ``.ssp`` file. ``set`` gives parameters, and start
-    values of inputs, by ``component.port`` as a rig's file does: numbers in the port's unit (SI),
-    text with a unit (``"10 deg"``) or the name of a preset, sequences and arrays with one element
-    per axis; ``component.isolated`` gives a component a process of its own (true, false or
-    "sandboxed"). ``seed`` is what all noise derives from, ``variant`` one of the vehicle's,
-    ``engine`` as for `run_trial`, ``step`` the communication step in s or as text in place of
-    the rig's, ``choices`` those of the rig: ``{"vehicle": "gloria"}``. Time starts at 0.
+    criteria), or the path of a ``.toml`` file, or of an SSP or OSP-IS package. ``set`` gives
+    parameters, and start values of inputs, by ``component.port`` as a rig's file does: numbers in
+    the port's unit (SI), text with a unit (``"10 deg"``) or the name of a preset, sequences and
+    arrays with one element per axis; ``component.isolated`` gives a component a process of its own
+    (true, false or "sandboxed"). ``seed`` is what all noise derives from, ``variant`` one of the
+    vehicle's, ``engine`` as for `run_trial`, ``step`` the communication step in s or as text in
+    place of the rig's, ``choices`` those of the rig: ``{"vehicle": "gloria"}``. Time starts at 0.
 
     The simulation is at a communication point between any two calls. The same calls give the
     same numbers, those of a trial with events at the same times.
@@ -358,13 +358,13 @@ def _signal(name: str, variable: Variable, feeder: str) -> Signal:
 
 def _loaded_rig(name: str, step: Any, choices: Mapping[str, str] | None) -> Rig:
     from ..cosim.flattening import load_rig
-    from ..cosim.ssp.reading import read_ssp
+    from ..cosim.packages import is_package, read_package
     from ..shipped import available
 
-    if name.endswith(".ssp"):
+    if is_package(name):
         if choices:
             raise InputError(f"{name}: a package has no choices, found {', '.join(choices)}")
-        rig = read_ssp(Path(name).resolve(), step).rig
+        rig = read_package(Path(name).resolve(), {"step": step}).rig
     else:
         try:
             rig = load_rig(name, None, choices)

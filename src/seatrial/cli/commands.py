@@ -61,6 +61,7 @@ COMMANDS = {
     "profile": Command("profile:profile_app", "Check and describe profiles of electronics."),
     "decode": Command("decode:decode_app", "Show recorded streams as text."),
     "sketch": Command("sketch:sketch_app", "Check, build and run Arduino sketches."),
+    "osp": Command("osp:osp_app", "Export system structures of OSP-IS, for libcosim."),
     "ssp": Command("ssp:ssp_app", "Export and check SSP packages."),
 }
 

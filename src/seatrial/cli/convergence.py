@@ -35,7 +35,7 @@ from .watch import Watch
 
 
 def convergence(
-    trial: Annotated[str, typer.Argument(help="A trial: a name, a .toml or an .ssp file.")],
+    trial: Annotated[str, typer.Argument(help="A trial: a name, a file or a package.")],
     halvings: Annotated[int, typer.Option(help="How often the step is halved, at least 2.")] = 2,
     settings: Settings = None,
     choices: Choices = None,

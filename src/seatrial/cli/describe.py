@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -9,6 +10,7 @@ from rich.markup import escape
 
 from ..cosim.assembly import assemble
 from ..cosim.flattening import load_rig
+from ..cosim.packages import is_package, read_package
 from ..cosim.paths import joined
 from ..cosim.rig import Rig, Scope
 from ..cosim.system import Joint, System
@@ -16,22 +18,29 @@ from ..cosim.unread import leave_out_unread
 from ..trials.naming import by_path, named_components
 from ..trials.trial import choices_in, is_trial, load_trial
 from .options import Autopilot, Choices, Vehicle, changes_of
-from .show import console
+from .show import console, print_notes
 
 
 def describe(
-    rig: Annotated[str, typer.Argument(help="A rig or a trial: a name or a .toml file.")],
+    rig: Annotated[str, typer.Argument(help="A rig or a trial: a name, a file or a package.")],
     choices: Choices = None,
     vehicle: Vehicle = None,
     autopilot: Autopilot = None,
 ) -> None:
     """Show a rig's components, rigs inside it, every connection, and what is left open."""
     changes = changes_of(None, choices, vehicle, autopilot)
-    trial = load_trial(rig, changes=changes, origin="--choose") if is_trial(rig) else None
-    loaded = trial.rig if trial else load_rig(rig, None, choices_in(changes, "--choose"))
+    if is_package(rig) and not changes:  # no trial: it may name no stop time
+        package = read_package(Path(rig).resolve(), {})
+        print_notes(package.notes)
+        trial, loaded = None, package.rig
+    else:
+        trial = load_trial(rig, changes=changes, origin="--choose") if is_trial(rig) else None
+        loaded = trial.rig if trial else load_rig(rig, None, choices_in(changes, "--choose"))
     system = assemble(loaded, "direct" if _in_process(loaded) else "fmu")
     try:
-        named = named_components(by_path(trial, system), system) if trial else set()
+        named = (
+            named_components(by_path(trial.scheduled(system), system), system) if trial else set()
+        )
         leave_out_unread(system, named)
         _print_rig(system)
     finally:
@@ -75,7 +84,7 @@ def _print_components(scope: Scope, indent: str, left_out: list[str]) -> None:
     for name, entry in scope.file.components.items():
         if name not in scope.inner:
             out = "  (left out: nothing reads it)" if joined(scope.path, name) in left_out else ""
-            console.print(f"{indent}  {escape(name)}: {escape(entry.fmu)}{out}", soft_wrap=True)
+            console.print(f"{indent}  {escape(name)}: {escape(entry.what)}{out}", soft_wrap=True)
             continue
         inner = scope.inner[name]
         title = inner.file.title or inner.read_from.name

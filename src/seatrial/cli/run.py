@@ -36,9 +36,7 @@ from .watch import Watch
 
 
 def run(
-    trial: Annotated[
-        str, typer.Argument(help="A trial or campaign: a name, a .toml or an .ssp file.")
-    ],
+    trial: Annotated[str, typer.Argument(help="A trial or campaign: a name, a file or a package.")],
     settings: Settings = None,
     choices: Choices = None,
     vehicle: Vehicle = None,

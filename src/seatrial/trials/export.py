@@ -1,4 +1,4 @@
-"""Rigs and trials as SSP packages."""
+"""Rigs and trials as packages for other tools: SSP, and OSP-IS."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from pathlib import Path
 from ..component import seconds
 from ..cosim.assembly import assemble
 from ..cosim.flattening import load_rig
+from ..cosim.osp.writing import write_osp
 from ..cosim.ssp.describing import Experiment
 from ..cosim.ssp.shapes import Version
 from ..cosim.ssp.tools import takes_systems
@@ -37,29 +38,57 @@ def export_ssp(
     The notes say what SSP cannot. Raises InputError.
     """
     in_one = tool is not None and not takes_systems(tool)
-    if is_trial(name):
-        changes = {f"choices.{key}": value for key, value in (choices or {}).items()}
-        if variant is not None:
-            changes["variant"] = variant
-        trial = load_trial(name, changes=changes, origin="--choose, --variant")
-        system, notes = _set_up(trial), [*trial.notes, *_unsaid(trial)]
-        start, stop = seconds(trial.start_ns), seconds(trial.stop_ns)
-        title = trial.name
-    else:
-        rig = load_rig(name, choices=choices)
-        system = assemble(rig, "fmu", variant=variant)
-        notes = [f"a rig has no stop time: the package says {_USUAL_STOP:g} s"]
-        start, stop, title = 0.0, _USUAL_STOP, rig.read_from.name
-    path = out or Path(f"{title}.ssp")
+    system, experiment, notes = _opened(name, variant, choices or {})
+    path = out or Path(f"{experiment.name}.ssp")
     try:
         if path.resolve() == Path(name).resolve():
             raise InputError(f"{path} would replace what it is made from; name another with --out")
-        notes += write_ssp(
-            system, Experiment(title, start, stop), path, in_one=in_one, version=version
-        )
+        notes += write_ssp(system, experiment, path, in_one=in_one, version=version)
     finally:
         system.free()
     return path, notes
+
+
+def export_osp(
+    name: str,
+    out: Path | None = None,
+    variant: str | None = None,
+    *,
+    choices: Mapping[str, str] | None = None,
+) -> tuple[Path, list[str]]:
+    """Write the trial or rig ``name`` for libcosim; return the folder and notes.
+
+    The folder is ``out``, or ``NAME-osp`` in the current folder; the rest is as for
+    `export_ssp`.
+    """
+    system, experiment, notes = _opened(name, variant, choices or {})
+    folder = out or Path(f"{experiment.name}-osp")
+    try:
+        if folder.resolve() in (Path(name).resolve(), Path(name).resolve().parent):
+            raise InputError(
+                f"{folder} would replace what it is made from; name another with --out"
+            )
+        notes += write_osp(system, experiment, folder)
+    finally:
+        system.free()
+    return folder, notes
+
+
+def _opened(
+    name: str, variant: str | None, choices: Mapping[str, str]
+) -> tuple[System, Experiment, list[str]]:
+    """Return a trial or rig assembled, its name and times, and what no package can say of it."""
+    if is_trial(name):
+        changes = {f"choices.{key}": value for key, value in choices.items()}
+        if variant is not None:
+            changes["variant"] = variant
+        trial = load_trial(name, changes=changes, origin="--choose, --variant")
+        times = seconds(trial.start_ns), seconds(trial.stop_ns)
+        return _set_up(trial), Experiment(trial.name, *times), [*trial.notes, *_unsaid(trial)]
+    rig = load_rig(name, choices=choices)
+    system = assemble(rig, "fmu", variant=variant)
+    notes = [f"a rig has no stop time: the package says {_USUAL_STOP:g} s"]
+    return system, Experiment(rig.read_from.name, 0.0, _USUAL_STOP), notes
 
 
 def _set_up(trial: Trial) -> System:
@@ -76,9 +105,11 @@ def _set_up(trial: Trial) -> System:
 
 
 def _unsaid(trial: Trial) -> list[str]:
-    """Return what SSP cannot say of a trial."""
-    return [
-        f"{kind} are not in the package: SSP has none"
-        for kind, entries in (("events", trial.file.events), ("criteria", trial.file.criteria))
-        if entries
-    ]
+    """Return what packages cannot say of a trial."""
+    file = trial.file
+    entries = {
+        "events": file.events,
+        "criteria": file.criteria,
+        "events of the scenario": trial.scenario,
+    }
+    return [f"{kind} are not in the package: it has none" for kind, of in entries.items() if of]

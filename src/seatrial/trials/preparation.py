@@ -80,7 +80,7 @@ def prepare(trial: Trial, engine: Engine, hooks: Hooks) -> Prepared:
             system.set(key, written, origin)
         for key, factor, origin in trial.scales:
             system.scale(key, factor, origin)
-        trial = by_path(trial, system)
+        trial = by_path(trial.scheduled(system), system)
         units = check_criteria(trial, system)
         check_plots(trial, system)
         check_events(trial, system)

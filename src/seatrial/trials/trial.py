@@ -5,19 +5,24 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from pydantic import AfterValidator, Field
 from pydantic_core import PydanticCustomError
 
+from ..component import seconds
+from ..cosim.actions import ActionKind
 from ..cosim.clock import OverrunPolicy
 from ..cosim.files import FileModel, Source, find_file, read_toml, validated
 from ..cosim.flattening import load_rig
 from ..cosim.isolation import KEY_END, isolated_in, isolating
+from ..cosim.packages import is_package, read_package
 from ..cosim.rig import Isolated, Rig, duration_ns
+from ..cosim.system import System
 from ..errors import InputError, unknown
 from ..shipped import available
 from .criteria import Criterion, parse
+from .scenario import Scenario, events_of, read_scenario
 from .verdict import WHOLE
 
 
@@ -37,11 +42,12 @@ class CriterionEntry(FileModel):
 
 
 class EventEntry(FileModel):
-    """Something that happens at a time: a port set, overridden or released."""
+    """Something that happens at a time: a port set, overridden, biased or released."""
 
     at: str
     set: dict[str, Any] = Field(default_factory=dict)
     override: dict[str, Any] = Field(default_factory=dict)
+    bias: dict[str, Any] = Field(default_factory=dict)
     release: list[str] = Field(default_factory=list)
 
 
@@ -88,6 +94,8 @@ class TrialFile(FileModel):
     criteria: list[CriterionEntry] = Field(default_factory=list)
     plots: list[PlotEntry] = Field(default_factory=list)
     events: list[EventEntry] = Field(default_factory=list)
+    scenario: str | None = None
+    """A scenario file of libcosim, whose events come after those of the same time here."""
 
 
 @dataclass(frozen=True)
@@ -95,7 +103,7 @@ class Event:
     """An event with its time in ns."""
 
     at_ns: int
-    action: Literal["set", "override", "release"]
+    action: ActionKind
     key: str
     written: Any
 
@@ -117,7 +125,10 @@ class Trial:
     isolated: Mapping[str, Isolated] = field(default_factory=dict)
     """Components, by path, that were said to run in processes of their own, or not to."""
     notes: tuple[str, ...] = ()
-    """What was met in an SSP package and is not used."""
+    """What was met in a package of another tool and is not used."""
+    scenario: Scenario | None = None
+    called: Mapping[str, str] = field(default_factory=dict)
+    """Components by the names that a package of another tool gives them."""
 
     @property
     def name(self) -> str:
@@ -164,8 +175,30 @@ class Trial:
             _multiple(at_ns - self.start_ns, self.rig.step_ns, where, entry.at)
             events += [Event(at_ns, "set", k, v) for k, v in entry.set.items()]
             events += [Event(at_ns, "override", k, v) for k, v in entry.override.items()]
+            events += [Event(at_ns, "bias", k, v) for k, v in entry.bias.items()]
             events += [Event(at_ns, "release", k, None) for k in entry.release]
         return sorted(events, key=lambda event: event.at_ns)
+
+    def scheduled(self, system: System) -> Trial:
+        """Return the trial with the events of its scenario among its own. Raises InputError."""
+        if self.scenario is None:
+            return self
+        step_ns = self.rig.step_ns
+        found = events_of(self.scenario, system, self.called, step_ns, self.steps)
+        system.notes += found.notes
+        entries = [
+            EventEntry.model_validate(
+                {
+                    "at": f"{seconds(self.start_ns + acted.step * step_ns)!r} s",
+                    acted.kind: [acted.key]
+                    if acted.kind == "release"
+                    else {acted.key: acted.value},
+                }
+            )
+            for acted in found.acted
+        ]
+        events = [*self.file.events, *entries]
+        return replace(self, file=self.file.model_copy(update={"events": events}))
 
     def scaled(self, key: str, factor: float, origin: str) -> Trial:
         """Return the trial with the number ``component.port`` multiplied by ``factor``."""
@@ -181,10 +214,11 @@ class Trial:
     def changed(self, changes: Mapping[str, Any], origin: str) -> Trial:
         """Return the trial with settings changed: ``component.port``, or a key of the trial.
 
-        Keys of the trial are variant, seed, start, stop and ``choices.NAME``; of its rig, step,
-        algorithm and ``component.isolated``. Raises InputError.
+        Keys of the trial are variant, seed, start, stop, scenario and ``choices.NAME``; of its
+        rig, step, algorithm and ``component.isolated``. Raises InputError.
         """
-        keys, rig_keys = ("variant", "seed", "start", "stop"), ("step", "algorithm")
+        keys = ("variant", "seed", "start", "stop", "scenario")
+        rig_keys = ("step", "algorithm")
         own, of_rig, overrides = dict[str, Any](), dict(self.rig_changes), list(self.overrides)
         choices = {**self.file.choices, **choices_in(changes, origin)}
         of_processes = dict[str, Any]()
@@ -196,7 +230,8 @@ class Trial:
             elif "." in key:
                 overrides.append((key, value, origin))
             elif key in keys:
-                own[key] = value
+                here = key == "scenario" and isinstance(value, str)
+                own[key] = str(Path.cwd() / value) if here else value
             elif key in rig_keys:
                 of_rig[key] = value
             else:
@@ -211,7 +246,12 @@ class Trial:
             rig = rig.changed(of_rig)
         isolated = {**self.isolated, **isolated_in(of_processes, origin)}
         rig = isolating(rig, isolated, origin)
-        changed = replace(self, file=file, rig=rig, rig_changes=of_rig, isolated=isolated)
+        scenario = None
+        if file.scenario is not None:
+            scenario = read_scenario(self.read_from.path.parent / file.scenario)
+        changed = replace(
+            self, file=file, rig=rig, rig_changes=of_rig, isolated=isolated, scenario=scenario
+        )
         return _checked(replace(changed, overrides=tuple(overrides)))
 
 
@@ -224,10 +264,12 @@ def is_trial(name: str) -> bool:
     if name.endswith(".toml"):
         return "rig" in read_toml(find_file("harness/trials", name))[0]
     trials, rigs = available("harness/trials"), available("harness/rigs")
-    if "/" in name and not name.endswith(".ssp"):
+    if is_package(name):
+        return True
+    if "/" in name:
         find_file("harness/rigs", name)
         return False
-    if not name.endswith(".ssp") and name not in {**trials, **rigs}:
+    if name not in {**trials, **rigs}:
         raise InputError(unknown("trial or rig", name, {**trials, **rigs}))
     return name not in rigs or name in trials
 
@@ -240,11 +282,12 @@ def load_trial(
 ) -> Trial:
     """Read the trial ``name`` (shipped, in ``harness/trials``, or a path) and its rig.
 
-    ``x.ssp`` is an SSP package: its default experiment, without criteria. ``changes`` are as
-    for `Trial.changed`. Raises InputError for anything wrong in a file, or in a criterion.
+    ``x.ssp`` is an SSP package: its default experiment, without criteria; ``x.xml``, or a folder
+    with an OspSystemStructure.xml, one of OSP-IS. ``changes`` are as for `Trial.changed`. Raises
+    InputError for anything wrong in a file, or in a criterion.
     """
     changes = changes or {}
-    read = _package if name.endswith(".ssp") else _trial
+    read = _package if is_package(name, relative_to) else _trial
     return read(name, relative_to, changes, origin).changed(changes, origin)
 
 
@@ -270,11 +313,9 @@ def _rig(file: TrialFile, path: Path) -> Rig:
 
 def _package(name: str, relative_to: Path | None, changes: Mapping[str, Any], origin: str) -> Trial:
     path = ((relative_to or Path.cwd()) / name).resolve()
-    from ..cosim.ssp.reading import read_ssp  # needs an XML library and FMPy
-
     for choice in choices_in(changes, origin):
         raise InputError(f"{origin}: {_CHOICES}{choice}: a package has no choices")
-    package = read_ssp(path, changes.get("step"))
+    package = read_package(path, changes)
     stop = package.stop or changes.get("stop")
     if stop is None:
         raise InputError(f'{path}: the package names no stop time; give one: --set stop="20 s"')
@@ -282,7 +323,8 @@ def _package(name: str, relative_to: Path | None, changes: Mapping[str, Any], or
     if package.start is not None:
         content["start"] = package.start
     file = validated(TrialFile, content, path)
-    return Trial(file, package.rig.read_from, package.rig, (), notes=package.notes)
+    rig = package.rig
+    return Trial(file, rig.read_from, rig, (), notes=package.notes, called=package.called)
 
 
 def _trial(name: str, relative_to: Path | None, changes: Mapping[str, Any], origin: str) -> Trial:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import os
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -14,8 +13,8 @@ from ...fmi.archive import content_hash
 from ...ports import Scalar
 from ..files import Source
 from ..flattening import rig_of
+from ..packaged import PackagedSystem
 from ..paths import joined
-from ..rig import Rig
 from ..values import storable
 from .flat import Flat, FlatConnection
 from .graph import Node, Path_
@@ -29,18 +28,7 @@ from .structure import read_structure
 _USUAL_STEP = "10 ms"
 
 
-@dataclass(frozen=True)
-class SspSystem:
-    """A package read: its rig, the times it names, and what was met and not used."""
-
-    title: str
-    rig: Rig
-    start: str | None
-    stop: str | None
-    notes: tuple[str, ...]
-
-
-def read_ssp(path: Path, step: Any = None, *, strict: bool = False) -> SspSystem:
+def read_ssp(path: Path, step: Any = None, *, strict: bool = False) -> PackagedSystem:
     """Read the SSP package at ``path``, version 1.0 or 2.0.
 
     ``step`` is a communication step that replaces the package's. Raises InputError naming file
@@ -66,7 +54,7 @@ def read_ssp(path: Path, step: Any = None, *, strict: bool = False) -> SspSystem
     rig = rig_of(content, Source(path.stem, path, content_hash(path)), folder, inside)
     start = None if structure.start is None else f"{structure.start!r} s"
     stop = None if structure.stop is None else f"{structure.stop!r} s"
-    return SspSystem(structure.name, rig, start, stop, notes.texts)
+    return PackagedSystem(structure.name, rig, start, stop, notes.texts)
 
 
 def _names(flat: Flat, notes: Notes) -> dict[Path_, str]:

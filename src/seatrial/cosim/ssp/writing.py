@@ -37,7 +37,7 @@ def write_ssp(
     """
     tuned = system.tuned
     connections = [one for one in system.connections if one.target not in tuned]
-    _refuse_fed_parameters(system, connections)
+    _refuse_unsayable(system, connections)
     connections += system.initial
     shapes = {name: shapes_of(system, part, version) for name, part in system.parts.items()}
     top = (flat if in_one else nested)(system, connections)
@@ -53,7 +53,7 @@ def write_ssp(
     files[DEFAULT] = as_xml(describer.document(top, experiment, version))
     path.parent.mkdir(parents=True, exist_ok=True)
     write_named(path, zipped(files))
-    return [*notes, *describer.notes, *_unsaid(system)]
+    return [*notes, *describer.notes, *unsaid(system)]
 
 
 def _written(part: Part, values: Mapping[str, Value], shapes: Shapes) -> dict[str, Written]:
@@ -78,7 +78,10 @@ def _or_zero(value: Value | None, variable: Variable) -> Value:
     return zero if value is None else value
 
 
-def _refuse_fed_parameters(system: System, connections: Sequence[Connection]) -> None:
+def _refuse_unsayable(system: System, connections: Sequence[Connection]) -> None:
+    for name, part in system.parts.items():
+        if part.is_sum:
+            raise InputError(f"{name} is a {part.fmu}, which SSP does not have")
     for connection in connections:
         target = system.parts[connection.target[0]].instance.variables[connection.target[1]]
         if target.causality == "parameter":
@@ -118,8 +121,8 @@ def _beyond_version_1(system: System) -> list[str]:
     return notes
 
 
-def _unsaid(system: System) -> list[str]:
-    """Return what SSP cannot say of a rig."""
+def unsaid(system: System) -> list[str]:
+    """Return what packages of other tools cannot say of a rig."""
     notes = []
     file = system.rig.file
     if file.algorithm != "plain-jacobi":

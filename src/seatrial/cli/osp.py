@@ -1,0 +1,42 @@
+"""``seatrial osp``: write system structures of OSP-IS."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ..trials.export import export_osp
+from ..trials.trial import choices_in
+from .options import Autopilot, Choices, Vehicle, changes_of
+from .show import console, print_notes
+
+osp_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
+
+
+@osp_app.callback()
+def _osp() -> None:
+    """Export system structures of OSP-IS, for libcosim."""
+
+
+@osp_app.command()
+def export(
+    name: Annotated[
+        str, typer.Argument(metavar="NAME", help="A trial or rig: a name, a file or a package.")
+    ],
+    out: Annotated[
+        Path | None, typer.Option(help="The folder (default: NAME-osp in this folder).")
+    ] = None,
+    variant: Annotated[
+        str | None, typer.Option(help="Variant of the vehicle's parameters.")
+    ] = None,
+    choices: Choices = None,
+    vehicle: Vehicle = None,
+    autopilot: Autopilot = None,
+) -> None:
+    """Write a rig, or a trial with its settings, as an OspSystemStructure.xml with its FMUs."""
+    chosen = choices_in(changes_of(None, choices, vehicle, autopilot), "--choose")
+    folder, notes = export_osp(name, out, variant, choices=chosen)
+    print_notes(notes)
+    console.print(str(folder / "OspSystemStructure.xml"), soft_wrap=True)

@@ -1,0 +1,1 @@
+"""System structures of OSP-IS, as libcosim reads them, read and written."""
