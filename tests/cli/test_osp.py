@@ -47,7 +47,10 @@ def test_a_folder_is_described_run_and_written(tmp_path: Path) -> None:
     done = seatrial("run", "fleet/OspSystemStructure.xml", *settings, "--out", "two", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert last_row(tmp_path / "one")["slave_uno.y"] == "0.0"
-    assert last_row(tmp_path / "two")["slave_uno.y"] == "18.0"
+    row = last_row(tmp_path / "two")
+    assert row["slave_uno.y"] == "18.0"
+    terms = [float(row[name]) for name in ("slave_uno.x", "two.x", "two.y")]
+    assert float(row["total.out"]) == sum(terms)  # no step late
 
 
 def test_a_rig_is_written(tmp_path: Path) -> None:
