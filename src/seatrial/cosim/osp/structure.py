@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -14,7 +14,7 @@ from ...errors import InputError, unknown
 from ...fmi.instance import Value
 from ...fmi.xmlfile import read_xml
 from ..rig import LONGEST_S
-from ..ssp.documents import boolean, child, children, known, needed, number, tag, where
+from ..ssp.documents import boolean, child, children, needed, number, tag, where
 
 NAMESPACE = "http://opensimulationplatform.com/MSMI/OSPSystemStructure"
 ALGORITHMS = ("fixedStep", "ecco")
@@ -105,7 +105,7 @@ def read_structure(path: Path) -> Structure:
         raise InputError(
             f"{where(root)}: OspSystemStructure (in {NAMESPACE}) is needed, found {tag(root)}"
         )
-    known(root, {"version"}, {*_READERS, "EccoConfiguration"})
+    _only(root, {"version"}, {*_READERS, "EccoConfiguration"})
     if needed(root, "version") != "0.1":
         raise InputError(
             f"{where(root)}: version {root.get('version')!r} of the system structure; 0.1 is read"
@@ -119,6 +119,21 @@ def read_structure(path: Path) -> Structure:
     if not reading.structure.simulators:
         raise InputError(f"{where(root)}: there is no Simulator")
     return reading.structure
+
+
+def _only(element: Any, attributes: Collection[str], elements: Collection[str]) -> None:
+    """Raise InputError if ``element`` has anything else: what is not read could matter."""
+    for name in element.attrib:
+        if not name.startswith("{") and name not in attributes:
+            raise InputError(
+                f"{where(element)}: {tag(element)}: {unknown('attribute', name, attributes)}"
+            )
+    for one in children(element):
+        if tag(one) not in elements:
+            raise InputError(
+                f"{where(one)}: {tag(one)} in {tag(element)} is not supported "
+                f"(read are: {', '.join(sorted(elements)) or 'none'})"
+            )
 
 
 class _Reading:
@@ -138,7 +153,7 @@ class _Reading:
         self.structure.step = _positive(_content(element), element, "BaseStepSize")
 
     def read_algorithm(self, element: Any) -> None:
-        known(element, (), ())
+        _only(element, (), ())
         text = (element.text or "").strip() or ALGORITHMS[0]
         found = {name.lower(): name for name in ALGORITHMS}.get(text.lower())
         if found is None:
@@ -151,9 +166,9 @@ class _Reading:
             self.structure.ecco_step = _positive(_content(step), step, "StepSize")
 
     def read_simulators(self, element: Any) -> None:
-        known(element, (), {"Simulator"})
+        _only(element, (), {"Simulator"})
         for one in children(element):
-            known(one, {"name", "source", "stepSize"}, {"InitialValues"})
+            _only(one, {"name", "source", "stepSize"}, {"InitialValues"})
             name = self._new_name(one)
             step = number(one, "stepSize")
             if step == 0.0:  # libcosim's way to say none
@@ -182,7 +197,7 @@ class _Reading:
         return self._folder / path
 
     def read_functions(self, element: Any) -> None:
-        known(element, (), {"LinearTransformation", "Sum", "VectorSum"})
+        _only(element, (), {"LinearTransformation", "Sum", "VectorSum"})
         for one in children(element):
             name, kind = self._new_name(one), tag(one)
             self.structure.functions[name] = _function(one, kind)
@@ -199,10 +214,10 @@ class _Reading:
         return name
 
     def read_connections(self, element: Any) -> None:
-        known(element, (), set(_ENDS))
+        _only(element, (), set(_ENDS))
         for one in children(element):
             kinds = _ENDS[tag(one)]
-            known(one, {"powerBond"} if kinds[0] == kinds[1] else (), set(kinds))
+            _only(one, {"powerBond"} if kinds[0] == kinds[1] else (), set(kinds))
             if one.get("powerBond") is not None:
                 self.structure.bonds.append(one.get("powerBond"))
             found = list(children(one))
@@ -239,7 +254,7 @@ def _connection(element: Any, ends: list[Any]) -> Connection:
     for one in ends:
         of_function = tag(one) in ("Signal", "SignalGroup")
         owner = "function" if of_function else "simulator"
-        known(one, {owner, "name"} if of_function else {owner, "name", "causality"}, ())
+        _only(one, {owner, "name"} if of_function else {owner, "name", "causality"}, ())
         end = End(needed(one, owner), needed(one, "name"))
         if of_function:
             signal = end
@@ -251,11 +266,11 @@ def _connection(element: Any, ends: list[Any]) -> Connection:
 
 def _function(element: Any, kind: str) -> Transformation | Sum:
     if kind == "LinearTransformation":
-        known(element, {"name", "factor", "offset"}, ())
+        _only(element, {"name", "factor", "offset"}, ())
         factor, offset = number(element, "factor", 1.0), number(element, "offset", 0.0)
         return Transformation(factor, offset, where(element))
     vector = kind == "VectorSum"
-    known(element, {"name", "inputCount", *(["dimension"] if vector else [])}, ())
+    _only(element, {"name", "inputCount", *(["dimension"] if vector else [])}, ())
     inputs = _count(element, "inputCount")
     return Sum(inputs, _count(element, "dimension") if vector else None, where(element))
 
@@ -274,15 +289,15 @@ def _count(element: Any, name: str) -> int:
 def _initial_values(element: Any | None) -> dict[str, InitialValue]:
     found: dict[str, InitialValue] = {}
     if element is not None:
-        known(element, (), {"InitialValue"})
+        _only(element, (), {"InitialValue"})
     for one in children(element) if element is not None else ():
-        known(one, {"variable"}, set(_TYPES))
+        _only(one, {"variable"}, set(_TYPES))
         name, values = needed(one, "variable"), list(children(one))
         if len(values) != 1:
             raise InputError(f"{where(one)}: one value of {name!r} is needed, found {len(values)}")
         if name in found:
             raise InputError(f"{where(one)}: a second value of {name!r}")
-        known(values[0], {"value"}, ())
+        _only(values[0], {"value"}, ())
         found[name] = InitialValue(_TYPES[tag(values[0])](values[0]), where(one))
     return found
 
@@ -313,7 +328,7 @@ _TYPES: dict[str, Callable[[Any], Value]] = {
 
 def _content(element: Any) -> float:
     """Return the number that an element holds."""
-    known(element, (), ())
+    _only(element, (), ())
     text = (element.text or "").strip()
     try:
         value = float(text)
