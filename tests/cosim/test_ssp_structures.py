@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import pytest
@@ -9,6 +10,7 @@ import pytest
 from seatrial.cosim.ssp.reading import read_ssp
 from seatrial.errors import InputError
 
+from ..fmi.models import build_model_fmu
 from .ssp_files import run
 from .ssp_natives import (
     NAMESPACES,
@@ -269,6 +271,21 @@ def test_a_component_without_source_is_an_empty_system(made) -> None:
     assert any("a component without source is an empty system" in n for n in read_ssp(path).notes)
 
 
+def test_the_implementation_that_a_package_names_is_used(made, tmp_path: Path) -> None:
+    model = {"model_fmu": build_model_fmu(2, tmp_path).read_bytes()}
+    for wanted, interface in (
+        ("ModelExchange", "model exchange"), ("CoSimulation", "co-simulation"), ("any", None),
+    ):  # fmt: skip
+        path = made(
+            elements(component("a", fmu="model", more=f'implementation="{wanted}"')), **model
+        )
+        assert read_ssp(path).rig.components["a"].entry.interface == interface
+        if interface == "model exchange":
+            assert run(path, stop="1 s")["a.x"] == pytest.approx(math.exp(-1.0), abs=1e-4)
+    without = elements(component("a", more='implementation="ModelExchange"'))
+    assert "two.fmu has no model exchange, only co-simulation" in refused(made(without))
+
+
 # ---------------------------------------------------------------------- notes and --strict
 
 
@@ -281,7 +298,6 @@ PASSED = [
     (drawn(A), "geometry and drawings are not read"),
     (elements(component("a", U, more='colour="red"')), "attribute 'colour' of ssd:Component is not known"),
     (elements(component("a", U, more='implementaton="any"')), "'implementation' is one that is known"),
-    (elements(component("a", U, more='implementation="ModelExchange"')), "the co-simulation of two.fmu is run instead"),
     (elements(component("a", connector("w", "input"))), "connector 'w' is no variable of the FMU"),
     (elements(component("a", connector("u", "input", "Integer"))), "is not of the type of the FMU's variable, float"),
     (elements(component("a", connector("u", "output"))), "is not of the kind of the FMU's variable, input"),

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from ...errors import InputError, unknown
 from ...fmi.load import load_fmu
+from ...fmi.options import FmuOptions, Interface
 from .binding import Bound
 from .dictionaries import Dictionaries
 from .graph import Edge, Graph, Node, Origin, Path_
@@ -30,6 +31,11 @@ from .structure import read_structure
 from .transformations import Way
 
 _MOST_COMPONENTS = 1000
+_INTERFACES: dict[str, Interface] = {
+    "CoSimulation": "co-simulation",
+    "ModelExchange": "model exchange",
+}
+"""Interfaces by what SSP calls the implementation; of others the FMU's first one."""
 
 _OUT = {"output", "calculatedParameter", "constant", "local", "independent"}
 """Kinds of connectors of an element that give a value; seen from inside, a system's take it."""
@@ -158,17 +164,12 @@ class Flat:
             raise InputError(f"{component.where}: more than {_MOST_COMPONENTS} FMUs")
         if source.suffix != ".fmu":
             raise InputError(f"{component.where}: the name of an FMU must end in .fmu")
-        try:
-            fmu = load_fmu(source)
-        except InputError as error:
-            raise InputError(f"{component.where}: {error}") from None
         if component.implementation == "ScheduledExecution":
             raise InputError(f"{component.where}: ScheduledExecution is not supported")
-        if component.implementation == "ModelExchange":
-            self.notes.pass_over(
-                component.where,
-                f"ModelExchange is wanted: the co-simulation of {source.name} is run instead",
-            )
+        try:
+            fmu = load_fmu(source, FmuOptions(_INTERFACES.get(component.implementation)))
+        except InputError as error:
+            raise InputError(f"{component.where}: {error}") from None
         leaf = self.leaves[path] = Leaf(path, fmu, component.step, component.where)
         connectors = connectors_of(leaf, component, self.notes)
         self.graph.connectors.update({(path, name): c for name, c in connectors.items()})

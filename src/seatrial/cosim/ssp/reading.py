@@ -99,6 +99,8 @@ def _component(leaf: Leaf, folder: Path, fed: set[Node], notes: Notes) -> dict[s
         else:
             values[variable] = storable(value)
     entry: dict[str, Any] = {"fmu": os.path.relpath(leaf.fmu.path, folder), "set": values}
+    if leaf.fmu.options.interface is not None:
+        entry["interface"] = leaf.fmu.options.interface
     if leaf.step is not None:
         entry["step"] = f"{leaf.step!r} s"
     return entry
