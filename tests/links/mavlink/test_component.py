@@ -13,6 +13,7 @@ from pymavlink.dialects.v20 import all as mavlink
 from seatrial.cosim.profile import load_profile
 from seatrial.errors import InputError, SimulationError
 from seatrial.links.mavlink.component import Mavlink
+from seatrial.links.mavlink.transport import EndpointTransport
 
 WAIT_S = 10.0
 KEY = hashlib.sha256(b"correct horse").digest()
@@ -377,3 +378,27 @@ def test_the_profile_says_who_it_is(started, connect):
     assert (heartbeat.get_srcSystem(), heartbeat.type, heartbeat.autopilot) == (1, 11, 3)
     home = received(boat, station, "HOME_POSITION")
     assert (home.latitude, home.longitude) == (-317800000, -522600000)
+
+
+def test_a_peer_is_held_the_last_heartbeat_before_anything_is_sent_to_it(
+    started, connect, monkeypatch
+):
+    order = []
+    keep, transmit = EndpointTransport.keep_last, EndpointTransport._transmit
+
+    def kept(self, message):
+        keep(self, message)
+        order.append(("kept", set(self._links)))
+
+    def sent(self, link, message):
+        order.append(("sent", {link.channel}))
+        transmit(self, link, message)
+
+    monkeypatch.setattr(EndpointTransport, "keep_last", kept)
+    monkeypatch.setattr(EndpointTransport, "_transmit", sent)
+    component = started(links="tcpin:127.0.0.1:0")
+    connect(component.urls[0])
+    until(component, lambda: any(what == "sent" for what, _ in order))
+    first = [what for what, _ in order].index("sent")
+    (channel,) = order[first][1]
+    assert any(what == "kept" and channel in to for what, to in order[:first])

@@ -212,10 +212,11 @@ class Mavlink(MavlinkPorts):
         assert self._transport is not None
         assert self._node is not None
         arrived = self._transport.poll()
+        # Before anybody is sent that the vehicle is armed: this process may end at any moment.
+        self._transport.keep_last(self._node.presence.last())
         for message, sender in arrived:
             self._node.receive(message, sender, now)
         self._node.tick(now)
-        self._transport.keep_last(self._node.presence.last())
         return bool(arrived)
 
     def _identity(self) -> Identity:
