@@ -1,4 +1,4 @@
-"""FMI 1.0: variables in one get and one set per type, and co-simulation."""
+"""FMI 1.0: co-simulation, and what it has in common with model exchange."""
 
 from __future__ import annotations
 
@@ -10,24 +10,19 @@ from typing import Any, ClassVar
 import fmpy
 from fmpy import fmi1
 
-from .fmuinstance import FmuInstance
 from .instance import Reader, Variable, Writer
 from .loaded import LoadedFmu
 from .messages import ACCEPTED, listening_callbacks1, stop_listening1
+from .typed import TypedAccess
 
 TRUE, FALSE = fmi1.fmi1True, fmi1.fmi1False
-_CTYPES: dict[type, Any] = {
-    float: ctypes.c_double,
-    int: ctypes.c_int,
-    bool: ctypes.c_ubyte,  # FMI's is a char, of which ctypes makes bytes
-    str: ctypes.c_char_p,
-}
-_NAMES = {float: "Real", int: "Integer", bool: "Boolean", str: "String"}
 _STANDALONE = "application/x-fmu-sharedlibrary"
 
 
-class Fmi1Access(FmuInstance):
-    """What both interfaces of FMI 1.0 have in common, in arrays allocated once."""
+class Fmi1Access(TypedAccess):
+    """What both interfaces of FMI 1.0 have in common."""
+
+    _boolean: ClassVar[type] = ctypes.c_ubyte  # FMI's is a char, of which ctypes makes bytes
 
     _prefix: ClassVar[str] = "fmi1"
     _platform: ClassVar[str] = fmpy.platform
@@ -46,49 +41,21 @@ class Fmi1Access(FmuInstance):
                 function.restype = ctypes.c_int  # FMPy takes some statuses for texts
         return opened
 
+    def _argument(self, values: Any, kind: type) -> Any:
+        is_boolean = kind is bool
+        return ctypes.cast(values, ctypes.POINTER(ctypes.c_char)) if is_boolean else values
+
     def _getter(self, variables: list[Variable], kind: Any) -> Reader:
-        count = len(variables)
-        vr = (ctypes.c_uint * count)(*(v.reference for v in variables))
-        values = (_CTYPES[kind] * count)()
-        function = f"Get{_NAMES[kind]}"
-        get, c, messages = self._functions[function], self._c, self._messages
-        argument = _pointer(values, kind)
-
-        def read() -> list[Any]:
-            status = get(c, vr, count, argument)
-            if status not in ACCEPTED:
-                self._refuse(function, status)
-            if messages:
-                messages.forward()
-            if kind is bool:
-                return [bool(v) for v in values]
-            if kind is str:
-                return [(v or b"").decode("utf-8", "replace") for v in values]
-            plain: list[Any] = values[:]
-            return plain
-
-        return _negating(variables, kind, read)
+        read, signs = super()._getter(variables, kind), _signs(variables, kind)
+        if not signs:
+            return read
+        return lambda: [sign * value for sign, value in zip(signs, read(), strict=True)]
 
     def _setter(self, variables: list[Variable], kind: Any) -> Writer:
-        count = len(variables)
-        vr = (ctypes.c_uint * count)(*(v.reference for v in variables))
-        own = (_CTYPES[kind] * count)()
-        function = f"Set{_NAMES[kind]}"
-        put, c, messages = self._functions[function], self._c, self._messages
-        argument, signs = _pointer(own, kind), _signs(variables, kind)
-
-        def write(values: Sequence[Any]) -> None:
-            self._refuse_unfit(variables, kind, values)
-            if signs:
-                values = [sign * v for sign, v in zip(signs, values, strict=True)]
-            own[:] = [v.encode() for v in values] if kind is str else values
-            status = put(c, vr, count, argument)
-            if status not in ACCEPTED:
-                self._refuse(function, status)
-            if messages:
-                messages.forward()
-
-        return write
+        write, signs = super()._setter(variables, kind), _signs(variables, kind)
+        if not signs:
+            return write
+        return lambda values: write([sign * v for sign, v in zip(signs, values, strict=True)])
 
 
 class Fmi1Slave(Fmi1Access):
@@ -135,20 +102,8 @@ class Fmi1Slave(Fmi1Access):
             raise RuntimeError("no instance was returned")
 
 
-def _pointer(values: Any, kind: type) -> Any:
-    """Return an array as what FMPy's functions take."""
-    return ctypes.cast(values, ctypes.POINTER(ctypes.c_char)) if kind is bool else values
-
-
 def _signs(variables: Sequence[Variable], kind: type) -> list[int]:
     """Return the sign of each variable against its value reference; none if all are positive."""
     if kind not in (float, int) or not any(v.negated for v in variables):
         return []
     return [-1 if v.negated else 1 for v in variables]
-
-
-def _negating(variables: Sequence[Variable], kind: type, read: Reader) -> Reader:
-    signs = _signs(variables, kind)
-    if not signs:
-        return read
-    return lambda: [sign * value for sign, value in zip(signs, read(), strict=True)]

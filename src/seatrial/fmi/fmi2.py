@@ -1,33 +1,24 @@
-"""FMI 2.0: variables in one get and one set per type, and co-simulation."""
+"""FMI 2.0: co-simulation, and what it has in common with model exchange."""
 
 from __future__ import annotations
 
 import ctypes
 import math
-from collections.abc import Sequence
 from typing import Any, ClassVar
 
 import fmpy
 from fmpy import fmi2
 
-from .fmuinstance import FmuInstance
-from .instance import Reader, Variable, Writer
 from .loaded import LoadedFmu
 from .messages import ACCEPTED, DISCARD, OK, listening_callbacks, stop_listening
+from .typed import TypedAccess
 
-_CTYPES: dict[type, Any] = {
-    float: ctypes.c_double,
-    int: ctypes.c_int,
-    bool: ctypes.c_int,
-    str: ctypes.c_char_p,
-}
-_NAMES = {float: "Real", int: "Integer", bool: "Boolean", str: "String"}
 _LAST_SUCCESSFUL_TIME, _TERMINATED = 2, 3
 """Of fmi2StatusKind."""
 
 
-class Fmi2Access(FmuInstance):
-    """What both interfaces of FMI 2.0 have in common, in arrays allocated once."""
+class Fmi2Access(TypedAccess):
+    """What both interfaces of FMI 2.0 have in common."""
 
     _prefix: ClassVar[str] = "fmi2"
     _state_word: ClassVar[str] = "FMUstate"
@@ -53,46 +44,6 @@ class Fmi2Access(FmuInstance):
         )  # fmt: skip
         self._call("EnterInitializationMode")
         self._refuse_logged_errors("EnterInitializationMode")
-
-    def _getter(self, variables: list[Variable], kind: Any) -> Reader:
-        count = len(variables)
-        vr = (ctypes.c_uint * count)(*(v.reference for v in variables))
-        values = (_CTYPES[kind] * count)()
-        function = f"Get{_NAMES[kind]}"
-        get, c, messages = self._functions[function], self._c, self._messages
-
-        def read() -> list[Any]:
-            status = get(c, vr, count, values)
-            if status not in ACCEPTED:
-                self._refuse(function, status)
-            if messages:
-                self._refuse_logged_errors(function)
-            if kind is float or kind is int:
-                plain: list[Any] = values[:]
-                return plain
-            if kind is bool:
-                return [bool(v) for v in values]
-            return [(v or b"").decode("utf-8", "replace") for v in values]
-
-        return read
-
-    def _setter(self, variables: list[Variable], kind: Any) -> Writer:
-        count = len(variables)
-        vr = (ctypes.c_uint * count)(*(v.reference for v in variables))
-        own = (_CTYPES[kind] * count)()
-        function = f"Set{_NAMES[kind]}"
-        put, c, messages = self._functions[function], self._c, self._messages
-
-        def write(values: Sequence[Any]) -> None:
-            self._refuse_unfit(variables, kind, values)
-            own[:] = [v.encode() for v in values] if kind is str else values
-            status = put(c, vr, count, own)
-            if status not in ACCEPTED:
-                self._refuse(function, status)
-            if messages:
-                self._refuse_logged_errors(function)
-
-        return write
 
 
 class Fmi2Slave(Fmi2Access):

@@ -13,10 +13,9 @@ import numpy as np
 
 from ..cosim.rig import LONGEST_S
 from ..errors import InputError
-from . import run_schema
+from ..reading import json_content
 from .ending import is_whole
 from .expressions import FloatArray
-from .run_schema import checked_json
 
 SIGNALS = "signals.csv"
 MANIFEST = "manifest.json"
@@ -153,19 +152,38 @@ def read_manifest(folder: Path) -> dict[str, Any]:
     path = folder / MANIFEST
     if not path.is_file():
         raise InputError(f"{folder} is not a run folder: it has no {MANIFEST}")
-    manifest: dict[str, Any] = checked_json(path, run_schema.MANIFEST)
+    manifest: dict[str, Any] = _checked(path, "MANIFEST")
     return manifest
+
+
+def written_status(folder: Path) -> Any:
+    """Return the status in a manifest that this program has just written; None without one.
+
+    Raises InputError if it cannot be read.
+    """
+    path = folder / MANIFEST
+    try:
+        content = json_content(path.read_bytes(), str(path))
+    except OSError as error:
+        raise InputError(f"{path} cannot be read: {error.strerror}") from None
+    return content.get("status") if isinstance(content, dict) else None
 
 
 def read_verdicts(folder: Path) -> list[dict[str, Any]]:
     """Return the verdicts of a run; none if it has no file of them. Raises InputError."""
     path = folder / VERDICTS
-    return checked_json(path, run_schema.VERDICTS) if path.is_file() else []
+    return _checked(path, "VERDICTS") if path.is_file() else []
 
 
 def _read_timing(folder: Path) -> dict[str, Any]:
     path = folder / TIMING
-    return checked_json(path, run_schema.TIMING) if path.is_file() else {}
+    return _checked(path, "TIMING") if path.is_file() else {}
+
+
+def _checked(path: Path, schema: str) -> Any:
+    from . import run_schema  # building the schemata takes longer than starting a run's process
+
+    return run_schema.checked_json(path, getattr(run_schema, schema))
 
 
 def _read_signals(path: Path, texts: set[str]) -> tuple[FloatArray, dict[str, Any], bool]:

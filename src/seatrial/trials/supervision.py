@@ -23,7 +23,7 @@ from .link import Frame
 from .output import claim_folder, write_json
 from .preloading import preload
 from .run import Result, check_trial, run_trial
-from .run_folder import MANIFEST, read_manifest
+from .run_folder import MANIFEST, written_status
 from .supervised import serve
 from .trial import Trial
 from .verdict import Verdict
@@ -80,7 +80,10 @@ class Supervisor:
         result = _result(folder, content)
         self._note_sent(result)
         if is_whole(result.status) or result.status == "ended":
-            said = read_manifest(folder)["status"]
+            try:
+                said = written_status(folder)
+            except InputError as error:
+                raise SimulationError(f"a run that has ended: {error}") from None
             if said != result.status:
                 raise SimulationError(f"{folder / MANIFEST} says {said!r} of a run that has ended")
         return result

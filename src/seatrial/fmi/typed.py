@@ -1,0 +1,75 @@
+"""Variables of FMI 1.0 and 2.0: one get and one set per type, in arrays allocated once."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Sequence
+from typing import Any, ClassVar
+
+from .fmuinstance import FmuInstance
+from .instance import Reader, Variable, Writer
+from .messages import ACCEPTED
+
+_NAMES = {float: "Real", int: "Integer", bool: "Boolean", str: "String"}
+
+
+class TypedAccess(FmuInstance):
+    """An instance whose functions are one get and one set for each of four types."""
+
+    _boolean: ClassVar[type] = ctypes.c_int
+    """FMI's Boolean in C."""
+
+    def _array(self, kind: type, count: int) -> Any:
+        types: dict[type, Any] = {
+            float: ctypes.c_double,
+            int: ctypes.c_int,
+            bool: self._boolean,
+            str: ctypes.c_char_p,
+        }
+        return (types[kind] * count)()
+
+    def _argument(self, values: Any, kind: type) -> Any:
+        """Return an array as what FMPy's functions take."""
+        return values
+
+    def _getter(self, variables: list[Variable], kind: Any) -> Reader:
+        count = len(variables)
+        vr = (ctypes.c_uint * count)(*(v.reference for v in variables))
+        values = self._array(kind, count)
+        function = f"Get{_NAMES[kind]}"
+        get, c, messages = self._functions[function], self._c, self._messages
+        argument = self._argument(values, kind)
+
+        def read() -> list[Any]:
+            status = get(c, vr, count, argument)
+            if status not in ACCEPTED:
+                self._refuse(function, status)
+            if messages:
+                self._refuse_logged_errors(function)
+            if kind is float or kind is int:
+                plain: list[Any] = values[:]
+                return plain
+            if kind is bool:
+                return [bool(v) for v in values]
+            return [(v or b"").decode("utf-8", "replace") for v in values]
+
+        return read
+
+    def _setter(self, variables: list[Variable], kind: Any) -> Writer:
+        count = len(variables)
+        vr = (ctypes.c_uint * count)(*(v.reference for v in variables))
+        own = self._array(kind, count)
+        function = f"Set{_NAMES[kind]}"
+        put, c, messages = self._functions[function], self._c, self._messages
+        argument = self._argument(own, kind)
+
+        def write(values: Sequence[Any]) -> None:
+            self._refuse_unfit(variables, kind, values)
+            own[:] = [v.encode() for v in values] if kind is str else values
+            status = put(c, vr, count, argument)
+            if status not in ACCEPTED:
+                self._refuse(function, status)
+            if messages:
+                self._refuse_logged_errors(function)
+
+        return write
