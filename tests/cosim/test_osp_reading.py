@@ -76,8 +76,8 @@ MISTAKES = [
     ('"two" source="fmi2.fmu"', '"two" source="no.fmu"', "simulator 'two': .*no.fmu: No such file"),
     (
         '"two" source="fmi2.fmu"',
-        '"two" source="proxyfmu://localhost?file=fmi2.fmu"',
-        "simulator 'two': source 'proxyfmu://localhost.file=fmi2.fmu': .* are not supported",
+        '"two" source="proxyfmu://localhost:9090?file=fmi2.fmu"',
+        "simulator 'two': source 'proxyfmu://localhost:9090.file=fmi2.fmu': FMUs at a path, ",
     ),
     ('name="two" source', 'name="three" source', "a second simulator or function 'three'"),
     ('<Real value="0.7"/>', '<Real value="fast"/>', "line 20: Real: value: a finite number"),

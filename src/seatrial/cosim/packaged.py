@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 
 from .rig import Rig
 
+SSP_FILE = "SystemStructure.ssd"
+"""The description that every SSP package has."""
 OSP_FILE = "OspSystemStructure.xml"
 """The name that libcosim looks for in a folder."""
 

@@ -52,6 +52,7 @@ def read_osp(path: Path, step: Any = None) -> PackagedSystem:
                 names[name]: {
                     "fmu": os.path.relpath(fmus[name].path, file.parent),
                     "set": _values(name, simulator, fmus[name], links, notes),
+                    **({"isolated": True} if simulator.isolated else {}),
                     **({"step": f"{every[name] * step_ns / NS!r} s"} if every[name] > 1 else {}),
                 }
                 for name, simulator in structure.simulators.items()

@@ -13,6 +13,7 @@ from lxml import etree
 from ...errors import InputError, unknown
 from ...fmi.instance import Value
 from ...fmi.xmlfile import read_xml
+from ..proxied import proxied_file
 from ..rig import LONGEST_S
 from ..ssp.documents import boolean, child, children, needed, number, tag, where
 
@@ -35,6 +36,8 @@ class Simulator:
     """One FMU."""
 
     source: Path
+    isolated: bool
+    """It runs in a process of its own."""
     step: float | None
     """Its own communication step, s."""
     values: dict[str, InitialValue]
@@ -176,25 +179,30 @@ class _Reading:
             if step is not None:
                 _positive(step, one, "stepSize")
             place = f"{where(one)}: simulator {name!r}"
-            source = self._source(needed(one, "source"), place)
+            source, isolated = self._source(needed(one, "source"), place)
             values = _initial_values(child(one, "InitialValues"))
-            self.structure.simulators[name] = Simulator(source, step, values, place)
+            self.structure.simulators[name] = Simulator(source, isolated, step, values, place)
 
-    def _source(self, text: str, place: str) -> Path:
-        """Return the path of an FMU: a path or file URI, relative to the file's folder."""
+    def _source(self, text: str, place: str) -> tuple[Path, bool]:
+        """Return the path of an FMU, and whether it runs in a process of its own.
+
+        Paths and URIs are relative to the file's folder.
+        """
         try:
             parts = urlsplit(text)
         except ValueError:
             raise InputError(f"{place}: source {text!r} is no URI") from None
-        if parts.scheme not in ("", "file") or parts.query or parts.netloc not in ("", "localhost"):
+        proxied = proxied_file(parts)
+        plain = parts.scheme in ("", "file") and parts.netloc in ("", "localhost")
+        if proxied is None and (parts.query or not plain):
             raise InputError(
-                f"{place}: source {text!r}: FMUs at a path, or file:///PATH, are read; "
-                "others, such as proxyfmu's, are not supported"
+                f"{place}: source {text!r}: FMUs at a path, file:///PATH or "
+                "proxyfmu://localhost?file=PATH are read"
             )
-        path = Path(unquote(parts.path))
+        path = Path(unquote(parts.path) if proxied is None else proxied)
         if path.suffix != ".fmu":
             raise InputError(f"{place}: source {text!r}: the name of an FMU must end in .fmu")
-        return self._folder / path
+        return self._folder / path, proxied is not None
 
     def read_functions(self, element: Any) -> None:
         _only(element, (), {"LinearTransformation", "Sum", "VectorSum"})

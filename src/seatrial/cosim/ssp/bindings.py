@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 from ...errors import InputError
 from .definitions import Enumerations
 from .documents import checked, child, known, listed, read_document, where
 from .mapping import Entry, mapped, read_mapping
 from .notes import Notes
+from .package import Package
 from .parameters import Parameter, read_parameter_set
 from .sources import Sources
 
@@ -18,11 +19,8 @@ _SET = "application/x-ssp-parameter-set"
 _MAPPING = "application/x-ssp-parameter-mapping"
 
 
-class Inside(Protocol):
-    """Finds what a component refers to."""
-
-    def __call__(self) -> tuple[Path, str]:
-        """Return the folder in which it is unpacked, and its name. Raises InputError."""
+Inside = Callable[[], Package]
+"""Finds what a component refers to. Raises InputError."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +78,7 @@ class BindingsReader:
             return checked(inline, kind, self.notes)
         sources = self._sources(element, inside)
         path = sources.file(element)
-        return read_document(path, sources.shown(path), kind, self.notes)
+        return read_document(path, sources.package.shown(path), kind, self.notes)
 
     def _sources(self, element: Any, inside: Inside | None) -> Sources:
         """Return what the source of an element is relative to."""
@@ -90,8 +88,8 @@ class BindingsReader:
         if base != "component" or inside is None:
             of = "SSD or component" if inside else "SSD, outside a component,"
             raise InputError(f"{where(element)}: sourceBase: {of} is needed, found {base!r}")
-        folder, name = inside()
-        return Sources(folder, folder, f"{self.sources.label}: {name}")
+        package = inside()
+        return Sources(package.folder, package)
 
 
 def _refuse_other(element: Any, kind: str, what: str) -> None:

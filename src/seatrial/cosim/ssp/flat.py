@@ -8,6 +8,7 @@ from pathlib import Path
 from ...errors import InputError, unknown
 from ...fmi.load import load_fmu
 from ...fmi.options import FmuOptions, Interface
+from ..packaged import SSP_FILE
 from .binding import Bound
 from .dictionaries import Dictionaries
 from .graph import Edge, Graph, Node, Origin, Path_
@@ -26,7 +27,7 @@ from .model import (
     System,
 )
 from .notes import Notes
-from .package import DEFAULT, open_package
+from .package import Package, open_package
 from .structure import read_structure
 from .transformations import Way
 
@@ -56,8 +57,7 @@ class FlatConnection:
 class _Place:
     """The description that is being read, and those that refer to it."""
 
-    root: Path
-    label: str
+    package: Package
     chain: tuple[Path, ...]
 
 
@@ -74,14 +74,13 @@ class Flat:
     _bound: Bound = field(default_factory=Bound)
 
     @classmethod
-    def of(cls, structure: Structure, root: Path, label: str, notes: Notes) -> Flat:
-        """Return what ``structure`` of the package unpacked at ``root`` is, made flat.
+    def of(cls, structure: Structure, package: Package, notes: Notes) -> Flat:
+        """Return what ``structure``, a package's first, is, made flat.
 
         Raises InputError for what does not fit together.
         """
         made = cls(notes)
-        description = (root / DEFAULT).resolve()
-        made._add_system(structure.system, (), _Place(root, label, (description,)))
+        made._add_system(structure.system, (), _Place(package, (package.description,)))
         made._dictionaries.connect(made.graph)
         return made
 
@@ -129,34 +128,34 @@ class Flat:
         if component.inner is not None:
             self._add_system(component.inner, path, place)
             self._bound.bind(component.parameters, path, self)
-        elif component.source is None:
+        elif component.source.file is None:
             self.elements[path] = []
             connectors = {(path, name): c for name, c in component.connectors.items()}
             self.graph.connectors.update(connectors)
             self._bound.bind(component.parameters, path, self)
         elif component.kind == FMU:
-            self._add_leaf(component, component.source, path)
+            self._add_leaf(component, component.source.file, path)
         else:
-            self._add_reference(component, component.source, path, place)
+            self._add_reference(component, component.source.file, path, place)
 
     def _add_reference(
         self, component: Component, source: Path, path: Path_, place: _Place
     ) -> None:
         """Add another package or description as if its system stood here."""
-        inside = source.relative_to(place.root.resolve()).as_posix()
+        package, description = place.package, source
         if component.kind == PACKAGE:
-            label = f"{place.label}: {inside}"
-            root = open_package(source, label, self.notes)
-            description = root / (component.variant or DEFAULT)
-            if not description.is_file() or description.parent != root:
-                raise InputError(f"{component.where}: {label} has no {component.variant!r}")
-        else:
-            root, label, description = place.root, place.label, source
+            package = open_package(source, place.package.shown(source), self.notes)
+            description = package.folder / (component.source.fragment or SSP_FILE)
+            if not description.is_file() or description.parent != package.folder:
+                raise InputError(
+                    f"{component.where}: {package.label} has no {component.source.fragment!r}"
+                )
         if description.resolve() in place.chain:
+            inside = place.package.name_of(source)
             raise InputError(f"{component.where}: {inside} refers to itself")
-        structure = read_structure(description, root, label, self.notes)
+        structure = read_structure(description, package, self.notes)
         chain = (*place.chain, description.resolve())
-        self._add_system(structure.system, path, _Place(root, label, chain))
+        self._add_system(structure.system, path, _Place(package, chain))
         self._bound.bind(component.parameters, path, self)
 
     def _add_leaf(self, component: Component, source: Path, path: Path_) -> None:
@@ -170,7 +169,9 @@ class Flat:
             fmu = load_fmu(source, FmuOptions(_INTERFACES.get(component.implementation)))
         except InputError as error:
             raise InputError(f"{component.where}: {error}") from None
-        leaf = self.leaves[path] = Leaf(path, fmu, component.step, component.where)
+        leaf = self.leaves[path] = Leaf(
+            path, fmu, component.source.isolated, component.step, component.where
+        )
         connectors = connectors_of(leaf, component, self.notes)
         self.graph.connectors.update({(path, name): c for name, c in connectors.items()})
         self._bound.bind(component.parameters, path, self)

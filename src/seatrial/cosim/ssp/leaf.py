@@ -27,6 +27,8 @@ class Leaf:
 
     path: Path_
     fmu: LoadedFmu
+    isolated: bool
+    """It runs in a process of its own."""
     step: float | None
     where: str
     values: dict[str, tuple[Value, str]] = field(default_factory=dict)

@@ -66,15 +66,24 @@ class Connection:
 
 
 @dataclass(frozen=True)
+class Source:
+    """What a ``source`` names: a file, and what the fragment behind ``#`` says of it."""
+
+    file: Path | None
+    """None for a fragment alone, which is in the description itself."""
+    fragment: str
+    isolated: bool = False
+    """An FMU that is to run in a process of its own."""
+
+
+@dataclass(frozen=True)
 class Component:
     """A reference to an FMU, a package, or a system described elsewhere."""
 
     name: str
     kind: str
-    source: Path | None
-    """None: in this description (`inner`), or nowhere."""
-    variant: str
-    """Of a package, the name of its description."""
+    source: Source
+    """Without a file: in this description (`inner`), or nowhere. A package's has its variant."""
     inner: System | None
     implementation: str
     connectors: dict[str, Connector]

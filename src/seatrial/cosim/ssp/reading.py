@@ -22,25 +22,26 @@ from .layout import unused
 from .leaf import Leaf
 from .model import Structure
 from .notes import Notes
-from .package import DEFAULT, open_package
+from .package import open_package
 from .structure import read_structure
 
 _USUAL_STEP = "10 ms"
 
 
 def read_ssp(path: Path, step: Any = None, *, strict: bool = False) -> PackagedSystem:
-    """Read the SSP package at ``path``, version 1.0 or 2.0.
+    """Read the SSP package at ``path``, version 1.0 or 2.0: an archive, a folder or its .ssd.
 
     ``step`` is a communication step that replaces the package's. Raises InputError naming file
     and line for what is wrong, and for what could change the result and is not supported; if
     ``strict``, for all that is not used.
     """
     notes = Notes(strict)
-    folder = open_package(path, path.name, notes)
-    structure = read_structure(folder / DEFAULT, folder, path.name, notes)
-    flat = Flat.of(structure, folder, path.name, notes)
+    package = open_package(path, path.name, notes)
+    folder = package.folder
+    structure = read_structure(package.description, package, notes)
+    flat = Flat.of(structure, package, notes)
     if not flat.leaves:
-        raise InputError(f"{path}: {DEFAULT} has no component")
+        raise InputError(f"{path}: {package.description.name} has no component")
     names = _names(flat, notes)
     connections = flat.connections()
     components = _components(flat, folder, names, connections, notes)
@@ -51,7 +52,12 @@ def read_ssp(path: Path, step: Any = None, *, strict: bool = False) -> PackagedS
         "connections": _connections(connections, names),
     }
     inside = {names[place]: {"components": listed} for place, listed in components.items()}
-    rig = rig_of(content, Source(path.stem, path, content_hash(path)), folder, inside)
+    rig = rig_of(
+        content,
+        Source(path.stem, path, content_hash(package.description if package.loose else path)),
+        folder,
+        inside,
+    )
     start = None if structure.start is None else f"{structure.start!r} s"
     stop = None if structure.stop is None else f"{structure.stop!r} s"
     return PackagedSystem(structure.name, rig, start, stop, notes.texts)
@@ -101,6 +107,8 @@ def _component(leaf: Leaf, folder: Path, fed: set[Node], notes: Notes) -> dict[s
     entry: dict[str, Any] = {"fmu": os.path.relpath(leaf.fmu.path, folder), "set": values}
     if leaf.fmu.options.interface is not None:
         entry["interface"] = leaf.fmu.options.interface
+    if leaf.isolated:
+        entry["isolated"] = True
     if leaf.step is not None:
         entry["step"] = f"{leaf.step!r} s"
     return entry

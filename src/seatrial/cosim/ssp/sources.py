@@ -1,4 +1,4 @@
-"""Files that a description refers to by URI: always inside the package."""
+"""Files that a description refers to by URI: inside its package."""
 
 from __future__ import annotations
 
@@ -8,26 +8,18 @@ from typing import Any
 from urllib.parse import unquote, urlsplit
 
 from ...errors import InputError
+from ..proxied import proxied_file
 from .documents import needed, where
-
-
-@dataclass(frozen=True)
-class Source:
-    """What a ``source`` names: a file, and what the fragment behind ``#`` says of it."""
-
-    file: Path | None
-    """None for a fragment alone, which is in the description itself."""
-    fragment: str
+from .model import Source
+from .package import Package
 
 
 @dataclass(frozen=True)
 class Sources:
-    """Resolves what a description in ``folder`` of the package unpacked at ``root`` names."""
+    """Resolves what a description in ``folder`` of a package names."""
 
     folder: Path
-    root: Path
-    label: str
-    """The package's, for messages."""
+    package: Package
 
     def source(self, element: Any) -> Source:
         """Return what the attribute ``source`` of ``element`` names. Raises InputError."""
@@ -36,6 +28,9 @@ class Sources:
             uri = urlsplit(written)
         except ValueError as error:
             raise InputError(f"{where(element)}: source {written!r}: {error}") from None
+        proxied = proxied_file(uri)
+        if proxied is not None:
+            return Source(self._found(element, proxied), "", isolated=True)
         if uri.scheme or uri.netloc or uri.path.startswith("/"):
             raise InputError(
                 f"{where(element)}: source {written!r}: only files in the package are read"
@@ -50,23 +45,17 @@ class Sources:
     def file(self, element: Any) -> Path:
         """Return the file that ``source`` names, without fragment. Raises InputError."""
         source = self.source(element)
-        if source.file is None or source.fragment:
+        if source.file is None or source.fragment or source.isolated:
             written = element.get("source")
             raise InputError(f"{where(element)}: source {written!r}: a plain path is needed")
         return source.file
-
-    def shown(self, path: Path) -> str:
-        """Return a file of the package as messages call it."""
-        root = self.root.resolve()
-        name = path.relative_to(root).as_posix() if path.is_relative_to(root) else path.name
-        return f"{self.label}: {name}"
 
     def _found(self, element: Any, written: str) -> Path:
         place = f"{where(element)}: source {element.get('source')!r}"
         if "\0" in written:
             raise InputError(f"{place} is no path")
         path = (self.folder / written).resolve()
-        if not path.is_relative_to(self.root.resolve()):
+        if not self.package.contains(path):
             raise InputError(f"{place} is outside the package")
         try:
             found = path.is_file()

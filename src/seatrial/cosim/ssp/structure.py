@@ -36,11 +36,12 @@ from .model import (
     End,
     Indices,
     Reference,
+    Source,
     Structure,
     System,
 )
 from .notes import Notes
-from .package import folder_inside
+from .package import Package, package_inside
 from .sources import Sources
 from .transformations import KINDS, read_transformation
 
@@ -59,16 +60,14 @@ _ELEMENTS = {"ssd:Component", "ssd:System", "ssd:SignalDictionaryReference"}
 _IMPLEMENTATIONS = ("any", "CoSimulation", "ModelExchange", "ScheduledExecution")
 
 
-def read_structure(path: Path, root: Path, label: str, notes: Notes) -> Structure:
-    """Read the description at ``path`` in the package unpacked at ``root``.
+def read_structure(path: Path, package: Package, notes: Notes) -> Structure:
+    """Read the description at ``path`` in a package.
 
-    ``label`` names the package in messages. Raises InputError for anything in the file that
-    could change the result and is not supported; the rest of what is not read goes to ``notes``.
+    Raises InputError for anything in the file that could change the result and is not supported;
+    the rest of what is not read goes to ``notes``.
     """
-    sources = Sources(path.parent, root, label)
-    name = f"{label}: {path.relative_to(root).as_posix()}"
-    document = read_document(path, name, "ssd:SystemStructureDescription", notes)
-    return _Reader(document, sources, notes).structure()
+    document = read_document(path, package.shown(path), "ssd:SystemStructureDescription", notes)
+    return _Reader(document, Sources(path.parent, package), notes).structure()
 
 
 class _Reader:
@@ -149,27 +148,27 @@ class _Reader:
                 f"{where(element)}: implementation: one of {', '.join(_IMPLEMENTATIONS)} is "
                 f"needed, found {implementation!r}"
             )
-        path, variant, inner = self._referred(element, kind)
+        source, inner = self._referred(element, kind)
+        label, place = self._sources.package.label, where(element)
         return Component(
             needed(element, "name"),
             kind,
-            path,
-            variant,
+            source,
             inner,
             implementation,
             self._connectors.connectors(element),
-            self._bindings.read(element, lambda: folder_inside(kind, path, where(element))),
+            self._bindings.read(element, lambda: package_inside(kind, source.file, label, place)),
             read_step_hint(element, self._notes),
-            where(element),
+            place,
         )
 
-    def _referred(self, element: Any, kind: str) -> tuple[Path | None, str, System | None]:
-        """Return the file of a component, the variant in it, or a system of this description."""
+    def _referred(self, element: Any, kind: str) -> tuple[Source, System | None]:
+        """Return what a component refers to, which may be a system of this description."""
         if element.get("source") is None:
             self._notes.pass_over(
                 where(element), "a component without source is an empty system: nothing computes it"
             )
-            return None, "", None
+            return Source(None, ""), None
         if kind not in (FMU, PACKAGE, DEFINITION):
             raise InputError(
                 f"{where(element)}: components of type {kind!r} are not supported "
@@ -177,14 +176,14 @@ class _Reader:
             )
         source = self._sources.source(element)
         if source.file is None:
-            return None, "", self._same_document(element, source.fragment)
-        if source.fragment and kind != PACKAGE:
+            return source, self._same_document(element, source.fragment)
+        if (source.fragment and kind != PACKAGE) or (source.isolated and kind != FMU):
             written = element.get("source")
             raise InputError(
-                f"{where(element)}: source {written!r}: a plain path is needed: only a package "
-                "has variants"
+                f"{where(element)}: source {written!r}: a plain path is needed: only packages "
+                "have variants, only FMUs are run by a proxy"
             )
-        return source.file, source.fragment, None
+        return source, None
 
     def _same_document(self, element: Any, fragment: str) -> System:
         """Return the system of this description that has the id ``fragment``."""
@@ -227,7 +226,7 @@ class _Reader:
             raise InputError(f"{where(element)}: either a source or an inline {root} is needed")
         if inline is None:
             path = self._sources.file(element)
-            inline = read_document(path, self._sources.shown(path), root, self._notes)
+            inline = read_document(path, self._sources.package.shown(path), root, self._notes)
         else:
             checked(inline, root, self._notes)
         parts = {"ssb:DictionaryEntry", "ssb:Enumerations", "ssb:Units", "ssb:Annotations"}

@@ -12,7 +12,7 @@ from ...fmi.xmlfile import read_xml
 from . import rules
 from .documents import where
 from .notes import Notes
-from .package import DEFAULT, open_package
+from .package import open_package
 
 TOOLS = ("omsimulator", "libcosim", "ecos", "fmpy", "fmucontainer")
 
@@ -189,11 +189,11 @@ def findings(path: Path) -> list[Finding]:
 
     Raises InputError for what is no package, no XML, or has lists twice.
     """
-    folder = open_package(path, path.name, Notes())
-    label = f"{path.name}: {DEFAULT}"
-    root = read_xml(folder / DEFAULT, label)
+    package = open_package(path, path.name, Notes())
+    label = package.shown(package.description)
+    root = read_xml(package.description, label)
     root.getroottree().docinfo.URL = label
-    view = rules.View(root, folder)
+    view = rules.View(root, package.folder)
     found = []
     for fact in FACTS:
         elements = list(fact.finder(view))

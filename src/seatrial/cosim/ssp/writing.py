@@ -10,11 +10,11 @@ from ...fmi.cache import write_named
 from ...fmi.export import fmu_bytes, zipped
 from ...fmi.instance import Variable
 from ...fmi.source import find_source
+from ..packaged import SSP_FILE
 from ..part import Part
 from ..system import Connection, System
 from .describing import Describer, Experiment, as_xml
 from .layout import flat, nested
-from .package import DEFAULT
 from .parameters import Value, Written, parameter_set
 from .shapes import Shapes, Version, shapes_of
 
@@ -50,7 +50,7 @@ def write_ssp(
             to_write = _written(part, values, shapes[part.name])
             files[f"resources/{name}.ssv"] = as_xml(parameter_set(name, to_write, version))
     describer = Describer(system, connections, shapes)
-    files[DEFAULT] = as_xml(describer.document(top, experiment, version))
+    files[SSP_FILE] = as_xml(describer.document(top, experiment, version))
     path.parent.mkdir(parents=True, exist_ok=True)
     write_named(path, zipped(files))
     return [*notes, *describer.notes, *unsaid(system)]
