@@ -16,6 +16,7 @@ from seatrial.cosim.osp.reading import read_osp
 from seatrial.fmi.load import load_fmu
 from seatrial.trials.export import export_osp
 from tests.cosim.osp_files import write_osp
+from tests.fmi.models import build_model_fmu
 
 from .test_libcosim import plain
 
@@ -121,6 +122,76 @@ def test_a_scenario_acts_as_in_libcosim(end: float | None, tmp_path: Path) -> No
     theirs = libcosim(file, scenario)
     compare(theirs, ours(file, tmp_path, scenario))
     assert 3.5 in theirs["slave_uno.x"]
+
+
+LOOP = """<?xml version="1.0" encoding="UTF-8"?>
+<OspSystemStructure xmlns="http://opensimulationplatform.com/MSMI/OSPSystemStructure" version="0.1">
+    <BaseStepSize>0.04</BaseStepSize>
+    <Algorithm>fixedStep</Algorithm>
+    <Simulators>
+        <Simulator name="DP Controller" source="model1cs.fmu"/>
+        <Simulator name="Thrust Allocation" source="model1cs.fmu">
+            <InitialValues><InitialValue variable="k"><Real value="0.3"/></InitialValue></InitialValues>
+        </Simulator>
+        <Simulator name="Ship" source="model1cs.fmu"/>
+    </Simulators>
+    <Connections>
+        <VariableGroupConnection>
+            <VariableGroup simulator="Ship" name="position"/>
+            <VariableGroup simulator="DP Controller" name="command"/>
+        </VariableGroupConnection>
+        <VariableGroupConnection>
+            <VariableGroup simulator="DP Controller" name="thrust"/>
+            <VariableGroup simulator="Thrust Allocation" name="command"/>
+        </VariableGroupConnection>
+        <VariableGroupConnection>
+            <VariableGroup simulator="Thrust Allocation" name="thrust"/>
+            <VariableGroup simulator="Ship" name="command"/>
+        </VariableGroupConnection>
+    </Connections>
+</OspSystemStructure>
+"""
+LOOP_GROUPS = """<?xml version="1.0" encoding="utf-8"?>
+<OspModelDescription xmlns="http://opensimulationplatform.com/MSMI/OSPModelDescription" version="0.1">
+    <UnitDefinitions><Unit name="m"><BaseUnit m="1"/></Unit></UnitDefinitions>
+    <VariableGroups>
+        <Generic name="position">
+            <LinearDisplacement name="along"><Variable ref="x" unit="m"/></LinearDisplacement>
+        </Generic>
+        <Generic name="thrust"><Force name="thrustForce"><Variable ref="y" unit="N"/></Force></Generic>
+        <Generic name="command"><Force name="force"><Variable ref="u" unit="N"/></Force></Generic>
+    </VariableGroups>
+</OspModelDescription>
+"""
+
+
+def test_a_ship_of_fmi_1_slaves_in_a_loop_runs_as_in_libcosim(tmp_path: Path) -> None:
+    """Names with spaces, groups inside groups in OSP's older namespace, as in OSP's dp-ship."""
+    file = tmp_path / "OspSystemStructure.xml"
+    file.write_text(LOOP)
+    (tmp_path / "model_OspModelDescription.xml").write_text(LOOP_GROUPS)
+    variables = load_fmu(build_model_fmu(1, tmp_path, "co-simulation")).variables
+    watched = {
+        name: ("real" if variables[name].type is float else "integer", variables[name].reference)
+        for name in ("x", "height", "speed", "y", "steps", "relay", "events")
+    }
+    slaves = {
+        "DP Controller": "DP_Controller",
+        "Thrust Allocation": "Thrust_Allocation",
+        "Ship": "Ship",
+    }
+    job = {
+        "file": str(file),
+        "steps": STEPS,
+        "watch": [[slave, kind, [vr]] for slave in slaves for kind, vr in watched.values()],
+    }
+    signals = [f"{name}.{variable}" for name in slaves.values() for variable in watched]
+    theirs = dict(zip(signals, zip(*run(job), strict=True), strict=True))
+    run_trial(str(tmp_path), set={"stop": "1.2 s"}, engine="fmu", out=tmp_path / "run")
+    with (tmp_path / "run" / "signals.csv").open() as lines:
+        rows = list(csv.DictReader(lines))[1:]
+    compare(theirs, {name: tuple(row[name] for row in rows) for name in signals})
+    assert len({*theirs["Ship.x"]}) == STEPS > len({*theirs["Thrust_Allocation.y"]}) > STEPS - 4
 
 
 def test_what_is_written_runs_in_libcosim_as_what_was_read(tmp_path: Path) -> None:
