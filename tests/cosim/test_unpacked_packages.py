@@ -101,3 +101,26 @@ def test_a_proxied_simulator_of_osp_is_isolated(tmp_path: Path) -> None:
         name for name, one in read_osp(tmp_path).rig.components.items() if one.entry.isolated
     ]
     assert isolated == ["two"]
+
+
+def test_usual_prefixes_need_no_declaration(shared: Path, tmp_path: Path) -> None:
+    """Parsers that know no namespaces take OSP's own examples without them."""
+    members = {
+        "resources/two.fmu": (shared / "two.fmu").read_bytes(),
+        "values.ssv": (shared / "system" / "values.ssv").read_text(),
+    }
+    osp = """<ssd:Annotations><ssc:Annotation type="com.opensimulationplatform"><osp:Algorithm>
+    <osp:FixedStepAlgorithm baseStepSize="0.005"/></osp:Algorithm></ssc:Annotation></ssd:Annotations>"""
+    end = 'stopTime="0.02"/>'
+    assert end in TOP
+    text = TOP.replace(end, f'stopTime="0.02">{osp}</ssd:DefaultExperiment>')
+    file = package(tmp_path / "x.ssp", text, members)
+    found = read_ssp(file)
+    assert found.rig.step_ns == 5_000_000
+    assert any("prefix 'osp' is not declared; it is taken for http" in note for note in found.notes)
+    assert {one.tool for one in findings(file)}
+    with pytest.raises(InputError, match="line 4: prefix 'osp' is not declared"):
+        read_ssp(file, strict=True)
+    for wrong in (text.replace("osp:", "opss:"), text.replace("</osp:Algorithm>", "</osp:Algo>")):
+        with pytest.raises(InputError, match=r"SystemStructure\.ssd: not XML"):
+            read_ssp(package(tmp_path / "x.ssp", wrong, members))

@@ -33,9 +33,19 @@ def forgetful(path: Path, to: Path) -> Path:
                  '    if (fabs(t - s->time) > 1e-9) return say(s, fmi2Error, "steps do not follow each other");\n'):  # fmt: skip
         assert lost in source, lost
         source = source.replace(lost, "")
-    changed_source, library = to.with_suffix(".c"), to.with_suffix(".so")
+    changed_source = to.with_suffix(".c")
     changed_source.write_text(source, "utf-8")
-    compiled(changed_source, library)
+    return _with_library(path, compiled(changed_source, to.with_suffix(".so")), to)
+
+
+def lacking(path: Path, to: Path, *functions: str) -> Path:
+    """Copy the FMI 2.0 slave to ``to``, with a library that lacks some functions."""
+    renamed = [f"-D{name}=other_{name}" for name in functions]
+    library = compiled(SLAVES / "fmi2.c", to.with_suffix(".so"), *renamed)
+    return _with_library(path, library, to)
+
+
+def _with_library(path: Path, library: Path, to: Path) -> Path:
     with zipfile.ZipFile(path) as old, zipfile.ZipFile(to, "w") as new:
         for member in old.infolist():
             is_library = member.filename.endswith(".so")

@@ -66,7 +66,7 @@ OUTSIDE = (
     "C:evil",
     "c:/evil",
     "..\\evil",
-    "a\\b",
+    "a\\..\\..\\evil",
     "..",
 )
 
@@ -74,6 +74,13 @@ OUTSIDE = (
 @pytest.mark.parametrize("name", OUTSIDE)
 def test_members_that_lead_outside(name: str, cache: Path, tmp_path: Path) -> None:
     refused(zipped(tmp_path / "x.fmu", ("fine", b""), (name, b"x")), "outside its folder")
+
+
+def test_backslashes_of_tools_on_windows_are_folders(cache: Path, tmp_path: Path) -> None:
+    members = [("binaries\\win64\\", b""), ("binaries\\win64\\x.dll", b"MZ"), ("a/b", b"1")]
+    folder = unpacked(zipped(tmp_path / "x.fmu", *members), "FMU")
+    assert (folder / "binaries/win64/x.dll").read_bytes() == b"MZ"
+    assert (folder / "a/b").read_bytes() == b"1"
 
 
 def test_members_that_are_no_plain_files(cache: Path, tmp_path: Path) -> None:

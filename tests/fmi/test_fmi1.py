@@ -109,7 +109,7 @@ def test_platforms_that_it_has_are_named(path: Path, tmp_path: Path) -> None:
     with pytest.raises(
         InputError,
         match=rf"other\.fmu: cannot be loaded on this machine, which needs binaries for "
-        rf"{fmpy.platform}; the FMU has binaries for darwin64, win64, and sources to be compiled",
+        rf"{fmpy.platform}; the FMU has binaries for darwin64, win64, and sources .fmpy compile.",
     ):
         open_instance(load_fmu(other), "boat")
 

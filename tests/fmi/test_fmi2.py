@@ -13,7 +13,7 @@ import pytest
 from seatrial.errors import DiscardError, FatalError, InputError, SimulationError
 from seatrial.fmi.load import load_fmu, open_instance
 
-from .native import changed, read, started
+from .native import changed, lacking, read, started
 
 FINE, NAN, DISCARD, ERROR, FATAL, WARN, BAD_START, NEGATIVE, BEYOND = range(9)
 
@@ -56,6 +56,31 @@ def test_equal_to_fmpys_own_simulation(fmi2, native_fmu) -> None:
         own += read(instance, "x")
     assert np.array_equal(result["x"], own)
     assert own[-1] == pytest.approx((1 - 1.3 * 0.025) ** 80, rel=1e-12)
+
+
+def test_functions_may_be_missing_until_they_are_called(native_fmu, tmp_path: Path) -> None:
+    names = ["fmi2CancelStep", "fmi2GetBooleanStatus", "fmi2SetString", "fmi2GetFMUstate"]
+    instance = open_instance(
+        load_fmu(lacking(native_fmu("fmi2"), tmp_path / "x.fmu", *names)), "boat"
+    )
+    try:
+        started(instance, k=0.7)
+        instance.step(0.0, 0.1)
+        assert read(instance, "x") == [pytest.approx(math.exp(-0.07), rel=1e-13)]
+        with pytest.raises(
+            SimulationError, match="boat: its library has no function fmi2SetString"
+        ):
+            instance.writer(["s"])(["x"])
+        with pytest.raises(SimulationError, match="boat: its library has no function fmi2GetFMUst"):
+            instance.get_state()
+        instance.writer(["trouble"])([DISCARD])
+        with pytest.raises(DiscardError):
+            instance.step(0.1, 0.1)
+    finally:
+        instance.free()
+    none = lacking(native_fmu("fmi2"), tmp_path / "y.fmu", "fmi2Instantiate")
+    with pytest.raises(SimulationError, match="boat: its library has no function fmi2Instantiate"):
+        open_instance(load_fmu(none), "boat")
 
 
 def test_every_type_goes_through(fmi2) -> None:

@@ -175,9 +175,10 @@ def _refuse_bomb(path: Path, unpacked_bytes: int) -> None:
 
 
 def _place(path: Path, info: zipfile.ZipInfo) -> PurePosixPath:
-    name = info.orig_filename  # zipfile cuts the other one at a NUL
+    # zipfile cuts the other one at a NUL. Some tools on Windows write backslashes.
+    info.filename = name = info.orig_filename.replace("\\", "/")
     place = PurePosixPath(name)
-    if ".." in place.parts or name.startswith("/") or re.match(r"[A-Za-z]:", name) or "\\" in name:
+    if ".." in place.parts or name.startswith("/") or re.match(r"[A-Za-z]:", name):
         raise InputError(f"{path}: member {name!r} would be unpacked outside its folder")
     parts = [part.encode("utf-8", "replace") for part in place.parts]
     if (

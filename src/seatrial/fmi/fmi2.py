@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 import fmpy
 from fmpy import fmi2
 
+from .lenient import Missing
 from .loaded import LoadedFmu
 from .messages import ACCEPTED, DISCARD, OK, listening_callbacks, stop_listening
 from .typed import TypedAccess
@@ -83,9 +84,12 @@ class Fmi2Slave(Fmi2Access):
         pythonfmu's binary says so of every discarded step, which may do in smaller ones.
         """
         ends, reached = ctypes.c_int(), ctypes.c_double()
+        truth, number = (self._functions[f"Get{kind}Status"] for kind in ("Boolean", "Real"))
+        if isinstance(truth, Missing) or isinstance(number, Missing):
+            return False
         statuses = [
-            self._functions["GetBooleanStatus"](self._c, _TERMINATED, ctypes.byref(ends)),
-            self._functions["GetRealStatus"](self._c, _LAST_SUCCESSFUL_TIME, ctypes.byref(reached)),
+            truth(self._c, _TERMINATED, ctypes.byref(ends)),
+            number(self._c, _LAST_SUCCESSFUL_TIME, ctypes.byref(reached)),
         ]
         if statuses != [OK, OK] or not ends.value or self._is_pythonfmu:
             return False

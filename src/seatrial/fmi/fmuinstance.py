@@ -13,6 +13,7 @@ from fmpy import sharedLibraryExtension
 from ..errors import INTERRUPTED, DiscardError, FatalError, InputError, SimulationError
 from ..serialisation import is_c_text
 from .instance import ByType, Reader, Value, Variable, Writer
+from .lenient import lenient
 from .loaded import LoadedFmu
 from .messages import ACCEPTED, DISCARD, FATAL, Messages, word
 
@@ -57,6 +58,8 @@ class FmuInstance(ByType):
         self._c: Any = None
         try:
             self._instantiate()
+        except SimulationError:
+            raise
         except Exception:
             said = self._messages.said()
             self.free()
@@ -136,7 +139,7 @@ class FmuInstance(ByType):
             raise InputError(f"{self.fmu.path}: {self._missing(library.name)}")
         before = os.getcwd()
         try:
-            return self._library(
+            return lenient(self._library)(
                 guid=description.guid or "",
                 modelIdentifier=identifier,
                 unzipDirectory=str(folder),
@@ -157,7 +160,7 @@ class FmuInstance(ByType):
         return (
             f"cannot be loaded on this machine, which needs binaries for {self._platform}; the "
             f"FMU has binaries for {', '.join(having) or 'no platform'}"
-            + (", and sources to be compiled" if (self.fmu.folder / "sources").is_dir() else "")
+            + (", and sources (fmpy compile)" if (self.fmu.folder / "sources").is_dir() else "")
         )
 
     @property

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import replace
+from difflib import get_close_matches
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -56,7 +57,7 @@ def load_fmu(path: Path, options: FmuOptions = DEFAULTS) -> LoadedFmu:
     try:
         status = path.stat()
     except OSError as error:
-        raise InputError(f"{path}: {error.strerror}") from None
+        raise InputError(f"{path}: {error.strerror}{_near(path)}") from None
     fmu = _load(path.resolve(), (status.st_mtime_ns, status.st_size))
     if options != DEFAULTS:
         fmu = _with_options(fmu, options)
@@ -65,6 +66,13 @@ def load_fmu(path: Path, options: FmuOptions = DEFAULTS) -> LoadedFmu:
     others = _names(fmu.description)
     groups = read_osp(fmu.path, fmu.description.modelName or "", fmu.variables, others)
     return replace(fmu, terminals=groups) if groups else fmu
+
+
+def _near(path: Path) -> str:
+    """Return FMUs beside ``path`` that are called much like it, for a message."""
+    beside = [one.name for one in path.parent.glob("*.fmu")]
+    near = get_close_matches(path.name, beside, n=2, cutoff=0.8)
+    return f"; did you mean {' or '.join(map(repr, near))}?" if near else ""
 
 
 def open_instance(fmu: LoadedFmu, name: str) -> Instance:

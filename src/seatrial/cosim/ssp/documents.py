@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 from difflib import get_close_matches
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Any, overload
 
@@ -53,9 +53,17 @@ def read_document(path: Path, label: str, root: str, notes: Notes) -> Any:
     ``label`` names the file in messages. Raises InputError for what is no XML, has a document
     type (and so could have entities), or is of another kind or version.
     """
-    element = read_xml(path, label)
+    element = read_xml(path, label, partial(_usual, label, notes))
     element.getroottree().docinfo.URL = label
     return checked(element, root, notes)
+
+
+def _usual(label: str, notes: Notes, prefix: str, line: int) -> str | None:
+    """Return the namespace that tools which ignore declarations take a prefix for."""
+    if prefix in NAMESPACES:
+        text = f"prefix {prefix!r} is not declared; it is taken for {NAMESPACES[prefix]}"
+        notes.pass_over(f"{label}: line {line}", text)
+    return NAMESPACES.get(prefix)
 
 
 def checked(element: Any, root: str, notes: Notes) -> Any:

@@ -10,7 +10,7 @@ from typing import Any
 from ...errors import InputError, unknown
 from ...fmi.xmlfile import read_xml
 from . import rules
-from .documents import where
+from .documents import NAMESPACES, where
 from .notes import Notes
 from .package import open_package
 
@@ -191,7 +191,7 @@ def findings(path: Path) -> list[Finding]:
     """
     package = open_package(path, path.name, Notes())
     label = package.shown(package.description)
-    root = read_xml(package.description, label)
+    root = read_xml(package.description, label, lambda prefix, _line: NAMESPACES.get(prefix))
     root.getroottree().docinfo.URL = label
     view = rules.View(root, package.folder)
     found = []

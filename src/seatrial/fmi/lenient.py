@@ -1,0 +1,46 @@
+"""FMPy's classes for libraries that lack functions, as many that are meant to be optional."""
+
+from __future__ import annotations
+
+from typing import Any, NoReturn
+
+from ..errors import SimulationError
+
+
+class Missing:
+    """A function that the library of ``instance`` lacks; it can be described, but not called."""
+
+    def __init__(self, name: str, instance: str) -> None:
+        self.name, self.instance = name, instance
+
+    def __call__(self, *_arguments: Any) -> NoReturn:
+        """Raise SimulationError."""
+        raise SimulationError(f"{self.instance}: its library has no function {self.name}")
+
+
+class _Library:
+    """A loaded library that gives something for every name."""
+
+    def __init__(self, library: Any, instance: str) -> None:
+        self._library, self._instance = library, instance
+
+    def __getattr__(self, name: str) -> Any:
+        try:
+            return getattr(self._library, name)
+        except AttributeError:
+            return Missing(name, self._instance)
+
+
+def lenient(library: type[Any]) -> type[Any]:
+    """Return FMPy's class ``library``, with functions missing until somebody calls them.
+
+    FMI has each function exported, used or not; FMUs of 20-sim, among others, leave out those of
+    the capabilities that they do not have.
+    """
+
+    def load(self: Any) -> None:
+        self.dll = _Library(self.dll, self.instanceName)
+        library._loadFunctions(self)
+
+    # FMPy takes the version from the name of the class.
+    return type(library.__name__, (library,), {"_loadFunctions": load})
