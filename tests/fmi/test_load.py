@@ -109,7 +109,7 @@ def test_broken_files_are_named(write, tmp_path: Path, counter_fmu: Path) -> Non
     with pytest.raises(InputError, match=r"gone\.fmu: No such file"):
         load_fmu(tmp_path / "gone.fmu")
     (tmp_path / "AframeSetPoint.fmu").write_bytes(b"")  # found where case does not matter
-    with pytest.raises(InputError, match="did you mean 'AframeSetPoint.fmu'"):
+    with pytest.raises(InputError, match=r"did you mean 'AframeSetPoint\.fmu'"):
         load_fmu(tmp_path / "AFrameSetpoint.fmu")
     outside = tmp_path / "outside.fmu"
     with zipfile.ZipFile(outside, "w") as archive:
