@@ -192,10 +192,7 @@ def _read_signals(path: Path, texts: set[str]) -> tuple[FloatArray, dict[str, An
     A column is numbers if every cell is one, unless it is one of ``texts``.
     """
     with path.open(encoding="utf-8", errors="replace", newline="") as file:
-        try:
-            header = next(csv.reader(file), [])
-        except csv.Error as error:
-            raise InputError(f"{path}, line 1: {error}") from None
+        header = _header(csv.reader(file, strict=True), path)
     if not header or header[0] != "time":
         raise InputError(f"{path}: the first column is not 'time'")
     if len(set(header)) != len(header):
@@ -225,6 +222,13 @@ def _read_signals(path: Path, texts: set[str]) -> tuple[FloatArray, dict[str, An
     return columns.pop("time"), columns, rows.cut
 
 
+def _header(reader: Iterator[list[str]], path: Path) -> list[str]:
+    try:
+        return next(reader, [])
+    except csv.Error as error:
+        raise InputError(f"{path}, line 1: {error}") from None
+
+
 class _Rows:
     """The rows of a CSV file below its header, all of the same width; a cut last one left out."""
 
@@ -251,7 +255,7 @@ class _Rows:
     def _parsed(self) -> Iterator[tuple[int, list[str] | None]]:
         with self.path.open(encoding="utf-8", errors="replace", newline="") as file:
             reader = csv.reader(file, strict=True)
-            next(reader, None)
+            _header(reader, self.path)
             try:
                 for row in reader:
                     yield reader.line_num, row
