@@ -1,0 +1,1 @@
+"""Sea models: waves, the loads of waves, current and wind as functions of time and place."""

@@ -1,0 +1,1 @@
+"""Seabed, obstacles and surface as geometry: depths, normals, ranges along rays."""
