@@ -7,6 +7,7 @@ import pytest
 
 from seatrial.control.depth_hold import DepthHold
 from seatrial.control.heading_hold import HeadingHold
+from seatrial.control.tilt_hold import TiltHold
 from tests.devices.running import started
 
 FAST = {"rate_limit": 1e9, "rate_filter": 0.0, "capacity": 1e12}
@@ -28,6 +29,31 @@ def test_gains_place_the_poles():
     hold.advance(0.1, 0.1)
     # Now at rest: what is left is Kp e and what the integral learnt in one period.
     assert hold.get("heave") == pytest.approx(KP * 0.1 + KI * 0.1 * 0.1)
+
+
+def test_own_damping_is_added_by_speed():
+    """Full ahead for long: D = 2 + 17 |2.16|, for the moving target and in the position gain."""
+    more = {"damping": 2.0, "damping_per_speed": 17.0, "damping_rate": 1.2, "surge": 93.4}
+    hold = depth(**more, depth_wanted=2.0, depth=2.0, integral_pole=0.0, rate_limit=0.3)
+    hold.advance(0.0, 60.0)
+    D = 2.0 + 17.0 * 2.16
+    hold.set("depth_wanted", 5.0)
+    moving = m * 2 * zeta * w * 0.3 + D * 0.3
+    assert hold.get("heave") == pytest.approx(moving)
+    hold.advance(60.0, 0.1)
+    assert hold.get("heave") == pytest.approx(moving + (m * w**2 + 1.2 * D) * 0.03)
+
+
+def test_speed_is_estimated_from_the_surge_force():
+    """A quarter of the force astern is half of the speed; it comes with a first-order lag."""
+    more = {"damping_per_speed": 17.0, "surge": -93.4 / 4, "speed_lag": 0.5}
+    hold = depth(**more, integral_pole=0.0, rate_limit=0.3, depth_wanted=1e3)
+    for k in range(1, 20):
+        speed = 1.08 * (1.0 - math.exp(-0.1 * k / 0.5))
+        behind = 0.3 * 0.1 * (k - 1)
+        asked = m * w**2 * behind + m * 2 * zeta * w * 0.3 + 17.0 * speed * 0.3
+        assert hold.get("heave") == pytest.approx(asked), k
+        hold.advance(0.1 * (k - 1), 0.1)
 
 
 def test_rate_is_low_passed():
@@ -119,3 +145,18 @@ def test_ideal_loop_is_that_of_its_poles():
     ).real
     # Held for 1 ms, and the rate by differences half of that late again.
     assert np.abs(found - exact).max() < 3e-3 * exact.max()
+
+
+def test_a_tilt_is_held_while_enabled_and_forgotten_else():
+    tilt = {**FAST, "natural_frequency": w, "damping_ratio": zeta, "integral_pole": sigma}
+    hold = started(TiltHold, **tilt, inertia=m, angle=-0.1, enabled=True)
+    hold.advance(0.0, 0.2)  # its target starts where it is, and goes to 0 at once
+    learnt = pytest.approx(KP * 0.1 + KI * 0.1 * 0.1)
+    assert hold.get("moment") == learnt
+    hold.advance(0.2, 9.9)
+    hold.set("enabled", False)
+    hold.advance(10.1, 0.2)
+    assert hold.get("moment") == 0.0
+    hold.set("enabled", True)  # without what it had learnt
+    hold.advance(10.3, 0.2)
+    assert hold.get("moment") == learnt

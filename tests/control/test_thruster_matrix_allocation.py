@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from seatrial.control.thruster_matrix_allocation import ThrusterMatrixAllocation
+from seatrial.devices.polynomial_thruster import PolynomialThruster
 from seatrial.devices.propulsion import Propulsion
 from seatrial.errors import InputError
 from tests.devices.running import started
@@ -69,6 +70,47 @@ def test_a_moment_beyond_all_takes_what_there_is():
     found = load(thrusts(surge=10.0, yaw_moment=1e6))
     np.testing.assert_allclose(found[YAW], 4 * 0.1887975 * ASTERN, rtol=1e-6)
     np.testing.assert_allclose(found[SURGE], 0.0, atol=1e-9)
+
+
+@given(*[st.floats(-2, 2)] * 3)
+def test_roll_and_pitch_moments_are_given_too(roll, pitch, moment):
+    wanted = {"roll_moment": roll, "pitch_moment": pitch, "yaw_moment": moment}
+    found = thrusts(surge=5.0, **wanted)
+    np.testing.assert_allclose(load(found), [5, 0, 0, roll, pitch, moment], atol=1e-9)
+
+
+def test_roll_and_pitch_come_before_all_else():
+    found = load(thrusts(surge=300.0, heave=300.0, pitch_moment=15.0, yaw_moment=5.0))
+    np.testing.assert_allclose(found[[3, 4, YAW]], [0.0, 15.0, 5.0], atol=1e-9)
+    assert 0 < found[HEAVE] < 300.0
+
+
+def test_of_a_craft_that_cannot_they_are_left_out():
+    found = load(thrusts(surge=20.0, pitch_moment=5.0, roll_moment=5.0, moments="yaw"))
+    np.testing.assert_allclose(found, [20, 0, 0, 0, 0.085 * 20, 0], atol=1e-9)
+
+
+@pytest.mark.parametrize("newtons", [-30.5, -4.0, -0.01, 0.3, 11.0, 29.0])
+def test_a_polynomial_is_inverted(newtons):
+    """What a thruster with that curve makes of the pulse is what was asked for."""
+    one = {"position_1": [0, 0, 0], "direction_1": [1, 0, 0], "moments": "yaw"}
+    limits = {"thrust_ahead": 30.6, "thrust_astern": 30.6, "law": "polynomial"}
+    pulse = started(ThrusterMatrixAllocation, **one, **limits, surge=newtons).get("pulse")[0]
+    motor = started(PolynomialThruster, command=(pulse - 1.5e-3) / 400e-6)
+    motor.advance(0.0, 5.0)
+    assert motor.get("thrust") == pytest.approx(newtons, abs=1e-5)
+
+
+def test_a_polynomial_is_followed_to_its_crest_only():
+    """T'(V) = 0 there, where the thrust is 30.6218 N."""
+    one = {"position_1": [0, 0, 0], "direction_1": [1, 0, 0], "moments": "yaw"}
+    found = started(ThrusterMatrixAllocation, **one, law="polynomial", surge=1e3).get("pulse")[0]
+    assert (found - 1.5e-3) / 400e-6 == pytest.approx(0.971655, abs=2e-6)
+
+
+def test_a_polynomial_that_falls_is_refused():
+    with pytest.raises(InputError, match="whose thrust falls from command 0 on"):
+        started(ThrusterMatrixAllocation, law="polynomial", thrust_curve=[-1, 0, 0, 0, 0])
 
 
 def test_two_thrusters_of_a_catamaran():

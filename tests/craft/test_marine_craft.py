@@ -6,9 +6,9 @@ import casadi as ca
 import numpy as np
 import pytest
 
+from seatrial.craft.hydrodynamics import coriolis_load
 from seatrial.craft.kinematics import rotation
 from seatrial.craft.marine_craft import MarineCraft
-from seatrial.craft.six_dof import coriolis
 from seatrial.errors import InputError
 
 INERTIAL = {
@@ -95,11 +95,11 @@ def test_coriolis_matrix_is_skew_symmetric():
     rng = np.random.default_rng(3)
     for _ in range(200):
         h, nu = rng.normal(size=6), rng.normal(size=6)
-        columns = [np.array(coriolis(ca.DM(h), ca.DM(axis))).ravel() for axis in np.eye(6)]
+        columns = [np.array(coriolis_load(ca.DM(h), ca.DM(axis))).ravel() for axis in np.eye(6)]
         C = np.array(columns).T
         np.testing.assert_array_equal(C + C.T, 0.0)
         np.testing.assert_allclose(
-            np.array(coriolis(ca.DM(h), ca.DM(nu))).ravel(), C @ nu, atol=1e-14
+            np.array(coriolis_load(ca.DM(h), ca.DM(nu))).ravel(), C @ nu, atol=1e-14
         )
 
 

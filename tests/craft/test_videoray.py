@@ -22,7 +22,7 @@ DAMPING = ("linear_damping_force", "linear_damping_moment", *QUADRATIC)
 def videoray(**values):
     """Return the shipped vehicle at rest, 5 m deep."""
     component = Rov("vehicle")
-    for name, entry in load_vehicle("videoray").parameter_set("rov", None).values.items():
+    for name, entry in load_vehicle("videoray").parameter_set("rov", "source").values.items():
         component.set(name, entry.value)
     for name, value in {"eta_start": (0, 0, 5, 0, 0, 0), **values}.items():
         component.set(name, value)

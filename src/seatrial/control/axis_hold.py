@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from ..component import Parameter
+from ..component import Input, Parameter
 from ..sampled import Sampled
 
 
@@ -15,7 +15,7 @@ class AxisHold(Sampled):
     that a long way fills no integral. With g its rate and f that of y, by differences and
     low-passed:
 
-        demand = clip(Kp (target - y) + Kd (g - f) + I),   I' = Ki (target - y)
+        demand = clip(Kp (target - y) + Kd (g - f) + D g + I),   I' = Ki (target - y)
         f_k = a f_(k-1) + (1 - a) (y_k - y_(k-1)) / period,   a = exp(-period / rate_filter)
 
     clip(x) = x held within +-capacity; back-calculation at the rate Ki / Kp removes from I what
@@ -23,22 +23,42 @@ class AxisHold(Sampled):
     w = ``natural_frequency``, zeta = ``damping_ratio``, sigma = ``integral_pole`` (0 for no
     integral action):
 
-        Kd = m (2 zeta w + sigma),   Kp = m (w^2 + 2 zeta w sigma),   Ki = m w^2 sigma
+        Kd = m (2 zeta w + sigma)
+        Kp = m (w^2 + 2 zeta w sigma) + a D
+        Ki = m w^2 sigma + a sigma D
+
+    D is what the vehicle itself damps the axis with, which grows with its speed ahead or astern:
+
+        D = D0 + D1 |U_k|,   U_k = b U_(k-1) + (1 - b) U(X_k),   b = exp(-period / speed_lag)
+        U(X) = full_speed sgn(X) sqrt(|X| / full_surge), clipped to full_speed
+
+    D0 = ``damping``, D1 = ``damping_per_speed``, a = ``damping_rate``; U is estimated from the
+    surge force X that is asked of the thrusters. A moving target needs D g, and a position gain
+    that grows with D lets an error go as quickly at speed as at rest. All are 0 by default.
 
     What is steady (weight that buoyancy does not balance, a tether's pull, a current) ends up in
-    I. Not modelled: drag, lags of thrusters and sensors; keep w well below their inverse.
+    I. Not modelled: lags of thrusters and sensors; keep w well below their inverse.
 
     Gains may change at any step: I is kept as a demand, so that what it holds stays.
 
-    A subclass declares mass, capacity, inputs and the demand, and defines in `_axis` and `_places`
-    what they are.
+    A subclass declares mass, capacity, ``damping``, ``damping_per_speed``, inputs and the demand,
+    and defines in `_axis` and `_places` what they are.
     """
+
+    damping: float
+    damping_per_speed: float
 
     period = Parameter(0.1, "s", "sample period", min=1e-6)
     natural_frequency = Parameter(1.0, "rad/s", "w", min=1e-9, tunable=True)
     damping_ratio = Parameter(1.0, "1", "zeta", min=0.0, tunable=True)
     integral_pole = Parameter(0.1, "rad/s", "sigma", min=0.0, tunable=True)
     rate_filter = Parameter(0.2, "s", "time constant of the filtered rate", min=0.0, tunable=True)
+    damping_rate = Parameter(0.0, "rad/s", "a, position gain per damping", min=0.0, tunable=True)
+    full_surge = Parameter(93.4, "N", "surge force at full speed", min=1e-9)
+    full_speed = Parameter(2.16, "m/s", "speed that the full surge force gives", min=0.0)
+    speed_lag = Parameter(0.45, "s", "time constant of the estimated speed", min=0.0)
+
+    surge = Input("N", "surge force asked of the thrusters, positive ahead", optional=True)
 
     def _axis(self) -> tuple[float, float, float]:
         """Return mass, capacity and the limit of the target's rate."""
@@ -54,7 +74,7 @@ class AxisHold(Sampled):
 
     def reset(self, t: float) -> None:
         """Start with no integral, at rest."""
-        self._integral = self._rate = 0.0
+        self._integral = self._rate = self._speed = 0.0
         # Nothing has been measured yet.
         self._before: float | None = None
         self._target: float | None = None
@@ -66,12 +86,14 @@ class AxisHold(Sampled):
         cut_off = (self._limited(wanted) - wanted) / kp
         self._integral += self.period * ki * (error + cut_off)
         target = self._at() + self.period * self._target_rate()
+        self._speed = self._estimated_speed()
         self._rate, self._before, self._target = rate, self._places()[1], target
 
     def _demanded(self) -> float:
         """Return the demand before it is limited."""
         kp, kd, _ = self._gains()
-        damping = kd * (self._target_rate() - self._filtered_rate())
+        g = self._target_rate()
+        damping = kd * (g - self._filtered_rate()) + self._damping() * g
         demanded: float = kp * self._error() + damping + self._integral
         return demanded
 
@@ -79,8 +101,21 @@ class AxisHold(Sampled):
         """Return Kp, Kd and Ki."""
         w, zeta, sigma = self.natural_frequency, self.damping_ratio, self.integral_pole
         m, _, _ = self._axis()
-        kp = m * (w * w + 2.0 * zeta * w * sigma)
-        return kp, m * (2.0 * zeta * w + sigma), m * w * w * sigma
+        own = self.damping_rate * self._damping()
+        kp = m * (w * w + 2.0 * zeta * w * sigma) + own
+        return kp, m * (2.0 * zeta * w + sigma), m * w * w * sigma + own * sigma
+
+    def _damping(self) -> float:
+        """Return D, the vehicle's own damping at its speed."""
+        return self.damping + self.damping_per_speed * abs(self._estimated_speed())
+
+    def _estimated_speed(self) -> float:
+        """Return the speed ahead as estimated from the surge force."""
+        share = min(max(self.surge / self.full_surge, -1.0), 1.0)
+        goal = self.full_speed * math.copysign(math.sqrt(abs(share)), share)
+        kept = math.exp(-self.period / self.speed_lag) if self.speed_lag else 0.0
+        estimated: float = goal + (self._speed - goal) * kept
+        return estimated
 
     def _limited(self, demand: float) -> float:
         _, most, _ = self._axis()

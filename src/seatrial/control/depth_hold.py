@@ -18,21 +18,26 @@ class DepthHold(AxisHold):
     Defaults: mass with added mass of the VideoRay Pro 4, and four fifths of its vertical thrust.
     """
 
-    exercised: ClassVar = {"capacity": 1e12, "rate_limit": 1e9}
+    exercised: ClassVar = {"capacity": 1e12, "rate_limit": 1e9, "damping_per_speed": 0.7}
 
     mass = Parameter(10.45, "kg", "mass with added mass in heave", min=1e-9)
     capacity = Parameter(20.0, "N", "largest force", min=0.0, tunable=True)
     rate_limit = Parameter(0.3, "m/s", "largest rate of the target", min=1e-9, tunable=True)
+    damping = Parameter(0.0, "N.s/m", "damping in heave at rest", min=0.0, tunable=True)
+    damping_per_speed = Parameter(
+        0.0, "N.s2/m2", "damping in heave per speed ahead", min=0.0, tunable=True
+    )
 
     depth_wanted = Input("m", "depth to hold, positive down")
     depth = Input("m", "measured depth, positive down")
 
     heave = Output("N", "heave force asked of the thrusters, positive down")
 
-    feedthrough: ClassVar = {"heave": ("depth_wanted", "depth")}
+    feedthrough: ClassVar = {"heave": ("depth_wanted", "depth", "surge")}
     terminals: ClassVar = {
         "wanted": terminal("depth_wanted"),
         "sensors": terminal("depth"),
+        "demanded": terminal("surge"),
         "held": terminal("heave"),
     }
 

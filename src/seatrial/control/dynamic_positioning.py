@@ -7,12 +7,13 @@ from typing import ClassVar
 
 from ..component import Input, Output, Parameter, terminal
 from ..sampled import Sampled
+from .wave_filter import WaveFiltered, unwrapped
 
 _UNITS = ("N", "N", "N.m")
 _Three = list[float]
 
 
-class DynamicPositioning(Sampled):
+class DynamicPositioning(WaveFiltered, Sampled):
     """PID control of position and heading with surge force, sway force and yaw moment.
 
     With e the error of position, station - position, turned into body axes, and of heading,
@@ -40,13 +41,16 @@ class DynamicPositioning(Sampled):
     then answer with T_r, as far as their capacity goes. A lag left over costs damping: with
     zeta = 1 and w T_r = 0.35 the least damping ratio is 0.5.
 
+    With ``wave_frequency`` the measured position, heading, velocity and rate go through a notch
+    (`WaveFiltered`), so that thrusters do not answer what waves do.
+
     Inputs: position and station in {n} (x north, y east), m; headings rad clockwise from
     north, any number of turns; velocity in body axes as a Doppler log or an observer gives it,
     m/s; rates rad/s. ``demand`` in body axes, N and N.m about the body origin, the moment
     positive to starboard.
 
     Defaults: masses with added mass of the ship of source 003, and what it calls 100 % as
-    capacity. Coupling of sway and yaw, Coriolis forces and wave filtering are left out.
+    capacity. Coupling of sway and yaw and Coriolis forces are left out.
     """
 
     exercised: ClassVar = {"capacity": [1e12, 1e12, 1e12], "thruster_time_constant": 5.0}
@@ -90,6 +94,9 @@ class DynamicPositioning(Sampled):
         self._gains = [_gains(*axis) for axis in axes]
         self._learnt_ned = [0.0, 0.0, 0.0]
         self._force = [0.0, 0.0, 0.0]
+        self.prepare_filter()
+        # The heading counts turns from the one at the start.
+        self._motion = [self.settled(value) for value in self._measured(self.attitude[2])]
 
     def sample(self, t: float, k: int) -> None:
         """Command the thrusters."""
@@ -112,10 +119,31 @@ class DynamicPositioning(Sampled):
             kept = math.exp(-self.period / self.thruster_time_constant)
             demands = zip(self._demanded(given), self._force, strict=True)
             self._force = [demand + (force - demand) * kept for demand, force in demands]
+        if self.wave_frequency > 0.0:
+            measured = self._measured(self._motion[2][2])
+            self._motion = [
+                self.advanced(state, value)
+                for state, value in zip(self._motion, measured, strict=True)
+            ]
+
+    def _measured(self, near: float) -> list[float]:
+        """Return position and heading, with turns counted to ``near``, and their velocities."""
+        (x, y, _z), psi, (u, v, _w) = self.position, self.attitude[2], self.velocity
+        return [x, y, unwrapped(psi, near), u, v, self.rates[2]]
+
+    def _seen(self) -> list[float]:
+        """Return the same without what waves do."""
+        if not self.wave_frequency > 0.0:
+            (x, y, _z), psi, (u, v, _w) = self.position, self.attitude[2], self.velocity
+            return [x, y, psi, u, v, self.rates[2]]
+        measured = self._measured(self._motion[2][2])
+        return [
+            self.filtered(state, value) for state, value in zip(self._motion, measured, strict=True)
+        ]
 
     def _error(self) -> _Three:
         """Return the error in body axes: m, m, rad."""
-        (north, east), (x, y, _z), psi = self.station, self.position, self.attitude[2]
+        (north, east), (x, y, psi) = self.station, self._seen()[:3]
         heading_error = math.remainder(self.station_heading - psi, math.tau)
         return _turned([north - x, east - y, heading_error], -psi)
 
@@ -127,7 +155,7 @@ class DynamicPositioning(Sampled):
 
     def _wanted(self) -> _Three:
         """Return tau before it is held to the capacity."""
-        speeds = [self.velocity[0], self.velocity[1], self.rates[2]]
+        speeds = self._seen()[3:]
         learnt = _turned(self._learnt_ned, -self.attitude[2])
         axes = zip(self._gains, self._stiffness()[1], speeds, learnt, strict=True)
         return [push - kd * speed + i for (_kp, kd, _ki), push, speed, i in axes]

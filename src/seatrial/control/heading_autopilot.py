@@ -7,9 +7,10 @@ from typing import ClassVar
 
 from ..component import Input, Output, Parameter, terminal
 from ..sampled import Sampled
+from .wave_filter import WaveFiltered, unwrapped
 
 
-class HeadingAutopilot(Sampled):
+class HeadingAutopilot(WaveFiltered, Sampled):
     """PID control of the heading: delta = Kp e + Kd e' + delta_I (source 002, eqs 8 and 9).
 
     e = heading - reference, wrapped to +-pi; e' = yaw_rate - reference_rate. With the source's
@@ -21,6 +22,10 @@ class HeadingAutopilot(Sampled):
     Sign: a positive rudder turns to port, and a positive e is a ship too far to starboard, so
     that positive gains are negative feedback.
 
+    With ``wave_frequency`` the measured heading and rate go through a notch (`WaveFiltered`), so
+    that the rudder does not answer what waves do; its lag costs phase margin, about
+    2 w_c/``wave_frequency`` rad at a crossover w_c. ``error`` is of the heading as measured.
+
     Angles rad, clockwise from north, any number of turns; rates rad/s, to starboard positive.
     ``reference_rate`` is 0 unless a reference model is connected (see `HeadingReference`).
 
@@ -28,7 +33,7 @@ class HeadingAutopilot(Sampled):
     T_d = 1.25379 with the rudder's effect in B as it must be (docs/vehicles/mariner.md).
     """
 
-    exercised: ClassVar = {"rudder_limit": 100.0, "integral_gain": 0.1}
+    exercised: ClassVar = {"rudder_limit": 100.0, "integral_gain": 0.1, "wave_frequency": 0.8}
 
     period = Parameter(0.1, "s", "sample period", min=1e-6)
     proportional_gain = Parameter(0.860783, "1", "Kp", min=1e-9, tunable=True)
@@ -57,8 +62,11 @@ class HeadingAutopilot(Sampled):
     }
 
     def reset(self, t: float) -> None:
-        """Start with no integral."""
+        """Start with no integral, and a filter that has been at the heading for long."""
         self._integral = 0.0
+        self.prepare_filter()
+        self._heading = self.settled(self.heading)
+        self._rate = self.settled(self.yaw_rate)
 
     def sample(self, t: float, k: int) -> None:
         """Command the rudder."""
@@ -70,14 +78,25 @@ class HeadingAutopilot(Sampled):
         wanted = self._wanted()
         cut_off = (self._limited(wanted) - wanted) / self.proportional_gain
         self._integral += self.period * self.integral_gain * (self._error() + cut_off)
+        if self.wave_frequency > 0.0:
+            self._heading = self.advanced(self._heading, self._unwrapped())
+            self._rate = self.advanced(self._rate, self.yaw_rate)
+
+    def _unwrapped(self) -> float:
+        return unwrapped(self.heading, self._heading[2])
 
     def _error(self) -> float:
         return math.remainder(self.heading - self.reference, math.tau)
 
     def _wanted(self) -> float:
+        error, rate = self._error(), self.yaw_rate
+        if self.wave_frequency > 0.0:
+            left = self.filtered(self._heading, self._unwrapped())
+            error = math.remainder(left - self.reference, math.tau)
+            rate = self.filtered(self._rate, rate)
         wanted: float = (
-            self.proportional_gain * self._error()
-            + self.derivative_gain * (self.yaw_rate - self.reference_rate)
+            self.proportional_gain * error
+            + self.derivative_gain * (rate - self.reference_rate)
             + self._integral
         )
         return wanted

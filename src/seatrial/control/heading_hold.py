@@ -19,7 +19,7 @@ class HeadingHold(AxisHold):
     thrusters have.
     """
 
-    exercised: ClassVar = {"capacity": 1e12, "rate_limit": 1e9}
+    exercised: ClassVar = {"capacity": 1e12, "rate_limit": 1e9, "damping_per_speed": 0.7}
 
     natural_frequency = Parameter(1.6, "rad/s", "w", min=1e-9, tunable=True)
     damping_ratio = Parameter(0.8, "1", "zeta", min=0.0, tunable=True)
@@ -28,16 +28,21 @@ class HeadingHold(AxisHold):
     inertia = Parameter(0.1338, "kg.m2", "inertia in yaw with added inertia", min=1e-9)
     capacity = Parameter(4.7, "N.m", "largest moment", min=0.0, tunable=True)
     rate_limit = Parameter(0.4, "rad/s", "largest rate of the target", min=1e-9, tunable=True)
+    damping = Parameter(0.0, "N.m.s/rad", "damping in yaw at rest", min=0.0, tunable=True)
+    damping_per_speed = Parameter(
+        0.0, "N.m.s2/(rad.m)", "damping in yaw per speed ahead", min=0.0, tunable=True
+    )
 
     heading_wanted = Input("rad", "heading to hold, clockwise from north")
     heading = Input("rad", "measured heading, clockwise from north")
 
     yaw_moment = Output("N.m", "yaw moment asked of the thrusters, positive to starboard")
 
-    feedthrough: ClassVar = {"yaw_moment": ("heading_wanted", "heading")}
+    feedthrough: ClassVar = {"yaw_moment": ("heading_wanted", "heading", "surge")}
     terminals: ClassVar = {
         "wanted": terminal("heading_wanted"),
         "sensors": terminal("heading"),
+        "demanded": terminal("surge"),
         "held": terminal("yaw_moment"),
     }
 

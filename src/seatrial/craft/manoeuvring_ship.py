@@ -11,7 +11,8 @@ import casadi as ca
 from ..component import Input, Parameter
 from ..errors import InputError
 from ..plant import State
-from .planar import ThreeDofCraft, attachment, kinematics, motion_outputs
+from .planar import ThreeDofCraft, attachment, carried, kinematics, motion_outputs, sea_load
+from .wave_hull import HullCoefficients
 
 _SURGE_TERMS = ("u", "uu", "uuu", "vv", "rr", "rv", "dd", "udd", "vd", "uvd")
 _SWAY_TERMS = (
@@ -56,8 +57,12 @@ class ManoeuvringShip(ThreeDofCraft):
     (d1 U^2 / L and d2 (U / L)^2 of dimensionless d1, d2). A tether or tow accelerates it by the
     dimensionless inertia above, times rho L^3 / 2; the linear model keeps its speed.
 
-    Not modelled: speed loss by waves, shallow water, roll; the engine (at ``speed`` thrust and
-    resistance balance, and the polynomial holds near it); rudder machinery, see `RudderMachine`.
+    In the sea of a trial u, v and r of the polynomials are those through the water; waves and
+    wind accelerate the ship as a tow does.
+
+    Not modelled: added resistance in waves, shallow water, roll; the engine (at ``speed`` thrust
+    and resistance balance, and the polynomial holds near it); rudder machinery, see
+    `RudderMachine`.
 
     Raises InputError at the start if the linear model starts at another speed, or the mass
     matrix of the cubic one is not of positive determinant.
@@ -117,13 +122,19 @@ class ManoeuvringShip(ThreeDofCraft):
             )
         super().start(t)
 
+    def wave_coefficients(self) -> tuple[HullCoefficients, float]:
+        """Return what the equations have of the hull, and the density of the water, kg/m3."""
+        scale = 0.5 * self.water_density * self.length**3
+        return HullCoefficients(sway=(-self.Y_vdot * scale, 0.0)), self.water_density
+
     def equations(
         self, x: SimpleNamespace, u: SimpleNamespace, p: SimpleNamespace
     ) -> tuple[Mapping[str, Any], Mapping[str, Any]]:
         """Return the derivatives of eta and nu, the motion and that of the attachment."""
         attached, pull = attachment(x, u, p)
-        nu_dot = (_linear if p.model == "linear" else _cubic)(x.nu, u.rudder, p)
-        nu_dot += ca.vertcat(0, u.disturbance) + _pulled(pull, p)
+        nu_r, carrying = carried(x.eta, x.nu, u)
+        nu_dot = (_linear if p.model == "linear" else _cubic)(nu_r, u.rudder, p) + carrying
+        nu_dot += ca.vertcat(0, u.disturbance) + _pulled(pull + sea_load(u), p)
         motion = {**motion_outputs(x.eta, x.nu, nu_dot), **attached}
         return {"eta": kinematics(x.eta, x.nu), "nu": nu_dot}, motion
 

@@ -9,21 +9,29 @@ Heave and pitch are left out: z = theta = 0, w = q = 0.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from types import SimpleNamespace
 from typing import Any, ClassVar
 
 import casadi as ca
 
 from ..component import Input, Parameter, Terms, terminal
-from ..plant import Plant, State
+from ..plant import State
 from ..ports import Output
+from ..sea.loads import Response
+from ..sea.numbers import GRAVITY
 from ..terminals import ATTACHMENT, MOTION
+from .seaway import Places, Seaway, WindySeaway
+from .wave_hull import HullCoefficients, WaveHull
 
 _NED = ("north", "east", "down")
 
 
-class PlanarCraft(Plant):
+class PlanarCraft(WaveHull, Seaway):
     """Base of craft in the horizontal plane: publishes their motion as sensors expect it.
+
+    The waves of a trial act by the loads on the hull's sections in the plane, its current on the
+    motion through the water (`carried`). Waves do not heave or pitch it.
 
     The subclass declares its states eta and nu, returns `motion_outputs` among its outputs and
     names in ``feedthrough`` the inputs that act on ``acceleration``.
@@ -58,9 +66,20 @@ class PlanarCraft(Plant):
 
     terminals: ClassVar = {"motion": MOTION, "attachment": ATTACHMENT}
 
+    def wave_response(self) -> Response | None:
+        """Return the loads of the waves by strips, with the craft's own coefficients."""
+        own, density = self.wave_coefficients()
+        return self.hull_loads(own, density, GRAVITY, None).forces
 
-class ThreeDofCraft(PlanarCraft):
+    def wave_coefficients(self) -> tuple[HullCoefficients, float]:
+        """Return what the equations have of the hull, and the density of the water, kg/m3."""
+        raise TypeError(f"{type(self).__name__} does not say what waves do to it")
+
+
+class ThreeDofCraft(WindySeaway, PlanarCraft):
     """Base of craft that stay upright: the states eta = (x, y, psi) and nu = (u, v, r)."""
+
+    places: ClassVar = Places(x=0, y=1, z=None, psi=2, u=3, v=4)
 
     eta = State(
         ("m", "m", "rad"),
@@ -92,6 +111,27 @@ class LoadedCraft(ThreeDofCraft):
 
 LOADS = (*LoadedCraft.force.names, *LoadedCraft.moment.names, "attachment_force")
 """Inputs of a `LoadedCraft` that act on its acceleration."""
+
+
+def carried(eta: Any, nu: Any, u: SimpleNamespace) -> tuple[Any, Any]:
+    """Return nu_r, ``nu`` = (u, v, r) through the water of a trial, and d(nu - nu_r)/dt.
+
+    The water moves with V in {n}, uniform over the craft: in {b} it turns with the craft,
+    d(R^T V)/dt = R^T V' - omega x R^T V.
+    """
+    if not hasattr(u, "water_velocity"):
+        return nu, ca.DM(3, 1)
+    into_body = horizontal_rotation(0, eta[2]).T
+    water, rate = into_body @ u.water_velocity[:2], into_body @ u.water_acceleration[:2]
+    turning = nu[2] * ca.vertcat(water[1], -water[0])
+    return nu - ca.vertcat(water, 0), ca.vertcat(rate + turning, 0)
+
+
+def sea_load(u: SimpleNamespace, rows: Sequence[int] = (0, 1, 5)) -> Any:
+    """Return ``rows`` of the loads X, Y, Z, K, M, N of waves and wind of a trial, N and N.m."""
+    if not hasattr(u, "wave_load"):
+        return ca.DM(len(rows), 1)
+    return (u.wave_load + u.wind_load)[list(rows)]
 
 
 def motion_outputs(eta: Any, nu: Any, nu_dot: Any) -> dict[str, Any]:

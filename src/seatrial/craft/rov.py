@@ -4,25 +4,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from functools import partial
 from types import SimpleNamespace
 from typing import Any, ClassVar
 
 import casadi as ca
 
-from ..component import Input, Parameter
+from ..component import Input, Parameter, Terminal
 from ..plant import State
 from ..ports import Output
 from ..terminals import MOTION
-from .six_dof import (
-    LOADS,
-    SixDofCraft,
-    attachment_motion,
-    external_load,
-    mass_matrix,
-    relative_acceleration,
-    submerged_restoring,
-)
-from .symbolic import euler_rate_matrix, rotation_matrix
+from ..thrusters import effect
+from .hydrodynamics import TERMS, read_terms
+from .propellers import Propellers, propellers
+from .six_dof import LOADS, SixDofCraft, six_dof_motion
 
 _NED = ("north", "east", "down")
 _EULER = ("phi", "theta", "psi")
@@ -30,8 +25,11 @@ _UVW = ("u", "v", "w")
 _PQR = ("p", "q", "r")
 
 
-class Rov(SixDofCraft):
-    """Submerged vehicle: M nu_r' + C(nu_r) nu_r + F_D(nu_r) + G(eta) = tau.
+_TERMS = {**TERMS, "propellers": propellers}
+
+
+class Rov(Propellers, SixDofCraft):
+    """Underwater vehicle: `SixDofCraft` with eta that counts turns, and a current that may change.
 
     Source 000, eqs 3.8 to 3.45, in the corrected form that docs/vehicles/videoray.md lists.
     eta = (x, y, z, phi, theta, psi): body origin in {n} (x north, y east, z down), m, and Euler
@@ -39,32 +37,40 @@ class Rov(SixDofCraft):
     angular rate, rad/s, in {b} (x bow, y starboard, z down). eta' = blkdiag(J1, J2) nu.
     Singular at theta = +-90 degrees.
 
-    **Water.** nu_r = nu - (J1^T v_c, 0) with v_c the ``current``, uniform. In body axes the
-    velocity of the water turns, so that
+    **Water.** ``current`` and its ``current_acceleration``, uniform in {n}; that the latter
+    carries the vehicle as it does the water is so for rho V = m with even density (3.34).
 
-        nu' = nu_r' + (-nu2 x (J1^T v_c) + J1^T v_c', 0)
-
-    which is exact for a steady current: the vehicle moves in it as in still water, carried
-    along. v_c' is ``current_acceleration``; with it the water's pressure gradient is taken to
-    carry the vehicle as it does the water, which is so for rho V = m with even density (3.34).
-
-    **Inertia and damping** as in `SixDofCraft`; F_D = D1 nu_r + D2 |nu_r| nu_r, axis by axis
-    (3.38).
-
-    **Restoring.** W = mass gravity at the CG, B = density gravity volume at the centre of
-    buoyancy; with f = J1^T (0, 0, 1), G = -((W - B) f, r_G x W f - r_B x B f) (3.25 to 3.28).
-    Roll and pitch are stable if the centre of buoyancy is above the CG (z_B < z_G).
-
-    **Loads**, tau, as in `SixDofCraft`: propulsion by terms of force and moment, the tether by
-    ``attachment_force``.
+    **Terms** (`hydrodynamics`), and ``propellers``; restoring is "submerged" or "floating", with
+    B = density gravity volume. Roll and pitch are stable if the centre of buoyancy is above the
+    CG (z_B < z_G). Propulsion acts by the thrusts of ``propellers`` or by terms of force and
+    moment, the tether by ``attachment_force``.
 
     ``attitude`` has phi and psi in (-pi, pi]; in eta they count turns, so that they do not
     jump.
 
-    Not modelled: the surface (a vehicle that comes above z = 0 keeps all of its buoyancy),
-    waves, bottom, lift, damping that couples axes, what the tether does beyond its force.
+    Not modelled: the bottom, what the tether does beyond its force; of a "submerged" vehicle the
+    surface; without ``hull-lift`` and ``point-drag`` the wake, which lets the Munk moment turn the
+    vehicle from 0.06 m/s on.
+
+    Raises InputError at the start for a propeller's direction that is neither zero nor of
+    length 1 within 1e-6.
     """
 
+    exercised: ClassVar = {
+        "terms": " ".join(_TERMS),
+        "restoring": "floating",
+        "propeller_direction_1": [1, 0, 0],
+    }
+
+    terms = Parameter(
+        "restoring coriolis damping",
+        "1",
+        "terms of the equations, by the names of seatrial.craft.hydrodynamics, with spaces",
+        check=partial(read_terms, known=_TERMS),
+    )
+    restoring = Parameter(
+        "submerged", "1", "form of the restoring forces", choices=("submerged", "floating")
+    )
     density = Parameter(1000.0, "kg/m3", "density of the water", min=0.0)
     volume = Parameter(0.001, "m3", "volume of the displaced water", min=0.0)
     center_of_buoyancy = Parameter(
@@ -96,39 +102,42 @@ class Rov(SixDofCraft):
         frame="b",
     )
 
-    terminals: ClassVar = {**SixDofCraft.terminals, "motion": MOTION}
-    feedthrough: ClassVar = {"acceleration": (*LOADS, "current", "current_acceleration")}
+    terminals: ClassVar = {
+        **SixDofCraft.terminals,
+        "motion": MOTION,
+        "thrusts": Terminal({axis: f"thrust.{axis}" for axis in Propellers.thrust.axes}),
+    }
+    feedthrough: ClassVar = {"acceleration": (*LOADS, "thrust", "current", "current_acceleration")}
+
+    def start(self, t: float) -> None:
+        """Start; raises InputError as the class says and as `SixDofCraft` does."""
+        directions = zip(self.propeller_position, self.propeller_direction, strict=True)
+        for number, (position, direction) in enumerate(directions, 1):
+            if any(direction):
+                effect(f"{self.name}.propeller_direction_{number}", position, direction)
+        super().start(t)
 
     def equations(
         self, x: SimpleNamespace, u: SimpleNamespace, p: SimpleNamespace
     ) -> tuple[Mapping[str, Any], Mapping[str, Any]]:
         """Return the derivatives of eta and nu, the motion and that of the attachment."""
-        euler, velocity, rates = x.eta[3:], x.nu[:3], x.nu[3:]
-        R = rotation_matrix(euler)
-        relative = velocity - R.T @ u.current
-        nu_r_dot = _relative_acceleration(R, ca.vertcat(relative, rates), u, p)
-        # dv/dt + omega x v, with d(R^T v_c)/dt = R^T v_c' - omega x (R^T v_c).
-        acceleration = nu_r_dot[:3] + ca.cross(rates, relative) + R.T @ u.current_acceleration
+        euler = x.eta[3:]
+        buoyancy = p.density * p.gravity * p.volume
+        p = SimpleNamespace(**vars(p), buoyancy=buoyancy)
+        changes, outputs = six_dof_motion(
+            x.eta[:3], euler, x.nu, u, p, u.current_acceleration, _TERMS
+        )
         derivatives = {
-            "eta": ca.vertcat(R @ velocity, euler_rate_matrix(euler) @ rates),
-            "nu": ca.vertcat(acceleration - ca.cross(rates, velocity), nu_r_dot[3:]),
+            "eta": ca.vertcat(changes.position, changes.attitude),
+            "nu": ca.vertcat(changes.velocity, changes.rates),
         }
         return derivatives, {
-            **attachment_motion(R, x.eta[:3], velocity, rates, p),
+            **outputs,
             "position": x.eta[:3],
             "attitude": ca.vertcat(_wrapped(euler[0]), euler[1], _wrapped(euler[2])),
-            "velocity": velocity,
-            "rates": rates,
-            "acceleration": acceleration,
+            "velocity": x.nu[:3],
+            "rates": x.nu[3:],
         }
-
-
-def _relative_acceleration(R: Any, nu_r: Any, u: SimpleNamespace, p: SimpleNamespace) -> Any:
-    """Return nu_r' (6,) under all loads, weight and buoyancy; R = J1."""
-    W, B = p.mass * p.gravity, p.density * p.gravity * p.volume
-    M = mass_matrix(p)
-    tau = external_load(R, u, p) + submerged_restoring(W, B, R[2, :].T, p)
-    return relative_acceleration(M, M @ nu_r, nu_r, tau, p)
 
 
 def _wrapped(angle: Any) -> Any:

@@ -23,7 +23,10 @@ from .planar import (
     kinematics,
     motion_outputs,
     planar_coriolis,
+    sea_load,
 )
+from .seaway import Places
+from .wave_hull import HullCoefficients
 
 _LOAD = {"axes": "XYKN"}
 _LOAD_UNITS = ("N", "N", "N.m", "N.m")
@@ -63,9 +66,14 @@ class Sailboat(PlanarCraft):
     ``apparent_wind`` is the flow at the centre of effort of a sail amidships: its speed and
     the direction it blows to, atan2(to starboard, to the bow).
 
-    Not modelled: heave, pitch, waves; the rate of the sail in its flow; what one foil's wake does
+    In the sea of a trial its current is added to ``current``, M R^T V' of the water that speeds
+    up and the loads of waves in surge, sway, roll and yaw to the right-hand side.
+
+    Not modelled: heave, pitch; the rate of the sail in its flow; what one foil's wake does
     to another; finite span; stall with memory; the righting moment of a real hull at large heel.
     """
+
+    places: ClassVar = Places(x=0, y=1, z=None, psi=3, u=4, v=5)
 
     mass = Parameter(1.0, "kg", "mass without added mass", min=0.0)
     inertia = Parameter((1.0, 1.0), "kg.m2", "inertia about the CG", axes=("xx", "zz"))
@@ -148,6 +156,11 @@ class Sailboat(PlanarCraft):
         require_positive_definite(self.name, self.mass_matrix(), ", ".join(_INERTIAS))
         super().start(t)
 
+    def wave_coefficients(self) -> tuple[HullCoefficients, float]:
+        """Return what the equations have of the hull, and the density of the water, kg/m3."""
+        own = HullCoefficients(sway=(-self.Y_vdot, -self.Y_v), roll=(-self.K_pdot, -self.K_p))
+        return own, self.water_density
+
     def mass_matrix(self) -> Vector:
         """Return M (4, 4), from the parameters as they are now; rows u, v, p, r."""
         numbers = SimpleNamespace(**{name: ca.DM(getattr(self, name)) for name in _INERTIAS})
@@ -191,7 +204,9 @@ class Sailboat(PlanarCraft):
     ) -> tuple[Mapping[str, Any], Mapping[str, Any]]:
         """Return the derivatives of eta and nu, motion, loads and apparent wind."""
         into_body = horizontal_rotation(x.eta[2], x.eta[3]).T
-        air, water = into_body @ u.wind, into_body @ u.current
+        at_sea = hasattr(u, "water_velocity")
+        current = u.current + u.water_velocity[:2] if at_sea else u.current
+        air, water = into_body @ u.wind, into_body @ current
         eta_dot = kinematics(x.eta, x.nu)
         nu_c = ca.vertcat(water, 0, 0)
         nu_c_dot = ca.jtimes(nu_c, x.eta, eta_dot)
@@ -204,7 +219,11 @@ class Sailboat(PlanarCraft):
             - _coriolis((M_A @ (x.nu - nu_c))[:2], x.nu - nu_c)
             + M_A @ nu_c_dot
             + pull
+            + sea_load(u, (0, 1, 3, 5))
         )
+        if at_sea:
+            rate = into_body @ u.water_acceleration[:2]
+            tau = tau + (_rigid_body(p) + M_A) @ ca.vertcat(rate, 0, 0)
         nu_dot = ca.ldl_solve(tau, *ca.ldl(_rigid_body(p) + M_A))
         a, b = ca.vertsplit(flow_at(_sail_place(0.0, p), air, x.nu))
         apparent_wind = ca.vertcat(ca.sqrt(a * a + b * b), ca.atan2(b, a))

@@ -1,4 +1,4 @@
-"""Base of craft in six degrees of freedom: inertia, damping, motion of the water.
+"""Base of craft in six degrees of freedom: inertia, motion of the water, sum of the terms.
 
 Frames: {n} x north, y east, z down; {b} x bow, y starboard, z down. nu = (u, v, w, p, q, r):
 velocity of the body origin over ground, m/s, and angular rate, rad/s, in body axes. Loads are
@@ -7,6 +7,7 @@ forces (N) and moments about the body origin (N.m), in body axes.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from types import SimpleNamespace
 from typing import Any, ClassVar
 
@@ -15,16 +16,23 @@ import numpy as np
 
 from ..component import Input, Parameter, Terms, terminal
 from ..model import Vector
-from ..plant import Plant
 from ..ports import Output
+from ..sea.loads import Response
 from ..terminals import ATTACHMENT
+from .context import Context, wrench
+from .coupled_damping import CoupledDamping
+from .hull_lift import HullLift
+from .hull_points import HullPoints, wet
+from .hydrodynamics import TERMS, Term, read_terms, symmetric
 from .inertia import require_positive_definite
-from .symbolic import skew
+from .seaway import Places, Seaway
+from .symbolic import euler_rate_matrix, rotation_matrix, skew
 
 _NED = ("north", "east", "down")
 _TENSOR = ("xx", "yy", "zz", "xy", "xz", "yz")
 _UVW = ("u", "v", "w")
 _PQR = ("p", "q", "r")
+_STILL = ca.DM.zeros(3)
 _INERTIAS = (
     "mass",
     "inertia",
@@ -35,27 +43,44 @@ _INERTIAS = (
 )
 
 
-class SixDofCraft(Plant):
-    """Base of craft in six degrees of freedom: M nu_r' + C(nu_r) nu_r + D(nu_r) nu_r = tau.
+class SixDofCraft(CoupledDamping, HullPoints, HullLift, Seaway):
+    """Base of craft in six degrees of freedom: M nu_r' = tau + the terms of `hydrodynamics`.
 
-    nu_r is nu less the velocity of the water in body axes. The subclass declares its states
-    and outputs and forms its equations from `mass_matrix`, `external_load`,
-    `relative_acceleration` and, if it is submerged, `submerged_restoring`; it publishes
-    `attachment_motion` and adds the terminal ``motion`` to ``terminals``.
+    nu_r is nu less the velocity of the water in body axes. ``terms`` names the terms that act;
+    their equations, sources and limits stand with each (`hydrodynamics`), their coefficients
+    are parameters here. The subclass declares its states and outputs, forms its equations by
+    `six_dof_motion` and adds the terminal ``motion`` to ``terminals``.
 
     **Inertia.** M = M_RB + M_A about the body origin, M_A = [[A, B], [B^T, J]] with positive
     entries for water that adds inertia (A_xx = -X_u', B_zq = -Z_q'). All inertia is in M: the
     water must not give back acceleration forces through an input.
-
-    **Damping.** D nu = (linear + quadratic |nu_r|) nu_r, axis by axis, coefficients >= 0.
 
     **Loads.** ``force`` and ``moment`` are sums of their terms, in body axes: forces act at the
     body origin, moments about it. A tether or a tow pulls with ``attachment_force`` f, {n}, at
     ``attachment_place`` r, body axes: (R^T f, r x R^T f). ``attachment_point`` and
     ``attachment_velocity`` are the place of that point, x + R r, and its velocity over ground,
     R (v + omega x r), both in {n}.
+
+    **Sea.** The waves and the current of a trial (`seaway`). A craft that is submerged or floats
+    by "floating" moves in water that moves: with its velocity and acceleration at the body
+    origin, the elevation above it, and rho V times the acceleration of the water at the centre
+    of buoyancy (Froude and Krylov).
     """
 
+    places: ClassVar = Places(x=0, y=1, z=2, psi=5, u=6, v=7)
+
+    terms = Parameter(
+        "restoring coriolis damping",
+        "1",
+        "terms of the equations, by the names of seatrial.craft.hydrodynamics, with spaces",
+        check=read_terms,
+    )
+    coriolis = Parameter(
+        "full",
+        "1",
+        "momentum in the Coriolis terms",
+        choices=("full", "diagonal", "without-munk"),
+    )
     mass = Parameter(1.0, "kg", "mass of the craft, without added mass", min=0.0)
     inertia = Parameter(
         (1.0, 1.0, 1.0, 0.0, 0.0, 0.0),
@@ -78,6 +103,9 @@ class SixDofCraft(Plant):
     quadratic_damping_moment = Parameter(
         0.0, "N.m.s2/rad2", "quadratic damping", axes=_PQR, min=0.0
     )
+    crossflow_length = Parameter(0.0, "m", "length of the hull in crossflow-drag", min=0.0)
+    crossflow_draught = Parameter(0.0, "m", "draught of the hull in crossflow-drag", min=0.0)
+    crossflow_coefficient = Parameter(0.0, "1", "drag coefficient in crossflow-drag", min=0.0)
     gravity = Parameter(9.81, "m/s2", "acceleration of gravity", min=0.0)
     attachment_place = Parameter(
         0.0, "m", "attachment of a tether or tow from the body origin, body axes", axes="xyz"
@@ -109,6 +137,10 @@ class SixDofCraft(Plant):
         )
         super().start(t)
 
+    def wave_response(self) -> Response | None:
+        """Return None: the water that moves is what such a craft meets of waves."""
+        return None
+
     def mass_matrix(self) -> Vector:
         """Return M (6, 6) about the body origin, from the parameters as they are now.
 
@@ -119,7 +151,7 @@ class SixDofCraft(Plant):
 
 
 LOADS = (*SixDofCraft.force.names, *SixDofCraft.moment.names, "attachment_force")
-"""Inputs of `external_load`."""
+"""Inputs of the loads from outside."""
 
 
 def external_load(R: Any, u: SimpleNamespace, p: SimpleNamespace) -> Any:
@@ -151,45 +183,74 @@ def mass_matrix(p: SimpleNamespace) -> Any:
     """Return M_RB + M_A (6, 6) about the body origin (Fossen), from CasADi numbers or symbols."""
     xx, yy, zz, xy, xz, yz = ca.vertsplit(p.inertia)
     S = skew(p.center_of_gravity)
-    about_origin = _tensor(ca.vertcat(xx, yy, zz, -xy, -xz, -yz)) - p.mass * S @ S
+    about_origin = symmetric(ca.vertcat(xx, yy, zz, -xy, -xz, -yz)) - p.mass * S @ S
     coupling = ca.reshape(p.added_coupling, 3, 3).T - p.mass * S
-    force = p.mass * ca.DM.eye(3) + _tensor(p.added_mass)
-    moment = about_origin + _tensor(p.added_inertia)
+    force = p.mass * ca.DM.eye(3) + symmetric(p.added_mass)
+    moment = about_origin + symmetric(p.added_inertia)
     return ca.vertcat(ca.horzcat(force, coupling), ca.horzcat(coupling.T, moment))
 
 
-def relative_acceleration(M: Any, h: Any, nu_r: Any, tau: Any, p: SimpleNamespace) -> Any:
-    """Return nu_r' (6,) of a craft with mass matrix M and momentum h under the load tau (6,).
+def six_dof_motion(
+    position: Any,
+    attitude: Any,
+    nu: Any,
+    u: SimpleNamespace,
+    p: SimpleNamespace,
+    water_acceleration: Any = _STILL,
+    known: Mapping[str, Term] = TERMS,
+) -> tuple[SimpleNamespace, dict[str, Any]]:
+    """Return the rates of change of the states, and the outputs of the acceleration and attachment.
 
-    M nu_r' = tau - C(nu_r) nu_r - D(nu_r) nu_r, with C from ``h``, D from the damping of ``p``.
+    ``position`` is the body origin in {n}, m, ``attitude`` the Euler angles, rad, ``nu`` as
+    above; ``water_acceleration`` is that of the current v_c in {n}, m/s2; ``known`` are the terms
+    that the craft may name. The rates are named
+    ``position``, ``attitude``, ``velocity`` and ``rates``.
+
+    With nu_r = nu - (R^T v_c, 0), uniform, d(R^T v_c)/dt = R^T v_c' - omega x (R^T v_c), so
+    that dv/dt + omega x v = dv_r/dt + omega x v_r + R^T v_c'. With v_c' the water's pressure
+    gradient is taken to carry the craft as it does the water.
+
+    At sea v_c has the velocity of waves and current too. As the craft meets it, that of the
+    current changes with the craft's depth, v_c' = a + dv_c/dz z'; the pressure gradient is of
+    rho V a alone, a the acceleration of the water where it is (see `_pressure_gradient`).
     """
-    linear = ca.vertcat(p.linear_damping_force, p.linear_damping_moment)
-    quadratic = ca.vertcat(p.quadratic_damping_force, p.quadratic_damping_moment)
-    damping = (linear + quadratic * ca.fabs(nu_r)) * nu_r
-    return ca.ldl_solve(tau - coriolis(h, nu_r) - damping, *ca.ldl(M))
+    R = rotation_matrix(attitude)
+    velocity, rates = nu[:3], nu[3:]
+    at_sea = hasattr(u, "water_velocity")
+    water, met = u.current, _STILL
+    if at_sea:
+        water = water + u.water_velocity
+        met = u.water_acceleration + ca.vertcat(u.water_shear * (R @ velocity)[2], 0)
+        water_acceleration = water_acceleration + met
+    relative = velocity - R.T @ water
+    nu_r = ca.vertcat(relative, rates)
+    M = mass_matrix(p)
+    context = Context(position, attitude, R, nu, nu_r, M, u, p)
+    tau = external_load(R, u, p)
+    for term in read_terms(p.terms, known):
+        tau = tau + term(context)
+    if at_sea and not p.restoring.startswith("surface"):
+        tau = tau + _pressure_gradient(context, R.T @ met, R.T @ u.water_acceleration)
+    nu_r_dot = ca.ldl_solve(tau, *ca.ldl(M))
+    acceleration = nu_r_dot[:3] + ca.cross(rates, relative) + R.T @ water_acceleration
+    changes = SimpleNamespace(
+        position=R @ velocity,
+        attitude=euler_rate_matrix(attitude) @ rates,
+        velocity=acceleration - ca.cross(rates, velocity),
+        rates=nu_r_dot[3:],
+    )
+    attached = attachment_motion(R, position, velocity, rates, p)
+    return changes, {**attached, "acceleration": acceleration}
 
 
-def coriolis(h: Any, nu: Any) -> Any:
-    """Return C(nu) nu (6,) of a CasADi momentum h = (h1, h2) and velocity nu = (v, omega).
+def _pressure_gradient(c: Context, met: Any, acceleration: Any) -> Any:
+    """Return rho V a at the centre of buoyancy, less m v_c' at the CG, which `M nu_r'` lacks.
 
-    C = [[0, -S(h1)], [-S(h1), -S(h2)]] (source 004, eq. 19; 000, eq. 3.24), that is omega x h1
-    (N) and omega x h2 + v x h1 (N.m).
+    ``met`` is v_c', ``acceleration`` a, both in {b}. They cancel for an even body that displaces
+    its mass and is in no shear.
     """
-    h1, h2, v, omega = h[:3], h[3:], nu[:3], nu[3:]
-    return ca.vertcat(ca.cross(omega, h1), ca.cross(omega, h2) + ca.cross(v, h1))
-
-
-def submerged_restoring(W: Any, B: Any, n: Any, p: SimpleNamespace) -> Any:
-    """Return the load (6,) of the weight W at the CG and the buoyancy B at its centre, N.
-
-    ``n`` is the vertical, downwards, in body axes: force (W - B) n, moment
-    (r_G W - r_B B) x n (Fossen; source 000, eqs 3.25 to 3.28, on the right-hand side).
-    """
-    weight, buoyancy = W * n, -B * n
-    moment = ca.cross(p.center_of_gravity, weight) + ca.cross(p.center_of_buoyancy, buoyancy)
-    return ca.vertcat(weight + buoyancy, moment)
-
-
-def _tensor(elements: Any) -> Any:
-    xx, yy, zz, xy, xz, yz = ca.vertsplit(elements)
-    return ca.vertcat(ca.horzcat(xx, xy, xz), ca.horzcat(xy, yy, yz), ca.horzcat(xz, yz, zz))
+    p = c.parameters
+    displaced = p.buoyancy / p.gravity * (wet(c) if c.is_floating else 1)
+    return wrench(displaced * acceleration, p.center_of_buoyancy) - wrench(
+        p.mass * met, p.center_of_gravity
+    )

@@ -10,7 +10,18 @@ import casadi as ca
 
 from ..component import Input, Parameter
 from ..errors import InputError
-from .planar import LOADS, LoadedCraft, attachment, kinematics, motion_outputs, planar_coriolis
+from ..sea.numbers import WATER_DENSITY
+from .planar import (
+    LOADS,
+    LoadedCraft,
+    attachment,
+    carried,
+    kinematics,
+    motion_outputs,
+    planar_coriolis,
+    sea_load,
+)
+from .wave_hull import HullCoefficients
 
 _MASSES = ("kg", "kg", "kg.m2")
 _DAMPINGS = ("N.s/m", "N.s/m", "N.m.s/rad")
@@ -37,8 +48,11 @@ class SurfaceVessel(LoadedCraft):
     (5.18). The source's control law has s = -1 (6.2, 6.3, 8.1), and its table 8.1 comes from a
     model that has it too; -1 is for that reproduction alone.
 
+    In the sea of a trial u, v and r of the right-hand sides are those through the water, and the
+    loads of waves and wind are added to X, Y and N.
+
     Not modelled: quadratic damping, coupling of sway and yaw by a centre of gravity off the
-    origin, current, lag and limits of the thrusters: a command beyond 1 gives more than E.
+    origin, lag and limits of the thrusters: a command beyond 1 gives more than E.
 
     Raises InputError at the start if ``yaw_coupling_sign`` is neither -1 nor 1.
     """
@@ -62,6 +76,10 @@ class SurfaceVessel(LoadedCraft):
             )
         super().start(t)
 
+    def wave_coefficients(self) -> tuple[HullCoefficients, float]:
+        """Return what the equations have of the hull, and the density of the water, kg/m3."""
+        return HullCoefficients(sway=(0.0, self.damping[1])), WATER_DENSITY
+
     def equations(
         self, x: SimpleNamespace, u: SimpleNamespace, p: SimpleNamespace
     ) -> tuple[Mapping[str, Any], Mapping[str, Any]]:
@@ -70,8 +88,10 @@ class SurfaceVessel(LoadedCraft):
         tau = ca.vertcat(first + second, 0, p.lever_arm * (first - second))
         attached, pull = attachment(x, u, p)
         load = ca.vertcat(LoadedCraft.force.total(u), LoadedCraft.moment.total(u)) + pull
+        load = load + sea_load(u)
+        nu_r, carrying = carried(x.eta, x.nu, u)
         signs = ca.vertcat(1, 1, p.yaw_coupling_sign)
-        coriolis = signs * planar_coriolis((p.mass * x.nu)[:2], x.nu)
-        nu_dot = (tau + load - p.damping * x.nu - coriolis) / p.mass
+        coriolis = signs * planar_coriolis((p.mass * nu_r)[:2], nu_r)
+        nu_dot = (tau + load - p.damping * nu_r - coriolis) / p.mass + carrying
         motion = {**motion_outputs(x.eta, x.nu, nu_dot), **attached}
         return {"eta": kinematics(x.eta, x.nu), "nu": nu_dot}, motion

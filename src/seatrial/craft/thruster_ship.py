@@ -11,8 +11,19 @@ import numpy as np
 
 from ..component import Parameter
 from ..model import Vector
+from ..sea.numbers import WATER_DENSITY
 from .inertia import require_positive_definite
-from .planar import LOADS, LoadedCraft, attachment, kinematics, motion_outputs, planar_coriolis
+from .planar import (
+    LOADS,
+    LoadedCraft,
+    attachment,
+    carried,
+    kinematics,
+    motion_outputs,
+    planar_coriolis,
+    sea_load,
+)
+from .wave_hull import HullCoefficients
 
 _INERTIAS = ("mass", "inertia", "center_of_gravity", "X_udot", "Y_vdot", "Y_rdot", "N_rdot")
 
@@ -39,8 +50,11 @@ class ThrusterShip(LoadedCraft):
     tau = (X, Y, N): sums of the terms of ``force`` and ``moment``, N and N.m about the body
     origin, in body axes: thrusters, an environmental load; and what a tether or tow does.
 
-    Not modelled: damping of any kind (nothing ever comes to rest by itself), wind, waves,
-    current, thrusters that interact.
+    In the sea of a trial nu in M nu' + C(nu) nu is that through the water, and the loads of waves
+    and wind are added to tau.
+
+    Not modelled: damping of any kind (nothing ever comes to rest by itself), thrusters that
+    interact.
     """
 
     max_step = Parameter(0.1, "s", "longest integration sub-step", min=1e-6)
@@ -60,6 +74,10 @@ class ThrusterShip(LoadedCraft):
         require_positive_definite(self.name, self.mass_matrix(), ", ".join(_INERTIAS))
         super().start(t)
 
+    def wave_coefficients(self) -> tuple[HullCoefficients, float]:
+        """Return what the equations have of the hull, and the density of the water, kg/m3."""
+        return HullCoefficients(sway=(-self.Y_vdot, 0.0)), WATER_DENSITY
+
     def mass_matrix(self) -> Vector:
         """Return M (3, 3) about the body origin, from the parameters as they are now.
 
@@ -75,7 +93,9 @@ class ThrusterShip(LoadedCraft):
         M = _mass_matrix(p)
         attached, pull = attachment(x, u, p)
         tau = ca.vertcat(LoadedCraft.force.total(u), LoadedCraft.moment.total(u)) + pull
-        nu_dot = ca.ldl_solve(tau - planar_coriolis((M @ x.nu)[:2], x.nu), *ca.ldl(M))
+        tau = tau + sea_load(u)
+        nu_r, carrying = carried(x.eta, x.nu, u)
+        nu_dot = ca.ldl_solve(tau - planar_coriolis((M @ nu_r)[:2], nu_r), *ca.ldl(M)) + carrying
         derivatives = {"eta": kinematics(x.eta, x.nu), "nu": nu_dot}
         motion = {**motion_outputs(x.eta, x.nu, nu_dot), **attached}
         if p.model == "nonlinear":
