@@ -12,8 +12,8 @@ from seatrial.devices.compass import Compass
 from seatrial.devices.depth import Depth
 from seatrial.devices.gnss import Gnss
 from seatrial.devices.imu import Imu
-from seatrial.devices.sensor import Measured
 
+from .ideal import ideal
 from .running import run, started
 
 DEG = math.radians(1.0)
@@ -21,12 +21,6 @@ angle = st.floats(-1.5, 1.5)
 numbers = st.floats(-10, 10)
 triples = st.tuples(numbers, numbers, numbers)
 attitudes = st.tuples(angle, angle, st.floats(-7, 7))
-
-
-def ideal(cls, **values):
-    """Return a sensor with every error of its data sheet at zero."""
-    errors = [f"{m.name}_{e}" for m in cls.measured for e in Measured.ERRORS]
-    return started(cls, **{**dict.fromkeys(errors, 0.0), "delay": 0.0, **values})
 
 
 def body_to_ned(attitude):
@@ -118,6 +112,7 @@ def test_mariners_rule(variation, magnetic):
 def test_gnss_reports_its_antenna(position, attitude, velocity, rates, antenna):
     gnss = ideal(
         Gnss,
+        reception="everywhere",
         position=position,
         attitude=attitude,
         velocity=velocity,

@@ -18,7 +18,7 @@ from .running import started
 G = 9.81
 SECTIONS = {
     vehicle: [s for s in load_profile(vehicle).sections() if s.startswith("sensors.")]
-    for vehicle in ("hydrone", "videoray", "gloria", "mariner")
+    for vehicle in ("hydrone", "videoray", "gloria", "mariner", "otter", "bluerov2")
 }
 EACH = [(vehicle, section) for vehicle, sections in SECTIONS.items() for section in sections]
 ERRORS = ("_noise", "_bias", "_instability", "_resolution", "delay", "dropout", "deviation")
@@ -39,6 +39,7 @@ def read(vehicle, section, motion, **inputs):
     cls = component_class(profile.tables(group)[name]["kind"])
     values = {**profile.parameters(section)}
     values |= {n: 0.0 for n in cls.ports if n.endswith(ERRORS) or n in ("place", "antenna")}
+    values |= {"reception": "everywhere"} if "reception" in cls.ports else {}
     values |= {name: motion[name] for name in cls.terminals["motion"].members}
     sensor = started(cls, **values, **{n: v for n, v in inputs.items() if n in cls.ports})
     return {port.name: np.array(sensor.get(port.name)) for port in sensor.measured}
@@ -64,6 +65,10 @@ TURNS = {
     ),
     "videoray": lambda: turn(
         "rov", "videoray", 40.0, force_1=[5, 0, 0.3], moment_1=[0, 0, 0.3], **{"eta_start.z": 2}
+    ),
+    "otter": lambda: turn("marine-craft", "otter", 60.0, force_1=[60, 0, 0], moment_1=[0, 0, 5]),
+    "bluerov2": lambda: turn(
+        "rov", "bluerov2", 10.0, force_1=[20, 0, 0], moment_1=[0, 0, 1], **{"eta_start.z": 5}
     ),
     "mariner": lambda: turn("manoeuvring-ship", "mariner", 400.0, rudder=-0.1),
     "gloria": lambda: turn("sailboat", "gloria", 1.0, rudder=-0.05, **{"eta_start.psi": 1, "nu_start.u": 1.5}),

@@ -15,16 +15,21 @@ from seatrial.craft.thruster_ship import ThrusterShip
 from seatrial.devices.ahrs import Ahrs
 from seatrial.devices.anemometer import Anemometer
 from seatrial.devices.compass import Compass
+from seatrial.devices.ctd import Ctd
 from seatrial.devices.depth import Depth
+from seatrial.devices.dvl import Dvl
+from seatrial.devices.echo_sounder import Altimeter, EchoSounder
 from seatrial.devices.force_actuator import ForceActuator
 from seatrial.devices.gnss import Gnss
 from seatrial.devices.imu import Imu
+from seatrial.devices.lbl import Lbl
 from seatrial.devices.propulsion import Propulsion
+from seatrial.devices.usbl import Usbl
 from seatrial.environment.downwash import Downwash
 from seatrial.environment.step_disturbance import StepDisturbance
 
 CRAFT = (MarineCraft, Rov, Sailboat, ManoeuvringShip, ThrusterShip, SurfaceVessel)
-SENSORS = (Ahrs, Anemometer, Compass, Depth, Gnss, Imu)
+SENSORS = (Ahrs, Altimeter, Anemometer, Compass, Ctd, Depth, Dvl, EchoSounder, Gnss, Imu, Lbl, Usbl)
 
 
 def port_of(cls: type[Component], terminal: str, member: str):

@@ -13,6 +13,7 @@ from .test_every_component import CLASSES, some_inputs
 HEADINGS = {
     *("heading", "psi", "course", "reference", "target"),
     *("heading_wanted", "measured_heading", "station_heading", "target_heading", "heading_start"),
+    "seabed_direction",
 }
 ERRORS = (
     *("_noise", "_instability", "_resolution", "_bias", "variation", "deviation"),
@@ -36,7 +37,9 @@ def headings(port):
 def is_horizontal(port):
     """Say if a port's first two values are north and east."""
     axes = tuple((port.axes or ())[:2])
-    return axes == ("north", "east") or (port.name == "position" and axes == ("x", "y"))
+    return axes == ("north", "east") or (
+        port.name in ("position", "station_position") and axes == ("x", "y")
+    )
 
 
 def turned(port, value, angle):
@@ -64,6 +67,8 @@ def answers(cls, angle, seed):
             settings[port.name] = [0.0] * port.size if port.axes else 0.0
         elif headings(port):
             settings[port.name] = turned(port, 1.0, angle)
+        elif port.name.startswith("transponder_"):
+            settings[port.name] = turned(port, settings.get(port.name, port.start), angle)
     component, rows = cls(cls.__name__), []
     for name, value in {**settings, **some_turned(cls, angle, 1000 * seed)}.items():
         component.set(name, value)
@@ -109,7 +114,7 @@ def test_all_with_a_heading_are_here():
         *("Ahrs", "Anemometer", "Compass", "Gnss", "SailControl", "SailingGuidance"),
         *("SailingHeadingPid", "SailingHeadingBackstepping", "SailingNavigation", "Guidance"),
         *("DynamicPositioning", "HeadingAutopilot", "HeadingReference", "HeadingHold"),
-        *("StationKeeping",),
+        *("StationKeeping", "Dvl", "Usbl"),
     }
 
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import ClassVar
 
 from ..component import Input, Parameter, terminal
 from ..craft.kinematics import cross, to_ned
-from .sensor import Measured, Sensor
+from .sensor import Measured, Sensor, Value
 
 _NED = ("north", "east", "down")
 
@@ -20,7 +21,9 @@ class Gnss(Sensor):
     with the errors of `Sensor` on each; ``antenna`` is the lever arm from the body origin in
     body axes (x bow, y starboard, z down), R the rotation body to NED. The receiver does not
     correct for the lever arm. Position on a flat earth: latitude and
-    longitude are for links to convert.
+    longitude are for links to convert. An antenna below the surface receives nothing:
+    measurements are lost. With ``reception`` = "everywhere" it is a fix of position and velocity
+    from elsewhere, which water does not hinder.
 
     Defaults: a single-frequency receiver as the u-blox NEO-M8 data sheet gives it: position
     accuracy 2.5 m CEP, that is 2.1 m per horizontal axis, nearly all of it slow (correlation
@@ -33,6 +36,7 @@ class Gnss(Sensor):
     period = Parameter(0.2, "s", "sample period", min=1e-6)
     delay = Parameter(0.15, "s", "time from measurement to output", min=0.0)
     correlation_time = Parameter(600.0, "s", "correlation time of the varying bias", min=1e-6)
+    reception = Parameter("air", "1", "where the antenna receives", choices=("air", "everywhere"))
     antenna = Parameter(0.0, "m", "antenna from the body origin, body axes", axes="xyz")
 
     position = Input("m", "body origin in north-east-down", axes="xyz", frame="n")
@@ -64,13 +68,17 @@ class Gnss(Sensor):
     }
     feedthrough: ClassVar = {
         "position_n": ("position", "attitude"),
-        "velocity_n": ("attitude", "velocity", "rates"),
+        "velocity_n": ("position", "attitude", "velocity", "rates"),
+        "valid": ("position", "attitude"),
+        "count": ("position", "attitude"),
     }
 
-    def measure(self) -> list[float]:
+    def measure(self) -> Sequence[Value]:
         """Return the antenna's position and velocity."""
         attitude, antenna = self.attitude, self.antenna
         arm = to_ned(attitude, antenna)
+        if self.reception == "air" and self.position[2] + arm[2] > 0.0:
+            return [None] * 6
         swing = cross(self.rates, antenna)
         velocity = to_ned(attitude, [v + s for v, s in zip(self.velocity, swing, strict=True)])
         return [*(p + a for p, a in zip(self.position, arm, strict=True)), *velocity]

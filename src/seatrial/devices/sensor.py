@@ -4,14 +4,42 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
 from ..component import NS, Noise, Output, Parameter
+from ..errors import InputError
 from ..sampled import Sampled
 from .fault import SHARE_WRONG, SLOWER, Fallible
 
+Validity = Literal["", "whole", "axes"]
 
-class Measured(Output):
+Value = float | None
+"""A value of a measurement, None where there was nothing to measure."""
+
+
+class Derived(Output):
+    """An output that a sensor computes from a measurement, and publishes with it.
+
+    ``validity`` declares a further output ``NAME_valid``, for values that a measurement may
+    lack: "whole", one for all axes, "axes", one for each. A lacking value is shown as 0.
+    """
+
+    def __init__(
+        self, unit: str, description: str, *, validity: Validity = "", **options: Any
+    ) -> None:
+        super().__init__(unit, description, **options)
+        self.validity = validity
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        super().__set_name__(owner, name)
+        if self.validity:
+            axes = self.axes if self.validity == "axes" else None
+            output = Output("1", f"whether {name} is valid", type=bool, axes=axes)
+            output.__set_name__(owner, f"{name}_valid")
+            setattr(owner, f"{name}_valid", output)
+
+
+class Measured(Derived):
     """An output that is measured, and the errors its data sheet gives, per axis.
 
     Declares four parameters, each zero for an ideal sensor: ``NAME_noise``, standard deviation
@@ -34,8 +62,9 @@ class Measured(Output):
         resolution: Any = 0.0,
         axes: Sequence[str] | None = None,
         frame: str = "",
+        validity: Validity = "",
     ) -> None:
-        super().__init__(unit, description, axes=axes, frame=frame)
+        super().__init__(unit, description, validity=validity, axes=axes, frame=frame)
         self.low: list[float] = self._spread(span[0])
         self.high: list[float] = self._spread(span[1])
         self._errors = dict(zip(self.ERRORS, (noise, bias, instability, resolution), strict=True))
@@ -59,8 +88,8 @@ class Measured(Output):
 class Sensor(Noise, Fallible, Sampled):
     """Base of the sensors: every ``period`` a measurement, published ``delay`` later.
 
-    Whoever writes one declares `Measured` outputs and overrides `measure`. Measurement k, of
-    the true values x at t_k = t_0 + k period, is
+    Whoever writes one declares `Measured` outputs and overrides `measure`, and for `Derived`
+    outputs `derive`. Measurement k, of the true values x at t_k = t_0 + k period, is
 
         y_k = quantised(x + bias + b_k + noise w_k),
         b_k = a b_(k-1) + instability sqrt(1 - a^2) v_k,   a = exp(-period / correlation_time)
@@ -71,7 +100,8 @@ class Sensor(Noise, Fallible, Sampled):
     stays until the next; with no delay it appears at t_k itself. Times are counted in whole
     nanoseconds, so that what is published does not depend on the communication step.
 
-    With probability ``dropout`` a measurement is lost: outputs keep the one before.
+    With probability ``dropout`` a measurement is lost: outputs keep the one before. It is lost
+    too where there is nothing to measure; where a part of it lacks, the rest is published.
     ``count`` is the number of measurements published so far: new data has a new one; ``valid``
     is false before the first and while the last one due was lost.
 
@@ -96,6 +126,8 @@ class Sensor(Noise, Fallible, Sampled):
     """
 
     measured: ClassVar[tuple[Measured, ...]] = ()
+    published: ClassVar[tuple[Derived, ...]] = ()
+    """The measured outputs, then those that are computed from them."""
 
     delay = Parameter(0.0, "s", "time from measurement to output", min=0.0)
     dropout = Parameter(0.0, "1", "probability that a measurement is lost", min=0.0, max=1.0)
@@ -107,17 +139,30 @@ class Sensor(Noise, Fallible, Sampled):
     def __init_subclass__(cls, **options: Any) -> None:
         if "feedthrough" in vars(cls):  # a failure acts on everything that is published
             through = {name: (*inputs, "fault") for name, inputs in cls.feedthrough.items()}
-            cls.feedthrough = {**through, "valid": ("fault",), "count": ("fault",)}
+            cls.feedthrough = {"valid": ("fault",), "count": ("fault",), **through}
         super().__init_subclass__(**options)
         cls.measured = tuple(p for p in cls.ports.values() if isinstance(p, Measured))
+        derived = [p for p in cls.ports.values() if isinstance(p, Derived)]
+        cls.published = (*cls.measured, *(p for p in derived if not isinstance(p, Measured)))
 
-    def measure(self) -> list[float]:
-        """Return the true values of the measured outputs, one after the other, from the inputs."""
+    def measure(self) -> Sequence[Value]:
+        """Return the true values of the measured outputs, one after the other, from the inputs.
+
+        None stands for what cannot be measured now.
+        """
         raise TypeError(f"{type(self).__name__} does not define what it measures")
 
     def finish(self, values: list[float]) -> list[float]:
         """Return the values with errors as the sensor reports them (an angle wrapped)."""
         return values
+
+    def derive(self, values: Sequence[Value]) -> Sequence[Value]:
+        """Return the values of the `Derived` outputs from those that were measured."""
+        return ()
+
+    def travel_ns(self) -> int:
+        """Return the time that a measurement now takes before its ``delay`` begins, ns."""
+        return 0
 
     # ------------------------------------------------------------------ running
 
@@ -132,7 +177,7 @@ class Sensor(Noise, Fallible, Sampled):
         self._high = [v for port in self.measured for v in port.high]
         self._kept = math.exp(-self.period / self.correlation_time)
         self._count, self._arrived = 0, False
-        self._last = [0.0] * len(self._bias)
+        self._last: list[Value] = [None] * sum(port.size for port in self.published)
         self._shown: list[Any] = [self._last, 0, False]
         self._queue: list[list[Any]] = []
         self._draw(0)
@@ -187,10 +232,10 @@ class Sensor(Noise, Fallible, Sampled):
 
     def _late_ns(self) -> int:
         """Return the time from a measurement now to its output, ns."""
-        late_ns: int = self._delay_ns
+        late_ns: int = self._delay_ns + self.travel_ns()
         return late_ns + (SLOWER * self._period_ns if self.fault == "delayed" else 0)
 
-    def _measurement(self, k: int) -> tuple[list[float], int, bool]:
+    def _measurement(self, k: int) -> tuple[list[Value], int, bool]:
         """Return the values, the count and whether it arrives, of measurement ``k`` now."""
         fault = self.failure()
         if fault == "slow" and k % SLOWER:
@@ -199,12 +244,17 @@ class Sensor(Noise, Fallible, Sampled):
             return self._last, self._count, False
         if fault == "stuck":
             return self._last, self._count + 1, True
-        values = self._garbage(k) if fault == "garbage" else self._noisy()
+        found = self._garbage(k) if fault == "garbage" else self._noisy()
+        if all(y is None for y in found):
+            return self._last, self._count, False
+        values = [0.0 if y is None else y for y in found]
         if fault == "wrong":
             ends = zip(values, self._low, self._high, strict=True)
             values = [y + SHARE_WRONG * (high - low) for y, low, high in ends]
         steps = zip(values, self._resolution, strict=True)
-        return self.finish([_quantised(y, step) for y, step in steps]), self._count + 1, True
+        finished = self.finish([_quantised(y, step) for y, step in steps])
+        measured = [None if x is None else y for x, y in zip(found, finished, strict=True)]
+        return [*measured, *self.derive(measured)], self._count + 1, True
 
     def _fails(self, fault: str, k: int) -> bool:
         """Return whether a failure loses measurement ``k``."""
@@ -212,22 +262,28 @@ class Sensor(Noise, Fallible, Sampled):
             return bool(self.generator(k, 1).random() < 0.5)
         return fault == "off" or (fault == "stuck" and not self._count)
 
-    def _garbage(self, k: int) -> list[float]:
+    def _garbage(self, k: int) -> Sequence[Value]:
         drawn: list[float] = self.generator(k, 1).uniform(self._low, self._high).tolist()
         return drawn
 
-    def _noisy(self) -> list[float]:
+    def _noisy(self) -> Sequence[Value]:
         return [
-            x + bias + walk + noise * white
+            None if x is None else x + bias + walk + noise * white
             for x, bias, walk, noise, white in zip(
                 self.measure(), self._bias, self._walk, self._noise, self._white, strict=True
             )
         ]
 
-    def _publish(self, values: list[float], count: int, valid: bool) -> None:
+    def _publish(self, values: list[Value], count: int, valid: bool) -> None:
         place = 0
-        for port in self.measured:
-            self.values[port.offset : port.offset + port.size] = values[place : place + port.size]
+        for port in self.published:
+            found = values[place : place + port.size]
+            shown = [0.0 if y is None else y for y in found]
+            self.values[port.offset : port.offset + port.size] = shown
+            if port.validity:
+                there: Any = [valid and y is not None for y in found]
+                whole = port.validity == "whole"
+                setattr(self, f"{port.name}_valid", all(there) if whole else there)
             place += port.size
         self.count, self.valid = count, valid
 
@@ -246,3 +302,12 @@ def full_circle(angle: float) -> float:
 def half_circle(angle: float) -> float:
     """Return ``angle``, rad, in (-pi, pi]."""
     return math.pi - (math.pi - angle) % math.tau
+
+
+def require_unit(owner: str, name: str, vector: Sequence[float]) -> None:
+    """Raise InputError for a vector whose length is not 1 within 1e-6."""
+    length = math.hypot(*vector)
+    if abs(length - 1.0) > 1e-6:
+        raise InputError(
+            f"{owner}.{name} is {tuple(vector)}, of length {length:.6g}: give a unit vector"
+        )
