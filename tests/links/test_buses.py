@@ -18,13 +18,15 @@ def feeders(rig, **choices):
     return pairs
 
 
-@pytest.mark.parametrize("vehicle", ["hydrone", "videoray", "gloria", "mariner"])
+@pytest.mark.parametrize(
+    "vehicle", ["hydrone", "videoray", "gloria", "mariner", "otter", "bluerov2"]
+)
 def test_a_plotter_follows_and_commands_every_vehicle(vehicle):
     fed = feeders("sil", vehicle=vehicle, autopilot="nmea0183", step="100 ms")
     feed, guidance = "autopilot.instruments", "autopilot.pilot.guidance"
     assert fed[f"{feed}.heading"] == fed[f"{guidance}.heading"]
     assert fed[f"{feed}.position_n.north"] == "vehicle.{}.position_n.north".format(
-        "positioning" if vehicle == "videoray" else "gnss"
+        "positioning" if vehicle in ("videoray", "bluerov2") else "gnss"
     )
     assert fed[f"{guidance}.target_heading"] == f"{feed}.target_heading"
     assert fed[f"{guidance}.leg"] == "autopilot.course.leg"
@@ -39,9 +41,11 @@ def test_the_true_wind_of_a_feed_is_the_pilots_and_valid_with_the_anemometer():
     assert fed[f"{feed}.true_wind_valid"] == fed[f"{feed}.wind_valid"] == "vehicle.anemometer.valid"
 
 
-@pytest.mark.parametrize(("vehicle", "step"), [("hydrone", "10 ms"), ("mariner", "100 ms")])
+@pytest.mark.parametrize(
+    ("vehicle", "step"), [("hydrone", "10 ms"), ("mariner", "100 ms"), ("otter", "10 ms")]
+)
 def test_a_pilot_on_nmea2000_knows_what_its_node_has_received(vehicle, step):
-    bus_step = "20 ms" if vehicle == "hydrone" else step
+    bus_step = step if vehicle == "mariner" else "20 ms"
     choices = {"vehicle": vehicle, "autopilot": "nmea2000", "step": step, "bus_step": bus_step}
     fed = feeders("sil", **choices)
     node, guidance = "autopilot.node", "autopilot.pilot.guidance"
@@ -64,6 +68,8 @@ def test_actuators_on_a_bus_answer_what_they_do():
     fed = feeders("hydrone-dronecan")
     assert fed["bus.port_esc.speed.c1"] == "vehicle.port_thruster.speed"
     assert fed["node.command.c2"] == "starboard.share"
+    assert fed["bus.gnss_node.acceleration.z"] == "vehicle.imu.accelerometer.z"
+    assert fed["bus.gnss_node.rates.r"] == "vehicle.imu.gyro.z"
 
 
 @pytest.mark.parametrize("path", RIGS, ids=lambda path: path.stem)

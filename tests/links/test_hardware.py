@@ -30,8 +30,8 @@ from seatrial.links.hardware import (
     is_virtual_can,
 )
 from seatrial.links.own_terminals import is_own
+from tests.command import SEATRIAL
 
-SEATRIAL = str(Path(sys.executable).with_name("seatrial"))
 RIG = """\
 step = "10 ms"
 [components]
@@ -137,6 +137,7 @@ COMPONENTS = {
     "nmea0183": {"links": "udpout:192.0.2.1:10110"},
     "serial-gateway": {"links": "tcpin:0.0.0.0:0"},
     "can-gateway": {"link": "yd-raw-udp:192.0.2.1:2002"},
+    "ardupilot": {"link": "udpin:0.0.0.0:0"},
     "arduino": {"monitors": "0=tcpin:0.0.0.0:0"},
 }
 

@@ -8,6 +8,7 @@ import re
 from ..errors import InputError
 
 _VERSION = re.compile(r"\d{1,3}\.\d{1,3}\.\d{1,3}(-(dev|alpha|beta|rc))?")
+_EPOCH = datetime.datetime(1970, 1, 1, tzinfo=datetime.UTC)
 _NAME = re.compile(r"[!-~]{1,10}")
 
 
@@ -34,14 +35,22 @@ def version(text: str) -> str:
     return text
 
 
-def midnight_us(date: str) -> int:
-    """Return the Unix time of midnight UTC of a day, us; raise InputError."""
+def start_us(date: str) -> int:
+    """Return the Unix time of a day's midnight UTC, or of an instant, us; raise InputError."""
     try:
-        day = datetime.date.fromisoformat(date)
+        if "T" in date:
+            start = datetime.datetime.fromisoformat(date)
+        else:
+            midnight = datetime.time(tzinfo=datetime.UTC)
+            start = datetime.datetime.combine(datetime.date.fromisoformat(date), midnight)
     except ValueError:
-        raise InputError(f"date is {date!r}, a day like '2026-02-05' is needed") from None
-    midnight = datetime.datetime.combine(day, datetime.time(), datetime.UTC)
-    return round(midnight.timestamp() * 1e6)
+        start = datetime.datetime.min
+    if start.tzinfo is None:
+        raise InputError(
+            f"date is {date!r}, a day like '2026-02-05' is needed, or an instant like "
+            "'2026-02-05T12:00:00Z'"
+        )
+    return (start - _EPOCH) // datetime.timedelta(microseconds=1)
 
 
 def value_names(text: str, most: int) -> list[str]:

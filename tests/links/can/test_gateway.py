@@ -177,7 +177,9 @@ def test_socketcands_words_that_python_can_does_not_have():
         connection, file = text_client(served)
         with connection, file:
             assert until(file, b">") == "< hi >"
-            file.write(b"< open vcan0 >")
+            file.write(b"< send 123 0 >")  # there is no bus yet
+            assert until(file, b">") == "< error unknown command >"
+            file.write(b"< open can0 >")
             assert until(file, b">") == "< ok >"
             file.write(b"< rawmode >")
             assert until(file, b">") == "< ok >"
@@ -205,6 +207,64 @@ def test_socketcands_words_that_python_can_does_not_have():
             Frame(0x1AAAAAAA, b"\x01\xf1", True),
             Frame(0x1F334455, extended=True, remote=True, requested=3),
         ]
+
+
+def test_socketcands_unknown_bus_is_refused_and_the_connection_ended():
+    """As state_nobus.c has it; python-can's client raises."""
+    with Served("socketcand:127.0.0.1:0") as served:
+        connection, file = text_client(served)
+        with connection, file:
+            assert until(file, b">") == "< hi >"
+            file.write(b"< open vcan7 >< rawmode >")
+            assert file.read() == b"< error could not open bus >"
+        host, _, port = served.at.removeprefix("socketcand:").partition(":")
+        with pytest.raises(can.CanError, match="could not open bus"):
+            can.Bus("vcan7", "socketcand", host=host, port=int(port), ignore_config=True)
+        served.wait(lambda: served.gateway.get("clients") == 0)
+
+
+def test_socketcands_subscriptions():
+    """As in the mode BCM: the identifiers subscribed to alone, bytes with spaces (state_bcm.c)."""
+    with Served("socketcand:127.0.0.1:0") as served:
+        connection, file = text_client(served)
+        with connection, file:
+            file.write(b"< open can0 >< subscribe 0 0 123 >< subscribe 600 0 00000456 >< echo >")
+            assert until(file, b"echo >") == "< hi >< ok >< echo >"
+            other, slow = Frame(0x124), [Frame(0x456, bytes([n]), True) for n in range(3)]
+            served.send(other, Frame(0x123, b"\x01\xab"), *slow, Frame(0x456), Frame(0x123))
+            first = until(file, b">")
+            assert first.startswith("< frame 123 ")
+            assert first.endswith(" 01 AB  >")
+            assert until(file, b">").endswith(" 00  >")  # the others of it are too early
+            assert until(file, b">").startswith("< frame 123 ")
+            file.write(b"< unsubscribe 123 >< send 321 1 7 >< subscribe 0 >< echo >")
+            assert until(file, b"echo >") == "< error unknown command >< echo >"
+            served.wait(lambda: len(served.received) == 1)
+            file.write(b"< subscribe 0 200000 00000456 >< echo >")
+            assert until(file, b"echo >") == "< echo >"
+            served.send(Frame(0x123), *slow)
+            assert until(file, b">").endswith(" 00  >")
+            assert until(file, b">").endswith(" 02  >")  # the newest, when its time has come
+
+
+def test_socketcands_statistics():
+    """``< stat rbytes rpackets tbytes tpackets >`` at the interval, in the control mode alone."""
+    with Served("socketcand:127.0.0.1:0") as served:
+        connection, file = text_client(served)
+        with connection, file:
+            file.write(b"< open can0 >< send 321 3 1 2 3 >< statistics 10 >< controlmode >")
+            assert until(file, b"< ok >< error unknown command >< ok >")
+            served.send(Frame(0x123, bytes(5)), Frame(0x124, bytes(2)))
+            served.wait(lambda: served.gateway.get("frames_out") == 2)
+            for wrong in (b"-1", b"x", b"9" * 400):
+                file.write(b"< statistics " + wrong + b" >")
+                assert until(file, b">") == "< error unknown command >"
+            file.write(b"< statistics 10 >")
+            assert [until(file, b">") for _ in range(3)] == ["< stat 7 2 3 1 >"] * 3
+            file.write(b"< statistics 0 >< bcmmode >")
+            assert until(file, b"ok >").endswith("< ok >")
+            file.write(b"< echo >")
+            assert until(file, b">") == "< echo >"
 
 
 def test_an_adapter_answers_every_command():
@@ -240,6 +300,9 @@ def test_an_adapter_answers_every_command():
                 "t1239112233445566778899",
                 "T200000000",
                 "?",
+                "S9",
+                "S",
+                "S88",
             ):
                 assert answer(wrong) == "\a"
             served.send(Frame(0x321, b"\xab"))
@@ -357,7 +420,11 @@ def test_no_text_whatsoever_breaks_a_gateway(kind, data):
         b" 8",
         b"fdsend",
         b"sendrtr",
-        b"open x",
+        b"< open can0 >",
+        b"< rawmode >",
+        b"< controlmode >",
+        b"statistics",
+        b"subscribe",
         b"\r",
         b"O\r",
         b"t1232",

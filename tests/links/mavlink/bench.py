@@ -36,13 +36,11 @@ class RecordingTransport:
 
     def take(self, kind=None, link=...):
         """Return and forget messages, of one kind, over one link."""
-        found = [
-            (to, m)
-            for to, m in self.sent
-            if kind in (None, m.get_type()) and (link is ... or to == link)
-        ]
-        self.sent = [each for each in self.sent if each not in found]
-        return [m for _, m in found]
+        found, self.sent, before = [], [], self.sent
+        for to, message in before:
+            asked = kind in (None, message.get_type()) and (link is ... or to == link)
+            (found if asked else self.sent).append((to, message))
+        return [message for _, message in found]
 
 
 class Bench:
@@ -59,6 +57,7 @@ class Bench:
         valid=True,
         plans=None,
         failures=(),
+        log=lambda: None,
         **settings,
     ):
         kind = dialect(autopilot, submerged=submerged)
@@ -78,6 +77,7 @@ class Bench:
             plans,
             clock=lambda: self.now / self.pace,
             failures=failures,
+            log=log,
         )
 
     @property

@@ -2,7 +2,6 @@
 
 import pytest
 from pymavlink.dialects.v20 import all as mavlink
-from pymavlink.mavftp_op import FTP_OP, OP_Nack
 
 from seatrial.links.mavlink.transport import Sender
 
@@ -150,20 +149,6 @@ def test_no_key_is_taken_over_a_link():
     bench.receive(mavlink.MAVLink_setup_signing_message(7, 1, [1] * 32, 1))
     bench.tick()
     assert "signing_key_file" in "".join(m.text for m in bench.transport.take("STATUSTEXT"))
-
-
-@pytest.mark.parametrize("opcode", [1, 2, 3, 4, 15])
-def test_there_are_no_files(opcode):
-    bench = Bench()
-    asked = FTP_OP(65535, 9, opcode, 3, 0, 0, 17, b"@SY").pack()
-    payload = list(asked.ljust(251, b"\0"))
-    bench.receive(mavlink.MAVLink_file_transfer_protocol_message(0, 7, 1, payload))
-    (answer,) = bench.transport.take("FILE_TRANSFER_PROTOCOL", STATION.link)
-    assert (answer.target_system, answer.target_component) == (STATION.system, STATION.component)
-    refusal = FTP_OP(0, 9, OP_Nack, 1, opcode, 0, 0, bytes([UNKNOWN_COMMAND])).pack()
-    assert bytes(answer.payload) == refusal.ljust(251, b"\0")
-    bench.receive(answer)  # an answer gets none
-    assert bench.transport.take("FILE_TRANSFER_PROTOCOL") == []
 
 
 @pytest.mark.parametrize("number", [395, 397])  # COMPONENT_INFORMATION, COMPONENT_METADATA

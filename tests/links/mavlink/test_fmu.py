@@ -122,7 +122,7 @@ def test_it_says_that_it_cannot_be_rolled_back(fmu):
 @pytest.mark.interop
 def test_libcosim_runs_it(fmu, station):
     connection, url = station
-    reference = {v.name: v.valueReference for v in fmu.description.modelVariables}
+    reference = {v.name: v.reference for v in fmu.variables.values()}
     slave = {
         "name": "link",
         "path": str(fmu.path),

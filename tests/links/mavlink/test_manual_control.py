@@ -128,7 +128,87 @@ def test_manual_control_lost_in_another_mode_is_nothing():
 
 
 def test_the_newest_hand_wins():
-    bench = Bench()
+    bench = Bench(autopilot="px4")  # an ArduPilot has one
     bench.receive(manual(z=1000))
-    bench.receive(manual(z=-1000), OTHER_STATION)
+    bench.receive(manual(z=0), OTHER_STATION)
     assert bench.vehicle.manual == (-1.0, 0.0, 0.0, 0.0)
+
+
+def test_only_the_station_of_sysid_mygcs_steers_an_ardupilot():
+    bench = Bench()
+    for message in (manual(z=1000), override(c3=1900)):
+        bench.receive(message, OTHER_STATION)
+        assert bench.vehicle.manual == RELEASED
+    assert [t for t in bench.texts() if "SYSID_MYGCS" in t] == [
+        "System 250 may not steer: SYSID_MYGCS is 255"
+    ]
+    bench.parameters.put("SYSID_MYGCS", OTHER_STATION.system)
+    bench.receive(manual(z=1000), OTHER_STATION)
+    assert bench.vehicle.manual[0] == 1.0
+    px4 = Bench(autopilot="px4")
+    px4.receive(manual(z=1000), OTHER_STATION)
+    assert px4.vehicle.manual[0] == 1.0
+
+
+def press(bench, *buttons, **axes):
+    """Press buttons, held with the message, and let go of them."""
+    mask = sum(1 << button for button in buttons)
+    for held in (mask, mask, 0):
+        axis = {"x": 0, "y": 0, "z": 500, "r": 0, **axes}
+        bench.receive(mavlink.MAVLink_manual_control_message(7, *axis.values(), held))
+
+
+ARM, DISARM, SHIFT, MANUAL, DEPTH_HOLD = 6, 4, 5, 1, 2  # buttons, as ArduSub's defaults have them
+
+
+def test_the_pad_of_a_submarine_arms_and_changes_modes():
+    rov = Bench(submerged=True)
+    press(rov, MANUAL)
+    assert rov.vehicle.mode.name == "manual"
+    press(rov, ARM)
+    assert rov.vehicle.armed
+    press(rov, DEPTH_HOLD)
+    assert rov.vehicle.mode.name == "depth-hold"
+    press(rov, DISARM)
+    assert not rov.vehicle.armed
+
+
+def test_checks_and_refusals_are_those_of_commands():
+    rov = Bench(submerged=True)
+    rov.measure(heading_valid=False)
+    press(rov, ARM)
+    assert not rov.vehicle.armed
+    assert any("no heading" in text for text in rov.texts())
+    rov.parameters.put("BTN0_FUNCTION", 9)  # auto, without a mission
+    press(rov, 0)
+    assert any("no mission" in text for text in rov.texts())
+
+
+def test_a_button_has_another_function_with_the_shift_button():
+    rov = Bench(submerged=True)
+    rov.parameters.put("BTN2_SFUNCTION", 2)  # arms and disarms
+    mode = rov.vehicle.mode
+    press(rov, SHIFT, DEPTH_HOLD)
+    assert (rov.vehicle.armed, rov.vehicle.mode) == (True, mode)
+    press(rov, SHIFT, DEPTH_HOLD)
+    assert not rov.vehicle.armed
+
+
+def test_gain_goes_in_steps_and_stays_within_its_limits():
+    rov = Bench(submerged=True)
+    less, more = 12, 11
+    gains = []
+    for button in (less, less, less, less, more):
+        press(rov, button, x=1000)
+        gains.append(rov.vehicle.manual[0])
+    assert gains == pytest.approx([0.75, 0.5, 0.25, 0.25, 0.5])
+    assert "#Gain is 50%" in rov.texts()
+    assert rov.parameters.put("JS_GAIN_STEPS", 1) is None
+    press(rov, less, x=1000)
+    assert rov.vehicle.manual[0] == pytest.approx(0.5)
+
+
+def test_a_function_that_there_is_not_is_refused():
+    rov = Bench(submerged=True)
+    assert rov.parameters.put("BTN7_FUNCTION", 31).reason.startswith("one of 0, 1, 2")  # lights
+    assert "BTN0_FUNCTION" not in Bench().parameters

@@ -316,15 +316,81 @@ def test_home_is_moved_by_the_mission():
     assert boat.vehicle.home_n == pytest.approx((12.0, 5.0, 0.0), abs=0.01)
     boat.arrive()
     assert boat.vehicle.home_n == pytest.approx((40.0, 0.0, 0.0), abs=0.01)
-    assert "home cannot be moved" in "".join(boat.texts())  # to another ocean
+    assert "DO_SET_HOME failed" in "".join(boat.texts())  # to another ocean
 
 
-def test_what_is_not_known_is_skipped_and_reported_once():
-    boat = Mission(listed(one(112, 5.0, **DO), one(at=north_of(9)), one(JUMP, 1.0, 3.0, **DO)))
+DELAYED, SET_MODE, FENCE_ENABLE = 112, 176, 207
+
+
+@pytest.mark.parametrize(
+    ("item", "result"),
+    [
+        ((one(206, 10.0, **DO)), mavlink.MAV_MISSION_UNSUPPORTED),  # DO_SET_CAM_TRIGG_DIST
+        ((one(115, 90.0, **DO)), mavlink.MAV_MISSION_UNSUPPORTED),  # CONDITION_YAW
+        ((one(DELAYED, math.nan, **DO)), mavlink.MAV_MISSION_INVALID_PARAM1),
+        ((one(SET_MODE, 1.0, 99.0, **DO)), mavlink.MAV_MISSION_INVALID_PARAM2),
+        ((one(SET_MODE, 0.0, 4.0, **DO)), mavlink.MAV_MISSION_INVALID_PARAM1),
+        ((one(FENCE_ENABLE, 2.0, **DO)), mavlink.MAV_MISSION_INVALID_PARAM1),
+    ],
+)
+def test_what_is_not_carried_out_is_refused_at_upload(item, result):
+    boat = Bench()
+    assert upload(boat, listed(one(at=north_of(9)), item)) == result
+    assert any("item 2" in text for text in boat.texts())
+
+
+def test_what_follows_a_condition_waits_while_the_boat_goes_on():
+    boat = Mission(
+        listed(
+            one(DELAYED, 5.0, **DO),
+            one(SPEED, 1.0, 0.4, **DO),
+            one(at=north_of(9)),
+            one(DELAYED, 5.0, **DO),
+            one(SPEED, 1.0, 0.2, **DO),
+            one(at=north_of(19)),
+        )
+    )
     boat.go()
-    assert len(boat.ends()) == 4
-    skipped = [text for text in boat.texts() if "CONDITION_DELAY" in text]
-    assert len(skipped) == 1
+    assert (boat.current()[0], boat.leg.speed) == (3, 1.0)
+    boat.wait(4.9)
+    assert boat.leg.speed == 1.0
+    boat.wait(0.2)
+    assert boat.leg.speed == 0.4
+    assert boat.reached() == [1, 2]
+    boat.arrive()
+    boat.arrive()  # within the 5 s: what waited is dropped
+    assert boat.current()[1] == COMPLETE
+    assert any("item 5 dropped" in text for text in boat.texts())
+
+
+def test_what_waits_at_the_end_of_a_mission_is_still_done():
+    boat = Mission(listed(one(at=north_of(9)), one(DELAYED, 5.0, **DO), one(SPEED, 1, 0.4, **DO)))
+    boat.go()
+    boat.arrive()
+    assert boat.current()[1] == ACTIVE
+    boat.wait(5.1)
+    assert boat.current()[1] == COMPLETE
+    assert boat.reached() == [1, 2, 3]
+
+
+def test_a_mission_sets_a_mode_and_goes_on_after_it():
+    boat = Mission(listed(one(at=north_of(9)), one(SET_MODE, 1.0, 5.0, **DO), one(at=north_of(19))))
+    boat.go()
+    boat.arrive()
+    assert boat.vehicle.mode.name == "loiter"
+    assert boat.current() == (3, PAUSED)
+    boat.enter("auto")
+    boat.tick()
+    assert boat.leg.end[0] == pytest.approx(19.0, abs=0.01)
+
+
+def test_a_mission_switches_the_fence():
+    off, on = (one(FENCE_ENABLE, value, **DO) for value in (0.0, 1.0))
+    boat = Mission(listed(off, one(at=north_of(9)), on))
+    boat.go()
+    assert "Fence off" in boat.texts()
+    boat.arrive()
+    assert "Fence on" in boat.texts()
 
 
 # ---------------------------------------------------------------------- jumps

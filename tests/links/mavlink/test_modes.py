@@ -93,3 +93,28 @@ def test_px4_reads_main_and_sub_mode(main, sub, name):
 @pytest.mark.parametrize("main", [NAN, INF, -INF, -1.0, 99.0, 1e30, 2.0**32])
 def test_what_is_no_mode_is_none(autopilot, main):
     assert dialect(autopilot, submerged=False).by_command(main, 0.0) is None
+
+
+def test_modes_of_an_ardupilot_are_no_standard_ones():
+    # Stations would set a standard mode by a command that ArduPilots do not know.
+    for submerged in (False, True):
+        bench = Bench(submerged=submerged)
+        _, modes = bench.request(mavlink.MAVLINK_MSG_ID_AVAILABLE_MODES)
+        assert {m.standard_mode for m in modes} == {mavlink.MAV_STANDARD_MODE_NON_STANDARD}
+
+
+def test_standard_modes_of_a_px4_are_set():
+    bench = Bench(autopilot="px4", valid=True)
+    set_standard = mavlink.MAV_CMD_DO_SET_STANDARD_MODE
+    standard = mavlink.MAV_STANDARD_MODE_SAFE_RECOVERY
+    assert bench.command(set_standard, standard) == mavlink.MAV_RESULT_ACCEPTED
+    assert bench.vehicle.mode.name == "return"
+    for unknown in (0, 200, float("nan")):
+        assert bench.command(set_standard, unknown) == mavlink.MAV_RESULT_DENIED
+    assert bench.vehicle.mode.name == "return"
+
+
+def test_the_list_of_modes_is_said_to_stay():
+    bench = Bench()
+    bench.wait(11.0)
+    assert {m.seq for m in bench.transport.take("AVAILABLE_MODES_MONITOR", 0)} == {0}

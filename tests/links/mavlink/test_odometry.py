@@ -5,7 +5,7 @@ import math
 import pytest
 from pymavlink.dialects.v20 import all as mavlink
 
-from seatrial.links.mavlink.vehicle import Truth
+from seatrial.links.truth import Truth
 
 from .bench import ORIGIN, Bench
 

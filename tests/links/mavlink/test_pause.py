@@ -8,9 +8,10 @@ import pytest
 from pymavlink.dialects.v20 import all as mavlink
 
 from seatrial.errors import InputError
+from seatrial.links.interruption import Interruption
 from seatrial.links.mavlink.parameter_file import ParameterFile
 from seatrial.links.mavlink.parameters import vehicle_parameters
-from seatrial.links.mavlink.pause import POLL_S, Interruption, stand_still
+from seatrial.links.mavlink.pause import POLL_S, stand_still
 
 from .bench import Bench
 from .ground import WAYPOINT, item

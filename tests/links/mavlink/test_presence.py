@@ -67,8 +67,9 @@ def test_version_is_sent_on_request_to_the_requester(ask):
     bench = Bench()
     assert ask(bench) == mavlink.MAV_RESULT_ACCEPTED
     (version,) = bench.transport.take("AUTOPILOT_VERSION", STATION.link)
-    # Version 4.5.1-beta, a byte each, as MAVLink's FIRMWARE_VERSION_TYPE says.
-    assert version.flight_sw_version == 0x04050180
+    # Of an ArduPilot of a released version (255), a byte each; its own is 4.5.1-beta.
+    assert version.flight_sw_version == 0x040600FF
+    assert bytes(version.flight_custom_version) == b"4.5.1bet"
     assert version.uid == 12345
     wanted = (
         mavlink.MAV_PROTOCOL_CAPABILITY_MAVLINK2
@@ -76,6 +77,18 @@ def test_version_is_sent_on_request_to_the_requester(ask):
         | mavlink.MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_LOCAL_NED
     )
     assert version.capabilities & wanted == wanted
+
+
+def test_pages_of_stations_for_new_submarines_are_not_hidden():
+    version = Bench(submerged=True).one(CAPABILITIES)
+    # QGroundControl shows motors and frame from Sub 3.5.3 on.
+    assert version.flight_sw_version >> 8 >= 0x030503
+
+
+def test_a_px4_has_its_own_version_as_three_numbers():
+    version = Bench(autopilot="px4").one(CAPABILITIES)
+    assert version.flight_sw_version == 0x010F00FF
+    assert version.flight_custom_version[:3] == [1, 5, 4]
 
 
 @pytest.mark.parametrize("length", [1, 49, 50, 51, 99, 100, 101, 230])

@@ -17,7 +17,7 @@ from seatrial.links.mavlink.service_parameters import RATE, ParameterService
 from seatrial.links.mavlink.settings import Settings
 from seatrial.links.mavlink.vehicle import Identity, Vehicle
 
-from .bench import ORIGIN, OTHER_STATION, STATION, RecordingTransport
+from .bench import ORIGIN, OTHER_STATION, STATION, Bench, RecordingTransport
 
 BOAT = Identity(7, 1, mavlink.MAV_TYPE_SURFACE_BOAT, False, "4.5.1", 1, 0)
 COUNT = 120
@@ -301,3 +301,38 @@ def test_nothing_crashes_it(kind, name, value, number, index) -> None:
     bench.wait(0.02)
     for _, message in bench.transport.sent:
         assert message.get_type() in ("PARAM_VALUE", "PARAM_ERROR")
+
+
+def crc32_of_px4(data, state=0):
+    """CRC-32 bit by bit, reflected, without the inversions that are usual."""
+    for byte in data:
+        state ^= byte
+        for _ in range(8):
+            state = state >> 1 ^ 0xEDB88320 * (state & 1)
+    return state
+
+
+def test_a_px4_gives_its_hash_first_and_ends_the_list_of_who_has_it():
+    bench = Bench(autopilot="px4")
+    bench.transport.take()
+    bench.receive(mavlink.MAVLink_param_request_list_message(7, 1))
+    (first,) = bench.transport.take("PARAM_VALUE", STATION.link)
+    assert (first.param_id, first.param_index) == ("_HASH_CHECK", 65535)
+    table = bench.parameters
+    layouts = {mavlink.MAV_PARAM_TYPE_INT32: "<i", mavlink.MAV_PARAM_TYPE_REAL32: "<f"}
+    state = 0
+    for name in sorted(table.names):
+        value, layout = table[name], layouts[table.kind(name)]
+        data = struct.pack(layout, int(value) if layout == "<i" else value)
+        state = crc32_of_px4(name.encode() + data, state)
+    assert struct.pack("<f", first.param_value) == struct.pack("<I", state)
+    kind = mavlink.MAV_PARAM_TYPE_UINT32
+    known = mavlink.MAVLink_param_set_message(7, 1, b"_HASH_CHECK", first.param_value, kind)
+    bench.receive(known)
+    bench.wait(1.0)
+    assert bench.transport.take("PARAM_VALUE") == []
+    assert table.put("NAV_ACC_RAD", 9.0) is None
+    bench.receive(mavlink.MAVLink_param_request_list_message(7, 1))
+    bench.receive(known)  # of other values
+    bench.wait(1.0)
+    assert len(bench.transport.take("PARAM_VALUE", STATION.link)) == len(table.names) + 1

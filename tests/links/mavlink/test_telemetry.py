@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from pymavlink.dialects.v20 import all as mavlink
 from pymavlink.quaternion import Quaternion
 
-from seatrial.links.mavlink.vehicle import Target, Truth, Way
+from seatrial.links.mavlink.vehicle import Target, Way
+from seatrial.links.truth import Truth
 
 from .bench import ORIGIN, Bench
 

@@ -43,7 +43,7 @@ MISSION_ITEMS = listed(
     one(WAYPOINT, 2.5, 4.0, 0.0, NAN, at=(-31.7801234, -52.2605679), z=-3.25),
     one(SPEED, 1.0, 1.5, -1.0, frame=MISSION_FRAME, at=(0, 0)),
     one(WAYPOINT, at=north_of(20), frame=GLOBAL),
-    one(206, 5.0, at=(1e-7, 2e-7), frame=MISSION_FRAME),
+    one(112, 5.0, at=(1e-7, 2e-7), frame=MISSION_FRAME),
     one(JUMP, 1.0, 2.0, frame=MISSION_FRAME, at=(0, 0)),
 )
 FENCE_ITEMS = listed(*(one(5001, 3.0, at=place) for place in TRIANGLE), one(5004, 12.5), kind=FENCE)
@@ -375,7 +375,7 @@ def test_too_many_items(bench):
         (MISSION, [one(WAYPOINT, INFINITE)], BAD_P1),
         (MISSION, [one(WAYPOINT, 0.0, -INFINITE)], BAD_P2),
         (MISSION, [one(SPEED, 0.0, 0.0, INFINITE)], BAD_P3),
-        (MISSION, [one(206, 0.0, 0.0, 0.0, INFINITE)], BAD_P4),
+        (MISSION, [one(112, 0.0, 0.0, 0.0, INFINITE)], BAD_P4),
         (MISSION, [one(SPEED, z=INFINITE)], BAD_Z),
         (MISSION, [one(DELAY, -1.0)], BAD_P1),
         (MISSION, [one(DELAY, NAN)], BAD_P1),

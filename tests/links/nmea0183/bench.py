@@ -26,6 +26,10 @@ VALID = {
     "depth": 12.34,
     "water_temperature": 295.65,
     "rudder": -7.5 * DEG,
+    "leg": 2,
+    "leg_from": [0.0, -150.0, 0.0],
+    "leg_to": [1000.0, -150.0, 0.0],
+    "leg_radius": 50.0,
     **{
         f"{name}_valid": True
         for name in (
@@ -48,6 +52,8 @@ ALL = "; ".join(
     for name in (
         "GPRMC",
         "GPGGA",
+        "GPGLL",
+        "GPZDA",
         "GPVTG",
         "HEHDT",
         "HCHDG",
@@ -60,6 +66,10 @@ ALL = "; ".join(
         "SDDPT",
         "YXMTW",
         "AGRSA",
+        "GPGSA",
+        "GPGSV",
+        "AGXTE",
+        "AGRMB",
     )
 )
 

@@ -13,6 +13,7 @@ from seatrial.errors import InputError
 from seatrial.links.nmea0183.codec import encode
 from seatrial.links.nmea0183.readings import Readings
 from seatrial.links.nmea0183.sentences import SENTENCES
+from seatrial.links.text import encode as chunks
 
 from .bench import ALL, DEG, KNOT, VALID, Bench, read
 
@@ -26,12 +27,15 @@ def test_every_sentence_says_what_the_inputs_are():
     sent = read(bench.run(1.05))
     latitude, longitude, _ = pymap3d.ned2geodetic(100.0, -50.0, 0.0, -22.862, -43.223, 2.0)
     rmc, gga, vtg = sent["GPRMC"], sent["GPGGA"], sent["GPVTG"]
-    for fix in (rmc, gga):
+    gll, zda = sent["GPGLL"], sent["GPZDA"]
+    for fix in (rmc, gga, gll):
         assert fix.latitude == pytest.approx(latitude, abs=1e-7)
         assert fix.longitude == pytest.approx(longitude, abs=1e-7)
         assert fix.timestamp.replace(tzinfo=None) == datetime.time(0, 1, 2)
     assert rmc.datetime.replace(tzinfo=None) == datetime.datetime(2018, 9, 1, 0, 1, 2)
+    assert zda.datetime == datetime.datetime(2018, 9, 1, 0, 1, 2, tzinfo=datetime.UTC)
     assert (rmc.status, rmc.mode_indicator, gga.gps_qual) == ("A", "A", 1)
+    assert (gll.status, gll.faa_mode) == ("A", "A")
     speed, course = math.hypot(1.0, 0.5), math.degrees(math.atan2(-0.5, 1.0)) + 360.0
     assert float(rmc.spd_over_grnd) == pytest.approx(speed / KNOT, abs=0.005)
     assert float(rmc.true_course) == pytest.approx(course, abs=0.005)
@@ -61,6 +65,54 @@ def test_every_sentence_says_what_the_inputs_are():
     assert (float(sent["AGRSA"].rsa_starboard), sent["AGRSA"].rsa_starboard_status) == (-7.5, "A")
 
 
+def test_satellites_and_the_leg_that_is_followed():
+    bench = Bench(**HOME, date="2018-09-01")
+    bench.set(**VALID)
+    lines = bench.run(0.1)
+    views = [pynmea2.parse(line.decode()) for line in lines if line[3:6] == b"GSV"]
+    sent = read(lines)
+    gga, gsa = sent["GPGGA"], sent["GPGSA"]
+    in_view = int(views[0].num_sv_in_view)
+    assert [(v.num_messages, v.msg_num) for v in views] == [
+        (str(len(views)), str(k + 1)) for k in range(len(views))
+    ]
+    listed = [getattr(v, f"sv_prn_num_{k}", "") for v in views for k in range(1, 5)]
+    numbers = [number for number in listed if number]
+    assert len(numbers) == in_view == int(gga.num_sats)
+    used = [getattr(gsa, f"sv_id{k:02}") for k in range(1, 13)]
+    assert [number for number in used if number] == numbers
+    assert (gsa.mode, gsa.mode_fix_type, gsa.hdop) == ("A", "3", gga.horizontal_dil)
+    assert float(gsa.pdop) == pytest.approx(math.hypot(float(gsa.hdop), float(gsa.vdop)), abs=0.08)
+    assert all(5 <= int(v.elevation_deg_1) <= 90 and int(v.azimuth_1) < 360 for v in views)
+    # 100 m to starboard of a leg to the north: steer to port, 900 m north and 100 m west to go.
+    xte, rmb = sent["AGXTE"], sent["AGRMB"]
+    assert (float(xte.cross_track_err_dist), xte.correction_dir) == (0.054, "L")
+    assert (rmb.status, rmb.arrival_alarm) == ("A", "V")
+    latitude, longitude, _ = pymap3d.ned2geodetic(1000.0, -150.0, 0.0, -22.862, -43.223, 2.0)
+    assert rmb.data[5:9] == [rmb.dest_lat, rmb.dest_lat_dir, rmb.dest_lon, rmb.dest_lon_dir]
+    assert -(22 + float(rmb.dest_lat[2:]) / 60.0) == pytest.approx(latitude, abs=2e-7)
+    assert -(43 + float(rmb.dest_lon[3:]) / 60.0) == pytest.approx(longitude, abs=2e-7)
+    assert float(rmb.dest_range) * 1852.0 == pytest.approx(math.hypot(900.0, 100.0), abs=10.0)
+    assert float(rmb.dest_true_bearing) == pytest.approx(360.0 - 6.34, abs=0.01)
+
+
+def test_without_a_fix_there_are_no_satellites_and_no_leg():
+    bench = Bench(**HOME)
+    bench.set(**{**VALID, "position_valid": False})
+    sent = read(bench.run(0.1))
+    assert (sent["GPGSV"].num_sv_in_view, sent["GPGSA"].mode_fix_type) == ("00", "1")
+    assert (sent["GPGGA"].num_sats, sent["GPGGA"].horizontal_dil) == ("00", "")
+    assert sent["AGXTE"].warning_flag == "V"
+    assert "AGRMB" not in sent
+
+
+def test_sentences_of_a_transponder_go_out_as_they_are():
+    line = b"!AIVDM,1,1,,A,15M67F@risvR:905jfnTlSpJ0000,0*11\r\n"
+    bench = Bench(sentences="")
+    bench.set(ais=chunks(1, [(0, line)]))
+    assert bench.run(0.2) == [line]
+
+
 def test_a_rudder_that_is_positive_to_port_has_the_other_sign_in_its_sentence():
     bench = Bench(rudder_positive="port")
     bench.set(**VALID)
@@ -71,11 +123,13 @@ def test_what_is_not_valid_is_empty_and_says_so():
     bench = Bench(**HOME)
     bench.set(**{name: value for name, value in VALID.items() if not name.endswith("_valid")})
     sent = read(bench.run(0.1))
-    assert len(sent) == len(ALL.split(";"))
+    assert len(sent) == len(ALL.split(";")) - 1  # no RMB without a leg
     assert (sent["GPRMC"].status, sent["GPRMC"].mode_indicator) == ("V", "N")
     assert sent["GPRMC"].is_valid is False
     assert (sent["GPGGA"].gps_qual, sent["GPVTG"].faa_mode) == (0, "N")
-    for name in ("GPRMC", "GPGGA"):
+    assert (sent["GPGLL"].status, sent["GPGLL"].faa_mode) == ("V", "N")
+    assert sent["GPZDA"].datetime.year == 2020  # the clock goes on
+    for name in ("GPRMC", "GPGGA", "GPGLL"):
         assert (sent[name].lat, sent[name].lat_dir, sent[name].lon, sent[name].lon_dir) == ("",) * 4
     for name in ("TIROT", "WIMWV-R", "WIMWV-T"):
         assert sent[name].status == "V"
@@ -131,7 +185,7 @@ def test_all_values_come_back(latitude, longitude, heading, speed, variation, ti
     )
     sent = read(
         [
-            encode("GP", name[:3], SENTENCES[name](readings))
+            encode("GP", name[:3], SENTENCES[name](readings)[0])
             for name in ("RMC", "GGA", "HDT", "HDG", "MWV-R")
         ]
     )

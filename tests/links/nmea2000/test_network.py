@@ -144,26 +144,119 @@ def test_intervals_are_changed_over_the_bus(pgn, seconds, errors, count):
     assert abs(len([m for m in found if m.pgn == 127250]) - count) <= 1
 
 
+PILOT = {"sends": "127237 127245", "address": 35.0, "steering_mode": 4}
+MODE, REFERENCE, HEADING = 5, 7, 11
+"""Numbers of fields of 127237: from 1, reserved ones included."""
+
+
+def command(network, pgn, *items, source=REQUESTER, to=35):
+    """Command fields, (number, value) each; return the PGN's error code and the fields'."""
+    fields = {"functionCode": 1, "pgn": pgn, "priority": 8, "numberOfParameters": len(items)}
+    listed = tuple({"parameter": number, "value": value} for number, value in items)
+    message = Message(126208, fields, source, to, listed, id="nmeaCommandGroupFunction")
+    network.send_message(message)
+    found = [m for m in after(network, 0.1) if m.pgn == 126208 and m.source == to]
+    return [(m.fields["pgnErrorCode"], [each["parameter"] for each in m.items]) for m in found]
+
+
 def test_fields_are_commanded_over_the_bus():
-    """Parameters are numbered from 1, reserved ones included: 5 is the mode, 11 the heading."""
-    network = Network({"pilot": {}})
+    network = Network({"pilot": PILOT})
     network.run(1.0)
-    items = (
-        {"parameter": 5, "value": 4},
-        {"parameter": 11, "value": 1.25},
-        {"parameter": 99, "value": 1},
-    )
-    fields = {"functionCode": 1, "pgn": 127237, "priority": 8, "numberOfParameters": 2}
-    network.send_message(
-        Message(126208, fields, REQUESTER, 35, items[:2], id="nmeaCommandGroupFunction")
-    )
-    found = after(network, 0.2)
+    assert command(network, 127237, (MODE, 4), (HEADING, 1.25)) == [(0, [0, 0])]
     pilot = network.nodes["pilot"]
     assert pilot.get("bus_heading_to_steer") == pytest.approx(1.25, abs=5e-5)
-    assert pilot.get("bus_heading_to_steer_valid")
     assert pilot.get("bus_steering_mode") == 4
-    (answer,) = [m for m in found if m.pgn == 126208 and m.source == 35]
-    assert [each["parameter"] for each in answer.items] == [0, 0]
+    network.run(5.0)
+    assert pilot.get("bus_heading_to_steer_valid")  # it stands
+    assert command(network, 127237, (HEADING, 0.5), to=GLOBAL) == []
+    assert pilot.get("bus_heading_to_steer") == pytest.approx(0.5, abs=5e-5)
+
+
+@pytest.mark.parametrize(
+    ("pgn", "items", "answer"),
+    [
+        (127237, [(MODE, 7), (HEADING, 1.25)], (0, [3, 0])),  # canboat: 3 out of range
+        (127237, [(REFERENCE, 1), (HEADING, 1.25)], (0, [3, 3])),  # magnetic
+        (127237, [(REFERENCE, 0), (HEADING, 1.25)], (0, [0, 0])),
+        (127237, [(99, 1)], (0, [1])),  # invalid
+        (127237, [(18, 1.0)], (0, [5])),  # not supported
+        (127245, [(1, 0), (4, 0.1)], (0, [0, 0])),
+        (127245, [(1, 1), (4, 0.1)], (0, [3, 3])),  # another rudder
+        (127245, [(5, 0.1)], (0, [5])),  # a measurement
+        (127250, [(2, 0.1)], (1, [])),  # 1: PGN not supported
+    ],
+)
+def test_only_what_is_obeyed_is_acknowledged(pgn, items, answer):
+    network = Network({"pilot": PILOT})
+    network.run(1.0)
+    assert command(network, pgn, *items) == [answer]
+    obeyed = (HEADING, 1.25) in items and answer[1][-1:] == [0]
+    assert network.nodes["pilot"].get("bus_heading_to_steer_valid") == obeyed
+
+
+def test_a_node_is_commanded_in_what_it_sends_alone():
+    network = Network({"compass": {**COMPASS, "address": 35.0}})
+    network.run(1.0)
+    assert command(network, 127237, (HEADING, 1.25)) == [(2, [])]  # not available
+    assert not network.nodes["compass"].get("bus_heading_to_steer_valid")
+
+
+def test_a_rudder_is_commanded_unless_another_node_orders_it():
+    gear = {"sends": "127245", "address": 35.0, "device_function": 155.0}
+    pilot = {"sends": "127245", "address": 36.0, "rudder_order": -0.2, "silent": True}
+    network = Network({"gear": gear, "pilot": pilot})
+    network.run(1.0)
+    assert command(network, 127245, (4, 0.1)) == [(0, [0])]
+    assert network.nodes["gear"].get("bus_rudder_order") == pytest.approx(0.1, abs=5e-5)
+    network.nodes["pilot"].set("silent", False)
+    network.run(2.0)  # the command is out of date
+    assert network.nodes["gear"].get("bus_rudder_order") == pytest.approx(-0.2, abs=5e-5)
+    assert command(network, 127245, (4, 0.1)) == [(0, [4])]  # canboat: access denied
+    assert network.nodes["gear"].get("bus_rudder_order") == pytest.approx(-0.2, abs=5e-5)
+
+
+def helm(network):
+    return round(network.nodes["pilot"].get("bus_heading_to_steer"), 3)
+
+
+def test_the_newest_order_has_the_helm():
+    """A command, a first order, another order than before; what is repeated takes nothing."""
+    plotter = {"sends": "127237", "address": 36.0, "heading_to_steer": 0.1}
+    network = Network({"pilot": PILOT, "plotter": plotter})
+    network.run(1.0)
+    assert helm(network) == 0.1
+    assert command(network, 127237, (HEADING, 1.25)) == [(0, [0])]
+    network.run(3.0)
+    assert helm(network) == 1.25  # the plotter repeats 0.1
+    network.nodes["plotter"].set("heading_to_steer", 0.2)
+    network.run(0.5)
+    assert helm(network) == 0.2
+    # An outside plotter that sends 127237 itself steers too, and gives the helm back.
+    for _ in range(8):
+        outside = {"headingReference": 0, "headingToSteerCourse": 2.5}
+        network.send_message(Message(127237, outside, REQUESTER))
+        network.run(0.25)
+        assert helm(network) == 2.5
+    network.run(1.5)
+    assert helm(network) == 0.2
+    assert network.nodes["pilot"].get("bus_heading_to_steer_valid")
+    command(network, 127237, (HEADING, 1.25))
+    network.nodes["plotter"].set("heading_to_steer", 1e30)  # none
+    network.run(0.5)
+    assert helm(network) == 1.25
+
+
+def test_a_command_leaves_other_orders_of_the_commander_valid():
+    network = Network({"pilot": PILOT})
+    network.run(1.0)
+    outside = {"headingReference": 0, "headingToSteerCourse": 2.5, "track": 0.75}
+    network.send_message(Message(127237, outside, REQUESTER))
+    network.run(0.1)
+    assert command(network, 127237, (HEADING, 1.25)) == [(0, [0])]
+    assert network.nodes["pilot"].get("bus_track_valid")
+    network.send_message(Message(127237, outside, REQUESTER))
+    network.run(0.1)
+    assert helm(network) == 1.25  # what it goes on to send is no new order
 
 
 def test_the_heartbeat_comes_every_minute():
@@ -297,7 +390,10 @@ def test_intervals_are_those_of_canboats_table():
     for pgn in DATA.values():
         (known,) = DATABASE.pgn_variants(pgn.number)
         assert known.id == pgn.id
-        assert known.transmission_interval == round(pgn.interval_s * 1000)
+        if known.transmission_interval is None:  # AIS when it is received; of routes it has none
+            assert pgn.interval_s == (5.0 if pgn.number == 129285 else 0.0)
+        else:
+            assert known.transmission_interval == round(pgn.interval_s * 1000)
         assert {field.name for field in pgn.fields} <= {field.id for field in known.fields}
     assert ALL[126993].interval_s == 60.0
 

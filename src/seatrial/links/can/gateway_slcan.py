@@ -2,7 +2,8 @@
 
 Commands of LAWICEL's CAN232 and, for CAN FD, of the CANable 2: one letter, then digits, ended by
 a carriage return. Every one is answered, by a carriage return if it was understood and by BEL if
-not: some programs wait for that. Bit rates are accepted and not used: the bus has its own.
+not: some programs wait for that. Bit rates, S0 to S8, are accepted and not used: the bus has its
+own.
 """
 
 from __future__ import annotations
@@ -14,6 +15,8 @@ from .gateway_clients import Client, ClientsGateway
 _ANSWERS = {"V": "V1010", "v": "vSTDC", "N": "NSIMU", "F": "F00"}
 _SETTINGS = "SsYMmWXUQ"
 """Bit rate, filters, polling: accepted, and without effect."""
+_BIT_RATES = tuple("012345678")
+"""LAWICEL's, 10 kbit/s to 1 Mbit/s."""
 _TIMESTAMP_MS = 60_000
 """Times of frames are counted in ms, and begin again at 0 after a minute."""
 
@@ -48,6 +51,8 @@ class _Adapter(Client):
             self._stamps = line[1:2] == "1"
         elif letter in _ANSWERS:
             self.write(_ANSWERS[letter])
+        elif letter == "S" and line[1:] not in _BIT_RATES:
+            raise ValueError("no such bit rate")
         elif letter and letter not in _SETTINGS:
             raise ValueError("unknown command")
         self.write("\r")

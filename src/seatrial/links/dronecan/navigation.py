@@ -14,6 +14,8 @@ Solution: Any = equipment.ahrs.Solution
 
 Vector = tuple[float, float, float]
 
+NOT_CONNECTED = 1e30
+"""Start value of inputs that not every rig has: it goes out as NaN, unknown."""
 _SCALE = 1e8  # of degrees
 _MM = 1e3
 _SATELLITES = 12  # assumed: what autopilots want to see before they trust a receiver
@@ -59,25 +61,34 @@ def fixed(origin: Origin, message: Any) -> tuple[Ned, Vector] | None:
 
 
 def solution(motion: Motion) -> Any:
-    """Return an ahrs.Solution: the quaternion turns body axes (x bow, y starboard) to {n}."""
+    """Return an ahrs.Solution: the quaternion turns body axes (x bow, y starboard) to {n}.
+
+    Rates and accelerations that are not connected are NaN.
+    """
     x, y, z, w = quaternion(motion.attitude)
     return Solution(
         orientation_xyzw=[x, y, z, w],
-        angular_velocity=list(motion.rates),
-        linear_acceleration=list(motion.acceleration),
+        angular_velocity=[_or_nan(value) for value in motion.rates],
+        linear_acceleration=[_or_nan(value) for value in motion.acceleration],
     )
 
 
 def solved(message: Any) -> Motion | None:
-    """Return the motion of an ahrs.Solution, None if something of it is no number."""
-    found = [message.orientation_xyzw, message.angular_velocity, message.linear_acceleration]
-    numbers = [[float(value) for value in each] for each in found]
-    if not all(math.isfinite(value) for each in numbers for value in each):
+    """Return the motion of an ahrs.Solution, None if it has no orientation.
+
+    Rates and accelerations that are unknown are 0.
+    """
+    orientation = [float(value) for value in message.orientation_xyzw]
+    if not all(map(math.isfinite, orientation)):
         return None
-    x, y, z, w = numbers[0]
+    x, y, z, w = orientation
     if math.hypot(x, y, z, w) < 0.5:
         return None
-    return Motion(euler(x, y, z, w), _three(numbers[1]), _three(numbers[2]))
+    rates, acceleration = (
+        _three([value if math.isfinite(value) else 0.0 for value in map(float, each)])
+        for each in (message.angular_velocity, message.linear_acceleration)
+    )
+    return Motion(euler(x, y, z, w), rates, acceleration)
 
 
 def quaternion(attitude: Sequence[float]) -> tuple[float, float, float, float]:
@@ -97,6 +108,10 @@ def euler(x: float, y: float, z: float, w: float) -> Vector:
         math.asin(max(-1.0, min(1.0, sine))),
         math.atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z),
     )
+
+
+def _or_nan(value: float) -> float:
+    return value if value < NOT_CONNECTED else math.nan
 
 
 def _finite(values: Sequence[float]) -> Vector | None:

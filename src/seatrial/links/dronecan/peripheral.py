@@ -10,10 +10,10 @@ from dronecan.transport import Transfer
 from ...component import NS, Input, Output, Parameter, Terminal, terminal
 from ...errors import InputError, unknown
 from ..geodesy import Origin
-from ..parameter_validation import midnight_us
+from ..parameter_validation import start_us
 from .channels import AXES, MOST_CHANNELS, channels_of
 from .commands import ArrayCommand, RawCommand, RPMCommand, commanded
-from .navigation import Motion, fix, solution
+from .navigation import NOT_CONNECTED, Motion, fix, solution
 from .node import DroneCanNode, Task
 from .parameters import Setting
 from .telemetry import QUANTITIES, status
@@ -51,16 +51,16 @@ class DroneCanPeripheral(DroneCanNode):
     command's.
 
     **GNSS**: Fix2 every ``gnss_period`` of ``position_n`` and ``velocity_n`` around the origin
-    (``latitude``, ``longitude``, ``altitude``), the time being ``date`` and the run's; without
-    ``position_valid`` it has no fix. **AHRS**: ahrs.Solution every ``ahrs_period``, unless
-    ``attitude_valid`` is false. Both at once and then at whole periods from the start: after a
-    sensor of the same period.
+    (``latitude``, ``longitude``, ``altitude``), the time being ``date`` at the start of the run;
+    without ``position_valid`` it has no fix. **AHRS**: ahrs.Solution every ``ahrs_period``, unless
+    ``attitude_valid`` is false; rates and accelerations that nothing feeds are NaN. Both at once
+    and then at whole periods from the start: after a sensor of the same period.
 
     Raises InputError at the start for channels, pulses and a date that cannot be.
     """
 
     messages = (RawCommand, RPMCommand, ArrayCommand)
-    transient = DroneCanNode.transient | {"_channels", "_origin", "_midnight_us"}
+    transient = DroneCanNode.transient | {"_channels", "_origin", "_start_us"}
 
     channels = Parameter("esc0", "1", "what command.c1, c2... are", check=channels_of)
     command_timeout = Parameter(
@@ -78,7 +78,13 @@ class DroneCanPeripheral(DroneCanNode):
     latitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-1.5707, max=1.5707)
     longitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-3.1416, max=3.1416)
     altitude = Parameter(0.0, "m", "of the origin")
-    date = Parameter("2026-01-01", "1", "day of the run", check=midnight_us)
+    date = Parameter(
+        "2026-01-01",
+        "1",
+        "UTC at the start of the run: a day, for its midnight, or an instant",
+        check=start_us,
+        role="start-time",
+    )
 
     voltage = Input("V", "voltage at each ESC", axes=AXES, optional=True)
     current = Input("A", "current of each ESC", axes=AXES, optional=True)
@@ -90,8 +96,17 @@ class DroneCanPeripheral(DroneCanNode):
     velocity_n = Input("m/s", "of the antenna, north-east-down", axes=_NED, optional=True)
     position_valid = Input("1", "whether there is a fix", type=bool, start=True, optional=True)
     attitude = Input("rad", "Euler angles, ZYX", axes=("phi", "theta", "psi"), optional=True)
-    rates = Input("rad/s", "angular velocity, body axes", axes="pqr", optional=True)
-    acceleration = Input("m/s2", "specific force, body axes", axes="xyz", frame="b", optional=True)
+    rates = Input(
+        "rad/s", "angular velocity, body axes", start=NOT_CONNECTED, axes="pqr", optional=True
+    )
+    acceleration = Input(
+        "m/s2",
+        "specific force, body axes",
+        start=NOT_CONNECTED,
+        axes="xyz",
+        frame="b",
+        optional=True,
+    )
     attitude_valid = Input("1", "whether attitude is valid", type=bool, start=True, optional=True)
 
     command = Output("", "command: -1 to 1, or in the channel's unit", axes=AXES)
@@ -187,7 +202,7 @@ class DroneCanPeripheral(DroneCanNode):
         """Make what follows from parameters."""
         self._channels = channels_of(self._written)
         self._origin = Origin(self.latitude, self.longitude, self.altitude)
-        self._midnight_us = midnight_us(self.date)
+        self._start_us = start_us(self.date)
 
     def _neutral(self, place: int) -> float:
         neutral: float = self.pulse_neutral
@@ -215,7 +230,7 @@ class DroneCanPeripheral(DroneCanNode):
 
     def _send_fix(self, time_ns: int) -> None:
         north, east, down = self.position_n
-        utc_us = self._midnight_us + time_ns // 1000
+        utc_us = self._start_us + (time_ns - self._begun_ns) // 1000
         message = fix(
             self._origin, (north, east, down), self.velocity_n, self.position_valid, utc_us
         )

@@ -1,1 +1,1 @@
-"""Sockets, serial ports and pseudo-terminals that are polled and never waited for."""
+"""Sockets, serial ports and pseudo-terminals that are polled, or waited for."""

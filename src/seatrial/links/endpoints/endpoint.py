@@ -1,4 +1,4 @@
-"""Endpoint interface: peers are found and polled, never waited for.
+"""Endpoint interface: peers are found and polled.
 
 A package adds a kind of link by an entry point, whose name is the scheme of its URLs and whose
 object is called with the URL and returns an `Endpoint`::
@@ -11,9 +11,9 @@ object is called with the URL and returns an `Endpoint`::
 1. **The URL** has no spaces; what follows its first colon is the kind's own. The object raises
    InputError, with the URL, what was found and what is allowed, for one that is malformed, and
    InputError or OSError for one that cannot be opened.
-2. **Nothing waits.** Every call returns at once; connecting, accepting and trying again go on
-   inside `Endpoint.poll`, which takes in what its `budget.Budget` allows: what is more waits where
-   it is, or is lost if it came as datagrams.
+2. **Nothing waits**: every call returns at once (`udp.UdpListener.wait` is for lockstep alone).
+   Connecting, accepting and trying again go on inside `Endpoint.poll`, which takes in what its
+   `budget.Budget` allows: what is more waits where it is, or is lost if it came as datagrams.
 3. **After it is open nothing raises** for what the other end does. Peers come and go, bytes that
    do not fit are lost; queues are bounded.
 4. **One channel object stands for one peer** for as long as it is there: protocols keep what they
@@ -44,6 +44,9 @@ class Channel(ABC):
     @abstractmethod
     def send(self, data: bytes) -> None:
         """Send one frame; it is lost silently if the peer takes no more or is gone."""
+
+    def close(self) -> None:  # noqa: B027  most have no connection
+        """End the connection to the peer, where there is one."""
 
     def target(self) -> tuple[int, tuple[str, int] | None] | None:
         """Return the descriptor that leads to the peer, and the address of a datagram.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import select
 import socket
 import sys
 from collections.abc import Iterator, Sequence
@@ -148,6 +149,11 @@ class UdpListener(Endpoint):
                 self.budget.exceed()
                 break
         return arrived
+
+    def wait(self, timeout: float) -> bool:
+        """Wait for a datagram, at most ``timeout`` (s, wall time); return whether one is there."""
+        sockets = {self._socket, *(peer.socket for peer in self._peers.values())}
+        return bool(select.select(sockets, (), (), timeout)[0])
 
     def close(self) -> None:
         """Close the sockets."""

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ...craft.kinematics import specific_force, to_ned
 from ...errors import InputError
 from ...sampled import Sampled
 from ..endpoints.url import open_endpoints, other_end
 from ..geodesy import Origin
-from ..parameter_validation import midnight_us, serial_number, value_names, version, whole_number
+from ..parameter_validation import serial_number, start_us, value_names, version, whole_number
 from .modes import MANUAL_MODES, dialect
 from .node import Node
+from .outputs import SHARED, Outputs
 from .parameter_file import ParameterFile
 from .parameter_table import ParameterTable
 from .parameters import vehicle_parameters
+from .parameters_servo import read_servos
 from .parameters_tunable import MOST_TUNABLES, tunable_parameters
 from .pause import stand_still
 from .ports import NAMED_VALUES, VEHICLE_TYPES, MavlinkPorts
@@ -25,11 +26,12 @@ from .state_file import StateFile
 from .tlog import TelemetryLog
 from .transport import EndpointTransport
 from .vehicle import (
+    FIXES,
     MANUAL_RELEASED,
     Estimates,
     Identity,
+    Receiver,
     Target,
-    Truth,
     Vehicle,
     Way,
 )
@@ -84,13 +86,14 @@ class Mavlink(MavlinkPorts):
     of fresh water at 1000 kg/m3 under 101 325 Pa. Truth goes out as SIM_STATE if
     ``truth`` is on.
 
-    Not here: radio channels with losses and delays, MAVLink FTP, cameras, logs on
-    board. It cannot be rolled back: what was sent has been sent.
+    Not here: radio channels with losses and delays, files that stations write, cameras. It cannot
+    be rolled back: what was sent has been sent.
 
     The last frame to every peer is a HEARTBEAT that says disarmed; whoever supervises the run sends
     it if that ends without closing the links.
 
-    It keeps a log of all frames, ``NAME.tlog``, in ``run_folder`` (`TelemetryLog`).
+    It keeps a log of all frames, ``NAME.tlog``, in ``run_folder`` (`TelemetryLog`), which stations
+    download (`LogService`).
 
     Raises InputError at the start for a link, file, date, version, name or failsafe that cannot
     be.
@@ -116,7 +119,8 @@ class Mavlink(MavlinkPorts):
             mode = kind.mode("hold")
             assert mode is not None
             origin = Origin(self.latitude, self.longitude, self.altitude)
-            vehicle = Vehicle(identity, kind, origin, mode)
+            vehicle = Vehicle(identity, kind, origin, mode, receiver=self._receiver())
+            self._outputs = Outputs(read_servos(self.actuators))
             self._value_names = value_names(self.names, NAMED_VALUES)
             self._begun = t
             self._log = TelemetryLog(identity.boot_unix_us)
@@ -133,6 +137,7 @@ class Mavlink(MavlinkPorts):
                 self._parameters,
                 plans,
                 failures=failing_units(self.failures),
+                log=lambda: self._log.path,
             )
         except InputError as error:
             self.close()
@@ -177,7 +182,7 @@ class Mavlink(MavlinkPorts):
             self._log.open(Path(self.run_folder, f"{self.name}.tlog"))
         self._node.missions.reached = self.leg_reached
         self._vehicle.estimates = self._estimates()
-        self._vehicle.truth = self._truth() if self.truth == "on" else None
+        self._vehicle.truth = self.true_motion() if self.truth == "on" else None
         self._exchange(now)
         if self._settings.paused:
             stand_still(lambda: self._exchange(now), self._node, self._settings, self._parameters)
@@ -227,7 +232,7 @@ class Mavlink(MavlinkPorts):
             self.vehicle_type == "submarine",
             version(self.firmware_version),
             serial_number(self.uid),
-            midnight_us(self.date),
+            start_us(self.date),
         )
 
     def _made_settings(self) -> Settings:
@@ -242,8 +247,16 @@ class Mavlink(MavlinkPorts):
             loiter_radius=self.loiter_radius,
             fence_action=self.fence_action,
             fence_depth=self.fence_depth,
+            battery_capacity=self.battery_capacity,
+            battery_low_voltage=self.battery_low_voltage,
+            battery_low_charge=self.battery_low_charge,
+            battery_action=self.battery_action,
             speedup=self.speedup_start,
         )
+
+    def _receiver(self) -> Receiver:
+        satellites = whole_number("gnss_satellites", self.gnss_satellites)
+        return Receiver(FIXES[self.gnss_fix], satellites, self.gnss_hdop)
 
     def _table(self, vehicle: Vehicle, settings: Settings) -> ParameterTable:
         file = ParameterFile(Path(self.parameter_file)) if self.parameter_file else None
@@ -270,6 +283,7 @@ class Mavlink(MavlinkPorts):
         measured = self.voltage > 0.0
         north, east, down = self.position_n
         dives = self.depth_valid and self._vehicle.identity.submerged
+        pulses = self._outputs.pulses(self.pulse, dict(zip(SHARED, self.share, strict=True)))
         return Estimates(
             position_n=(north, east, self.depth if dives else down),
             velocity_n=self.velocity_n,
@@ -285,7 +299,8 @@ class Mavlink(MavlinkPorts):
             voltage=self.voltage if measured else None,
             current=self.current if measured else None,
             charge=self.charge if measured else None,
-            pulses=self.pulse,
+            pulses=pulses,
+            throttle=self._outputs.throttle(pulses),
             named=tuple(zip(self._value_names, self.named, strict=False)),
             way=self._way() if self.nav_state >= _STAYS else None,
         )
@@ -297,14 +312,4 @@ class Mavlink(MavlinkPorts):
             self.nav_depth,
             self.nav_cross_track,
             self.nav_distance,
-        )
-
-    def _truth(self) -> Truth:
-        attitude = self.true_attitude
-        return Truth(
-            self.true_position,
-            to_ned(attitude, self.true_velocity),
-            attitude,
-            self.true_rates,
-            specific_force(attitude, self.true_acceleration, self.gravity),
         )

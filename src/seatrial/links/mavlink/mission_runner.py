@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from pymavlink.dialects.v20 import all as mavlink
 
 from ..geodesy import Ned
+from .mission_conditions import DelayedItems
 from .plan import Plan
 from .plan_checks import first_item
 from .plan_items import Item
@@ -65,17 +66,20 @@ class MissionRunner:
                             since the mission began; always if that is negative
     DO_CHANGE_SPEED         parameter 2 is the speed of the legs from here on; -2 is the
                             vehicle's own, others below 0 change nothing
-    DO_SET_HOME             moves home
+    CONDITION_DELAY         what follows up to the next item that leads somewhere waits for the
+                            time in parameter 1, while the vehicle goes on (`DelayedItems`)
+    others                  are carried out as the command of that number (``carry_out``)
     ======================= =============================================================
 
-    Other commands are skipped, which is reported. A leg begins where the last one ended, or where
-    the vehicle is if there was none, or it was interrupted: by another mode, by disarming or by
-    ``paused``. The current item then begins anew. After the last item the vehicle stays; when it
-    is free to act again after an interruption, it begins from the first.
+    A leg begins where the last one ended, or where the vehicle is if there was none, or it was
+    interrupted: by another mode, by disarming or by ``paused``. The current item then begins anew;
+    after a mode that the mission set it is the next one. After the last item the vehicle stays;
+    when it is free to act again after an interruption, it begins from the first.
 
     Not obeyed: headings, radii to pass by, kinds of speed, throttles, and autocontinue.
 
-    ``set_home`` carries DO_SET_HOME out at a time, s; ``refuge`` is where the vehicle returns to.
+    ``carry_out`` carries an item out as a command at a time, s; ``refuge`` is where the vehicle
+    returns to.
     """
 
     def __init__(
@@ -83,11 +87,12 @@ class MissionRunner:
         vehicle: Vehicle,
         plan: Plan,
         settings: Settings,
-        set_home: Callable[[Item, float], None],
+        carry_out: Callable[[Item, float], None],
         refuge: Callable[[], Ned],
     ) -> None:
         self._vehicle, self._plan, self._settings = vehicle, plan, settings
-        self._set_home, self._refuge = set_home, refuge
+        self._carry_out, self._refuge = carry_out, refuge
+        self._delayed = DelayedItems()
         self.paused = False
         """Whether a pause was requested; other modes end it."""
         self.passed: list[int] = []
@@ -119,6 +124,8 @@ class MissionRunner:
         self._speed: float | None = None
         self._jumps: Counter[int] = Counter()
         self._skipped: set[int] = set()
+        self._delayed.drop()
+        self._at_end = False  # of the list, while something still waits
 
     def set_current(self, sequence: int) -> bool:
         """Go on at an item, 0 for the first one; return whether there is one of that number."""
@@ -126,6 +133,8 @@ class MissionRunner:
         if not self.first <= sequence < len(self._plan.items):
             return False
         self.current, self.leg = sequence, Leg()
+        self._delayed.drop()
+        self._at_end = False  # of the list, while something still waits
         self.state = _NOT_STARTED if self.state == _NOT_STARTED else _PAUSED
         return True
 
@@ -156,36 +165,58 @@ class MissionRunner:
             self.leg = Leg()
             self.state = _PAUSED if self.state == _ACTIVE else self.state
         elif self.state == _ACTIVE:
-            if self._is_over(now, reached):
-                self.passed.append(self.current)
-                self._begin(self.current + 1, now)
+            self._go_on(now, reached)
         elif self.state != _COMPLETE or not self._acted:
             if self.state == _COMPLETE:
                 self.restart()
             self.state = _ACTIVE
-            self._begin(self.current, now)
+            if not self._at_end:
+                self._begin(self.current, now)
         self._acted = acts
+
+    def _go_on(self, now: float, reached: int) -> None:
+        """Carry out what has waited, and begin the next item if this one is over."""
+        for sequence, item in self._delayed.due(now):
+            self._act(item, now)
+            self.passed.append(sequence)
+        if self._at_end:
+            if not self._delayed:
+                self._finish("Mission complete")
+        elif self._is_over(now, reached):
+            self.passed.append(self.current)
+            for sequence in self._delayed.drop():
+                text = f"Mission: item {sequence} dropped: its condition came too late"
+                self._vehicle.report(WARNING, text)
+            self._begin(self.current + 1, now)
 
     def _begin(self, sequence: int, now: float) -> None:
         """Carry items out from ``sequence`` on, up to one that takes time, or the end."""
         for _ in range(_MOST_AT_ONCE):
             if sequence >= len(self._items):
-                self._finish("Mission complete")
+                self._at_end = bool(self._delayed)
+                if not self._at_end:
+                    self._finish("Mission complete")
                 return
             self.current = sequence
             item = self._items[sequence]
             if item.command == mavlink.MAV_CMD_DO_JUMP:
                 sequence = self._after_jump(item)
                 continue
+            if item.command == mavlink.MAV_CMD_CONDITION_DELAY:
+                sequence = self._delayed.gather(self._items, sequence)
+                continue
             if self._starts(item, now):
                 self._vehicle.report(INFO, f"Mission: item {sequence}, {item.name}")
                 return
             self.passed.append(sequence)
             sequence += 1
+            if self._vehicle.mode.name != "auto" and sequence < len(self._items):
+                self.current, self.leg, self.state = sequence, Leg(), _PAUSED
+                return
         self._finish("Mission ended: its jumps have no end")
 
     def _finish(self, news: str) -> None:
-        self.state = _COMPLETE
+        self.state, self._at_end = _COMPLETE, False
         self._rest()
         self._vehicle.report(INFO, news)
 
@@ -221,13 +252,18 @@ class MissionRunner:
                 self._rest()
                 self._until = now + item.number(1)
                 return True
+        self._act(item, now)
+        return False
+
+    def _act(self, item: Item, now: float) -> None:
+        """Carry out an item that takes no time."""
+        match item.command:
             case mavlink.MAV_CMD_DO_CHANGE_SPEED:
                 self.change_speed(item.number(2))
-            case mavlink.MAV_CMD_DO_SET_HOME:
-                self._set_home(item, now)
+            case mavlink.MAV_CMD_CONDITION_DELAY:
+                pass  # what it waits for begins
             case _:
-                self._skip(item, "is not obeyed")
-        return False
+                self._carry_out(item, now)
 
     def _leads(
         self, item: Item, radius: float = 0.0, wait: float = 0.0, circle: float = 0.0

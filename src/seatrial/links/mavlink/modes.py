@@ -30,29 +30,30 @@ def _px4(main: int, sub: int = 0) -> int:
 
 
 _HOLDS = mavlink.MAV_STANDARD_MODE_POSITION_HOLD
-_ORBITS = mavlink.MAV_STANDARD_MODE_ORBIT
 _MISSION = mavlink.MAV_STANDARD_MODE_MISSION
 _RETURNS = mavlink.MAV_STANDARD_MODE_SAFE_RECOVERY
 _DEPTH = mavlink.MAV_STANDARD_MODE_ALTITUDE_HOLD
 
+# ArduPilot's own modes are standard ones to nobody: as such stations set them by their number.
 _ROVER = (
     Mode("manual", 0, "MANUAL"),
     Mode("hold", 4, "HOLD"),
-    Mode("loiter", 5, "LOITER", _HOLDS),
-    Mode("auto", 10, "AUTO", _MISSION),
-    Mode("return", 11, "RTL", _RETURNS),
+    Mode("loiter", 5, "LOITER"),
+    Mode("auto", 10, "AUTO"),
+    Mode("return", 11, "RTL"),
     Mode("guided", 15, "GUIDED"),
 )
 _SUB = (
     Mode("stabilize", 0, "STABILIZE"),
-    Mode("depth-hold", 2, "ALT_HOLD", _DEPTH),
-    Mode("auto", 3, "AUTO", _MISSION),
+    Mode("depth-hold", 2, "ALT_HOLD"),
+    Mode("auto", 3, "AUTO"),
     Mode("guided", 4, "GUIDED"),
-    Mode("loiter", 7, "CIRCLE", _ORBITS),
+    Mode("loiter", 7, "CIRCLE"),
     Mode("surface", 9, "SURFACE"),
-    Mode("hold", 16, "POSHOLD", _HOLDS),
+    Mode("hold", 16, "POSHOLD"),
     Mode("manual", 19, "MANUAL"),
 )
+_ROVER_VERSION, _SUB_VERSION, _PX4_VERSION = "4.6.0", "4.5.0", "1.15.0"
 _PX4_SURFACE = (
     Mode("manual", _px4(1), "Manual"),
     Mode("hold", _px4(4, 3), "Hold", _HOLDS),
@@ -77,6 +78,8 @@ class Dialect:
     name: str
     autopilot: int
     """MAV_AUTOPILOT."""
+    version: str
+    """Version of the firmware whose parameters and modes it has, which stations go by."""
     modes: tuple[Mode, ...]
     main_and_sub: bool
     """Whether DO_SET_MODE has main and sub mode in its parameters 2 and 3 (PX4)."""
@@ -84,6 +87,8 @@ class Dialect:
     """Whether PARAM_VALUE carries the bytes of an integer, not its value as a float (PX4)."""
     home_is_item_0: bool
     """Whether item 0 of a mission is home (ArduPilot)."""
+    one_pilot: bool
+    """Whether only the station of one system steers (ArduPilot)."""
     reposition: Mode | None
     """Mode in which it goes where DO_REPOSITION sends it, None for guided mode."""
 
@@ -94,6 +99,10 @@ class Dialect:
     def by_custom_mode(self, custom_mode: int) -> Mode | None:
         """Return a mode by the number in HEARTBEAT and SET_MODE, None if there is none."""
         return next((mode for mode in self.modes if mode.custom_mode == custom_mode), None)
+
+    def by_standard(self, standard: int) -> Mode | None:
+        """Return the mode of a MAV_STANDARD_MODE, None if there is none."""
+        return next((mode for mode in self.modes if standard and mode.standard == standard), None)
 
     def by_command(self, main: float, sub: float) -> Mode | None:
         """Return the mode that parameters 2 and 3 of DO_SET_MODE request, None if there is none.
@@ -115,7 +124,10 @@ def dialect(autopilot_type: str, *, submerged: bool) -> Dialect:
     if autopilot_type == "px4":
         modes = {False: _PX4_SURFACE, True: _PX4_SUBMERGED}
         number = mavlink.MAV_AUTOPILOT_PX4
-        return Dialect("px4", number, modes[submerged], True, True, False, _PX4_REPOSITION)
+        own = (number, _PX4_VERSION, modes[submerged])
+        return Dialect("px4", *own, True, True, False, False, _PX4_REPOSITION)
     modes = {False: _ROVER, True: _SUB}
+    version = _SUB_VERSION if submerged else _ROVER_VERSION
     number = mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA
-    return Dialect("ardupilot", number, modes[submerged], False, False, True, None)
+    own = (number, version, modes[submerged])
+    return Dialect("ardupilot", *own, False, False, True, True, None)

@@ -6,22 +6,24 @@ import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from pymavlink.dialects.v20 import all as mavlink
-
 from ..geodesy import Ned
 from .codec import Message
 from .failsafe import Failsafe
+from .parameter_pack import packed
 from .parameter_table import ParameterTable
 from .plan import Plans
 from .service import Builder, Handler, Receiver, Service
 from .service_arming import ArmingService
+from .service_battery import BatteryService
 from .service_clock import ClockService
 from .service_commands import CommandService
 from .service_failures import FailureService
 from .service_fence import FenceService
-from .service_files import FileService
+from .service_files import Files, FileService
 from .service_guided import GuidedService
 from .service_home import HomeService
+from .service_joystick import JoystickService
+from .service_log import LogService
 from .service_manual_control import ManualControlService
 from .service_missions import MissionService
 from .service_modes import ModeService
@@ -33,6 +35,8 @@ from .service_stations import StationService
 from .service_streams import StreamService
 from .service_transfer import TransferService
 from .settings import Settings
+from .telemetry_board import BoardTelemetry
+from .telemetry_estimator import EstimatorTelemetry
 from .telemetry_motion import MotionTelemetry
 from .telemetry_navigation import NavigationTelemetry
 from .telemetry_odometry import OdometryTelemetry
@@ -49,7 +53,7 @@ class Node:
     ``transport``. Messages of the vehicle itself, and those meant for another system or component,
     are ignored. Missions, fence and rally points are kept in ``plans``, a folder.
     ``clock`` is wall time, s, by which ground stations live. ``failures`` are the units that can
-    fail.
+    fail. ``log`` names the run's telemetry log, while there is one.
     Raises InputError for settings that the vehicle cannot have, and for what is in the folder.
     """
 
@@ -62,6 +66,7 @@ class Node:
         plans: Path | None = None,
         clock: Callable[[], float] = time.monotonic,
         failures: Sequence[str] = (),
+        log: Callable[[], Path | None] = lambda: None,
     ) -> None:
         self.vehicle = vehicle
         handlers: dict[int, Handler] = {}
@@ -81,19 +86,21 @@ class Node:
             lists.mission,
             settings,
             modes,
-            home.commands[mavlink.MAV_CMD_DO_SET_HOME],
+            handlers,
             lambda: rally.refuge,
             guided.change_speed,
         )
         self.rally = rally
         self.failures = FailureService(vehicle, transport, settings, failures)
+        joystick = JoystickService(vehicle, transport, settings, handlers)
         self.presence = PresenceService(vehicle, transport)
         self.services: list[Service] = [
             CommandService(vehicle, transport, handlers),
             arming,
             modes,
             StationService(vehicle, transport, failsafe, settings, clock),
-            ManualControlService(vehicle, transport, failsafe, settings),
+            joystick,
+            ManualControlService(vehicle, transport, failsafe, settings, lambda: joystick.gain),
             guided,
             home,
             TransferService(vehicle, transport, lists),
@@ -102,13 +109,17 @@ class Node:
             self.missions,
             ParameterService(vehicle, transport, parameters),
             self.failures,
+            BatteryService(vehicle, transport, settings, failsafe),
             ClockService(vehicle, transport),
-            FileService(vehicle, transport),
+            FileService(vehicle, transport, files_on_board(parameters)),
+            LogService(vehicle, transport, log),
             RefusalService(vehicle, transport),
             MotionTelemetry(vehicle, transport),
             OdometryTelemetry(vehicle, transport),
             SensorTelemetry(vehicle, transport),
             SystemTelemetry(vehicle, transport),
+            EstimatorTelemetry(vehicle, transport),
+            BoardTelemetry(vehicle, transport),
             NavigationTelemetry(vehicle, transport, lambda: self.goal),
             # What the others changed is reported last.
             self.presence,
@@ -157,3 +168,12 @@ class Node:
         system = getattr(message, "target_system", getattr(message, "target", 0))
         component = getattr(message, "target_component", 0)
         return system in (0, identity.system) and component in (0, identity.component)
+
+
+def files_on_board(parameters: ParameterTable) -> Files:
+    """Return the files that stations may read."""
+    return {
+        "@PARAM/param.pck": lambda query: packed(
+            parameters, defaults="withdefaults=1" in query.split("&")
+        )
+    }

@@ -63,6 +63,10 @@ class ParameterTable:
         """Return the MAV_PARAM_TYPE of a parameter."""
         return self._definitions[name].kind
 
+    def default(self, name: str) -> float:
+        """Return what a parameter starts with if nothing sets it."""
+        return self._definitions[name].default
+
     def put(self, name: str, value: float) -> Refusal | None:
         """Set a parameter, which acts at once and is in the file when this returns.
 

@@ -9,6 +9,7 @@ from pymavlink.dialects.v20 import all as mavlink
 from .parameter_definition import (
     INT8,
     INT16,
+    INT32,
     REAL32,
     Definition,
     choice,
@@ -16,7 +17,9 @@ from .parameter_definition import (
     real,
     whole,
 )
+from .parameters_listed import ardupilot_listed
 from .parameters_servo import Servo
+from .service_joystick import joystick_parameters
 from .settings import Settings
 from .vehicle import Identity
 
@@ -33,11 +36,12 @@ _ROVER_ACTIONS = {
 }
 _SUB_ACTIONS = {1: "none", 0: "none", 2: "disarm", 3: "hold", 4: "surface", 5: "loiter"}
 _SUB_FENCE_ACTIONS = {0: "none", 1: "surface", 2: "hold", 3: "disarm", 4: "loiter"}
+_SUB_BATTERY_ACTIONS = {0: "none", 2: "disarm", 3: "surface"}
+_SUB_PILOT_ACTIONS = {3: "", 0: "off", 1: "none", 2: "disarm"}
 _SWITCH = {0: False, 1: True}
 
 _MANUAL_AXES = "the channels of manual control are always the same"
 _NO_SWITCH = "no channel chooses modes"
-_TRUE_NORTH = "the vehicle is given its true heading"
 
 _FUNCTIONS = {
     "rudder": 26,
@@ -66,16 +70,17 @@ def ardupilot_parameters(
     channels = range(1, max([_LISTED_CHANNELS, *servos]) + 1)
     return [
         fixed("SYSID_THISMAV", INT16, identity.system),
+        whole("SYSID_MYGCS", "pilot_system", settings, 1, 255),
         _frame(identity, len(servos)),
         *(_sub(settings) if submerged else _rover(settings)),
         whole("ARMING_CHECK", "arming_check", settings, 0, (1 << 20) - 1),
         fixed("ARMING_REQUIRE", INT8, 1),
-        fixed("BATT_MONITOR", INT8, 4),
+        *_battery(submerged, settings),
         fixed("MODE_CH", INT8, 0, _NO_SWITCH),
         *(fixed(f"MODE{n}", INT8, 0, _NO_SWITCH) for n in range(1, 7)),
         *_manual_control(submerged),
         *(one for n in channels for one in _servo(n, servos, submerged)),
-        *_compass(),
+        *ardupilot_listed(submerged=submerged),
     ]
 
 
@@ -86,6 +91,30 @@ def _frame(identity: Identity, motors: int) -> Definition:
     # Sub's simple frames have 3 to 5 motors, its vectored ones 6 and 8; else it is a custom one.
     frames = {3: 4, 4: 5, 5: 6, 6: 1, 8: 2}
     return fixed("FRAME_CONFIG", INT8, frames.get(motors, 7))
+
+
+def _battery(submerged: bool, settings: Settings) -> list[Definition]:
+    actions = _SUB_BATTERY_ACTIONS if submerged else _ROVER_ACTIONS
+    capacity = settings.battery_capacity / 3.6  # mA.h
+    return [
+        fixed("BATT_MONITOR", INT8, 4),
+        fixed("BATT_CAPACITY", INT32, round(capacity)),
+        real("BATT_LOW_VOLT", "battery_low_voltage", settings),
+        choice("BATT_FS_LOW_ACT", "battery_action", settings, actions),
+        *_low_charge(settings, capacity),
+    ]
+
+
+def _low_charge(settings: Settings, capacity: float) -> list[Definition]:
+    """Return BATT_LOW_MAH: a share of the capacity, if that is known."""
+    if not capacity:
+        return [fixed("BATT_LOW_MAH", REAL32, 0.0, "the battery's capacity is not known")]
+
+    def apply(settings: Settings, value: float) -> None:
+        settings.battery_low_charge = value / capacity
+
+    low = settings.battery_low_charge * capacity
+    return [Definition("BATT_LOW_MAH", REAL32, low, 0.0, capacity, apply=apply)]
 
 
 def _rover(settings: Settings) -> list[Definition]:
@@ -111,9 +140,11 @@ def _sub(settings: Settings) -> list[Definition]:
         choice("FS_GCS_ENABLE", "failsafe", settings, _SUB_ACTIONS),
         real("FS_GCS_TIMEOUT", "station_timeout", settings),
         real("FS_PILOT_TIMEOUT", "manual_timeout", settings),
+        choice("FS_PILOT_INPUT", "manual_failsafe", settings, _SUB_PILOT_ACTIONS),
         real("CIRCLE_RADIUS", "loiter_radius", settings, 10.0, scale=0.01),
         choice("FENCE_ACTION", "fence_action", settings, _SUB_FENCE_ACTIONS),
         real("FENCE_DEPTH_MAX", "fence_depth", settings),
+        *joystick_parameters(settings),
     ]
 
 
@@ -121,7 +152,8 @@ def _manual_control(submerged: bool) -> list[Definition]:
     axes = {"ROLL": 1, "PITCH": 2, "THROTTLE": 3, "YAW": 4}
     if submerged:
         axes |= {"FORWARD": 5, "LATERAL": 6}
-    pulses = {"MIN": 1100, "TRIM": 1500, "MAX": 1900, "REVERSED": 0}
+    # Those of 1100, 1500 and 1900 exactly are of a radio that was never calibrated.
+    pulses = {"MIN": 1099, "TRIM": 1500, "MAX": 1901, "REVERSED": 0}
     return [
         *(fixed(f"RCMAP_{axis}", INT8, channel, _MANUAL_AXES) for axis, channel in axes.items()),
         *(
@@ -145,15 +177,3 @@ def _servo(channel: int, servos: Mapping[int, Servo], submerged: bool) -> list[D
         "REVERSED": int(servo.reversed),
     }
     return [fixed(f"SERVO{channel}_{what}", INT16, value) for what, value in values.items()]
-
-
-def _compass() -> list[Definition]:
-    # A compass without an identity or without offsets is one that was never calibrated.
-    offsets = [fixed(f"COMPASS_OFS_{axis}", REAL32, 1.0, _TRUE_NORTH) for axis in "XYZ"]
-    return [
-        fixed("COMPASS_ENABLE", INT8, 1, _TRUE_NORTH),
-        fixed("COMPASS_USE", INT8, 1, _TRUE_NORTH),
-        fixed("COMPASS_DEV_ID", INT16, 1, _TRUE_NORTH),
-        fixed("COMPASS_DEC", REAL32, 0.0, _TRUE_NORTH),
-        *offsets,
-    ]

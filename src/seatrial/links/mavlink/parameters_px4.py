@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from .parameter_definition import INT32, Definition, choice, fixed, real, whole
+from .parameters_listed import px4_listed
 from .settings import ALL_CHECKS, COMPASS_CHECK, Settings
 from .vehicle import Identity
 
@@ -16,11 +17,13 @@ _WITHOUT_POSITION = {0: ALL_CHECKS, 1: COMPASS_CHECK}
 def px4_parameters(identity: Identity, settings: Settings) -> list[Definition]:
     """Return the parameters of a boat or a submarine.
 
-    All lead to ``settings`` and start with its values, but for those with the identity the vehicle
-    is: these cannot be set. Raises InputError for a setting that PX4 has no number for.
+    Those that lead to ``settings`` start with its values. The others say who the vehicle is, and
+    that it is set up: these cannot be set. Raises InputError for a setting that PX4 has no
+    number for.
     """
     actions = _SUBMERGED_ACTIONS if identity.submerged else _ACTIONS
     fence_actions = _SUBMERGED_FENCE_ACTIONS if identity.submerged else _FENCE_ACTIONS
+    battery_actions = {0: "none", 2: "surface" if identity.submerged else "return"}
     return [
         fixed("MAV_SYS_ID", INT32, identity.system),
         fixed("MAV_COMP_ID", INT32, identity.component),
@@ -31,7 +34,10 @@ def px4_parameters(identity: Identity, settings: Settings) -> list[Definition]:
         real("COM_OF_LOSS_T", "target_timeout", settings),
         choice("COM_ARM_WO_GPS", "arming_check", settings, _WITHOUT_POSITION, INT32),
         choice("GF_ACTION", "fence_action", settings, fence_actions, INT32),
+        choice("COM_LOW_BAT_ACT", "battery_action", settings, battery_actions, INT32),
+        real("BAT_LOW_THR", "battery_low_charge", settings),
         real("NAV_LOITER_RAD", "loiter_radius", settings, 0.1),
         real("NAV_ACC_RAD", "waypoint_radius", settings),
         real("GND_SPEED_TRIM", "cruise_speed", settings),
+        *px4_listed(submerged=identity.submerged),
     ]

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import signal
-import threading
 import time
 from collections.abc import Callable
-from types import FrameType
-from typing import Any
 
+from ..interruption import Interruption
 from .node import Node
 from .parameter_table import ParameterTable
 from .parameters_simulation import SPEEDUP
@@ -16,34 +13,6 @@ from .service import NOTICE, WARNING
 from .settings import Settings
 
 POLL_S = 0.02
-
-
-class Interruption:
-    """Notices, while it is entered, a signal that requests the process to end.
-
-    The handler that there is still runs. Only a Python program's main thread can notice.
-    """
-
-    def __init__(self) -> None:
-        self.requested = False
-        self._before: dict[int, Callable[[int, FrameType | None], Any]] = {}
-
-    def __enter__(self) -> Interruption:
-        if threading.current_thread() is threading.main_thread():
-            for number in (signal.SIGINT, signal.SIGTERM):
-                before = signal.getsignal(number)
-                if callable(before):
-                    self._before[number] = before
-                    signal.signal(number, self._note)
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        for number, before in self._before.items():
-            signal.signal(number, before)
-
-    def _note(self, number: int, frame: FrameType | None) -> None:
-        self.requested = True
-        self._before[number](number, frame)
 
 
 def stand_still(

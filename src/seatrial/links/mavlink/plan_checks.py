@@ -18,13 +18,21 @@ _AT_A_PLACE = (
     mavlink.MAV_CMD_NAV_LOITER_TURNS,
     mavlink.MAV_CMD_NAV_LOITER_TIME,
 )
-_NAVIGATION = (
+NAVIGATION = (
     *_AT_A_PLACE,
     mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH,
     mavlink.MAV_CMD_NAV_DELAY,
 )
-_LAST_NAVIGATION = mavlink.MAV_CMD_NAV_LAST
-"""Commands up to this one have a destination: one that is not known cannot be skipped."""
+"""Commands that lead somewhere, or stay."""
+_ACTIONS = (
+    mavlink.MAV_CMD_CONDITION_DELAY,
+    mavlink.MAV_CMD_DO_SET_MODE,
+    mavlink.MAV_CMD_DO_JUMP,
+    mavlink.MAV_CMD_DO_CHANGE_SPEED,
+    mavlink.MAV_CMD_DO_SET_HOME,
+    mavlink.MAV_CMD_DO_FENCE_ENABLE,
+)
+_DELAYS = (mavlink.MAV_CMD_NAV_DELAY, mavlink.MAV_CMD_CONDITION_DELAY)
 
 
 class Refusal(NamedTuple):
@@ -45,10 +53,7 @@ def first_item(vehicle: Vehicle) -> int:
 
 
 def check_mission(items: Sequence[Item], vehicle: Vehicle) -> Refusal | None:
-    """Refuse places that are none, jumps out of the list, and commands that cannot be skipped.
-
-    Commands without a destination are taken: those that are not known are skipped.
-    """
+    """Refuse places that are none, jumps out of the list, and commands that are not carried out."""
     first = first_item(vehicle)
     for sequence, item in enumerate(items[first:], first):
         refusal = _check_command(item, vehicle, range(first, len(items)))
@@ -92,16 +97,29 @@ def of_item(sequence: int, item: Item, refusal: Refusal) -> Refusal:
 
 
 def _check_command(item: Item, vehicle: Vehicle, sequences: range) -> Refusal | None:
-    unknown = item.command not in mavlink.enums["MAV_CMD"]
-    if unknown or (item.command <= _LAST_NAVIGATION and item.command not in _NAVIGATION):
+    if item.command not in (*NAVIGATION, *_ACTIONS):
         return Refusal(mavlink.MAV_MISSION_UNSUPPORTED, "is not supported")
     if item.command in _AT_A_PLACE:
         return check_place(item, item.destination(vehicle))
     if item.command == mavlink.MAV_CMD_DO_JUMP and item.parameters[0] not in sequences:
         return bad_parameter(1, item.parameters[0], f"an item, {sequences[0]} to {sequences[-1]},")
-    if item.command == mavlink.MAV_CMD_NAV_DELAY and not item.parameters[0] >= 0.0:
+    if item.command in _DELAYS and not item.parameters[0] >= 0.0:
         return bad_parameter(1, item.parameters[0], "a number of seconds, not a time of day,")
+    if item.command == mavlink.MAV_CMD_DO_FENCE_ENABLE and item.parameters[0] not in (0.0, 1.0):
+        return bad_parameter(1, item.parameters[0], "0 (off) or 1 (on)")
+    if item.command == mavlink.MAV_CMD_DO_SET_MODE:
+        return _check_mode(item, vehicle)
     return _check_numbers(item)
+
+
+def _check_mode(item: Item, vehicle: Vehicle) -> Refusal | None:
+    base, main, sub, _ = item.parameters
+    custom = mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED
+    if not (0.0 <= base < 256.0 and int(base) & custom):
+        return bad_parameter(1, base, f"{custom} (the number of a mode)")
+    if vehicle.dialect.by_command(main, sub) is None:
+        return bad_parameter(2, main, "the number of a mode that this vehicle has")
+    return None
 
 
 def _check_numbers(item: Item) -> Refusal | None:

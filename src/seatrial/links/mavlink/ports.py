@@ -11,11 +11,14 @@ from ...sampled import Sampled
 from ...terminals import ORDERED
 from ...unit_table import STANDARD_GRAVITY
 from ..endpoints.url import check_urls
+from ..parameter_validation import start_us
+from ..truth import MOTION, TrueMotion
 from .failsafe import ACTIONS
+from .outputs import SHARED
 from .parameters_simulation import FASTEST, SLOWEST
 from .parameters_tunable import MOST_TUNABLES, tunable_parameters
 from .service_failures import UNITS, failing_units
-from .vehicle import CHANNELS
+from .vehicle import CHANNELS, FIXES
 
 VEHICLE_TYPES = {
     "ground_rover": mavlink.MAV_TYPE_GROUND_ROVER,
@@ -24,7 +27,6 @@ VEHICLE_TYPES = {
 }
 
 _NED = ("north", "east", "down")
-_EULER = ("phi", "theta", "psi")
 NAMED_VALUES = 8
 """Values of `named`."""
 
@@ -33,7 +35,7 @@ _CHANNELS = tuple(f"ch{number}" for number in range(1, CHANNELS + 1))
 _NAMED = tuple(f"n{number}" for number in range(1, NAMED_VALUES + 1))
 
 
-class MavlinkPorts(Logging, Reachable, Sampled):
+class MavlinkPorts(Logging, Reachable, TrueMotion, Sampled):
     """Parameters, inputs and outputs of `Mavlink`."""
 
     period = Parameter(0.01, "s", "sample period", min=1e-6)
@@ -48,24 +50,40 @@ class MavlinkPorts(Logging, Reachable, Sampled):
     autopilot_type = Parameter(
         "ardupilotmega", "1", "MAV_AUTOPILOT, in lower case", choices=("ardupilotmega", "px4")
     )
-    firmware_version = Parameter("0.1.0-dev", "1", "version that it reports")
+    firmware_version = Parameter(
+        "0.1.0-dev", "1", "its own version, reported beside that of the firmware it acts as"
+    )
     uid = Parameter("1", "1", "serial number that it reports, a whole number up to 2^64 - 1")
     latitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-1.5707964, max=1.5707964)
     longitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-3.1415927, max=3.1415927)
     altitude = Parameter(0.0, "m", "of the origin")
-    date = Parameter("2026-01-01", "1", "day on which the run starts, at midnight UTC")
+    date = Parameter(
+        "2026-01-01",
+        "1",
+        "UTC at the start of the run: a day, for its midnight, or an instant",
+        check=start_us,
+        role="start-time",
+    )
     failsafe = Parameter("hold", "1", "what it does when left alone", choices=ACTIONS)
     station_timeout = Parameter(5.0, "s", "silence after which a ground station is lost", min=0.0)
     manual_timeout = Parameter(3.0, "s", "time for which manual control is valid", min=0.0)
     target_timeout = Parameter(3.0, "s", "time for which a set-point is valid", min=0.0)
     full_speed = Parameter(1.0, "m/s", "speed of full thrust in an attitude set-point", min=0.0)
     truth = Parameter("off", "1", "whether the truth is sent", choices=("off", "on"))
-    gravity = Parameter(9.81, "m/s2", "acceleration of gravity, in the truth", min=0.0)
     waypoint_radius = Parameter(3.0, "m", "distance at which a waypoint is reached", min=0.0)
     cruise_speed = Parameter(1.0, "m/s", "speed of legs that name none", min=0.0)
     loiter_radius = Parameter(10.0, "m", "radius of turns that name none", min=0.1)
     fence_action = Parameter("hold", "1", "what it does outside its fence", choices=ACTIONS)
     fence_depth = Parameter(0.0, "m", "depth of the fence's floor, 0 for none", min=0.0)
+    battery_capacity = Parameter(0.0, "A.s", "charge of a full battery, 0 if unknown", min=0.0)
+    battery_low_voltage = Parameter(0.0, "V", "voltage of a low battery, 0 for none", min=0.0)
+    battery_low_charge = Parameter(
+        0.0, "1", "share of the charge of a low battery, 0 for none", min=0.0, max=1.0
+    )
+    battery_action = Parameter("none", "1", "what it does with a low battery", choices=ACTIONS)
+    gnss_fix = Parameter("3d", "1", "fix of the receiver with a position", choices=tuple(FIXES))
+    gnss_satellites = Parameter(12.0, "1", "satellites of that fix", min=0.0, max=254.0)
+    gnss_hdop = Parameter(1.0, "1", "horizontal dilution of precision of that fix", min=0.0)
     plan_folder = Parameter(
         "", "1", "folder of mission, fence and rally points; empty: they end with the run"
     )
@@ -126,14 +144,13 @@ class MavlinkPorts(Logging, Reachable, Sampled):
         axes=_CHANNELS,
         optional=True,
     )
-    named = Input("1", "values that `names` names, in any unit", axes=_NAMED, optional=True)
-    true_position = Input("m", "true position, north-east-down", axes="xyz", frame="n")
-    true_velocity = Input("m/s", "true velocity, body axes", axes=("u", "v", "w"))
-    true_attitude = Input("rad", "true Euler angles, ZYX", axes=_EULER)
-    true_rates = Input("rad/s", "true angular velocity, body axes", axes=("p", "q", "r"))
-    true_acceleration = Input(
-        "m/s2", "true inertial acceleration, body axes", axes="xyz", frame="b"
+    share = Input(
+        "1",
+        "commands of thrusters as shares of full thrust, in the place of pulses",
+        axes=SHARED,
+        optional=True,
     )
+    named = Input("1", "values that `names` names, in any unit", axes=_NAMED, optional=True)
     nav_state = Input("1", "guidance: 2 stays, 3 follows a leg, 4 steers, else less", type=int)
     nav_heading = Input("rad", "guidance: heading wanted, clockwise from north")
     nav_speed = Input(
@@ -201,13 +218,7 @@ class MavlinkPorts(Logging, Reachable, Sampled):
             heel="roll_pitch__phi",
             pitch="roll_pitch__theta",
         ),
-        "motion": terminal(
-            position="true_position",
-            velocity="true_velocity",
-            attitude="true_attitude",
-            rates="true_rates",
-            acceleration="true_acceleration",
-        ),
+        "motion": MOTION,
         "orders": terminal(
             *ORDERED,
             "leg_reached",
@@ -219,6 +230,10 @@ class MavlinkPorts(Logging, Reachable, Sampled):
             "nav_distance",
         ),
         "deflections": Terminal({"armed": "armed", **{axis: f"manual.{axis}" for axis in _MANUAL}}),
-        "pulses": Terminal({channel: f"pulse.{channel}" for channel in _CHANNELS}),
+        "pulses": Terminal(
+            {channel: f"pulse.{channel}" for channel in _CHANNELS}
+            | {name: f"share.{name}" for name in SHARED}
+        ),
+        "battery": terminal("voltage", "current", "charge"),
         "failures": Terminal({unit: f"failure.{unit}" for unit in UNITS}),
     }

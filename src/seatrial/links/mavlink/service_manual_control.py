@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from pymavlink.dialects.v20 import all as mavlink
 
 from .codec import Message
 from .failsafe import Failsafe
 from .modes import MANUAL_MODES
-from .service import Receiver, Service
+from .service import NOTICE, Receiver, Service
 from .settings import Settings
 from .transport import Sender, Transport
 from .vehicle import MANUAL_RELEASED, Vehicle
@@ -37,16 +37,27 @@ class ManualControlService(Service):
     3 steer and drive a boat; 5, 6, 4 and 3 are ahead, to starboard, turn and upwards of a
     submarine. A channel of 65535 is left as it is, 0 is released.
 
+    Only the station of ``settings.pilot_system`` steers an ArduPilot: others are ignored, which is
+    reported once for each.
+
+    ``gain`` is the share of MANUAL_CONTROL's axes that acts.
+
     After the time-out without either the axes are 0, and in an armed vehicle in a manual mode
     the failsafe acts, unless it is set not to watch them. A station that releases all channels has
     released them on purpose.
     """
 
     def __init__(
-        self, vehicle: Vehicle, transport: Transport, failsafe: Failsafe, settings: Settings
+        self,
+        vehicle: Vehicle,
+        transport: Transport,
+        failsafe: Failsafe,
+        settings: Settings,
+        gain: Callable[[], float],
     ) -> None:
         super().__init__(vehicle, transport)
-        self._failsafe, self._settings = failsafe, settings
+        self._failsafe, self._settings, self._gain = failsafe, settings, gain
+        self._ignored: set[int] = set()
         self._held_until = math.inf
         self._let_go = False
 
@@ -59,16 +70,32 @@ class ManualControlService(Service):
         }
 
     def _take_axes(self, message: Message, sender: Sender, now: float) -> None:
-        self.vehicle.manual = self._axes(message)
+        if not self._steers(sender):
+            return
+        surge, sway, yaw, heave = (self._gain() * axis for axis in self._axes(message))
+        self.vehicle.manual = surge, sway, yaw, heave
         self._hold(now)
 
     def _take_channels(self, message: Message, sender: Sender, now: float) -> None:
+        if not self._steers(sender):
+            return
         self._override(message)
         if not any(self.vehicle.channels):
             self._release()
             return
         self.vehicle.manual = self._from_channels()
         self._hold(now)
+
+    def _steers(self, sender: Sender) -> bool:
+        """Return whether a station is the pilot's, and report one that is not."""
+        pilot = self._settings.pilot_system
+        if not self.vehicle.dialect.one_pilot or sender.system == pilot:
+            return True
+        if sender.system not in self._ignored:
+            self._ignored.add(sender.system)
+            text = f"System {sender.system} may not steer: SYSID_MYGCS is {pilot}"
+            self.vehicle.report(NOTICE, text)
+        return False
 
     def _hold(self, now: float) -> None:
         self._held_until = now + self._settings.manual_timeout
@@ -82,9 +109,10 @@ class ManualControlService(Service):
             return
         self._release()
         steered = self.vehicle.armed and self.vehicle.mode.name in MANUAL_MODES
-        if steered and self._settings.watches_manual_control:
+        action = self._settings.manual_failsafe
+        if steered and self._settings.watches_manual_control and action != "off":
             self._let_go = True
-            self._failsafe.act(_LOST)
+            self._failsafe.act(_LOST, action)
 
     def _release(self) -> None:
         self._held_until = math.inf
@@ -121,3 +149,16 @@ class ManualControlService(Service):
 
 def _manual_axis(value: float | None) -> float:
     return 0.0 if value is None else min(max(value, -1.0), 1.0)
+
+
+def shown_channels(vehicle: Vehicle) -> list[int]:
+    """Return the RC channels, us: overridden, or those that the axes held stand for; 0 for none."""
+    channels = list(vehicle.channels)
+    if any(channels) or vehicle.manual is MANUAL_RELEASED:
+        return channels
+    surge, sway, yaw, heave = vehicle.manual
+    numbers = _SUB_CHANNELS if vehicle.identity.submerged else _BOAT_CHANNELS
+    for number, axis in zip(numbers, (surge, sway, yaw, -heave), strict=True):
+        if number:
+            channels[number - 1] = round(_MIDDLE_US + _TRAVEL_US * axis)
+    return channels

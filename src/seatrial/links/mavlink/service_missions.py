@@ -48,6 +48,7 @@ class MissionService(Service):
     A MISSION_ITEM whose ``current`` is 2 is not part of a mission, but a place to go to in guided
     mode: some clients know no other way.
 
+    Items such as DO_SET_HOME are carried out by the ``handlers`` of these commands.
     ``reached`` comes from guidance, `leg` what it is to follow.
     """
 
@@ -60,14 +61,14 @@ class MissionService(Service):
         plan: Plan,
         settings: Settings,
         modes: ModeService,
-        set_home: Handler,
+        handlers: Mapping[int, Handler],
         refuge: Callable[[], Ned],
         change_guided_speed: Callable[[float], None],
     ) -> None:
         super().__init__(vehicle, transport)
-        self._plan, self._modes, self._set_home = plan, modes, set_home
+        self._plan, self._modes, self._handlers = plan, modes, handlers
         self._change_guided_speed = change_guided_speed
-        self._runner = MissionRunner(vehicle, plan, settings, self._move_home, refuge)
+        self._runner = MissionRunner(vehicle, plan, settings, self._carry_out, refuge)
         modes.requirements.append(self._needs_mission)
         self.reached = 0
         """Number of the leg that is done, by guidance; 0 for none."""
@@ -189,12 +190,12 @@ class MissionService(Service):
         self.vehicle.target = Target("position", place)
         return int(mavlink.MAV_MISSION_ACCEPTED)
 
-    def _move_home(self, item: Item, now: float) -> None:
-        """Carry DO_SET_HOME of a mission out."""
+    def _carry_out(self, item: Item, now: float) -> None:
+        """Carry an item of the mission out as a command of a station would be."""
         command = Command(item.command, (*item.parameters, *item.coordinates(), item.z), item.frame)
         ourselves = Sender(self.vehicle.identity.system, self.vehicle.identity.component, -1)
-        if self._set_home(command, ourselves, now) != ACCEPTED:
-            self.vehicle.report(WARNING, "Mission: home cannot be moved there")
+        if self._handlers[item.command](command, ourselves, now) != ACCEPTED:
+            self.vehicle.report(WARNING, f"Mission: {item.name} failed")
 
     def _current(self, now: float) -> list[Message]:
         runner = self._runner

@@ -21,6 +21,7 @@ from .service import (
     Handler,
     Receiver,
     Service,
+    whole,
 )
 from .transport import Sender, Transport
 from .vehicle import Vehicle
@@ -30,14 +31,17 @@ Requirement = Callable[[Mode], str | None]
 
 
 class ModeService(Service):
-    """DO_SET_MODE, SET_MODE, RETURN_TO_LAUNCH and NAV_LAND in, CURRENT_MODE and AVAILABLE_MODES
-    out.
+    """DO_SET_MODE, SET_MODE, DO_SET_STANDARD_MODE, RETURN_TO_LAUNCH and NAV_LAND in; CURRENT_MODE,
+    AVAILABLE_MODES and AVAILABLE_MODES_MONITOR out.
 
     A submarine that is to land surfaces. A mode of `POSITION_MODES` needs a valid position; other
     services add ``requirements`` of theirs. What is refused is reported, with the reason.
     """
 
-    streams: ClassVar = {mavlink.MAVLINK_MSG_ID_CURRENT_MODE: 1.0}
+    streams: ClassVar = {
+        mavlink.MAVLINK_MSG_ID_CURRENT_MODE: 1.0,
+        mavlink.MAVLINK_MSG_ID_AVAILABLE_MODES_MONITOR: 5.0,
+    }
 
     def __init__(self, vehicle: Vehicle, transport: Transport) -> None:
         super().__init__(vehicle, transport)
@@ -48,6 +52,7 @@ class ModeService(Service):
         """Commands that it carries out."""
         return {
             mavlink.MAV_CMD_DO_SET_MODE: self._set_mode,
+            mavlink.MAV_CMD_DO_SET_STANDARD_MODE: self._set_standard_mode,
             mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH: self._return,
             mavlink.MAV_CMD_NAV_LAND: self._surface,
         }
@@ -58,6 +63,7 @@ class ModeService(Service):
         return {
             mavlink.MAVLINK_MSG_ID_CURRENT_MODE: self._current,
             mavlink.MAVLINK_MSG_ID_AVAILABLE_MODES: self._available,
+            mavlink.MAVLINK_MSG_ID_AVAILABLE_MODES_MONITOR: self._monitor,
         }
 
     def enter(self, mode: Mode) -> str | None:
@@ -89,6 +95,11 @@ class ModeService(Service):
         if not (0.0 <= base < 256.0 and int(base) & custom):
             return DENIED
         return self._entered(self.vehicle.dialect.by_command(main, sub), main)
+
+    def _set_standard_mode(self, command: Command, sender: Sender, now: float) -> int:
+        standard = whole(command.parameters[0])
+        mode = None if standard is None else self.vehicle.dialect.by_standard(standard)
+        return self._entered(mode, command.parameters[0])
 
     def _return(self, command: Command, sender: Sender, now: float) -> int:
         return self._entered_if_any("return")
@@ -128,3 +139,7 @@ class ModeService(Service):
             )
             for index, mode in enumerate(modes, 1)
         ]
+
+    def _monitor(self, now: float) -> list[Message]:
+        """Say that the list of modes is still the same: a station need not request it again."""
+        return [mavlink.MAVLink_available_modes_monitor_message(0)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -20,6 +21,9 @@ RATE = 100.0
 
 _LAYOUTS: Mapping[int, str] = {INT8: "<b3x", INT16: "<h2x", INT32: "<i", REAL32: "<f"}
 _BY_NAME = -1
+_HASH = "_HASH_CHECK"
+_UINT32: int = mavlink.MAV_PARAM_TYPE_UINT32
+_NO_INDEX = 0xFFFF
 _SLACK_S = 1e-9  # what two doubles for one instant may differ by
 
 
@@ -49,7 +53,10 @@ class ParameterService(Service):
     **Integers** travel as numbers (ArduPilot; rounded, and exact up to 2^24) or as the four
     bytes of their type (PX4, which refuses a value of another type than the parameter's).
 
-    Not here: the extended protocol, and PX4's hash of all parameters.
+    **The hash** of all parameters goes before a PX4's list, as `_HASH_CHECK`: a station that has a
+    list with that hash sends it back, and the list ends.
+
+    Not here: the extended protocol.
     """
 
     def __init__(self, vehicle: Vehicle, transport: Transport, table: ParameterTable) -> None:
@@ -77,6 +84,8 @@ class ParameterService(Service):
         begun = self.vehicle.link_time(now)
         index, due = (running.index, running.due) if running else (0, begun)
         self._listings[sender.link] = _Listing(index, len(self.table.names), due)
+        if self._bytewise:
+            self.transport.send(sender.link, self._hash())
 
     def tick(self, now: float) -> None:
         """Send what is due of the lists, and forget those of links that are gone."""
@@ -96,11 +105,17 @@ class ParameterService(Service):
             name = self.table.names[index] if known else ""
         if name in self.table:
             self.transport.send(sender.link, self._value(name))
+        elif self._bytewise and name == _HASH:
+            self.transport.send(sender.link, self._hash())
         else:
             self._refuse(name, index, mavlink.MAV_PARAM_ERROR_DOES_NOT_EXIST, sender)
 
     def _set(self, message: Message, sender: Sender, now: float) -> None:
         name = message.param_id
+        if self._bytewise and name == _HASH:
+            if _bits(message.param_value) == self._hash_of_all():
+                self._listings.pop(sender.link, None)  # it knows all of them
+            return
         if name not in self.table:
             self._refuse(name, _BY_NAME, mavlink.MAV_PARAM_ERROR_DOES_NOT_EXIST, sender)
             return
@@ -134,6 +149,22 @@ class ParameterService(Service):
             self.table.index(name),
         )
 
+    def _hash(self) -> Message:
+        value = struct.unpack("<f", struct.pack("<I", self._hash_of_all()))[0]
+        return mavlink.MAVLink_param_value_message(
+            _identifier(_HASH), value, _UINT32, len(self.table.names), _NO_INDEX
+        )
+
+    def _hash_of_all(self) -> int:
+        """Return PX4's CRC-32 of names and values: it begins with 0, and is not inverted."""
+        crc = 0xFFFFFFFF
+        for name in sorted(self.table.names):
+            layout = _LAYOUTS[self.table.kind(name)].replace("3x", "").replace("2x", "")
+            value = self.table[name]
+            data = struct.pack(layout, value if layout == "<f" else round(value))
+            crc = zlib.crc32(name.encode() + data, crc)
+        return crc ^ 0xFFFFFFFF
+
     def _encoded(self, value: float, kind: int) -> float:
         if not self._bytewise or kind == REAL32:
             return value
@@ -144,6 +175,10 @@ class ParameterService(Service):
         if not self._bytewise or kind == REAL32:
             return value
         return float(struct.unpack(_LAYOUTS[kind], struct.pack("<f", value))[0])
+
+
+def _bits(value: float) -> int:
+    return int(struct.unpack("<I", struct.pack("<f", value))[0])
 
 
 def _identifier(name: str) -> bytes:

@@ -99,11 +99,11 @@ class PresenceService(Service):
         return [
             mavlink.MAVLink_autopilot_version_message(
                 self.vehicle.capabilities,
-                firmware_number(identity.firmware_version),
+                firmware_number(self.vehicle.dialect.version),
                 0,
                 0,
                 0,
-                [0] * 8,
+                custom_version(identity.firmware_version, self.vehicle.dialect.autopilot),
                 [0] * 8,
                 [0] * 8,
                 0,
@@ -135,3 +135,14 @@ def firmware_number(version: str) -> int:
     numbers, _, kind = version.partition("-")
     major, minor, patch = (int(part) % 256 for part in numbers.split("."))
     return major << 24 | minor << 16 | patch << 8 | int(_FIRMWARE[kind])
+
+
+def custom_version(version: str, autopilot: int) -> list[int]:
+    """Return ``major.minor.patch-kind`` as AUTOPILOT_VERSION's 8 bytes for a vendor's own version.
+
+    Of a PX4 stations read three numbers from the last to the first, of an ArduPilot text.
+    """
+    if autopilot == mavlink.MAV_AUTOPILOT_PX4:
+        numbers = version.partition("-")[0].split(".")
+        return [*(int(number) % 256 for number in reversed(numbers)), *[0] * 5]
+    return list(version.replace("-", "").encode("ascii")[:8].ljust(8, b"\0"))

@@ -30,6 +30,7 @@ _NUMBERED = (mavlink.MAVLINK_MSG_ID_AVAILABLE_MODES,)
 
 GROUPS: Mapping[int, tuple[int, ...]] = {
     mavlink.MAV_DATA_STREAM_RAW_SENSORS: (
+        mavlink.MAVLINK_MSG_ID_RAW_IMU,
         mavlink.MAVLINK_MSG_ID_SCALED_IMU,
         mavlink.MAVLINK_MSG_ID_HIGHRES_IMU,
         mavlink.MAVLINK_MSG_ID_SCALED_PRESSURE2,
@@ -39,6 +40,8 @@ GROUPS: Mapping[int, tuple[int, ...]] = {
         mavlink.MAVLINK_MSG_ID_GPS_RAW_INT,
         mavlink.MAVLINK_MSG_ID_MISSION_CURRENT,
         mavlink.MAVLINK_MSG_ID_NAV_CONTROLLER_OUTPUT,
+        mavlink.MAVLINK_MSG_ID_POSITION_TARGET_GLOBAL_INT,
+        mavlink.MAVLINK_MSG_ID_POWER_STATUS,
     ),
     mavlink.MAV_DATA_STREAM_RC_CHANNELS: (
         mavlink.MAVLINK_MSG_ID_SERVO_OUTPUT_RAW,
@@ -52,6 +55,7 @@ GROUPS: Mapping[int, tuple[int, ...]] = {
         mavlink.MAVLINK_MSG_ID_ATTITUDE,
         mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION,
         mavlink.MAVLINK_MSG_ID_SIM_STATE,
+        mavlink.MAVLINK_MSG_ID_AHRS2,
     ),
     mavlink.MAV_DATA_STREAM_EXTRA2: (mavlink.MAVLINK_MSG_ID_VFR_HUD,),
     mavlink.MAV_DATA_STREAM_EXTRA3: (
@@ -59,7 +63,11 @@ GROUPS: Mapping[int, tuple[int, ...]] = {
         mavlink.MAVLINK_MSG_ID_BATTERY_STATUS,
         mavlink.MAVLINK_MSG_ID_WIND,
         mavlink.MAVLINK_MSG_ID_EKF_STATUS_REPORT,
+        mavlink.MAVLINK_MSG_ID_ESTIMATOR_STATUS,
+        mavlink.MAVLINK_MSG_ID_VIBRATION,
         mavlink.MAVLINK_MSG_ID_DISTANCE_SENSOR,
+        mavlink.MAVLINK_MSG_ID_RANGEFINDER,
+        mavlink.MAVLINK_MSG_ID_WATER_DEPTH,
         mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE,
     ),
 }

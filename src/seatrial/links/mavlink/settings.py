@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 ALL_CHECKS, COMPASS_CHECK, GPS_CHECK = 1 << 0, 1 << 2, 1 << 3
 """Bits of `Settings.arming_check`, as ArduPilot's ARMING_CHECK has them."""
@@ -32,10 +32,30 @@ class Settings:
     """What it does outside its fence: one of the actions of the failsafe."""
     fence_depth: float = 0.0
     """Depth of the fence's floor, m; 0 for none."""
+    battery_capacity: float = 0.0
+    """Charge of a full battery, A.s; 0 if it is not known."""
+    battery_low_voltage: float = 0.0
+    """Voltage of a low battery, V; 0 for none."""
+    battery_low_charge: float = 0.0
+    """Share of the charge at which the battery is low; 0 for none."""
+    battery_action: str = "none"
+    """What it does with a low battery: one of the actions of the failsafe."""
     watches_stations: bool = True
     """Whether the failsafe acts when all ground stations are lost."""
     watches_manual_control: bool = True
     """Whether the failsafe acts when manual control is lost."""
+    manual_failsafe: str = ""
+    """What it then does: an action, ``off``, or that of the failsafe if it is empty."""
+    pilot_system: int = 255
+    """System whose manual control acts, in an ArduPilot."""
+    buttons: dict[int, int] = field(default_factory=dict)
+    """Functions of a joystick's buttons, then with the shift button; empty: they have none."""
+    gain_start: float = 1.0
+    """Share of the joystick's axes that acts before a button changes it."""
+    gain_least: float = 0.25
+    gain_most: float = 1.0
+    gain_steps: int = 4
+    """Gains from least to most."""
     arming_check: int = ALL_CHECKS
     speedup: float = 1.0
     """Simulated seconds per second of wall time; while paused, those before and afterwards."""

@@ -9,6 +9,7 @@ from typing import ClassVar
 from pymavlink.dialects.v20 import all as mavlink
 
 from .codec import Message
+from .modes import MANUAL_MODES
 from .scaling import (
     compass_degrees,
     deg_e7,
@@ -103,7 +104,9 @@ class MotionTelemetry(Service):
     def _hud(self, now: float) -> list[Message]:
         e = self.vehicle.estimates
         wind = e.apparent_wind[0] if e.apparent_wind is not None else 0.0
-        throttle = abs(self.vehicle.manual[0]) if self.vehicle.armed else 0.0
+        ordered = abs(self.vehicle.manual[0]) if self.vehicle.mode.name in MANUAL_MODES else 0.0
+        throttle = ordered if e.throttle is None else e.throttle
+        throttle = throttle if self.vehicle.armed else 0.0
         return [
             mavlink.MAVLink_vfr_hud_message(
                 wind,

@@ -10,14 +10,18 @@ from pymavlink.dialects.v20 import all as mavlink
 
 from ..geodesy import Ned
 from .codec import Message
-from .scaling import int16, uint16
+from .scaling import deg_e7, int16, milliseconds, uint16
 from .service import Builder, Service
 from .transport import Transport
 from .vehicle import Vehicle
 
+_POSITION_ALONE = 0xDF8
+"""POSITION_TARGET_TYPEMASK: velocities, accelerations and yaw are not given."""
+
 
 class NavigationTelemetry(Service):
-    """NAV_CONTROLLER_OUTPUT, while guidance stays somewhere, follows a leg or steers.
+    """NAV_CONTROLLER_OUTPUT, while guidance stays somewhere, follows a leg or steers, and
+    POSITION_TARGET_GLOBAL_INT, while there is a ``goal``.
 
     nav_bearing is the heading wanted, target_bearing the direction of ``goal``, -180 to 180
     degrees; without a goal it is the heading wanted too. xtrack_error is positive to starboard of
@@ -25,7 +29,10 @@ class NavigationTelemetry(Service):
     pitch, which no guidance commands here, are 0.
     """
 
-    streams: ClassVar = {mavlink.MAVLINK_MSG_ID_NAV_CONTROLLER_OUTPUT: 0.5}
+    streams: ClassVar = {
+        mavlink.MAVLINK_MSG_ID_NAV_CONTROLLER_OUTPUT: 0.5,
+        mavlink.MAVLINK_MSG_ID_POSITION_TARGET_GLOBAL_INT: 0.5,
+    }
 
     def __init__(
         self, vehicle: Vehicle, transport: Transport, goal: Callable[[], Ned | None]
@@ -36,7 +43,23 @@ class NavigationTelemetry(Service):
     @property
     def messages(self) -> Mapping[int, Builder]:
         """Messages that it can build."""
-        return {mavlink.MAVLINK_MSG_ID_NAV_CONTROLLER_OUTPUT: self._navigation}
+        return {
+            mavlink.MAVLINK_MSG_ID_NAV_CONTROLLER_OUTPUT: self._navigation,
+            mavlink.MAVLINK_MSG_ID_POSITION_TARGET_GLOBAL_INT: self._target,
+        }
+
+    def _target(self, now: float) -> list[Message]:
+        goal = self._goal()
+        if goal is None:
+            return []
+        latitude, longitude, altitude = self.vehicle.origin.geodetic(goal)
+        place = (deg_e7(latitude), deg_e7(longitude), altitude)
+        unused = (0.0,) * 8
+        return [
+            mavlink.MAVLink_position_target_global_int_message(
+                milliseconds(now), mavlink.MAV_FRAME_GLOBAL, _POSITION_ALONE, *place, *unused
+            )
+        ]
 
     def _navigation(self, now: float) -> list[Message]:
         e, way = self.vehicle.estimates, self.vehicle.estimates.way

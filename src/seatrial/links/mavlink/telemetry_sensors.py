@@ -1,4 +1,4 @@
-"""Sensor telemetry: satellites, inertia, pressure, wind, battery."""
+"""Sensor telemetry: satellites, inertia, pressure, wind."""
 
 from __future__ import annotations
 
@@ -14,7 +14,6 @@ from .scaling import (
     FRESH_WATER,
     STANDARD_PRESSURE,
     UNKNOWN_U16,
-    clamped,
     compass_degrees,
     deg_e7,
     int16,
@@ -25,6 +24,7 @@ from .scaling import (
     uint16,
 )
 from .service import Builder, Service
+from .vehicle import NO_FIX
 
 _IMU, _PRESSURE = 0x7 | 0x38, 0x200
 """Of HIGHRES_IMU's fields_updated: acceleration and rates; absolute pressure."""
@@ -33,7 +33,7 @@ _FARTHEST_CM = 0xFFFF
 
 class SensorTelemetry(Service):
     """GPS_RAW_INT, SCALED_IMU, HIGHRES_IMU, SCALED_PRESSURE2 (of the water, in a submarine),
-    DISTANCE_SENSOR (downwards), WIND and WIND_COV, BATTERY_STATUS, NAMED_VALUE_FLOAT.
+    DISTANCE_SENSOR (downwards), WIND and WIND_COV, NAMED_VALUE_FLOAT.
 
     The true wind is the apparent one, which is measured in the horizontal plane here, turned
     by the heading, plus the vehicle's velocity.
@@ -47,7 +47,6 @@ class SensorTelemetry(Service):
         mavlink.MAVLINK_MSG_ID_DISTANCE_SENSOR: 0.5,
         mavlink.MAVLINK_MSG_ID_WIND: 1.0,
         mavlink.MAVLINK_MSG_ID_WIND_COV: 1.0,
-        mavlink.MAVLINK_MSG_ID_BATTERY_STATUS: 1.0,
         mavlink.MAVLINK_MSG_ID_NAMED_VALUE_FLOAT: 0.5,
     }
 
@@ -62,7 +61,6 @@ class SensorTelemetry(Service):
             mavlink.MAVLINK_MSG_ID_DISTANCE_SENSOR: self._distance,
             mavlink.MAVLINK_MSG_ID_WIND: self._wind,
             mavlink.MAVLINK_MSG_ID_WIND_COV: self._wind_cov,
-            mavlink.MAVLINK_MSG_ID_BATTERY_STATUS: self._battery,
             mavlink.MAVLINK_MSG_ID_NAMED_VALUE_FLOAT: self._named,
         }
 
@@ -73,19 +71,19 @@ class SensorTelemetry(Service):
         latitude, longitude, altitude = self.vehicle.origin.geodetic(e.position_n)
         north, east, _ = e.velocity_n
         course = round(compass_degrees(math.atan2(east, north)) * 100) % 36000
-        fix = mavlink.GPS_FIX_TYPE_3D_FIX if e.position_valid else mavlink.GPS_FIX_TYPE_NO_FIX
+        receiver = self.vehicle.receiver if e.position_valid else NO_FIX
         return [
             mavlink.MAVLink_gps_raw_int_message(
                 microseconds(now),
-                fix,
+                receiver.fix,
                 deg_e7(latitude),
                 deg_e7(longitude),
                 int32(altitude * 1e3),
-                UNKNOWN_U16,
+                UNKNOWN_U16 if receiver.hdop is None else uint16(receiver.hdop * 100),
                 UNKNOWN_U16,
                 uint16(math.hypot(north, east) * 100),
                 course,
-                0xFF,
+                receiver.satellites,
             )
         ]
 
@@ -158,24 +156,6 @@ class SensorTelemetry(Service):
             return []
         unknown = [math.nan] * 5
         return [mavlink.MAVLink_wind_cov_message(microseconds(now), *true, 0.0, *unknown)]
-
-    def _battery(self, now: float) -> list[Message]:
-        e = self.vehicle.estimates
-        if e.voltage is None:
-            return []
-        return [
-            mavlink.MAVLink_battery_status_message(
-                0,
-                mavlink.MAV_BATTERY_FUNCTION_ALL,
-                mavlink.MAV_BATTERY_TYPE_UNKNOWN,
-                0x7FFF,
-                [uint16(e.voltage * 1e3), *[UNKNOWN_U16] * 9],
-                -1 if e.current is None else int16(e.current * 100),
-                -1,
-                -1,
-                -1 if e.charge is None else clamped(e.charge * 100, 0, 100),
-            )
-        ]
 
     def _named(self, now: float) -> list[Message]:
         return [

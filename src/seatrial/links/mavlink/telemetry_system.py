@@ -10,24 +10,17 @@ from pymavlink.dialects.v20 import all as mavlink
 from .codec import Message
 from .scaling import UNKNOWN_U16, clamped, int16, microseconds, milliseconds, uint16
 from .service import Builder, Service
+from .service_manual_control import shown_channels
 
 _IMU = mavlink.MAV_SYS_STATUS_SENSOR_3D_GYRO | mavlink.MAV_SYS_STATUS_SENSOR_3D_ACCEL
 _HEADING = mavlink.MAV_SYS_STATUS_SENSOR_3D_MAG | mavlink.MAV_SYS_STATUS_AHRS
 
-_EKF_ATTITUDE = mavlink.EKF_ATTITUDE
-_EKF_DEPTH = mavlink.EKF_POS_VERT_ABS | mavlink.EKF_VELOCITY_VERT
-_EKF_POSITION = (
-    mavlink.EKF_VELOCITY_HORIZ
-    | mavlink.EKF_POS_HORIZ_REL
-    | mavlink.EKF_POS_HORIZ_ABS
-    | mavlink.EKF_PRED_POS_HORIZ_REL
-    | mavlink.EKF_PRED_POS_HORIZ_ABS
-)
-
 
 class SystemTelemetry(Service):
-    """SYS_STATUS, SYSTEM_TIME, EKF_STATUS_REPORT, EXTENDED_SYS_STATE, SERVO_OUTPUT_RAW and
-    RC_CHANNELS.
+    """SYS_STATUS, SYSTEM_TIME, EXTENDED_SYS_STATE, SERVO_OUTPUT_RAW and RC_CHANNELS.
+
+    Axes of MANUAL_CONTROL are shown as the channels that would have the same effect, as an
+    ArduPilot shows them.
 
     Health comes from the validity of the estimates. Simulated time counts from the Unix time of
     the vehicle's day, so that two runs send the same.
@@ -36,7 +29,6 @@ class SystemTelemetry(Service):
     streams: ClassVar = {
         mavlink.MAVLINK_MSG_ID_SYS_STATUS: 0.5,
         mavlink.MAVLINK_MSG_ID_SYSTEM_TIME: 1.0,
-        mavlink.MAVLINK_MSG_ID_EKF_STATUS_REPORT: 1.0,
         mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE: 1.0,
         mavlink.MAVLINK_MSG_ID_SERVO_OUTPUT_RAW: 0.25,
         mavlink.MAVLINK_MSG_ID_RC_CHANNELS: 0.5,
@@ -48,7 +40,6 @@ class SystemTelemetry(Service):
         return {
             mavlink.MAVLINK_MSG_ID_SYS_STATUS: self._status,
             mavlink.MAVLINK_MSG_ID_SYSTEM_TIME: self._time,
-            mavlink.MAVLINK_MSG_ID_EKF_STATUS_REPORT: self._filter,
             mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE: self._landed,
             mavlink.MAVLINK_MSG_ID_SERVO_OUTPUT_RAW: self._servos,
             mavlink.MAVLINK_MSG_ID_RC_CHANNELS: self._channels,
@@ -94,12 +85,6 @@ class SystemTelemetry(Service):
         unix = self.vehicle.identity.boot_unix_us + microseconds(now)
         return [mavlink.MAVLink_system_time_message(unix, milliseconds(now))]
 
-    def _filter(self, now: float) -> list[Message]:
-        e = self.vehicle.estimates
-        flags = _EKF_ATTITUDE | _EKF_DEPTH
-        flags |= _EKF_POSITION if e.position_valid else mavlink.EKF_CONST_POS_MODE
-        return [mavlink.MAVLink_ekf_status_report_message(flags, 0.0, 0.0, 0.0, 0.0, 0.0)]
-
     def _landed(self, now: float) -> list[Message]:
         on_ground = mavlink.MAV_LANDED_STATE_ON_GROUND  # what never flies has landed
         return [
@@ -112,7 +97,7 @@ class SystemTelemetry(Service):
         return [mavlink.MAVLink_servo_output_raw_message(time, 0, *pulses)]
 
     def _channels(self, now: float) -> list[Message]:
-        channels = [width or UNKNOWN_U16 for width in self.vehicle.channels]
+        channels = [width or UNKNOWN_U16 for width in shown_channels(self.vehicle)]
         return [
             mavlink.MAVLink_rc_channels_message(milliseconds(now), len(channels), *channels, 0xFF)
         ]

@@ -28,6 +28,11 @@ class TelemetryLog:
         """Whether there is a file."""
         return self._file is not None
 
+    @property
+    def path(self) -> Path | None:
+        """The file, None if there is none."""
+        return None if self._file is None else Path(str(self._file.name))
+
     def open(self, path: Path) -> None:
         """Begin a file."""
         try:

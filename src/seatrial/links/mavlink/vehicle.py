@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from pymavlink.dialects.v20 import all as mavlink
+
 from ...unit_table import STANDARD_GRAVITY
 from ..geodesy import Ned, Origin
+from ..truth import Truth
 from .modes import Dialect, Mode
 
 CHANNELS = 16
@@ -27,6 +30,28 @@ class Identity:
     uid: int
     boot_unix_us: int
     """Unix time of the start of the run, us; simulated time counts from there."""
+
+
+FIXES = {
+    "3d": mavlink.GPS_FIX_TYPE_3D_FIX,
+    "dgps": mavlink.GPS_FIX_TYPE_DGPS,
+    "rtk-float": mavlink.GPS_FIX_TYPE_RTK_FLOAT,
+    "rtk-fixed": mavlink.GPS_FIX_TYPE_RTK_FIXED,
+}
+"""GPS_FIX_TYPE of a receiver with a position, by name."""
+
+
+@dataclass(frozen=True)
+class Receiver:
+    """What a satellite receiver reports beside its position."""
+
+    fix: int = mavlink.GPS_FIX_TYPE_3D_FIX
+    """GPS_FIX_TYPE."""
+    satellites: int = 12
+    hdop: float | None = 1.0
+
+
+NO_FIX = Receiver(mavlink.GPS_FIX_TYPE_NO_FIX, 0, None)
 
 
 @dataclass(frozen=True)
@@ -69,20 +94,11 @@ class Estimates:
     """Share of the battery that is left, 0 to 1."""
     pulses: tuple[float, ...] = (0.0,) * CHANNELS
     """Servo pulses; 0 is an output that is not used."""
+    throttle: float | None = None
+    """Mean share of full thrust ahead, 0 to 1."""
     named: tuple[tuple[str, float], ...] = ()
     way: Way | None = None
     """None while guidance neither stays somewhere nor goes anywhere."""
-
-
-@dataclass(frozen=True)
-class Truth:
-    """True state of the simulated vehicle. SI, rad; velocity in {n}, the rest in {b}."""
-
-    position_n: Ned
-    velocity_n: Ned
-    attitude: Ned
-    rates: Ned
-    specific_force: Ned
 
 
 @dataclass(frozen=True)
@@ -121,6 +137,7 @@ class Vehicle:
     armed: bool = False
     home_n: Ned = (0.0, 0.0, 0.0)
     estimates: Estimates = field(default_factory=Estimates)
+    receiver: Receiver = field(default_factory=Receiver)
     truth: Truth | None = None
     target: Target | None = None
     guided_speed: float = 0.0

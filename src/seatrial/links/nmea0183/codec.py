@@ -46,13 +46,13 @@ def encode(talker: str, formatter: str, fields: Mapping[str, Any]) -> bytes:
     given = {name: _whole_minutes(value) for name, value in fields.items() if value is not None}
     message = NMEAMessage(talker, formatter, GET, **given)
     placeless = fields.get("lat") == ""
-    if placeless or None in fields.values():  # it has a word for each field, hemispheres too
+    if placeless:  # it has a word for each hemisphere too
         written = zip(NMEA_PAYLOADS_GET[formatter], message.payload, strict=False)
-        payload = [
-            "" if placeless and name in _HEMISPHERES else text
-            for name, text in written
-            if fields.get(name, "") is not None
-        ]
+        payload = ["" if name in _HEMISPHERES else text for name, text in written]
+        message = NMEAMessage(talker, formatter, GET, payload=payload)
+    not_sent = len(fields) - len(given)
+    if not_sent:
+        payload = message.payload[: len(message.payload) - not_sent]
         message = NMEAMessage(talker, formatter, GET, payload=payload)
     return bytes(message.serialize())
 

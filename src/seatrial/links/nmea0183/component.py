@@ -13,6 +13,9 @@ from ...sampled import Sampled
 from ..endpoints.endpoint import Channel, Endpoint
 from ..endpoints.url import open_endpoints, other_end
 from ..geodesy import Origin
+from ..leg import LegStatus, leg_status
+from ..parameter_validation import start_us
+from ..satellites import sky
 from ..text import Inbox, Outbox
 from .codec import decode, encode
 from .lines import Lines
@@ -22,6 +25,7 @@ from .readings import Readings
 from .schedule import schedule
 from .sentences import SENTENCES
 
+_EPOCH = datetime.datetime(1970, 1, 1, tzinfo=datetime.UTC)
 SENTENCE_COST = 100
 """Bytes that a sentence takes of its link's budget beside its own: reading one takes some 40 us."""
 
@@ -33,8 +37,8 @@ class Nmea0183(Nmea0183Ports):
     sentence (`SENTENCES`) and the period in s. Sentence k of one goes out at the first multiple
     of ``period`` that is not before the start of the run + k times its own period, in the order
     of the text, with the readings of that instant; to all ``links`` (`endpoints.url`), and to
-    ``tx``, as `links.text` has it. A datagram is one sentence. UTC is midnight of ``date`` +
-    the simulated time; the wall clock plays no part.
+    ``tx``, as `links.text` has it. A datagram is one sentence. UTC is ``date`` at the start of
+    the run; the wall clock plays no part.
 
     A reading whose input ``..._valid`` is false, which it is if nothing feeds it, leaves its
     fields empty and has status V, mode N or quality 0. Headings are true: HDG is heading -
@@ -48,8 +52,9 @@ class Nmea0183(Nmea0183Ports):
     came last. Other sentences are only counted; lines with a wrong checksum or none are refused.
 
     Serial lines have the baud rate of their URL: at 4800, some 480 characters a second pass; what
-    does not, waits, and is lost when too much waits. Not here: AIS, queries, DSC, tag blocks,
-    GNSS constellations (GGA has 10 satellites).
+    does not, waits, and is lost when too much waits. Sentences of an `ais-transponder`, on ``ais``,
+    go out as they come. XTE and RMB are of the leg that is followed (``leg``, 0: none). GGA, GSA
+    and GSV have the satellites of a nominal GPS constellation. Not here: queries, DSC, tag blocks.
 
     It cannot be rolled back: what was sent has been sent. Raises InputError at the start for a
     link, date or sentence that cannot be.
@@ -69,7 +74,7 @@ class Nmea0183(Nmea0183Ports):
         """Open the links."""
         self.close()
         try:
-            self._midnight = _midnight(self.date).isoformat()
+            self._start_us = start_us(self.date)
             self._endpoints = open_endpoints("links", self.links)
         except InputError as error:
             raise InputError(f"{self.name}: {error}") from None
@@ -77,17 +82,20 @@ class Nmea0183(Nmea0183Ports):
         self._schedule = schedule(self.sentences)
         self._counts = [0] * len(self._schedule)
         self._in: dict[str, Any] = {}
+        self._ais_in: dict[str, Any] = {}
         self._out: dict[str, Any] = {}
         self._half = ""
         self._sent = self._received = self._refused = 0
         self._orders: dict[str, tuple[int, Order]] = {}
 
     def step(self, t: float, h: float) -> None:
-        """Take in what came by the port, and run the instants of the step."""
+        """Take in what came by the ports, and run the instants of the step."""
         lines = Lines(self._half)
         for _, data in Inbox(self._in).take(self.rx):
             self._read(lines.take(data), self.now_ns)
         self._half = lines.waiting
+        for when, sentence in Inbox(self._ais_in).take(self.ais):
+            self._send(when, sentence)
         super().step(t, h)
         Outbox(self._out).flush()
 
@@ -125,7 +133,8 @@ class Nmea0183(Nmea0183Ports):
             passed = now_ns - self._begun_ns
             self._counts[number] = passed // each.period_ns + 1
             readings = readings or self._readings(passed)
-            self._send(now_ns, encode(each.talker, each.name[:3], SENTENCES[each.name](readings)))
+            for fields in SENTENCES[each.name](readings):
+                self._send(now_ns, encode(each.talker, each.name[:3], fields))
 
     def hold(self, t: float) -> None:
         """Publish what was sent, and the counters."""
@@ -154,16 +163,16 @@ class Nmea0183(Nmea0183Ports):
                 channel.send(sentence)
 
     def _readings(self, passed_ns: int) -> Readings:
-        time = datetime.datetime.fromisoformat(self._midnight) + datetime.timedelta(
-            microseconds=passed_ns // 1000
-        )
+        time = _EPOCH + datetime.timedelta(microseconds=self._start_us + passed_ns // 1000)
         there, steered, moved = self.position_valid, self.heading_valid, self.imu_valid
         north, east, _ = self.velocity_n
+        place = self._origin.geodetic(self.position_n) if there else None
+        leg = self._leg() if there and self.leg > 0 else None
         return Readings(
             time,
             self.variation,
             self.transducer_offset,
-            self._origin.geodetic(self.position_n) if there else None,
+            place,
             (north, east) if there else None,
             self.heading if steered else None,
             self.rate_of_turn if moved else None,
@@ -174,7 +183,19 @@ class Nmea0183(Nmea0183Ports):
             self.depth if self.depth_valid else None,
             self.water_temperature if self.water_temperature_valid else None,
             self._rudder() if self.rudder_valid else None,
+            None if place is None else sky(time.timestamp(), *place[:2]),
+            leg,
+            None if leg is None else (self._waypoint(leg.begin), self._waypoint(leg.end)),
         )
+
+    def _leg(self) -> LegStatus:
+        """Return where the vessel is on the leg that is followed."""
+        ends = self.leg_from, self.leg_to, self.leg_radius
+        return leg_status(self.leg, *ends, self.position_n, self.velocity_n)
+
+    def _waypoint(self, place: tuple[float, float]) -> tuple[float, float]:
+        latitude, longitude, _ = self._origin.geodetic((*place, 0.0))
+        return latitude, longitude
 
     def _true_wind(self) -> tuple[float, float]:
         """Return its speed, and where it comes from, clockwise from the bow."""
@@ -213,11 +234,3 @@ class Nmea0183(Nmea0183Ports):
     def _position(self, latitude: float, longitude: float) -> tuple[float, float, float]:
         north, east, _ = self._origin.position(latitude, longitude, self.altitude)
         return north, east, 0.0
-
-
-def _midnight(date: str) -> datetime.datetime:
-    try:
-        day = datetime.date.fromisoformat(date)
-    except ValueError:
-        raise InputError(f"date is {date!r}, a day such as '2026-02-05' is needed") from None
-    return datetime.datetime(day.year, day.month, day.day, tzinfo=datetime.UTC)

@@ -7,6 +7,7 @@ from typing import ClassVar
 from ...component import Input, Output, Parameter, Reachable, terminal
 from ...sampled import Sampled
 from ..endpoints.url import check_urls
+from ..parameter_validation import start_us
 from .schedule import schedule
 
 _NED = ("north", "east", "down")
@@ -28,7 +29,13 @@ class Nmea0183Ports(Reachable, Sampled):
     latitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-1.5707964, max=1.5707964)
     longitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-3.1415927, max=3.1415927)
     altitude = Parameter(0.0, "m", "of the origin")
-    date = Parameter("2020-01-01", "1", "day whose midnight, UTC, is the start of the run")
+    date = Parameter(
+        "2020-01-01",
+        "1",
+        "UTC at the start of the run: a day, for its midnight, or an instant",
+        check=start_us,
+        role="start-time",
+    )
     variation = Parameter(
         0.0, "rad", "magnetic variation, positive east", min=-3.1415927, max=3.1415927
     )
@@ -45,6 +52,7 @@ class Nmea0183Ports(Reachable, Sampled):
     order_timeout = Parameter(5.0, "s", "time for which an order is valid", min=0.0)
 
     rx = Input("1", "bytes that arrive, as text", type=str, optional=True)
+    ais = Input("1", "sentences of an AIS transponder, as text", type=str, optional=True)
     position_n = Input("m", "position, north-east-down", axes=_NED)
     velocity_n = Input("m/s", "velocity over ground, north-east-down", axes=_NED)
     position_valid = Input("1", "whether position and velocity are valid", type=bool)
@@ -77,6 +85,10 @@ class Nmea0183Ports(Reachable, Sampled):
     water_temperature_valid = Input("1", "whether it is valid", type=bool, optional=True)
     rudder = Input("rad", "angle of the rudder, in the sense of rudder_positive", optional=True)
     rudder_valid = Input("1", "whether it is valid", type=bool, optional=True)
+    leg = Input("1", "number of the leg that is followed, 0: none", type=int, optional=True)
+    leg_from = Input("m", "begin of the leg, north-east-down", axes=_NED, optional=True)
+    leg_to = Input("m", "waypoint at its end, north-east-down", axes=_NED, optional=True)
+    leg_radius = Input("m", "distance at which the waypoint is reached", optional=True)
 
     tx = Output("1", "bytes that are sent, as text", type=str)
     target_kind = Output("1", "heading or position", type=str, start="heading")
@@ -117,5 +129,6 @@ class Nmea0183Ports(Reachable, Sampled):
         "orders": terminal(
             "target_kind", "target_valid", "target_position", "target_heading", "target_speed"
         ),
+        "route": terminal("leg", "leg_from", "leg_to", "leg_radius"),
         "serial": terminal(down="tx", up="rx"),
     }

@@ -6,6 +6,9 @@ import datetime
 import math
 from dataclasses import dataclass
 
+from ..leg import LegStatus
+from ..satellites import Sky
+
 Pair = tuple[float, float]
 
 
@@ -41,6 +44,12 @@ class Readings:
     """K."""
     rudder: float | None = None
     """Positive to turn to starboard."""
+    sky: Sky | None = None
+    """Satellites of the position."""
+    leg: LegStatus | None = None
+    """Leg that the vessel is on."""
+    waypoints: tuple[tuple[float, float], tuple[float, float]] | None = None
+    """Latitude and longitude of its ends, degrees."""
 
     @property
     def course(self) -> float | None:

@@ -24,6 +24,11 @@ KNOT = 1852.0 / 3600.0
 FOOT = 0.3048
 FATHOM = 6.0 * FOOT
 CELSIUS = 273.15
+MILE = 1852.0
+_CHANNELS = 12
+"""Most satellites of GSA and GGA."""
+_MOST_RMB = 9.99
+"""Largest cross-track error of RMB, miles."""
 
 
 def _rmc(of: Readings) -> Fields:
@@ -46,14 +51,34 @@ def _gga(of: Readings) -> Fields:
         "time": _time(of),
         **_place(of),
         "quality": "0" if of.position is None else "1",
-        "numSV": "00" if of.position is None else "10",  # nominal: no constellation is simulated
-        "HDOP": "" if of.position is None else "1.0",
+        "numSV": "00" if of.sky is None else f"{min(len(of.sky.satellites), _CHANNELS):02}",
+        "HDOP": "" if of.sky is None else f"{of.sky.hdop:.1f}",
         "alt": _number(altitude, 2),
         "altUnit": "M",
         "sep": "",
         "sepUnit": "M",
         "diffAge": "",
         "diffStation": "",
+    }
+
+
+def _gll(of: Readings) -> Fields:
+    return {
+        **_place(of),
+        "time": _time(of),
+        "status": _status(of.position),
+        "posMode": _mode(of.position),
+    }
+
+
+def _zda(of: Readings) -> Fields:
+    return {
+        "time": _time(of),
+        "day": f"{of.time.day:02}",
+        "month": f"{of.time.month:02}",
+        "year": f"{of.time.year:04}",
+        "ltzh": "00",  # the zone of local time: UTC
+        "ltzn": "00",
     }
 
 
@@ -168,9 +193,90 @@ def _rsa(of: Readings) -> Fields:
     }
 
 
-SENTENCES: dict[str, Callable[[Readings], Fields]] = {
+def _gsa(of: Readings) -> Fields:
+    used = [] if of.sky is None else of.sky.satellites[:_CHANNELS]
+    numbers = [f"{each.prn:02}" for each in used] + [""] * (_CHANNELS - len(used))
+    sky = of.sky
+    return {
+        "opMode": "A",
+        "navMode": "1" if sky is None else "3",
+        **{f"svid_{k:02}": number for k, number in enumerate(numbers, start=1)},
+        "PDOP": "" if sky is None else f"{sky.pdop:.1f}",
+        "HDOP": "" if sky is None else f"{sky.hdop:.1f}",
+        "VDOP": "" if sky is None else f"{sky.vdop:.1f}",
+        "systemId": None,  # of version 4.1
+    }
+
+
+def _gsv(of: Readings) -> list[Fields]:
+    """Return as many sentences as it takes, four satellites each."""
+    found = () if of.sky is None else of.sky.satellites
+    groups = [found[k : k + 4] for k in range(0, len(found), 4)] or [()]
+    return [
+        {
+            "numMsg": str(len(groups)),
+            "msgNum": str(number),
+            "numSV": f"{len(found):02}",
+            **{
+                f"{name}_{k:02}": text
+                for k, each in enumerate(group, start=1)
+                for name, text in (
+                    ("svid", f"{each.prn:02}"),
+                    ("elv", f"{round(math.degrees(each.elevation)):02}"),
+                    ("az", f"{round(math.degrees(each.azimuth)) % 360:03}"),
+                    ("cno", f"{round(each.signal):02}"),
+                )
+            },
+            "signalID": None,  # of version 4.1
+        }
+        for number, group in enumerate(groups, start=1)
+    ]
+
+
+def _xte(of: Readings) -> Fields:
+    status = _status(of.leg)
+    error = None if of.leg is None else of.leg.cross_track
+    return {
+        "gwarn": status,
+        "LCcwarn": status,
+        "ctrkerr": _number(None if error is None else abs(error), 3, MILE),
+        "dirs": "" if error is None else "L" if error > 0.0 else "R",
+        "disUnit": "N",
+        "mode": _mode(of.leg),
+    }
+
+
+def _rmb(of: Readings) -> list[Fields]:
+    """Return none without a leg, as plotters do: some readers take empty fields for zeros."""
+    leg, places = of.leg, of.waypoints
+    if leg is None or places is None:
+        return []
+    fields = {
+        "status": "A",
+        "ctrkerr": _number(min(abs(leg.cross_track) / MILE, _MOST_RMB), 2),
+        "dirs": "L" if leg.cross_track > 0.0 else "R",
+        "wptO": f"WP{leg.number - 1}",
+        "wptD": f"WP{leg.number}",
+        "lat": places[1][0],
+        "lon": places[1][1],
+        "range": _number(min(leg.distance / MILE, 999.9), 2),
+        "bearing": bearing(leg.bearing),
+        "velclos": _number(leg.closing, 2, KNOT),
+        "arrstatus": "A" if leg.arrived else "V",
+        "valstatus": "A",
+    }
+    return [fields]
+
+
+def _alone(made: Callable[[Readings], Fields]) -> Callable[[Readings], list[Fields]]:
+    return lambda of: [made(of)]
+
+
+_ALONE: dict[str, Callable[[Readings], Fields]] = {
     "RMC": _rmc,
     "GGA": _gga,
+    "GLL": _gll,
+    "ZDA": _zda,
     "VTG": _vtg,
     "HDT": _hdt,
     "HDG": _hdg,
@@ -183,8 +289,16 @@ SENTENCES: dict[str, Callable[[Readings], Fields]] = {
     "DPT": _dpt,
     "MTW": _mtw,
     "RSA": _rsa,
+    "GSA": _gsa,
+    "XTE": _xte,
 }
-"""What can be sent, by formatter; of wind the apparent one, R, and the true one, T."""
+
+SENTENCES: dict[str, Callable[[Readings], list[Fields]]] = {
+    **{name: _alone(made) for name, made in _ALONE.items()},
+    "GSV": _gsv,
+    "RMB": _rmb,
+}
+"""What can be sent, by formatter, and how; of wind the apparent one, R, and the true one, T."""
 
 
 def bearing(direction: float | None) -> str:

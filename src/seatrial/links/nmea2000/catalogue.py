@@ -6,39 +6,11 @@ nmea2000's, which has the same table.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from ...errors import InputError, unknown
+from .catalogue_navigation import NAVIGATION
+from .pgn import FROM_NORTH, SID, Field, Pgn
 
-
-@dataclass(frozen=True, slots=True)
-class Field:
-    """A field that a node fills or reads: its name at canboat, our ports, and its sense."""
-
-    name: str
-    sent: str = ""
-    """Input or parameter that it comes from."""
-    received: str = ""
-    """Output that it goes to."""
-    sense: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class Pgn:
-    """A kind of message. ``interval_s`` is 0 for what goes on request or on occasion."""
-
-    number: int
-    id: str
-    title: str
-    priority: int
-    interval_s: float = 0.0
-    fields: tuple[Field, ...] = ()
-
-
-_SID = Field("sid", sense="counts instants, 0 to 252; equal for what was measured together")
-_WAYS = "clockwise from north"
-
-DATA = {
+_DATA = {
     each.number: each
     for each in (
         Pgn(
@@ -48,10 +20,10 @@ DATA = {
             3,
             1.0,
             (
-                _SID,
+                SID,
                 Field("source", sense="0, GPS"),
-                Field("date", "date", sense="UTC"),
-                Field("time", "date", sense="UTC, from midnight on `date`, in simulated time"),
+                Field("date", "date", sense="UTC: `date` at the start of the run"),
+                Field("time", "date", sense="UTC, from midnight"),
             ),
         ),
         Pgn(
@@ -70,10 +42,12 @@ DATA = {
                     "bus_commanded_rudder",
                     "positive to turn to starboard",
                 ),
-                Field("headingToSteerCourse", "heading_to_steer", "bus_heading_to_steer", _WAYS),
-                Field("track", "track", "bus_track", _WAYS),
+                Field(
+                    "headingToSteerCourse", "heading_to_steer", "bus_heading_to_steer", FROM_NORTH
+                ),
+                Field("track", "track", "bus_track", FROM_NORTH),
                 Field("rudderLimit", "rudder_limit"),
-                Field("vesselHeading", "heading", sense=_WAYS),
+                Field("vesselHeading", "heading", sense=FROM_NORTH),
             ),
         ),
         Pgn(
@@ -106,12 +80,12 @@ DATA = {
             2,
             0.1,
             (
-                _SID,
+                SID,
                 Field(
                     "heading",
                     "heading",
                     "bus_heading",
-                    _WAYS + "; true or magnetic by `reference`",
+                    FROM_NORTH + "; true or magnetic by `reference`",
                 ),
                 Field("deviation", "deviation", sense="positive east; read: added if magnetic"),
                 Field("variation", "variation", sense="positive east; read: added if magnetic"),
@@ -124,7 +98,7 @@ DATA = {
             "Rate of turn",
             2,
             0.1,
-            (_SID, Field("rate", "rate_of_turn", "bus_rate_of_turn", "positive to starboard")),
+            (SID, Field("rate", "rate_of_turn", "bus_rate_of_turn", "positive to starboard")),
         ),
         Pgn(
             127257,
@@ -133,10 +107,23 @@ DATA = {
             3,
             1.0,
             (
-                _SID,
-                Field("yaw", "attitude.psi", "bus_attitude.psi", _WAYS + ", -π to π"),
+                SID,
+                Field("yaw", "attitude.psi", "bus_attitude.psi", FROM_NORTH + ", -π to π"),
                 Field("pitch", "attitude.theta", "bus_attitude.theta", "positive bow up"),
                 Field("roll", "attitude.phi", "bus_attitude.phi", "positive to starboard"),
+            ),
+        ),
+        Pgn(
+            127258,
+            "magneticVariation",
+            "Magnetic variation",
+            6,
+            1.0,
+            (
+                SID,
+                Field("source", sense="0, manual"),
+                Field("ageOfService", "date", sense="days since 1970, UTC"),
+                Field("variation", "variation", sense="positive east"),
             ),
         ),
         Pgn(
@@ -177,7 +164,7 @@ DATA = {
             2,
             1.0,
             (
-                _SID,
+                SID,
                 Field(
                     "speedWaterReferenced",
                     "water_speed",
@@ -194,7 +181,7 @@ DATA = {
             3,
             1.0,
             (
-                _SID,
+                SID,
                 Field("depth", "depth", "bus_depth", "below the transducer"),
                 Field(
                     "offset",
@@ -221,9 +208,9 @@ DATA = {
             2,
             0.25,
             (
-                _SID,
+                SID,
                 Field("cogReference", sense="true; read: only that"),
-                Field("cog", "velocity_n", "bus_velocity_n", _WAYS),
+                Field("cog", "velocity_n", "bus_velocity_n", FROM_NORTH),
                 Field("sog", "velocity_n", "bus_velocity_n", "the magnitude"),
             ),
         ),
@@ -234,15 +221,18 @@ DATA = {
             3,
             1.0,
             (
-                _SID,
-                Field("date", "date", sense="UTC"),
-                Field("time", "date", sense="UTC, from midnight on `date`, in simulated time"),
+                SID,
+                Field("date", "date", sense="UTC: `date` at the start of the run"),
+                Field("time", "date", sense="UTC, from midnight"),
                 Field("latitude", "position_n", "bus_position_n", "WGS 84, north"),
                 Field("longitude", "position_n", "bus_position_n", "WGS 84, east"),
                 Field("altitude", "position_n", "bus_position_n", "WGS 84, as the origin's"),
                 Field("gnssType", sense="0, GPS"),
                 Field("method", "position_valid", sense="1 GNSS fix, 0 none"),
                 Field("integrity", sense="0, not checked"),
+                Field("numberOfSvs", sense="of a nominal GPS constellation"),
+                Field("hdop", sense="of that constellation"),
+                Field("pdop", sense="of that constellation"),
                 Field("referenceStations", sense="0"),
             ),
         ),
@@ -253,7 +243,7 @@ DATA = {
             2,
             0.1,
             (
-                _SID,
+                SID,
                 Field("windSpeed", "wind_speed", "bus_wind_speed"),
                 Field(
                     "windAngle",
@@ -266,7 +256,8 @@ DATA = {
         ),
     )
 }
-"""Messages about the vessel, by number."""
+DATA = dict(sorted((_DATA | NAVIGATION).items()))
+"""Messages about the vessel and what is round it, by number."""
 
 NETWORK = {
     each.number: each

@@ -2,25 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from functools import lru_cache
+from collections.abc import Mapping, Sequence
+from functools import lru_cache, partial
 from typing import Any, ClassVar
 
 from ...component import NS, Component
 from ...errors import InputError
+from ..ais.codec import Assembly
 from ..can.node import CanNode
 from ..can.operations import Transmit
 from ..geodesy import Ned, Origin
-from ..parameter_validation import serial_number, whole_number
+from ..parameter_validation import serial_number, start_us, whole_number
+from ..text import Inbox
 from .address_claim import AddressClaim
 from .catalogue import DATA, intervals, sends
 from .codec import GLOBAL, Decoder, Encoder, Message, header
 from .group_functions import serve
-from .measurements import day_of, messages
+from .measurements import messages
 from .name import Identity, name_of
 from .ports import ENGINES, Nmea2000Ports
 from .received import Received
 from .services import HEARTBEAT_S, answer, heartbeat
+from .traffic import traffic
 
 _SIDS = 253
 """Sequence identifiers run from 0 to 252."""
@@ -43,18 +46,24 @@ class Nmea2000(Nmea2000Ports):
     does a value that its field cannot hold. Messages of one instant have one SID. Engines that are
     not connected send nothing. ``silent`` stops the data.
 
+    **Routes.** ``leg`` ... is what guidance follows; where the vessel is on it goes by the own
+    position or, without one, the one received. **Satellites** and dilutions of precision are those
+    of a nominal GPS constellation above the position. **AIS**: sentences of an `ais-transponder` on
+    ``ais`` go out as their PGNs when they come, if ``sends`` has those.
+
     **Reads** the PGNs of `catalogue.RECEIVED` from all other nodes: the outputs ``bus_...``, with
     whether they are valid (`Received`). A magnetic heading is, if its message has the variation.
 
     **Answers** ISO requests (`services.answer`) and group functions (`group_functions.serve`):
-    other nodes may change its intervals, and command fields of 127237 and 127245.
+    other nodes may change its intervals, and command fields of 127237 and 127245 if it sends those.
+    Of orders to the helm the newest counts (`Received`).
 
     **Signs.** All headings, courses and the yaw are clockwise from north; roll is positive to
     starboard, pitch bow up, rate of turn to starboard. Rudders are positive to turn to starboard on
     the bus, and to the side of ``rudder_positive`` on the ports. Wind is
     on ports where it blows to, as an anemometer here has it, and on the bus where it comes from.
-    Position in {n} from the origin (``latitude``, ``longitude``, ``altitude``). UTC is midnight of
-    ``date`` plus simulated time.
+    Position in {n} from the origin (``latitude``, ``longitude``, ``altitude``). UTC is ``date`` at
+    the start of the run.
 
     **Time.** What ended on the bus by t is received in the step from t, and on the outputs at its
     end; replies begin at t.
@@ -76,11 +85,12 @@ class Nmea2000(Nmea2000Ports):
             self._sends = sends(self.sends)
             given = {pgn: DATA[pgn].interval_s for pgn in self._sends} | intervals(self.intervals)
             self._name = self._made_identity().name()
-            self._day = _day(self.date)
+            started_us = start_us(self.date)
         except InputError as error:
             raise InputError(f"{self.name}: {error}") from None
         self._intervals = {str(pgn): round(given[pgn] * NS) for pgn in self._sends}
         self._begun_ns = self.now_ns
+        self._epoch_ns = started_us * 1000 - self.now_ns
         self._due = dict.fromkeys(self._intervals, self.now_ns)
         self._beats, self._beat_due = 0, -1
         self._sid, self._sid_at = _SIDS - 1, -1
@@ -89,6 +99,8 @@ class Nmea2000(Nmea2000Ports):
         self._sequences: dict[str, int] = {}
         self._unfinished: dict[str, dict[str, list[list[Any]]]] = {}
         self._values: dict[str, Any] = {}
+        self._ais_in: dict[str, Any] = {}
+        self._ais_parts: dict[str, list[str]] = {}
         self._sent = self._received = 0
         self._build()
         self._claim.start(self.now_ns)
@@ -109,6 +121,7 @@ class Nmea2000(Nmea2000Ports):
                 if message is not None:
                     self._received += 1
                     queue += [(now, each) for each in self._receive(when, message)]
+        queue += self._received_messages(now)
         self._claim.tick(end)
         for when, source in self._claim.take():
             queue.append((max(when, now), Message(60928, self._identity.claim(), source)))
@@ -214,14 +227,19 @@ class Nmea2000(Nmea2000Ports):
         if message.pgn == 59904:
             found = answer(message, self._identity, self._sends, self._beats, self._now)
         else:
-            found, due, commanded = serve(message, self._sends, self._change)
+            found, due = serve(message, self._sends, self._change, partial(self._obey, when))
             found += [each for pgn in due for each in self._now(pgn)]
-            if commanded is not None:
-                self._news += self._readings.take(when, commanded)
         return [self._from(own, each) for each in found]
 
+    def _obey(
+        self, when: int, order: Message, wanted: Sequence[str]
+    ) -> tuple[list[str], list[str]]:
+        changed, held = self._readings.command(when, order, wanted)
+        self._news += changed
+        return changed, held
+
     def _now(self, pgn: int) -> list[Message]:
-        return messages(self, pgn, self._next_sid(self.now_ns), self._origin(), self._day)
+        return messages(self, pgn, self._next_sid(self.now_ns), self._origin(), self._epoch_ns)
 
     def _change(self, pgn: int, interval_s: float) -> None:
         self._intervals[str(pgn)] = round(interval_s * NS)
@@ -248,9 +266,19 @@ class Nmea2000(Nmea2000Ports):
         for when, pgn in sorted(due):
             if when >= since and not self.silent:
                 sid = self._next_sid(when)
-                made = messages(self, pgn, sid, origin, self._day)
+                made = messages(self, pgn, sid, origin, self._epoch_ns)
                 found += [(when, each) for each in made]
         return [(when, self._from(own, each)) for when, each in found]
+
+    def _received_messages(self, now: int) -> list[tuple[int, Message]]:
+        """Return the PGNs of what the AIS transponder has received; its own ship is no target."""
+        assembly, own, found = Assembly(self._ais_parts), self._claim.address, []
+        for when, line in Inbox(self._ais_in).take(self.ais):
+            received = assembly.take(line)
+            made = None if received is None or received[1] else traffic(received[0])
+            if made is not None and own is not None and made.pgn in self._sends:
+                found.append((max(when, now), self._from(own, made)))
+        return [] if self.silent else found
 
     def _from(self, source: int, made: Message) -> Message:
         return Message(made.pgn, made.fields, source, made.destination, made.items, made.id)
@@ -300,10 +328,3 @@ _RUDDERS = ("rudder", "rudder_order", "commanded_rudder")
 @lru_cache(64)  # nodes of one profile have one origin
 def _position(origin: Origin, latitude: float, longitude: float, altitude: float) -> Ned:
     return origin.position(latitude, longitude, altitude)
-
-
-def _day(date: str) -> int:
-    try:
-        return day_of(date)
-    except ValueError:
-        raise InputError(f"date is {date!r}, a day like '2026-02-05' is needed") from None

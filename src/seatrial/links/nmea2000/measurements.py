@@ -2,85 +2,45 @@
 
 from __future__ import annotations
 
-import datetime
 import math
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Callable
 
-from ...component import NS, seconds
 from ..geodesy import Origin
 from .codec import Fields, Message
-from .ports import ENGINES, NOT_CONNECTED, Nmea2000Ports
+from .measured import ANGLE_DIGITS, TRUE, Measured, compass
+from .navigation_messages import NAVIGATION_MAKERS
+from .ports import ENGINES, Nmea2000Ports
 
-_DAY_S = 86400
-_ANGLE_DIGITS = 4
-"""Angles have a resolution of 1e-4 rad."""
-_TRUE, _MAGNETIC, _APPARENT = 0, 1, 2
+_MAGNETIC, _APPARENT = 1, 2
 _MODES = range(6)
 _RPM = 60.0 / math.tau
 
 
-def messages(node: Nmea2000Ports, pgn: int, sid: int, origin: Origin, day: int) -> list[Message]:
-    """Return the messages of a PGN with the inputs as they are; ``day`` is counted from 1970.
+def messages(
+    node: Nmea2000Ports, pgn: int, sid: int, origin: Origin, epoch_ns: int
+) -> list[Message]:
+    """Return the messages of a PGN with the inputs as they are.
 
-    Values that are not connected or not valid are left out, and so not available.
+    ``epoch_ns`` is the Unix time at 0 s of simulated time. Values that are not
+    connected or not valid are left out, and so not available.
     """
-    made = _MAKERS[pgn](_Measured(node, sid, origin, day))
-    return [Message(pgn, each) for each in made]
+    if pgn not in _MAKERS:  # goes when there is one
+        return []
+    made = _MAKERS[pgn](Measured(node, sid, origin, epoch_ns))
+    return [Message(pgn, each, items=tuple(each.pop("items", ()))) for each in made]
 
 
-class _Measured:
-    """A view of a node's inputs: None for what is not there."""
-
-    def __init__(self, node: Nmea2000Ports, sid: int, origin: Origin, day: int) -> None:
-        self.node, self.sid, self.day = node, sid, day
-        self._origin = origin
-
-    def one(self, name: str, valid: bool = True) -> float | None:
-        """Return an input, None if it is not connected or not valid."""
-        value: float = getattr(self.node, name)
-        return value if valid and value < NOT_CONNECTED else None
-
-    def rudder(self, name: str) -> float | None:
-        """Return an angle of a rudder, positive to turn to starboard."""
-        angle = self.one(name)
-        return -angle if angle is not None and self.node.rudder_positive == "port" else angle
-
-    def each(self, name: str, valid: bool = True) -> Sequence[float | None]:
-        """Return the values of an input with axes."""
-        values: Sequence[float] = getattr(self.node, name)
-        return [value if valid and value < NOT_CONNECTED else None for value in values]
-
-    def whole(self, name: str, valid: bool = True) -> Sequence[float] | None:
-        """Return the values of an input with axes, None if one of them is not there."""
-        values: Sequence[float] = getattr(self.node, name)
-        return values if valid and all(value < NOT_CONNECTED for value in values) else None
-
-    def geodetic(self) -> Sequence[float | None]:
-        """Return latitude and longitude (deg) and altitude (m)."""
-        position = self.whole("position_n", self.node.position_valid)
-        if position is None:
-            return None, None, None
-        north, east, down = position
-        return self._origin.geodetic((north, east, down))
-
-    def now(self) -> Fields:
-        """Return date (days since 1970) and time of day (s), UTC."""
-        days, rest = divmod(self.node.now_ns, _DAY_S * NS)
-        return {"date": self.day + days, "time": seconds(rest)}
-
-
-def _system_time(m: _Measured) -> list[Fields]:
+def _system_time(m: Measured) -> list[Fields]:
     return [{"sid": m.sid, "source": 0, **m.now()}]
 
 
-def _heading_control(m: _Measured) -> list[Fields]:
+def _heading_control(m: Measured) -> list[Fields]:
     node, rudder = m.node, m.rudder("commanded_rudder")
     heading = m.one("heading", node.heading_valid and node.heading_reference == "true")
     return [
         {
             "steeringMode": node.steering_mode if node.steering_mode in _MODES else None,
-            "headingReference": _TRUE,
+            "headingReference": TRUE,
             "commandedRudderDirection": _direction(rudder),
             "commandedRudderAngle": rudder,
             "headingToSteerCourse": compass(m.one("heading_to_steer")),
@@ -91,7 +51,7 @@ def _heading_control(m: _Measured) -> list[Fields]:
     ]
 
 
-def _rudder(m: _Measured) -> list[Fields]:
+def _rudder(m: Measured) -> list[Fields]:
     order = m.rudder("rudder_order")
     return [
         {
@@ -103,7 +63,7 @@ def _rudder(m: _Measured) -> list[Fields]:
     ]
 
 
-def _heading(m: _Measured) -> list[Fields]:
+def _heading(m: Measured) -> list[Fields]:
     node = m.node
     return [
         {
@@ -111,22 +71,28 @@ def _heading(m: _Measured) -> list[Fields]:
             "heading": compass(m.one("heading", node.heading_valid)),
             "deviation": m.one("deviation"),
             "variation": m.one("variation"),
-            "reference": _TRUE if node.heading_reference == "true" else _MAGNETIC,
+            "reference": TRUE if node.heading_reference == "true" else _MAGNETIC,
         }
     ]
 
 
-def _rate_of_turn(m: _Measured) -> list[Fields]:
+def _rate_of_turn(m: Measured) -> list[Fields]:
     return [{"sid": m.sid, "rate": m.one("rate_of_turn", m.node.rate_valid)}]
 
 
-def _attitude(m: _Measured) -> list[Fields]:
+def _attitude(m: Measured) -> list[Fields]:
     phi, theta, psi = m.each("attitude", m.node.attitude_valid)
     yaw = None if psi is None else math.remainder(psi, math.tau)
     return [{"sid": m.sid, "yaw": yaw, "pitch": theta, "roll": phi}]
 
 
-def _engines_rapid(m: _Measured) -> list[Fields]:
+def _variation(m: Measured) -> list[Fields]:
+    variation = m.one("variation")
+    today = None if variation is None else m.now()["date"]
+    return [{"sid": m.sid, "source": 0, "ageOfService": today, "variation": variation}]
+
+
+def _engines_rapid(m: Measured) -> list[Fields]:
     return [
         {"instance": instance, "speed": abs(speed) * _RPM}
         for instance, speed in enumerate(m.each("engine_speed"))
@@ -134,7 +100,7 @@ def _engines_rapid(m: _Measured) -> list[Fields]:
     ]
 
 
-def _engines_dynamic(m: _Measured) -> list[Fields]:
+def _engines_dynamic(m: Measured) -> list[Fields]:
     names = ("engine_voltage", "engine_temperature", "engine_load")
     voltage, temperature, load = (m.each(name) for name in names)
     found: list[Fields] = []
@@ -155,7 +121,7 @@ def _engines_dynamic(m: _Measured) -> list[Fields]:
     return found
 
 
-def _speed(m: _Measured) -> list[Fields]:
+def _speed(m: Measured) -> list[Fields]:
     velocity = m.whole("velocity_n", m.node.position_valid)
     over_ground = None if velocity is None else math.hypot(velocity[0], velocity[1])
     ahead = m.one("water_speed")
@@ -168,26 +134,27 @@ def _speed(m: _Measured) -> list[Fields]:
     ]
 
 
-def _depth(m: _Measured) -> list[Fields]:
+def _depth(m: Measured) -> list[Fields]:
     return [{"sid": m.sid, "depth": m.one("depth"), "offset": m.node.transducer_offset}]
 
 
-def _position(m: _Measured) -> list[Fields]:
+def _position(m: Measured) -> list[Fields]:
     latitude, longitude, _ = m.geodetic()
     return [{"latitude": latitude, "longitude": longitude}]
 
 
-def _course(m: _Measured) -> list[Fields]:
+def _course(m: Measured) -> list[Fields]:
     velocity = m.whole("velocity_n", m.node.position_valid)
     course = speed = None
     if velocity is not None:
         speed = math.hypot(velocity[0], velocity[1])
         course = compass(math.atan2(velocity[1], velocity[0]))
-    return [{"sid": m.sid, "cogReference": _TRUE, "cog": course, "sog": speed}]
+    return [{"sid": m.sid, "cogReference": TRUE, "cog": course, "sog": speed}]
 
 
-def _gnss(m: _Measured) -> list[Fields]:
+def _gnss(m: Measured) -> list[Fields]:
     latitude, longitude, altitude = m.geodetic()
+    above = m.sky()
     return [
         {
             "sid": m.sid,
@@ -198,12 +165,15 @@ def _gnss(m: _Measured) -> list[Fields]:
             "gnssType": 0,
             "method": 0 if latitude is None else 1,
             "integrity": 0,
+            "numberOfSvs": 0 if above is None else len(above.satellites),
+            "hdop": None if above is None else above.hdop,
+            "pdop": None if above is None else above.pdop,
             "referenceStations": 0,
         }
     ]
 
 
-def _wind(m: _Measured) -> list[Fields]:
+def _wind(m: Measured) -> list[Fields]:
     valid = m.node.wind_valid
     speed, angle = m.one("wind_speed", valid), m.one("wind_angle", valid)
     air = m.whole("true_wind")
@@ -217,29 +187,16 @@ def _wind(m: _Measured) -> list[Fields]:
         comes_from = compass(math.atan2(-air[1], -air[0]))
         strength = math.hypot(*air)
         found.append(
-            {"sid": m.sid, "windSpeed": strength, "windAngle": comes_from, "reference": _TRUE}
+            {"sid": m.sid, "windSpeed": strength, "windAngle": comes_from, "reference": TRUE}
         )
     return found
-
-
-def compass(angle: float | None) -> float | None:
-    """Return an angle from 0 to below 2 pi, also when it is rounded to the resolution."""
-    if angle is None:
-        return None
-    rounded = round(angle % math.tau, _ANGLE_DIGITS)
-    return rounded if rounded < math.tau else 0.0
-
-
-def day_of(date: str) -> int:
-    """Return the days from 1970-01-01 to an ISO date. Raises ValueError."""
-    return (datetime.date.fromisoformat(date) - datetime.date(1970, 1, 1)).days
 
 
 def _direction(angle: float | None) -> int | None:
     """Return a direction order: 0 none, 1 to starboard, 2 to port."""
     if angle is None:
         return None
-    rounded = round(angle, _ANGLE_DIGITS)
+    rounded = round(angle, ANGLE_DIGITS)
     return 1 if rounded > 0.0 else 2 if rounded < 0.0 else 0
 
 
@@ -248,13 +205,15 @@ def _not_negative(value: float, digits: int) -> float | None:
     return rounded if rounded >= 0.0 else None
 
 
-_MAKERS: dict[int, Callable[[_Measured], list[dict[str, Any]]]] = {
+_MAKERS: dict[int, Callable[[Measured], list[Fields]]] = {
+    **NAVIGATION_MAKERS,
     126992: _system_time,
     127237: _heading_control,
     127245: _rudder,
     127250: _heading,
     127251: _rate_of_turn,
     127257: _attitude,
+    127258: _variation,
     127488: _engines_rapid,
     127489: _engines_dynamic,
     128259: _speed,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, ClassVar
 
 from ...component import Component, Input, Noise, Output, Parameter, terminal
+from ..parameter_validation import start_us
 from .address_claim import HIGHEST
 from .catalogue import check_intervals, check_sends
 
@@ -60,13 +61,20 @@ class Nmea2000Ports(Noise, Component):
     latitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-_HALF_PI, max=_HALF_PI)
     longitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-_PI, max=_PI)
     altitude = Parameter(0.0, "m", "of the origin")
-    date = Parameter("2026-01-01", "1", "day on which the run starts, at midnight UTC")
+    date = Parameter(
+        "2026-01-01",
+        "1",
+        "UTC at the start of the run: a day, for its midnight, or an instant",
+        check=start_us,
+        role="start-time",
+    )
     heading_reference = Parameter(
         "true", "1", "north that the heading is counted from", choices=("true", "magnetic")
     )
     transducer_offset = Parameter(
         0.0, "m", "from the transducer up to the waterline; negative: down to the keel"
     )
+    battery_instance = Parameter(0.0, "1", "which battery it sends", min=0.0, max=252.0)
     rudder_instance = Parameter(0.0, "1", "which rudder it sends and reads", min=0.0, max=252.0)
     rudder_positive = Parameter(
         "starboard",
@@ -115,6 +123,14 @@ class Nmea2000Ports(Noise, Component):
     track = _measured("rad", "track to keep, clockwise from north")
     commanded_rudder = _measured("rad", "rudder commanded, in the same sense")
     rudder_limit = _measured("rad", "largest rudder, to either side")
+    battery_voltage = _measured("V", "voltage of the battery")
+    battery_current = _measured("A", "current out of the battery")
+    battery_temperature = _measured("K", "temperature of the battery")
+    leg = Input("1", "number of the leg that is followed, 0: none", type=int, optional=True)
+    leg_from = _measured("m", "begin of the leg, north-east-down", axes=_NED)
+    leg_to = _measured("m", "waypoint at its end, north-east-down", axes=_NED)
+    leg_radius = _measured("m", "distance at which the waypoint is reached")
+    ais = Input("1", "sentences of an AIS transponder, as text", type=str, optional=True)
     silent = Input(
         "1", "whether it sends no data; the network's messages go on", type=bool, optional=True
     )
@@ -198,6 +214,8 @@ class Nmea2000Ports(Noise, Component):
             water_depth_valid="bus_depth_valid",
             rudder="bus_rudder",
         ),
+        "battery": terminal(voltage="battery_voltage", current="battery_current"),
+        "route": terminal("leg", "leg_from", "leg_to", "leg_radius"),
         "steering": terminal(heading_wanted="heading_to_steer"),
         "wanted": terminal(heading_wanted="bus_heading_to_steer"),
     }

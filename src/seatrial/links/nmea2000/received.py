@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from ...component import NS
@@ -17,6 +17,9 @@ _INTERVALS = 3
 
 _FAR_NS = 1 << 62
 
+HELM = ("heading_to_steer", "track", "steering_mode")
+"""Quantities that are orders to who steers: the newest one counts, whoever gave it."""
+
 Values = dict[str, tuple[float, ...] | None]
 
 
@@ -26,6 +29,10 @@ class Received:
     Of several nodes that send the same quantity the first that was received is used, until it
     sends 'not available', or nothing in time; then the next. A value is valid for
     ``timeout_ns``, and for three standard intervals of its PGN at least.
+
+    **The helm.** Of `HELM`, a new order takes the helm from any other node: a command, a node's
+    first order, or one that differs from its last. What a node repeats keeps its own order valid
+    and takes nothing. A command stands until there is a newer order, of any age.
     """
 
     def __init__(self, memory: dict[str, Any], timeout_ns: int, rudder_instance: int) -> None:
@@ -34,27 +41,43 @@ class Received:
 
     def take(self, when_ns: int, message: Message) -> list[str]:
         """Take in a message; return the quantities that it changed."""
-        reader = _READERS.get(message.pgn)
-        if reader is None:
-            return []
-        instance = message.fields.get("instance")
-        if message.pgn == 127245 and instance not in (self._rudder_instance, None):
-            return []
         changed = []
-        interval_ns = round(DATA[message.pgn].interval_s * NS)
-        until_ns = when_ns + max(self._timeout_ns, _INTERVALS * interval_ns)
-        for name, values in reader(message.fields).items():
-            known = self._memory.get(name)
-            if known and known["source"] != message.source and self._valid(known, when_ns):
-                continue
-            if values is not None:
-                found = {"values": list(values), "until": until_ns, "source": message.source}
-                self._memory[name] = found
-                changed.append(name)
-            elif known and known["source"] == message.source:
-                known["until"] = -1
+        for name, values in self._read(message).items():
+            known: dict[str, Any] = self._memory.get(name, {})
+            own = known.get("source") == message.source and not known["commanded"]
+            new = name in HELM and self._is_new(known, values, message.source)
+            if values is None:
+                if own:
+                    known["until"] = -1
+                    changed.append(name)
+            elif own or new or not self._valid(known, when_ns):
+                self._enter(name, values, self._until(when_ns, message.pgn), message.source)
                 changed.append(name)
         return changed
+
+    def command(
+        self, when_ns: int, message: Message, wanted: Sequence[str]
+    ) -> tuple[list[str], list[str]]:
+        """Carry out a command for some quantities of a message.
+
+        Returns those that it changed, and those that it did not because another node sends them;
+        the rest has no value that it could have.
+        """
+        changed, held, found = [], [], self._read(message)
+        for name in wanted:
+            values, known = found.get(name), self._memory.get(name, {})
+            if values is None:
+                continue
+            if name in HELM:
+                until_ns = _FAR_NS
+            elif self._valid(known, when_ns) and known["source"] != message.source:
+                held.append(name)
+                continue
+            else:
+                until_ns = self._until(when_ns, message.pgn)
+            self._enter(name, values, until_ns, message.source, commanded=True)
+            changed.append(name)
+        return changed, held
 
     def names(self) -> list[str]:
         """Return the quantities that have been received of."""
@@ -72,9 +95,47 @@ class Received:
         ends = [known["until"] for known in self._memory.values()]
         return min((until + 1 for until in ends if until >= now_ns), default=_FAR_NS)
 
+    def _read(self, message: Message) -> Values:
+        """Return what a message says of quantities that are read here."""
+        reader = _READERS.get(message.pgn)
+        instance = message.fields.get("instance")
+        if reader is None or (
+            message.pgn == 127245 and instance not in (self._rudder_instance, None)
+        ):
+            return {}
+        return reader(message.fields)
+
+    def _enter(
+        self,
+        name: str,
+        values: tuple[float, ...],
+        until_ns: int,
+        source: int,
+        commanded: bool = False,
+    ) -> None:
+        entry = self._memory.setdefault(name, {"orders": {}})
+        entry |= {"values": list(values), "until": until_ns, "source": source}
+        entry["commanded"] = commanded
+        if name in HELM and not commanded:
+            entry["orders"][str(source)] = list(values)
+
+    @staticmethod
+    def _is_new(known: dict[str, Any], values: tuple[float, ...] | None, source: int) -> bool:
+        """Return whether a node ordered something else before, or nothing; remember it."""
+        key, orders = str(source), known.get("orders", {})
+        before = orders.pop(key, None)
+        if values is None:
+            return False
+        orders[key] = list(values)
+        return bool(orders[key] != before)
+
+    def _until(self, when_ns: int, pgn: int) -> int:
+        interval_ns = round(DATA[pgn].interval_s * NS)
+        return when_ns + max(self._timeout_ns, _INTERVALS * interval_ns)
+
     @staticmethod
     def _valid(known: dict[str, Any], now_ns: int) -> bool:
-        return bool(known["until"] >= now_ns)
+        return bool(known.get("until", -1) >= now_ns)
 
 
 def _heading(f: dict[str, Any]) -> Values:

@@ -1,0 +1,1 @@
+"""AIS: transponders, the VHF channel between them, ships with scripted tracks."""

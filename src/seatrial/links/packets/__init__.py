@@ -1,0 +1,1 @@
+"""Packets between vehicles: acoustic modems and radios."""

@@ -1,0 +1,54 @@
+"""True motion of a craft, for links that send it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..component import Component, Input, Parameter, terminal
+from ..craft.kinematics import specific_force, to_ned
+from .geodesy import Ned
+
+MOTION = terminal(
+    position="true_position",
+    velocity="true_velocity",
+    attitude="true_attitude",
+    rates="true_rates",
+    acceleration="true_acceleration",
+)
+"""Terminal of `TrueMotion`'s inputs."""
+
+
+@dataclass(frozen=True)
+class Truth:
+    """True state of the simulated vehicle. SI, rad; velocity in {n}, the rest in {b}."""
+
+    position_n: Ned
+    velocity_n: Ned
+    attitude: Ned
+    rates: Ned
+    specific_force: Ned
+
+
+class TrueMotion(Component):
+    """Mix-in for what reads the true motion of a craft."""
+
+    gravity = Parameter(9.81, "m/s2", "acceleration of gravity, in the truth", min=0.0)
+
+    true_position = Input("m", "true position, north-east-down", axes="xyz", frame="n")
+    true_velocity = Input("m/s", "true velocity, body axes", axes=("u", "v", "w"))
+    true_attitude = Input("rad", "true Euler angles, ZYX", axes=("phi", "theta", "psi"))
+    true_rates = Input("rad/s", "true angular velocity, body axes", axes=("p", "q", "r"))
+    true_acceleration = Input(
+        "m/s2", "true inertial acceleration, body axes", axes="xyz", frame="b"
+    )
+
+    def true_motion(self) -> Truth:
+        """Return the inputs as what instruments without errors would measure."""
+        attitude = self.true_attitude
+        return Truth(
+            self.true_position,
+            to_ned(attitude, self.true_velocity),
+            attitude,
+            self.true_rates,
+            specific_force(attitude, self.true_acceleration, self.gravity),
+        )
