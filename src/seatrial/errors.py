@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 INTERRUPTED = "interrupted by the user"
 """Message of a component that a signal interrupted; a message crosses the FMI, an exception not."""
+_MOST_LISTED = 30
 
 
 class SeatrialError(Exception):
@@ -42,5 +43,10 @@ def unknown(what: str, found: object, allowed: Iterable[str]) -> str:
     names = sorted(set(allowed))
     near = difflib.get_close_matches(str(found), names, n=2, cutoff=0.6)
     hint = f"; did you mean {' or '.join(map(repr, near))}?" if near else ";"
-    shown = ", ".join(names[:30]) + (f", ... ({len(names)} in all)" if len(names) > 30 else "")
-    return f"unknown {what} {str(found)!r}{hint} (known: {shown or 'none'})"
+    return f"unknown {what} {str(found)!r}{hint} (known: {listed(names) or 'none'})"
+
+
+def listed(names: Sequence[str]) -> str:
+    """Return names for a message: all of a few, of very many the first and their number."""
+    rest = f", ... ({len(names)} in all)" if len(names) > _MOST_LISTED else ""
+    return ", ".join(names[:_MOST_LISTED]) + rest

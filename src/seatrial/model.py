@@ -57,11 +57,7 @@ def compile_model(
     y = _stacked(f"{name}: outputs", other, outputs)
     rhs = ca.Function("rhs", [x.all, u.all, p.all], [ca.cse(dx)])
     h = ca.SX.sym("h")
-    k1 = rhs(x.all, u.all, p.all)
-    k2 = rhs(x.all + h / 2 * k1, u.all, p.all)
-    k3 = rhs(x.all + h / 2 * k2, u.all, p.all)
-    k4 = rhs(x.all + h * k3, u.all, p.all)
-    stepped = ca.cse(x.all + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4))
+    stepped = _stepped(rhs, x.all, (u.all, u.all, u.all), p.all, h)
     matrices = [ca.densify(ca.jacobian(f, v)) for f in (dx, y) for v in (x.all, u.all)]
     return Model(
         rhs=rhs,
@@ -72,6 +68,26 @@ def compile_model(
         u_names=_names(inputs),
         y_names=_names(outputs),
     )
+
+
+def rk4_between(rhs: ca.Function) -> ca.Function:
+    """Return a Runge-Kutta step (x, u0, u, u1, p, h): inputs at its beginning, middle and end.
+
+    ``rhs`` is that of a `Model`.
+    """
+    x, u, p = (ca.SX.sym(name, rhs.size1_in(i)) for i, name in enumerate("xup"))
+    u0, u1 = (ca.SX.sym(name, rhs.size1_in(1)) for name in ("u0", "u1"))
+    h = ca.SX.sym("h")
+    return ca.Function("rk4", [x, u0, u, u1, p, h], [_stepped(rhs, x, (u0, u, u1), p, h)])
+
+
+def _stepped(rhs: ca.Function, x: Any, u: tuple[Any, Any, Any], p: Any, h: Any) -> Any:
+    """Return x after a classical Runge-Kutta step, with ``u`` at its beginning, middle and end."""
+    k1 = rhs(x, u[0], p)
+    k2 = rhs(x + h / 2 * k1, u[1], p)
+    k3 = rhs(x + h / 2 * k2, u[1], p)
+    k4 = rhs(x + h * k3, u[2], p)
+    return ca.cse(x + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4))
 
 
 def undeclared_feedthrough(

@@ -82,6 +82,8 @@ class Plant(Component):
     input_ports: ClassVar[tuple[Port, ...]] = ()
     output_ports: ClassVar[tuple[Port, ...]] = ()
     """Outputs that are not states."""
+    parameter_ports: ClassVar[tuple[Port, ...]] = ()
+    """Numbers that the equations take."""
     _texts: ClassVar[tuple[str, ...]] = ()
     _u_slice: ClassVar[slice] = slice(0, 0)
     _p_references: ClassVar[tuple[int, ...]] = ()
@@ -104,13 +106,16 @@ class Plant(Component):
         cls.output_ports = tuple(
             p for p in ports if p.kind == "output" and not isinstance(p, State)
         )
-        cls._texts = tuple(p.name for p in ports if p.kind == "parameter" and p.type is str)
+        # What a role says of is not the equations': the sea, a seed.
+        parameters = [p for p in ports if isinstance(p, Parameter) and not p.role]
+        cls._texts = tuple(p.name for p in parameters if p.type is str)
+        cls.parameter_ports = tuple(p for p in parameters if p.type is float)
         # Ports of one kind stand side by side in the flat list of values.
         places = [s.reference for s in cls.scalars if s.port in cls.input_ports]
         if places and places[-1] - places[0] >= len(places):
             raise TypeError(f"{cls.__name__}: text inputs stand before or after all others")
         cls._u_slice = slice(places[0], places[-1] + 1) if places else slice(0, 0)
-        reals = [s for s in cls.scalars if isinstance(s.port, Parameter) and s.port.type is float]
+        reals = [s for s in cls.scalars if s.port in cls.parameter_ports]
         cls._p_references = tuple(s.reference for s in reals)
         cls._has_tunables = any(isinstance(p, Parameter) and p.tunable for p in ports)
 
@@ -274,13 +279,12 @@ class Plant(Component):
     @classmethod
     def _compile(cls, texts: Mapping[str, str]) -> Model:
         stub = cls.__new__(cls)  # has the methods and no values
-        reals = [p for p in cls.ports.values() if isinstance(p, Parameter) and p.type is float]
         model = compile_model(
             cls.__name__,
             stub.equations,
             cls.state_ports,
             cls.input_ports,
-            reals,
+            cls.parameter_ports,
             cls.output_ports,
             texts,
         )

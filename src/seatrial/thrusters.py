@@ -12,24 +12,26 @@ COUNT = 16
 """Most thrusters that a craft has."""
 
 
-class _OfEach:
-    """A vector per thruster, as parameters NAME_1 ... NAME_16; reading gives all of them."""
+class OfEach:
+    """A vector per thruster, as parameters NAME_1 ... NAME_COUNT; reading gives all of them."""
 
-    def __init__(self, unit: str, description: str) -> None:
-        self._unit, self._description = unit, description
+    def __init__(self, unit: str, description: str, count: int = COUNT) -> None:
+        self._unit, self._description, self._count = unit, description, count
 
     def __set_name__(self, owner: type, name: str) -> None:
         self._name = name
-        for number in range(1, COUNT + 1):
+        for number in range(1, self._count + 1):
             text = f"{self._description} of thruster {number}"
             parameter = Parameter(0.0, self._unit, text, axes="xyz")
             parameter.__set_name__(owner, f"{name}_{number}")
             setattr(owner, parameter.name, parameter)
 
     def __get__(self, component: Any, owner: type | None = None) -> Any:
-        if component is None:
-            return self
-        return [getattr(component, f"{self._name}_{n}") for n in range(1, COUNT + 1)]
+        return self if component is None else self.of(component)
+
+    def of(self, values: Any) -> list[Any]:
+        """Return the vectors in ``values``: a component, or a plant's symbols."""
+        return [getattr(values, f"{self._name}_{n}") for n in range(1, self._count + 1)]
 
 
 class FixedThrusters(Component):
@@ -39,8 +41,8 @@ class FixedThrusters(Component):
     craft of a positive thrust. A direction of (0, 0, 0) is no thruster.
     """
 
-    position = _OfEach("m", "position from the body origin")
-    direction = _OfEach("1", "direction of the positive thrust, a unit vector, or 0 for none,")
+    position = OfEach("m", "position from the body origin")
+    direction = OfEach("1", "direction of the positive thrust, a unit vector, or 0 for none,")
 
     def effects(self) -> dict[int, list[float]]:
         """Return (d_i, r_i x d_i), force and moment per newton, by index from 0.
@@ -48,16 +50,23 @@ class FixedThrusters(Component):
         Raises InputError for a direction that is neither zero nor of length 1 within 1e-6.
         """
         pairs = enumerate(zip(self.position, self.direction, strict=True))
-        return {index: self._effect(index + 1, *pair) for index, pair in pairs if any(pair[1])}
+        return {
+            index: effect(f"{self.name}.direction_{index + 1}", *pair)
+            for index, pair in pairs
+            if any(pair[1])
+        }
 
-    def _effect(
-        self, number: int, position: tuple[float, ...], direction: tuple[float, ...]
-    ) -> list[float]:
-        length = math.hypot(*direction)
-        if abs(length - 1.0) > 1e-6:
-            raise InputError(
-                f"{self.name}.direction_{number} is {direction}, of length {length:.6g}: give a "
-                "unit vector, or (0, 0, 0) for no thruster"
-            )
-        (x, y, z), (a, b, c) = position, direction
-        return [a, b, c, y * c - z * b, z * a - x * c, x * b - y * a]
+
+def effect(name: str, position: tuple[float, ...], direction: tuple[float, ...]) -> list[float]:
+    """Return d and r x d of a thruster: force and moment per newton, body axes.
+
+    Raises InputError naming the direction, ``name``, unless its length is 1 within 1e-6.
+    """
+    length = math.hypot(*direction)
+    if abs(length - 1.0) > 1e-6:
+        raise InputError(
+            f"{name} is {direction}, of length {length:.6g}: give a unit vector, or (0, 0, 0) for "
+            "no thruster"
+        )
+    (x, y, z), (a, b, c) = position, direction
+    return [a, b, c, y * c - z * b, z * a - x * c, x * b - y * a]

@@ -25,7 +25,7 @@ _WATT = {"kg": 1, "m": 2, "s": -3}
 _PREFIXED: dict[str, tuple[str, Known]] = {
     "m": ("kcmun", (Fraction(1), {"m": 1})),
     "s": ("mun", (Fraction(1), {"s": 1})),
-    "N": ("kM", (Fraction(1), _NEWTON)),
+    "N": ("kMm", (Fraction(1), _NEWTON)),
     "Pa": ("kM", (Fraction(1), _PASCAL)),
     "W": ("kMm", (Fraction(1), _WATT)),
     "Hz": ("kMG", (Fraction(1), {"s": -1})),

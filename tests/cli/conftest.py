@@ -8,8 +8,9 @@ from pathlib import Path
 
 import pytest
 
+from tests.command import SEATRIAL
+
 from .gateway import RIG, SAFE, TALKER, Start, Vehicle
-from .test_cli import SEATRIAL
 
 
 @pytest.fixture

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import json
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
 from seatrial.errors import unknown
-from tests.command import seatrial
-
-SEATRIAL = str(Path(sys.executable).with_name("seatrial"))
+from tests.command import SEATRIAL, seatrial
 
 BAD = '''
 """Fails."""

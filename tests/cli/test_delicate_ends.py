@@ -8,8 +8,9 @@ import sys
 
 import pytest
 
+from tests.command import SEATRIAL
+
 from .gateway import RIG, SAFE, TALKER, Vehicle
-from .test_cli import SEATRIAL
 from .test_stop import wait_for
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="terminals and processes")

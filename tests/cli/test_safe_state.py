@@ -12,8 +12,9 @@ from pathlib import Path
 import can
 import pytest
 
+from tests.command import SEATRIAL
+
 from .gateway import ENDS, SAFE, Vehicle
-from .test_cli import SEATRIAL
 from .test_stop import children_of, has_ended, wait_for
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="terminals and processes")

@@ -15,7 +15,8 @@ from seatrial.shipped import shipped_folder
 if sys.platform == "win32":
     pytest.skip("terminals and processes", allow_module_level=True)
 
-from .test_cli import SEATRIAL
+from tests.command import SEATRIAL
+
 from .test_drive import WAIT_S, Terminal
 from .test_safe_state import SAFE, Vehicle
 from .test_stop import children_of, wait_for

@@ -16,7 +16,8 @@ import pytest
 from pymavlink import mavutil
 from pymavlink.dialects.v20 import all as mavlink
 
-from .test_cli import SEATRIAL
+from tests.command import SEATRIAL
+
 from .test_stop import children_of
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="processes are not copied there")

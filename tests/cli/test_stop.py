@@ -13,9 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.command import seatrial
-
-from .test_cli import SEATRIAL
+from tests.command import SEATRIAL, seatrial
 
 COMPONENT = '''
 """Takes its time."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 import zipfile
 from pathlib import Path
 
@@ -68,8 +69,12 @@ def test_titles_in_listings(tmp_path: Path) -> None:
 def test_a_profile_of_others(tmp_path: Path) -> None:
     text = (ROOT / "hil_profiles" / "mariner.toml").read_text("utf-8")
     text = re.sub(r"^(title|source) = .*$", lambda m: f"{m[1]} = {TOML}", text, flags=re.M)
-    (tmp_path / "x.toml").write_text(text)
-    done = seatrial("profile", "describe", "x.toml", cwd=tmp_path)
+    folder = tmp_path / "hil_profiles"
+    folder.mkdir()
+    (folder / "x.toml").write_text(text)
+    shutil.copy(ROOT / "hil_profiles" / "mariner.parm", folder)
+    shutil.copytree(ROOT / "harness" / "ships", tmp_path / "harness" / "ships")
+    done = seatrial("profile", "describe", "hil_profiles/x.toml", cwd=tmp_path)
     assert done.returncode == 0, done
     assert_harmless(done)
 

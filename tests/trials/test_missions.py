@@ -46,6 +46,10 @@ CRAFTS = {
     "videoray": Craft(
         "videoray", "vehicle.hull", SUB, ((0, 0, 2), (5, 0, 2), (5, 4, 3)), 1.0, 120, 0.5
     ),
+    "otter": Craft("otter", "vehicle.hull", ROVER, ((30, 0, 0), (30, 25, 0)), 4.0, 80, 2.0),
+    "bluerov2": Craft(
+        "bluerov2", "vehicle.hull", SUB, ((0, 0, 2), (5, 0, 2), (5, 4, 3)), 1.0, 120, 0.5
+    ),
     "gloria": Craft(
         "gloria", "vehicle.boat", ROVER, ((0, 50, 0), (35, 80, 0)), 8.0, 150, 25.0, 3.0
     ),
@@ -56,7 +60,9 @@ CRAFTS = {
 every = pytest.mark.parametrize(
     "craft",
     [
-        pytest.param(craft, id=name, marks=pytest.mark.long if name == "mariner" else ())
+        pytest.param(
+            craft, id=name, marks=pytest.mark.long if name in ("mariner", "bluerov2") else ()
+        )
         for name, craft in CRAFTS.items()
     ],
 )
@@ -72,9 +78,9 @@ def at_sea(craft, folder, items=(), **settings):
     given = {"autopilot__mavlink__plan_folder": plans}
     # Half of a run's time goes to the link and to noise that nothing uses, else.
     given["autopilot__mavlink__period"] = "100 ms"
-    if craft.name == "hydrone":
+    if craft.name in ("hydrone", "otter"):
         given["vehicle__imu__period"] = "100 ms"
-    if craft.name == "videoray":
+    if craft.name in ("videoray", "bluerov2"):
         given["vehicle__hull__eta_start.z"] = "1 m"
     if craft.name == "gloria":
         given["vehicle__boat__eta_start"] = ["0 m", "0 m", "0 deg", "90 deg"]

@@ -31,6 +31,7 @@ class Boat(Noise, Sampled):
     fail_at = Parameter(1e9, "s", "time of a failure")
     how = Parameter("raise", "1", "how", choices=("raise", "nan", "exit"))
     push = Input("N", "force")
+    dry = Input("1", "flag", type=bool)
     trim = Parameter(1.0, "rad", "trim", tunable=True)
     mode = Parameter("calm", "1", "mode", choices=("calm", "storm"))
     x = Output("m", "place")
@@ -186,6 +187,26 @@ def test_the_manifest_says_which_connection_feeds_a_parameter(bench, write, tmp_
     assert manifest["connections"] == [["boat.angle", "twin.trim"]]
     page = write_report(folder).read_text("utf-8")
     assert "<td></td>\n  <td>rad</td>\n  <td></td>\n  <td>fed by boat.angle</td>" in page
+
+
+def test_manifest_and_report_say_what_connections_do_to_values(
+    bench, write, tmp_path: Path
+) -> None:
+    connections = (
+        "[connections]",
+        '"boat.x" = { to = "twin.push", factor = 2.0, offset = 1.0, convert = false }',
+        '"boat.wet" = { to = "twin.dry", mapping = [[true, false], [false, true]] }',
+    )
+    text = bench()
+    write("rig.toml", RIG + "\n".join(connections) + "\n")
+    folder = run_trial(load_trial(text), tmp_path / "run", engine="direct").folder
+    assert json.loads((folder / "manifest.json").read_text())["connections"] == [
+        ["boat.x", "twin.push", 2.0, 1.0],
+        ["boat.wet", "twin.dry", 1.0, 0.0, [[True, False], [False, True]]],
+    ]
+    page = " ".join(write_report(folder).read_text("utf-8").split())
+    assert "<code>twin.push</code> times 2, plus 1" in page
+    assert "<code>twin.dry</code> by True → False, False → True" in page
 
 
 def test_what_is_recorded_can_be_chosen(bench, tmp_path: Path) -> None:

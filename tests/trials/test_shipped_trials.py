@@ -22,7 +22,11 @@ FILES = {
 NAMES = list(FILES)
 PACED = [name for name, file in FILES.items() if "real_time" in file]
 """Trials in real time, for whoever connects."""
-TRIALS = [name for name in NAMES if name not in PACED]
+WAITING = [
+    name for name, file in FILES.items() if file.get("choices", {}).get("autopilot") == "ardupilot"
+]
+"""Trials whose time stands still until a program outside connects."""
+TRIALS = [name for name in NAMES if name not in (*PACED, *WAITING)]
 COMPARED_S = 1
 """How a trial begins shows how it goes on; to the end they run in their vehicles' tests, or here."""
 

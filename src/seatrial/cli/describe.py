@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Annotated
 
@@ -17,8 +18,8 @@ from ..cosim.system import Joint, System
 from ..cosim.unread import leave_out_unread
 from ..trials.naming import by_path, named_components
 from ..trials.trial import choices_in, is_trial, load_trial
-from .options import Autopilot, Choices, Vehicle, changes_of
-from .show import console, print_notes
+from .options import Autopilot, Choices, Every, Match, Vehicle, changes_of
+from .show import MOST_SHOWN, console, print_more, print_notes
 
 
 def describe(
@@ -26,6 +27,8 @@ def describe(
     choices: Choices = None,
     vehicle: Vehicle = None,
     autopilot: Autopilot = None,
+    pattern: Match = "",
+    every: Every = False,
 ) -> None:
     """Show a rig's components, rigs inside it, every connection, and what is left open."""
     changes = changes_of(None, choices, vehicle, autopilot)
@@ -42,7 +45,7 @@ def describe(
             named_components(by_path(trial.scheduled(system), system), system) if trial else set()
         )
         leave_out_unread(system, named)
-        _print_rig(system)
+        _print_rig(system, pattern, every)
     finally:
         system.free()
 
@@ -55,29 +58,45 @@ def _in_process(rig: Rig) -> bool:
     )
 
 
-def _print_rig(system: System) -> None:
+def _print_rig(system: System, pattern: str, every: bool) -> None:
     top = system.rig.top
     console.print(f"[bold]{escape(top.file.title or top.read_from.name)}[/bold]")
     for name, value in top.choices.items():
         console.print(f"  {escape(name)} = {escape(value)}", soft_wrap=True)
     _print_components(top, "", system.left_out)
-    width = max((len(joint.source) for joint in system.joints), default=0)
-    lines = [
-        f"{joint.source:{width}} -> {joint.target}{_transformed(joint)}" for joint in system.joints
-    ]
-    _print_list(f"{len(lines)} connections", lines)
-    _print_list("not made", system.open)
-    _print_list("inputs that nothing feeds", system.unconnected_inputs())
-    optional = system.unconnected_inputs(optional=True)
-    _print_list("optional inputs that nothing feeds", optional)
-    shown = [f"{name} = {value!r}" for name, value in top.file.shows.items()]
-    _print_list("shows", shown)
+    joints = [one for one in system.joints if _matches(pattern, one.source, one.target)]
+    width = max((len(joint.source) for joint in joints), default=0)
+    lines = [f"{joint.source:{width}} -> {joint.target}{_transformed(joint)}" for joint in joints]
+    lists = {
+        f"{len(lines)} connections": lines,
+        "not made": system.open,
+        "inputs that nothing feeds": [
+            name for name in system.unconnected_inputs() if _matches(pattern, name)
+        ],
+        "optional inputs that nothing feeds": [
+            name for name in system.unconnected_inputs(optional=True) if _matches(pattern, name)
+        ],
+        "shows": [
+            f"{name} = {value!r}"
+            for name, value in top.file.shows.items()
+            if _matches(pattern, name)
+        ],
+    }
+    for title, lines in lists.items():
+        _print_list(title, lines, len(lines) if every else MOST_SHOWN)
+
+
+def _matches(pattern: str, *names: str) -> bool:
+    return not pattern or any(fnmatchcase(name, pattern) for name in names)
 
 
 def _transformed(joint: Joint) -> str:
-    if (joint.factor, joint.offset) == (1.0, 0.0):
-        return ""
-    return f"  (times {joint.factor:g}" + (f", plus {joint.offset:g})" if joint.offset else ")")
+    said = [", ".join(f"{before} becomes {after}" for before, after in joint.mapping)]
+    if (joint.factor, joint.offset) != (1.0, 0.0):
+        said.append(
+            f"times {joint.factor:g}" + (f", plus {joint.offset:g}" if joint.offset else "")
+        )
+    return f"  ({', '.join(filter(None, said))})" if any(said) else ""
 
 
 def _print_components(scope: Scope, indent: str, left_out: list[str]) -> None:
@@ -92,8 +111,10 @@ def _print_components(scope: Scope, indent: str, left_out: list[str]) -> None:
         _print_components(inner, f"{indent}  ", left_out)
 
 
-def _print_list(title: str, lines: list[str]) -> None:
+def _print_list(title: str, lines: list[str], most: int) -> None:
     if lines:
         console.print(f"\n[bold]{title}[/bold]")
-    for line in lines:
+    for line in lines[:most]:
         console.print(f"  {escape(line)}", soft_wrap=True)
+    if len(lines) > most:
+        print_more(len(lines) - most)

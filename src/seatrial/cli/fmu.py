@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import tempfile
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Annotated
 
@@ -23,7 +26,8 @@ from ..fmi.load import load_fmu, open_instance
 from ..fmi.loaded import LoadedFmu
 from ..fmi.osp import osp_file, osp_xml
 from ..fmi.source import ComponentSource, find_source, named_sources, shipped_sources
-from .show import console, print_notes
+from .options import Every, Match, Variant
+from .show import MOST_SHOWN, console, print_more, print_notes
 from .terminals import print_proposals, print_terminals
 
 fmu_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
@@ -50,9 +54,7 @@ def build(
     parameters: Annotated[
         str | None, typer.Option(help="Bake in a vehicle's parameters: VEHICLE or VEHICLE.TABLE.")
     ] = None,
-    variant: Annotated[
-        str | None, typer.Option(help="Variant of the vehicle's parameters.")
-    ] = None,
+    variant: Variant = None,
     osp: Annotated[
         bool, typer.Option("--osp", help="Write the OspModelDescription.xml of each beside it.")
     ] = False,
@@ -97,13 +99,18 @@ def check(
 
 
 @fmu_app.command()
-def describe(name: Named) -> None:
+def describe(
+    name: Named,
+    pattern: Match = "",
+    every: Every = False,
+) -> None:
     """Show an FMU's variables (causality, type, unit, start value, limits) and terminals."""
     found = find_source(name, Path.cwd())
     if isinstance(found, Path):
         fmu = load_fmu(found)
         title, variables = fmu.description.description or found.name, fmu.variables
         through, notes, terminals = fmu.feedthrough, fmu.notes, fmu.terminals
+        clocks = (*fmu.clocks.by_reference.values(),)
         title += (
             f"\nFMI {fmu.description.fmiVersion}, {' and '.join(fmu.interfaces)}; binaries for "
             f"{', '.join(fmu.platforms) or 'no platform'}"
@@ -112,20 +119,47 @@ def describe(name: Named) -> None:
         instance = DirectInstance(found.component_class()(found.name))
         title, variables = summary(type(instance.component)), instance.variables
         through, notes, terminals = instance.feedthrough, (), instance.terminals
+        clocks = ()
     console.print(f"[bold]{escape(name)}[/bold]: {escape(title)}", soft_wrap=True)
+    shown = [v for v in variables.values() if fnmatchcase(v.name, pattern or "*")]
+    if pattern and not shown:
+        raise InputError(f"{name}: no variable matches {pattern!r}")
+    most = len(shown) if every else MOST_SHOWN
+    if len(shown) > most:
+        console.print(f"{len(shown)} variables: {_counts(shown)}", soft_wrap=True)
     table = Table(box=None, padding=(0, 2, 0, 0))
     for heading in ("variable", "causality", "type", "unit", "start", "min", "max", "description"):
         table.add_column(heading)
-    for variable in variables.values():
+    for variable in shown[:most]:
         table.add_row(*(escape(cell) for cell in _cells(variable)))
     console.print(table)
-    for output, inputs in through.items():
-        console.print(f"{output} depends at once on {', '.join(inputs)}", soft_wrap=True)
+    if len(shown) > most:
+        print_more(len(shown) - most)
+    for line in _dependencies(through, {v.name for v in shown[:most]}, most):
+        console.print(line, soft_wrap=True)
+    for clock in clocks:
+        console.print(escape(str(clock)), soft_wrap=True)
     print_terminals(terminals, variables)
     if isinstance(found, Path) and not terminals:
         print_proposals(name, variables)
     for note in notes:
         console.print(f"note: {escape(note)}", soft_wrap=True)
+
+
+def _counts(variables: list[Variable]) -> str:
+    """Return how many variables there are of each causality."""
+    counts = Counter(variable.causality for variable in variables)
+    return ", ".join(f"{count} {causality}" for causality, count in counts.most_common())
+
+
+def _dependencies(
+    through: Mapping[str, Sequence[str]], shown: set[str], most: int
+) -> Iterator[str]:
+    """Yield a line for each of the outputs that are shown, with the first of its inputs."""
+    for output, inputs in through.items():
+        if output in shown:
+            rest = f", ... ({len(inputs)} in all)" if len(inputs) > most else ""
+            yield f"{output} depends at once on {', '.join(inputs[:most])}{rest}"
 
 
 def _cells(variable: Variable) -> list[str]:
@@ -169,13 +203,21 @@ def _start_values(
 
 
 def _problems(name: str) -> list[str]:
-    from fmpy.validation import validate_fmu
+    from ..fmi.conformance import LARGEST_CHECKED, is_whole, problems
 
     with tempfile.TemporaryDirectory() as folder:
         source = find_source(name, Path.cwd())
         path = source if isinstance(source, Path) else build_fmu(source, Path(folder) / "x.fmu")
         fmu = load_fmu(path)  # first: FMPy's checker trusts the file
-        return list(validate_fmu(str(path))) or _run_once(fmu)
+        if not is_whole(fmu):
+            most = f"{LARGEST_CHECKED // 2**20} MiB"
+            print_notes(
+                [
+                    f"{name}: its model description has more than {most}: only names of "
+                    "variables are checked in it, and that it runs"
+                ]
+            )
+        return problems(fmu) or _run_once(fmu)
 
 
 def _run_once(fmu: LoadedFmu) -> list[str]:

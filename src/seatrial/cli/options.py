@@ -10,6 +10,7 @@ import typer
 from ..errors import InputError
 from ..reading import toml_content
 from ..shipped import available
+from .show import MOST_SHOWN
 
 if TYPE_CHECKING:
     from ..cosim.system import Engine
@@ -27,13 +28,24 @@ Vehicle = Annotated[
 ]
 Autopilot = Annotated[
     str | None,
-    typer.Option("--autopilot", metavar="NAME", help="Short for --choose autopilot=NAME."),
+    typer.Option(
+        "--autopilot",
+        metavar="NAME[=PROGRAM]",
+        help="Short for --choose autopilot=NAME, and program=PROGRAM, which it starts.",
+    ),
 ]
 EngineName = Annotated[
     str, typer.Option("--engine", help="'fmu': every component is an FMU; 'direct': in process.")
 ]
 Out = Annotated[
     Path | None, typer.Option("--out", help="Folder of the run (default: runs/NAME-DATE-TIME).")
+]
+Variant = Annotated[
+    str | None, typer.Option("--variant", help="Variant of the vehicle's parameters.")
+]
+Match = Annotated[str, typer.Option("--match", help="Only those of this name, such as 'wing.*'.")]
+Every = Annotated[
+    bool, typer.Option("--all", help=f"All of a list; default: its first {MOST_SHOWN}.")
 ]
 
 
@@ -50,14 +62,24 @@ def changes_of(
     vehicle: str | None = None,
     autopilot: str | None = None,
 ) -> dict[str, Any]:
-    """Return what the command line changes in a trial, by key. Raises InputError."""
+    """Return what the command line changes in a trial, by key. Raises InputError.
+
+    ``autopilot`` is a name, or NAME=PROGRAM for one that starts a program of the user's.
+    """
     changes = dict(setting(text) for text in settings or [])
     for text in choices or []:
         name, equals, value = text.partition("=")
         if not equals or not name or not value:
             raise InputError(f"--choose: NAME=VALUE is needed, found {text!r}")
         changes[f"choices.{name.strip()}"] = value.strip()
-    named = {"choices.vehicle": vehicle, "choices.autopilot": autopilot}
+    autopilot, equals, program = (autopilot or "").partition("=")
+    if equals and not (autopilot and program):
+        raise InputError(f"--autopilot: NAME or NAME=PROGRAM is needed, found {equals + program!r}")
+    named = {
+        "choices.vehicle": vehicle,
+        "choices.autopilot": autopilot or None,
+        "choices.program": program or None,
+    }
     return {**changes, **{key: value for key, value in named.items() if value is not None}}
 
 

@@ -9,7 +9,7 @@ import typer
 
 from ..trials.export import export_osp
 from ..trials.trial import choices_in
-from .options import Autopilot, Choices, Vehicle, changes_of
+from .options import Autopilot, Choices, Variant, Vehicle, changes_of
 from .show import console, print_notes
 
 osp_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
@@ -28,9 +28,7 @@ def export(
     out: Annotated[
         Path | None, typer.Option(help="The folder (default: NAME-osp in this folder).")
     ] = None,
-    variant: Annotated[
-        str | None, typer.Option(help="Variant of the vehicle's parameters.")
-    ] = None,
+    variant: Variant = None,
     choices: Choices = None,
     vehicle: Vehicle = None,
     autopilot: Autopilot = None,

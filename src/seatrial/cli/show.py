@@ -17,6 +17,10 @@ if TYPE_CHECKING:
     from ..trials.run import Result
 
 
+MOST_SHOWN = 200
+"""Lines of a list; more are no longer read from top to bottom."""
+
+
 class SafeConsole(Console):
     """A console on which no text acts: control characters are shown, colours are rich's own."""
 
@@ -35,6 +39,13 @@ def print_notes(notes: Iterable[str]) -> None:
     """Print what a user should know and what is no error."""
     for note in notes:
         console.print(f"[dim]note: {escape(note)}[/dim]", soft_wrap=True)
+
+
+def print_more(count: int) -> None:
+    """Print that a list has so many lines more."""
+    console.print(
+        f"... and {count} more: --match 'wing.*' shows those of a name, --all all", soft_wrap=True
+    )
 
 
 def print_reachable(name: str, where: str) -> None:

@@ -14,7 +14,7 @@ from ..cosim.ssp.tools import TOOLS, findings
 from ..errors import InputError, unknown
 from ..trials.export import export_ssp
 from ..trials.trial import choices_in
-from .options import Autopilot, Choices, Vehicle, changes_of
+from .options import Autopilot, Choices, Variant, Vehicle, changes_of
 from .show import console, print_notes
 
 _VERSIONS: dict[str, Version] = {"1.0": "1.0", "2.0": "2.0"}
@@ -30,9 +30,7 @@ def export(
     out: Annotated[
         Path | None, typer.Option(help="The package (default: NAME.ssp in this folder).")
     ] = None,
-    variant: Annotated[
-        str | None, typer.Option(help="Variant of the vehicle's parameters.")
-    ] = None,
+    variant: Variant = None,
     choices: Choices = None,
     vehicle: Vehicle = None,
     autopilot: Autopilot = None,

@@ -125,7 +125,9 @@ class _Making:
                 f"{where}: {source.name} has {len(sources)} scalars, "
                 f"{target.name} has {len(targets)}"
             )
-        self.system.joints.append(Joint(source.name, target.name, entry.factor, entry.offset))
+        mapping = tuple(map(tuple, entry.mapping))
+        joint = Joint(source.name, target.name, entry.factor, entry.offset, mapping)
+        self.system.joints.append(joint)
         for one, other in zip(sources, targets, strict=True):
             place = (target.component, other.name)
             if place in self.feeders:

@@ -22,6 +22,8 @@ _LOOKED_AT = 8
 _GROWTH = 100.0
 _BLOCKS = 3
 _NOISE = 1e-6
+_TURNS = 2
+"""Least changes of direction among eight values; one jump of a value that is held has none."""
 
 
 class DivergenceWatch:
@@ -99,6 +101,7 @@ class _Pace:
             swing = np.abs(np.diff(rows, 2, axis=0)).max(axis=0)
             size = np.abs(rows).max(axis=0)
             rough = (swing >= change) & (swing > _NOISE * np.maximum(1.0, size))
+            rough &= _turns(np.sign(np.diff(rows, axis=0))) >= _TURNS
             grows = rough & (swing > self._last) & (self._last > 0.0)
             factor = np.where(grows, swing / self._last, 1.0)
         going_on = grows & (self._growing > 0)
@@ -123,3 +126,12 @@ class _Pace:
             f"and carries {value:.6g} now; a smaller step, another algorithm or another cut of "
             "the system is needed (added mass belongs with its rigid body)"
         )
+
+
+def _turns(directions: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Return how often each column changes its sign, zeros left out."""
+    found, last = np.zeros(directions.shape[1], int), directions[0]
+    for direction in directions[1:]:
+        found += direction * last < 0
+        last = np.where(direction, direction, last)
+    return found

@@ -8,8 +8,9 @@ iteration: with relaxation where it grows, with Anderson's acceleration where it
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Collection, Mapping, Sequence
+from copy import copy
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from ..component import NS
@@ -81,6 +82,15 @@ class Feedthrough:
                     if steps % visit.node.every == 0:
                         self._network.write(visit.node)
                         self._network.read(visit.chunks)
+
+    def among(self, names: Collection[str]) -> Feedthrough:
+        """Return the visits to some components alone."""
+        some = copy(self)
+        some._groups = [
+            replace(group, visits=[v for v in group.visits if v.node.part.name in names])
+            for group in self._groups
+        ]
+        return some
 
     def forget(self) -> None:
         """Visit nothing any more but sums, which take no step: values move by steps alone."""
@@ -223,15 +233,18 @@ def _dependencies(network: Network) -> dict[Name, list[Name]]:
     depends: dict[Name, list[Name]] = {}
     for name, part in network.system.parts.items():
         hubs: dict[tuple[str, ...], Name] = {}
+        of_list: dict[int, Name] = {}  # outputs share lists of inputs, which may be long
         for output, inputs in part.instance.feedthrough.items():
-            key = tuple(inputs)
-            if key not in hubs:
+            hub = of_list.get(id(inputs))
+            key = () if hub else tuple(inputs)
+            if hub is None and key not in hubs:
                 hubs[key] = (name, f"\0{len(hubs)}")  # no variable's name: XML cannot hold it
                 sources = [source_of[name, i] for i in key if (name, i) in source_of]
                 if sources:
                     depends[hubs[key]] = sources
-            if hubs[key] in depends:
-                depends[name, output] = [hubs[key]]
+            hub = of_list.setdefault(id(inputs), hub or hubs[key])
+            if hub in depends:
+                depends[name, output] = [hub]
     return depends
 
 

@@ -72,7 +72,7 @@ def _options(entry: ComponentEntry, loaded: LoadedFmu) -> FmuOptions:
         if variable is not None and variable.causality == "structuralParameter":
             given = from_written(written, [variable], {}, f"set.{name}")
             structure[name] = int(given[name].value)
-    return FmuOptions(entry.interface, entry.tolerance, structure)
+    return FmuOptions(entry.interface, entry.tolerance, structure, tuple(entry.locals))
 
 
 def _instance(
@@ -90,8 +90,8 @@ def _instance(
     """
     source = find_source(entry.fmu, folder)
     if not isinstance(source, Path):
-        for key in ("interface", "tolerance"):
-            if getattr(entry, key) is not None:
+        for key in ("interface", "tolerance", "locals"):
+            if key in entry.model_fields_set:
                 raise InputError(
                     f"{entry.fmu} is a component in Python: the key {key!r} is for FMUs of others"
                 )

@@ -17,7 +17,7 @@ from ..errors import InputError
 from .algorithms import Algorithm
 from .divergence import DivergenceWatch
 from .feedthrough import Feedthrough
-from .network import Name, Network
+from .network import Name, Network, Node
 from .part import Part
 from .registry import ALGORITHMS
 from .rollback import Checkpoint, Rollback
@@ -82,19 +82,21 @@ class Master:
         Raises SimulationError if a component refuses or a feed-through loop has no solution,
         InputError if the rig's algorithm cannot step its components.
         """
-        instances = [part.instance for part in self.system.parts.values()]
-        stop = math.inf if self.stop_ns is None else self.stop_ns / NS
-        for part in self.system.parts.values():
-            part.instance.set_start({name: given.value for name, given in part.given.items()})
-        for instance in instances:
-            instance.initialise(self.start_ns / NS, stop)
-        for part in self.system.parts.values():
-            _give_again(part)
+        nodes = self._network.nodes.values()
+        for node in nodes:
+            given = node.part.given
+            node.part.instance.set_start({name: one.value for name, one in given.items()})
+        early = [node for node in nodes if not node.part.instance.at_once]
+        for node in early:
+            self._start(node)
+        for node in early:
+            _give_again(node.part)
         self._feedthrough = Feedthrough(self._network)
+        self._start_late([node.part.name for node in nodes if node.part.instance.at_once])
         self._settle()
         self._carry_initial()
-        for instance in instances:
-            instance.begin()
+        for node in nodes:
+            node.part.instance.begin()
         self._settle()
         self._algorithm = self._chosen()
         self._rollback = Rollback(self._network, self._feedthrough, self._algorithm)
@@ -203,6 +205,25 @@ class Master:
 
     # ------------------------------------------------------------------ inside
 
+    def _start(self, node: Node) -> None:
+        stop = math.inf if self.stop_ns is None else self.stop_ns / NS
+        node.part.instance.initialise(self.start_ns / NS, stop)
+
+    def _start_late(self, late: Sequence[str]) -> None:
+        """Initialise one by one what takes its inputs in one call, with the others' values.
+
+        One that feeds others comes first; of a loop of such components, the first one written.
+        """
+        nodes, waiting = self._network.nodes, list(late)
+        while waiting:
+            self._settle([name for name in nodes if name not in waiting])
+            free = [name for name in waiting if nodes[name].fed_by.isdisjoint(waiting)]
+            node = nodes[(free or waiting)[0]]
+            self._network.write(node)
+            self._start(node)
+            _give_again(node.part)
+            waiting.remove(node.part.name)
+
     def _chosen(self) -> Algorithm:
         rig = self.system.rig
         where = f"{rig.read_from.path}: algorithm"
@@ -232,11 +253,15 @@ class Master:
             before = values
             self._settle()
 
-    def _settle(self) -> None:
-        network, nodes = self._network, self._network.nodes.values()
+    def _settle(self, names: Sequence[str] | None = None) -> None:
+        """Move values along connections until they agree; among some components alone."""
+        network, feedthrough = self._network, self._feedthrough
+        nodes = [*network.nodes.values()]
+        if names is not None:
+            nodes, feedthrough = [network.nodes[name] for name in names], feedthrough.among(names)
         for node in nodes:
             network.read(node.chunks)
-        self._feedthrough.propagate(self.steps)
+        feedthrough.propagate(self.steps)
         for node in nodes:
             network.write(node)
             network.read(node.chunks)

@@ -87,6 +87,11 @@ class Node:
     every: int = 1
     """It steps once in so many communication steps."""
 
+    @property
+    def fed_by(self) -> set[str]:
+        """The components that feed it."""
+        return {one.source[0] for writes in self.writes for one in writes.connections}
+
 
 @dataclass
 class _Override:
@@ -126,7 +131,7 @@ class Network:
             for name in of_kind:
                 self.places[node.part.name, name] = len(self.signals)
                 self.names.append((node.part.name, name))
-                self.signals.append(None)
+                self.signals.append(variables[name].first)
             reader = node.part.instance.reader(of_kind)
             chunk = Chunk(start, len(self.signals), reader, kind is float)
             for place, name in enumerate(of_kind):

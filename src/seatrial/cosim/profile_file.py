@@ -69,7 +69,7 @@ class Identity(FileModel):
     firmware_version: Annotated[str, _like(_VERSION, "4.5.0-dev")] = Field(
         default="0.1.0-dev",
         title="like `4.5.0` or `4.5.0-dev` (`dev`, `alpha`, `beta`, `rc`)",
-        description="version that the vehicle reports",
+        description="version of the vehicle's own, which it reports beside that of its firmware",
     )
     uid: int = Field(
         default=1,

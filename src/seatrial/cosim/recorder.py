@@ -42,7 +42,7 @@ def matching(names: Sequence[str], patterns: Sequence[str]) -> list[str]:
 
 
 class Recorder:
-    """Writes the recorded signals of a master to a CSV file, and keeps those to ``watch``.
+    """Writes the signals ``names`` of a master to a CSV file, and keeps those to ``watch``.
 
     Numbers are written so that they read back exactly; Booleans as 0 and 1; text quoted where
     it must be; bytes as base64 text. Each row is handed to the system at once: the file is whole
@@ -54,13 +54,13 @@ class Recorder:
         self,
         path: Path,
         master: Master,
-        patterns: Sequence[str],
+        names: Sequence[str],
         every: int,
         watch: Sequence[str] = (),
     ) -> None:
         self.every = every
         self._master = master
-        self.names = matching(output_names(master.system), patterns)
+        self.names = list(names)
         places = {".".join(name): i for i, name in enumerate(master.names)}
         self._places = [places[name] for name in self.names]
         self._booleans = [

@@ -86,6 +86,8 @@ class ComponentEntry(FileModel):
     """Of an FMU that has several; co-simulation if it has that."""
     tolerance: float | None = Field(default=None, gt=0.0, le=0.1, allow_inf_nan=False)
     """Relative tolerance of the solver of an FMU in model exchange."""
+    locals: list[str] = Field(default_factory=list)
+    """Local variables of an FMU that are outputs in this rig."""
 
     @property
     def what(self) -> str:
@@ -263,7 +265,7 @@ def check_rig_file(file: RigFile, path: Path) -> None:
     _check_algorithm(path, file)
 
 
-_OF_FMUS = ("parameters", "profile", "isolated", "timeout", "interface", "tolerance")
+_OF_FMUS = ("parameters", "profile", "isolated", "timeout", "interface", "tolerance", "locals")
 _OF_RIGS = ("choices", "home", "variant")
 _NOT_OF_SUMS = (*_OF_FMUS, *_OF_RIGS, "set", "step")
 

@@ -17,6 +17,7 @@ class SumInstance:
     """
 
     rolls_back = any_step = True
+    at_once = False
     ended_at: float | None = None
     terminals: Mapping[str, Terminal] = {}
     views: Mapping[str, Mapping[str, str]] = {}

@@ -51,6 +51,8 @@ class Joint:
     target: str
     factor: float = 1.0
     offset: float = 0.0
+    mapping: tuple[tuple[bool | int, ...], ...] = ()
+    """Pairs of values, before and after."""
 
 
 class Tuned(Protocol):

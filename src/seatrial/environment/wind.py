@@ -7,9 +7,10 @@ from typing import ClassVar
 
 from ..component import Noise, Output, Parameter
 from ..sampled import Sampled
+from ..sea.parameters import MeetsWind
 
 
-class Wind(Noise, Sampled):
+class Wind(MeetsWind, Noise, Sampled):
     """Uniform horizontal wind with gusts, by speed and the direction it blows to.
 
         speed     = mean_speed max(0, 1 + intensity a_k + g(t))                   m/s
@@ -30,9 +31,14 @@ class Wind(Noise, Sampled):
 
     Direction rad, clockwise from north, where the wind blows **to**: 0 is a southerly wind.
 
-    Not modelled: shear with height, wind that differs from place to place, gusts that travel.
+    The wind of a trial (`MeetsWind`) takes the place of all this, at ``height``: its mean there,
+    its spectrum and its gust.
+
+    Not modelled: shear over what meets the wind, wind that differs from place to place, gusts
+    that travel.
     """
 
+    transient = Sampled.transient | {"_of_trial"}
     views: ClassVar = {"wind": {"velocity": "velocity"}}
 
     period = Parameter(0.1, "s", "time between two values of the gusts", min=1e-6)
@@ -45,6 +51,8 @@ class Wind(Noise, Sampled):
     gust_start = Parameter(60.0, "s", "time at which the single gust begins")
     gust_duration = Parameter(10.0, "s", "duration of the single gust", min=1e-6)
 
+    height = Parameter(10.0, "m", "height above the water at which a trial's wind is met", min=0.0)
+
     velocity = Output(
         "m/s", "velocity of the air over ground: where it blows to, {n}", axes=("north", "east")
     )
@@ -53,6 +61,7 @@ class Wind(Noise, Sampled):
 
     def reset(self, t: float) -> None:
         """Start the gusts anywhere in their distribution."""
+        self._of_trial = self.wind_state()
         self._kept = math.exp(-self.period / self.correlation_time)
         self._gusts = self._drawn(0)
 
@@ -70,6 +79,13 @@ class Wind(Noise, Sampled):
 
     def hold(self, t: float) -> None:
         """Publish the wind at ``t``."""
+        if not hasattr(self, "_of_trial"):  # restored from a saved state
+            self._of_trial = self.wind_state()
+        if not self._of_trial.is_absent:
+            north, east = self._of_trial.velocity(t, self.height).tolist()
+            self.velocity = north, east
+            self.speed, self.direction = math.hypot(north, east), self.wind_direction
+            return
         fast, turned = self._held
         share = 1.0 + self.intensity * fast + self._single_gust(t)
         speed = self.mean_speed * max(0.0, share)

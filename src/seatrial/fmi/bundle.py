@@ -106,8 +106,9 @@ class _Local:
         self.folder = folder
         self.ours = {"seatrial": Path(__file__).parents[1], "pythonfmu": _package("pythonfmu")}
         self.roots = self.ours if package is None else {**self.ours, package: _package(package)}
+        self.find = cache(self._find)  # most modules import the same few others
 
-    def find(self, name: str) -> Path | None:
+    def _find(self, name: str) -> Path | None:
         """Return the file of module ``name``, None if it is not one that travels."""
         top, *rest = name.split(".")
         if top in self.roots:
@@ -306,14 +307,19 @@ def _parsed(source: str, file: str) -> ast.Module:
         raise InputError(f"{file}{f', line {line}' if line else ''}: not Python: {error}") from None
 
 
-@lru_cache(maxsize=1024)
+@lru_cache(maxsize=1024)  # most modules travel in many FMUs
+def _import_statements(text: str, file: str) -> tuple[ast.Import | ast.ImportFrom, ...]:
+    """Return all import statements of a module, the last one first."""
+    nodes = ast.walk(_parsed(text, file))
+    found = (node for node in nodes if isinstance(node, (ast.Import, ast.ImportFrom)))
+    return tuple(sorted(found, key=lambda n: (n.lineno, n.col_offset), reverse=True))
+
+
 def _renamed(source: bytes, file: str, own: frozenset[str], root: str) -> bytes:
     """Return ``source`` with absolute imports of ``own`` packages made imports from ``root``."""
     text = _text(source, file)
-    tree = _parsed(text, file)
     lines = [f"{line}\n" for line in text.split("\n")]
-    statements = [n for n in ast.walk(tree) if isinstance(n, (ast.Import, ast.ImportFrom))]
-    for node in sorted(statements, key=lambda n: (n.lineno, n.col_offset), reverse=True):
+    for node in _import_statements(text, file):
         new = _renamed_statement(node, own, root)
         if new is None:
             continue

@@ -21,7 +21,7 @@ class DirectInstance(ByType):
         self.name = component.name
         self.variables = Variables({s.name: _variable(component, s) for s in component.scalars})
         self.feedthrough = scalar_feedthrough(component)
-        self.rolls_back, self.any_step = component.rolls_back, True
+        self.rolls_back, self.any_step, self.at_once = component.rolls_back, True, False
         self.ended_at: float | None = None
         self.terminals, self.views = component.terminals, component.views
 

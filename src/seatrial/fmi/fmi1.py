@@ -93,7 +93,7 @@ class Fmi1Slave(Fmi1Access):
     # ------------------------------------------------------------------ inside
 
     def _instantiate(self) -> None:
-        model = self.fmu.root.find("Implementation/CoSimulation_Tool/Model")
+        model = self.fmu.model.root.find("Implementation/CoSimulation_Tool/Model")
         mime = _STANDALONE if model is None else model.get("type") or _STANDALONE
         self._slave.instantiate(
             mimeType=mime, functions=listening_callbacks1(self._messages), loggingOn=True

@@ -70,14 +70,27 @@ class Fmi3Access(EventfulInstance):
         more, ends, defined, ignored = (ctypes.c_bool() for _ in range(4))
         at = ctypes.c_double()
         for _ in range(MOST_UPDATES):
+            self._activate()
             self._call(
                 "UpdateDiscreteStates",
                 ctypes.byref(more), ctypes.byref(ends), ctypes.byref(ignored),
                 ctypes.byref(ignored), ctypes.byref(defined), ctypes.byref(at),
             )  # fmt: skip
-            if ends.value or not more.value:
+            if not ends.value:
+                self._schedule()
+            if ends.value or not (more.value or self._is_due()):
                 return ends.value, at.value if defined.value else None
         raise self._endless("UpdateDiscreteStates")
+
+    def _activate(self) -> None:
+        """Activate the clocks that tick now, before discrete states are updated."""
+
+    def _schedule(self) -> None:
+        """Take in when clocks tick next, after discrete states were updated."""
+
+    def _is_due(self) -> bool:
+        """Say if a clock has to be activated now."""
+        return False
 
     def _memory(self) -> Any:
         return super()._memory(), dict(self._written)

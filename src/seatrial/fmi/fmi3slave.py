@@ -54,25 +54,24 @@ class Fmi3Slave(Fmi3Access):
         """Advance from ``t`` to ``t + h``, s, through all events on the way."""
         self._now = t
         self._flush()
-        end, length = t + h, h
-        for _ in range(_MOST_RETURNS):
-            if self.ended_at is not None:
-                break
-            self._do_step(self._now, length)
-            if not self._early.value or not self._reached.value < end - 2 * math.ulp(end):
-                self._now = end
+        if self._is_due():
+            self._in_event([])
+        end, returns = t + h, 0
+        while self._now != end and self.ended_at is None:
+            stop = self._stop(end)
+            self._do_step(self._now, h if (self._now, stop) == (t, end) else stop - self._now)
+            if not self._early.value or not self._reached.value < stop - 2 * math.ulp(stop):
+                self._now = stop
             else:
                 self._now = max(self._now, self._reached.value)
-            if self._event.value and self._has_events:
+                returns += 1
+            if (self._event.value and self._has_events) or self._is_due():
                 self._in_event([])
-            if self._now == end:
-                break
-            length = end - self._now
-        else:
-            raise SimulationError(
-                f"{self.name}: fmi3DoStep(t = {t!r} s, h = {h!r} s) returned early "
-                f"{_MOST_RETURNS} times and got no further than {self._now!r} s"
-            )
+            if returns == _MOST_RETURNS:
+                raise SimulationError(
+                    f"{self.name}: fmi3DoStep(t = {t!r} s, h = {h!r} s) returned early "
+                    f"{_MOST_RETURNS} times and got no further than {self._now!r} s"
+                )
         if self._messages:
             self._messages.forward()
 
@@ -85,6 +84,10 @@ class Fmi3Slave(Fmi3Access):
             earlyReturnAllowed=True,
             logMessage=lambda _, status, category, message: self._messages.keep(status, message),
         )
+
+    def _stop(self, end: float) -> float:
+        """Return how far it may step now, on its way to ``end``."""
+        return end
 
     def _do_step(self, t: float, h: float) -> None:
         status = self._functions["DoStep"](

@@ -16,6 +16,7 @@ from .instance import ByType, Reader, Value, Variable, Writer
 from .lenient import lenient
 from .loaded import LoadedFmu
 from .messages import ACCEPTED, DISCARD, FATAL, Messages, word
+from .unloadable import reason
 
 _INTERRUPTIONS = INTERRUPTED, f"{KeyboardInterrupt()!r}"
 """How our own FMUs say that one was interrupted: a component, or pythonfmu beside it (fatal)."""
@@ -46,6 +47,7 @@ class FmuInstance(ByType):
         self.variables, self.feedthrough = fmu.variables, fmu.feedthrough
         self.terminals, self.views = fmu.terminals, fmu.views
         self.rolls_back, self.any_step = fmu.rolls_back, fmu.any_step
+        self.at_once = fmu.at_once
         self.ended_at: float | None = None
         self._ours = (fmu.description.generationTool or "").startswith("seatrial")
         self._fatal = False
@@ -149,7 +151,7 @@ class FmuInstance(ByType):
             os.chdir(before)  # FMPy stays in the library's folder when it cannot be loaded
             raise InputError(
                 f"{self.fmu.path}: binaries/{self._platform}/{library.name} cannot be loaded on "
-                f"this machine: {error}"
+                f"this machine: {reason(error)}"
             ) from None
 
     def _missing(self, library: str) -> str:

@@ -19,7 +19,7 @@ Reader = Callable[[], list[Any]]
 Writer = Callable[[Sequence[Any]], None]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Variable:
     """One scalar variable of an FMU, or one element of an array, as its description has it."""
 
@@ -31,6 +31,7 @@ class Variable:
     type: type
     """float, int, bool, str or bytes."""
     reference: int
+    """Negative: the FMU has no such variable; it is a port made here of a bus terminal."""
     unit: str
     """Empty if the FMU says none."""
     start: Value | None
@@ -61,6 +62,17 @@ class Variable:
     def measure(self) -> Unit | str:
         """The unit to convert from and to."""
         return self.definition or self.unit or "1"
+
+    @property
+    def first(self) -> Value:
+        """What stands for its value before there is one: the start value, else zero."""
+        zero: Value = self.type()
+        return zero if self.start is None else self.start
+
+    @property
+    def is_made(self) -> bool:
+        """Whether it is a port made here, which other tools do not find in the FMU."""
+        return self.reference < 0
 
 
 class Variables(dict[str, Variable]):
@@ -133,6 +145,10 @@ class Instance(Protocol):
     @property
     def any_step(self) -> bool:
         """Whether it takes steps of different lengths."""
+
+    @property
+    def at_once(self) -> bool:
+        """Whether `initialise` is all of its initialisation: inputs are written before it."""
 
     @property
     def ended_at(self) -> float | None:

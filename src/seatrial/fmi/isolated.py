@@ -87,6 +87,7 @@ class IsolatedInstance:
             if not (isinstance(able, list) and len(able) == 2):
                 raise self._misunderstood("its instantiation")
             self.rolls_back, self.any_step = map(bool, able)
+            self.at_once = fmu.at_once
         except BaseException:
             self._process.end()
             raise

@@ -10,7 +10,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from fmpy.model_description import ModelDescription, ValidationError, read_model_description
+from fmpy.model_description import ValidationError, read_model_description
 
 from ..errors import InputError
 from .archive import content_hash, unpacked
@@ -18,15 +18,17 @@ from .fmi1 import Fmi1Slave
 from .fmi1model import Fmi1Model
 from .fmi2 import Fmi2Slave
 from .fmi2model import Fmi2Model
+from .fmi3clocks import Fmi3ClockedSlave
 from .fmi3model import Fmi3Model
 from .fmi3slave import Fmi3Slave
 from .instance import Instance
 from .loaded import LoadedFmu
+from .lsbus import port_terminals, read_buses, with_ports
+from .modelfile import read_model
 from .options import DEFAULTS, FmuOptions, Interface
 from .osp import read_osp
 from .terminals import read_terminals
 from .variables import described, views_of
-from .xmlfile import read_xml
 
 _NEEDED = "co-simulation or model exchange of FMI 1.0, 2.0 or 3.0 is needed"
 _INTERFACES = {
@@ -63,8 +65,7 @@ def load_fmu(path: Path, options: FmuOptions = DEFAULTS) -> LoadedFmu:
         fmu = _with_options(fmu, options)
     if fmu.terminals:
         return fmu
-    others = _names(fmu.description)
-    groups = read_osp(fmu.path, fmu.description.modelName or "", fmu.variables, others)
+    groups = read_osp(fmu.path, fmu.description.modelName or "", fmu.variables, fmu.others)
     return replace(fmu, terminals=groups) if groups else fmu
 
 
@@ -81,6 +82,8 @@ def open_instance(fmu: LoadedFmu, name: str) -> Instance:
     Raises InputError if it has no binary that this machine can load, and SimulationError if
     it cannot be instantiated.
     """
+    if fmu.clocks.by_reference:
+        return Fmi3ClockedSlave(fmu, name)
     return _INSTANCES[fmu.version, fmu.interface](fmu, name)
 
 
@@ -96,19 +99,31 @@ def _with_options(fmu: LoadedFmu, options: FmuOptions) -> LoadedFmu:
             f"{fmu.path.name}: a tolerance has no effect in co-simulation, only with "
             'interface = "model exchange"'
         )
-    if not options.structure:
+    if not (options.structure or options.locals or fmu.clocks.by_reference):
         return chosen
+    return _with_content(chosen)
+
+
+def _with_content(fmu: LoadedFmu) -> LoadedFmu:
+    """Return the FMU with all that its files say of signals, used as its options say."""
     try:
-        content = described(fmu.description, fmu.root, options.structure)
+        content = described(fmu.model, fmu.description, fmu.options)
     except InputError as error:
         raise InputError(f"{fmu.path}: {error}") from None
-    names = _names(fmu.description)
+    buses, notes = read_buses(fmu.folder, fmu.model, content.variables, content.clocks)
+    variables, clocks = with_ports(buses, content.variables, content.clocks)
+    others = content.others | (content.variables.keys() - variables.keys())
+    terminals = read_terminals(fmu.folder, fmu.path, variables, others)
     return replace(
-        chosen,
-        variables=content.variables,
+        fmu,
+        variables=variables,
         arrays=content.arrays,
         feedthrough=content.feedthrough,
-        terminals=read_terminals(fmu.folder, fmu.path, content.variables, names),
+        others=others,
+        terminals={**terminals, **port_terminals(buses)},
+        notes=(*content.notes, *notes),
+        clocks=clocks,
+        buses=buses,
     )
 
 
@@ -117,37 +132,25 @@ def _load(path: Path, _stamp: tuple[int, int]) -> LoadedFmu:
     sha256 = content_hash(path)
     folder = unpacked(path, "FMU")
     file = folder / "modelDescription.xml"
-    root = read_xml(file, f"{path}: modelDescription.xml")
-    _refuse_other_kinds(path, root)
+    called = f"{path}: modelDescription.xml"
     try:
-        # The file, not the folder: FMPy would read other files there too.
-        description = read_model_description(str(file), validate=False)
-        content = described(description, root)
-    except InputError as error:
-        raise InputError(f"{path}: {error}") from None
+        model = read_model(file, called)
+    except ValueError as error:
+        raise InputError(f"{called}: ModelStructure: {error}") from None
+    _refuse_other_kinds(path, model.root)
+    try:
+        description = model.header()
+        empty = LoadedFmu(path, folder, sha256, description, model, views_of(model.root))
+        fmu = _with_content(empty)
+    except InputError:
+        raise
     except Exception as error:  # whatever FMPy meets in a description that is no valid one
         why = _problems(file) or f"{type(error).__name__}: {error}"
         raise InputError(f"{path}: cannot read its model description: {why}") from None
     for interface in (description.coSimulation, description.modelExchange):
         if interface is not None:
             _refuse_identifier(path, interface.modelIdentifier)
-    return LoadedFmu(
-        path,
-        folder,
-        sha256,
-        description,
-        root,
-        content.variables,
-        content.arrays,
-        content.feedthrough,
-        read_terminals(folder, path, content.variables, _names(description)),
-        views_of(root),
-        content.notes,
-    )
-
-
-def _names(description: ModelDescription) -> set[str]:
-    return {v.name for v in description.modelVariables}
+    return fmu
 
 
 def _refuse_other_kinds(path: Path, root: Any) -> None:
@@ -162,8 +165,13 @@ def _refuse_other_kinds(path: Path, root: Any) -> None:
     known = version in ("1.0", "2.0") or re.fullmatch(r"3\.\d+(\.\d+)?", version)
     if not known or (version != "1.0" and not {"co-simulation", "model exchange"} & set(kinds)):
         raise InputError(f"{path}: FMI {version}, {' and '.join(kinds) or 'nothing'}; {_NEEDED}")
-    if root.find("ModelVariables") is None:
+    variables = root.find("ModelVariables")
+    if variables is None:
         raise InputError(f"{path}: modelDescription.xml: has no ModelVariables")
+    for other in variables.iterchildren("*"):
+        raise InputError(
+            f"{path}: modelDescription.xml: {other.tag} (line {other.sourceline}) is no variable"
+        )
 
 
 def _refuse_identifier(path: Path, identifier: str | None) -> None:

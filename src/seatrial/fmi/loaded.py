@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from fmpy.model_description import ModelDescription
 
 from ..terminals import Terminal
+from .clocks import Clocks
 from .instance import Variables
+from .lsbus import BusTerminal
+from .modelfile import ModelFile
 from .options import DEFAULTS, INTERFACES, FmuOptions, Interface
 from .variables import Array
 
@@ -23,18 +26,24 @@ class LoadedFmu:
     folder: Path
     sha256: str
     description: ModelDescription
-    root: Any
-    """The XML element that ``description`` was read from, which has more."""
-    variables: Variables
-    arrays: Mapping[int, Array]
-    """What each value reference of an FMI 3 FMU stands for."""
-    feedthrough: Mapping[str, Sequence[str]]
-    terminals: Mapping[str, Terminal]
-    """Groups of variables that are connected together."""
+    """Without its variables."""
+    model: ModelFile
+    """What ``description`` was read from, which has more."""
     views: Mapping[str, Mapping[str, str]]
     """What reports draw of it; see `ports.VIEWS`."""
-    notes: tuple[str, ...]
+    variables: Variables = field(default_factory=Variables)
+    arrays: Mapping[int, Array] = field(default_factory=dict)
+    """What each value reference of an FMI 3 FMU stands for."""
+    feedthrough: Mapping[str, Sequence[str]] = field(default_factory=dict)
+    others: frozenset[str] = frozenset()
+    """Names of variables that are no signals here."""
+    terminals: Mapping[str, Terminal] = field(default_factory=dict)
+    """Groups of variables that are connected together."""
+    notes: tuple[str, ...] = ()
     """What this FMU has that cannot be used here, for its user."""
+    clocks: Clocks = field(default_factory=Clocks)
+    buses: Sequence[BusTerminal] = ()
+    """Terminals of FMI-LS-BUS, whose data and clocks are two ports here."""
     options: FmuOptions = DEFAULTS
 
     @property
@@ -78,6 +87,11 @@ class LoadedFmu:
         return bool(self.simulation.canHandleVariableCommunicationStepSize)
 
     @property
+    def at_once(self) -> bool:
+        """Whether it is initialised in one call, for which inputs are set before."""
+        return self.version == 1
+
+    @property
     def only_once(self) -> bool:
         """Whether a process can have one instance only."""
         if self.version == 1:
@@ -92,5 +106,5 @@ class LoadedFmu:
 
     def _says(self, capability: str) -> bool:
         """Return a capability of FMI 1.0 co-simulation, which FMPy leaves out."""
-        found = self.root.find("Implementation//Capabilities")
+        found = self.model.root.find("Implementation//Capabilities")
         return found is not None and found.get(capability) in ("true", "1")

@@ -1,8 +1,8 @@
-"""Settings of an FMU in a rig besides its values: interface, tolerance, structural parameters."""
+"""Settings of an FMU in a rig besides its values: interface, tolerance, sizes, local variables."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any, Literal, get_args
 
@@ -20,6 +20,8 @@ class FmuOptions:
     """Relative tolerance of the solver, in model exchange."""
     structure: Mapping[str, int] = field(default_factory=dict)
     """Structural parameters of FMI 3.0, by name: sizes of arrays follow from them."""
+    locals: Sequence[str] = ()
+    """Local variables, or elements of such, that are outputs."""
 
     def as_json(self) -> dict[str, Any]:
         """Return it as data, from which ``FmuOptions(**data)`` makes the same."""

@@ -13,6 +13,7 @@ from collections.abc import Callable, Sequence
 
 from ..links.safe_state import inherited
 from ..printable import printable
+from .exit_status import how_ended
 from .pipe import MESSAGE, MOST_BYTES, Frame, Frames
 
 _SLICE_S = 0.2
@@ -271,13 +272,3 @@ def _pipe() -> tuple[int, int]:
         for fd in low:
             os.close(fd)
     return ends[0], ends[1]
-
-
-def how_ended(status: int) -> str:
-    """Return in words how a process ended, from its status: that of a signal is negative."""
-    if status >= 0:
-        return f"exited with status {status}"
-    name = f"signal {-status}"
-    with contextlib.suppress(ValueError):
-        name = signal.Signals(-status).name
-    return f"was ended by {name}" + (" (perhaps for lack of memory)" if name == "SIGKILL" else "")

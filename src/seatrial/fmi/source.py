@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import importlib
+import os
 import re
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
@@ -150,7 +151,7 @@ def _importable(folder: Path) -> Iterator[None]:
     meanwhile. No bytecode is left there: Python takes it for current when a file is edited twice
     within a second.
     """
-    hidden = {name: module for name, module in sys.modules.items() if _hides(module, name, folder)}
+    hidden = _hidden_by(folder)
     for name in hidden:
         del sys.modules[name]
     before = set(sys.modules)
@@ -169,11 +170,23 @@ def _importable(folder: Path) -> Iterator[None]:
         sys.modules.update(hidden)
 
 
-def _hides(module: ModuleType, name: str, folder: Path) -> bool:
-    """Return whether a module from elsewhere has the name of one in ``folder``."""
-    top = name.partition(".")[0]
-    there = (folder / f"{top}.py").is_file() or (folder / top / "__init__.py").is_file()
-    return there and top not in sys.stdlib_module_names and not _is_in(module, folder)
+def _hidden_by(folder: Path) -> dict[str, ModuleType]:
+    """Return the imported modules from elsewhere that have names of those in ``folder``."""
+    listed: set[str] = set()
+    with suppress(OSError):  # then Python finds nothing there either
+        listed = {name.removesuffix(".py") for name in os.listdir(folder)}
+    there = {
+        top
+        for top in (listed & sys.modules.keys()) - sys.stdlib_module_names
+        if (folder / f"{top}.py").is_file() or (folder / top / "__init__.py").is_file()
+    }
+    if not there:
+        return {}
+    return {
+        name: module
+        for name, module in sys.modules.items()
+        if name.partition(".")[0] in there and not _is_in(module, folder)
+    }
 
 
 def _is_in(module: ModuleType, folder: Path) -> bool:

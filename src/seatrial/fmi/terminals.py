@@ -143,16 +143,21 @@ class MemberReader:
         ``{"v.x": "velocity.x", "v.y": "velocity.y"}`` is ``{"v": "velocity"}``, if that has
         these two; the first term of a sum stands for the sum.
         """
-        groups: dict[tuple[str, str], list[str]] = {}
+        places = {member: self._group(member, name) for member, name in members.items()}
+        groups: dict[tuple[str, str], set[str]] = {}
         for member, name in members.items():
-            groups.setdefault(self._group(member, name), []).append(name)
+            groups.setdefault(places[member], set()).add(name)
+        whole = {
+            (base, port)
+            for (base, port), names in groups.items()
+            if port
+            and base not in members
+            and names == {v.name for v in self.variables.ports.get(port, ())}
+        }
         found: dict[str, str] = {}
         for member, name in members.items():
-            base, port = self._group(member, name)
-            whole = {v.name for v in self.variables.ports.get(port, ())}
-            if port and base not in members and whole == set(groups[base, port]):
-                member, name = base, port
-            found[member] = self._firsts.get(name, name)
+            shown, meant = places[member] if places[member] in whole else (member, name)
+            found[shown] = self._firsts.get(meant, meant)
         return found
 
     def _group(self, member: str, name: str) -> tuple[str, str]:

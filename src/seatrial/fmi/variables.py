@@ -1,41 +1,27 @@
-"""The variables of a model description as scalars: arrays by element, types, units, limits."""
+"""The signals of a model description: scalars by name, what outputs depend on, views."""
 
 from __future__ import annotations
 
-import math
 from collections import Counter
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from itertools import product
-from typing import Any
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, TypeGuard
 
 from fmpy.model_description import ModelDescription
 
-from ..errors import InputError
+from ..errors import InputError, unknown
 from ..ports import VIEWS
-from ..units import Unit, defined_unit
-from .instance import Value, Variable, Variables
+from .clocks import Clock, Clocks
+from .instance import Variable, Variables
+from .modelfile import ModelFile
+from .options import DEFAULTS, FmuOptions
+from .scalars import MOST_SCALARS, Entry, ScalarReader, elements, ticking
 
-INTEGERS = {
-    f"{sign}Int{bits}": (0, 2**bits - 1) if sign else (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1)
-    for bits in (8, 16, 32, 64)
-    for sign in ("", "U")
-}
-"""Least and greatest value of FMI 3's types of integers."""
-
-_TYPES = {
-    **dict.fromkeys(("Real", "Float32", "Float64"), float),
-    **dict.fromkeys(("Integer", "Enumeration", *INTEGERS), int),
-    "Boolean": bool,
-    "String": str,
-    "Binary": bytes,
-}
-_TRUTH = {"true": True, "1": True, "false": False, "0": False}
-_MOST_SCALARS = 1_000_000
-_LARGEST_REFERENCE = 2**32 - 1
+Dependencies = Mapping[str, Sequence[str]]
+"""By the name of an output, the names of inputs."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Array:
     """What one value reference of FMI 3 stands for; a scalar is an array of one element."""
 
@@ -55,229 +41,253 @@ class Described:
 
     variables: Variables
     arrays: dict[int, Array]
-    """By value reference; in FMI 2.0 equal references of two types are two variables."""
+    """By value reference, in FMI 3.0."""
     feedthrough: dict[str, Sequence[str]]
+    others: frozenset[str]
+    """Names that it has besides: variables that are no signals here."""
     notes: tuple[str, ...]
-    """What this FMU has that cannot be used here."""
+    """What this FMU has that cannot be used here, or that FMI does not allow."""
+    clocks: Clocks
 
 
 def described(
-    description: ModelDescription, root: Any, structure: Mapping[str, int] | None = None
+    model: ModelFile, header: ModelDescription, options: FmuOptions = DEFAULTS
 ) -> Described:
-    """Return the signals of ``description``, read from the XML element ``root``.
+    """Return the signals of ``model``, of which ``header`` is all but the variables.
 
-    ``structure`` has structural parameters that are to differ from their start values. Raises
-    InputError, without the file's name, for a variable that cannot be used.
+    ``options`` has structural parameters that are to differ from their start values, local
+    variables that are to be outputs, and the interface: clocks are used in co-simulation with
+    event mode only. Raises InputError, without the file's name, for a variable that cannot be
+    used.
     """
-    ambiguous = _ambiguous_names(description)
-    reading = _Reading(description, root, structure or {})
-    variables, clocked = Variables(), []
-    arrays: dict[int, Array] = {}
-    by_name: dict[str, list[str]] = {}
-    for v in description.modelVariables:
-        if v.name in ambiguous:
+    reading = _Reading(model, header, options.structure)
+    reading.show(options.locals)
+    simulation = header.coSimulation
+    has_events = simulation is not None and bool(simulation.hasEventMode)
+    clocks = reading.clocks() if has_events and options.interface != "model exchange" else {}
+    idle = reading.idle(clocks)
+    variables = reading.variables(clocks, idle)
+    return Described(
+        variables,
+        reading.arrays,
+        reading.feedthrough(),
+        frozenset(one.name for one in reading.entries if one.name not in variables),
+        _notes(idle, reading.ambiguous, reading.unusual),
+        _clocks(reading.entries, clocks, variables),
+    )
+
+
+def _clocks(
+    entries: Sequence[Variable | Entry], clocks: Mapping[int, Clock], variables: Variables
+) -> Clocks:
+    signals: dict[str, int] = {}
+    clocked: dict[str, tuple[int, ...]] = {}
+    for entry in entries:
+        if not _is_clocked(entry):
             continue
-        if v.type == "Clock" or v.clocks:
-            clocked.append(v.name)
-            continue
-        try:
-            scalars = reading.scalars(v)
-        except (InputError, ValueError, KeyError, TypeError) as error:
-            raise InputError(f"variable {v.name!r} (line {v.sourceline}): {error}") from None
-        for scalar in scalars:
-            if scalar.name in variables:
-                raise InputError(f"two variables are called {scalar.name!r}")
-            variables[scalar.name] = scalar
-        if len(variables) > _MOST_SCALARS:
-            raise InputError(f"more than {_MOST_SCALARS} scalar variables")
-        arrays.setdefault(v.valueReference, Array(v.type, tuple(scalars)))
-        by_name[v.name] = [scalar.name for scalar in scalars]
-    feedthrough = _feedthrough(description, root, by_name)
-    return Described(variables, arrays, feedthrough, _notes(clocked, ambiguous))
+        for scalar in entry.elements:
+            if scalar.name not in variables:
+                continue
+            if entry.clock is not None:
+                signals[scalar.name] = scalar.reference
+            else:
+                clocked[scalar.name] = entry.clocks
+    return Clocks(clocks, signals, clocked)
 
 
 class _Reading:
-    """What has to be known of a whole model description to read one of its variables."""
+    """All variables of a model description, in the order of the file, aliases behind them."""
 
     def __init__(
-        self, description: ModelDescription, root: Any, structure: Mapping[str, int]
+        self, model: ModelFile, header: ModelDescription, structure: Mapping[str, int]
     ) -> None:
-        self._structure = structure
-        self._elements = {e.get("name"): e for e in root.find("ModelVariables")}
-        self._units = {u.name: u.baseUnit for u in description.unitDefinitions}
-        self._definitions: dict[str, Unit | None] = {"": None}
-        enumeration = "Int64" if description.fmiMajorVersion == 3 else "Int32"
-        self._integers = {**INTEGERS, "Enumeration": INTEGERS[enumeration]}
+        self._model, self._structure = model, structure
+        self.entries: list[Variable | Entry] = []
+        self.arrays: dict[int, Array] = {}
+        self._parameters: dict[int, Variable] = {}
+        """Structural parameters by value reference."""
+        self._direct: dict[str, list[str]] = {}
+        """What outputs of FMI 1.0 depend on."""
+        self._version = int(header.fmiMajorVersion)
+        reader = ScalarReader(header, model.root)
+        aliases = [alias for element in model.variables() for alias in self._add(reader, element)]
+        self._aliased = {alias.name: base.name for base, alias in aliases}
+        self._written = len(self.entries)
+        self.entries += [alias for _, alias in aliases]
+        self.ambiguous = _ambiguous_names(self.entries)
+        self.unusual = reader.unusual
 
-    def scalars(self, v: Any) -> list[Variable]:
-        """Return a variable's elements, or itself if it is a scalar."""
-        if not v.name:
-            raise InputError("it has no name")
-        if not 0 <= v.valueReference <= _LARGEST_REFERENCE:
-            raise InputError(f"value reference {v.valueReference} is not from 0 to 2^32 - 1")
-        element = self._elements[(v.alias or v).name]
-        if element.tag == "ScalarVariable" and element.find(v.type) is None:
-            raise InputError("it has no type")  # FMPy takes that of the one before
-        kind, declared, names = _TYPES[v.type], v.declaredType, self._element_names(v)
-        inherited = {a: getattr(v, a) or getattr(declared, a, None) for a in _INHERITED}
-        limits = {a: _number(inherited[a]) if kind in (int, float) else None for a in _LIMITS}
-        unit = (inherited["unit"] or "") if kind is float else ""
-        port = element.find("Annotations/Tool[@name='seatrial']/port")
-        said = {} if port is None else port.attrib
-        starts = self._starts(v, element, len(names))
+    def _add(
+        self, reader: ScalarReader, element: Any
+    ) -> list[tuple[Variable | Entry, Variable | Entry]]:
+        """Add a variable; return it with each of its aliases."""
+        entry, fmi_type = reader.read(element)
+        if isinstance(entry, Variable):
+            if entry.causality == "structuralParameter":
+                self._parameters[entry.reference] = entry
+            if entry.name in self._structure:
+                entry = replace(entry, start=self._structure[entry.name])
+            if self._version == 3:
+                self.arrays.setdefault(entry.reference, Array(fmi_type, (entry,)))
+        self.entries.append(entry)
+        if self._version == 1:
+            through = element.find("DirectDependency")
+            if through is not None:
+                self._direct[entry.name] = [name.text for name in through.iterfind("Name")]
+        return [(entry, _alias(entry, alias)) for alias in element.iterfind("Alias")]
+
+    def show(self, names: Iterable[str]) -> None:
+        """Make local variables outputs; an array as a whole, if an element is named."""
+        hidden = {e.name: i for i, e in enumerate(self.entries) if e.causality == "local"}
+        hidden = {name: i for name, i in hidden.items() if name not in self.ambiguous}
+        for name in names:
+            place = hidden.get(name, hidden.get(name.rpartition("[")[0]))
+            if place is None:
+                raise InputError(f"locals: {unknown('local variable', name, hidden)}")
+            entry = self.entries[place]
+            like = replace(_like(entry), causality="output")
+            self.entries[place] = replace(entry, like=like) if isinstance(entry, Entry) else like
+
+    def clocks(self) -> dict[int, Clock]:
+        """Return the clocks by value reference, without local ones: nothing waits for those."""
+        found: dict[int, Clock] = {}
+        for entry in self.entries:
+            if isinstance(entry, Entry) and entry.causality != "local":
+                clock = ticking(entry)
+                if clock is not None:
+                    found.setdefault(clock.reference, clock)
+        return found
+
+    def idle(self, clocks: Mapping[int, Clock]) -> list[str]:
+        """Return the variables that are none of ``clocks`` and belong to none of them."""
         return [
-            Variable(
-                name=name,
-                causality=v.causality,
-                variability=_variability(v.variability, kind),
-                type=kind,
-                reference=v.valueReference,
-                unit=unit,
-                start=starts[place],
-                minimum=limits["min"],
-                maximum=limits["max"],
-                nominal=limits["nominal"],
-                description=v.description or "",
-                definition=self._definition(unit),
-                integers=self._integers.get(v.type, INTEGERS["Int32"]),
-                items={item.name: int(item.value) for item in getattr(declared, "items", ())},
-                element=place,
-                negated=element.get("alias") == "negatedAlias",
-                optional=said.get("optional") == "true",
-                frame=said.get("frame", ""),
-                term_of=said.get("term_of", ""),
-                role=said.get("role", ""),
+            entry.name
+            for entry in self.entries
+            if _is_clocked(entry)
+            and clocks.keys().isdisjoint(
+                entry.clocks if entry.clock is None else (entry.like.reference,)
             )
-            for place, name in enumerate(names)
         ]
 
-    def _shape(self, v: Any) -> tuple[int, ...]:
-        """Return an array's sizes, as the structural parameters have them."""
-        return tuple(
-            size if d.variable is None else self._structure.get(d.variable.name, size)
-            for size, d in zip(v.shape, v.dimensions, strict=True)
-        )
+    def variables(self, clocks: Mapping[int, Clock], idle: Collection[str]) -> Variables:
+        """Return the scalars by name, without those that are ``idle`` and time-based clocks."""
+        found, left_out = Variables(), {*self.ambiguous, *idle}
+        left_out |= {clock.name for clock in clocks.values() if clock.is_timed}
+        for entry in self.entries:
+            if entry.name in left_out:
+                continue
+            if isinstance(entry, Entry):
+                entry.elements = elements(entry, self._parameters, self._structure)
+                array = Array(entry.fmi_type, tuple(entry.elements))
+                self.arrays.setdefault(entry.like.reference, array)
+            for scalar in _scalars(entry):
+                if scalar.name in found:
+                    raise InputError(f"two variables are called {scalar.name!r}")
+                found[scalar.name] = scalar
+            if len(found) > MOST_SCALARS:
+                raise InputError(f"more than {MOST_SCALARS} scalar variables")
+        return found
 
-    def _element_names(self, v: Any) -> list[str]:
-        if not v.dimensions:
-            return [v.name]
-        shape = self._shape(v)
-        if min(shape) < 0 or math.prod(shape) > _MOST_SCALARS:
-            raise InputError(f"an array of {' by '.join(map(str, shape))}")
-        indices = product(*(range(1, size + 1) for size in shape))
-        return [f"{v.name}[{','.join(map(str, index))}]" for index in indices]
+    def feedthrough(self) -> dict[str, Sequence[str]]:
+        """Return the inputs each output depends on; on all, where the FMU says nothing."""
+        inputs = [one for one in self.entries if one.causality == "input"]
+        every = self._names(inputs)
+        said = self._said()
+        result: dict[str, Sequence[str]] = {}
+        for entry in self.entries:
+            if entry.causality != "output":
+                continue
+            names = said.get(self._aliased.get(entry.name, entry.name), every)
+            if names:
+                result.update(dict.fromkeys(self._names([entry]), names))
+        return result
 
-    def _starts(self, v: Any, element: Any, count: int) -> Sequence[Value | None]:
-        """Return one start value per element; one that is given alone holds for all."""
-        kind = _TYPES[v.type]
-        if v.name in self._structure:
-            return [self._structure[v.name]]
-        if element.tag in ("String", "Binary"):  # FMI 3; FMPy knows the first one only
-            texts = [start.get("value") for start in element.findall("Start")]
-        elif v.start is None or kind is str or not v.dimensions:
-            texts = [] if v.start is None else [v.start]
+    def _names(self, entries: Iterable[Variable | Entry]) -> list[str]:
+        # What belongs to a clock passes nothing at once: it has its value when that is active.
+        usable = (e for e in entries if e.name not in self.ambiguous and not _is_clocked(e))
+        return [scalar.name for one in usable for scalar in _scalars(one)]
+
+    def _said(self) -> dict[str, list[str]]:
+        """Return what outputs depend on, of those of which the FMU says it."""
+        by_number: Mapping[int, Variable | Entry]
+        if self._version == 1:
+            by_name = {one.name: one for one in self.entries if one.name in self._direct}
+            inputs = {one.name: one for one in self.entries if one.causality == "input"}
+            return {
+                name: self._names(inputs[one] for one in self._direct[name] if one in inputs)
+                for name in by_name
+            }
+        written = self.entries[: self._written]
+        if self._version == 2:
+            by_number = dict(enumerate(written, start=1))
         else:
-            texts = v.start.split()
-        if v.dimensions and self._shape(v) != v.shape and len(texts) > 1:
-            return [None] * count  # the description has those of its own size
-        if len(texts) not in (0, 1, count):
-            raise InputError(f"{len(texts)} start values for {count} elements")
-        values: list[Value | None] = [_parsed(text, kind) for text in texts]
-        return values if len(values) == count else (values or [None]) * count
-
-    def _definition(self, name: str) -> Unit | None:
-        """Return a unit's definition where its name alone does not say the same."""
-        if name not in self._definitions:
-            base, unit = self._units.get(name), None
-            if base is not None:
-                powers = {n: getattr(base, n) for n in _BASE_UNITS}
-                unit = defined_unit(name, powers, base.factor, base.offset)
-            self._definitions[name] = None if unit is None or unit.by_name else unit
-        return self._definitions[name]
+            by_number = {_like(one).reference: one for one in written}
+        said = {}
+        for number, dependencies in self._model.dependencies.items():
+            unknown = [n for n in (number, *(dependencies or ())) if n not in by_number]
+            if unknown:
+                raise InputError(f"ModelStructure: there is no variable {unknown[0]}")
+            if dependencies is not None:
+                known = [by_number[n] for n in dependencies]
+                inputs_ = [one for one in known if one.causality == "input"]
+                said[by_number[number].name] = self._names(inputs_)
+        return said
 
 
-_BASE_UNITS = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
-_LIMITS = ("min", "max", "nominal")
-_INHERITED = ("unit", *_LIMITS)
-"""What a variable has from its declared type if it does not say it itself."""
+def _like(entry: Variable | Entry) -> Variable:
+    return entry.like if isinstance(entry, Entry) else entry
 
 
-def _variability(written: str | None, kind: type) -> str:
-    if kind is not float and written in (None, "continuous"):  # FMI 2.0's default is for Real
-        return "discrete"
-    return written or "continuous"
+def _scalars(entry: Variable | Entry) -> Sequence[Variable]:
+    return entry.elements if isinstance(entry, Entry) else (entry,)
 
 
-def _number(text: str | None) -> float | None:
-    return None if text is None else float(text)
+def _is_clocked(entry: Variable | Entry) -> TypeGuard[Entry]:
+    """Say if a variable is a clock or belongs to some."""
+    return isinstance(entry, Entry) and (entry.clock is not None or bool(entry.clocks))
 
 
-def _parsed(text: str, kind: type) -> Value:
-    if kind is bool:
-        if text not in _TRUTH:
-            raise InputError(f"start value {text!r} is not true or false")
-        return _TRUTH[text]
-    if kind is bytes:
-        return bytes.fromhex(text)
-    return kind(text)  # type: ignore[no-any-return]
+def _alias(entry: Variable | Entry, alias: Any) -> Variable | Entry:
+    """Return a variable under another name."""
+    like = _like(entry)
+    changed = replace(
+        like,
+        name=alias.get("name") or "",
+        description=alias.get("description") or like.description,
+    )
+    if not changed.name:
+        raise InputError(f"an alias of {like.name!r} has no name")
+    return replace(entry, like=changed) if isinstance(entry, Entry) else changed
 
 
-def _feedthrough(
-    description: ModelDescription, root: Any, by_name: dict[str, list[str]]
-) -> dict[str, Sequence[str]]:
-    """Return the inputs each output depends on; on all, where the FMU says nothing."""
-    inputs = [v for v in description.modelVariables if v.causality == "input"]
-    all_inputs = [name for v in inputs for name in by_name.get(v.name, ())]
-    said = {unknown.variable.name: unknown.dependencies for unknown in description.outputs}
-    if description.fmiMajorVersion == 1:
-        said = _direct_dependencies(description, root)
-    result: dict[str, Sequence[str]] = {}
-    for v in description.modelVariables:
-        if v.causality != "output":
-            continue
-        dependencies = said.get((v.alias or v).name)
-        names = all_inputs
-        if dependencies is not None:
-            known = [d for d in dependencies if d.causality == "input"]
-            names = [name for d in known for name in by_name.get(d.name, ())]
-        if names:
-            result.update(dict.fromkeys(by_name.get(v.name, ()), names))
-    return result
-
-
-def _direct_dependencies(description: ModelDescription, root: Any) -> dict[str, list[Any]]:
-    """Return what an FMI 1.0 description says, which FMPy leaves out."""
-    variables = {v.name: v for v in description.modelVariables}
-    return {
-        element.get("name"): [
-            variables[name.text] for name in through.iterfind("Name") if name.text in variables
-        ]
-        for element in root.find("ModelVariables")
-        if (through := element.find("DirectDependency")) is not None
-    }
-
-
-def _ambiguous_names(description: ModelDescription) -> list[str]:
+def _ambiguous_names(entries: Sequence[Variable | Entry]) -> dict[str, None]:
     """Return names of several local variables each: FMI forbids them, tools write them.
 
     Raises InputError for a name that a signal or a parameter shares.
     """
-    counts = Counter(v.name for v in description.modelVariables)
-    for v in description.modelVariables:
-        if counts[v.name] > 1 and v.causality != "local":
-            raise InputError(f"two variables are called {v.name!r}")
-    return [name for name, count in counts.items() if count > 1]
+    if len({entry.name for entry in entries}) == len(entries):
+        return {}
+    counts = Counter(entry.name for entry in entries)
+    for entry in entries:
+        if counts[entry.name] > 1 and entry.causality != "local":
+            raise InputError(f"two variables are called {entry.name!r}")
+    return {name: None for name, count in counts.items() if count > 1}
 
 
-def _notes(clocked: list[str], ambiguous: list[str]) -> tuple[str, ...]:
+def _notes(idle: list[str], ambiguous: Iterable[str], unusual: list[str]) -> tuple[str, ...]:
     notes = []
-    if clocked:
+    if idle:
         notes.append(
-            f"clocks, and variables that belong to one, are no signals here: {_shown(clocked)}"
+            "clocks that are local, or of an FMU without event mode in co-simulation, and "
+            f"variables that belong to them, are no signals: {_shown(idle)}"
         )
     if ambiguous:
         notes.append(
-            "local variables that share a name with another are left out: " + _shown(ambiguous)
+            "local variables that share a name with another are left out: " + _shown([*ambiguous])
+        )
+    if unusual:
+        notes.append(
+            "FMI does not allow these causalities and variabilities together: " + _shown(unusual)
         )
     return tuple(notes)
 

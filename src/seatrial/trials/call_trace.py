@@ -68,6 +68,26 @@ class CallTrace:
 
         return noted
 
+    def _read(self, number: int, call: Callable[[], Any]) -> Callable[[], Any]:
+        """Return what `_noted` does, without the arguments that cost as much as the note."""
+        cells, code = self.cells, number * len(_WORDS) + _KINDS["read"] + 1
+
+        def read() -> Any:
+            cells[_CALL] = code
+            return call()
+
+        return read
+
+    def _written(self, number: int, call: Callable[[Any], Any]) -> Callable[[Any], Any]:
+        """Return the same for values that are written."""
+        cells, code = self.cells, number * len(_WORDS) + _KINDS["write"] + 1
+
+        def write(values: Any) -> Any:
+            cells[_CALL] = code
+            return call(values)
+
+        return write
+
     def _timed(self, number: int, kind: str, call: Callable[..., Any]) -> Callable[..., Any]:
         cells, times = self.cells, self._times
         code = number * len(_WORDS) + _KINDS[kind] + 1
@@ -94,10 +114,15 @@ class _Traced:
     def __getattr__(self, name: str) -> Any:
         return getattr(self._instance, name)
 
+    @property
+    def ended_at(self) -> float | None:
+        """When the instance ended the simulation; looked at after each step."""
+        return self._instance.ended_at
+
     def reader(self, names: Sequence[str]) -> Reader:
         bind = self._trace._noted(self._number, "reader", self._instance.reader)
-        return self._trace._noted(self._number, "read", bind(names))
+        return self._trace._read(self._number, bind(names))
 
     def writer(self, names: Sequence[str]) -> Writer:
         bind = self._trace._noted(self._number, "writer", self._instance.writer)
-        return self._trace._noted(self._number, "write", bind(names))
+        return self._trace._written(self._number, bind(names))

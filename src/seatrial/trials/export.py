@@ -96,6 +96,8 @@ def _set_up(trial: Trial) -> System:
     file = trial.file
     system = assemble(trial.rig, "fmu", variant=file.variant, seed=file.seed)
     try:
+        trial = trial.dated(system)
+        trial.surround(system)
         for key, written, origin in trial.settings():
             system.set(key, written, origin)
     except BaseException:

@@ -18,7 +18,7 @@ from itertools import takewhile
 from pathlib import Path
 from typing import NoReturn
 
-from ..fmi.process import how_ended
+from ..fmi.exit_status import how_ended
 from ..links.safe_state import ENVIRONMENT
 from ..links.safe_state_keeper import SafeStates
 from .call_trace import CallTrace

@@ -35,6 +35,7 @@ def manifest(trial: Trial, system: System, engine: Engine) -> dict[str, Any]:
         "algorithm": trial.rig.file.algorithm,
         "variant": system.variant,
         "seed": system.seed,
+        **({} if trial.file.utc is None else {"utc": trial.file.utc}),
         "start": seconds(trial.start_ns),
         "stop": seconds(trial.stop_ns),
         "step": seconds(trial.rig.step_ns),
@@ -74,12 +75,13 @@ def _composition(trial: Trial, system: System) -> dict[str, Any]:
 
 
 def _connections(system: System) -> list[list[Any]]:
-    """Return [from, to], and [factor, offset] behind where a connection has them."""
+    """Return [from, to], behind it [factor, offset] and [mapping] where a connection has them."""
     rows: list[list[Any]] = []
     for joint in system.joints:
-        transformed = (joint.factor, joint.offset) != (1.0, 0.0)
+        mapping = [[list(pair) for pair in joint.mapping]] if joint.mapping else []
+        transformed = mapping or (joint.factor, joint.offset) != (1.0, 0.0)
         transformation = [joint.factor, joint.offset] if transformed else []
-        rows.append([joint.source, joint.target, *transformation])
+        rows.append([joint.source, joint.target, *transformation, *mapping])
     return rows
 
 

@@ -10,11 +10,12 @@ from ..cosim.assembly import assemble
 from ..cosim.master import Master
 from ..cosim.system import Engine, System
 from ..cosim.unread import leave_out_unread
-from ..errors import InputError, SimulationError
+from ..errors import InputError, SimulationError, listed
 from .checks import check_criteria, check_events, check_plots, check_real_time
 from .hooks import Hooks
 from .manifest import manifest
 from .naming import by_path, named_components
+from .recording import Recorded, recorded_signals
 from .trial import Trial
 
 
@@ -27,6 +28,7 @@ class Prepared:
     system: System
     units: dict[str, str]
     """Of every output, ``component.port``."""
+    recorded: Recorded
 
     @cached_property
     def manifest(self) -> dict[str, Any]:
@@ -54,7 +56,7 @@ class Prepared:
         """Return a note on the inputs that neither connection nor event reaches, if any."""
         moved = {event.key for event in self.trial.events()}
         loose = [name for name in self.system.unconnected_inputs() if name not in moved]
-        said = f"inputs that nothing feeds keep their start values: {', '.join(loose)}"
+        said = f"inputs that nothing feeds keep their start values: {listed(loose)}"
         return [said] if loose else []
 
 
@@ -76,17 +78,21 @@ def prepare(trial: Trial, engine: Engine, hooks: Hooks) -> Prepared:
         progress=building,
     )
     try:
+        trial = trial.dated(system)
+        trial.surround(system)
         for key, written, origin in trial.settings():
             system.set(key, written, origin)
         for key, factor, origin in trial.scales:
             system.scale(key, factor, origin)
+        is_asked = "signals" in trial.file.record.model_fields_set
         trial = by_path(trial.scheduled(system), system)
         units = check_criteria(trial, system)
         check_plots(trial, system)
         check_events(trial, system)
         check_real_time(trial, system)
         leave_out_unread(system, named_components(trial, system))
+        recorded = recorded_signals(trial, system, is_asked=is_asked)
     except BaseException:
         system.free()
         raise
-    return Prepared(trial, engine, system, units)
+    return Prepared(trial, engine, system, units, recorded)

@@ -27,6 +27,7 @@ from .plots import MAX_POINTS, Line, Mark, Panel, deck_figure, time_figure, trac
 from .readable import from_si, number, person_scale
 from .run_folder import Run, load_run
 from .sailing import add_wind_and_marks
+from .sea_section import sea_figures
 from .tethers import tether_figures
 from .timing_section import pacing, step_times
 
@@ -164,6 +165,8 @@ def _sections(run: Run) -> Iterator[Section]:
         yield Section("Track from above", figure.json())
     for name, shape in tether_figures(run):
         yield Section(f"Shape of {name}", shape.json())
+    for title, figure in sea_figures(run):
+        yield Section(title, figure.json())
     if forces:
         columns = [
             [_panel(run, p, p.signals) for p in forces if units[p] == u] for u in _FORCE_UNITS

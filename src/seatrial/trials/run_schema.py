@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -73,6 +75,26 @@ class _Component(_Entry):
     )
     outline: _Outline | None = None
 
+    @model_validator(mode="after")
+    def _has_what_is_viewed(self) -> _Component:
+        for parameter in self._viewed():
+            if not isinstance(self._value(parameter), (int, float)):
+                raise ValueError(f"a view needs the parameter {parameter!r}, a number")
+        return self
+
+    def _value(self, parameter: str) -> Scalar:
+        return self.parameters[parameter].value if parameter in self.parameters else None
+
+    def _viewed(self) -> Iterator[str]:
+        if ports := self.views.get("landing-point"):
+            yield from (f"{ports['place']}.{axis}" for axis in "xy")
+        if ports := self.views.get("waypoints"):
+            count = self._value(ports["count"])
+            if not isinstance(count, (int, float)) or not float(count).is_integer():
+                raise ValueError(f"a view needs the parameter {ports['count']!r}, a whole number")
+            for number in range(1, int(count) + 1):
+                yield from (f"{ports['place']}_{number}.{axis}" for axis in ("north", "east"))
+
 
 class _Signal(_Entry):
     unit: str
@@ -90,11 +112,13 @@ class _Criterion(_Entry):
     check: str
 
 
+_Pair = Annotated[tuple[bool | int, bool | int], Strict(False)]
 _Connection = (
     Annotated[tuple[str, str], Strict(False)]
     | Annotated[tuple[str, str, Number, Number], Strict(False)]
+    | Annotated[tuple[str, str, Number, Number, list[_Pair]], Strict(False)]
 )
-"""From, to; factor and offset. JSON has lists only."""
+"""From, to; factor and offset; mapping, pairs of values. JSON has lists only."""
 
 
 class Manifest(_Entry):
@@ -232,6 +256,12 @@ class _Convergence(_Closed):
     discrete: list[_Discrete]
     components: list[str]
 
+    @model_validator(mode="after")
+    def _falling(self) -> _Convergence:
+        if self.steps[-1] <= 0.0 or any(a <= b for a, b in pairwise(self.steps)):
+            raise ValueError("steps above 0, each smaller than the one before, are needed")
+        return self
+
 
 MANIFEST = TypeAdapter(Manifest)
 VERDICTS = TypeAdapter(list[_Verdict])
@@ -265,6 +295,8 @@ def _explained(path: Path, error: ValidationError) -> list[str]:
         said = f"{problem['msg']}, found {_shortened(problem['input'])}"
         if problem["type"] == "missing":
             said = "this key is missing"
+        elif problem["type"] == "value_error" and isinstance(problem["input"], (dict, list)):
+            said = problem["msg"].removeprefix("Value error, ")
         lines.append(f"{path}: {place}: {said}")
     if len(problems) > _MOST_SHOWN:
         lines.append(f"{path}: and {len(problems) - _MOST_SHOWN} more")

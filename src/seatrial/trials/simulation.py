@@ -49,7 +49,7 @@ class Run:
         self._recorder = Recorder(
             folder / "signals.csv",
             master,
-            trial.file.record.signals,
+            prepared.recorded.signals,
             trial.record_every,
             sorted(watched),
         )
@@ -104,9 +104,9 @@ class Run:
         """Return what the user should know: of profiles, the rig, the steps, the pace."""
         pace = [] if self._pace is None else [self._pace.pacer.note()]
         prepared = self.prepared
-        notes = [*prepared.system.notes, *prepared.loose_inputs(), *self._master.notes()]
-        notes += self._master.end_notes()
-        return [*notes, *self._floods, *pace]
+        notes = [*prepared.system.notes, *prepared.recorded.notes, *prepared.loose_inputs()]
+        of_master = [*self._master.notes(), *self._master.end_notes()]
+        return [*notes, *of_master, *self._floods, *pace]
 
     # ------------------------------------------------------------------ inside
 

@@ -129,6 +129,7 @@ class Supervisor:
                 self._manifest = content[0]
             case "claimed":
                 self._folder = Path(content[0])
+                self._hooks.claimed(self._folder)
             case "log":
                 name, level, text = content
                 logging.getLogger(name).log(level, "%s", text)

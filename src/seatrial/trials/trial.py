@@ -23,6 +23,8 @@ from ..errors import InputError, unknown
 from ..shipped import available
 from .criteria import Criterion, parse
 from .scenario import Scenario, events_of, read_scenario
+from .surroundings import GROUPS, CurrentEntry, SeaEntry, WindEntry, set_surroundings
+from .utc import Utc, instant_of, set_start_time
 from .verdict import WHOLE
 
 
@@ -88,6 +90,10 @@ class TrialFile(FileModel):
     stop: str
     variant: str | None = None
     seed: int = Field(default=1, ge=0)
+    utc: Utc | None = None
+    sea: SeaEntry | None = None
+    current: CurrentEntry | None = None
+    wind: WindEntry | None = None
     set: dict[str, Any] = Field(default_factory=dict)
     record: RecordEntry = Field(default_factory=RecordEntry)
     real_time: RealTimeEntry | None = None
@@ -159,6 +165,25 @@ class Trial:
         where = f"{self.read_from.path}: record.every"
         return _multiple(duration_ns(written, where), self.rig.step_ns, where, written)
 
+    def dated(self, system: System) -> Trial:
+        """Give a system the trial's date and time, and return the trial with the instant it is.
+
+        Raises InputError.
+        """
+        if self.file.utc is None:
+            return self
+        where = f"{self.read_from.path}: utc"
+        utc = instant_of(self.file.utc, self.file.real_time is not None, where)
+        set_start_time(system, utc, where)
+        return replace(self, file=self.file.model_copy(update={"utc": utc}))
+
+    def surround(self, system: System) -> None:
+        """Give a system the trial's sea, current and wind. Raises InputError."""
+        for group in GROUPS:
+            entry = getattr(self.file, group)
+            if entry is not None:
+                set_surroundings(system, group, entry, f"{self.read_from.path}: {group}")
+
     def settings(self) -> list[tuple[str, Any, str]]:
         """Return what the trial sets: (component.port, as written, who says so)."""
         where = f"{self.read_from.path}: set"
@@ -214,10 +239,11 @@ class Trial:
     def changed(self, changes: Mapping[str, Any], origin: str) -> Trial:
         """Return the trial with settings changed: ``component.port``, or a key of the trial.
 
-        Keys of the trial are variant, seed, start, stop, scenario and ``choices.NAME``; of its
-        rig, step, algorithm and ``component.isolated``. Raises InputError.
+        Keys of the trial are variant, seed, start, stop, utc, scenario, ``choices.NAME``, and those
+        of its sea, current and wind such as ``sea.height``, unless a component has that name; of
+        its rig, step, algorithm and ``component.isolated``. Raises InputError.
         """
-        keys = ("variant", "seed", "start", "stop", "scenario")
+        keys = ("variant", "seed", "start", "stop", "utc", "scenario")
         rig_keys = ("step", "algorithm")
         own, of_rig, overrides = dict[str, Any](), dict(self.rig_changes), list(self.overrides)
         choices = {**self.file.choices, **choices_in(changes, origin)}
@@ -227,6 +253,9 @@ class Trial:
                 own["choices"] = choices
             elif key.endswith(KEY_END):
                 of_processes[key] = value
+            elif (group := self._group_in(key)) is not None:
+                before = own.get(group, self.file.model_dump(exclude_none=True).get(group, {}))
+                own[group] = {**before, key.partition(".")[2]: value}
             elif "." in key:
                 overrides.append((key, value, origin))
             elif key in keys:
@@ -235,9 +264,9 @@ class Trial:
             elif key in rig_keys:
                 of_rig[key] = value
             else:
-                known = (*keys, *rig_keys, f"{_CHOICES}NAME")
+                known = (*keys, *rig_keys, f"{_CHOICES}NAME", *(f"{g}.KEY" for g in GROUPS))
                 raise InputError(f"{origin}: {unknown('key', key, known)}, or component.port")
-        content = {**self.file.model_dump(), **own}
+        content = {**self.file.model_dump(exclude_unset=True), **own}
         file = validated(TrialFile, content, self.read_from.path)
         rig = self.rig
         if choices != self.file.choices:
@@ -253,6 +282,14 @@ class Trial:
             self, file=file, rig=rig, rig_changes=of_rig, isolated=isolated, scenario=scenario
         )
         return _checked(replace(changed, overrides=tuple(overrides)))
+
+    def _group_in(self, key: str) -> str | None:
+        """Return sea, current or wind if a key of it is meant, not a component of that name."""
+        group, dot, _ = key.partition(".")
+        if not dot or group not in GROUPS:
+            return None
+        of_rig = {path.partition(".")[0] for path in self.rig.components}
+        return None if group in of_rig else group
 
 
 def is_trial(name: str) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -46,19 +46,17 @@ class Groups:
         files = [osp_file(folder, name) for folder in (fmu.path.parent, beside)]
         # Any text may be a modelName: no other folder.
         found = [f for f in files if Path(name).name == name and f.is_file()]
-        self._groups = _read(found[0], fmu) if found else ()
+        groups = _read(found[0], fmu) if found else ()
+        self._top, self._all = _by_name(groups), _by_name(g for one in groups for g in one.all())
         self._file = found[0] if found else files[0]
 
     def named(self, name: str) -> Group:
         """Return the group ``name``; one inside others only if none at the top has the name."""
-        top = [group for group in self._groups if group.name == name]
-        inner = [g for group in self._groups for g in group.all() if g.name == name]
-        found = top or inner
+        found = self._top.get(name) or self._all.get(name)
         if not found:
             if not self._file.is_file():
                 raise InputError(f"group {name!r}: there is no file {self._file.name}")
-            names = [g.name for group in self._groups for g in group.all()]
-            raise InputError(f"{self._file.name}: {unknown('group', name, names)}")
+            raise InputError(f"{self._file.name}: {unknown('group', name, self._all)}")
         if len(found) > 1:
             raise InputError(f"{self._file.name}: {len(found)} groups are called {name!r}")
         return found[0]
@@ -75,6 +73,13 @@ def pairs(one: Group, other: Group) -> Iterator[tuple[str, str]]:
     yield from zip(one.variables, other.variables, strict=True)
     for a, b in zip(one.groups, other.groups, strict=True):
         yield from pairs(a, b)
+
+
+def _by_name(groups: Iterable[Group]) -> dict[str, list[Group]]:
+    found: dict[str, list[Group]] = {}
+    for group in groups:
+        found.setdefault(group.name, []).append(group)
+    return found
 
 
 def _read(file: Path, fmu: LoadedFmu) -> tuple[Group, ...]:

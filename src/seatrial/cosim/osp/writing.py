@@ -19,7 +19,8 @@ from ..part import Part
 from ..ssp.describing import Experiment, as_xml
 from ..ssp.layout import End, Level, flat, unused
 from ..ssp.parameters import type_name, written
-from ..ssp.writing import unsaid
+from ..ssp.shapes import local_outputs
+from ..ssp.writing import refuse_made, unsaid
 from ..system import Connection, System
 from .structure import NAMESPACE
 
@@ -122,6 +123,13 @@ class _Describer:
         return part
 
     def _refuse(self, connection: Connection) -> None:
+        refuse_made(self._system, connection)
+        source_part = self._system.parts[connection.source[0]]
+        if connection.source[1] in local_outputs(self._system, source_part):
+            raise InputError(
+                f"{'.'.join(connection.source)} is a local variable, from which OSP-IS has no "
+                "connections"
+            )
         source, target = (
             self._system.parts[name].instance.variables[port]
             for name, port in (connection.source, connection.target)

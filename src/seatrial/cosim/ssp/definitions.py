@@ -68,6 +68,18 @@ def converted(source: Measure, target: Measure, place: str) -> tuple[float, floa
         raise InputError(f"{place}: {error}") from None
 
 
+def write_enumerations(parent: Any, used: Enumerations) -> None:
+    """Append ``ssd:Enumerations`` with the items of enumerations by name, if there are any."""
+    if not used:
+        return
+    holder = etree.SubElement(parent, f"{{{NAMESPACES['ssd']}}}Enumerations")
+    for name, items in sorted(used.items()):
+        element = etree.SubElement(holder, f"{{{NAMESPACES['ssc']}}}Enumeration", name=name)
+        for item, value in items.items():
+            attributes = {"name": item, "value": str(value)}
+            etree.SubElement(element, f"{{{NAMESPACES['ssc']}}}Item", attributes)
+
+
 def write_units(parent: Any, used: Mapping[str, Unit]) -> None:
     """Append ``ssd:Units`` with the definitions of units by name, if there are any."""
     if not used:

@@ -18,7 +18,7 @@ from ..part import Part
 from ..paths import joined
 from ..system import Connection, System
 from .annotations import write_oms, write_osp
-from .definitions import write_units
+from .definitions import write_enumerations, write_units
 from .documents import NAMESPACES
 from .layout import End, Level
 from .model import FMU, Indices
@@ -52,13 +52,17 @@ class Describer:
         self._system = system
         self._defined: dict[str, Unit] = {}
         ends = {end for connection in connections for end in (connection.source, connection.target)}
-        self._declared = {name: _declared(part, ends) for name, part in system.parts.items()}
-        self._units = {
-            (name, variable.name): self._unit(name, variable)
+        self._declared = {
+            name: [v for v in _declared(part, ends) if v.name not in shapes[name].unsaid]
+            for name, part in system.parts.items()
+        }
+        self._enumerations: dict[str, Mapping[str, int]] = {}
+        self._measures = {
+            (name, variable.name): self._unit(name, variable) or self._enumeration(name, variable)
             for name, variables in self._declared.items()
             for variable in variables
         }
-        """The attribute that names the unit of a connector."""
+        """The attribute that names the unit of a connector, or its enumeration."""
 
     def document(self, top: Level, experiment: Experiment, version: Version) -> Any:
         """Return the whole description of a package with the system ``top``."""
@@ -74,6 +78,7 @@ class Describer:
         )
         step = seconds(self._system.rig.step_ns)
         write_oms(self._add_system(document, top, ""), step)
+        write_enumerations(document, self._enumerations)
         write_units(document, self._defined)
         times = {"startTime": repr(experiment.start), "stopTime": repr(experiment.stop)}
         default = _add(document, "ssd", "DefaultExperiment", **times)
@@ -108,7 +113,7 @@ class Describer:
             shapes = self._shapes[part.name]
             for name, variable in {shapes.connector(v.name)[0]: v for v in variables}.items():
                 sizes = shapes.sizes.get(name, ())
-                kind = variable.causality
+                kind = shapes.kind(variable)
                 self._add_connector(connectors, name, kind, part.name, variable, sizes)
         if part.given:
             _add(
@@ -134,7 +139,7 @@ class Describer:
         """Add a connector for values of a component's variable."""
         connector = _add(connectors, "ssd", "Connector", name=name, kind=kind)
         kind = self._shapes[component].type(variable)
-        _add(connector, "ssc", kind, **self._units[component, variable.name])
+        _add(connector, "ssc", kind, **self._measures[component, variable.name])
         for size in sizes:
             _add(connector, "ssc", "Dimension", size=str(size))
 
@@ -194,6 +199,17 @@ class Describer:
             self.notes.append(f"{where}: another FMU defines it otherwise")
             return {}
         return {"unit": variable.unit}
+
+    def _enumeration(self, component: str, variable: Variable) -> dict[str, str]:
+        """Return the attribute that names an enumeration, one of its own where two differ."""
+        found = self._shapes[component].enumerations.get(variable.name)
+        if found is None:
+            return {}
+        name = found.name
+        if self._enumerations.get(name, found.items) != found.items:
+            name = f"{component}.{name}"
+        self._enumerations[name] = found.items
+        return {"name": name}
 
 
 def _declared(part: Part, ends: set[tuple[str, str]]) -> list[Variable]:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from ...errors import InputError, unknown
@@ -12,7 +13,7 @@ from ..packaged import SSP_FILE
 from .binding import Bound
 from .dictionaries import Dictionaries
 from .graph import Edge, Graph, Node, Origin, Path_
-from .leaf import Leaf, as_variable, connectors_of
+from .leaf import Leaf, SizesOnly, as_variable, connectors_of
 from .model import (
     DEEPEST,
     FMU,
@@ -28,6 +29,7 @@ from .model import (
 )
 from .notes import Notes
 from .package import Package, open_package
+from .parameters import Parameter
 from .structure import read_structure
 from .transformations import Way
 
@@ -72,6 +74,10 @@ class Flat:
     graph: Graph = field(default_factory=Graph)
     _dictionaries: Dictionaries = field(default_factory=Dictionaries)
     _bound: Bound = field(default_factory=Bound)
+    _bindings: list[tuple[Sequence[Parameter], Path_]] = field(default_factory=list)
+    """Values and where they are bound, inner before outer."""
+    _components: dict[Path_, Component] = field(default_factory=dict)
+    """FMUs as the description has them."""
 
     @classmethod
     def of(cls, structure: Structure, package: Package, notes: Notes) -> Flat:
@@ -82,6 +88,9 @@ class Flat:
         made = cls(notes)
         made._add_system(structure.system, (), _Place(package, (package.description,)))
         made._dictionaries.connect(made.graph)
+        made._resize()
+        for parameters, path in made._bindings:
+            made._bound.bind(parameters, path, made)
         return made
 
     def connections(self) -> list[FlatConnection]:
@@ -98,6 +107,28 @@ class Flat:
                         found += self._connected(origin, (path, variable), len(indices))
         self._bound.note_unused(self.graph, self.notes)
         return found
+
+    # ------------------------------------------------------------------ sizes
+
+    def _resize(self) -> None:
+        """Load FMUs again whose structural parameters have values: sizes of arrays follow."""
+        sized: dict[Path_, Leaf] = {path: SizesOnly.of(leaf) for path, leaf in self.leaves.items()}
+        if not any(leaf.structural for leaf in self.leaves.values()):
+            return
+        probe = replace(self, notes=Notes(), leaves=sized, _bound=Bound())
+        for parameters, path in self._bindings:
+            probe._bound.bind(parameters, path, probe)
+        for path, name in self.graph.fed():
+            if path in sized and name in sized[path].structural:
+                origin = self.graph.origin((path, name), ())
+                if origin.steps:
+                    probe._connected(origin, (path, name), 0)
+        for path, leaf in sized.items():
+            if leaf.values:
+                self.leaves[path].resize({name: one for name, (one, _) in leaf.values.items()})
+            if leaf.structural:
+                component = self._components[path]
+                self._add_connectors(self.leaves[path], component, self.notes)
 
     # ------------------------------------------------------------------ elements
 
@@ -122,17 +153,17 @@ class Flat:
         known = list(system.elements)
         for connection in system.connections:
             self._add_connection(connection, path, known)
-        self._bound.bind(system.parameters, path, self)
+        self._bindings.append((system.parameters, path))
 
     def _add_component(self, component: Component, path: Path_, place: _Place) -> None:
         if component.inner is not None:
             self._add_system(component.inner, path, place)
-            self._bound.bind(component.parameters, path, self)
+            self._bindings.append((component.parameters, path))
         elif component.source.file is None:
             self.elements[path] = []
             connectors = {(path, name): c for name, c in component.connectors.items()}
             self.graph.connectors.update(connectors)
-            self._bound.bind(component.parameters, path, self)
+            self._bindings.append((component.parameters, path))
         elif component.kind == FMU:
             self._add_leaf(component, component.source.file, path)
         else:
@@ -156,7 +187,7 @@ class Flat:
         structure = read_structure(description, package, self.notes)
         chain = (*place.chain, description.resolve())
         self._add_system(structure.system, path, _Place(package, chain))
-        self._bound.bind(component.parameters, path, self)
+        self._bindings.append((component.parameters, path))
 
     def _add_leaf(self, component: Component, source: Path, path: Path_) -> None:
         if len(self.leaves) >= _MOST_COMPONENTS:
@@ -172,9 +203,14 @@ class Flat:
         leaf = self.leaves[path] = Leaf(
             path, fmu, component.source.isolated, component.step, component.where
         )
-        connectors = connectors_of(leaf, component, self.notes)
-        self.graph.connectors.update({(path, name): c for name, c in connectors.items()})
-        self._bound.bind(component.parameters, path, self)
+        # Those of one that may change its sizes are checked when these are known.
+        self._components[path] = component
+        self._add_connectors(leaf, component, Notes() if leaf.structural else self.notes)
+        self._bindings.append((component.parameters, path))
+
+    def _add_connectors(self, leaf: Leaf, component: Component, notes: Notes) -> None:
+        connectors = connectors_of(leaf, component, notes)
+        self.graph.connectors.update({(leaf.path, name): c for name, c in connectors.items()})
 
     # ------------------------------------------------------------------ connections
 
@@ -213,6 +249,11 @@ class Flat:
         if node not in connectors:
             leaf = self.leaves.get(node[0])
             scalars = {} if leaf is None else leaf.scalars(node[1])
+            if leaf is not None and node[1] in leaf.fmu.others:
+                raise InputError(
+                    f"{where}: connections of clocks, and of data of bus terminals, are not "
+                    f"supported: {node[1]!r}"
+                )
             if leaf is None or not scalars:
                 names = [n for p, n in connectors if p == node[0]]
                 raise InputError(f"{where}: {unknown('connector', node[1], names)}")
@@ -247,9 +288,7 @@ class Flat:
         source = leaf.fmu.variables[output]
         variable = self.leaves[target[0]].fmu.variables[target[1]]
         if source.causality == "local":
-            raise InputError(
-                f"{place}: connections of local variables are not supported: {output!r}"
-            )
+            leaf.locals[output] = None
         if variable.causality != "parameter" or source.causality == "calculatedParameter":
             return
         if variable.variability == "fixed" and source.variability not in ("constant", "fixed"):

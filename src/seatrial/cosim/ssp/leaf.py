@@ -6,9 +6,11 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 from ...errors import InputError
 from ...fmi.instance import Variable
+from ...fmi.load import load_fmu
 from ...fmi.loaded import LoadedFmu
 from ..system import is_settable
 from .definitions import converted
@@ -33,6 +35,16 @@ class Leaf:
     where: str
     values: dict[str, tuple[Value, str]] = field(default_factory=dict)
     """Start values by variable, in its own unit, and where they are written."""
+    locals: dict[str, None] = field(default_factory=dict)
+    """Local variables that have a connector, or a connection."""
+
+    @cached_property
+    def structural(self) -> set[str]:
+        """Names of the structural parameters."""
+        if self.fmu.version < 3:
+            return set()
+        variables = self.fmu.variables.values()
+        return {one.name for one in variables if one.causality == "structuralParameter"}
 
     def scalars(self, name: str) -> dict[Indices, str]:
         """Return the variables of a connector: one, or those of an array by their indices."""
@@ -45,6 +57,14 @@ class Leaf:
                 return {}
             found[tuple(map(int, indices[1].split(",")))] = variable.name
         return found
+
+    def resize(self, structure: Mapping[str, Value]) -> None:
+        """Give structural parameters values. Raises InputError for sizes that cannot be."""
+        sizes = {name: int(value) for name, value in structure.items()}
+        try:
+            self.fmu = load_fmu(self.fmu.path, replace(self.fmu.options, structure=sizes))
+        except InputError as error:
+            raise InputError(f"{self.where}: {error}") from None
 
     def bind(self, connector: str, parameter: Parameter, notes: Notes) -> None:
         """Give the variables of a connector the values of a parameter. Raises InputError."""
@@ -86,6 +106,20 @@ class Leaf:
         return plain
 
 
+class SizesOnly(Leaf):
+    """The same FMU, which takes values of structural parameters and passes over all others."""
+
+    @classmethod
+    def of(cls, leaf: Leaf) -> SizesOnly:
+        """Return one without values."""
+        return cls(leaf.path, leaf.fmu, leaf.isolated, leaf.step, leaf.where)
+
+    def bind(self, connector: str, parameter: Parameter, notes: Notes) -> None:
+        """Give a structural parameter its value. Raises InputError."""
+        if connector in self.structural:
+            super().bind(connector, parameter, notes)
+
+
 def fitting(value: Value, variable: Variable, place: str) -> Value:
     """Return a value as one of the variable's type. Raises InputError if it is none."""
     if type(value) is int and variable.type is float:
@@ -123,6 +157,8 @@ def connectors_of(leaf: Leaf, component: Component, notes: Notes) -> dict[str, C
             notes.pass_over(connector.where, f"connector {name!r} is no variable of the FMU")
             continue
         variable = leaf.fmu.variables[next(iter(scalars.values()))]
+        if variable.causality == "local":
+            leaf.locals.update(dict.fromkeys(scalars.values()))
         if connector.type not in (None, variable.type):
             notes.pass_over(
                 connector.where,

@@ -107,6 +107,8 @@ def _component(leaf: Leaf, folder: Path, fed: set[Node], notes: Notes) -> dict[s
     entry: dict[str, Any] = {"fmu": os.path.relpath(leaf.fmu.path, folder), "set": values}
     if leaf.fmu.options.interface is not None:
         entry["interface"] = leaf.fmu.options.interface
+    if leaf.locals:
+        entry["locals"] = list(leaf.locals)
     if leaf.isolated:
         entry["isolated"] = True
     if leaf.step is not None:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from ...fmi.instance import Variable
 from ...fmi.load import load_fmu
@@ -13,9 +13,18 @@ from ...fmi.source import find_source
 from ..part import Part
 from ..system import System
 from .model import Indices
-from .parameters import type_name
+from .parameters import Value, type_name
 
 Version = Literal["1.0", "2.0"]
+_INT = range(-(2**31), 2**31)
+"""Values that SSP has for items of an enumeration."""
+
+
+class Enumeration(NamedTuple):
+    """A type of FMI."""
+
+    name: str
+    items: Mapping[str, int]
 
 
 @dataclass(frozen=True)
@@ -24,6 +33,12 @@ class Shapes:
 
     types: Mapping[str, str] = field(default_factory=dict)
     """SSP's type by variable."""
+    enumerations: Mapping[str, Enumeration] = field(default_factory=dict)
+    """By variable."""
+    locals: frozenset[str] = frozenset()
+    """Outputs in this rig that are local variables of the FMU."""
+    unsaid: frozenset[str] = frozenset()
+    """The same, in a version that knows none."""
     arrays: Mapping[str, tuple[str, Indices]] = field(default_factory=dict)
     """By element: its array, and its indices there."""
     sizes: Mapping[str, Indices] = field(default_factory=dict)
@@ -37,23 +52,63 @@ class Shapes:
         """Return SSP's type of a variable."""
         return self.types.get(variable.name) or type_name(variable.type)
 
+    def kind(self, variable: Variable) -> str:
+        """Return the kind of a variable's connector."""
+        return "local" if variable.name in self.locals else variable.causality
+
+    def written(self, variable: Variable, values: Sequence[Value]) -> tuple[str, Sequence[Value]]:
+        """Return SSP's type and values of a variable, or of an array with such elements.
+
+        Of an enumeration they are names of items; as numbers if there is a value without one.
+        """
+        if variable.name not in self.enumerations:
+            return self.type(variable), values
+        names = {number: name for name, number in self.enumerations[variable.name].items.items()}
+        if not names.keys() >= {*values}:
+            return "Int64", values
+        return "Enumeration", [names[int(value)] for value in values]
+
+
+def local_outputs(system: System, part: Part) -> frozenset[str]:
+    """Return the outputs of a component that are local variables of its FMU."""
+    named = system.rig.components[part.name].entry.locals
+    bases = {*named, *(name.rpartition("[")[0] for name in named)} - {""}
+    return frozenset(
+        name
+        for name, variable in part.instance.variables.items()
+        if variable.causality == "output" and not bases.isdisjoint({name, name.rpartition("[")[0]})
+    )
+
 
 def shapes_of(system: System, part: Part, version: Version) -> Shapes:
     """Return what ``version`` can say of a component: version 2 all, of FMUs of FMI 3."""
     source = find_source(part.fmu, system.rig.components[part.name].scope.folder)
+    shown = local_outputs(system, part)
     if version == "1.0" or not isinstance(source, Path):
-        return Shapes()
+        return Shapes(unsaid=shown)
     fmu = load_fmu(source)
     if fmu.description.fmiMajorVersion != 3:
-        return Shapes()
+        return Shapes(locals=shown)
     types: dict[str, str] = {}
+    enumerations: dict[str, Enumeration] = {}
+    declared = {
+        tuple((item.name, int(item.value)) for item in one.items): one.name
+        for one in fmu.description.typeDefinitions
+    }
     arrays: dict[str, tuple[str, Indices]] = {}
     sizes: dict[str, Indices] = {}
-    for name, variable in fmu.variables.items():
-        # An enumeration would need its definition in every file; its values are Int64.
-        types[name] = "Int64" if variable.items else fmu.arrays[variable.reference].fmi_type
+    for name, variable in part.instance.variables.items():
+        if variable.is_made:
+            continue
+        types[name] = fmu.arrays[variable.reference].fmi_type
+        if types[name] == "Enumeration":
+            called = declared.get(tuple(variable.items.items()))
+            if called and all(number in _INT for number in variable.items.values()):
+                enumerations[name] = Enumeration(called, variable.items)
+            else:
+                types[name] = "Int64"
         if "[" in name and name.endswith("]"):
             base, _, indices = name[:-1].rpartition("[")
             arrays[name] = (base, tuple(map(int, indices.split(","))))
             sizes[base] = arrays[name][1]  # in the end, of the last element
-    return Shapes(types, arrays, sizes)
+    return Shapes(types, enumerations, shown, frozenset(), arrays, sizes)

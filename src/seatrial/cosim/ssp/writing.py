@@ -8,7 +8,6 @@ from pathlib import Path
 from ...errors import InputError
 from ...fmi.cache import write_named
 from ...fmi.export import fmu_bytes, zipped
-from ...fmi.instance import Variable
 from ...fmi.source import find_source
 from ..packaged import SSP_FILE
 from ..part import Part
@@ -38,8 +37,14 @@ def write_ssp(
     tuned = system.tuned
     connections = [one for one in system.connections if one.target not in tuned]
     _refuse_unsayable(system, connections)
-    connections += system.initial
     shapes = {name: shapes_of(system, part, version) for name, part in system.parts.items()}
+    for component, output in (connection.source for connection in connections):
+        if output in shapes[component].unsaid:
+            raise InputError(
+                f"{component}.{output} is a local variable, from which version {version} of SSP "
+                "has no connections; write version 2.0"
+            )
+    connections += system.initial
     top = (flat if in_one else nested)(system, connections)
     notes = _beyond_version_1(system) if version == "1.0" else []
     files: dict[str, bytes] = {}
@@ -62,20 +67,14 @@ def _written(part: Part, values: Mapping[str, Value], shapes: Shapes) -> dict[st
     variables = part.instance.variables
     for name in values:
         whole, indices = shapes.connector(name)
-        kind = shapes.type(variables[name])
         if indices is None:
-            found[name] = Written(kind, [values[name]])
+            found[name] = Written(*shapes.written(variables[name], [values[name]]))
         elif whole not in found:
             elements = [variables[one] for one in variables if shapes.connector(one)[0] == whole]
-            listed = [_or_zero(values.get(one.name, one.start), one) for one in elements]
-            found[whole] = Written(kind, listed, shapes.sizes[whole])
+            listed = [values.get(one.name, one.first) for one in elements]
+            kind, texts = shapes.written(variables[name], listed)
+            found[whole] = Written(kind, texts, shapes.sizes[whole])
     return found
-
-
-def _or_zero(value: Value | None, variable: Variable) -> Value:
-    """Return an element's value; FMI starts from zero where an FMU gives none."""
-    zero: Value = variable.type()
-    return zero if value is None else value
 
 
 def _refuse_unsayable(system: System, connections: Sequence[Connection]) -> None:
@@ -83,11 +82,22 @@ def _refuse_unsayable(system: System, connections: Sequence[Connection]) -> None
         if part.is_sum:
             raise InputError(f"{name} is a {part.fmu}, which SSP does not have")
     for connection in connections:
+        refuse_made(system, connection)
         target = system.parts[connection.target[0]].instance.variables[connection.target[1]]
         if target.causality == "parameter":
             raise InputError(
                 f"{'.'.join(connection.source)} feeds the parameter "
                 f"{'.'.join(connection.target)}, for which SSP has no connection"
+            )
+
+
+def refuse_made(system: System, connection: Connection) -> None:
+    """Raise InputError for a connection of a port that other tools do not find in the FMU."""
+    for name, port in (connection.source, connection.target):
+        if system.parts[name].instance.variables[port].is_made:
+            raise InputError(
+                f"{name}.{port} is a port that seatrial makes of a bus terminal: other tools "
+                "connect the terminal's data and clocks"
             )
 
 

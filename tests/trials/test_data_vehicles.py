@@ -1,0 +1,18 @@
+"""The vehicles that are data alone, Otter and BlueROV2 Heavy: every criterion of their trials holds."""
+
+import pytest
+
+from seatrial.trials.run import run_trial
+from seatrial.trials.run_folder import load_run
+from seatrial.trials.trial import load_trial
+
+from .test_shipped_trials import TRIALS
+
+pytestmark = pytest.mark.interop
+
+
+@pytest.mark.parametrize("name", [n for n in TRIALS if n.startswith(("otter", "bluerov2"))])
+def test_every_criterion_holds(name, tmp_path):
+    found = load_run(run_trial(load_trial(name), tmp_path / "run", engine="direct").folder)
+    assert found.verdicts
+    assert [v["name"] for v in found.verdicts if not v["passed"]] == []
