@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import contextlib
 import io
+import subprocess
 import sys
 from pathlib import Path
 from typing import NamedTuple
 
 from seatrial.cli import main
+
+SEATRIAL = str(Path(sys.executable).with_name("seatrial"))
+"""The command as it was installed, for a process of its own."""
 
 
 class Done(NamedTuple):
@@ -36,3 +40,11 @@ def seatrial(*arguments: str, cwd: Path) -> Done:
     finally:
         sys.argv = before
     return Done(status, stdout.getvalue(), stderr.getvalue())
+
+
+def seatrial_process(*arguments: str, cwd: Path) -> Done:
+    """Run a command in a process of its own: for what depends on how a process begins or ends."""
+    done = subprocess.run(
+        [SEATRIAL, *arguments], cwd=cwd, capture_output=True, text=True, check=False
+    )
+    return Done(done.returncode, done.stdout, done.stderr)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 from collections.abc import Callable
@@ -11,6 +12,9 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+from seatrial.fmi.bundle import bundled
+from seatrial.fmi.source import shipped_sources
+from seatrial.units import unit
 from tests.fmi.native import build_native_fmu
 
 if hasattr(signal, "SIGHUP"):
@@ -21,6 +25,11 @@ settings.register_profile("any-machine", settings(), deadline=None, max_examples
 settings.load_profile("any-machine")
 
 
+def pytest_collection_finish() -> None:
+    """Leave what was imported and collected, which stays, out of every look for garbage."""
+    gc.freeze()
+
+
 @pytest.fixture(scope="session", autouse=True)
 def _cache(tmp_path_factory: pytest.TempPathFactory) -> None:
     """Keep built and unpacked FMUs out of the user's cache; workers of one run share them."""
@@ -28,6 +37,13 @@ def _cache(tmp_path_factory: pytest.TempPathFactory) -> None:
     if os.environ.get("PYTEST_XDIST_WORKER"):
         base = base.parent
     os.environ["SEATRIAL_CACHE"] = str(base / "seatrial-cache")
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _begun() -> None:
+    """Do what most runs begin with: each goes on in a copy of this process, which has it then."""
+    unit("furlong")  # makes the registry of units
+    bundled(shipped_sources()["marine-craft"])  # reads and parses the modules of a plant
 
 
 @pytest.fixture

@@ -63,6 +63,7 @@ LONG = {HOW_TO / "identification.md", DOCS / "vehicles/guidance.md"}
 """Pages whose examples take minutes."""
 ELSEWHERE = {
     LINKS / "arduino.md",  # a fixture of the sketch's own tests
+    DOCS / "autopilots.md",  # tests/links/ardupilot: time stands still until a firmware comes
     LINKS / "ground-stations.md",  # sessions of MAVSDK and MAVProxy, in tests/interop
     REFERENCE / "cli.md",  # made from the commands' own help
     DOCS / "performance.md",  # a benchmark

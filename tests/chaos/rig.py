@@ -7,16 +7,16 @@ import random
 import re
 import select
 import subprocess
-import sys
 import threading
 import time
 import tty
 from pathlib import Path
 from typing import Any
 
+from tests.command import SEATRIAL
+
 from ..fmi.native import build_native_fmu
 
-SEATRIAL = str(Path(sys.executable).with_name("seatrial"))
 SAFE = bytes.fromhex("FAAF0100000F5B0000000000000000000000FFFFFFFF00")
 MARK = "SEATRIAL_CHAOS_MARK"
 """Environment variable by which every process of an episode is found."""

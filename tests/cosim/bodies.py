@@ -7,6 +7,7 @@ import random
 
 from seatrial.component import Component, Input, Output, Parameter
 from seatrial.plant import Plant, State
+from seatrial.sampled import Sampled
 
 
 class Counter(Component):
@@ -252,4 +253,13 @@ class Blend(Component):
 
     def outputs(self, t):
         self.y = self.first * self.u + self.second * self.w + self.bias
+
+
+class Jumps(Sampled):
+    """y = 1e-12 (-10)^k, held from one instant to the next."""
+
+    y = Output("m/s2", "jumps")
+
+    def sample(self, t, k):
+        self.y = 1e-12 * (-10.0) ** k
 '''

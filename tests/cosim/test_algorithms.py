@@ -213,6 +213,18 @@ def test_added_mass_beyond_the_mass_diverges_with_a_name(bench: Bench, algorithm
     assert value(calm, "body.a") == pytest.approx(1 / 1.5, rel=1e-9)
 
 
+def test_jumps_of_a_value_that_is_held_for_steps_are_no_divergence(direct: Bench) -> None:
+    """Whatever a controller asks every seven steps, the exchange between steps does not swing."""
+    master = direct.master(
+        'jumps = { fmu = "bodies.py:Jumps", set = { period = 0.7 } }\n'
+        'water = { fmu = "bodies.py:Water" }\nbody = { fmu = "bodies.py:Rigid" }',
+        '"jumps.y" = "water.a"\n"water.force" = "body.force"',
+    )
+    for _ in range(150):
+        master.step()
+    assert value(master, "jumps.y") == pytest.approx(-1e9)
+
+
 @pytest.mark.parametrize("slow", ["body", "water"])
 @pytest.mark.parametrize("algorithm", ["jacobi", "plain-jacobi", "gauss-seidel", "extrapolated"])
 def test_a_slow_component_diverges_with_a_name_too(

@@ -238,8 +238,8 @@ def test_mistakes_in_a_rig_name_its_file(write) -> None:
         load_rig("mine")
     assert str(error.value).splitlines() == [
         f"{path}: components.a.fmuu: unknown key 'fmuu'; did you mean 'fmu'? (known: choices, "
-        "fmu, home, interface, isolated, parameters, profile, rig, set, step, sum, timeout, tolerance, "
-        "variant)",
+        "fmu, home, interface, isolated, locals, parameters, profile, rig, set, step, sum, timeout, "
+        "tolerance, variant)",
     ]
 
 

@@ -7,7 +7,6 @@ import json
 import os
 import signal
 import subprocess
-import sys
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -22,11 +21,11 @@ from seatrial.errors import InputError
 from seatrial.fmi.isolated import IsolatedInstance
 from seatrial.trials.run import run_trial
 from seatrial.trials.trial import load_trial
+from tests.command import SEATRIAL
 
 from ..fmi import crashing
 from ..fmi.native import build_native_fmu
 
-SEATRIAL = str(Path(sys.executable).with_name("seatrial"))
 RIG = """
 step = "100 ms"
 [components]

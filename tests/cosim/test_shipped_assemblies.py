@@ -43,6 +43,7 @@ LATER = {
         *(f"{n}.pulse mavlink.pulse.ch{i}" for i, n in enumerate(("rudder", "flap", "sail"), 1)),
     },
     "videoray": {
+        *(f"allocation.{n} mavlink.share.{n}" for n in ("port", "starboard", "vertical")),
         "ahrs.valid mavlink.imu_valid",
         "ahrs.valid mavlink.heading_valid",
         "ahrs.euler.psi mavlink.heading",
@@ -129,7 +130,9 @@ def scalars(pairs: set[str], system: System) -> set[tuple[str, str]]:
     return found
 
 
-@pytest.mark.parametrize("vehicle", ["hydrone", "gloria", "videoray", "mariner"])
+@pytest.mark.parametrize(
+    "vehicle", ["hydrone", "gloria", "videoray", "mariner", "otter", "bluerov2"]
+)
 def test_tunables_start_at_what_they_set(vehicle: str, sil) -> None:
     system = sil(vehicle=vehicle, autopilot="mavlink")
     (tuning,) = system.tunings
@@ -199,7 +202,9 @@ def test_an_autopilot_that_does_not_fit_is_refused_before_the_start(choices, sai
         sil(**choices)
 
 
-@pytest.mark.parametrize("vehicle", ["hydrone", "gloria", "mariner", "videoray"])
+@pytest.mark.parametrize(
+    "vehicle", ["hydrone", "gloria", "mariner", "videoray", "otter", "bluerov2"]
+)
 def test_a_tether_fits_any_vehicle(vehicle: str, tmp_path: Path) -> None:
     path = tmp_path / "tow.toml"
     path.write_text(

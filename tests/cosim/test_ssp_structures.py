@@ -343,3 +343,71 @@ def test_where_the_schema_is_said_to_be_is_no_news(made) -> None:
     first = made(elements(component("a", U, more=there)))
     notes = read_ssp(first, strict=True).notes
     assert [note for note in notes if "schema" in note] == []
+
+
+# ---------------------------------------------------------------------- structural parameters
+
+
+SIZES = '<ssc:Dimension size="2"/><ssc:Dimension size="2"/>'
+MATRIX = (
+    f'<ssd:Connector name="matrix" kind="input"><ssc:Float64/>{SIZES}</ssd:Connector>'
+    f'<ssd:Connector name="transpose" kind="output"><ssc:Float64/>{SIZES}</ssd:Connector>'
+)
+ROWS = connector("rows", "structuralParameter", "UInt64")
+TWO, FOUR = value("rows", "2", "UInt64"), value("matrix", "1 2 3 4", "Float64")
+
+
+def three(name: str, *listed: str) -> str:
+    bindings = bound(values(*listed, version="2.0")) if listed else ""
+    return component(name, MATRIX, ROWS, fmu="three", bindings=bindings)
+
+
+def around(*listed: str) -> str:
+    """Return a binding of the system, with the name of the component in its parameters."""
+    text = "".join(listed).replace('Parameter name="', 'Parameter name="a.')
+    return bound(values(text, version="2.0"))
+
+
+@pytest.mark.parametrize(
+    "inside",
+    [
+        elements(three("a", TWO, FOUR)),
+        elements(three("a", FOUR, TWO)),
+        around(TWO) + elements(three("a", FOUR)),
+        around(FOUR, TWO) + elements(three("a")),
+        connectors(connector("n", "structuralParameter", "UInt64"))
+        + bound(values(value("n", "2", "UInt64"), version="2.0"))
+        + elements(three("a", FOUR), connections=connection("n", "a/rows")),
+    ],
+    ids=["first", "last", "around", "both around", "connector"],
+)
+def test_sizes_follow_structural_parameters_wherever_they_stand(made, inside: str) -> None:
+    path = made(inside, version="2.0")
+    last = run(path)
+    assert {name: one for name, one in last.items() if "transpose" in name} == {
+        "a.transpose[1,1]": 1.0, "a.transpose[1,2]": 3.0,
+        "a.transpose[2,1]": 2.0, "a.transpose[2,2]": 4.0,
+    }  # fmt: skip
+    assert not [note for note in read_ssp(path).notes if "dimensions" in note]
+
+
+def test_arrays_of_one_size_are_connected_whole(made) -> None:
+    """Transposed twice it is the same; it does not fit the FMU's own size."""
+    joined = connection("a/transpose", "b/matrix")
+    inside = elements(three("a", TWO, FOUR), three("b", TWO), connections=joined)
+    last = run(made(inside, version="2.0"))
+    assert [last[f"b.transpose[{i},{k}]"] for i in (1, 2) for k in (1, 2)] == [1.0, 2.0, 3.0, 4.0]
+    other = elements(three("a", TWO, FOUR), three("b"), connections=joined)
+    text = refused(made(other, version="2.0"))
+    assert "'transpose' has 4 values, 'matrix[1,1]' is one of 6" in text
+
+
+@pytest.mark.parametrize(
+    ("size", "message"),
+    [("2000000", "an array of 2000000 by 2"), ("2.5", "a whole number is needed, found '2.5'")],
+)
+def test_sizes_that_cannot_be(made, size: str, message: str) -> None:
+    inside = elements(three("a", value("rows", size, "UInt64")))
+    text = refused(made(inside, version="2.0"))
+    assert "SystemStructure.ssd: line " in text
+    assert message in text

@@ -12,10 +12,13 @@ from lxml import etree
 from seatrial.cosim.assembly import assemble
 from seatrial.cosim.flattening import load_rig
 from seatrial.cosim.ssp.reading import read_ssp
+from seatrial.cosim.ssp.shapes import Enumeration, Shapes
 from seatrial.errors import InputError
+from seatrial.fmi.load import load_fmu
 from seatrial.trials.export import export_ssp
 
 from ..command import seatrial
+from ..fmi.native import changed
 from .ssp_files import rows
 from .ssp_natives import build
 
@@ -101,6 +104,96 @@ def test_version_2_has_types_arrays_and_kinds_of_the_fmus(rig: Path, tmp_path: P
     assert matrix[0].get("value") == "1.0 2.0 3.0 4.0 5.0 6.0"
     assert [one.get("size") for one in matrix[1:]] == ["3", "2"]
     assert len(root.findall(".//{*}IntegerMappingTransformation/{*}MapEntry")) == 1
+
+
+SMALL = """
+step = "10 ms"
+[components]
+a = { fmu = "small.fmu", set = { in_Mode = "sail" } }
+b = { fmu = "small.fmu" }
+c = { fmu = "other.fmu", set = { in_Mode = "drift" } }
+d = { fmu = "three.fmu" }
+[connections]
+"a.out_Mode" = ["b.in_Mode", "d.in_Mode"]
+"""
+
+
+def test_enumerations_of_version_3_are_written_with_their_items(rig: Path, tmp_path: Path) -> None:
+    """Two types of one name differ; the values of ``three`` are beyond SSP's."""
+    three = rig.parent / "three.fmu"
+    changed(three, rig.parent / "small.fmu", ('value="5000000000"', 'value="2"'))
+    changed(three, rig.parent / "other.fmu", ('value="5000000000"', 'value="3"'))
+    small = rig.parent / "small.toml"
+    small.write_text(SMALL, "utf-8")
+    path, _ = export_ssp(str(small), tmp_path / "x.ssp", version="2.0")
+    with zipfile.ZipFile(path) as archive:
+        root = etree.fromstring(archive.read("SystemStructure.ssd"))
+        (sail,) = etree.fromstring(archive.read("resources/a.ssv")).iter("{*}Enumeration")
+    assert sail.get("value") == "sail"
+    defined = {
+        one.get("name"): {item.get("name"): item.get("value") for item in one}
+        for one in root.iterfind("{*}Enumerations/{*}Enumeration")
+    }
+    assert defined == {
+        "Mode": {"drift": "1", "sail": "2"},
+        "c.Mode": {"drift": "1", "sail": "3"},
+    }
+    types = {
+        name: root.find(f".//{{*}}Component[@name='{name}']//{{*}}Connector[@name='out_Mode']")[0]
+        for name in "abcd"
+    }
+    kinds = {name: (etree.QName(one).localname, one.get("name")) for name, one in types.items()}
+    assert kinds == {
+        "a": ("Enumeration", "Mode"),
+        "b": ("Enumeration", "Mode"),
+        "c": ("Enumeration", "c.Mode"),
+        "d": ("Int64", None),
+    }
+    read = read_ssp(path).rig.changed({"algorithm": "jacobi"})
+    found, wanted = rows(assemble(read), 2), rows(assemble(load_rig(str(small))), 2)
+    assert found == wanted
+    assert (found[-1]["a.out_Mode"], found[-1]["d.out_Mode"]) == (2, 2)
+
+
+def test_a_value_that_is_no_item_is_written_as_a_number(rig: Path) -> None:
+    """An element for which the FMU gives no start value is 0."""
+    mode = load_fmu(rig.parent / "three.fmu").variables["in_Mode"]
+    shapes = Shapes(enumerations={"in_Mode": Enumeration("Mode", {"drift": 1, "sail": 2})})
+    assert shapes.written(mode, [2, 1]) == ("Enumeration", ["sail", "drift"])
+    assert shapes.written(mode, [2, 0]) == ("Int64", [2, 0])
+
+
+SIZED = """
+step = "10 ms"
+[components]
+a = { fmu = "three.fmu", set = { rows = 2, matrix = [1.0, 2.0, 3.0, 4.0] } }
+"""
+
+
+@pytest.mark.parametrize("version", ["1.0", "2.0"])
+def test_structural_parameters_are_written_and_read(version: str, rig: Path, tmp_path) -> None:
+    """The sizes of what follows them are those of the rig: 2 by 2, not the FMU's 3 by 2."""
+    sized = rig.parent / "sized.toml"
+    sized.write_text(SIZED, "utf-8")
+    path, _ = export_ssp(str(sized), tmp_path / "x.ssp", version=version)
+    if version == "2.0":
+        with zipfile.ZipFile(path) as archive:
+            root = etree.fromstring(archive.read("SystemStructure.ssd"))
+            (matrix,) = etree.fromstring(archive.read("resources/a.ssv")).iterfind(
+                ".//{*}Parameter[@name='matrix']"
+            )
+        shape = root.find(".//{*}Connector[@name='transpose']")
+        assert [one.get("size") for one in shape[1:]] == ["2", "2"]
+        assert [one.get("size") for one in matrix[1:]] == ["2", "2"]
+    read = read_ssp(path)
+    assert read.rig.components["a"].entry.set["rows"] == 2
+    found, wanted = rows(assemble(read.rig), 2), rows(assemble(load_rig(str(sized))), 2)
+    assert found == wanted
+    transpose = {name: one for name, one in found[-1].items() if "transpose" in name}
+    assert transpose == {
+        "a.transpose[1,1]": 1.0, "a.transpose[1,2]": 3.0,
+        "a.transpose[2,1]": 2.0, "a.transpose[2,2]": 4.0,
+    }  # fmt: skip
 
 
 def test_version_1_fits_the_schema_that_fmpy_brings(rig: Path, tmp_path: Path) -> None:

@@ -126,4 +126,4 @@ def test_a_value_of_the_vehicle_s_file_stays_where_its_tunable_starts():
 
 def test_every_shipped_profile_is_here():
     shipped = {path.stem for path in (Path(__file__).parents[2] / "hil_profiles").glob("*.toml")}
-    assert shipped == {"hydrone", "videoray", "gloria", "mariner"}
+    assert shipped == {"hydrone", "videoray", "gloria", "mariner", "otter", "bluerov2"}

@@ -9,12 +9,16 @@ from pathlib import Path
 import fmpy
 
 from seatrial.fmi.instance import Instance
+from seatrial.fmi.terminals import PLACE
 
 SLAVES = Path(__file__).parent / "slaves"
 
 
 def build_native_fmu(name: str, folder: Path) -> Path:
-    """Compile ``slaves/NAME.c`` into ``folder/NAME.fmu``, described by ``slaves/NAME.xml``."""
+    """Compile ``slaves/NAME.c`` into ``folder/NAME.fmu``, described by ``slaves/NAME.xml``.
+
+    Its terminals are those of ``slaves/NAME.terminals.xml``, if that is there.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     library, path = folder / f"{name}.so", folder / f"{name}.fmu"
     compiled(SLAVES / f"{name}.c", library)
@@ -23,6 +27,9 @@ def build_native_fmu(name: str, folder: Path) -> Path:
     with zipfile.ZipFile(path, "w") as archive:
         archive.writestr("modelDescription.xml", description)
         archive.write(library, f"binaries/{platform}/{name}.so")
+        terminals = SLAVES / f"{name}.terminals.xml"
+        if terminals.is_file():
+            archive.write(terminals, PLACE)
     return path
 
 
@@ -75,16 +82,18 @@ def compiled(source: Path, library: Path, *flags: str) -> Path:
     return library
 
 
-def changed(path: Path, to: Path, *changes: tuple[str, str]) -> Path:
-    """Copy an FMU to ``to`` with texts in its model description replaced."""
+def changed(
+    path: Path, to: Path, *changes: tuple[str, str], member: str = "modelDescription.xml"
+) -> Path:
+    """Copy an FMU to ``to`` with texts in its model description, or another file, replaced."""
     with zipfile.ZipFile(path) as old, zipfile.ZipFile(to, "w") as new:
-        for member in old.infolist():
-            data = old.read(member)
-            if member.filename == "modelDescription.xml":
+        for each in old.infolist():
+            data = old.read(each)
+            if each.filename == member:
                 for before, after in changes:
                     assert before.encode() in data, before
                     data = data.replace(before.encode(), after.encode())
-            new.writestr(member, data)
+            new.writestr(each, data)
     return to
 
 

@@ -15,6 +15,8 @@ from seatrial.fmi.source import shipped_sources
 
 from .conftest import built_once, source
 
+WAITS = "ardupilot"
+"""It steps as its firmware does, and waits for that without end."""
 SOME = ("canbus", "gnss", "mavlink", "sailboat", "station-keeping", "tether")
 """A link, a bus, a sensor, a controller, a hull and one with a step of its own."""
 
@@ -101,6 +103,7 @@ def test_what_cannot_be_described_is_refused(
     [
         pytest.param(name, marks=() if name in SOME else pytest.mark.interop)
         for name in shipped_sources()
+        if name != WAITS
     ],
 )
 def test_a_shipped_fmu_runs_alone_in_fmpy(name: str, tmp_path: Path) -> None:

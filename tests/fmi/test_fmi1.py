@@ -10,6 +10,7 @@ from pathlib import Path
 import fmpy
 import pytest
 
+from seatrial import Simulation
 from seatrial.errors import InputError, SimulationError
 from seatrial.fmi.isolated import IsolatedInstance
 from seatrial.fmi.load import load_fmu, open_instance
@@ -67,6 +68,56 @@ def test_types_aliases_and_dependencies(fmi1, path: Path) -> None:
     x, minus_x = read(instance, "x", "minus_x")
     assert minus_x == -x == pytest.approx(-math.exp(-0.5))
     assert read(instance, "steps", "relay") == [2, 1]
+
+
+RIG = """
+step = "0.1 s"
+
+[components]
+b = {{ fmu = "{fmi1}"{isolated} }}
+a = {{ fmu = "{fmi1}" }}
+source = {{ fmu = "{fmi2}", set = {{ k = 0.5 }}, interface = "co-simulation" }}
+
+[connections]
+"a.y" = "b.u"
+"source.x" = {{ to = "a.u", factor = {factor} }}
+"""
+
+
+@pytest.mark.parametrize(("factor", "relays"), [(0.2, [0, 0]), (0.4, [0, 1]), (0.6, [1, 1])])
+@pytest.mark.parametrize("interface", ["co-simulation", "model exchange"])
+def test_inputs_have_the_values_of_others_in_the_initialisation(
+    path: Path, write, interface: str, factor: float, relays: list[int]
+) -> None:
+    """``relay`` says if u was above 0.5 there; y is 2 u. The source is 1 at the start."""
+    fmi1 = path if interface == "co-simulation" else build_model_fmu(1, path.parent)
+    fmi2 = build_model_fmu(2, path.parent)
+    rig = write("r.toml", RIG.format(fmi1=fmi1, fmi2=fmi2, factor=factor, isolated=""))
+    with Simulation(rig, engine="fmu") as simulation:
+        assert [simulation.get("a.relay"), simulation.get("b.relay")] == relays
+
+
+def test_they_have_them_in_a_process_of_its_own(path: Path, write) -> None:
+    fmi2 = build_model_fmu(2, path.parent)
+    isolated = ", isolated = true"
+    rig = write("r.toml", RIG.format(fmi1=path, fmi2=fmi2, factor=0.4, isolated=isolated))
+    with Simulation(rig, engine="fmu") as simulation:
+        assert [simulation.get("a.relay"), simulation.get("b.relay")] == [0, 1]
+
+
+def test_a_loop_of_fmi_1_begins_with_the_first_one(path: Path, write) -> None:
+    """What feeds it is 0 then; the other one has then its x, which is 1."""
+    text = """
+    step = "0.1 s"
+    [components]
+    a = {{ fmu = "{fmi1}" }}
+    b = {{ fmu = "{fmi1}" }}
+    [connections]
+    "a.x" = "b.u"
+    "b.x" = {{ to = "a.u", factor = 0.25 }}
+    """
+    with Simulation(write("r.toml", text.format(fmi1=path)), engine="fmu") as simulation:
+        assert [simulation.get("a.relay"), simulation.get("b.relay")] == [0, 1]
 
 
 def test_errors_and_warnings_carry_what_the_fmu_says(fmi1, path: Path, caplog) -> None:

@@ -13,6 +13,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from lxml import etree
 
+from benchmarks.big_models import description
 from seatrial.errors import InputError
 from seatrial.fmi import xmlfile
 from seatrial.fmi.load import load_fmu, open_instance
@@ -52,10 +53,28 @@ def test_document_types_are_refused_before_they_act(text: str | bytes, tmp_path:
     assert time.perf_counter() - begun < 2.0
 
 
-def test_xml_that_is_too_large(tmp_path: Path, monkeypatch) -> None:
+def test_xml_that_is_too_large(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = described_fmu(tmp_path / "x.fmu", FMI2 + " " * 100_000)
-    monkeypatch.setattr(xmlfile, "LARGEST_XML", 100_000)
+    monkeypatch.setattr(xmlfile, "LARGEST_STREAMED", 100_000)
     refused(path, "more than 100000")
+
+
+def test_a_description_larger_than_what_is_held_whole(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(xmlfile, "LARGEST_XML", 20_000)
+    monkeypatch.setattr(xmlfile, "_BLOCK", 1_000)
+    text = description(2, 1_000)
+    assert len(text) > 5 * 20_000
+    assert len(load_fmu(described_fmu(tmp_path / "x.fmu", text)).variables) == 1_000
+    units = "<UnitDefinitions>" + '<Unit name="a"/>' * 2_000 + "</UnitDefinitions>"
+    long = described_fmu(
+        tmp_path / "y.fmu", text.replace("<ModelVariables>", units + "<ModelVariables>")
+    )
+    refused(long, "no variable in its first 20000 bytes")
+    monkeypatch.setattr(xmlfile, "MOST_ELEMENTS", 500)
+    odd = text.replace("</ModelVariables>", "<Odd/>" * 600 + "</ModelVariables>")
+    refused(described_fmu(tmp_path / "z.fmu", odd), "more than 500 elements besides variables")
 
 
 @pytest.mark.parametrize(
@@ -86,17 +105,19 @@ def test_what_is_no_co_simulation_fmu(text: str, message: str, tmp_path: Path) -
         ('name="j"', 'name=""', "variable '' .*it has no name"),
         ('valueReference="2" causality="output"', 'valueReference="-1" causality="output"', "not from 0 to"),
         ('valueReference="2" causality="output"', 'valueReference="4294967296" causality="output"', "not from 0 to"),
-        ('valueReference="2" causality="output"', 'valueReference="two" causality="output"', "description: .*two"),
-        ('valueReference="2" causality="output"', 'causality="output"', "description: .*valueReference"),
-        ('<Real start="1" min="0"/>', "", "description: "),
+        ('valueReference="2" causality="output"', 'valueReference="two" causality="output"', "'j' .*'two'"),
+        ('valueReference="2" causality="output"', 'causality="output"', "'j' .*no valueReference"),
+        ('<Real start="1" min="0"/>', "", "'k' .*it has no type"),
         ("<Integer/>", "<Nothing/>", "'j' .*it has no type"),
-        ("<Integer/>", '<Integer declaredType="Nowhere"/>', "description: .*Nowhere"),
+        ("<Integer/>", '<Integer declaredType="Nowhere"/>', "'j' .*'Nowhere' is not defined"),
         ('<Integer start="0"/>', '<Integer start="1.5"/>', r"'i' \(line \d+\): .*1\.5"),
         ('<Boolean start="false"/>', '<Boolean start="yes"/>', "'b' .*'yes' is not true or false"),
         ('min="-50"', 'min="low"', "'speed' .*low"),
         ('factor="0.5144444444444445"', 'factor="0"', r"unit 'knot_x' has factor 0\.0"),
         ('factor="0.5144444444444445"', 'factor="NaN"', "unit 'knot_x' has factor nan"),
-        ('index="15"', 'index="150"', "description: "),
+        ('index="15"', 'index="150"', "ModelStructure: there is no variable 150"),
+        ('index="15"', "", "ModelStructure: "),
+        ('<ScalarVariable name="j"', '<Variable name="j"/><ScalarVariable name="j"', r"Variable \(line \d+\) is no variable"),
         ('modelIdentifier="fmi2"', 'modelIdentifier="../../fmi2"', "modelIdentifier '../../fmi2' is not the name"),
         ('modelIdentifier="fmi2"', 'modelIdentifier="a\\b"', "modelIdentifier .* is not the name"),
         ('modelIdentifier="fmi2"', 'modelIdentifier=".."', "modelIdentifier .* is not the name"),
@@ -114,8 +135,8 @@ def test_wrong_attributes(before: str, after: str, message: str, tmp_path: Path)
         ('start="0 0 0"', 'start="0 0"', "'in_Float32' .*2 start values for 3 elements"),
         ('<Dimension start="3"/>', '<Dimension start="2000000"/>', "an array of 2000000"),
         ('<Dimension start="3"/>', '<Dimension start="-3"/>', "an array of -3"),
-        ('<Dimension valueReference="8"/>', '<Dimension valueReference="88"/>', "description: .*88"),
-        ('<Dimension valueReference="8"/>', "<Dimension/>", "description: "),
+        ('<Dimension valueReference="8"/>', '<Dimension valueReference="88"/>', "valueReference of a structural parameter is needed, found 88"),
+        ('<Dimension valueReference="8"/>', "<Dimension/>", "structural parameter is needed, found None"),
         ('name="steps"', 'name="in_Int8[2]"', r"two variables are called 'in_Int8\[2\]'"),
         ('<Start value=""/>', '<Start value="0g"/>', "start values|hexadecimal"),
         ('intervalVariability="triggered"', "", None),

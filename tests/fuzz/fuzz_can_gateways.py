@@ -7,7 +7,11 @@ from typing import Any
 from seatrial.links.can import gateway_slcan, gateway_socketcand, gateway_yd_raw
 from seatrial.links.can.operations import Transmit, decode, encode
 
-CLIENTS = (gateway_slcan._Adapter, gateway_socketcand._Client, gateway_yd_raw._Client)
+CLIENTS = (
+    gateway_slcan._Adapter,
+    lambda channel: gateway_socketcand._Client(channel, gateway_socketcand._Traffic()),
+    gateway_yd_raw._Client,
+)
 
 
 class _Channel:
@@ -20,6 +24,9 @@ class _Channel:
 
     def send(self, data: bytes) -> None:
         self.sent += len(data)
+
+    def close(self) -> None:
+        pass
 
 
 def one(data: bytes) -> None:

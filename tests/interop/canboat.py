@@ -23,7 +23,12 @@ _WAIT_S = 120.0
 
 def decoded(frames: Iterable[tuple[int, Frame]]) -> list[dict[str, Any]]:
     """Return canboat's messages of frames, (time in ns, frame) each."""
-    return _run("decode", [_line(when, frame) for when, frame in frames])
+    return read(_line(when, frame) for when, frame in frames)
+
+
+def read(lines: Iterable[str]) -> list[dict[str, Any]]:
+    """Return canboat's messages of the lines of a log of ``candump -L``."""
+    return _run("decode", list(lines))
 
 
 def encoded(messages: Iterable[dict[str, Any]]) -> list[list[Frame]]:

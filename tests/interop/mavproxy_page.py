@@ -47,7 +47,7 @@ def session(folder: Path) -> Iterator[MavProxy]:
     ):
         (home / "square.txt").write_text(shown("square.txt"), "utf-8")
         wait_for(lambda: trial.is_running, "the trial's first step")
-        proxy.expect(r"Received \d+ parameters$")
+        proxy.expect(r"Received \d+ parameters")
         yield proxy
 
 

@@ -11,15 +11,15 @@ from mavsdk.plugins.failure import FailureType, FailureUnit
 
 from .mavsdk_station import answered, connected, refused
 
-NO_FIX, FIX_3D = 1, 3
+NO_FIX, RTK_FIXED = 1, 6
 
 
 async def main(url: str, dialect: str) -> None:
     """Break and repair, see it, and be refused what there is not."""
     async with connected(url) as station:
         failure, parameters = FailureAsync(station.system), ParamAsync(station.system)
-        await station.receives("gps_info", "healthy", fix_type=FIX_3D)
-        for kind, fix in ((FailureType.OFF, NO_FIX), (FailureType.OK, FIX_3D)):
+        await station.receives("gps_info", "healthy", fix_type=RTK_FIXED)
+        for kind, fix in ((FailureType.OFF, NO_FIX), (FailureType.OK, RTK_FIXED)):
             await answered(failure.inject(FailureUnit.SENSOR_GPS, kind, 0))
             await station.receives("gps_info", kind.name, fix_type=fix)
         await answered(failure.inject(FailureUnit.SYSTEM_MOTOR, FailureType.STUCK, 2))

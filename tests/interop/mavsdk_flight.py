@@ -30,6 +30,7 @@ COURSE = ((20.0, 0.0), (20.0, 20.0), (0.0, 20.0), (0.0, 0.0))
 SPEEDS = (0.75, 1.0)
 """That the mission asks for, one after the other, m/s."""
 CRUISE = 0.875
+OURS = 245  # the system of MAVSDK
 """Of a mission that has not asked for a speed yet, m/s."""
 WAIT_S = 5.0
 """Time to stay at the second waypoint."""
@@ -70,6 +71,7 @@ async def ardupilot_parameters(station: Station) -> None:
     assert await answered(parameters.get_param_float("CRUISE_SPEED")) == CRUISE
     await answered(parameters.set_param_int("FS_ACTION", 2))
     assert await answered(parameters.get_param_int("FS_ACTION")) == 2
+    await answered(parameters.set_param_int("SYSID_MYGCS", OURS))  # who may steer
     assert await refused(parameters.set_param_int("FS_ACTION", 99)) == "VALUE_OUT_OF_RANGE"
     assert await refused(parameters.set_param_int("SYSID_THISMAV", 3)) == "READ_ONLY"
     await station.reads("SYSID_THISMAV stays 1: it belongs to the trial")

@@ -13,6 +13,7 @@ from mavsdk.asyncio.plugins.geofence.geofence import GeofenceAsync
 from mavsdk.asyncio.plugins.info.info import InfoAsync
 from mavsdk.asyncio.plugins.manual_control.manual_control import ManualControlAsync
 from mavsdk.asyncio.plugins.offboard.offboard import OffboardAsync
+from mavsdk.autopilot import Autopilot
 from mavsdk.exceptions import MavsdkError
 from mavsdk.plugins.geofence.geofence import Circle, FenceType, GeofenceData, Point, Polygon
 from mavsdk.plugins.mavlink_direct.mavlink_direct import MavlinkMessage
@@ -30,7 +31,7 @@ from tests.links.mavlink.ground import north_of
 
 NAN = math.nan
 DO_SET_MODE, REQUEST_MESSAGE, CUSTOM_MODE = 176, 512, 1
-NOT_THERE = ("actuator_control_target", "actuator_output_status", "raw_imu")
+NOT_THERE = ("actuator_control_target", "actuator_output_status")
 """Streams that MAVSDK asks for and this vehicle has not."""
 RATE_HZ = 3.0
 """What `rates` asks for: the default of no stream."""
@@ -45,11 +46,12 @@ PINGS = 50
 
 
 async def identity(station: Station) -> None:
-    """Say who the vehicle is: that of the profile; and how fast the simulation runs."""
+    """Say who the vehicle is: firmware and profile; and how fast the simulation runs."""
     info = InfoAsync(station.system)
     version = await answered(info.get_version())
     numbers = (version.flight_sw_major, version.flight_sw_minor, version.flight_sw_patch)
-    assert numbers == (0, 1, 0), numbers
+    released = {Autopilot.ARDUPILOT: (4, 6, 0), Autopilot.PX4: (1, 15, 0)}
+    assert numbers == released[await station.system.autopilot_type()], numbers
     assert (await answered(info.get_identification())).legacy_uid == 0x5EA7_0001
     assert await station.system.get_system_id() == 1
     assert await station.system.component_ids() == [1]

@@ -190,13 +190,17 @@ ALWAYS: dict[str, Values] = {
     "in_air": {"value": False},
     "landed_state": {"value": 1},
     "vtol_state": {"value": 0},
-    "gps_info": {"fix_type": 3},
+    "gps_info": {"fix_type": 6, "num_satellites": 20},
     "battery": {"voltage_v": 16.0, "remaining_percent": 100.0},
     "rc_status": {"is_available": False},
 }
 """Fields that are the same all the time."""
 SILENT = (
-    *("actuator_control_target", "actuator_output_status", "distance_sensor", "raw_imu"),
+    *(
+        "actuator_control_target",
+        "actuator_output_status",
+        "distance_sensor",
+    ),
     *("scaled_pressure", "wind"),
 )
 """Streams of what this boat does not have."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 import signal
 import socket
 import subprocess
-import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -13,8 +12,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from seatrial.trials.run_folder import Run, load_run
+from tests.command import SEATRIAL
 
-SEATRIAL = str(Path(sys.executable).with_name("seatrial"))
 HOST = "127.0.0.1"
 _STOP_S = 60.0
 """Wall time in which a trial that is interrupted must have written its report."""

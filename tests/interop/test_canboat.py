@@ -21,8 +21,8 @@ from tests.links.nmea2000.network import Network
 pytestmark = canboat.needed
 
 EVERYTHING = (
-    "126992 127237 127245 127250 127251 127257 127488 127489 128259 128267 129025 129026 129029 "
-    "130306"
+    "126992 127237 127245 127250 127251 127257 127258 127488 127489 128259 128267 129025 129026 "
+    "129029 130306"
 )
 FAST = "; ".join(f"{pgn} 0.1" for pgn in EVERYTHING.split())
 
@@ -128,6 +128,10 @@ def check(found):
         assert wrapped(value(message, "cog"), math.atan2(east, north)) <= HALF * 1e-4
         assert value(message, "sog") == pytest.approx(math.hypot(north, east), abs=0.00501)
         assert value(message, "cogReference") == "True"
+    for message, v in found[127258]:
+        assert value(message, "source") == "Manual"
+        assert value(message, "ageOfService") == "2026.02.05"
+        assert value(message, "variation") == pytest.approx(v["variation"], abs=0.51e-4)
     for message, v in found[130306]:
         if value(message, "reference") == "Apparent":
             speed, comes_from = v["wind_speed"], v["wind_angle"] + math.pi
@@ -215,6 +219,17 @@ def test_canboat_reads_every_field_of_what_a_node_sends():
     check(found)
 
 
+def test_canboat_reads_the_log_of_a_run(tmp_path):
+    network = Network({"node": NODE}, {"run_folder": str(tmp_path)})
+    network.run(1.0)
+    network.bus.close()
+    lines = (tmp_path / "bus.log").read_text().splitlines()
+    assert len(lines) > 100
+    found, same = canboat.read(lines), canboat.decoded(network.frames)
+    assert [m["fields"] for m in found[: len(same)]] == [m["fields"] for m in same]
+    assert {m["pgn"] for m in same} >= {126992, 127237, 127250, 129025, 129029}
+
+
 def test_loss_gives_canboat_no_wrong_value():
     network = Network({"node": NODE}, {"loss": 0.05})
     network.run(0.5)
@@ -232,7 +247,15 @@ def test_canboat_reads_what_is_not_available_as_nothing():
     network = Network({"node": {"sends": EVERYTHING, "intervals": FAST}})
     network.run(1.0)
     kept = {"sid", "source", "date", "time", "instance", "gnssType", "method", "integrity"}
-    kept |= {"referenceStations", "reference", "cogReference", "headingReference", "offset", "list"}
+    kept |= {
+        "numberOfSvs",
+        "referenceStations",
+        "reference",
+        "cogReference",
+        "headingReference",
+        "offset",
+        "list",
+    }
     found = [
         m for m in canboat.decoded(network.frames) if m["pgn"] >= 126992 and m["pgn"] != 126993
     ]
@@ -260,6 +283,28 @@ def test_canboat_knows_the_identity():
     assert len(found[126464]["fields"]["list"]) >= 14
     assert found[59392]["fields"]["control"] == "NAK"
     assert found[59392]["fields"]["pgn"] == 65240
+
+
+def test_canboats_commands_are_obeyed_or_not_acknowledged():
+    """What it encodes takes the helm from another plotter; what is answered, it decodes."""
+    plotter = {"sends": "127237", "address": 40.0, "heading_to_steer": 0.1}
+    network = Network({"pilot": {"sends": "127237", "address": 35.0}, "plotter": plotter})
+    network.run(1.0)
+    fields = {"functionCode": "Command", "pgn": 127237, "priority": 8}
+    for parameter, value in ((11, 1.25), (18, 0.5)):
+        listed = [{"parameter": parameter, "value": value}]
+        message = {"pgn": 126208, "src": 200, "dst": 35, "prio": 3}
+        message["fields"] = {**fields, "numberOfParameters": 1, "list": listed}
+        (frames,) = canboat.encoded([message])
+        for frame in frames:
+            network.send(frame)
+        network.run(0.1)
+    network.run(2.0)
+    assert network.nodes["pilot"].get("bus_heading_to_steer") == pytest.approx(1.25, abs=5e-5)
+    found = [m for m in canboat.decoded(network.frames) if m["pgn"] == 126208 and m["src"] == 35]
+    assert [m["fields"]["functionCode"] for m in found] == ["Acknowledge"] * 2
+    answers = [m["fields"]["list"][0]["parameter"] for m in found]
+    assert answers == ["Acknowledge", "Not supported"]
 
 
 def test_a_node_reads_every_field_of_what_canboat_sends():

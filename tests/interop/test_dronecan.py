@@ -315,6 +315,21 @@ def test_a_fix_crosses_the_bus_and_the_package_reads_where_it_is():
         assert node.get("position_n") == pytest.approx([120.5, -43.21, -0.5], abs=2e-3)
 
 
+def test_an_acceleration_that_nothing_measures_is_unknown():
+    """0 would be free fall."""
+    ahrs = peripheral("ahrs", node_id=21.0, channels="", ahrs_period=0.02)
+    node = autopilot()
+    with bench(node, ahrs) as b:
+        solutions = b.collect(uavcan.equipment.ahrs.Solution)
+        ahrs.set("attitude", [0.3, -0.4, -2.9])
+        b.run(0.1)
+        found = solutions[-1].message
+        assert all(map(math.isnan, (*found.linear_acceleration, *found.angular_velocity)))
+        assert node.get("attitude_valid")
+        assert node.get("attitude") == pytest.approx([0.3, -0.4, -2.9], abs=1e-3)
+        assert node.get("acceleration") == [0.0, 0.0, 0.0]
+
+
 def test_attitude_crosses_the_bus():
     ahrs = peripheral("ahrs", node_id=21.0, channels="", ahrs_period=0.02)
     node = autopilot()

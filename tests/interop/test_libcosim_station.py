@@ -38,7 +38,7 @@ class Libcosim:
         source = find_source("mavlink", Path.cwd())
         script = bundled(source).script
         fmu = load_fmu(cached_fmu(source, script))
-        number = {v.name: v.valueReference for v in fmu.description.modelVariables}
+        number = {v.name: v.reference for v in fmu.variables.values()}
         self._names = {number[name]: name for names in WATCHED.values() for name in names}
         slave: dict[str, Any] = {"name": "link", "path": str(fmu.path), "real": {}, "integer": {}}
         slave |= {"boolean": {number["position_valid"]: True}}

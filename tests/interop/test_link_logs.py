@@ -21,8 +21,9 @@ from pymavlink import mavutil
 from seatrial.trials.run import run_trial
 from seatrial.trials.run_folder import Run, load_run
 from seatrial.trials.trial import load_trial
+from tests.command import SEATRIAL
 
-from .running import SEATRIAL, free_port
+from .running import free_port
 
 # Set off by a current and heeled by a load, so that all of its coordinates move.
 TRIAL = """

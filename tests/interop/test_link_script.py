@@ -30,7 +30,7 @@ def boat(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
         wait_for(lambda: trial.is_running, "the trial's first step")
         connection = mavutil.mavlink_connection(f"tcp:{HOST}:{port}", dialect="all", retries=10)
         connection.wait_heartbeat(timeout=WAIT_S)
-        receive(connection, "GPS_RAW_INT", lambda m: m.fix_type == 3)
+        receive(connection, "GPS_RAW_INT", lambda m: m.fix_type >= 3)
         yield connection
         connection.close()
 

@@ -93,7 +93,7 @@ def controlled(trial: RunningTrial, station: Station) -> None:
     """Do all that live control offers, one after the other."""
     wait_for(lambda: trial.is_running, "the trial runs")
     station.receive("HEARTBEAT")
-    station.receive("GPS_RAW_INT", lambda m: m.fix_type == mavlink.GPS_FIX_TYPE_3D_FIX)
+    station.receive("GPS_RAW_INT", lambda m: m.fix_type == mavlink.GPS_FIX_TYPE_RTK_FIXED)
     station.comes_to(1.0)
     station.speed_up(4.0)
     # A busy machine may not keep up with it, but it is faster than before.
@@ -113,7 +113,7 @@ def controlled(trial: RunningTrial, station: Station) -> None:
     gps, mag = mavlink.FAILURE_UNIT_SENSOR_GPS, mavlink.FAILURE_UNIT_SENSOR_MAG
     for failure, health, fix in (
         (mavlink.FAILURE_TYPE_OFF, 0, mavlink.GPS_FIX_TYPE_NO_FIX),
-        (mavlink.FAILURE_TYPE_OK, GPS_BIT, mavlink.GPS_FIX_TYPE_3D_FIX),
+        (mavlink.FAILURE_TYPE_OK, GPS_BIT, mavlink.GPS_FIX_TYPE_RTK_FIXED),
     ):
         assert station.inject(gps, failure) == mavlink.MAV_RESULT_ACCEPTED
         station.receive("GPS_RAW_INT", lambda m, fix=fix: m.fix_type == fix)

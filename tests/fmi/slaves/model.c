@@ -116,7 +116,7 @@ static Status mode(Model *s, int from, int to) {
 
 #define VALUES(Type, T, GET, SET)                                                                  \
     Status EXPORT(Get##Type)(Model *s, const unsigned r[], size_t n, T v[] COUNT) {                \
-        s->real[Y] = 2 * s->real[U];                                                               \
+        s->real[Y] = 2 * s->real[U], s->real[DX] = -s->real[K] * s->real[X];                       \
         for (size_t i = 0; i < n; i++) v[i] = GET;                                                 \
         return OK;                                                                                 \
     }                                                                                              \
@@ -185,6 +185,7 @@ Status EXPORT(Initialize)(Model *s, char controlled, double tolerance, fmi1Event
 }
 Status EXPORT(InitializeSlave)(Model *s, double start, char stops, double stop) {
     s->time = start;
+    s->integer[RELAY] = s->real[U] > 0.5;
     return s->real[K] < 0 ? say(s, ERROR, "k is negative") : OK;
 }
 Status EXPORT(DoStep)(Model *s, double t, double h, char is_new) {

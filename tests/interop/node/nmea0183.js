@@ -4,7 +4,12 @@ const Parser = require('@signalk/nmea0183-signalk')
 
 const parser = new Parser({ validateChecksum: true })
 readline.createInterface({ input: process.stdin }).on('line', (line) => {
-  const delta = parser.parse(line)
+  let delta = null
+  try {
+    delta = parser.parse(line)
+  } catch (error) {
+    if (!error.message.includes('void')) throw error // it refuses some that say they are not valid
+  }
   const values = delta ? delta.updates.flatMap((update) => update.values) : []
   console.log(JSON.stringify(Object.fromEntries(values.map((each) => [each.path, each.value]))))
 })
