@@ -80,6 +80,8 @@ benchmark: $(INSTALLED)
 	$(BIN)/python -m benchmarks.start --write
 	$(BIN)/python -m benchmarks.floods --write
 	$(BIN)/python -m benchmarks.supervision --write
+	$(BIN)/python -m benchmarks.ardupilot --write
+	$(BIN)/python -m benchmarks.big_models --write
 
 fmus: $(INSTALLED)
 	$(BIN)/seatrial fmu build --out build/fmus

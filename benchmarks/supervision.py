@@ -1,101 +1,134 @@
 """Wall time of supervised trials beside unsupervised ones: ``python -m benchmarks.supervision``.
 
-The same trial runs supervised and in the calling process, in turn, for some rounds: each in a
-fresh Python, whose wall time from start to end is compared for a trial of 0.1 s, and the wall time
-of the steps alone for a long one in process. Compared are the fastest of all rounds, since what
-else a machine does only adds; the range of the ratios of single rounds says how much that was.
-``--write`` puts the table into docs/performance.md. The first round fills the caches and is left
-out.
+The same trial runs in the calling process and supervised, in turn, in one Python that has run both
+before: what differs is the copy of the process, what the copy changes of the memory that they
+share, the frames between them, and the end. In a fresh Python the import of the supervisor comes
+on top, measured in some of them. The start ends when the run's folder is there: the components
+are initialised, and the first step follows. Given are the medians, that of the differences of
+pairs, and as a control the ratio of two runs that are both in the calling process.
+``--write`` puts the table into docs/performance.md.
 """
 
 from __future__ import annotations
 
 import argparse
-import os
 import platform
+import statistics
 import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from seatrial.cosim.system import Engine
+from seatrial.trials.hooks import Hooks
+from seatrial.trials.run import run_trial
+from seatrial.trials.supervision import run_supervised
+from seatrial.trials.trial import load_trial
 
 from .pages import write_measured
 
-_RUN = """
-import sys
-from pathlib import Path
-from seatrial.trials.{module} import {function} as run
-from seatrial.trials.trial import load_trial
-trial = load_trial("hydrone-landing", changes={{"stop": sys.argv[1]}}, origin="benchmark")
-print(run(trial, Path(sys.argv[2]), engine=sys.argv[3]).wall["run"])
+_IMPORT = """
+import gc, time
+gc.set_threshold(200_000)  # as the command line has it
+import seatrial.trials.run, seatrial.cosim.assembly, seatrial.fmi.load
+begun = time.perf_counter()
+import seatrial.trials.supervision
+print(time.perf_counter() - begun)
 """
-WAYS = {
-    "in the calling process": _RUN.format(module="run", function="run_trial"),
-    "supervised": _RUN.format(module="supervision", function="run_supervised"),
-}
-CASES = {
-    "start to end of a trial of 0.1 s, engine 'direct'": ("0.1 s", "direct", False),
-    "the same, engine 'fmu'": ("0.1 s", "fmu", False),
-    "the steps of a trial of 100 s, engine 'direct'": ("100 s", "direct", True),
-}
-"""Stop time, engine, and whether the time of the steps alone is taken."""
+_TRIAL = "hydrone-landing"
+_SHORT, _LONG = "0.1 s", "10 s"
+
+Times = tuple[float, float, float]
+"""In the calling process, supervised, and in the calling process once more, s."""
 
 
-def taken(code: str, stop: str, engine: str, steps_alone: bool, folder: str) -> float:
-    """Return the wall time of a run, s."""
-    with tempfile.TemporaryDirectory(dir=folder) as out:
-        environment = {k: v for k, v in os.environ.items() if k != "PYTHONDONTWRITEBYTECODE"}
-        begun = time.perf_counter()
-        done = subprocess.run(
-            [sys.executable, "-c", code, stop, f"{out}/run", engine],
-            env={**environment, "SEATRIAL_CACHE": f"{folder}/cache"},
-            capture_output=True,
-            text=True,
-            check=True,
+@dataclass
+class Run:
+    """Wall times of one run, s."""
+
+    start: float
+    """From the call until the first step is next."""
+    steps: float
+    whole: float
+    """From the call to the result."""
+
+
+def measured(stop: str, engine: Engine) -> list[Run]:
+    """Return the times of one run in each way: in the calling process, supervised, and again."""
+    trial = load_trial(_TRIAL, changes={"stop": stop}, origin="benchmark")
+    runs = []
+    for run in (run_trial, run_supervised, run_trial):
+        with tempfile.TemporaryDirectory(prefix="seatrial-") as out:
+            claimed: list[float] = []
+            hooks = Hooks(claimed=lambda _, at=claimed: at.append(time.perf_counter()))
+            begun = time.perf_counter()
+            result = run(trial, Path(out, "run"), engine=engine, hooks=hooks)
+            whole = time.perf_counter() - begun
+            runs.append(Run(claimed[0] - begun, result.wall["run"], whole))
+    return runs
+
+
+def _times(attribute: str) -> Callable[[list[Run]], Times]:
+    def taken(runs: list[Run]) -> Times:
+        first, supervised, again = (getattr(run, attribute) for run in runs)
+        return first, supervised, again
+
+    return taken
+
+
+CASES: list[tuple[str, str, Engine, Callable[[list[Run]], Times]]] = [
+    ("the start, engine 'direct'", _SHORT, "direct", _times("start")),
+    ("the start, engine 'fmu'", _SHORT, "fmu", _times("start")),
+    ("a whole trial of 0.1 s, engine 'direct'", _SHORT, "direct", _times("whole")),
+    ("a whole trial of 0.1 s, engine 'fmu'", _SHORT, "fmu", _times("whole")),
+    ("the steps of a trial of 10 s, engine 'direct'", _LONG, "direct", _times("steps")),
+]
+
+
+def imported() -> float:
+    """Return the time that the import of the supervisor takes where trials are run already, s."""
+    command = [sys.executable, "-c", _IMPORT]
+    return float(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
+
+
+def rows(rounds: int) -> list[str]:
+    """Return the rows of the table."""
+    found = []
+    for name, stop, engine, taken in CASES:
+        measured(stop, engine)  # fills the caches
+        times = [taken(measured(stop, engine)) for _ in range(rounds)]
+        own = 1e3 * statistics.median(a for a, _, _ in times)
+        supervised = 1e3 * statistics.median(b for _, b, _ in times)
+        difference = 1e3 * statistics.median(b - a for a, b, _ in times)
+        ratio = statistics.median(b / a for a, b, _ in times)
+        control = statistics.median(b / a for a, _, b in times)
+        found.append(
+            f"| {name} | {own:.0f} | {supervised:.0f} | {difference:.0f} | {ratio:.2f} "
+            f"| {control:.2f} |"
         )
-        whole = time.perf_counter() - begun
-    return float(done.stdout.splitlines()[-1]) if steps_alone else whole
-
-
-def measure(rounds: int) -> dict[str, list[tuple[float, ...]]]:
-    """Return the times of each case in each round, in the order of `WAYS`."""
-    found: dict[str, list[tuple[float, ...]]] = {name: [] for name in CASES}
-    with tempfile.TemporaryDirectory(prefix="seatrial-") as folder:
-        for number in range(-1, rounds):
-            for name, case in CASES.items():
-                codes = list(WAYS.values())
-                order = codes if number % 2 else codes[::-1]  # neither is always the second
-                times = {code: taken(code, *case, folder) for code in order}
-                if number >= 0:
-                    found[name].append(tuple(times[code] for code in codes))
-    return found
-
-
-def table(found: dict[str, list[tuple[float, ...]]]) -> str:
-    """Return the table in Markdown."""
-    rows = [
-        "| wall time of | in the calling process, s | supervised, s | difference, ms | ratio |",
-        "| --- | --- | --- | --- | --- |",
-    ]
-    for name, pairs in found.items():
-        own, supervised = (min(times) for times in zip(*pairs, strict=True))
-        ratios = [b / a for a, b in pairs]
-        difference = (supervised - own) * 1e3
-        ratio = f"{supervised / own:.3f} ({min(ratios):.3f} to {max(ratios):.3f})"
-        rows.append(f"| {name} | {own:.3f} | {supervised:.3f} | {difference:.0f} | {ratio} |")
-    return "\n".join(rows)
+    import_ms = f"{1e3 * statistics.median(imported() for _ in range(rounds)):.0f}"
+    return [*found, f"| the import of the supervisor, in a fresh Python | | | {import_ms} | | |"]
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawTextHelpFormatter
     )
-    parser.add_argument("--rounds", type=int, default=15)
+    parser.add_argument("--rounds", type=int, default=40)
     parser.add_argument(
         "--write", action="store_true", help="put the table into docs/performance.md"
     )
     arguments = parser.parse_args()
-    text = f"Python {platform.python_version()}, {arguments.rounds} rounds.\n\n"
-    text += table(measure(arguments.rounds))
+    head = [
+        f"Python {platform.python_version()}, {arguments.rounds} rounds, medians.\n",
+        "| wall time of | in the calling process, ms | supervised, ms | difference, ms | ratio "
+        "| of equal runs |",
+        "| --- | --- | --- | --- | --- | --- |",
+    ]
+    text = "\n".join([*head, *rows(arguments.rounds)])
     print(text)
     if arguments.write:
         write_measured("performance.md", text, "measured of the supervision")

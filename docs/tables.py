@@ -18,6 +18,7 @@ sys.path.insert(0, str(DOCS))  # also when this file is loaded by its path
 
 from parts import (  # noqa: E402, F401  each registers its parts
     PARTS,
+    ais,
     can,
     can_signals,
     dronecan,

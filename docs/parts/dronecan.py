@@ -10,11 +10,18 @@ from parts.can import ports
 from parts.markdown import table
 from seatrial.links.dronecan.allocation import Allocation
 from seatrial.links.dronecan.autopilot import DroneCanAutopilot
+from seatrial.links.dronecan.navigation import NOT_CONNECTED
 from seatrial.links.dronecan.node import GetNodeInfo, NodeStatus, RestartNode
 from seatrial.links.dronecan.parameters import ExecuteOpcode, GetSet
 from seatrial.links.dronecan.peripheral import DroneCanPeripheral
 
-part("dronecan-peripheral-ports")(partial(ports, DroneCanPeripheral))
+
+@part("dronecan-peripheral-ports")
+def peripheral_ports() -> str:
+    """Ports of the peripheral."""
+    return ports(DroneCanPeripheral).replace(f"{NOT_CONNECTED:g}", "not connected")
+
+
 part("dronecan-autopilot-ports")(partial(ports, DroneCanAutopilot))
 
 _ALL = {

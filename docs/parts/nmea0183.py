@@ -9,12 +9,14 @@ from functools import partial
 from parts import part
 from parts.can import ports
 from parts.markdown import table
+from seatrial.links.leg import leg_status
 from seatrial.links.nmea0183.codec import encode
 from seatrial.links.nmea0183.component import Nmea0183
 from seatrial.links.nmea0183.readings import Readings
 from seatrial.links.nmea0183.sentences import SENTENCES
+from seatrial.links.satellites import sky
 
-_TIME = datetime.datetime(2018, 9, 1, 12, 0, 0)
+_TIME = datetime.datetime(2018, 9, 1, 12, 0, 0, tzinfo=datetime.UTC)
 _KNOWN = Readings(
     time=_TIME,
     variation=math.radians(-23.0),
@@ -30,6 +32,9 @@ _KNOWN = Readings(
     depth=12.3,
     water_temperature=295.15,
     rudder=math.radians(5.0),
+    sky=sky(_TIME.timestamp(), -22.862, -43.223),
+    leg=leg_status(3, (0.0, 0.0), (926.0, 0.0), 20.0, (0.0, 92.6), (1.0, 0.5)),
+    waypoints=((-22.862, -43.224), (-22.854, -43.224)),
 )
 _TALKERS = {"HDT": "HE", "HDG": "HC", "ROT": "TI", "MWV-R": "WI", "MWV-T": "WI", "XDR": "II"} | {
     "VHW": "VW",
@@ -37,6 +42,8 @@ _TALKERS = {"HDT": "HE", "HDG": "HC", "ROT": "TI", "MWV-R": "WI", "MWV-T": "WI",
     "DPT": "SD",
     "MTW": "YX",
     "RSA": "AG",
+    "XTE": "AG",
+    "RMB": "AG",
 }
 
 part("nmea0183-ports")(partial(ports, Nmea0183))
@@ -49,8 +56,8 @@ def sentences() -> str:
     for name, fields in SENTENCES.items():
         talker = _TALKERS.get(name, "GP")
         shown = (
-            encode(talker, name[:3], fields(readings)).decode("ascii").strip()
-            for readings in (_KNOWN, Readings(_TIME))
+            encode(talker, name[:3], made[0]).decode("ascii").strip() if made else "not sent"
+            for made in (fields(_KNOWN), fields(Readings(_TIME)))
         )
         rows.append((f"`{talker}{name}`", *(f"`{text}`" for text in shown)))
     return table(("sentence", "valid", "not valid"), rows)

@@ -32,7 +32,7 @@ def messages() -> str:
         (
             str(pgn.number),
             pgn.title,
-            f"{shown_number(pgn.interval_s)} s",
+            f"{shown_number(pgn.interval_s)} s" if pgn.interval_s else "when it is received",
             str(pgn.priority),
             "fast packet" if is_fast(pgn.number) else "one frame",
         )

@@ -92,9 +92,10 @@ def variants(vehicle: str) -> str:
     rows = []
     for component, name in places:
         for variant, changes in file.variants.items():
-            shared: dict[str, Entry] = file.components[component]
+            shared: dict[str, Entry] = file.components.get(component, {})
             e = changes.get(component, {}).get(name, shared.get(name))
-            assert e is not None
+            if e is None:  # the component's default
+                continue
             value = shown_value(e.value)
             rows.append(
                 (component, f"`{name}`", variant, value, shown_unit(e.unit), e.mark, e.source)
@@ -103,11 +104,10 @@ def variants(vehicle: str) -> str:
     return table(head, rows)
 
 
-for _vehicle in ("hydrone", "gloria", "mariner"):
+for _vehicle in ("hydrone", "gloria", "mariner", "videoray", "otter", "bluerov2"):
     part(f"{_vehicle}-parameters")(partial(parameters, _vehicle))
     part(f"{_vehicle}-variants")(partial(variants, _vehicle))
-for _vehicle in ("thruster-ship", "videoray"):
-    part(f"{_vehicle}-parameters")(partial(parameters, _vehicle))
+part("thruster-ship-parameters")(partial(parameters, "thruster-ship"))
 
 
 def sensors_of(profile: str) -> str:

@@ -39,7 +39,8 @@ def verdicts(rig: str) -> str:
 
 for _rig in (
     *("gloria-fixed", "gloria-pid", "gloria-backstepping"),
-    *("mariner", "thruster-ship", "videoray-open", "videoray-tethered"),
+    *("mariner", "thruster-ship", "videoray-open", "videoray-drive", "videoray-tethered"),
+    *("otter", "bluerov2"),
 ):
     part(f"{_rig}-trials")(partial(verdicts, _rig))
 

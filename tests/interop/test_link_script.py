@@ -88,12 +88,15 @@ def test_rates_are_reported_as_they_are_set(boat: Any) -> None:
     assert times == sorted(times)
 
 
-def test_there_are_no_files(boat: Any) -> None:
+def test_folders_are_listed(boat: Any) -> None:
     client = mavftp.MAVFTP(boat, 1, 1)
     begun = boat.messages["SYSTEM_TIME"].time_boot_ms
-    result = client.cmd_list(["/"])
-    assert result.error_code != mavftp.FtpError.Success
-    assert result.error_code != mavftp.FtpError.RemoteReplyTimeout
+    root = client.cmd_list(["/"])
+    assert root.error_code == mavftp.FtpError.Success
+    assert ("@PARAM", True) in [(entry.name, entry.is_dir) for entry in root.directory_listing]
+    inside = client.cmd_list(["@PARAM"])
+    assert [(e.name, e.is_dir) for e in inside.directory_listing] == [("param.pck", False)]
+    assert client.cmd_list(["/nowhere"]).error_code == mavftp.FtpError.FileNotFound
     assert receive(boat, "SYSTEM_TIME").time_boot_ms >= begun
 
 

@@ -1,0 +1,13 @@
+"""AIS: ports of the transponder and of the VHF channel."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from parts import part
+from parts.can import ports
+from seatrial.links.ais.transponder import AisTransponder
+from seatrial.links.ais.vhf_channel import VhfChannel
+
+part("ais-transponder-ports")(partial(ports, AisTransponder))
+part("vhf-channel-ports")(partial(ports, VhfChannel))
