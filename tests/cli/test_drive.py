@@ -15,7 +15,7 @@ from termios import TIOCSWINSZ
 import pytest
 
 from seatrial.cli.drive_keys import Gamepad, split_keys
-from seatrial.cli.drive_pilot import HELP, KEY_LASTS, Pilot
+from seatrial.cli.drive_pilot import HELP, KEY_LASTS, TURNS, Pilot
 from seatrial.errors import InputError
 
 from ..links.videoray.live import LiveRov
@@ -116,8 +116,15 @@ def test_a_key_expires_and_deflections_keep_within_their_ends():
     pilot.press("w", 10.0)
     pilot.press("right", 10.0)
     pilot.gamepad[0] = 0.5
-    assert pilot.manual(10.0 + 0.9 * KEY_LASTS) == (1.0, 1.0, 0.0)
+    assert pilot.manual(10.0 + 0.9 * KEY_LASTS) == (1.0, TURNS, 0.0)
     assert pilot.manual(10.0 + 1.1 * KEY_LASTS) == (0.5, 0.0, 0.0)
+
+
+def test_a_key_that_turns_makes_a_thirtieth_of_the_thrust():
+    pilot = Pilot()
+    pilot.press("w", 0.0)
+    pilot.press("a", 0.0)
+    assert pilot.manual(0.1) == pytest.approx((0.3, -0.01, 0.0))
 
 
 def test_disarming_lets_go_of_all():

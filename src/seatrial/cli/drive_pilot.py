@@ -10,6 +10,10 @@ KEY_LASTS = 0.7
 """Seconds for which a key of manual control lasts: a terminal reports no release, and repeats
 after less."""
 
+TURNS = 1 / 30
+"""Share of a key's thrust that turns: with the thrust that goes ahead well, a tap would turn the
+vehicle round."""
+
 HELP = (
     ("m", "arm, disarm"),
     ("w s", "ahead, astern"),
@@ -43,6 +47,7 @@ _MANUAL_AXES = {
     "page up": (2, -1.0),
 }
 """Key: axis (surge, yaw, heave) and its sign."""
+_YAW = 1
 _DEGREE = math.radians(1.0)
 
 
@@ -51,7 +56,7 @@ class Pilot:
     """Orders as they stand. ``depth`` and ``heading`` are the vehicle's, to hold what it has."""
 
     share: float = 0.3
-    """Thrust of a key of manual control."""
+    """Thrust of a key of manual control; a key that turns makes `TURNS` of it."""
     armed: bool = False
     lights: float = 0.0
     camera_tilt: float = 0.0
@@ -72,7 +77,7 @@ class Pilot:
         axes = list(self.gamepad)
         for axis, (sign, until) in self._pressed.items():
             if now < until:
-                axes[axis] += sign * self.share
+                axes[axis] += sign * self.share * (TURNS if axis == _YAW else 1.0)
         return (_within(axes[0]), _within(axes[1]), _within(axes[2]))
 
     def press(self, key: str, now: float) -> None:
