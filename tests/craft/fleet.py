@@ -14,6 +14,7 @@ from seatrial.fmi.direct import DirectInstance
 
 FLEET = {
     "hydrone": ("marine-craft", MarineCraft),
+    "otter": ("marine-craft", MarineCraft),
     "mariner": ("manoeuvring-ship", ManoeuvringShip),
     "thruster-ship": ("thruster-ship", ThrusterShip),
     "gloria": ("sailboat", Sailboat),

@@ -82,16 +82,20 @@ def test_motions_of_a_barge_are_those_computed_elsewhere(omega, direction):
         assert abs(found - wanted) < 1e-3 * rows[f"X_{name}_amp"].max()
 
 
-def test_a_catamaran_follows_long_waves():
-    length = 40 * 1.276
-    omega = math.sqrt(9.81 * math.tau / length)
+@pytest.mark.parametrize(
+    ("vehicle", "length", "apart"), [("hydrone", 1.276, 0.05), ("otter", 2, 0.2)]
+)
+def test_a_catamaran_follows_long_waves(vehicle, length, apart):
+    # An Otter's linear drag ahead is that over ground, which lags its surge: with its centre of
+    # gravity 0.25 m above the water it pitches 10 degrees of phase ahead of the slope.
+    omega = math.sqrt(9.81 * math.tau / (40 * length))
     slope = omega**2 / 9.81 * 1e-3
-    for direction, column in ((math.pi, 4), (math.pi / 2, 3)):
-        hull = craft("hydrone", **REGULAR, sea_period=math.tau / omega, sea_direction=direction)
+    for direction, column, tolerance in ((math.pi, 4, apart), (math.pi / 2, 3, 0.05)):
+        hull = craft(vehicle, **REGULAR, sea_period=math.tau / omega, sea_direction=direction)
         x = states(hull, 60.0, 0.02)
         t = np.arange(len(x)) * 0.02
         assert abs(amplitude(x[:, 2], t, omega) / 1e-3 + 1) < 0.005
-        assert abs(amplitude(x[:, column], t, omega) / slope - 1j) < 0.05
+        assert abs(amplitude(x[:, column], t, omega) / slope - 1j) < tolerance
 
 
 def test_a_neutral_body_without_drag_is_a_particle_of_the_water():

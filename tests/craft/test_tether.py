@@ -398,3 +398,69 @@ def test_half_as_long_steps_inside_change_little(tmp_path):
     once = recorded(weight_rig(tmp_path, segments=10), 100, names)
     twice = recorded(weight_rig(tmp_path, segments=10, max_step=0.005), 100, names)
     assert 0.0 < np.abs(once - twice).max() < 0.05 * np.ptp(once)
+
+
+# ---------------------------------------------------------------------- the sea of a trial
+
+
+def test_the_current_of_a_trial_is_one_that_is_connected():
+    ends = {"bottom_position": [10.0, 3.0, 30.0], "bottom_velocity": [0.1, 0.0, 0.0]}
+    speed, direction = 0.5, 0.6
+    north, east = speed * math.cos(direction), speed * math.sin(direction)
+    connected = tether(current=[north, east, 0.0], **ends)
+    of_the_trial = tether(current_speed=speed, current_direction=direction, **ends)
+    for here, there in zip(run(of_the_trial, 50), run(connected, 50), strict=True):
+        np.testing.assert_allclose(np.hstack(here), np.hstack(there), rtol=1e-12, atol=1e-12)
+
+
+def test_the_layers_of_a_trials_current_are_the_profile_of_the_cable():
+    ends = {"bottom_position": [4.0, 0.0, 38.0]}
+    profile = tether(
+        profile_points=2,
+        profile_depth=[5.0, 25.0, *[0.0] * 6],
+        profile_north=[0.6, 0.2, *[0.0] * 6],
+        **ends,
+    )
+    layers = tether(
+        current_profile="layers",
+        current_layers=2,
+        current_layer_depths=[5.0, 25.0, *[0.0] * 6],
+        current_layer_speeds=[0.6, 0.2, *[0.0] * 6],
+        **ends,
+    )
+    # The start looks for a shape in the water of a straight cable; then it settles.
+    for one in (profile, layers):
+        run(one, 3000)
+    np.testing.assert_allclose(shape(layers), shape(profile), atol=2e-4)  # of a bow of 6.7 m
+    np.testing.assert_allclose(layers.get("force"), profile.get("force"), rtol=1e-4)
+
+
+@pytest.mark.parametrize("direction", [0.0, 2.0])
+def test_waves_drag_a_taut_cable(direction):
+    height, period, top, bottom, segments = 0.1, 6.0, 2.0, 12.0, 40
+    one = tether(
+        length=9.8,
+        segments=segments,
+        mass_per_length=NEUTRAL,
+        top_position=[0.0, 0.0, top],
+        bottom_position=[0.0, 0.0, bottom],
+        sea_spectrum="regular",
+        sea_height=height,
+        sea_period=period,
+        sea_direction=direction,
+    )
+    rows = run(one, 600)
+    at = OUTPUTS.index("force"), OUTPUTS.index("surface_force")
+    pulled = np.array([np.add(row[at[0]], row[at[1]]) for row in rows])
+    # Airy in deep water, at x = 0; the cable follows at once, and hardly moves.
+    omega = math.tau / period
+    z = top + (np.arange(segments) + 0.5) * (bottom - top) / segments
+    u = 0.5 * height * omega * np.exp(-(omega**2) / 9.81 * z)
+    drag = np.sum(0.5 * 1000.0 * 8.18e-3 * 1.2 * u**2) * (bottom - top) / segments
+    t = 0.01 * np.arange(600)
+    expected = drag * np.cos(omega * t) * np.abs(np.cos(omega * t))
+    along = pulled[:, 0] * math.cos(direction) + pulled[:, 1] * math.sin(direction)
+    across = pulled[:, 1] * math.cos(direction) - pulled[:, 0] * math.sin(direction)
+    # 2.5 %: the stretched theory at the surface's place (k a = 0.6 %) and the cable's own motion.
+    np.testing.assert_allclose(along[100:], expected[100:], atol=0.025 * drag)
+    np.testing.assert_allclose(across, 0.0, atol=1e-9 * drag)

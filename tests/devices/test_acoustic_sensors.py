@@ -132,6 +132,18 @@ def test_beams_give_back_the_velocity(attitude, velocity, rates):
     assert dvl.get("water_velocity_b") == pytest.approx(water, abs=1e-9)
 
 
+def test_water_track_is_relative_to_the_trials_current_at_its_depth():
+    layers = {
+        "current_profile": "layers",
+        "current_layers": 2,
+        "current_layer_depths": [0.0, 10.0, *[0.0] * 6],
+        "current_layer_speeds": [1.0, 0.2, *[0.0] * 6],
+    }
+    dvl = ideal(Dvl, seabed_depth=12.0, position=[0.0, 0.0, 4.0], place=[0.0, 0.0, 1.0], **layers)
+    assert dvl.get("water_velocity_b") == pytest.approx([-0.6, 0.0, 0.0], abs=1e-9)
+    assert dvl.get("velocity_b") == pytest.approx([0.0, 0.0, 0.0], abs=1e-9)
+
+
 def test_ranges_and_altitude_over_a_level_bottom():
     dvl = ideal(Dvl, seabed_depth=12.0, position=[0.0, 0.0, 2.0])
     assert dvl.get("ranges") == pytest.approx([10.0 / math.cos(22.5 * DEG)] * 4)

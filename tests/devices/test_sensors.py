@@ -164,3 +164,26 @@ def test_depth_in_lighter_water_than_assumed_reads_shallow():
 
 def test_depth_out_of_the_water_is_zero():
     assert ideal(Depth, position=(0, 0, -3)).get("depth") == 0.0
+
+
+@pytest.mark.parametrize("z", [0.3, 2.0, 10.0])
+def test_depth_has_the_pressure_of_the_waves(z):
+    height, period, direction = 0.4, 3.0, 0.7
+    north, east = 5.0, -2.0
+    values = {"sea_height": height, "sea_period": period, "sea_direction": direction}
+    at = {"position": (north, east, z), "period": 0.1}
+    one = ideal(Depth, sea_spectrum="regular", **values, **at)
+    found = [row[0] for row in run(one, ["depth"], 4000, 100)]
+    # Airy in deep water, with the depth from the surface there (Wheeler).
+    omega = math.tau / period
+    k = omega**2 / 9.81
+    along = north * math.cos(direction) + east * math.sin(direction)
+    wave = 0.5 * height * np.cos(omega * 0.1 * np.arange(41) - k * along)
+    assert found == pytest.approx(z + wave * np.exp(-k * (z + wave)), abs=1e-9)
+
+
+def test_depth_at_the_crest_and_in_the_trough_is_none():
+    for t_ms, elevation in ((0, 0.2), (1500, -0.2)):
+        at = {"position": (0.0, 0.0, -elevation), "period": 1.5}
+        one = ideal(Depth, sea_spectrum="regular", sea_height=0.4, sea_period=3.0, **at)
+        assert run(one, ["depth"], t_ms, 1500)[-1][0] == pytest.approx(0.0, abs=1e-9)

@@ -178,8 +178,18 @@ def test_a_package_for_other_tools_has_the_same_sea(trial, tmp_path):
     assert given["current_speed"] == 0.5
 
 
-def test_what_a_current_does_not_reach_is_noted(trial):
-    rig = RIG + 'tether = { fmu = "tether" }\n'
+DRIFTER = """
+from seatrial.component import Component, Input
+
+
+class Drifter(Component):
+    current = Input("m/s", "velocity of the water", axes=("north", "east", "down"))
+"""
+
+
+def test_what_a_current_does_not_reach_is_noted(trial, tmp_path):
+    (tmp_path / "drifter.py").write_text(DRIFTER)
+    rig = RIG + 'drifter = { fmu = "drifter.py:Drifter" }\n'
 
     def noted(text):
         system = prepare(trial(text, rig=rig), "direct", Hooks()).system
@@ -187,6 +197,6 @@ def test_what_a_current_does_not_reach_is_noted(trial):
         return [note.partition(": ")[2] for note in system.notes if "does not reach" in note]
 
     assert noted('[current]\nspeed = "1 kn"\n') == [
-        "current: it does not reach tether.current: set or connect it"
+        "current: it does not reach drifter.current: set or connect it"
     ]
     assert noted(SEA) == []

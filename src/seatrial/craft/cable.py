@@ -138,7 +138,7 @@ class Cable:
     def water(self, depth: Vector, current: Vector) -> tuple[Vector, Vector]:
         """Return velocity and shear d v_c / d z of the water at depths (n,) m: (3, n) each.
 
-        ``current`` (3, 1), m/s, is the uniform part. The profile is piecewise linear and
+        ``current``, m/s, (3, 1) or (3, n), is added. The profile is piecewise linear and
         constant above its first and below its last depth.
         """
         shear = np.zeros((3, depth.size))
@@ -156,7 +156,7 @@ class Cable:
     ) -> Segments:
         """Return the forces at node positions ``x`` and velocities ``v``, (3, N + 1), {n}.
 
-        ``current`` (3, 1), m/s. With ``compression`` a segment pushes as it pulls.
+        ``current`` (3, 1) or (3, N), m/s. With ``compression`` a segment pushes as it pulls.
         """
         R = x[:, 1:] - x[:, :-1]
         length = np.sqrt(np.einsum("ij,ij->j", R, R)) + _TINY

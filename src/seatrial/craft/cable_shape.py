@@ -26,8 +26,8 @@ def hanging_shape(cable: Cable, surface: Vector, force: Vector, current: Vector)
     """Return the shape at rest, (3, N + 1), m, {n}, of a cable with its far end free.
 
     ``surface`` (3,), m, holds the near end, ``force`` (3,), N, pulls at the far one, on which half
-    a segment's weight and drag act too; ``current`` (3, 1), m/s. Raises ArithmeticError if no
-    shape is found.
+    a segment's weight and drag act too; ``current`` (3, 1) or (3, N), m/s. Raises ArithmeticError
+    if no shape is found.
     """
     pull = math.hypot(*force)
     if not pull:

@@ -73,8 +73,8 @@ def implicit_step(
     beginning, a light node between a taut and a slack segment would be thrown about. Which ones
     are is found by repetition, seldom more than twice and at most `_SWITCHES` times.
 
-    ``current`` (3, 1), m/s; ``chain`` has N - 1 nodes. Raises ArithmeticError if the matrix is
-    singular.
+    ``current`` (3, 1) or (3, N), m/s; ``chain`` has N - 1 nodes. Raises ArithmeticError if the
+    matrix is singular.
     """
     s = cable.forces(x, v, current)
     masses = cable.masses(s)[..., 1:-1]

@@ -12,6 +12,7 @@ import numpy as np
 from ..component import NS, Component, Input, Output, Parameter, seconds, terminal
 from ..errors import InputError, SimulationError
 from ..model import Vector
+from ..sea.parameters import MeetsCurrent, MeetsWaves
 from .cable import Cable
 from .cable_shape import static_shape
 from .cable_solver import Chain, Moved, implicit_step
@@ -22,7 +23,7 @@ _LAYERS = tuple(f"d{number}" for number in range(1, 9))
 _ENDS = ("top", "bottom")
 
 
-class Tether(Component):
+class Tether(MeetsWaves, MeetsCurrent):
     """A cable in a current between two ends that others move: N segments, lumped masses.
 
     Source 000, eqs 3.46 to 3.53, corrected; the equations are those of `Cable`. Node 0 is the
@@ -49,16 +50,18 @@ class Tether(Component):
     end goes with the force: its weight and drag, not its inertia, m L / (2 N), which belongs to
     the body.
 
-    **Current.** ``current`` everywhere, plus a profile over depth, piecewise linear between
-    ``profile_points`` depths and constant outside them.
+    **Water.** ``current`` everywhere, plus a profile over depth, piecewise linear between
+    ``profile_points`` depths and constant outside them, plus current and waves of the trial at
+    the middle of each segment, as they are at the end of each step of the integration (with
+    stretching, `Waves.motion`).
 
     **Shape.** ``north``, ``east`` and ``down`` are the cable at tenths of its unstretched length,
     s0 the top, s10 the bottom, linear between nodes, whatever the number of segments. ``tension``
     is that in the first and in the last segment, and ``greatest_tension`` over all (damping
     included, 0 where slack).
 
-    Not modelled: bending and torsion, lift, vortices, inertia of the water in an accelerating
-    current, bottom, surface, ship's winch, rupture.
+    Not modelled: bending and torsion, lift, vortices, inertia of accelerating water, bottom,
+    cable out of the water, ship's winch, rupture.
     """
 
     max_step = Parameter(
@@ -113,7 +116,7 @@ class Tether(Component):
         ("force", "surface_force"),
         ("top_position", "top_velocity", "bottom_position", "bottom_velocity", "current"),
     )
-    transient = Component.transient | {"_cable", "_chain", "_known"}
+    transient = Component.transient | {"_cable", "_chain", "_known", "_waves", "_stream"}
 
     _x: Vector | None
     _v: Vector | None
@@ -122,7 +125,7 @@ class Tether(Component):
     _known: tuple[object, Moved] | None
 
     def start(self, t: float) -> None:
-        """Prepare the cable; raises InputError for segments or a profile that cannot be."""
+        """Prepare the cable; raises InputError for segments, a profile or a sea that cannot be."""
         for name in ("segments", "profile_points"):
             if getattr(self, name) % 1.0:
                 raise InputError(
@@ -138,7 +141,7 @@ class Tether(Component):
 
     def step(self, t: float, h: float) -> None:
         """Move the cable from ``t`` to ``t + h``."""
-        moved = self._moved(h)
+        moved = self._moved(t, h)
         self._seen = [*self.top_position, *self.bottom_position]
         self._h_ns = round(h * NS)
         self._x, self._v = moved.x, moved.v
@@ -146,10 +149,10 @@ class Tether(Component):
 
     def outputs(self, t: float) -> None:
         """Publish the cable as it is, and the forces of the step to come."""
-        x, v = self._state()
-        s = self._cable.forces(x, v, self._current())
+        x, v = self._state(t)
+        s = self._cable.forces(x, v, self._water(t, x))
         if self._h_ns:
-            pull = self._moved(seconds(self._h_ns)).pull
+            pull = self._moved(t, seconds(self._h_ns)).pull
         else:
             pull = self._cable.node_forces(s)[:, [0, -1]]
         self.surface_force, self.force = pull.T.tolist()
@@ -187,41 +190,56 @@ class Tether(Component):
         )
         self._chain = Chain(int(self.segments) - 1)
         self._known = None
+        self._waves, stream = self.sea_state().waves(), self.current_state()
+        self._stream = None if stream.is_absent else stream
 
-    def _current(self) -> Vector:
-        return np.array(self.current)[:, None]
+    def _water(self, t: float, x: Vector) -> Vector:
+        """Return the velocity of the water but for the profile, m/s in {n}: (3, 1) or (3, N)."""
+        uniform = np.array(self.current)[:, None]
+        if self._waves is None and self._stream is None:
+            return uniform
+        middles = 0.5 * (x[:, 1:] + x[:, :-1])
+        water = np.repeat(uniform, middles.shape[1], axis=1)
+        if self._waves is not None:
+            water += self._waves.motion(t, middles.T).velocity.T
+        if self._stream is not None:
+            water[:2] += np.transpose([self._stream.velocity(t, z) for z in middles[2].tolist()])
+        return water
 
-    def _state(self) -> tuple[Vector, Vector]:
+    def _state(self, t: float) -> tuple[Vector, Vector]:
         """Return node positions and velocities; before the first step they follow from inputs."""
         if self._x is not None and self._v is not None:
             return self._x, self._v
         velocities = np.linspace(self.top_velocity, self.bottom_velocity, int(self.segments) + 1).T
         top, bottom = np.array(self.top_position), np.array(self.bottom_position)
-        shape = static_shape(self._cable, top, bottom, velocities, self._current())
+        straight = np.linspace(top, bottom, int(self.segments) + 1).T
+        water = self._water(t, straight)
+        shape = static_shape(self._cable, top, bottom, velocities, water)
         return shape, velocities
 
-    def _moved(self, h: float) -> Moved:
-        """Return where the cable is after ``h`` s, and its mean pull until then.
+    def _moved(self, t: float, h: float) -> Moved:
+        """Return where the cable is ``h`` s after ``t``, and its mean pull until then.
 
         Outputs and step ask for the same: it is computed once as long as nothing changes.
         """
-        asked = (h, *(getattr(self, name) for name in self.feedthrough["force"]))
+        asked = (t, h, *(getattr(self, name) for name in self.feedthrough["force"]))
         if self._known is not None and self._known[0] == asked:
             return self._known[1]
-        moved = self._integrated(h)
+        moved = self._integrated(t, h)
         self._known = asked, moved
         return moved
 
-    def _integrated(self, h: float) -> Moved:
-        x, v = self._state()
+    def _integrated(self, t: float, h: float) -> Moved:
+        x, v = self._state(t)
         count = max(1, math.ceil(h / self.max_step - 1e-9))
         goals = self._goals(x, h)
         v = v.copy()
         v[:, [0, -1]] = (goals - x[:, [0, -1]]) / h
         pull = np.zeros((3, 2))
         try:
-            for _ in range(count):
-                moved = implicit_step(self._cable, self._chain, x, v, self._current(), h / count)
+            for number in range(count):
+                water = self._water(t + (number + 1) * h / count, x)
+                moved = implicit_step(self._cable, self._chain, x, v, water, h / count)
                 x, v, pull = moved.x, moved.v, pull + moved.pull
         except ArithmeticError as error:
             raise SimulationError(f"{self.name}: {error} at t = {self.now!r} s") from None

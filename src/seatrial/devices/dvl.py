@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from typing import ClassVar
+from collections.abc import Mapping, Sequence
+from typing import Any, ClassVar
 
 import numpy as np
 
-from ..component import Input, Parameter, terminal
+from ..component import Input, Parameter, seconds, terminal
 from ..craft.kinematics import Vector3, cross, to_body, to_ned
+from ..sea.parameters import MeetsCurrent
 from ..seabed.vectors import dot
 from .sensor import Derived, Measured, Value, full_circle, half_circle
 from .sounding import Sounding
@@ -22,7 +23,7 @@ _UVW = ("u", "v", "w")
 _NOTHING: tuple[None, ...] = (None, None, None)
 
 
-class Dvl(Sounding):
+class Dvl(MeetsCurrent, Sounding):
     """Velocity over the bottom and through the water from the Doppler shift of four beams.
 
     A Janus array that looks down: beam i has the direction, in body axes,
@@ -35,7 +36,8 @@ class Dvl(Sounding):
         bottom_i = b_i . (velocity + rates x place)                               m/s
         water_i  = b_i . (velocity + rates x place - R^T current)                 m/s
 
-    all times ``assumed_sound_speed / sound_speed``. ``velocity_b`` and ``water_velocity_b`` are
+    all times ``assumed_sound_speed / sound_speed``. The trial's current at the depth of the
+    transducer comes to ``current``. ``velocity_b`` and ``water_velocity_b`` are
     the least-squares solutions of the beams that are valid, three at least; one beam's noise s
     makes s / (sqrt(2) sin a) ahead and abeam and s / (2 cos a) down. ``altitude`` is the mean
     range times cos a. ``velocity_n`` turns the velocity by ``orientation``, which is what the
@@ -51,7 +53,7 @@ class Dvl(Sounding):
     5 mm/s (10 mm/s in the water), tilt of up to 45 degrees, ranges to 1 % of 5 m, attitude to
     0.2 degrees and heading to 1 degree, delay 0.1 s.
 
-    Not modelled: width of a beam, bottom that moves, shear within the layer, bias of water track
+    Not modelled: width of a beam, bottom that moves, waves, shear within the layer, bias of water track
     by the bottom, a rate that depends on the altitude.
     """
 
@@ -152,6 +154,18 @@ class Dvl(Sounding):
         "orientation": ("attitude",),
     }
 
+    transient = Sounding.transient | {"_stream"}
+
+    def reset(self, t: float) -> None:
+        """Start with nothing published. Raises InputError for a current that cannot be."""
+        super().reset(t)
+        self._stream = self.current_state()
+
+    def set_state(self, state: Mapping[str, Any]) -> None:
+        """Restore what `get_state` returned."""
+        super().set_state(state)
+        self._stream = self.current_state()
+
     def beams(self) -> list[Vector3]:
         """Return the directions of the beams, body axes."""
         a, c = self.beam_angle, self.mounting
@@ -165,7 +179,7 @@ class Dvl(Sounding):
         """Return range and velocities of each beam, and the attitude."""
         swing = cross(self.rates, self.place)
         over_ground = [v + s for v, s in zip(self.velocity, swing, strict=True)]
-        carried = to_body(self.attitude, self.current)
+        carried = to_body(self.attitude, self._water())
         through = [v - c for v, c in zip(over_ground, carried, strict=True)]
         if not self._works(over_ground):
             return [*[None] * 12, *self.attitude]
@@ -201,6 +215,14 @@ class Dvl(Sounding):
             *(turned or _NOTHING),
             math.cos(self.beam_angle) * sum(ranges) / len(ranges) if ranges else None,
         ]
+
+    def _water(self) -> list[float]:
+        """Return the velocity of the water at the transducer, {n}, m/s."""
+        north, east, down = self.current
+        if self._stream.is_absent:
+            return [north, east, down]
+        stream = self._stream.velocity(seconds(self._instant_ns()), self.transducer()[2])
+        return [north + float(stream[0]), east + float(stream[1]), down]
 
     def _works(self, velocity: Sequence[float]) -> bool:
         """Return whether any beam can be valid with the transducer's pose and speed."""
