@@ -53,8 +53,8 @@ class Dvl(MeetsCurrent, Sounding):
     5 mm/s (10 mm/s in the water), tilt of up to 45 degrees, ranges to 1 % of 5 m, attitude to
     0.2 degrees and heading to 1 degree, delay 0.1 s.
 
-    Not modelled: width of a beam, bottom that moves, waves, shear within the layer, bias of water track
-    by the bottom, a rate that depends on the altitude.
+    Not modelled: width of a beam, bottom that moves, waves, shear within the layer, bias of water
+    track by the bottom, a rate that depends on the altitude.
     """
 
     exercised: ClassVar = {
