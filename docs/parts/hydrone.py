@@ -12,7 +12,9 @@ from parts import elsewhere, part
 from parts.markdown import fixed, shown_number, table
 from seatrial.cosim.parameters import load_vehicle
 from seatrial.craft.marine_craft import MarineCraft
+from seatrial.identification.damping import HullForm, damping
 from seatrial.trials.campaign import load_campaign, run_campaign
+from seatrial.trials.hull_file import estimate_damping
 from seatrial.trials.run import run_trial
 from seatrial.trials.run_folder import Run, load_run
 from seatrial.trials.trial import load_trial
@@ -37,6 +39,40 @@ def hydrone_pads() -> str:
             if isinstance(e.value, list)
         ],
     )
+
+
+@part("hydrone-damping")
+def hydrone_damping() -> str:
+    """Damping as printed, by the source's equations with its areas, and from box hulls."""
+    boxes = estimate_damping("hydrone")
+    length = 1.276
+    # Eq. 46: one drag coefficient, an area ahead of 0.04 m2 and one abeam of 0.28 m2.
+    stated = HullForm(
+        length=length,
+        draught=(0.28 / length,) * 2,
+        beam=(0.0,) * 2,
+        wetted_area=0.0,
+        frontal_area=0.04,
+        drag_ahead=1.2,
+    )
+    by_area = {each.symbol: each for each in damping(stated, 1.0, 1025.0, 1.19e-6)}
+    printed = {"X_u|u|": 24.6, "Y_v|v|": 172.2, "Z_w|w|": 800.0, "M_q|q|": 400.0, "N_r|r|": 0.716}
+    rows = []
+    for each in boxes.derivatives:
+        if each.symbol not in {*printed, "X_u", "Y_r|r|"}:
+            continue
+        areas = -by_area[each.symbol].value
+        rows.append(
+            (
+                each.symbol.replace("|", r"\|"),
+                each.unit,
+                shown_number(printed[each.symbol]) if each.symbol in printed else "none",
+                "" if each.symbol[0] in "ZM" or each.symbol == "X_u" else fixed(areas, 3),
+                fixed(-each.value + 0.0, 3),
+                each.equation,
+            )
+        )
+    return table(("", "unit", "printed", "areas of the source, C_d 1.2", "box hulls", "from"), rows)
 
 
 class Motion(NamedTuple):

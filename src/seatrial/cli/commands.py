@@ -52,6 +52,10 @@ COMMANDS = {
         "drive:drive",
         "Drive a VideoRay Pro 4 with keys or a gamepad, and see its heading, depth and attitude.",
     ),
+    "estimate": Command(
+        "estimate:estimate",
+        "Estimate the damping of a hull from its dimensions, as lines of a vehicle file too.",
+    ),
     "export": Command("export:export", "Write the record of a run as an MCAP or a Parquet file."),
     "identify": Command(
         "identify:identify",

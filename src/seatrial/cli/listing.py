@@ -21,6 +21,7 @@ _KINDS = {
     "parameters of vehicles": "vehicles",
     "profiles": "hil_profiles",
     "experiments": "harness/identification",
+    "hulls (estimate)": "harness/hulls",
 }
 
 
