@@ -52,6 +52,12 @@ def lacking(path: Path, to: Path, *functions: str) -> Path:
     return _with_library(path, library, to)
 
 
+def without_events(path: Path, to: Path) -> Path:
+    """Copy the FMI 3.0 slave to ``to``, with a library that refuses the event mode it promises."""
+    library = compiled(SLAVES / "fmi3.c", to.with_suffix(".so"), "-DREFUSES_EVENTS")
+    return _with_library(path, library, to)
+
+
 def _with_library(path: Path, library: Path, to: Path) -> Path:
     with zipfile.ZipFile(path) as old, zipfile.ZipFile(to, "w") as new:
         for member in old.infolist():

@@ -107,7 +107,20 @@ def test_members_that_are_no_plain_files(cache: Path, tmp_path: Path) -> None:
 def test_names_that_no_folder_can_hold(
     names: tuple[str, ...], message: str, cache: Path, tmp_path: Path
 ) -> None:
-    refused(zipped(tmp_path / "x.fmu", *((name, b"") for name in names)), message)
+    members = [(name, str(number).encode()) for number, name in enumerate(names)]
+    refused(zipped(tmp_path / "x.fmu", *members), message)
+
+
+@pytest.mark.filterwarnings("ignore:Duplicate name")
+def test_what_is_there_twice_and_alike_is_there_once(cache: Path, tmp_path: Path) -> None:
+    members = [("extra/", b""), ("extra/a", b"1"), ("extra/", b""), ("extra/a", b"1")]
+    folder = unpacked(zipped(tmp_path / "x.fmu", *members), "FMU")
+    assert (folder / "extra/a").read_bytes() == b"1"
+
+
+@pytest.mark.filterwarnings("ignore:Duplicate name")
+def test_a_folder_and_an_empty_file_of_one_name(cache: Path, tmp_path: Path) -> None:
+    refused(zipped(tmp_path / "x.fmu", ("a/", b""), ("a", b"")), "two members are called 'a'")
 
 
 def test_a_name_with_a_nul_is_refused(cache: Path, tmp_path: Path) -> None:

@@ -14,16 +14,18 @@ from seatrial.fmi.load import load_fmu, open_instance
 from seatrial.fmi.options import FmuOptions
 from seatrial.fmi.scalars import INTEGERS
 
-from .native import changed, read, started
+from .native import changed, read, started, without_events
 
 NO_EVENTS = ('hasEventMode="true"', 'hasEventMode="false"')
 
 
-@pytest.fixture(params=["events", "no events"])
+@pytest.fixture(params=["events", "no events", "refused events"])
 def path(request, native_fmu, tmp_path: Path) -> Path:
-    """The slave as it is, and as one that has no event mode."""
+    """The slave as it is, as one that has no event mode, and as one that only says it has."""
     if request.param == "events":
         return native_fmu("fmi3")
+    if request.param == "refused events":
+        return without_events(native_fmu("fmi3"), tmp_path / "fmi3.fmu")
     return changed(native_fmu("fmi3"), tmp_path / "fmi3.fmu", NO_EVENTS)
 
 
@@ -147,13 +149,13 @@ def test_what_the_description_says(native_fmu) -> None:
 # ---------------------------------------------------------------------- events
 
 
-def test_stairs_rise_at_their_instants(fmi3, path: Path) -> None:
+def test_stairs_rise_at_their_instants(fmi3, request) -> None:
     instance = fmi3(stair=0.25)
     for step in range(20):
         instance.step(step * 0.1, 0.1)
         assert read(instance, "steps") == [math.floor((step + 1) * 0.1 / 0.25 + 1e-9)]
     assert read(instance, "x") == [pytest.approx(math.exp(-2.0), rel=1e-13)]
-    has_events = load_fmu(path).description.coSimulation.hasEventMode
+    has_events = request.node.callspec.params["path"] == "events"
     assert read(instance, "events") == [8 if has_events else 0]
 
 

@@ -27,7 +27,7 @@ FOLDER = os.environ.get("SEATRIAL_REFERENCE_FMUS", "")
 RESULTS = "extra/org.fmi-standard.fmi-ls-ref/{}_out.csv"
 EULER = ("BouncingBall", "Dahlquist", "StateSpace", "VanDerPol")
 """Their results are those of their own co-simulation, by Euler's method."""
-NAMES = (*EULER, "Feedthrough", "Resource", "Stair")
+NAMES = (*EULER, "Feedthrough", "Resource", "Roberts", "Stair")
 FMUS = sorted(p for p in Path(FOLDER).rglob("*.fmu") if p.stem in NAMES) if FOLDER else []
 
 if not FMUS:

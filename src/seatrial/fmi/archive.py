@@ -146,10 +146,9 @@ def _checked(path: Path, archive: zipfile.ZipFile) -> Members:
     members: Members = {}
     for info in infos:
         place = _place(path, info)
-        if place in members:
-            raise InputError(f"{path}: two members are called {info.filename!r}")
         _refuse_odd(path, info)
-        members[place] = info
+        if not _are_alike(members.setdefault(place, info), info):
+            raise InputError(f"{path}: two members are called {info.filename!r}")
     folders = {parent for place in members for parent in place.parents}
     _refuse_many(path, len(folders | members.keys()))
     for place in folders & members.keys():
@@ -157,6 +156,11 @@ def _checked(path: Path, archive: zipfile.ZipFile) -> Members:
             raise InputError(f"{path}: member {str(place)!r} is a file and a folder")
     _refuse_bomb(path, sum(info.file_size for info in infos))
     return members
+
+
+def _are_alike(one: zipfile.ZipInfo, other: zipfile.ZipInfo) -> bool:
+    """Say that two members of one name are the same: tools write folders, and files, twice."""
+    return (one.is_dir(), one.CRC, one.file_size) == (other.is_dir(), other.CRC, other.file_size)
 
 
 def _refuse_many(path: Path, count: int) -> None:

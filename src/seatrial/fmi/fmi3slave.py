@@ -78,9 +78,21 @@ class Fmi3Slave(Fmi3Access):
     # ------------------------------------------------------------------ inside
 
     def _instantiate(self) -> None:
+        try:
+            self._instantiate_with_events(self._has_events)
+        except Exception:
+            if not self._has_events or self.fmu.clocks.by_reference:
+                raise
+            # Some promise what their code does not have: without, discrete inputs are set in steps.
+            said = self._messages.said()
+            self._has_events = False
+            self._instantiate_with_events(False)
+            self._messages.warn(f"it has no event mode, though its description says so{said}")
+
+    def _instantiate_with_events(self, used: bool) -> None:
         self._slave.instantiate(
             loggingOn=True,
-            eventModeUsed=self._has_events,
+            eventModeUsed=used,
             earlyReturnAllowed=True,
             logMessage=lambda _, status, category, message: self._messages.keep(status, message),
         )

@@ -46,6 +46,10 @@ class Messages:
         else:
             self._lost += 1
 
+    def warn(self, text: str) -> None:
+        """Keep a warning of ours."""
+        self.keep(WARNING, text.encode())
+
     def has_error(self) -> bool:
         """Say if one of them has the status of an error."""
         return any(status >= ERROR for status, _ in self._kept)

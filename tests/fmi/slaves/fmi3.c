@@ -47,6 +47,12 @@ fmi3Instance fmi3InstantiateCoSimulation(
     fmi3Boolean with_events, fmi3Boolean early, const fmi3ValueReference r[], size_t n,
     fmi3InstanceEnvironment environment, fmi3LogMessageCallback log,
     fmi3IntermediateUpdateCallback update) {
+#ifdef REFUSES_EVENTS
+    if (with_events) {
+        log(environment, fmi3Error, "all", "no event mode here");
+        return NULL;
+    }
+#endif
     Slave *s = calloc(1, sizeof *s);
     s->log = log;
     s->environment = environment;
