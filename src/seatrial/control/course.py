@@ -5,15 +5,11 @@ from __future__ import annotations
 from typing import ClassVar
 
 from ..component import Input, Output, Parameter, terminal
-from ..errors import InputError
 from ..sampled import Sampled
-from .guidance_path import Point
-
-_WAYPOINTS = 8
-_NED = ("north", "east", "down")
+from ..waypoints import NED, Place, Waypoints
 
 
-class Course(Sampled):
+class Course(Waypoints, Sampled):
     """Sequence of legs for `Guidance`: a mission without a mission service.
 
     Leg n leads from waypoint n - 1 (``start`` for the first) to waypoint n. When guidance
@@ -30,33 +26,17 @@ class Course(Sampled):
     exercised: ClassVar = {"count": 3.0, "waypoint_1": [1.0, 2.0, 3.0]}
 
     period = Parameter(0.1, "s", "sample period", min=1e-6)
-    count = Parameter(1.0, "1", "number of waypoints", min=1.0, max=float(_WAYPOINTS))
-    start_point = Parameter(0.0, "m", "where the first leg begins", axes=_NED)
-    waypoint_1 = Parameter(0.0, "m", "first waypoint", axes=_NED)
-    waypoint_2 = Parameter(0.0, "m", "second waypoint", axes=_NED)
-    waypoint_3 = Parameter(0.0, "m", "third waypoint", axes=_NED)
-    waypoint_4 = Parameter(0.0, "m", "fourth waypoint", axes=_NED)
-    waypoint_5 = Parameter(0.0, "m", "fifth waypoint", axes=_NED)
-    waypoint_6 = Parameter(0.0, "m", "sixth waypoint", axes=_NED)
-    waypoint_7 = Parameter(0.0, "m", "seventh waypoint", axes=_NED)
-    waypoint_8 = Parameter(0.0, "m", "eighth waypoint", axes=_NED)
+    start_point = Parameter(0.0, "m", "where the first leg begins", axes=NED)
     speed = Parameter(
         -1.0, "m/s", "speed on every leg, negative for that of the guidance", tunable=True
-    )
-    radius = Parameter(
-        0.0,
-        "m",
-        "distance at which a waypoint is reached, 0 for that of the guidance",
-        min=0.0,
-        tunable=True,
     )
     wait = Parameter(0.0, "s", "time to stay at every waypoint", min=0.0, tunable=True)
 
     reached = Input("1", "number of the leg that is done, 0 while none is", type=int)
 
     leg = Output("1", "number of the leg", type=int, start=1)
-    leg_from = Output("m", "where the leg begins", axes=_NED)
-    leg_to = Output("m", "where the leg ends", axes=_NED)
+    leg_from = Output("m", "where the leg begins", axes=NED)
+    leg_to = Output("m", "where the leg ends", axes=NED)
     leg_speed = Output("m/s", "speed on the leg")
     leg_radius = Output("m", "distance at which its end is reached")
     leg_wait = Output("s", "time to stay at its end")
@@ -78,10 +58,7 @@ class Course(Sampled):
 
     def reset(self, t: float) -> None:
         """Start on the first leg; raises InputError for a broken number of waypoints."""
-        if self.count % 1.0:
-            raise InputError(f"{self.name}.count is {self.count!r}, a whole number is needed")
-        waypoints = [getattr(self, f"waypoint_{n + 1}") for n in range(int(self.count))]
-        self._places: list[Point] = [self.start_point, *waypoints]
+        self._places: list[Place] = [self.start_point, *self.waypoints()]
         self._leg, self._passed = 1, 0
 
     def sample(self, t: float, k: int) -> None:

@@ -24,7 +24,7 @@ def give_parameters(system: System, part: Part, profiles: Profiles) -> None:
     placed = system.rig.components[part.name]
     entry, where = placed.entry, placed.where
     _give_seed(part, system.seed)
-    if entry.parameters is not None:
+    if entry.parameters:
         _give_parameter_set(part, _parameter_set(system, placed))
     if entry.profile is not None:
         profile, section = profiles.find(entry.profile, f"{where}.profile")

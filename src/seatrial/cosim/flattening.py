@@ -91,6 +91,7 @@ class _Reading:
             raise InputError(f"{chain[-1]}: a rig contains itself: {names}")
         content, read_from = read_toml(path)
         choices = {**_declared(content), **around.choices}
+        choices = {name: _chosen(text, choices) for name, text in choices.items()}
         self.used |= _declared(content).keys() | _used(content)
         file = validated(RigFile, _chosen(content, choices), path)
         _refuse_unchosen(file, path)

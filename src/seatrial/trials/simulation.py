@@ -155,10 +155,10 @@ class Run:
                 event = events.pop(0)
                 where = f"event {event.key}"
                 action(master.system, event.action, event.key, event.written, where).apply(master)
-            stopping, broken, over = stop_requested(), termination.broken(), master.steps >= steps
+            stopping, decided, over = stop_requested(), termination.status(), master.steps >= steps
             enders = master.ended()
-            recorder.record(last=bool(stopping or broken or over or enders))
-            if broken or over or enders:
+            recorder.record(last=bool(stopping or decided or over or enders))
+            if decided or over or enders:
                 break
             if stopping:
                 return "stopped"
@@ -170,8 +170,8 @@ class Run:
                 self._show_progress()
         self._hooks.progress(self._whole_s, self._whole_s)
         master.terminate()
-        if broken:
-            return "ended"
+        if decided is not None:
+            return decided
         return ended_by(enders) if enders and not over else "complete"
 
     @property

@@ -36,7 +36,7 @@ class RecordEntry(FileModel):
 
 
 class CriterionEntry(FileModel):
-    """A named condition that must hold; with ``ends`` the run ends where it does not."""
+    """A named condition that must hold; with ``ends`` the run ends where that is decided."""
 
     name: str
     check: str
@@ -375,10 +375,11 @@ def _trial(name: str, relative_to: Path | None, changes: Mapping[str, Any], orig
     for index, entry in enumerate(file.criteria):
         try:
             criterion = parse(entry.check)
-            if entry.ends and (criterion.form != "always" or criterion.span != WHOLE):
+            plain = replace(criterion.span, within=None) == WHOLE
+            if entry.ends and not (plain and criterion.form in ("always", "within")):
                 raise InputError(
                     f"{entry.check!r} cannot end a run: with ends = true a condition that holds "
-                    "at every point is needed, without a window"
+                    "at every point, or within a duration, is needed, without a window"
                 )
             criteria.append((entry.name, criterion))
         except InputError as error:

@@ -161,7 +161,7 @@ class ArduPilot(ArduPilotPorts):
         heading = math.degrees(self.true_attitude[2]) % 360.0
         defaults = str(Path(self.defaults).resolve()) if self.defaults else ""
         home = (latitude, longitude, altitude, heading)
-        return arguments(port, home, h, self.speedup, defaults)
+        return arguments(port, home, h, self.speedup, defaults=defaults, serial0=self.serial0)
 
     def _wait(self) -> bool:
         """Wait for a frame and take its pulses; return whether one is there to be answered."""

@@ -34,6 +34,9 @@ class ArduPilotPorts(Logging, Reachable, TrueMotion):
     )
     firmware = Parameter("rover", "1", "which firmware", choices=tuple(LOOP_HZ))
     program = Parameter("", "1", "the firmware's program, to be started; empty: you start it")
+    serial0 = Parameter(
+        "", "1", "device of its first serial port, for a ground station; empty: its own"
+    )
     defaults = Parameter("", "1", "file of the firmware's parameters", role="file")
     speedup = Parameter(
         1.0, "1", "simulated time per wall time at which a started firmware paces", min=0.01

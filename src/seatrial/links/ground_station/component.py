@@ -1,0 +1,197 @@
+"""Ground station as a component: a mission out, how it goes back."""
+
+from __future__ import annotations
+
+import math
+from typing import ClassVar
+
+from pymavlink.dialects.v20 import all as mavlink
+
+from ...component import Component, Input, Output, Parameter, terminal
+from ...errors import InputError, SimulationError
+from ...sampled import Sampled
+from ...waypoints import Waypoints
+from ..endpoints.budget import Budget
+from ..endpoints.endpoint import Channel, Endpoint
+from ..endpoints.url import check_urls, open_endpoints
+from ..mavlink.codec import Codec, Message
+from .conversation import ASK_AGAIN_S, Conversation
+from .errand import Errand, mission
+
+SYSTEM, COMPONENT = 255, mavlink.MAV_COMP_ID_MISSIONPLANNER
+HEARTBEAT_S = 1.0
+_ALARMED = (mavlink.MAV_STATE_CRITICAL, mavlink.MAV_STATE_EMERGENCY)
+_STATION, _NO_AUTOPILOT = mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID
+_REAL = mavlink.MAV_PARAM_TYPE_REAL32
+_ARMED = mavlink.MAV_MODE_FLAG_SAFETY_ARMED
+FAILURES = {
+    "gnss": (("SIM_GPS1_ENABLE", 0.0, 1.0),),
+    "compass": tuple((f"SIM_MAG{number}_FAIL", 1.0, 0.0) for number in (1, 2, 3)),
+}
+"""ArduPilot's simulated instruments: parameter, its value without the instrument, and with it."""
+
+
+def _check_link(text: str) -> None:
+    check_urls(text)
+    if len(text.split()) != 1:
+        raise InputError(f"link is {text!r}, one is needed")
+
+
+class GroundStation(Waypoints, Sampled):
+    """A person at a ground station, who sends a MAVLink vehicle round a list of waypoints.
+
+    It waits for the vehicle at ``link`` and for its estimator, uploads the waypoints by the
+    mission protocol, as NAV_WAYPOINT north and east of the vehicle's home and ``down`` below it,
+    arms, and starts the mission. Everything is repeated until it is answered. For ArduPilot's
+    boats, rovers and submarines, and vehicles that present themselves as such.
+
+    ``failsafe`` is true from the first heartbeat on that says CRITICAL or EMERGENCY, and where
+    the vehicle leaves AUTO or disarms before its last waypoint.
+
+    ``without`` takes an instrument from ArduPilot's simulated ones, which it makes of the true
+    motion: GNSS (SIM_GPS1_ENABLE 0) or all compasses (SIM_MAG1_FAIL to SIM_MAG3_FAIL 1).
+
+    Raises InputError at the start for a link that cannot be, and SimulationError in a step for
+    what the vehicle does not do in time, with what it said last. Times are simulated.
+
+    It cannot be rolled back: what was sent has been sent.
+    """
+
+    rolls_back = False
+    transient = Component.transient | {"_endpoint", "_codec", "_conversation", "_errand"}
+    exercised: ClassVar = {"link": "udpin:127.0.0.1:0"}
+
+    period = Parameter(0.1, "s", "period of what it sends and takes in", min=1e-6)
+    link = Parameter("tcpout:127.0.0.1:5760", "1", "where the vehicle is", check=_check_link)
+
+    without = Input(
+        "1",
+        "instruments that ArduPilot's simulation lacks",
+        axes=tuple(FAILURES),
+        type=bool,
+        optional=True,
+    )
+
+    connected = Output("1", "whether the vehicle has sent something", type=bool)
+    doing = Output("1", "what it waits for", type=str)
+    armed = Output("1", "whether the vehicle says that it is armed", type=bool)
+    mode = Output("1", "the vehicle's mode, its custom_mode", type=int)
+    under_way = Output("1", "whether the mission was started", type=bool)
+    reached = Output("1", "number of the last waypoint that the vehicle took for reached", type=int)
+    failsafe = Output("1", "whether the vehicle had a failsafe or left its mission", type=bool)
+
+    feedthrough: ClassVar = {}
+    terminals: ClassVar = {"report": terminal("failsafe")}
+
+    def __init__(self, name: str = "component") -> None:
+        super().__init__(name)
+        self._endpoint: Endpoint | None = None
+
+    # ------------------------------------------------------------------ running
+
+    def reset(self, t: float) -> None:
+        """Open the link."""
+        self.close()
+        self._places = self.waypoints()
+        try:
+            (self._endpoint,) = open_endpoints("link", self.link)
+        except InputError as error:
+            raise InputError(f"{self.name}: {error}") from None
+        self._codec = Codec(SYSTEM, COMPONENT)
+        self._channel: Channel | None = None
+        self._auto: int | None = None
+        self._endpoint.budget = Budget.of_raw_bytes()  # many times real time
+        self._begin()
+
+    def sample(self, t: float, k: int) -> None:
+        """Publish how it goes."""
+        self.connected = bool(self._conversation.system)
+        self.doing, self.under_way = self._doing, self._auto is not None
+        self.armed, self.mode = self._armed, self._mode
+        self.reached, self.failsafe = self._reached, self._failsafe
+
+    def update(self, t: float, k: int) -> None:
+        """Take in what came, and go on."""
+        assert self._endpoint is not None
+        conversation = self._conversation
+        conversation.now = t
+        for channel, data in self._endpoint.poll():
+            if self._channel is not None and channel is not self._channel:
+                self._codec = Codec(SYSTEM, COMPONENT)
+                self._begin()  # a vehicle that was started again
+                conversation = self._conversation
+                conversation.now = t
+            self._channel = channel
+            for message in self._codec.decode(data):
+                if conversation.take(message):
+                    self._note(message)
+        self._greet(t)
+        try:
+            self._doing = next(self._errand)
+        except StopIteration as started:
+            if started.value is not None:
+                self._doing, self._auto = "", started.value
+        except SimulationError as error:
+            raise SimulationError(f"{self.name}: {error}") from None
+        self._take_instruments(t)
+
+    def close(self) -> None:
+        """Close the link."""
+        if self._endpoint is not None:
+            self._endpoint.close()
+        self._endpoint = None
+
+    # ------------------------------------------------------------------ inside
+
+    def _begin(self) -> None:
+        self._conversation = Conversation(self._send)
+        self._errand: Errand = mission(self._conversation, self._places, self.radius)
+        self._doing, self._auto = "", None
+        self._armed, self._mode, self._reached, self._failsafe = False, 0, 0, False
+        self._given = {name: usual for each in FAILURES.values() for name, _, usual in each}
+        self._greeted_at = self._set_at = -math.inf
+
+    def _send(self, message: Message) -> None:
+        assert self._endpoint is not None
+        data = self._codec.encode(message)
+        for channel in self._endpoint.channels():
+            channel.send(data)
+
+    def _greet(self, t: float) -> None:
+        if t - self._greeted_at < HEARTBEAT_S:
+            return
+        self._greeted_at = t
+        active = mavlink.MAV_STATE_ACTIVE
+        self._send(mavlink.MAVLink_heartbeat_message(_STATION, _NO_AUTOPILOT, 0, 0, active, 3))
+
+    def _note(self, message: Message) -> None:
+        """Note what a message says of the mission."""
+        kind = message.get_type()
+        if kind == "MISSION_ITEM_REACHED":
+            self._reached = max(self._reached, message.seq)
+        if kind == "PARAM_VALUE":
+            self._given[message.param_id] = message.param_value
+        if kind != "HEARTBEAT":
+            return
+        self._armed, self._mode = bool(message.base_mode & _ARMED), message.custom_mode
+        if self._auto is not None and self._reached < len(self._places):
+            left = not self._armed or self._mode != self._auto
+            self._failsafe = self._failsafe or left or message.system_status in _ALARMED
+
+    def _take_instruments(self, t: float) -> None:
+        """Set the parameters of instruments that are not as they should be."""
+        wanted = {
+            name: broken if gone else usual
+            for gone, settings in zip(self.without, FAILURES.values(), strict=True)
+            for name, broken, usual in settings
+        }
+        other = [name for name, value in wanted.items() if self._given[name] != value]
+        if not other or t - self._set_at < ASK_AGAIN_S:
+            return
+        self._set_at = t
+        for name in other:
+            self._send(
+                mavlink.MAVLink_param_set_message(
+                    self._conversation.system, 1, name.encode(), wanted[name], _REAL
+                )
+            )
