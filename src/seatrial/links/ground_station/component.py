@@ -33,14 +33,22 @@ FAILURES = {
 
 def _check_link(text: str) -> None:
     check_urls(text)
-    if len(text.split()) != 1:
-        raise InputError(f"link is {text!r}, one is needed")
+    if len(text.split()) > 1:
+        raise InputError(f"link is {text!r}, at most one is needed")
+
+
+def _by_tcp(address: str) -> str:
+    """Return the link to a vehicle that is reached at ``address``."""
+    for each in address.split():
+        if each.startswith("tcp:"):
+            return f"tcpout:{each.removeprefix('tcp:')}"
+    raise InputError(f"the vehicle is reached at {address!r}, one link tcpin of it is needed")
 
 
 class GroundStation(Waypoints, Sampled):
     """A person at a ground station, who sends a MAVLink vehicle round a list of waypoints.
 
-    It waits for the vehicle at ``link`` and for its estimator, uploads the waypoints by the
+    It waits for the vehicle, at ``link`` or else at ``address``, and for its estimator, uploads the waypoints by the
     mission protocol, as NAV_WAYPOINT north and east of the vehicle's home and ``down`` below it,
     arms, and starts the mission. Everything is repeated until it is answered. For ArduPilot's
     boats, rovers and submarines, and vehicles that present themselves as such.
@@ -62,7 +70,11 @@ class GroundStation(Waypoints, Sampled):
     exercised: ClassVar = {"link": "udpin:127.0.0.1:0"}
 
     period = Parameter(0.1, "s", "period of what it sends and takes in", min=1e-6)
-    link = Parameter("tcpout:127.0.0.1:5760", "1", "where the vehicle is", check=_check_link)
+    link = Parameter("", "1", "where the vehicle is; empty: at its address", check=_check_link)
+
+    address = Input(
+        "1", "what the vehicle is reached at, by TCP among others", type=str, optional=True
+    )
 
     without = Input(
         "1",
@@ -90,18 +102,17 @@ class GroundStation(Waypoints, Sampled):
     # ------------------------------------------------------------------ running
 
     def reset(self, t: float) -> None:
-        """Open the link."""
+        """Open the link, if there is one."""
         self.close()
         self._places = self.waypoints()
-        try:
-            (self._endpoint,) = open_endpoints("link", self.link)
-        except InputError as error:
-            raise InputError(f"{self.name}: {error}") from None
-        self._codec = Codec(SYSTEM, COMPONENT)
         self._channel: Channel | None = None
         self._auto: int | None = None
-        self._endpoint.budget = Budget.of_raw_bytes()  # many times real time
         self._begin()
+        try:
+            if self.link:
+                self._open(self.link)
+        except InputError as error:
+            raise InputError(f"{self.name}: {error}") from None
 
     def sample(self, t: float, k: int) -> None:
         """Publish how it goes."""
@@ -112,28 +123,15 @@ class GroundStation(Waypoints, Sampled):
 
     def update(self, t: float, k: int) -> None:
         """Take in what came, and go on."""
-        assert self._endpoint is not None
-        conversation = self._conversation
-        conversation.now = t
-        for channel, data in self._endpoint.poll():
-            if self._channel is not None and channel is not self._channel:
-                self._codec = Codec(SYSTEM, COMPONENT)
-                self._begin()  # a vehicle that was started again
-                conversation = self._conversation
-                conversation.now = t
-            self._channel = channel
-            for message in self._codec.decode(data):
-                if conversation.take(message):
-                    self._note(message)
-        self._greet(t)
         try:
-            self._doing = next(self._errand)
-        except StopIteration as started:
-            if started.value is not None:
-                self._doing, self._auto = "", started.value
-        except SimulationError as error:
+            if self._endpoint is None:
+                self._open(_by_tcp(self.address))
+            self._take_in(t)
+            self._greet(t)
+            self._go_on()
+        except (InputError, SimulationError) as error:
             raise SimulationError(f"{self.name}: {error}") from None
-        self._take_instruments(t)
+        self._set_instruments(t)
 
     def close(self) -> None:
         """Close the link."""
@@ -143,7 +141,12 @@ class GroundStation(Waypoints, Sampled):
 
     # ------------------------------------------------------------------ inside
 
+    def _open(self, link: str) -> None:
+        (self._endpoint,) = open_endpoints("link", link)
+        self._endpoint.budget = Budget.of_raw_bytes()  # many times real time
+
     def _begin(self) -> None:
+        self._codec = Codec(SYSTEM, COMPONENT)
         self._conversation = Conversation(self._send)
         self._errand: Errand = mission(self._conversation, self._places, self.radius)
         self._doing, self._auto = "", None
@@ -164,6 +167,25 @@ class GroundStation(Waypoints, Sampled):
         active = mavlink.MAV_STATE_ACTIVE
         self._send(mavlink.MAVLink_heartbeat_message(_STATION, _NO_AUTOPILOT, 0, 0, active, 3))
 
+    def _take_in(self, t: float) -> None:
+        assert self._endpoint is not None
+        self._conversation.now = t
+        for channel, data in self._endpoint.poll():
+            if self._channel is not None and channel is not self._channel:
+                self._begin()  # a vehicle that was started again
+                self._conversation.now = t
+            self._channel = channel
+            for message in self._codec.decode(data):
+                if self._conversation.take(message):
+                    self._note(message)
+
+    def _go_on(self) -> None:
+        try:
+            self._doing = next(self._errand)
+        except StopIteration as started:
+            if started.value is not None:
+                self._doing, self._auto = "", started.value
+
     def _note(self, message: Message) -> None:
         """Note what a message says of the mission."""
         kind = message.get_type()
@@ -178,7 +200,7 @@ class GroundStation(Waypoints, Sampled):
             left = not self._armed or self._mode != self._auto
             self._failsafe = self._failsafe or left or message.system_status in _ALARMED
 
-    def _take_instruments(self, t: float) -> None:
+    def _set_instruments(self, t: float) -> None:
         """Set the parameters of instruments that are not as they should be."""
         wanted = {
             name: broken if gone else usual
