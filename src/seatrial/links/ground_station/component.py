@@ -48,10 +48,10 @@ def _by_tcp(address: str) -> str:
 class GroundStation(Waypoints, Sampled):
     """A person at a ground station, who sends a MAVLink vehicle round a list of waypoints.
 
-    It waits for the vehicle, at ``link`` or else at ``address``, and for its estimator, uploads the waypoints by the
-    mission protocol, as NAV_WAYPOINT north and east of the vehicle's home and ``down`` below it,
-    arms, and starts the mission. Everything is repeated until it is answered. For ArduPilot's
-    boats, rovers and submarines, and vehicles that present themselves as such.
+    It waits for the vehicle, at ``link`` or else at ``address``, and for its estimator; uploads the
+    waypoints by the mission protocol, as NAV_WAYPOINT north and east of the vehicle's home and
+    ``down`` below it; arms, and starts the mission. Everything is repeated until it is answered.
+    For ArduPilot's boats, rovers and submarines, and vehicles that present themselves as such.
 
     ``failsafe`` is true from the first heartbeat on that says CRITICAL or EMERGENCY, and where
     the vehicle leaves AUTO or disarms before its last waypoint.
@@ -166,6 +166,11 @@ class GroundStation(Waypoints, Sampled):
         self._greeted_at = t
         active = mavlink.MAV_STATE_ACTIVE
         self._send(mavlink.MAVLink_heartbeat_message(_STATION, _NO_AUTOPILOT, 0, 0, active, 3))
+        vehicle = self._conversation.newest.get("HEARTBEAT")
+        if vehicle is not None and vehicle.type == mavlink.MAV_TYPE_SUBMARINE:
+            # Its failsafe wants a pilot: sticks at rest, as a joystick sends them.
+            at_rest = (0, 0, 500, 0)
+            self._send(mavlink.MAVLink_manual_control_message(vehicle.get_srcSystem(), *at_rest, 0))
 
     def _take_in(self, t: float) -> None:
         assert self._endpoint is not None
