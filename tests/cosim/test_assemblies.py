@@ -170,6 +170,21 @@ def test_a_choice_of_the_top_goes_down(yard) -> None:
     assert "unknown rig 'inner/push-three'" in refused(path, kind="three")
 
 
+def test_a_choice_may_stand_on_another_one(yard) -> None:
+    path = yard(TOP + '[choices]\nbase = "tw"\nkind = "{base}o"\n')
+    system = built(path)
+    assert system.rig.components["a.push.push"].scope.read_from.path.stem == "push-two"
+    system = built(path, base="", kind="one")
+    assert system.rig.components["a.push.push"].scope.read_from.path.stem == "push-one"
+
+
+def test_an_empty_name_of_parameters_is_none(yard) -> None:
+    more = 'more   = { fmu = "users.py:Push", parameters = "{of}" }'
+    path = yard(TOP.replace('more   = { fmu = "users.py:Push" }', more) + '[choices]\nof = ""\n')
+    assert values(built(path), "more.force.x") == [1.0]
+    assert "nobody" in refused(path, of="nobody")
+
+
 def test_what_an_inner_rig_is_chosen_must_be_used(yard) -> None:
     path = yard(TOP.replace('choices = { kind = "two" }', 'choices = { kin = "two" }'))
     assert "components.b.choices: unknown choice 'kin'; did you mean 'kind'" in refused(path)

@@ -87,11 +87,23 @@ def test_the_command_line_says_so_and_fails(write: Write, tmp_path: Path) -> Non
     assert "run ended" in (tmp_path / "out/report.html").read_text("utf-8")
 
 
+def test_the_run_ends_where_what_is_wanted_within_a_time_is_there(
+    write: Write, tmp_path: Path
+) -> None:
+    path = trial(write, limit=2.0)
+    wanted = 'check = "within 1 s servo.angle > 0.2 rad"\n'
+    path.write_text(path.read_text().replace(wanted, wanted + "ends = true\n"))
+    result = run_trial(load_trial(str(path)), tmp_path / "out", engine="direct")
+    assert (result.status, result.error, result.passed) == ("complete", None, True)
+    # 0.01 rad at 0 s and 0.01 more at each step: more than 0.2 at 0.2 s.
+    assert load_run(result.folder).time[-1] == pytest.approx(0.2, abs=0.0101)
+
+
 @pytest.mark.parametrize(
     "check",
     [
         "finally servo.angle < 0.5 rad",
-        "within 1 s servo.angle > 0.2 rad",
+        "within 1 s servo.angle > 0.2 rad after 1 s",
         "servo.angle settles within 1 s",
         "servo.angle < 0.5 rad after 1 s",
         "servo.angle < 0.5 rad from 0 s to 1 s",

@@ -118,7 +118,9 @@ def placed(item: mavlink.MAVLink_message) -> tuple[float, float]:
     a, f = 6378137.0, 1.0 / 298.257223563
     latitude, e2 = math.radians(HOME[0]), f * (2.0 - f)
     w = math.sqrt(1.0 - e2 * math.sin(latitude) ** 2)
-    north, east = (math.radians(x / 1e7 - home) for x, home in zip((item.x, item.y), HOME, strict=False))
+    north, east = (
+        math.radians(x / 1e7 - home) for x, home in zip((item.x, item.y), HOME, strict=False)
+    )
     return north * a * (1.0 - e2) / w**3, east * a / w * math.cos(latitude)
 
 
