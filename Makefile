@@ -24,11 +24,11 @@ $(INSTALLED): pyproject.toml
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps 'MAVProxy>=1.8.75,<1.9'
 	@touch $@
 
-# The trial's verdict is the published one: a landing off the centre heels the deck too far.
-# Status 1 says just that, so it is no failure of the demonstration.
+# A landing off the centre heels the deck too far, as published: the trial expects that. The campaign
+# does not, and its status 1 says just that, so it is no failure of the demonstration.
 demo: $(INSTALLED)
 	@echo "== a drone lands on the aft port corner of a catamaran that holds its station"
-	@$(BIN)/seatrial run hydrone-landing || test $$? -eq 1
+	@$(BIN)/seatrial run hydrone-landing
 	@echo "== all five landing points, landing and take-off"
 	@$(BIN)/seatrial run hydrone-pads || test $$? -eq 1
 	@echo "Open the two reports in a browser."

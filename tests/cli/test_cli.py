@@ -52,7 +52,17 @@ def test_a_trial_passes_and_leaves_a_whole_folder(tmp_path: Path) -> None:
 
 
 def test_a_criterion_that_fails_is_status_one(tmp_path: Path) -> None:
-    done = seatrial("run", "hydrone-open-landing", "--engine", "direct", "--out", "x", cwd=tmp_path)
+    done = seatrial(
+        "run",
+        "hydrone-open-landing",
+        "--engine",
+        "direct",
+        "--out",
+        "x",
+        "--set",
+        "drone.pad=transversal",
+        cwd=tmp_path,
+    )
     assert done.returncode == 1
     assert "FAIL" in done.stdout
     assert "seatrial:" not in done.stderr  # nothing but progress

@@ -15,7 +15,8 @@ from seatrial.trials.criteria import parse
 UNITS = {"a.x": "m", "a.y": "m", "b-c.k.z": "1", "d.phi": "rad"}
 VALUES = st.floats(allow_nan=True, allow_infinity=True, width=64)
 VOCABULARY = """
-    always finally within settles after from to and or not abs max min sqrt ( ) , + - * / < <= >
+    always finally eventually until since once historically implies
+    says is [ ] end "x" within settles after to and or not abs max min sqrt ( ) , + - * / < <= >
     >= a.x a.y b-c.k.z d.phi e.none 1 0.5 .5 1e3 m deg m/s % s ms kg.m2 rad ° 5 s 4 s 10 deg
     nan inf __import__ lambda ; ' " \\ é ٣ 1e999 m9
 """

@@ -31,7 +31,7 @@ stop = "2 s"
 
 [[criteria]]
 name  = "it turns"
-check = "within 1 s servo.angle > 0.2 rad"
+check = "eventually[0 s, 1 s] servo.angle > 0.2 rad"
 
 [[criteria]]
 name  = "it stays below half a radian"
@@ -91,7 +91,7 @@ def test_the_run_ends_where_what_is_wanted_within_a_time_is_there(
     write: Write, tmp_path: Path
 ) -> None:
     path = trial(write, limit=2.0)
-    wanted = 'check = "within 1 s servo.angle > 0.2 rad"\n'
+    wanted = 'check = "eventually[0 s, 1 s] servo.angle > 0.2 rad"\n'
     path.write_text(path.read_text().replace(wanted, wanted + "ends = true\n"))
     result = run_trial(load_trial(str(path)), tmp_path / "out", engine="direct")
     assert (result.status, result.error, result.passed) == ("complete", None, True)
@@ -103,10 +103,10 @@ def test_the_run_ends_where_what_is_wanted_within_a_time_is_there(
     "check",
     [
         "finally servo.angle < 0.5 rad",
-        "within 1 s servo.angle > 0.2 rad after 1 s",
+        "eventually[1 s, 2 s] servo.angle > 0.2 rad",
         "servo.angle settles within 1 s",
-        "servo.angle < 0.5 rad after 1 s",
-        "servo.angle < 0.5 rad from 0 s to 1 s",
+        "always[1 s, end] servo.angle < 0.5 rad",
+        "always[0 s, 1 s] servo.angle < 0.5 rad",
     ],
 )
 def test_only_a_plain_condition_can_end_a_run(write: Write, check: str) -> None:

@@ -32,6 +32,14 @@ class Verdict:
     """Unit of ``worst``."""
     time: float | None
     """When that was, s."""
+    robustness: float | None = None
+    """Distance from the other verdict: positive if it holds; a share of the limit, or SI."""
+    margin: str = ""
+    """The same for a person."""
+    expected: str = "pass"
+    """``pass``, or ``fail`` of a criterion whose failure the trial expects."""
+    why: str = ""
+    """Why that is."""
 
 
 class TrialResult:
@@ -50,7 +58,7 @@ class TrialResult:
         self.notes = notes
         """What the user should know of the rig and of the steps; of a run read again, nothing."""
         self.verdicts: list[Verdict] = [
-            Verdict(**{key: entry[key] for key in Verdict.__dataclass_fields__})
+            Verdict(**{key: entry[key] for key in Verdict.__dataclass_fields__ if key in entry})
             for entry in read_verdicts(self.folder)
         ]
         """One per criterion, in the trial's order; empty if the run failed."""
@@ -71,11 +79,16 @@ class TrialResult:
 
     @property
     def passed(self) -> bool:
-        """True if the run came to its end and every criterion holds: exit status 0."""
+        """True if the run came to its end and every criterion is as expected: exit status 0."""
         from ..trials.ending import is_whole
+        from ..trials.run_folder import is_as_expected
 
         counted = len(self.verdicts) == len(self.manifest["criteria"])
-        return is_whole(self.status) and counted and all(v.passed for v in self.verdicts)
+        return (
+            is_whole(self.status)
+            and counted
+            and all(is_as_expected(vars(v)) for v in self.verdicts)
+        )
 
     @cached_property
     def signals(self) -> Signals:

@@ -15,6 +15,7 @@ from ..trials.ending import is_whole
 if TYPE_CHECKING:
     from ..trials.campaign import Case
     from ..trials.run import Result
+    from ..trials.verdict import Verdict
 
 
 MOST_SHOWN = 200
@@ -59,8 +60,10 @@ def print_verdicts(result: Result) -> None:
     """Print the verdict of each criterion and how the run went."""
     print_notes(result.notes)
     for name, _, verdict in result.verdicts:
-        mark = "[green]PASS[/green]" if verdict.passed else "[red]FAIL[/red]"
-        console.print(f"{mark}  {escape(name)}: {escape(verdict.detail)}", soft_wrap=True)
+        said = verdict.detail
+        if verdict.expected == "fail":
+            said += f"; expected to fail: {verdict.why}"
+        console.print(f"{_mark(verdict)}  {escape(name)}: {escape(said)}", soft_wrap=True)
     if not result.verdicts and is_whole(result.status):
         console.print("the trial has no criteria")
     if result.status != "complete":
@@ -68,9 +71,17 @@ def print_verdicts(result: Result) -> None:
         console.print(f"[{colour}]{escape(result.status.upper())}[/{colour}]", soft_wrap=True)
 
 
+def _mark(verdict: Verdict) -> str:
+    """Return the mark of a verdict: XFAIL fails as expected, XPASS holds though it should not."""
+    word = ("PASS" if verdict.passed else "FAIL") if verdict.expected == "pass" else ""
+    word = word or ("XPASS" if verdict.passed else "XFAIL")
+    colour = "green" if verdict.as_expected else "red"
+    return f"[{colour}]{word}[/{colour}]"
+
+
 def print_case(case: Case, result: Result) -> None:
     """Print one line for a finished case of a campaign."""
-    failed = [name for name, _, verdict in result.verdicts if not verdict.passed]
+    failed = [name for name, _, verdict in result.verdicts if not verdict.as_expected]
     mark = "[green]PASS[/green]" if result.passed else "[red]FAIL[/red]"
     if not is_whole(result.status):
         mark = f"[red]{result.status.upper()}[/red]"

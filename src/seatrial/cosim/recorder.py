@@ -79,7 +79,10 @@ class Recorder:
         # Text is always quoted: a lone carriage return in it would end the row otherwise.
         self._writer = csv.writer(self._row, lineterminator="\n", quoting=csv.QUOTE_NONNUMERIC)
         self._watched_places = {name: places[name] for name in watch}
-        self._watched: dict[str, array[float]] = {name: array("d") for name in watch}
+        self._watched: dict[str, array[float] | list[str]] = {
+            name: list[str]() if isinstance(master.signals[places[name]], str) else array("d")
+            for name in watch
+        }
         self._times = array("d")
 
     def record(self, *, last: bool = False) -> None:
@@ -100,9 +103,13 @@ class Recorder:
         self._writer.writerow([master.time, *row])
         self._write()
 
-    def watched(self) -> tuple[NDArray[np.float64], dict[str, NDArray[np.float64]]]:
-        """Return time and watched signals at every communication step so far."""
-        return np.array(self._times), {n: np.array(column) for n, column in self._watched.items()}
+    def watched(self) -> tuple[NDArray[np.float64], dict[str, NDArray[np.float64] | list[str]]]:
+        """Return time and watched signals, texts as lists, at every communication step so far."""
+        columns: dict[str, NDArray[np.float64] | list[str]] = {
+            name: column if isinstance(column, list) else np.array(column)
+            for name, column in self._watched.items()
+        }
+        return np.array(self._times), columns
 
     def close(self) -> None:
         """Close the file."""

@@ -40,8 +40,9 @@ def check_criteria(trial: Trial, system: System) -> dict[str, str]:
     for name, criterion in trial.criteria:
         where = f"{trial.read_from.path}: criterion {name!r}"
         try:
-            for signal in criterion.signals:
-                _require_number(signal, outputs)
+            for signal, kinds in criterion.kinds.items():
+                for kind in sorted(kinds):
+                    _REQUIRE[kind](signal, outputs)
             criterion.check_units(units)
         except InputError as error:
             raise InputError(f"{where}: {error}") from None
@@ -91,3 +92,20 @@ def _require_number(signal: str, outputs: Mapping[str, Variable]) -> None:
         raise InputError(unknown("signal", signal, outputs))
     if outputs[signal].type is str:
         raise InputError(f"{signal} is a text, a number is needed")
+
+
+def _require_truth(signal: str, outputs: Mapping[str, Variable]) -> None:
+    _require_number(signal, outputs)
+    if outputs[signal].type is not bool:
+        raise InputError(f"{signal} is a number: compare it, as in '{signal} > 0.5'")
+
+
+def _require_text(signal: str, outputs: Mapping[str, Variable]) -> None:
+    if signal not in outputs:
+        texts = [name for name, variable in outputs.items() if variable.type is str]
+        raise InputError(unknown("text signal", signal, texts))
+    if outputs[signal].type is not str:
+        raise InputError(f"{signal} is no text: 'says' and 'is' need one")
+
+
+_REQUIRE = {"number": _require_number, "truth": _require_truth, "text": _require_text}

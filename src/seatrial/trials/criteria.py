@@ -1,19 +1,27 @@
-"""Criteria: what must hold in a trial, written over recorded signals with units.
+"""Criteria: what must hold in a trial, in signal temporal logic over recorded signals with units.
 
-Forms, with ``abs(hull.attitude.phi) < 10 deg`` as an example of a condition:
+Forms:
 
-- ``CONDITION`` or ``always CONDITION``: holds in every row;
-- ``finally CONDITION``: holds in the last row;
-- ``within 5 s CONDITION``: holds in some row not later than 5 s after the start;
+- a formula of signal temporal logic, evaluated at the start of the run. One without an operator
+  that looks ahead must hold at every point, as if ``always`` stood before it;
 - ``EXPRESSION settles within 5 s``: stays, not later than 5 s after the start, in a band of
-  5 % (or ``to 2 %``) about its final value.
+  5 % (or ``to 2 %``) about its final value; ``after 4 s`` moves the start.
 
-``after 4 s`` ends any of them but ``finally`` and moves the start; ``from 4 s to 12 s`` ends
-the forms with a condition. These are simulated times.
+Formulas have comparisons of expressions (``< <= > >=``), Boolean signals, ``port says "OK"`` and
+``port is "AUTO"``; ``not``, ``and``, ``or``, ``implies``; ``always``, ``eventually``, ``until``,
+``finally`` and, looking back, ``historically``, ``once``, ``since``. An interval ``[1 s, 5 s]`` or
+``[1 s, end]`` after an operator counts from the point at which it is evaluated. Semantics, finite
+records: `robustness`. Short for a condition X at times of the run:
 
-Conditions have ``< <= > >=``, ``and``, ``or``, ``not`` and parentheses; expressions have
-``+ - * /``, ``abs``, ``max``, ``min``, ``sqrt``, signals and numbers with a unit written
-without spaces (``0.5 m/s``, ``5 %``).
+- ``X after 4 s``: ``always[4 s, end] X``; ``X from 4 s to 12 s``: ``always[4 s, 12 s] X``;
+- ``within 5 s X``: ``eventually[0 s, 5 s] X``, with ``after 4 s`` ``eventually[4 s, 9 s] X``;
+- ``port says "OK" within 2 s``: ``eventually[0 s, 2 s] port says "OK"``.
+
+What binds most comes first: ``not`` and the operators with one operand; ``until`` and ``since``;
+``and``; ``or``; ``implies``.
+
+Expressions have ``+ - * /``, ``abs``, ``max``, ``min``, ``sqrt``, signals and numbers with a unit
+written without spaces (``0.5 m/s``, ``5 %``).
 
 The band of ``settles`` is a share of the greatest distance that the signal has from its final
 value anywhere in the record, whichever row the time is measured from: so the band is the same for
@@ -23,119 +31,67 @@ final value is the last row's, so let the trial run until the signal rests.
 
 from __future__ import annotations
 
-import re
-import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cache
-from typing import Any, Literal, TypeVar
+from typing import Any
 
 import numpy as np
-from lark import Lark, Token, Transformer, UnexpectedInput, v_args
-from lark.exceptions import UnexpectedCharacters, UnexpectedToken
 
 from ..errors import InputError, unknown
-from ..fmi.cache import cache_folder
 from ..units import unit
 from . import expressions as ex
-from .expressions import Comparison, Condition, Expression, FloatArray, Limit, Logic, Units
-from .verdict import WHOLE, Span, Verdict, evaluate_condition, evaluate_settling
+from . import formulas
+from .expressions import FloatArray, Units
+from .formulas import WHOLE, Formula, Temporal
+from .grammar import tree
+from .predicates import Kind, Limit, Record
+from .settling import Settling, evaluate_settling
+from .verdict import Verdict, evaluate_formula, flaw
 
 __all__ = ["Criterion", "Limit", "Verdict", "parse"]
-
-GRAMMAR = r"""
-start: _ALWAYS? condition window?             -> always
-     | _FINALLY condition                     -> finally_
-     | _WITHIN duration condition window?     -> within
-     | sum _SETTLES _WITHIN duration settling -> settles
-
-window: _AFTER duration                       -> window
-      | _FROM duration _TO duration           -> window
-settling: (band after?)?                      -> settling
-        | after band?                         -> settling
-band: _TO quantity
-after: _AFTER duration
-duration: quantity
-
-?condition: conjunction
-          | condition _OR conjunction         -> either
-?conjunction: negation
-            | conjunction _AND negation       -> both
-?negation: comparison
-         | _NOT negation                      -> negated
-?comparison: sum
-           | sum COMPARE sum                  -> comparison
-?sum: product
-    | sum SIGN product                        -> operation
-?product: factor
-        | product TIMES factor                -> operation
-?factor: atom
-       | SIGN factor                          -> signed
-?atom: quantity
-     | SIGNAL                                 -> signal
-     | FUNCTION "(" sum ("," sum)* ")"        -> call
-     | "(" condition ")"
-quantity: NUMBER UNIT?
-
-COMPARE: "<=" | ">=" | "<" | ">"
-SIGN: "+" | "-"
-TIMES: "*" | "/"
-FUNCTION: /(abs|max|min|sqrt)(?=\s*\()/
-NUMBER: /([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?/
-SIGNAL: /[A-Za-z_][A-Za-z0-9_]*(-[A-Za-z0-9_]+)*(\.[A-Za-z0-9_]+)+/
-UNIT: NO_KEYWORD UNIT_PART (("." | "/") UNIT_PART)*
-NO_KEYWORD: /(?!(and|or|not|after|from|to|settles)\b)/
-UNIT_PART: /(%|°|[A-Za-zµμΩ]+(-?[0-9])?)/
-_ALWAYS: /always\b/
-_FINALLY: /finally\b/
-_WITHIN: /within\b/
-_SETTLES: /settles\b/
-_AFTER: /after\b/
-_FROM: /from\b/
-_TO: /to\b/
-_AND: /and\b/
-_OR: /or\b/
-_NOT: /not\b/
-%ignore /\s+/
-"""
-
-_EXPECTED = {
-    "COMPARE": "a comparison (< <= > >=)",
-    "SIGN": "an operator (+ - * /)",
-    "TIMES": "an operator (+ - * /)",
-    "FUNCTION": "a function (abs, max, min, sqrt)",
-    "NUMBER": "a number",
-    "SIGNAL": "a signal such as hull.position.z",
-    "UNIT": "a unit",
-    "LPAR": "'('",
-    "RPAR": "')'",
-    "COMMA": "','",
-    "$END": "the end",
-}
-DEFAULT_BAND = 0.05
-
-Form = Literal["always", "finally", "within", "settles"]
-Node = TypeVar("Node", bound=Condition | Expression)
 
 
 @dataclass(frozen=True)
 class Criterion:
-    """A parsed criterion; make one with `parse`.
-
-    ``subject`` is the condition, or the expression that must settle; ``band`` the share that
-    is regarded as settled.
-    """
+    """A parsed criterion: its text, and what it says; a formula is evaluated at the start."""
 
     text: str
-    form: Form
-    subject: Condition | Expression
-    span: Span = WHOLE
-    band: float = DEFAULT_BAND
+    says: Formula | Settling
+
+    @property
+    def kinds(self) -> dict[str, set[Kind]]:
+        """The signals that the criterion needs, each with what it is taken for."""
+        if isinstance(self.says, Settling):
+            return {name: {"number"} for name in ex.signal_names(self.says.subject)}
+        return formulas.kinds(self.says)
 
     @property
     def signals(self) -> set[str]:
         """Names of the signals that the criterion needs."""
-        return ex.signal_names(self.subject)
+        return set(self.kinds)
+
+    @property
+    def condition(self) -> Formula | None:
+        """What must hold at every point and is known there; None of any other criterion."""
+        says = self.says
+        if not isinstance(says, Temporal) or says.name != "always" or says.interval != WHOLE:
+            return None
+        return says.parts[0] if formulas.is_timeless(says.parts[0]) else None
+
+    @property
+    def goal(self) -> Formula | None:
+        """What must hold at one point from the start on; None of any other criterion."""
+        says = self.says
+        if not isinstance(says, Temporal) or says.name != "eventually" or says.interval.first:
+            return None
+        return says.parts[0] if formulas.is_timeless(says.parts[0]) else None
+
+    def renamed(self, names: Mapping[str, str]) -> Criterion:
+        """Return the criterion with other names of signals; its text stays."""
+        if isinstance(self.says, Settling):
+            subject = ex.renamed(self.says.subject, names)
+            return replace(self, says=replace(self.says, subject=subject))
+        return replace(self, says=formulas.renamed(self.says, names))
 
     def check_units(self, units: Units) -> None:
         """Check signals and dimensions against ``units``, unit by name of every signal there is.
@@ -147,10 +103,10 @@ class Criterion:
             for name in sorted(self.signals):
                 if name not in units:
                     raise InputError(unknown("signal", name, units))
-            if isinstance(self.subject, (Comparison, Logic)):
-                self.subject.check(units)
+            if isinstance(self.says, Settling):
+                self.says.subject.exponents(units)
             else:
-                self.subject.exponents(units)
+                formulas.check(self.says, units)
         except InputError as error:
             raise InputError(f"criterion {self.text!r}: {error}") from None
 
@@ -158,170 +114,83 @@ class Criterion:
         """Evaluate a record: ``time`` in s, ``signals`` in the units of ``units``.
 
         A record that is empty, too short or not all numbers does not pass, and the verdict says
-        why. Raises InputError as `check_units` does, for a signal whose values are no numbers,
-        and for columns that differ in length.
+        why. Raises InputError as `check_units` does, for a signal whose values are not of the
+        kind that is needed, and for columns that differ in length.
         """
         self.check_units(units)
         time = np.asarray(time, dtype=float)
-        values = {name: self._column(name, signals, units, len(time)) for name in self.signals}
-        subject, span = self.subject, self.span
-        with np.errstate(all="ignore"):
-            if isinstance(subject, (Comparison, Logic)):
-                assert self.form != "settles"
-                verdict = evaluate_condition(self.form, subject, span, time, values, units)
-                return replace(verdict, limits=tuple(subject.limits()))
-            return evaluate_settling(subject, self.band, span, time, values, units)
+        try:
+            record = self._record(time, signals, units)
+            lacks = flaw(record)
+            if lacks:
+                return Verdict(False, lacks)
+            with np.errstate(all="ignore"):
+                if isinstance(self.says, Settling):
+                    return evaluate_settling(self.says, record, units)
+                verdict = evaluate_formula(self.says, record, units)
+                return replace(verdict, limits=tuple(formulas.limits(self.says)))
+        except InputError as error:
+            raise InputError(f"criterion {self.text!r}: {error}") from None
 
-    def _column(
-        self, name: str, signals: Mapping[str, Any], units: Units, length: int
-    ) -> FloatArray:
-        """Return a signal's values in SI."""
-        if name not in signals:
-            raise InputError(f"criterion {self.text!r}: {unknown('signal', name, signals)}")
-        column = np.asarray(signals[name])
-        # An empty column has no type worth looking at.
-        if column.size and column.dtype.kind not in "biuf":
-            raise InputError(f"criterion {self.text!r}: {name} holds text, not numbers")
-        if column.shape != (length,):
-            raise InputError(
-                f"criterion {self.text!r}: {name} has {column.size} rows, the time has {length}"
-            )
-        measure = unit(units[name])
-        return column.astype(float) * measure.factor + measure.offset
+    def _record(self, time: FloatArray, signals: Mapping[str, Any], units: Units) -> Record:
+        """Return the columns that are needed, numbers in SI."""
+        numbers, texts = dict[str, FloatArray](), dict[str, list[str]]()
+        for name, wanted in self.kinds.items():
+            if name not in signals:
+                raise InputError(unknown("signal", name, signals))
+            if len(signals[name]) != len(time):
+                raise InputError(f"{name} has {len(signals[name])} rows, the time has {len(time)}")
+            if "text" in wanted:
+                texts[name] = _texts(name, signals[name])
+            if wanted != {"text"}:
+                numbers[name] = _numbers(name, signals[name], units[name])
+        return Record(time, numbers, texts)
+
+
+def _numbers(name: str, column: Any, unit_text: str) -> FloatArray:
+    """Return a column in SI."""
+    column = np.asarray(column)
+    # An empty column has no type worth looking at.
+    if column.size and column.dtype.kind not in "biuf":
+        raise InputError(f"{name} holds text, not numbers")
+    measure = unit(unit_text)
+    numbers: FloatArray = column.astype(float) * measure.factor + measure.offset
+    return numbers
+
+
+def _texts(name: str, column: Any) -> list[str]:
+    texts = list(column)
+    if not all(isinstance(value, str) for value in texts):
+        raise InputError(f"{name} holds no text")
+    return texts
 
 
 def parse(text: str) -> Criterion:
     """Return the criterion written ``text``.
 
     Raises InputError with the column and what was expected there; for a unit that is none; for
-    a condition where a number belongs, or the reverse; if no signal occurs.
+    a condition where a number belongs, or the reverse; if no signal occurs; for what looks ahead
+    joined with what does not, outside of an operator that says when.
     """
     try:
-        criterion: Criterion = _parser().parse(text)  # type: ignore[assignment]
-    except UnexpectedInput as error:
-        raise InputError(f"criterion {text!r}: {_syntax(text, error)}") from None
+        says = tree(text)
+        if not isinstance(says, Settling):
+            says = _from_the_start(says)
     except InputError as error:
         raise InputError(f"criterion {text!r}: {error}") from None
+    criterion = Criterion(text, says)
     if not criterion.signals:
         raise InputError(f"criterion {text!r}: names no signal")
-    return replace(criterion, text=text)
+    return criterion
 
 
-@cache
-def _parser() -> Lark:
-    # The tables made of a grammar are kept: lark makes them again for another grammar or version.
-    kept = cache_folder("grammars") / f"criteria-{sys.implementation.cache_tag}"
-    return Lark(GRAMMAR, parser="lalr", transformer=_Builder(), cache=str(kept))
-
-
-def _syntax(text: str, error: UnexpectedInput) -> str:
-    """Return what is wrong where, and what would be right there."""
-    at_end = isinstance(error, UnexpectedToken) and error.token.type == "$END"
-    position = len(text) if at_end else error.pos_in_stream or 0
-    word = re.match(r"[\w.]+|.", text[position:], re.DOTALL)
-    found = repr(word.group()) if word else "the end"
-    assert isinstance(error, (UnexpectedToken, UnexpectedCharacters))
-    accepted: set[str] = error.interactive_parser.accepts()  # type: ignore[no-untyped-call]
-    if "NUMBER" in accepted:
-        accepted.discard("SIGN")
-    expected = sorted({_EXPECTED.get(n, repr(n.strip("_").lower())) for n in accepted})
-    return f"column {position + 1}: found {found}, expected one of: {', '.join(expected)}"
-
-
-@v_args(inline=True)
-class _Builder(Transformer[Token, Criterion]):
-    """Builds a criterion from the bottom up while lark parses."""
-
-    # ------------------------------------------------------------------ forms
-
-    def always(self, subject: Any, window: Span = WHOLE) -> Criterion:
-        return Criterion("", "always", _condition(subject), window)
-
-    def finally_(self, subject: Any) -> Criterion:
-        return Criterion("", "finally", _condition(subject))
-
-    def within(self, limit: float, subject: Any, window: Span = WHOLE) -> Criterion:
-        return Criterion("", "within", _condition(subject), replace(window, within=limit))
-
-    def settles(self, subject: Any, limit: float, settling: dict[str, float]) -> Criterion:
-        span = Span(settling.get("after"), within=limit)
-        band = settling.get("band", DEFAULT_BAND)
-        return Criterion("", "settles", _expression(subject), span, band)
-
-    def window(self, start: float, end: float | None = None) -> Span:
-        if end is not None and end < start:
-            raise InputError(f"the window ends at {end:g} s, before it starts at {start:g} s")
-        return Span(start, end)
-
-    def settling(self, *parts: tuple[str, float]) -> dict[str, float]:
-        return dict(parts)
-
-    def band(self, quantity: ex.Literal) -> tuple[str, float]:
-        if unit(quantity.unit).exponents or not 0 < quantity.value < 1:
-            raise InputError("the band of 'settles' is a share such as 'to 2 %'")
-        return "band", quantity.value
-
-    def after(self, start: float) -> tuple[str, float]:
-        return "after", start
-
-    def duration(self, quantity: ex.Literal) -> float:
-        if unit(quantity.unit).exponents != {"s": 1}:
-            raise InputError(f"a time such as '5 s' is needed, got one in {quantity.unit!r}")
-        # To the nanosecond, as time is counted: 300 ms in doubles is not 0.3.
-        return round(quantity.value, 9)
-
-    # ------------------------------------------------------------------ conditions
-
-    def either(self, left: Any, right: Any) -> Logic:
-        return _shallow(Logic("or", (_condition(left), _condition(right))))
-
-    def both(self, left: Any, right: Any) -> Logic:
-        return _shallow(Logic("and", (_condition(left), _condition(right))))
-
-    def negated(self, part: Any) -> Logic:
-        return _shallow(Logic("not", (_condition(part),)))
-
-    def comparison(self, left: Any, operator: Token, right: Any) -> Comparison:
-        return _shallow(Comparison(str(operator), _expression(left), _expression(right)))
-
-    # ------------------------------------------------------------------ expressions
-
-    def operation(self, left: Any, operator: Token, right: Any) -> ex.Operation:
-        arguments = (_expression(left), _expression(right))
-        return _shallow(ex.Operation(str(operator), arguments))
-
-    def signed(self, sign: Token, part: Any) -> Expression:
-        part = _expression(part)
-        return _shallow(ex.Operation("negative", (part,))) if sign == "-" else part
-
-    def call(self, function: Token, *arguments: Any) -> ex.Operation:
-        name = str(function)
-        if name in ("abs", "sqrt") and len(arguments) != 1:
-            raise InputError(f"{name} takes one value, got {len(arguments)}")
-        return _shallow(ex.Operation(name, tuple(_expression(a) for a in arguments)))
-
-    def signal(self, name: Token) -> ex.Signal:
-        return ex.Signal(str(name))
-
-    def quantity(self, value: Token, unit_text: Token | None = None) -> ex.Literal:
-        return ex.literal(str(value), str(unit_text or "1"))
-
-
-def _condition(node: Any) -> Condition:
-    if not isinstance(node, (Comparison, Logic)):
-        raise InputError("a comparison such as 'hull.position.z < 0.1 m' is needed, got a number")
-    return node
-
-
-def _expression(node: Any) -> Expression:
-    if isinstance(node, (Comparison, Logic)):
-        raise InputError("a number or signal is needed, got a comparison")
-    result: Expression = node
-    return result
-
-
-def _shallow(node: Node) -> Node:
-    """Return ``node``; raise InputError if it is too deep to walk without exhausting the stack."""
-    if ex.depth(node) > ex.MAX_DEPTH:
-        raise InputError(f"is nested or chained more than {ex.MAX_DEPTH} levels deep")
-    return node
+def _from_the_start(node: Formula) -> Formula:
+    """Return the formula that the start of a run must meet."""
+    if not formulas.looks_ahead(node):
+        return Temporal("always", WHOLE, (node,))
+    if formulas.from_the_start(node):
+        return node
+    raise InputError(
+        "joins what looks ahead with what does not: write 'always (...)' for every point, or "
+        "'always' before the part that is meant so"
+    )

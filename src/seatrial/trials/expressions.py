@@ -1,4 +1,4 @@
-"""Arithmetic and conditions over recorded signals, with units: what a criterion is made of.
+"""Arithmetic over recorded signals, with units: what the predicates of a criterion compare.
 
 Every value is SI while it is computed. An angle is a unit of its own, as in FMI: a product of
 an angular velocity and a length is ``m.rad/s``, and ``/ 1 rad`` makes it a velocity.
@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,18 +24,6 @@ Value = float | FloatArray
 Values = Mapping[str, FloatArray]
 Units = Mapping[str, str]
 Exponents = dict[str, int]
-
-MAX_DEPTH = 100
-
-
-class Limit(NamedTuple):
-    """A bound that a criterion puts on one signal, to be drawn into its plot."""
-
-    signal: str
-    value: float
-    """SI."""
-    kind: str
-    """``max``, ``min``, or ``band`` for an edge of the band in which the signal must settle."""
 
 
 @dataclass(frozen=True)
@@ -108,31 +96,32 @@ class Operation:
 Expression = Literal | Signal | Operation
 
 
-def signal_names(node: Expression | Condition) -> set[str]:
+def signal_names(node: Expression) -> set[str]:
     """Return the names of all signals that occur in ``node``."""
     return {leaf.name for leaf in node.leaves() if isinstance(leaf, Signal)}
 
 
-def renamed(node: Any, names: Mapping[str, str]) -> Any:
-    """Return an expression or condition with other names of signals."""
+def renamed(node: Expression, names: Mapping[str, str]) -> Expression:
+    """Return an expression with other names of signals."""
     if isinstance(node, Signal):
         return Signal(names[node.name])
     if isinstance(node, Literal):
         return node
-    if isinstance(node, Comparison):
-        return Comparison(node.operator, renamed(node.left, names), renamed(node.right, names))
     return replace(node, arguments=tuple(renamed(argument, names) for argument in node.arguments))
 
 
-def depth(node: Expression | Condition) -> int:
+def depth(node: Expression) -> int:
     """Return how many levels the tree has."""
     if isinstance(node, (Literal, Signal)):
         return 1
-    parts = (node.left, node.right) if isinstance(node, Comparison) else node.arguments
-    return 1 + max(depth(part) for part in parts)
+    return 1 + max(depth(part) for part in node.arguments)
 
 
-def unit_of(node: Expression | Comparison, units: Units, exponents: Exponents) -> str:
+class _Leafy(Protocol):
+    def leaves(self) -> Iterator[Literal | Signal]: ...
+
+
+def unit_of(node: _Leafy, units: Units, exponents: Exponents) -> str:
     """Return the unit in which a person would state values of ``node``.
 
     That is the unit of its first literal that measures the same, else of such a signal (degrees
@@ -225,168 +214,6 @@ _OPERATIONS = {
     "sqrt": _Rule(np.sqrt, _root),
 }
 FUNCTIONS = ("abs", "max", "min", "sqrt")
-
-
-# ---------------------------------------------------------------------- conditions
-
-
-@dataclass(frozen=True)
-class Comparison:
-    """``left < right`` or ``<= > >=``.
-
-    ``measured`` is the side with signals (the left one if both have some), ``bound`` the other.
-    """
-
-    operator: str
-    left: Expression
-    right: Expression
-
-    @property
-    def measured(self) -> Expression:
-        """The side that varies."""
-        return self.left if signal_names(self.left) else self.right
-
-    @property
-    def bound(self) -> Expression:
-        """The side that the measured one is compared with."""
-        return self.right if signal_names(self.left) else self.left
-
-    @property
-    def kind(self) -> str:
-        """``max`` if the measured side must stay below the bound, else ``min``."""
-        return "max" if (self.measured is self.left) == (self.operator in ("<", "<=")) else "min"
-
-    def leaves(self) -> Iterator[Literal | Signal]:
-        """Yield all literals and signals, from left to right."""
-        yield from self.left.leaves()
-        yield from self.right.leaves()
-
-    def check(self, units: Units) -> None:
-        """Raise InputError if the two sides do not measure the same."""
-        left, right = self.left.exponents(units), self.right.exponents(units)
-        check_same(f"{self.operator!r}", (self.left, left), (self.right, right), units)
-
-    def unit(self, units: Units) -> str:
-        """Return the unit in which a person would state both sides."""
-        return unit_of(self, units, self.left.exponents(units))
-
-    def holds(self, values: Values) -> BoolArray:
-        """Return, per row, whether the comparison is true."""
-        left, right = self.left.evaluate(values), self.right.evaluate(values)
-        result: BoolArray = np.asarray(_COMPARE[self.operator](left, right))
-        return result
-
-    def margin(self, values: Values) -> FloatArray:
-        """Return, per row, how far the comparison is from turning, in units of a fixed bound.
-
-        Positive where it holds. Without a fixed bound, or with a bound of zero, SI.
-        """
-        gap = np.subtract(self.bound.evaluate(values), self.measured.evaluate(values))
-        scale = 1.0
-        if not signal_names(self.bound):
-            scale = abs(float(self.bound.evaluate({}))) or 1.0
-        signed = gap if self.kind == "max" else -gap
-        result: FloatArray = np.asarray(signed / scale)
-        return result
-
-    def comparisons(self) -> list[Comparison]:
-        """Return this comparison alone."""
-        return [self]
-
-    def decisive(self, values: Values) -> Comparison:
-        """Return this comparison."""
-        return self
-
-    def limits(self) -> list[Limit]:
-        """Return the bounds on single signals, where the comparison is as simple as that."""
-        if signal_names(self.bound):
-            return []
-        bound = float(self.bound.evaluate({}))
-        return _limits(self.measured, bound, self.kind) if math.isfinite(bound) else []
-
-
-@dataclass(frozen=True)
-class Logic:
-    """``and``, ``or`` or ``not`` of conditions.
-
-    Its margin is the least, the greatest or the negative one of its parts.
-    """
-
-    name: str
-    arguments: tuple[Condition, ...]
-
-    def leaves(self) -> Iterator[Literal | Signal]:
-        """Yield all literals and signals, from left to right."""
-        for argument in self.arguments:
-            yield from argument.leaves()
-
-    def check(self, units: Units) -> None:
-        """Raise InputError if the sides of a comparison do not measure the same."""
-        for argument in self.arguments:
-            argument.check(units)
-
-    def holds(self, values: Values) -> BoolArray:
-        """Return, per row, whether the condition is true."""
-        parts = [a.holds(values) for a in self.arguments]
-        result: BoolArray = _LOGIC[self.name](*parts)
-        return result
-
-    def margin(self, values: Values) -> FloatArray:
-        """Return, per row, the margin of the part that decides."""
-        parts = [a.margin(values) for a in self.arguments]
-        if self.name == "not":
-            return -parts[0]
-        result: FloatArray = (np.minimum if self.name == "and" else np.maximum)(*parts)
-        return result
-
-    def comparisons(self) -> list[Comparison]:
-        """Return all comparisons, from left to right."""
-        return [c for argument in self.arguments for c in argument.comparisons()]
-
-    def decisive(self, values: Values) -> Comparison:
-        """Return the comparison that decides in the single row ``values``."""
-        holds = bool(np.all(self.holds(values)))
-        want = holds != (self.name == "not")
-        parts = [a for a in self.arguments if bool(np.all(a.holds(values))) == want]
-        by_margin = min if self.name == "and" else max
-        return by_margin(parts, key=lambda a: float(np.max(a.margin(values)))).decisive(values)
-
-    def limits(self) -> list[Limit]:
-        """Return the bounds on single signals; none for what is not a plain conjunction."""
-        if self.name != "and":
-            return []
-        return [limit for argument in self.arguments for limit in argument.limits()]
-
-
-Condition = Comparison | Logic
-
-_COMPARE: dict[str, Callable[..., Any]] = {
-    "<": np.less,
-    "<=": np.less_equal,
-    ">": np.greater,
-    ">=": np.greater_equal,
-}
-_LOGIC: dict[str, Callable[..., Any]] = {
-    "and": np.logical_and,
-    "or": np.logical_or,
-    "not": np.logical_not,
-}
-
-
-def _limits(measured: Expression, bound: float, kind: str) -> list[Limit]:
-    if isinstance(measured, Signal):
-        return [Limit(measured.name, bound, kind)]
-    if not isinstance(measured, Operation):
-        return []
-    name, arguments = measured.name, measured.arguments
-    if name == "negative":
-        return _limits(arguments[0], -bound, "min" if kind == "max" else "max")
-    if name == "abs" and kind == "max":
-        return [*_limits(arguments[0], bound, "max"), *_limits(arguments[0], -bound, "min")]
-    if name == kind:
-        # The greatest stays below a bound if each one does, the least above it likewise.
-        return [limit for a in arguments for limit in _limits(a, bound, kind)]
-    return []
 
 
 def literal(text: str, unit_text: str) -> Literal:

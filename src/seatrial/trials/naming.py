@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ..cosim.joining import Resolver
+from ..cosim.paths import split_path
 from ..cosim.recorder import matching, output_names
 from ..cosim.system import System
 from ..errors import InputError
 from .criteria import Criterion
-from .expressions import renamed
 from .trial import Trial
 
 
@@ -20,11 +20,11 @@ def by_path(trial: Trial, system: System) -> Trial:
     ``vehicle.hull.position.x``. Other names stay as they are. Raises InputError for what a rig
     inside does not show.
     """
-    if not trial.rig.top.inner:
-        return trial
     naming, file = _Naming(system), trial.file
     where = str(trial.read_from.path)
     criteria = tuple((name, naming.criterion(c, f"{where}: {name}")) for name, c in trial.criteria)
+    if not trial.rig.top.inner:
+        return replace(trial, criteria=criteria)
     plots = [
         entry.model_copy(update={"signals": [naming.one(s, where) for s in entry.signals]})
         for entry in file.plots
@@ -76,8 +76,22 @@ class _Naming:
 
     def criterion(self, criterion: Criterion, where: str) -> Criterion:
         """Return a criterion of outputs by path."""
-        names = {name: self.one(name, where) for name in criterion.signals}
-        return replace(criterion, subject=renamed(criterion.subject, names))
+        texts = {name for name, kinds in criterion.kinds.items() if "text" in kinds}
+        named = {n: self._text_of_terminal(n) if n in texts else n for n in criterion.signals}
+        return criterion.renamed({n: self.one(found, where) for n, found in named.items()})
+
+    def _text_of_terminal(self, name: str) -> str:
+        """Return the one output of a component's terminal, such as a UART: or the name itself."""
+        if name in self._outputs:
+            return name
+        component, port = split_path(self._system.parts, name)
+        part = self._system.parts.get(component)
+        terminal = None if part is None else part.instance.terminals.get(port)
+        if part is None or terminal is None:
+            return name
+        members = {f"{component}.{member}" for member in terminal.members.values()}
+        found = sorted(members & self._outputs)
+        return found[0] if len(found) == 1 else name
 
     def pattern(self, written: str, where: str) -> list[str]:
         """Return the patterns of paths for one of shown names: a name, or ``name.*``."""

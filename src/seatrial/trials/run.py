@@ -37,8 +37,8 @@ class Result:
 
     @property
     def passed(self) -> bool:
-        """True if the run came to an end of its own and every criterion holds."""
-        return is_whole(self.status) and all(v.passed for _, _, v in self.verdicts)
+        """True if the run came to an end of its own and every criterion is as expected."""
+        return is_whole(self.status) and all(v.as_expected for _, _, v in self.verdicts)
 
 
 def run_trial(

@@ -52,12 +52,17 @@ class Run:
 
     @property
     def passed(self) -> bool | None:
-        """Whether the run came to an end of its own and all criteria passed; None without any."""
+        """Whether the run came to an end of its own, all criteria as expected; None without any."""
         if not is_whole(self.manifest["status"]):
             return False
         if not self.manifest["criteria"]:
             return None
-        return bool(self.verdicts) and all(verdict["passed"] for verdict in self.verdicts)
+        return bool(self.verdicts) and all(map(is_as_expected, self.verdicts))
+
+
+def is_as_expected(verdict: Mapping[str, Any]) -> bool:
+    """Say if a verdict is what the trial says it will be; those of before expect that all hold."""
+    return bool(verdict["passed"] == (verdict.get("expected", "pass") == "pass"))
 
 
 def viewed(

@@ -155,6 +155,10 @@ class _Verdict(_Entry):
     unit: str
     time: Number | None
     limits: list[_Limit]
+    robustness: Number | None = None
+    margin: str = ""
+    expected: Literal["pass", "fail"] = "pass"
+    why: str = ""
 
 
 class _Durations(_Entry):
@@ -191,6 +195,10 @@ class _CaseVerdict(_Entry):
     detail: str
     worst: Number | None = None
     unit: str | None = None
+    robustness: Number | None = None
+    margin: str = ""
+    expected: Literal["pass", "fail"] = "pass"
+    why: str = ""
 
 
 def _inside(folder: str) -> str:

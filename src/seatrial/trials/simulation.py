@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import datetime
 import time
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +20,7 @@ from .output import write_json, write_json_into_reserve, write_json_with_reserve
 from .pacing import Pace
 from .preparation import Prepared
 from .termination import TerminationConditions
+from .trial import CriterionEntry
 from .verdict import Verdict
 
 _OURS = "ended by an error of seatrial itself"
@@ -86,9 +87,10 @@ class Run:
 
         If they cannot be written, the run has failed and there are none.
         """
-        trial, (t, signals) = self.prepared.trial, self._recorder.watched()
+        trial, units = self.prepared.trial, self.prepared.units
+        t, signals = self._recorder.watched()
         verdicts = [
-            (name, entry.check, criterion.evaluate(t, signals, self.prepared.units))
+            (name, entry.check, self._verdict(entry, criterion.evaluate(t, signals, units)))
             for entry, (name, criterion) in zip(trial.file.criteria, trial.criteria, strict=True)
         ]
         rows = [{"name": name, "check": check, **asdict(of)} for name, check, of in verdicts]
@@ -109,6 +111,10 @@ class Run:
         return [*notes, *of_master, *self._floods, *pace]
 
     # ------------------------------------------------------------------ inside
+
+    @staticmethod
+    def _verdict(entry: CriterionEntry, found: Verdict) -> Verdict:
+        return replace(found, expected=entry.expect, why=entry.why)
 
     def _claim(self) -> None:
         """Write the manifest of a run under way; nothing empty is left on a full disk."""

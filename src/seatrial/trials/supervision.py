@@ -16,11 +16,11 @@ from typing import Any, NoReturn
 from ..cosim.system import Engine
 from ..errors import InputError, SimulationError
 from .ending import is_whole
-from .expressions import Limit
 from .forked import Forked
 from .hooks import Hooks, StoppedError
 from .link import Frame
 from .output import claim_folder, write_json
+from .predicates import Limit
 from .preloading import preload
 from .run import Result, check_trial, run_trial
 from .run_folder import MANIFEST, written_status

@@ -2,52 +2,60 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 
 from ..cosim.master import Master
 from ..units import unit
-from .criteria import Criterion
-from .expressions import Comparison, FloatArray, Logic
+from .expressions import FloatArray
+from .formulas import Formula
+from .predicates import Kind, Record
+from .robustness import Evaluation
 from .trial import Trial
 
 
 class TerminationConditions:
     """Criteria with ``ends``, evaluated at every communication point.
 
-    One that must always hold ends the run where it is broken, one that must hold ``within`` a
-    duration where it holds for the first time.
+    One that must always hold ends the run where it is broken, one that must hold eventually
+    where it holds for the first time.
     """
 
     def __init__(self, trial: Trial, master: Master, units: Mapping[str, str]) -> None:
         self._master = master
-        ending = [
-            criterion
-            for entry, (_, criterion) in zip(trial.file.criteria, trial.criteria, strict=True)
-            if entry.ends
-        ]
-        self._kept = _conditions(ending, "always")
-        self._wanted = _conditions(ending, "within")
+        self._conditions: list[Formula] = []
+        self._goals: list[Formula] = []
+        kinds: dict[str, set[Kind]] = {}
+        for entry, (_, criterion) in zip(trial.file.criteria, trial.criteria, strict=True):
+            if entry.ends:
+                if criterion.condition is not None:
+                    self._conditions.append(criterion.condition)
+                elif criterion.goal is not None:
+                    self._goals.append(criterion.goal)
+                for name, wanted in criterion.kinds.items():
+                    kinds.setdefault(name, set()).update(wanted)
         places = {".".join(name): place for place, name in enumerate(master.names)}
-        needed = set().union(*(criterion.signals for criterion in ending))
-        self._scales = {name: (places[name], unit(units[name])) for name in needed}
+        self._texts = {name: places[name] for name, wanted in kinds.items() if "text" in wanted}
+        self._scales = {
+            name: (places[name], unit(units[name]))
+            for name, wanted in kinds.items()
+            if wanted != {"text"}
+        }
 
     def status(self) -> str | None:
         """Return the status of a run that is over now, ended or complete; else None."""
-        if not self._kept and not self._wanted:
+        if not self._conditions and not self._goals:
             return None
-        values: dict[str, FloatArray] = {
-            name: np.array([float(self._master.signals[place]) * measure.factor + measure.offset])
+        signals = self._master.signals
+        numbers: dict[str, FloatArray] = {
+            name: np.array([float(signals[place]) * measure.factor + measure.offset])
             for name, (place, measure) in self._scales.items()
         }
-        if not all(condition.holds(values).all() for condition in self._kept):
+        texts = {name: [str(signals[place])] for name, place in self._texts.items()}
+        now = Evaluation(Record(np.zeros(1), numbers, texts))
+        if not all(now.margins(condition)[0][0] > 0 for condition in self._conditions):
             return "ended"
-        if any(condition.holds(values).all() for condition in self._wanted):
+        if any(now.margins(goal)[0][0] > 0 for goal in self._goals):
             return "complete"
         return None
-
-
-def _conditions(criteria: Sequence[Criterion], form: str) -> list[Comparison | Logic]:
-    found = [criterion.subject for criterion in criteria if criterion.form == form]
-    return [subject for subject in found if isinstance(subject, (Comparison, Logic))]

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from ..component import seconds
@@ -25,7 +25,7 @@ from .criteria import Criterion, parse
 from .scenario import Scenario, events_of, read_scenario
 from .surroundings import GROUPS, CurrentEntry, SeaEntry, WindEntry, set_surroundings
 from .utc import Utc, instant_of, set_start_time
-from .verdict import WHOLE
+from .verdict import Expectation
 
 
 class RecordEntry(FileModel):
@@ -41,6 +41,16 @@ class CriterionEntry(FileModel):
     name: str
     check: str
     ends: bool = False
+    expect: Expectation = "pass"
+    """Of the trial as its file has it: whoever changes a setting expects that all hold."""
+    why: str = ""
+    """Why it is expected to fail: what is published, a defect that is known."""
+
+    @model_validator(mode="after")
+    def _says_why(self) -> CriterionEntry:
+        if (self.expect == "fail") != bool(self.why):
+            raise PydanticCustomError("why", 'expect = "fail" needs why, and only that')
+        return self
 
 
 class EventEntry(FileModel):
@@ -267,6 +277,8 @@ class Trial:
                 known = (*keys, *rig_keys, f"{_CHOICES}NAME", *(f"{g}.KEY" for g in GROUPS))
                 raise InputError(f"{origin}: {unknown('key', key, known)}, or component.port")
         content = {**self.file.model_dump(exclude_unset=True), **own}
+        if changes:
+            content["criteria"] = [_unexpected(entry) for entry in content.get("criteria", [])]
         file = validated(TrialFile, content, self.read_from.path)
         rig = self.rig
         if choices != self.file.choices:
@@ -332,6 +344,11 @@ _CHOICES = "choices."
 """What the key of a choice begins with, among settings."""
 
 
+def _unexpected(criterion: dict[str, Any]) -> dict[str, Any]:
+    """Return a criterion of a file without what is expected of it."""
+    return {key: value for key, value in criterion.items() if key not in ("expect", "why")}
+
+
 def choices_in(changes: Mapping[str, Any], origin: str) -> dict[str, str]:
     """Return the choices among settings, by name. Raises InputError for one that is no text."""
     found = {k.removeprefix(_CHOICES): v for k, v in changes.items() if k.startswith(_CHOICES)}
@@ -375,11 +392,10 @@ def _trial(name: str, relative_to: Path | None, changes: Mapping[str, Any], orig
     for index, entry in enumerate(file.criteria):
         try:
             criterion = parse(entry.check)
-            plain = replace(criterion.span, within=None) == WHOLE
-            if entry.ends and not (plain and criterion.form in ("always", "within")):
+            if entry.ends and criterion.condition is None and criterion.goal is None:
                 raise InputError(
                     f"{entry.check!r} cannot end a run: with ends = true a condition that holds "
-                    "at every point, or within a duration, is needed, without a window"
+                    "at every point is needed, or 'eventually[0 s, ...]' before it"
                 )
             criteria.append((entry.name, criterion))
         except InputError as error:

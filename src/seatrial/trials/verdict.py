@@ -1,4 +1,4 @@
-"""Verdicts: evaluation of a record by a condition, or of its settling time."""
+"""Verdicts: what became of a formula on a record, for a person and for programs."""
 
 from __future__ import annotations
 
@@ -8,56 +8,14 @@ from typing import Literal
 
 import numpy as np
 
-from .expressions import (
-    BoolArray,
-    Comparison,
-    Condition,
-    Expression,
-    FloatArray,
-    Limit,
-    Signal,
-    Units,
-    Values,
-    unit_of,
-)
-from .readable import distinct, from_si, number, quantity_text
+from . import formulas
+from .expressions import FloatArray, Units
+from .formulas import PREDICATES, Formula, Temporal
+from .predicates import TINY, Comparison, Limit, Predicate, Record, Telling
+from .readable import from_si, number, quantity_text
+from .robustness import HALF_NS, Evaluation
 
-_HALF_NS = 0.5e-9
-"""Times are whole nanoseconds; less than half of one is rounding."""
-
-ConditionForm = Literal["always", "finally", "within"]
-
-
-@dataclass(frozen=True)
-class Span:
-    """The part of a record that is evaluated: from ``start`` (default: the first row) to ``end``.
-
-    ``within`` is the time allowed from its start. All in s.
-    """
-
-    start: float | None = None
-    end: float | None = None
-    within: float | None = None
-
-    def begin(self, time: FloatArray) -> float:
-        """Return the time at which the span starts."""
-        return float(time[0]) if self.start is None else self.start
-
-    def rows(self, time: FloatArray) -> BoolArray:
-        """Return which rows lie in the span."""
-        rows: BoolArray = time >= self.begin(time) - _HALF_NS
-        for last in (self.end, self.deadline(time)):
-            if last is not None:
-                rows &= time <= last + _HALF_NS
-        return rows
-
-    def deadline(self, time: FloatArray) -> float | None:
-        """Return the time until which something may take."""
-        return None if self.within is None else self.begin(time) + self.within
-
-
-WHOLE = Span()
-"""The whole record."""
+Expectation = Literal["pass", "fail"]
 
 
 @dataclass(frozen=True)
@@ -65,6 +23,7 @@ class Verdict:
     """Result of a criterion in a run."""
 
     passed: bool
+    """Whether it holds."""
     detail: str
     """For a person: the worst value, when, and what was allowed; or why there is none."""
     worst: float | None = None
@@ -75,176 +34,137 @@ class Verdict:
     """When that was, s."""
     limits: tuple[Limit, ...] = ()
     """Bounds on single signals, for plots."""
+    robustness: float | None = None
+    """Distance from the other verdict, see `robustness`; None if there is none."""
+    margin: str = ""
+    """The same for a person: ``44 %`` of a limit, ``0.3 m``; nothing if there is none."""
+    expected: Expectation = "pass"
+    why: str = ""
+    """Why it is expected to fail."""
+
+    @property
+    def as_expected(self) -> bool:
+        """Whether it is what the trial says it will be."""
+        return self.passed == (self.expected == "pass")
 
 
-def evaluate_condition(
-    form: ConditionForm,
-    condition: Condition,
-    span: Span,
-    time: FloatArray,
-    values: Values,
-    units: Units,
-) -> Verdict:
-    """Evaluate a condition that must hold always, finally or within a time."""
-    flaw = _flaw(time, values) or (form == "always" and _too_short(time, span.end))
-    if flaw:
-        return Verdict(False, flaw)
-    rows = span.rows(time)
-    if form == "finally":
-        rows = np.arange(len(time)) == len(time) - 1
-    if not rows.any():
-        return Verdict(False, f"no row to evaluate: the record runs {_range(time)}")
-    inside = {name: column[rows] for name, column in values.items()}
-    time = time[rows]
-    flaw = _undefined(condition, time, inside)
-    if flaw:
-        return Verdict(False, flaw)
-    holds = np.broadcast_to(condition.holds(inside), time.shape)
-    margin = np.broadcast_to(condition.margin(inside), time.shape)
-    passed = bool(holds.any() if form == "within" else holds.all())
-    row = _telling_row(form, holds, margin)
-    at_row = {name: column[row : row + 1] for name, column in inside.items()}
-    measured, bound, unit = _sides(condition.decisive(at_row), at_row, units)
-    detail = _detail(form, span, time, holds, row, distinct(measured, bound, unit))
-    return Verdict(passed, detail, measured, unit, float(time[row]))
-
-
-def evaluate_settling(
-    subject: Expression,
-    band: float,
-    span: Span,
-    time: FloatArray,
-    values: Values,
-    units: Units,
-) -> Verdict:
-    """Evaluate when ``subject`` enters for good the band about its final value.
-
-    The instant lies between rows, where the line through them crosses the edge of the band.
-    """
-    flaw = _flaw(time, values) or _too_short(time, span.deadline(time))
-    if flaw:
-        return Verdict(False, flaw)
-    course = np.broadcast_to(np.asarray(subject.evaluate(values), dtype=float), time.shape)
-    if not np.isfinite(course).all():
-        return Verdict(False, _no_number(time, course))
-    allowed, begin = span.within or 0.0, span.begin(time)
-    final = float(course[-1])
-    distance = course - final
-    width = band * float(np.abs(distance).max())
-    settled = max(begin, _last_crossing(time, distance, width, time >= begin - _HALF_NS))
-    took = settled - begin
-    passed = took <= allowed + _HALF_NS
-
-    exponents = subject.exponents(units)
-    unit = unit_of(subject, units, exponents)
-    shown_width = from_si(width, unit) - from_si(0.0, unit)
-    final_text = quantity_text(_rounded(from_si(final, unit), shown_width), unit)
-    width_text = quantity_text(shown_width, unit, 3)
-    took_text, allowed_text = distinct(took, allowed, "s")
-    detail = (
-        f"settles in {took_text} (at {number(settled)} s), limit {allowed_text}; "
-        f"final value {final_text}, band ±{width_text}"
+def evaluate_formula(node: Formula, record: Record, units: Units) -> Verdict:
+    """Evaluate a formula at the start of a record of at least one row."""
+    evaluation = Evaluation(record)
+    low, high = (float(margin[0]) for margin in evaluation.margins(node))
+    if low < 0 < high:
+        return Verdict(False, _undecided(node, evaluation))
+    passed = low > 0
+    robustness = low if passed else high
+    finite = math.isfinite(robustness)
+    robustness = 0.0 if abs(robustness) <= TINY else robustness
+    found = evaluation.decisive(node, 0)
+    if found is None:  # the window of a part is empty: no value decides
+        return Verdict(passed, "holds" if passed else "does not hold")
+    predicate, row = found
+    telling, time = predicate.telling(record, row, units), float(record.time[row])
+    return Verdict(
+        passed,
+        _detail(node, evaluation, passed, telling, time),
+        telling.value,
+        telling.unit,
+        time,
+        robustness=robustness if finite else None,
+        margin=_margin_text(predicate, robustness, telling.unit) if finite else "",
     )
-    limits: tuple[Limit, ...] = ()
-    if isinstance(subject, Signal):
-        limits = tuple(Limit(subject.name, final + side * width, "band") for side in (1, -1))
-    return Verdict(passed, detail, took, "s", settled, limits)
+
+
+def share_text(share: float) -> str:
+    """Return a share of a limit as a person reads it."""
+    return quantity_text(100.0 * share, "%", 3)
 
 
 # ---------------------------------------------------------------------- what a record lacks
 
 
-def _flaw(time: FloatArray, values: Values) -> str:
+def flaw(record: Record) -> str:
     """Return why a record cannot be evaluated, or nothing."""
-    if not len(time):
+    if not len(record.time):
         return "the record is empty"
-    for name, column in sorted(values.items()):
+    for name, column in sorted(record.numbers.items()):
         if not np.isfinite(column).all():
             row = int(np.argmin(np.isfinite(column)))
-            return f"{name} is {column[row]} at {number(time[row], 9)} s"
+            return f"{name} is {column[row]} at {number(record.time[row], 9)} s"
     return ""
 
 
-def _too_short(time: FloatArray, needed: float | None) -> str:
-    if needed is None or time[-1] >= needed - _HALF_NS:
+def too_short(time: FloatArray, needed: float) -> str:
+    """Return that a record ends before it should, or nothing."""
+    if time[-1] >= needed - HALF_NS:
         return ""
     return f"the record ends at {number(time[-1], 9)} s, before {number(needed, 9)} s"
 
 
-def _undefined(condition: Condition, time: FloatArray, values: Values) -> str:
-    for comparison in condition.comparisons():
-        for side in (comparison.left, comparison.right):
-            course = np.broadcast_to(np.asarray(side.evaluate(values), dtype=float), time.shape)
-            if not np.isfinite(course).all():
-                return _no_number(time, course)
-    return ""
-
-
-def _no_number(time: FloatArray, course: FloatArray) -> str:
+def no_number(time: FloatArray, course: FloatArray) -> str:
+    """Return where an expression is no finite number."""
     row = int(np.argmin(np.isfinite(course)))
     return f"the expression is {course[row]} at {number(time[row], 9)} s"
+
+
+def _undecided(node: Formula, evaluation: Evaluation) -> str:
+    """Return why a record does not decide a formula."""
+    record = evaluation.record
+    short = too_short(record.time, float(record.time[0]) + formulas.horizon(node))
+    if short:
+        return short
+    start = 0
+    if isinstance(node, Temporal) and node.name != "finally":
+        start = int(evaluation.windows(node.interval, past=False)[0][0])
+    for predicate in formulas.predicates(node):
+        course = predicate.undefined(record)
+        if course is not None and not np.isfinite(course[start:]).all():
+            return no_number(record.time[start:], course[start:])
+    return f"the record ends at {number(record.time[-1], 9)} s, too early to decide"
 
 
 # ---------------------------------------------------------------------- what is reported
 
 
-def _telling_row(form: ConditionForm, holds: BoolArray, margin: FloatArray) -> int:
-    """Return the row to report: the worst one, or for 'within' the first one that holds."""
-    if form == "within":
-        return int(np.argmax(holds)) if holds.any() else int(np.argmax(margin))
-    if holds.all():
-        return int(np.argmin(margin))
-    return int(np.argmin(np.where(holds, np.inf, margin)))
-
-
-def _sides(comparison: Comparison, values: Values, units: Units) -> tuple[float, float, str]:
-    """Return the measured and the bounding value of a single row, and their unit."""
-    unit = comparison.unit(units)
-    measured, bound = (
-        from_si(float(np.max(side.evaluate(values))), unit)
-        for side in (comparison.measured, comparison.bound)
-    )
-    return measured, bound, unit
+def _margin_text(predicate: Predicate, robustness: float, unit: str) -> str:
+    if isinstance(predicate, Comparison) and predicate.scale is None:
+        return quantity_text(from_si(robustness, unit) - from_si(0.0, unit), unit, 3)
+    return share_text(robustness)
 
 
 def _detail(
-    form: ConditionForm,
-    span: Span,
-    time: FloatArray,
-    holds: BoolArray,
-    row: int,
-    texts: tuple[str, str],
+    node: Formula, evaluation: Evaluation, passed: bool, telling: Telling, time: float
 ) -> str:
-    measured, bound = texts
-    at = f"{measured} at {number(time[row], 9)} s"
-    if form == "finally":
-        return f"ends with {at}, limit {bound}"
-    if form == "within":
-        allowed = f"allowed until {number(span.deadline(time) or 0.0, 9)} s"
-        if holds.any():
-            return f"reaches {at}, limit {bound}, {allowed}"
-        return f"never in time: closest {at}, limit {bound}, {allowed}"
-    if holds.all():
-        return f"worst {at}, limit {bound}"
-    return f"worst {at}, limit {bound}, first broken at {number(time[np.argmin(holds)], 9)} s"
+    limit = f", limit {telling.limit}" if telling.limit else ""
+    at = f"{telling.text} at {number(time, 9)} s{limit}"
+    name = "" if isinstance(node, PREDICATES) else node.name
+    if isinstance(node, Temporal):
+        if name == "finally":
+            return f"ends with {at}"
+        if name == "always":
+            return _detail_of_always(node, evaluation, passed, bool(limit), at)
+        if formulas.is_timeless(node.parts[0]):
+            return _detail_of_eventually(node, evaluation.record, passed, at)
+    return f"holds: {at}" if passed else f"does not hold: {at}"
 
 
-def _last_crossing(time: FloatArray, distance: FloatArray, width: float, rows: BoolArray) -> float:
-    """Return when ``distance`` is last outside ±``width`` in ``rows``, or minus infinity."""
-    outside = np.flatnonzero((np.abs(distance) > width) & rows)
-    if not len(outside):
-        return -np.inf
-    row = int(outside[-1])
-    # The last row is never outside: its distance is zero.
-    edge = np.copysign(width, distance[row])
-    share = (distance[row] - edge) / (distance[row] - distance[row + 1])
-    return float(time[row] + share * (time[row + 1] - time[row]))
+def _detail_of_always(
+    node: Temporal, evaluation: Evaluation, passed: bool, has_limit: bool, at: str
+) -> str:
+    if passed:
+        return f"worst {at}" if has_limit else "holds at every point"
+    start = int(evaluation.windows(node.interval, past=False)[0][0])
+    broken = evaluation.margins(node.parts[0])[1][start:] < 0
+    first = number(evaluation.record.time[start + int(np.argmax(broken))], 9)
+    if not formulas.is_timeless(node.parts[0]):
+        return f"first broken at {first} s: {at}"
+    return f"worst {at}, first broken at {first} s" if has_limit else at
 
 
-def _rounded(value: float, width: float) -> float:
-    """Return ``value`` without digits that are small against ``width``."""
-    return round(value, 2 - math.floor(math.log10(width))) if width > 0 else value
-
-
-def _range(time: FloatArray) -> str:
-    return f"from {number(time[0], 9)} s to {number(time[-1], 9)} s"
+def _detail_of_eventually(node: Temporal, record: Record, passed: bool, at: str) -> str:
+    last = node.interval.last
+    allowed = ""
+    if last is not None:
+        allowed = f", allowed until {number(float(record.time[0]) + last, 9)} s"
+    if passed:
+        return f"reaches {at}{allowed}"
+    return f"never in time: closest {at}{allowed}" if allowed else f"never: closest {at}"
