@@ -65,6 +65,8 @@ ELSEWHERE = {
     LINKS / "arduino.md",  # a fixture of the sketch's own tests
     DOCS / "autopilots.md",  # tests/links/ardupilot: time stands still until a firmware comes
     LINKS / "ground-stations.md",  # sessions of MAVSDK and MAVProxy, in tests/interop
+    HOW_TO / "test-with-pytest.md",  # tests/testing
+    DOCS / "tutorials/ci.md",  # tests/testing: a project of its own
     REFERENCE / "cli.md",  # made from the commands' own help
     DOCS / "performance.md",  # a benchmark
 }

@@ -60,7 +60,7 @@ def test_a_criterion_that_fails_is_status_one(tmp_path: Path) -> None:
         "--out",
         "x",
         "--set",
-        "drone.pad=transversal",
+        "downwash.pad=transversal",
         cwd=tmp_path,
     )
     assert done.returncode == 1

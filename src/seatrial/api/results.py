@@ -12,7 +12,9 @@ from ..errors import InputError, SimulationError
 from .written import as_engine, as_settings
 
 if TYPE_CHECKING:
+    from ..cosim.system import Engine
     from ..trials.run_folder import Run
+    from ..trials.trial import Trial
     from .signals import Signals
 
 
@@ -164,10 +166,7 @@ def run_trial(
     that could not go on, and KeyboardInterrupt for one that was interrupted; its folder holds
     what was recorded so far, for `load_result`.
     """
-    from ..links.hardware import confined
     from ..shipped import available
-    from ..trials.hooks import Hooks
-    from ..trials.supervision import run_supervised
     from ..trials.trial import load_trial
 
     try:
@@ -176,10 +175,23 @@ def run_trial(
         if trial in available("harness/campaigns") and trial not in available("harness/trials"):
             raise InputError(f"{trial} is a campaign: run_campaign runs it; {error}") from None
         raise
+    return run_loaded(loaded, None if out is None else Path(out), as_engine(engine), progress)
+
+
+def run_loaded(
+    loaded: Trial,
+    folder: Path | None,
+    engine: Engine,
+    progress: Callable[[float, float], None] | None = None,
+) -> TrialResult:
+    """Run a trial that was read; see `run_trial`, which raises the same."""
+    from ..links.hardware import confined
+    from ..trials.hooks import Hooks
+    from ..trials.supervision import run_supervised
+
     hooks = Hooks() if progress is None else Hooks(progress=progress)
     with confined():
-        folder = None if out is None else Path(out)
-        result = run_supervised(loaded, folder, engine=as_engine(engine), hooks=hooks)
+        result = run_supervised(loaded, folder, engine=engine, hooks=hooks)
     if result.status == "stopped":
         raise KeyboardInterrupt
     if result.status == "failed":

@@ -120,7 +120,7 @@ class Criterion:
         self.check_units(units)
         time = np.asarray(time, dtype=float)
         try:
-            record = self._record(time, signals, units)
+            record = self.record(time, signals, units)
             lacks = flaw(record)
             if lacks:
                 return Verdict(False, lacks)
@@ -132,8 +132,8 @@ class Criterion:
         except InputError as error:
             raise InputError(f"criterion {self.text!r}: {error}") from None
 
-    def _record(self, time: FloatArray, signals: Mapping[str, Any], units: Units) -> Record:
-        """Return the columns that are needed, numbers in SI."""
+    def record(self, time: FloatArray, signals: Mapping[str, Any], units: Units) -> Record:
+        """Return the columns that are needed, numbers in SI. Raises InputError."""
         numbers, texts = dict[str, FloatArray](), dict[str, list[str]]()
         for name, wanted in self.kinds.items():
             if name not in signals:

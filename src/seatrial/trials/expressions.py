@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ..errors import InputError
 from ..units import unit
-from .readable import person_unit
+from .readable import person_unit, quantity_text
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -108,6 +108,21 @@ def renamed(node: Expression, names: Mapping[str, str]) -> Expression:
     if isinstance(node, Literal):
         return node
     return replace(node, arguments=tuple(renamed(argument, names) for argument in node.arguments))
+
+
+def written(node: Expression) -> str:
+    """Return an expression as a person could have written it; numbers in their unit."""
+    if isinstance(node, Signal):
+        return node.name
+    if isinstance(node, Literal):
+        measure = unit(node.unit)
+        return quantity_text((node.value - measure.offset) / measure.factor, node.unit, 6)
+    parts = [written(argument) for argument in node.arguments]
+    if node.name in FUNCTIONS:
+        return f"{node.name}({', '.join(parts)})"
+    if node.name == "negative":
+        return f"-{parts[0]}"
+    return f"({f' {node.name} '.join(parts)})"
 
 
 def depth(node: Expression) -> int:
