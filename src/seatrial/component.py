@@ -285,6 +285,12 @@ class Component:
         self.outputs(self.now)
         self._check_outputs()
 
+    def begin_anew(self) -> None:
+        """Return to before `setup`, with all parameters and inputs at their start values."""
+        for scalar in self.scalars:
+            self.values[scalar.reference] = scalar.port.start[scalar.index]
+        self._phase = _INSTANTIATED
+
     def get_state(self) -> dict[str, Any]:
         """Return a copy of the whole state, hidden variables included, as plain data.
 

@@ -7,7 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from seatrial.cosim.injected import Acting
 from seatrial.errors import InputError, SimulationError
+from seatrial.faults.operators import Bias
 
 from .conftest import Bench, value
 
@@ -159,17 +161,18 @@ def test_a_bias_is_added_until_it_is_released(bench: Bench) -> None:
         'ramp = { fmu = "users.py:Ramp" }\nadd = { fmu = "users.py:Add" }\nsum = { fmu = "users.py:Sum" }',
         '"ramp.y" = ["add.u", "sum.u"]',
     )
-    master.override("ramp", "y", 5.0, is_bias=True)
-    master.override("add", "u", 0.25, is_bias=True)
+    for number, (name, bias) in enumerate({"ramp.y": 5.0, "add.u": 0.25}.items()):
+        component, port = name.split(".")
+        master.inject(component, port, Acting(f"{number}", Bias(bias), master.time_ns))
     assert (value(master, "ramp.y"), value(master, "add.y")) == (5.0, 6.25)
     state = master.save()
     for _ in range(2):
         master.step()
     assert (value(master, "ramp.y"), value(master, "add.y")) == (5.2, 6.45)
     assert value(master, "sum.x") == pytest.approx(0.1 * (5.0 + 5.1), rel=1e-15)
-    master.release("ramp", "y")
+    master.clear("0")
     assert (value(master, "ramp.y"), value(master, "add.y")) == (0.2, 1.45)
-    master.override("add", "u", -1.0)  # instead of the bias
+    master.override("add", "u", -1.0)  # after the bias
     assert value(master, "add.y") == 0.0
     master.restore(state)
     assert (value(master, "ramp.y"), value(master, "add.y")) == (5.0, 6.25)

@@ -7,13 +7,13 @@ import pytest
 
 from seatrial.devices.actuator import INTERVAL_NS, LATE_NS
 from seatrial.devices.angle_servo import AngleServo
-from seatrial.devices.fault import FAULTS
 from seatrial.devices.force_actuator import ForceActuator
 from seatrial.devices.linear_thruster import LinearThruster
 from seatrial.devices.rudder_machine import RudderMachine
 from seatrial.devices.servo import Servo
 from seatrial.devices.thruster import Thruster
 from seatrial.errors import InputError, SimulationError
+from seatrial.faults.catalogue import FAILURES as FAULTS
 
 from .running import run, started
 

@@ -7,7 +7,7 @@ import pytest
 from seatrial.component import Component
 from seatrial.control.guidance_orders import TARGETS
 from seatrial.control.sailing_guidance import SailingGuidance
-from seatrial.devices.fault import FAULTS
+from seatrial.faults.catalogue import FAILURES as FAULTS
 from seatrial.fmi.source import shipped_sources
 from seatrial.units import unit
 from tests.snapshot import changed, snapshot

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from seatrial.devices.compass import Compass
-from seatrial.devices.fault import FAULTS
 from seatrial.errors import InputError
+from seatrial.faults.catalogue import FAILURES as FAULTS
 
 from .running import run, started
 from .test_sensor import ROUGH, SIGMAS, Probe
@@ -154,5 +154,7 @@ def test_a_failure_taken_back_at_the_same_instant_leaves_no_trace(fault):
 def test_an_unknown_failure_is_refused_with_those_that_there_are():
     probe = started(Probe)
     probe.set("fault", "of")
-    with pytest.raises(InputError, match=r"Probe: unknown fault 'of'; did you mean 'off'.*garbage"):
+    with pytest.raises(
+        InputError, match=r"Probe.fault: unknown fault 'of'; did you mean 'off'.*garbage"
+    ):
         probe.get("y")

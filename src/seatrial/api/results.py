@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -139,6 +139,7 @@ def run_trial(
     trial: str | Path,
     *,
     set: Mapping[str, Any] | None = None,
+    faults: Sequence[Mapping[str, Any]] = (),
     out: str | Path | None = None,
     engine: str = "direct",
     progress: Callable[[float, float], None] | None = None,
@@ -149,6 +150,8 @@ def run_trial(
     changes it as ``--set`` does: ``component.port`` or ``variant``, ``seed``, ``start``, ``stop``,
     ``scenario``, ``step``, ``algorithm``, ``choices.NAME``; numbers in the port's unit (SI; s),
     text with a unit (``"10 deg"``), sequences and arrays with one element per axis.
+
+    ``faults`` are more of the trial's ``faults``, a mapping of keys each, as in its file.
 
     The run leaves a folder, because a result without its manifest cannot be repeated: ``out``,
     which must not hold anything yet, or else a new one, ``runs/NAME-DATE-TIME``, below the
@@ -171,6 +174,7 @@ def run_trial(
 
     try:
         loaded = load_trial(str(trial), changes=as_settings(set), origin="set")
+        loaded = loaded.failing([dict(each) for each in faults], "faults")
     except InputError as error:
         if trial in available("harness/campaigns") and trial not in available("harness/trials"):
             raise InputError(f"{trial} is a campaign: run_campaign runs it; {error}") from None

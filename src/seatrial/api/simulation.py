@@ -16,6 +16,7 @@ from .written import as_duration, as_engine, as_settings, as_written
 
 if TYPE_CHECKING:
     from ..cosim.actions import ActionKind
+    from ..cosim.fault_schedule import Fault
     from ..cosim.master import Master, Snapshot
     from ..cosim.rig import Rig
     from ..cosim.system import System
@@ -23,6 +24,17 @@ if TYPE_CHECKING:
     from .recording import Recording
 
 Observer = TypeVar("Observer", bound=Callable[..., object])
+
+
+class Injection:
+    """A fault that a simulation was given."""
+
+    def __init__(self, master: Master, fault: Fault) -> None:
+        self._master, self._fault = master, fault
+
+    def clear(self) -> None:
+        """End it now, whether it has begun or not. Raises SimulationError."""
+        self._master.faults.end(self._master, self._fault)
 
 
 class State:
@@ -181,10 +193,40 @@ class Simulation:
         """
         self._act("set", name, value)
 
+    def inject(
+        self, what: str, where: str | Sequence[str], *, for_: str | float | None = None, **more: Any
+    ) -> Injection:
+        """Let a fault of the catalogue act on ``where`` from now on, and return it.
+
+        Keys and values are those of a trial's ``faults``; numbers are in the port's unit, times in
+        s: ``inject("bias", "gnss.position_n.x", value=5.0, grows_over=10)``. ``for_`` says how
+        long, ``at`` when, if not now. Raises InputError.
+        """
+        from ..cosim.fault_entry import FaultEntry
+        from ..cosim.faults import resolved
+        from ..cosim.files import validated
+
+        self._refuse_ended()
+        places = where if isinstance(where, str) else list(where)
+        written = {"what": what, "where": places, "for": for_, **more}
+        content = {key: as_written(value) for key, value in written.items() if value is not None}
+        for key in {"at", "for", "grows_over", "time", "jitter", "every"} & content.keys():
+            content[key] = as_duration(content[key])
+        entry = validated(FaultEntry, content, Path("inject"))
+        master = self._master
+        number = len(master.faults.faults)
+        fault = resolved(master.system, entry, number, master.time_ns, "inject")
+        if fault.begin_ns < master.time_ns:
+            raise InputError(f"inject: at = {content['at']!r} has passed at t = {self.time!r} s")
+        master.faults.add(fault)
+        master.faults.act(master)
+        return Injection(master, fault)
+
     def override(self, name: str, value: Any) -> None:
         """Replace an output for all its readers, or a connected input, until `release`.
 
-        As an ``override`` event of a trial at this time. Raises InputError.
+        For what a program commands step by step; another value of the same name replaces the one
+        before. What fails is injected. Raises InputError.
         """
         self._act("override", name, value)
 

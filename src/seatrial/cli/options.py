@@ -34,6 +34,14 @@ Autopilot = Annotated[
         help="Short for --choose autopilot=NAME, and program=PROGRAM, which it starts.",
     ),
 ]
+Faults = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--fault",
+        metavar="PLACE=FAULT,KEY=VALUE",
+        help="Let something fail, such as 'gnss=off, at=10 s, for=5 s'; as faults of a trial.",
+    ),
+]
 EngineName = Annotated[
     str, typer.Option("--engine", help="'fmu': every component is an FMU; 'direct': in process.")
 ]

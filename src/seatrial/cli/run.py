@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
+from ..cosim.fault_entry import read_fault
 from ..cosim.system import Engine
 from ..errors import InputError, SimulationError
 from ..links.hardware import allow_devices, allow_network
@@ -22,6 +23,7 @@ from .options import (
     Autopilot,
     Choices,
     EngineName,
+    Faults,
     Out,
     Settings,
     Vehicle,
@@ -38,6 +40,7 @@ from .watch import Watch
 def run(
     trial: Annotated[str, typer.Argument(help="A trial or campaign: a name, a file or a package.")],
     settings: Settings = None,
+    faults: Faults = None,
     choices: Choices = None,
     vehicle: Vehicle = None,
     autopilot: Autopilot = None,
@@ -74,6 +77,8 @@ def run(
         campaign = load_campaign(trial)
         if settings:
             raise InputError("--set works with a trial; a campaign sets its own parameters")
+        if faults:
+            raise InputError("--fault works with a trial; a campaign has faults of its own")
         if changes:
             raise InputError("--choose works with a trial; a campaign has choices in its grid")
         if pace:
@@ -83,6 +88,7 @@ def run(
         _run_campaign(campaign, out, chosen)
         return
     loaded = load_trial(trial, changes=changes, origin="--set")
+    loaded = loaded.failing([read_fault(text, "--fault") for text in faults or []], "--fault")
     if in_real_time and loaded.file.real_time is None:
         pace.setdefault("factor", 1.0)
     loaded = _paced(loaded, pace)

@@ -1,7 +1,8 @@
-"""Actions: ports set, overridden, biased or released while a system runs."""
+"""Actions: ports set, overridden or released while a system runs."""
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -12,7 +13,7 @@ from .part import Part
 from .system import System, settable
 from .values import from_written, port_names, port_scalars
 
-ActionKind = Literal["set", "override", "bias", "release"]
+ActionKind = Literal["set", "override", "release"]
 
 
 @dataclass(frozen=True)
@@ -37,8 +38,8 @@ class Action:
             if self.kind == "set":
                 master.set(change.component, list(change.values), list(change.values.values()))
             for name, value in change.values.items():
-                if self.kind in ("override", "bias"):
-                    master.override(change.component, name, value, is_bias=self.kind == "bias")
+                if self.kind == "override":
+                    master.override(change.component, name, value)
                 elif self.kind == "release":
                     master.release(change.component, name)
 
@@ -47,7 +48,7 @@ def action(system: System, kind: ActionKind, key: str, written: Any, where: str)
     """Return the action on ``component.port`` of what a person wrote.
 
     Inputs that nothing feeds and tunable parameters can be set; outputs and inputs that are
-    wholly connected, overridden, biased (no texts) and released. What a rig inside shows stands
+    wholly connected, overridden and released. What a rig inside shows stands
     for all ports that it means. Raises InputError, naming ``where``.
     """
     located = system.located(key, where)
@@ -70,11 +71,13 @@ def _change(
         raise InputError(f"{where}: {component}: {unknown('port', port, port_names(variables))}")
     fed = system.feeders(component)
     connected = [variable.name in fed for variable in scalars]
+    if kind == "set" and scalars[0].role == "fault":
+        raise InputError(f"{where}: {key} is written by faults: {_hint(key, written)}")
     if kind == "set":
         settable(variables, port, f"{where}: {component}")
         if any(connected):
             feeder = next(fed[variable.name] for variable in scalars if variable.name in fed)
-            raise InputError(f"{where}: {key} is fed by {feeder}; override it instead")
+            raise InputError(f"{where}: {key} is fed by {feeder}; a fault replaces it")
         if not _can_change(scalars[0]):
             raise InputError(f"{where}: {key} is fixed and cannot change during a run")
     elif {(component, scalars[0].name)} & {one.target for one in system.initial}:
@@ -83,9 +86,13 @@ def _change(
         raise InputError(
             f"{where}: {key} is neither an output nor an input that is wholly connected"
         )
-    if kind == "bias" and scalars[0].type not in (float, int, bool):
-        raise InputError(f"{where}: {key} is no number to add to")
     if kind == "release":
         return Change(component, dict.fromkeys(variable.name for variable in scalars))
     given = from_written(written, scalars, part.presets.get(port, {}), where)
     return Change(component, {name: value.value for name, value in given.items()})
+
+
+def _hint(key: str, written: Any) -> str:
+    """Return the entry of faults that stands for what was set."""
+    place = key.removesuffix(".fault") if key.endswith(".fault") else key.replace(".fault.", ".")
+    return f"[[faults]] where = {json.dumps(place)}, what = {json.dumps(str(written))}"

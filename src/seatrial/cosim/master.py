@@ -14,9 +14,12 @@ from typing import Any
 
 from ..component import NS
 from ..errors import InputError
+from ..faults.operators import Fixed
 from .algorithms import Algorithm
 from .divergence import DivergenceWatch
+from .fault_schedule import Schedule
 from .feedthrough import Feedthrough
+from .injected import Acting
 from .network import Name, Network, Node
 from .part import Part
 from .registry import ALGORITHMS
@@ -32,7 +35,7 @@ class Snapshot:
     time: float
     """Simulated time, s."""
     checkpoint: Checkpoint
-    overrides: Any
+    faults: Any
     watch: Any
 
 
@@ -50,6 +53,8 @@ class Master:
         self.steps = 0
         self._network = Network(system)
         self._network.time_ns = start_ns
+        self.faults = Schedule()
+        """What goes wrong, and when; add to it before `initialise` or at any point."""
 
     @property
     def names(self) -> list[Name]:
@@ -101,12 +106,14 @@ class Master:
         self._algorithm = self._chosen()
         self._rollback = Rollback(self._network, self._feedthrough, self._algorithm)
         self._watch = DivergenceWatch(self._network)
+        self.faults.act(self)
 
     def step(self) -> None:
         """Advance everything by one communication step. Raises SimulationError."""
         self._rollback.advance(self.steps, self.time_ns, self.step_ns)
         self.steps += 1
         self._watch.look(self.steps)
+        self.faults.act(self)
 
     def ended(self) -> list[str]:
         """Return the components that have asked to end the simulation."""
@@ -129,23 +136,45 @@ class Master:
         With an algorithm such as plain Jacobi they follow after the next step. Raises
         SimulationError.
         """
-        node = self._network.nodes[component]
-        node.part.instance.writer(names)(values)
-        if self._algorithm.follows_at_once and self.steps % node.every == 0:
-            self._network.read(node.chunks)
+        self._network.set(component, names, values)
+        self._follow(component)
         self._changed()
 
-    def override(self, component: str, name: str, value: Any, *, is_bias: bool = False) -> None:
-        """Replace an output for all its readers, or one connected input, until `release`.
-
-        A bias is added to it instead.
-        """
-        self._network.override(component, name, value, is_bias=is_bias)
+    def inject(self, component: str, name: str, fault: Acting) -> None:
+        """Let a fault act from now on: on an output for all its readers, or on one input."""
+        self._network.inject(component, name, fault)
+        self._follow(component)
         self._changed()
+
+    def clear(self, key: str) -> None:
+        """End all that the fault ``key`` does: what it acted on has its own value again."""
+        for component in self._network.clear(key):
+            self._follow(component)
+        self._changed()
+
+    def override(self, component: str, name: str, value: Any) -> None:
+        """Replace an output for all its readers, or one input, until `release`."""
+        self._network.clear(_override(component, name))
+        self.inject(component, name, Acting(_override(component, name), Fixed(value), self.time_ns))
 
     def release(self, component: str, name: str) -> None:
-        """End an override or a bias: the connection carries its own value again."""
-        self._network.override(component, name, None)
+        """End an override: the connection carries its own value again."""
+        self.clear(_override(component, name))
+
+    def restart(self, component: str) -> None:
+        """Start a component anew, as at the start of the run, with the present time.
+
+        Raises SimulationError.
+        """
+        node = self._network.nodes[component]
+        instance = node.part.instance
+        instance.reset()
+        instance.set_start({name: one.value for name, one in node.part.given.items()})
+        stop = math.inf if self.stop_ns is None else self.stop_ns / NS
+        instance.initialise(self.time, stop)
+        self._network.restarted(node)
+        instance.begin()
+        self._network.read(node.chunks)
         self._changed()
 
     def values(self, component: str, names: Sequence[str]) -> list[Any]:
@@ -156,7 +185,7 @@ class Master:
         return self._network.values(component, names)
 
     def save(self) -> Snapshot:
-        """Return the whole state, overrides included; `free` it when it is of no more use.
+        """Return the whole state, faults included; `free` it when it is of no more use.
 
         Raises InputError naming the components that cannot save and restore theirs,
         SimulationError if one cannot after all.
@@ -171,15 +200,15 @@ class Master:
         return Snapshot(
             self.time,
             self._rollback.save(self.steps),
-            self._network.save_overrides(),
+            self.faults.save(),
             self._watch.save(),
         )
 
     def restore(self, snapshot: Snapshot) -> None:
         """Return to a state that `save` returned; it stays valid. Raises SimulationError."""
         self._rollback.forget()
-        self._network.restore_overrides(snapshot.overrides)
         self._rollback.restore(snapshot.checkpoint)
+        self.faults.restore(snapshot.faults)
         self._watch.restore(snapshot.watch)
         self.steps = snapshot.checkpoint.steps
 
@@ -204,6 +233,12 @@ class Master:
         return [*notes, *self._algorithm.notes(self.steps)]
 
     # ------------------------------------------------------------------ inside
+
+    def _follow(self, component: str) -> None:
+        """Read a component's outputs where they follow at once what was set."""
+        node = self._network.nodes[component]
+        if self._algorithm.follows_at_once and self.steps % node.every == 0:
+            self._network.read(node.chunks)
 
     def _start(self, node: Node) -> None:
         stop = math.inf if self.stop_ns is None else self.stop_ns / NS
@@ -271,6 +306,10 @@ class Master:
         self._rollback.forget()
         self._algorithm.forget()
         self._feedthrough.propagate(self.steps)
+
+
+def _override(component: str, name: str) -> str:
+    return f"override of {component}.{name}"
 
 
 def _give_again(part: Part) -> None:

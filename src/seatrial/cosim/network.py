@@ -16,6 +16,7 @@ from typing import Any
 from ..component import NS
 from ..errors import ExcessError, SimulationError
 from ..fmi.instance import Reader, Writer
+from .injected import Acting, Injected
 from .part import Part
 from .system import Connection, System
 from .timing import StepTimes
@@ -45,15 +46,17 @@ class Writes:
 
     connections: list[Connection]
     places: list[int]
-    """Where each input's value stands: at its connection's source, or by itself if overridden."""
+    """Where each input's value stands."""
     write: Writer
     continuous: list[int]
     """Inputs that change continuously between two communication points."""
     gather: Callable[[list[Any]], Sequence[Any]]
     scales: list[tuple[int, float, float]]
+    now: Callable[[], int]
+    """The network's time, ns."""
     mappings: list[tuple[int, Mapping[Any, Any]]] = field(default_factory=list)
-    biases: dict[int, Any] = field(default_factory=dict)
-    """What is added to an input, once converted."""
+    injected: dict[int, Injected] = field(default_factory=dict)
+    """Faults of an input, once converted."""
 
     def values(self, signals: list[Any]) -> Sequence[Any]:
         """Return the inputs' values, converted."""
@@ -62,12 +65,14 @@ class Writes:
             values = list(values)
             for i, mapping in self.mappings:
                 values[i] = mapping.get(values[i], values[i])
-        if self.scales or self.biases:
+        if self.scales:
             values = list(values)
             for i, factor, offset in self.scales:
                 values[i] = values[i] * factor + offset
-            for i, bias in self.biases.items():
-                values[i] = biased(values[i], bias)
+        if self.injected:
+            values, t_ns = list(values), self.now()
+            for i, faults in self.injected.items():
+                values[i] = faults.value(t_ns, values[i])
         return values
 
 
@@ -94,17 +99,21 @@ class Node:
 
 
 @dataclass
-class _Override:
-    """An output with an override or a bias, and what it last was by itself."""
+class _Loose:
+    """Faults of an input or a tunable parameter that nothing feeds."""
 
-    value: Any
+    write: Writer
     own: Any
-    is_bias: bool = False
+    """What it was set to."""
+    shown: Any
+    injected: Injected = field(default_factory=Injected)
 
-    @property
-    def read(self) -> Any:
-        """What its readers get."""
-        return biased(self.own, self.value) if self.is_bias else self.value
+    def renew(self, t_ns: int) -> None:
+        """Set what it is at ``t_ns``, if that is not what it was."""
+        value = self.injected.value(t_ns, self.own)
+        if value != self.shown:
+            self.write([value])
+            self.shown = value
 
 
 class Network:
@@ -116,9 +125,23 @@ class Network:
         self.signals: list[Any] = []
         self.places: dict[Name, int] = {}
         self.nodes = {n: Node(part, every=part.every) for n, part in system.parts.items()}
-        self.time_ns = 0
-        self._overrides: dict[int, _Override] = {}
+        self._time_ns = 0
+        self._injected: dict[int, Injected] = {}
+        self._own: dict[int, Any] = {}
+        """What outputs with faults are by themselves, by their places."""
+        self._loose: dict[Name, _Loose] = {}
         self._sources = {connection.source for connection in system.connections}
+
+    @property
+    def time_ns(self) -> int:
+        """Simulated time, ns. As it goes on, so do faults."""
+        return self._time_ns
+
+    @time_ns.setter
+    def time_ns(self, t_ns: int) -> None:
+        goes_on, self._time_ns = t_ns > self._time_ns, t_ns
+        if goes_on and (self._injected or self._loose):
+            self._renew()
 
     # ------------------------------------------------------------------ preparation
 
@@ -152,28 +175,18 @@ class Network:
             for kind in dict.fromkeys(variables[w.target[1]].type for w in connections):
                 of_kind = [w for w in connections if variables[w.target[1]].type is kind]
                 writer = node.part.instance.writer([w.target[1] for w in of_kind])
-                writes = Writes(
-                    of_kind, [self.places[w.source] for w in of_kind], writer, [], tuple, []
-                )
+                places = [self.places[w.source] for w in of_kind]
+                writes = Writes(of_kind, places, writer, [], tuple, [], lambda: self._time_ns)
                 self._bind(writes)
                 node.writes.append(writes)
 
     def _bind(self, writes: Writes) -> None:
         """Say how values are gathered, which a connection converts and which are continuous."""
         writes.gather = _gatherer(writes.places)
-        connected = [
-            (i, connection)
-            for i, connection in enumerate(writes.connections)
-            if writes.places[i] == self.places[connection.source]
-        ]
-        # An integer becomes a real number on its way, an overridden input has its unit already.
-        writes.scales = [
-            (i, connection.factor, connection.offset)
-            for i, connection in connected
-            if connection.scales
-        ]
-        writes.mappings = [(i, one.mapping) for i, one in connected if one.mapping]
-        writes.continuous = [i for i, connection in connected if self._is_continuous(connection)]
+        connections = list(enumerate(writes.connections))
+        writes.scales = [(i, one.factor, one.offset) for i, one in connections if one.scales]
+        writes.mappings = [(i, one.mapping) for i, one in connections if one.mapping]
+        writes.continuous = [i for i, one in connections if self._is_continuous(one)]
 
     def _is_continuous(self, connection: Connection) -> bool:
         ends = [
@@ -195,8 +208,8 @@ class Network:
                     if not -limit <= values[i] <= limit:
                         self._refuse_excess(chunk, values)
             self.signals[chunk.start : chunk.stop] = values
-            if self._overrides:
-                self._keep_overridden(chunk.start, chunk.stop)
+            if self._injected:
+                self._disturb(chunk.start, chunk.stop)
 
     def write(self, node: Node) -> None:
         """Move the current signals to a node's inputs."""
@@ -242,45 +255,98 @@ class Network:
                     "is needed"
                 )
 
-    # ------------------------------------------------------------------ overrides
+    # ------------------------------------------------------------------ faults
 
-    def override(self, component: str, name: str, value: Any, *, is_bias: bool = False) -> None:
-        """Replace an output for all its readers, or one connected input; None ends that.
+    def inject(self, component: str, name: str, fault: Acting) -> None:
+        """Let a fault act from now on: on an output for all its readers, or on one input.
 
-        A bias is added instead. Either ends the other.
+        It comes after those that act there already. An input or tunable parameter that nothing
+        feeds is set to what comes of its value.
         """
-        if (component, name) in self.places:
-            place = self.places[component, name]
-            own = (
-                self._overrides.pop(place).own if place in self._overrides else self.signals[place]
-            )
-            self.signals[place] = own
-            if value is not None:
-                self._overrides[place] = _Override(value, own, is_bias)
-                self.signals[place] = self._overrides[place].read
-            return
+        place = self.places.get((component, name))
+        if place is not None:
+            self._own.setdefault(place, self.signals[place])
+            self._injected.setdefault(place, Injected()).acting.append(fault)
+        elif fed := self._fed(component, name):
+            writes, index = fed
+            writes.injected.setdefault(index, Injected()).acting.append(fault)
+            writes.values(self.signals)  # it begins with what arrives now
+        else:
+            if (component, name) not in self._loose:
+                instance = self.nodes[component].part.instance
+                own = instance.reader([name])()[0]
+                self._loose[component, name] = _Loose(instance.writer([name]), own, own)
+            self._loose[component, name].injected.acting.append(fault)
+        self._renew()
+
+    def clear(self, key: str) -> set[str]:
+        """End all that the fault ``key`` does; return the components that were set anew."""
+        again = set()
+        for place, injected in list(self._injected.items()):
+            injected.end(key)
+            if not injected.acting:
+                del self._injected[place]
+                self.signals[place] = self._own.pop(place)
+        for writes in self._all_writes():
+            for index, injected in list(writes.injected.items()):
+                injected.end(key)
+                if not injected.acting:
+                    del writes.injected[index]
+        for name, loose in list(self._loose.items()):
+            loose.injected.end(key)
+            loose.renew(self._time_ns)
+            again.add(name[0])
+            if not loose.injected.acting:
+                del self._loose[name]
+        self._renew()
+        return again
+
+    def restarted(self, node: Node) -> None:
+        """Begin the streams of a component that has started anew, and write its inputs."""
+        for writes in node.writes:
+            for injected in writes.injected.values():
+                injected.restarted(None)
+        for chunk in node.chunks:
+            for place, own in zip(range(chunk.start, chunk.stop), chunk.read(), strict=True):
+                if place in self._injected:
+                    self._injected[place].restarted(own)
+                    self._own[place] = own
+        self.write(node)
+
+    def set(self, component: str, names: Sequence[str], values: Sequence[Any]) -> None:
+        """Set inputs and tunable parameters that nothing feeds; faults of them go on."""
+        free = dict(zip(names, values, strict=True))
+        for name in [name for name in names if (component, name) in self._loose]:
+            loose = self._loose[component, name]
+            loose.own = free.pop(name)
+            loose.renew(self._time_ns)
+        if free:
+            self.nodes[component].part.instance.writer(list(free))(list(free.values()))
+
+    def _fed(self, component: str, name: str) -> tuple[Writes, int] | None:
+        """Return where a connected input is, None for one that is not."""
         for writes in self.nodes[component].writes:
             for index, connection in enumerate(writes.connections):
                 if connection.target == (component, name):
-                    writes.places[index] = self.places[connection.source]
-                    writes.biases.pop(index, None)
-                    if is_bias and value is not None:
-                        writes.biases[index] = value
-                    elif value is not None:
-                        writes.places[index] = len(self.signals)
-                        self.signals.append(value)
-            self._bind(writes)
+                    return writes, index
+        return None
 
-    def _keep_overridden(self, start: int, stop: int) -> None:
-        for place, override in self._overrides.items():
+    def _renew(self) -> None:
+        for place, injected in self._injected.items():
+            self.signals[place] = injected.value(self._time_ns, self._own[place])
+        for loose in self._loose.values():
+            loose.renew(self._time_ns)
+
+    def _disturb(self, start: int, stop: int) -> None:
+        for place, injected in self._injected.items():
             if start <= place < stop:
-                override.own = self.signals[place]
-                self.signals[place] = override.read
+                self._own[place] = self.signals[place]
+                self.signals[place] = injected.value(self._time_ns, self._own[place])
 
     def values(self, component: str, names: Sequence[str]) -> list[Any]:
         """Return current values of a component's variables, whatever their causality.
 
-        A connected input has what arrives now, overrides included.
+        A connected input has what arrives now, faults included.
         """
         arriving = {
             connection.target[1]: value
@@ -300,40 +366,34 @@ class Network:
                 found.append(instance.reader([name])()[0])
         return found
 
-    def save_overrides(self) -> Any:
-        """Return which overrides there are, for `restore_overrides`."""
-        inputs = [
-            (list(w.places), dict(w.biases)) for node in self.nodes.values() for w in node.writes
-        ]
-        outputs = {place: (one.value, one.is_bias) for place, one in self._overrides.items()}
-        return outputs, inputs
-
-    def restore_overrides(self, memory: Any) -> None:
-        """Restore what `save_overrides` returned, before `restore` of the same instant."""
-        outputs, inputs = memory
-        self._overrides = {
-            place: _Override(value, None, is_bias) for place, (value, is_bias) in outputs.items()
-        }
-        writes = [w for node in self.nodes.values() for w in node.writes]
-        for one, (places, biases) in zip(writes, inputs, strict=True):
-            one.biases = dict(biases)
-            if one.places != places:
-                one.places = list(places)
-                self._bind(one)
-
     # ------------------------------------------------------------------ rollback
 
     def save(self) -> Any:
-        """Return a copy of everything here that a step changes."""
-        overrides = {place: override.own for place, override in self._overrides.items()}
-        return self.time_ns, list(self.signals), overrides
+        """Return a copy of everything here that a step changes, and of the faults that act."""
+        outputs = {place: (one, one.save()) for place, one in self._injected.items()}
+        inputs = [{i: (f, f.save()) for i, f in w.injected.items()} for w in self._all_writes()]
+        loose = {
+            name: (one, one.own, one.shown, one.injected.save())
+            for name, one in self._loose.items()
+        }
+        return self._time_ns, list(self.signals), dict(self._own), outputs, inputs, loose
 
     def restore(self, state: Any) -> None:
-        """Restore what `save` returned; no override may have come or gone since."""
-        self.time_ns, signals, overrides = state
+        """Restore what `save` returned."""
+        self._time_ns, signals, own, outputs, inputs, loose = state
         self.signals[:] = signals
-        for place, own in overrides.items():
-            self._overrides[place].own = own
+        self._own = dict(own)
+        self._injected = {place: _restored(*saved) for place, saved in outputs.items()}
+        for writes, saved in zip(self._all_writes(), inputs, strict=True):
+            writes.injected = {i: _restored(*each) for i, each in saved.items()}
+        self._loose = {}
+        for name, (one, own_value, shown, faults) in loose.items():
+            one.own, one.shown = own_value, shown
+            one.injected.restore(faults)
+            self._loose[name] = one
+
+    def _all_writes(self) -> list[Writes]:
+        return [writes for node in self.nodes.values() for writes in node.writes]
 
     def independent(self) -> list[list[Any]]:
         """Return, freshly read, the outputs that follow from states alone."""
@@ -353,9 +413,9 @@ class Network:
                     )
 
 
-def biased(value: Any, bias: Any) -> Any:
-    """Return a value with a bias, of the value's type: of truth values, whether one is true."""
-    return type(value)(value + bias)
+def _restored(injected: Injected, state: Any) -> Injected:
+    injected.restore(state)
+    return injected
 
 
 def _gatherer(places: Sequence[int]) -> Callable[[list[Any]], Sequence[Any]]:

@@ -17,6 +17,7 @@ class SumInstance:
     """
 
     rolls_back = any_step = True
+    restarts = False
     at_once = False
     ended_at: float | None = None
     terminals: Mapping[str, Terminal] = {}
@@ -66,6 +67,9 @@ class SumInstance:
 
     def step(self, t: float, h: float) -> None:
         """Advance: nothing to do, a sum has no state."""
+
+    def reset(self) -> None:
+        """Never called: it does not restart."""
 
     def get_state(self) -> Any:
         """Return a copy of the inputs."""

@@ -146,7 +146,7 @@ class System:
                     return  # the link's tunable starts there
                 feeder = ".".join(connection.source)
                 raise InputError(
-                    f"{origin}: {component}.{variable} is fed by {feeder}; override it in an event"
+                    f"{origin}: {component}.{variable} is fed by {feeder}; a fault replaces it"
                 )
 
     def located(self, written: str, where: str) -> list[tuple[Part, str]]:

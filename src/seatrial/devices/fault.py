@@ -1,12 +1,11 @@
-"""Failures of devices, by an input."""
+"""Faults of devices, by an input."""
 
 from __future__ import annotations
 
 from ..component import Component, Input
-from ..errors import InputError, unknown
-
-FAULTS = ("off", "stuck", "garbage", "wrong", "slow", "delayed", "intermittent")
-"""Values of the input ``fault`` beside ``none``: MAVLink's FAILURE_TYPE from 1, in its order."""
+from ..errors import InputError
+from ..faults.catalogue import FAILURES
+from ..faults.text import Written, read_text
 
 SLOWER = 10
 """How many times slower a slow device is."""
@@ -15,23 +14,30 @@ SHARE_WRONG = 0.1
 
 
 class Fallible(Component):
-    """Base of the devices that fail on demand: the input ``fault`` is ``none`` or one of `FAULTS`.
+    """Base of the devices that fail on demand, by their input ``fault``.
 
-    What each of them does is in `Sensor` and `Actuator`; with ``none`` it is as if there
-    were no such input. It acts from the device's next measurement, or step, on.
+    It is ``none``, one of `FAILURES`, or, of a sensor, a fault of what it measures
+    (`seatrial.faults.text`). What each of them does is in `Sensor` and `Actuator`; with ``none``
+    it is as if there were no such input. It acts from the device's next measurement, or step, on.
     """
 
     fault = Input(
         "1",
-        f"failure: none, {', '.join(FAULTS)}",
+        f"what is wrong: none, {', '.join(FAILURES)}",
         type=str,
         start="none",
         optional=True,
+        role="fault",
     )
 
     def failure(self) -> str:
-        """Return the failure that acts. Raises InputError for one that there is not."""
-        fault: str = self.fault
-        if fault != "none" and fault not in FAULTS:
-            raise InputError(f"{self.name}: {unknown('fault', fault, ('none', *FAULTS))}")
-        return fault
+        """Return the name of the fault that acts. Raises InputError for one that there is not."""
+        return self.written_fault().what
+
+    def written_fault(self) -> Written:
+        """Return the fault that acts. Raises InputError for one that there is not."""
+        text: str = self.fault
+        try:
+            return read_text(text)
+        except InputError as error:
+            raise InputError(f"{self.name}.fault: {error}") from None

@@ -7,7 +7,9 @@ from collections.abc import Sequence
 from typing import Any, ClassVar, Literal
 
 from ..component import NS, Noise, Output, Parameter
-from ..errors import InputError
+from ..errors import InputError, unknown
+from ..faults.operators import Bias, Deviation, Drift, Moment, Operator, Scale
+from ..faults.text import Written
 from ..sampled import Sampled
 from .fault import SHARE_WRONG, SLOWER, Fallible
 
@@ -116,6 +118,9 @@ class Sensor(Noise, Fallible, Sampled):
     delayed      it is published 10 periods later than otherwise
     intermittent it is lost with probability 1/2
     ============ ===================================================================
+
+    A fault of one measured output, such as ``bias of=heading value=0.1 at=12``, acts on y before
+    it is quantised, with the equation that it has on a signal (`seatrial.faults.operators`).
 
     Lost, garbage and wrong ones take the same way as all others: what was measured before the
     failure still arrives. Before there is a measurement, stuck is as off. What is overtaken by
@@ -237,7 +242,8 @@ class Sensor(Noise, Fallible, Sampled):
 
     def _measurement(self, k: int) -> tuple[list[Value], int, bool]:
         """Return the values, the count and whether it arrives, of measurement ``k`` now."""
-        fault = self.failure()
+        written = self.written_fault()
+        fault = written.what
         if fault == "slow" and k % SLOWER:
             return self._last, self._count, self._arrived
         if self._lost or self._fails(fault, k):
@@ -245,6 +251,8 @@ class Sensor(Noise, Fallible, Sampled):
         if fault == "stuck":
             return self._last, self._count + 1, True
         found = self._garbage(k) if fault == "garbage" else self._noisy()
+        if written.of:
+            found = self._disturbed(found, written, k)
         if all(y is None for y in found):
             return self._last, self._count, False
         values = [0.0 if y is None else y for y in found]
@@ -274,6 +282,25 @@ class Sensor(Noise, Fallible, Sampled):
             )
         ]
 
+    def _disturbed(self, found: Sequence[Value], fault: Written, k: int) -> Sequence[Value]:
+        """Return the measurement ``k`` with a fault of one output."""
+        port = next((p for p in self.measured if p.name == fault.of), None)
+        if port is None:
+            known = [p.name for p in self.measured]
+            raise InputError(f"{self.name}.fault: {unknown('measured output', fault.of, known)}")
+        first = sum(p.size for p in self.measured[: self.measured.index(port)])
+        at_ns = self._start_ns + k * self._period_ns
+        since = max(0, at_ns - round(fault.at * NS))
+        share = min(1.0, since / NS / fault.grows_over) if fault.grows_over else 1.0
+        moment = Moment(at_ns, since, share)
+        normal = self.generator(k, 2).standard_normal(port.size).tolist()
+        values = list(found)
+        for i in range(port.size):
+            x = values[first + i]
+            if x is not None:
+                values[first + i] = _faulty(fault, i, normal[i], x, moment)
+        return values
+
     def _publish(self, values: list[Value], count: int, valid: bool) -> None:
         place = 0
         for port in self.published:
@@ -286,6 +313,28 @@ class Sensor(Noise, Fallible, Sampled):
                 setattr(self, f"{port.name}_valid", all(there) if whole else there)
             place += port.size
         self.count, self.valid = count, valid
+
+
+def _faulty(fault: Written, axis: int, normal: float, x: float, moment: Moment) -> float:
+    """Return what becomes of one measured value; ``normal`` is standard normal."""
+
+    def setting(key: str) -> float:
+        values = fault.settings[key]
+        return values[axis if len(values) > 1 else 0]
+
+    match fault.what:
+        case "bias":
+            operator: Operator = Bias(setting("value"))
+        case "noise":
+            operator = Bias(setting("value") * normal)
+        case "drift":
+            operator = Drift(setting("rate"))
+        case "scale":
+            operator = Scale(setting("factor"))
+        case _:
+            operator = Deviation(tuple(fault.settings["coefficients"]))
+    value: float = operator.value(None, x, moment)
+    return value
 
 
 def _quantised(value: float, step: float) -> float:

@@ -22,6 +22,7 @@ class DirectInstance(ByType):
         self.variables = Variables({s.name: _variable(component, s) for s in component.scalars})
         self.feedthrough = scalar_feedthrough(component)
         self.rolls_back, self.any_step, self.at_once = component.rolls_back, True, False
+        self.restarts = True
         self.ended_at: float | None = None
         self.terminals, self.views = component.terminals, component.views
 
@@ -58,6 +59,11 @@ class DirectInstance(ByType):
 
     def free_state(self, state: Any) -> None:
         """Release a state: nothing to do in process."""
+
+    def reset(self) -> None:
+        """Return to before `set_start`."""
+        self._call("close", self.component.close)
+        self._call("reset", self.component.begin_anew)
 
     def terminate(self) -> None:
         """End the run."""

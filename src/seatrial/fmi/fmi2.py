@@ -55,6 +55,7 @@ class Fmi2Slave(Fmi2Access):
     def __init__(self, fmu: LoadedFmu, name: str) -> None:
         super().__init__(fmu, name)
         self._do_step = self._functions["DoStep"]
+        self.restarts = True
         self._never_back = int(not self.rolls_back)
         tool = fmu.description.generationTool or ""
         self._is_pythonfmu = tool.startswith(("seatrial", "PythonFMU"))

@@ -48,6 +48,7 @@ class FmuInstance(ByType):
         self.terminals, self.views = fmu.terminals, fmu.views
         self.rolls_back, self.any_step = fmu.rolls_back, fmu.any_step
         self.at_once = fmu.at_once
+        self.restarts = False
         self.ended_at: float | None = None
         self._ours = (fmu.description.generationTool or "").startswith("seatrial")
         self._fatal = False
@@ -115,6 +116,12 @@ class FmuInstance(ByType):
         """Release a state's memory; with the instance, it has gone already."""
         if self._c is not None and not self._fatal:
             self._call(f"Free{self._state_word}", ctypes.byref(state))
+
+    def reset(self) -> None:
+        """Return to before `set_start`."""
+        self.ended_at = None
+        self._call("Reset")
+        self._refuse_logged_errors("Reset")
 
     def terminate(self) -> None:
         """End the run."""

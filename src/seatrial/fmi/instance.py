@@ -147,6 +147,10 @@ class Instance(Protocol):
         """Whether it takes steps of different lengths."""
 
     @property
+    def restarts(self) -> bool:
+        """Whether `reset` can take it back to before its initialisation."""
+
+    @property
     def at_once(self) -> bool:
         """Whether `initialise` is all of its initialisation: inputs are written before it."""
 
@@ -198,6 +202,9 @@ class Instance(Protocol):
 
     def free_state(self, state: Any) -> None:
         """Release a handle."""
+
+    def reset(self) -> None:
+        """Return to before `set_start`, as a program that is started anew."""
 
     def terminate(self) -> None:
         """End the run."""

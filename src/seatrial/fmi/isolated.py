@@ -84,9 +84,9 @@ class IsolatedInstance:
                 sys.path,
                 fmu.options.as_json(),
             )
-            if not (isinstance(able, list) and len(able) == 2):
+            if not (isinstance(able, list) and len(able) == 3):
                 raise self._misunderstood("its instantiation")
-            self.rolls_back, self.any_step = map(bool, able)
+            self.rolls_back, self.any_step, self.restarts = map(bool, able)
             self.at_once = fmu.at_once
         except BaseException:
             self._process.end()
@@ -167,6 +167,12 @@ class IsolatedInstance:
     def free_state(self, state: Any) -> None:
         """Release a state."""
         self._call("free_state", "the release of a state", state)
+
+    def reset(self) -> None:
+        """Return to before `set_start`."""
+        self._touched()
+        self.ended_at = None
+        self._call("reset", "its reset")
 
     def terminate(self) -> None:
         """End the run."""

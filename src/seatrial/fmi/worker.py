@@ -156,7 +156,8 @@ class Worker:
             raise InputError(f"{path} was changed while it was being loaded")
         self._instance = open_instance(fmu, name)
         self._is_open = True
-        return [self._instance.rolls_back, self._instance.any_step]
+        instance = self._instance
+        return [instance.rolls_back, instance.any_step, instance.restarts]
 
     def call_reader(self, names: list[str]) -> int:
         """Bind a reader; return its number."""
@@ -208,6 +209,10 @@ class Worker:
     def call_free_state(self, number: int) -> None:
         """Release a state."""
         self._instance.free_state(self._states.pop(number))
+
+    def call_reset(self) -> None:
+        """Return to before the start values."""
+        self._instance.reset()
 
     def call_terminate(self) -> None:
         """End the run."""

@@ -6,6 +6,8 @@ from collections.abc import Mapping
 
 from ..component import seconds
 from ..cosim.actions import action
+from ..cosim.fault_schedule import Fault
+from ..cosim.faults import resolved
 from ..cosim.recorder import matching
 from ..cosim.system import System
 from ..errors import InputError, unknown
@@ -16,8 +18,20 @@ from .trial import Trial
 def check_events(trial: Trial, system: System) -> None:
     """Raise InputError for an event that could not be applied when its time comes."""
     for event in trial.events():
-        where = f"{trial.read_from.path}: event at {seconds(event.at_ns):g} s: {event.action}"
-        action(system, event.action, event.key, event.written, where)
+        where = f"{trial.read_from.path}: event at {seconds(event.at_ns):g} s: set"
+        action(system, "set", event.key, event.written, where)
+
+
+def trial_faults(trial: Trial, system: System) -> list[Fault]:
+    """Return the trial's faults. Raises InputError for one that does not fit."""
+    found = []
+    for index, entry in enumerate(trial.file.faults):
+        where = f"{trial.read_from.path}: faults.{index}"
+        fault = resolved(system, entry, index, trial.start_ns, where)
+        if not trial.start_ns <= fault.begin_ns <= trial.stop_ns:
+            raise InputError(f"{where}.at: {entry.at!r} is outside the trial's time")
+        found.append(fault)
+    return found
 
 
 def _outputs(system: System) -> dict[str, Variable]:

@@ -111,6 +111,7 @@ def _unsaid(trial: Trial) -> list[str]:
     file = trial.file
     entries = {
         "events": file.events,
+        "faults": file.faults,
         "criteria": file.criteria,
         "events of the scenario": trial.scenario,
     }

@@ -58,6 +58,7 @@ def manifest(trial: Trial, system: System, engine: Engine) -> dict[str, Any]:
         "criteria": [entry.model_dump() for entry in trial.file.criteria],
         "plots": [entry.model_dump() for entry in trial.file.plots],
         "events": [entry.model_dump() for entry in trial.file.events],
+        "faults": [entry.written for entry in trial.file.faults],
         **({} if trial.scenario is None else {"scenario": _file(trial.scenario.read_from)}),
     }
 

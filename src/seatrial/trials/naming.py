@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from ..cosim.faults import components_of
 from ..cosim.joining import Resolver
 from ..cosim.paths import split_path
 from ..cosim.recorder import matching, output_names
@@ -55,7 +56,8 @@ def named_components(trial: Trial, system: System) -> set[str]:
     keys = {event.key for event in trial.events()} | {key for key, _, _ in trial.settings()}
     keys |= {key for key, _, _ in trial.scales}
     located = [system.located(name, where) for name in signals | keys]
-    return {part.name for places in located for part, _ in places}
+    faulty = {c for entry in file.faults for c in components_of(system, entry, where)}
+    return {part.name for places in located for part, _ in places} | faulty
 
 
 class _Naming:

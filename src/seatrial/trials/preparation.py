@@ -11,7 +11,7 @@ from ..cosim.master import Master
 from ..cosim.system import Engine, System
 from ..cosim.unread import leave_out_unread
 from ..errors import InputError, SimulationError, listed
-from .checks import check_criteria, check_events, check_plots, check_real_time
+from .checks import check_criteria, check_events, check_plots, check_real_time, trial_faults
 from .hooks import Hooks
 from .manifest import manifest
 from .naming import by_path, named_components
@@ -42,6 +42,8 @@ class Prepared:
         """
         trial = self.trial
         master = Master(self.system, trial.start_ns, trial.stop_ns)
+        for fault in trial_faults(trial, self.system):
+            master.faults.add(fault)
         try:
             master.initialise()
         except SimulationError as error:
@@ -89,6 +91,7 @@ def prepare(trial: Trial, engine: Engine, hooks: Hooks) -> Prepared:
         units = check_criteria(trial, system)
         check_plots(trial, system)
         check_events(trial, system)
+        trial_faults(trial, system)
         check_real_time(trial, system)
         leave_out_unread(system, named_components(trial, system))
         recorded = recorded_signals(trial, system, is_asked=is_asked)

@@ -94,7 +94,7 @@ def write_report(folder: Path | str) -> Path:
         step_times=step_times(run.timing),
         pacing=pacing(run.timing),
         accuracy=None if convergence is None else accuracy_section(convergence),
-        events=[_event_text(event) for event in run.manifest.get("events", [])],
+        events=[_event_text(event) for event in _happenings(run)],
     )
     path = run.folder / REPORT
     write_whole(path, page)
@@ -293,7 +293,7 @@ def _alike_craft(run: Run, ports: Iterable[Port]) -> list[list[str]]:
 
 
 def _over_time(run: Run, columns: Sequence[Sequence[Panel]]) -> str:
-    events = [at for at in map(_event_time, run.manifest.get("events", [])) if at is not None]
+    events = [at for at in map(_event_time, _happenings(run)) if at is not None]
     return time_figure(run.time, columns, events, points_of_a_line(len(run.signals))).json()
 
 
@@ -320,6 +320,11 @@ def _text_signal(run: Run, signal: str) -> TextSignal:
 
 
 # ---------------------------------------------------------------------- tables
+
+
+def _happenings(run: Run) -> list[Any]:
+    """Return events and faults."""
+    return [*run.manifest.get("events", []), *run.manifest.get("faults", [])]
 
 
 def _event_time(event: Any) -> float | None:

@@ -140,6 +140,7 @@ class Manifest(_Entry):
     versions: dict[str, Any] = Field(default_factory=dict)
     plots: list[_Plot] = Field(default_factory=list)
     events: list[Any] = Field(default_factory=list)
+    faults: list[Any] = Field(default_factory=list)
 
 
 _Limit = Annotated[tuple[str, Number, str], Strict(False)]

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import Field
 
 from ..component import NS
-from ..cosim.actions import ActionKind, action
+from ..cosim.actions import action
 from ..cosim.files import FileModel, Source, validated
-from ..cosim.network import biased
 from ..cosim.rig import LONGEST_S
 from ..cosim.system import System
 from ..errors import InputError, unknown
@@ -22,6 +21,9 @@ from ..fmi.instance import Value, Variable
 from ..reading import json_content, yaml_content
 
 ACTIONS = ("override", "bias", "reset")
+
+Kind = Literal["set", "fixed", "bias", "release"]
+"""What is done to a variable: set, given a fault of the catalogue until the next, released."""
 
 _Written = str | int | float | bool
 
@@ -82,7 +84,7 @@ class Acted:
     """The communication step that it begins with."""
     step: int
     """When it acts: an output changes when the step ends."""
-    kind: ActionKind
+    kind: Kind
     key: str
     value: Any
 
@@ -93,6 +95,13 @@ class Events:
 
     acted: list[Acted] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+
+    def spans(self) -> Iterator[tuple[Acted, Acted | None]]:
+        """Yield each fault with what is done next to its variable, None if nothing."""
+        for index, begin in enumerate(self.acted):
+            if begin.kind in ("fixed", "bias"):
+                later = (one for one in self.acted[index + 1 :] if one.key == begin.key)
+                yield begin, next(later, None)
 
 
 def read_scenario(path: Path) -> Scenario:
@@ -172,7 +181,8 @@ def events_of(
             )
         seen[target.key, step] = event.where
         acted = target.acted(step, event)
-        action(system, acted.kind, acted.key, acted.value, event.where)
+        if acted.kind == "set":
+            action(system, "set", acted.key, acted.value, event.where)
         found.acted.append(acted)
         changed[target.key], last = target, step
         late += step >= steps
@@ -206,9 +216,9 @@ class _Target:
         value = _value(event, self.variable)
         if self._settable:
             if event.action == "bias":
-                value = biased(self.start, value)
+                value = _sum(self.start, value)
             return self._acts(step, "set", value)
-        return self._acts(step, "bias" if event.action == "bias" else "override", value)
+        return self._acts(step, "bias" if event.action == "bias" else "fixed", value)
 
     def reset(self, step: int) -> Acted:
         """Return what takes back what was done."""
@@ -220,7 +230,7 @@ class _Target:
     def _settable(self) -> bool:
         return self.variable.causality != "output" and not self.connected
 
-    def _acts(self, step: int, kind: ActionKind, value: Any) -> Acted:
+    def _acts(self, step: int, kind: Kind, value: Any) -> Acted:
         """Return an action with the component's next step, on outputs at its end."""
         begins = -(-step // self.every) * self.every
         at = begins + self.every if self.variable.causality == "output" else begins
@@ -246,6 +256,12 @@ def _target(system: System, names: Mapping[str, str], event: ScenarioEvent) -> _
         event.variable in system.feeders(called),
         _start(variable) if given is None else given.value,
     )
+
+
+def _sum(start: Any, bias: Any) -> Value:
+    """Return a value with a bias, of the value's type: of truth values, whether one is true."""
+    found: Value = type(start)(start + bias)
+    return found
 
 
 def _start(variable: Variable) -> Value:

@@ -160,7 +160,7 @@ class Run:
             while events and events[0].at_ns <= master.time_ns:
                 event = events.pop(0)
                 where = f"event {event.key}"
-                action(master.system, event.action, event.key, event.written, where).apply(master)
+                action(master.system, "set", event.key, event.written, where).apply(master)
             stopping, decided, over = stop_requested(), termination.status(), master.steps >= steps
             enders = master.ended()
             recorder.record(last=bool(stopping or decided or over or enders))

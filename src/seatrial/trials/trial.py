@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Any
@@ -11,8 +11,8 @@ from pydantic import AfterValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from ..component import seconds
-from ..cosim.actions import ActionKind
 from ..cosim.clock import OverrunPolicy
+from ..cosim.fault_entry import FaultEntry
 from ..cosim.files import FileModel, Source, find_file, read_toml, validated
 from ..cosim.flattening import load_rig
 from ..cosim.isolation import KEY_END, isolated_in, isolating
@@ -22,7 +22,7 @@ from ..cosim.system import System
 from ..errors import InputError, unknown
 from ..shipped import available
 from .criteria import Criterion, parse
-from .scenario import Scenario, events_of, read_scenario
+from .scenario import Acted, Scenario, events_of, read_scenario
 from .surroundings import GROUPS, CurrentEntry, SeaEntry, WindEntry, set_surroundings
 from .utc import Utc, instant_of, set_start_time
 from .verdict import Expectation
@@ -53,14 +53,31 @@ class CriterionEntry(FileModel):
         return self
 
 
+_FORMER = {
+    "override": '[[faults]] what = "fixed", where, value, at, for',
+    "bias": '[[faults]] what = "bias", where, value, at, for',
+    "release": "the key `for` of [[faults]]",
+}
+
+
 class EventEntry(FileModel):
-    """Something that happens at a time: a port set, overridden, biased or released."""
+    """Something that happens at a time: ports are set."""
 
     at: str
     set: dict[str, Any] = Field(default_factory=dict)
-    override: dict[str, Any] = Field(default_factory=dict)
-    bias: dict[str, Any] = Field(default_factory=dict)
-    release: list[str] = Field(default_factory=list)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _refuse_former_keys(cls, written: Any) -> Any:
+        """Say what has become of override, bias and release."""
+        for key, what in _FORMER.items():
+            if isinstance(written, dict) and key in written:
+                raise PydanticCustomError(
+                    "former",
+                    "'{key}' is written as a fault now: {what}",
+                    {"key": key, "what": what},
+                )
+        return written
 
 
 class PlotEntry(FileModel):
@@ -110,6 +127,7 @@ class TrialFile(FileModel):
     criteria: list[CriterionEntry] = Field(default_factory=list)
     plots: list[PlotEntry] = Field(default_factory=list)
     events: list[EventEntry] = Field(default_factory=list)
+    faults: list[FaultEntry] = Field(default_factory=list)
     scenario: str | None = None
     """A scenario file of libcosim, whose events come after those of the same time here."""
 
@@ -119,7 +137,6 @@ class Event:
     """An event with its time in ns."""
 
     at_ns: int
-    action: ActionKind
     key: str
     written: Any
 
@@ -208,32 +225,51 @@ class Trial:
             if not self.start_ns <= at_ns <= self.stop_ns:
                 raise InputError(f"{where}: {entry.at!r} is outside the trial's time")
             _multiple(at_ns - self.start_ns, self.rig.step_ns, where, entry.at)
-            events += [Event(at_ns, "set", k, v) for k, v in entry.set.items()]
-            events += [Event(at_ns, "override", k, v) for k, v in entry.override.items()]
-            events += [Event(at_ns, "bias", k, v) for k, v in entry.bias.items()]
-            events += [Event(at_ns, "release", k, None) for k in entry.release]
+            events += [Event(at_ns, k, v) for k, v in entry.set.items()]
         return sorted(events, key=lambda event: event.at_ns)
 
     def scheduled(self, system: System) -> Trial:
-        """Return the trial with the events of its scenario among its own. Raises InputError."""
+        """Return the trial with events and faults of its scenario among its own.
+
+        Raises InputError.
+        """
         if self.scenario is None:
             return self
         step_ns = self.rig.step_ns
         found = events_of(self.scenario, system, self.called, step_ns, self.steps)
         system.notes += found.notes
-        entries = [
-            EventEntry.model_validate(
-                {
-                    "at": f"{seconds(self.start_ns + acted.step * step_ns)!r} s",
-                    acted.kind: [acted.key]
-                    if acted.kind == "release"
-                    else {acted.key: acted.value},
-                }
-            )
+
+        def at(acted: Acted) -> str:
+            return f"{seconds(self.start_ns + acted.step * step_ns)!r} s"
+
+        events = [
+            EventEntry(at=at(acted), set={acted.key: acted.value})
             for acted in found.acted
+            if acted.kind == "set"
         ]
-        events = [*self.file.events, *entries]
-        return replace(self, file=self.file.model_copy(update={"events": events}))
+        faults = []
+        for begin, end in found.spans():
+            lasts = (
+                {} if end is None else {"for": f"{seconds((end.step - begin.step) * step_ns)!r} s"}
+            )
+            written = {"what": begin.kind, "where": begin.key, "value": begin.value}
+            faults.append(FaultEntry.model_validate({**written, "at": at(begin), **lasts}))
+        return self.with_faults(faults, events)
+
+    def with_faults(self, faults: Sequence[FaultEntry], events: Sequence[EventEntry] = ()) -> Trial:
+        """Return the trial with more faults, and events, after its own."""
+        more = {
+            "faults": [*self.file.faults, *faults],
+            "events": [*self.file.events, *events],
+        }
+        return replace(self, file=self.file.model_copy(update=more))
+
+    def failing(self, written: Sequence[Mapping[str, Any]], origin: str) -> Trial:
+        """Return the trial with more faults, as a file would have them. Raises InputError."""
+        faults = [
+            validated(FaultEntry, one, Path(f"{origin}.{i}")) for i, one in enumerate(written)
+        ]
+        return self.with_faults(faults)
 
     def scaled(self, key: str, factor: float, origin: str) -> Trial:
         """Return the trial with the number ``component.port`` multiplied by ``factor``."""

@@ -5,8 +5,8 @@ import math
 import pytest
 from pymavlink.dialects.v20 import all as mavlink
 
-from seatrial.devices.fault import FAULTS
 from seatrial.errors import InputError
+from seatrial.faults.catalogue import FAILURES as FAULTS
 from seatrial.links.mavlink.service_failures import UNITS, failing_units
 
 from .bench import Bench

@@ -118,7 +118,13 @@ class CanBus(Logging, Noise, Component):
 
     tx = Input("1", "operations from the nodes", type=str, axes=_NODES, optional=True)
     fault = Input(
-        "1", f"{', '.join(FAULTS)}", type=str, axes=_NODES, start=("none",) * NODES, optional=True
+        "1",
+        f"{', '.join(FAULTS)}",
+        type=str,
+        axes=_NODES,
+        start=("none",) * NODES,
+        optional=True,
+        role="fault",
     )
 
     rx = Output("1", "operations to the nodes", type=str, axes=_NODES)
