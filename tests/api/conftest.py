@@ -156,13 +156,19 @@ stop = "3 s"
 at = "500 ms"
 set = { "source.level" = "2 V", "types.place" = ["10 cm", 0.2, 0.3] }
 
-[[events]]
+[[faults]]
+what = "fixed"
+where = "lag.u"
+value = 5.0
 at = "1 s"
-override = { "lag.u" = 5.0, "spring.force" = "-300 mN" }
+for = "1 s"
 
-[[events]]
-at = "2 s"
-release = ["lag.u", "spring.force"]
+[[faults]]
+what = "fixed"
+where = "spring.force"
+value = "-300 mN"
+at = "1 s"
+for = "1 s"
 
 [[criteria]]
 name = "the lag stays low"

@@ -65,7 +65,7 @@ def test_a_shipped_rig_gives_the_numbers_of_a_trial(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("engine", ["direct", "fmu"])
-def test_set_override_and_release_do_what_events_do(
+def test_set_override_and_release_do_what_events_and_faults_do(
     engine: str, trial: str, tmp_path: Path
 ) -> None:
     seatrial("run", trial, "--engine", "direct", "--out", "run", cwd=tmp_path)
@@ -167,7 +167,7 @@ def test_observers_see_every_communication_point_until_they_are_dropped(rig: Rig
         (lambda sim: sim.get("lag.z"), "lag: unknown port 'z'"),
         (lambda sim: sim.set("lag.tme_constant", 1), "did you mean 'time_constant'"),
         (lambda sim: sim.set("lag.time_constant", 1), "is fixed and cannot change during a run"),
-        (lambda sim: sim.set("lag.u", 1), "fed by source.y; override it instead"),
+        (lambda sim: sim.set("lag.u", 1), "fed by source.y; a fault replaces it"),
         (lambda sim: sim.set("lag.y", 1), "causality output and cannot be set"),
         (lambda sim: sim.set("source.level", 11.0), "not in its range"),
         (lambda sim: sim.set("source.level", "2 m"), "'m' cannot be converted to 'V'"),

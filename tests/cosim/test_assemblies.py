@@ -263,9 +263,16 @@ stop = "50 ms"
 "reader.gain"             = 2
 [record]
 signals = ["a.motion.*", "b.motion.total.x", "*.push.*", "reader.y"]
-[[events]]
-at       = "20 ms"
-override = { "a.motion.total.x" = 100, "reader.total" = [1, 1] }
+[[faults]]
+what  = "fixed"
+where = "a.motion.total.x"
+value = 100
+at    = "20 ms"
+[[faults]]
+what  = "fixed"
+where = "reader.total"
+value = [1, 1]
+at    = "20 ms"
 [[criteria]]
 name  = "the shown name is that of the output"
 check = "eventually[0 s, 50 ms] a.motion.total.x > 99 N"

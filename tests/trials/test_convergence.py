@@ -167,7 +167,7 @@ def test_what_does_not_converge_and_what_differs_is_listed(bench, tmp_path: Path
 
 
 def test_events_keep_their_instants(bench, tmp_path: Path) -> None:
-    push = '[[events]]\nat = "1 s"\noverride = { "appendage.force" = "100 N" }\n'
+    push = '[[faults]]\nat = "1 s"\nwhat = "fixed"\nwhere = "appendage.force"\nvalue = "100 N"\n'
     found = halve(bench(trial=TRIAL + push), tmp_path / "run")
     force = next(output for output in found.outputs if output.signal == "appendage.force")
     assert force.behaviour == "converges"

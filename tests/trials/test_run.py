@@ -70,6 +70,7 @@ stop = "1 s"
 name = "stays near"
 check = "abs(boat.x) < 2 m"
 """
+FAULT = TRIAL + '[[faults]]\n{}\nwhere = "{}"\n'
 PLOT = TRIAL + '[[plots]]\ntitle = "both"\nsignals = [{}]\n'
 
 
@@ -148,17 +149,17 @@ def test_a_stopped_run_is_whole(bench, tmp_path: Path) -> None:
     assert len((tmp_path / "run" / "signals.csv").read_text().splitlines()) == 32
 
 
-def test_events_set_override_and_release(bench, tmp_path: Path) -> None:
+def test_events_set_and_faults_replace(bench, tmp_path: Path) -> None:
     events = """
 [[events]]
 at = "200 ms"
 set = { "boat.push" = "2 N", "boat.trim" = "180 deg" }
-[[events]]
+[[faults]]
+what = "fixed"
+where = "twin.angle"
+value = "90 deg"
 at = "500 ms"
-override = { "twin.angle" = "90 deg" }
-[[events]]
-at = "700 ms"
-release = ["twin.angle"]
+for = "200 ms"
 """
     run_trial(load_trial(bench(TRIAL + events)), tmp_path / "run", engine="direct")
     with (tmp_path / "run" / "signals.csv").open(newline="") as file:
@@ -253,8 +254,27 @@ def test_plots_of_a_trial_come_first_in_its_report(bench, tmp_path: Path) -> Non
         (TRIAL + '[[events]]\nat = "2 s"\nset = { "boat.push" = "1 N" }', "outside the trial"),
         (TRIAL + '[[events]]\nat = "15 ms"\nset = { "boat.push" = "1 N" }', "whole number"),
         (TRIAL + '[[events]]\nat = "0.5 s"\nset = { "boat.mode" = "storm" }', "is fixed"),
-        (TRIAL + '[[events]]\nat = "0.5 s"\noverride = { "boat.push" = "1 N" }', "neither"),
-        (TRIAL + '[[events]]\nat = "0.5 s"\nbias = { "boat.label" = "x" }', "no number to add to"),
+        (TRIAL + '[[events]]\nat = "0.5 s"\noverride = { "boat.push" = "1 N" }', r"\[\[faults\]\]"),
+        (TRIAL + '[[events]]\nat = "0.5 s"\nrelease = ["boat.x"]', "key `for` of"),
+        (FAULT.format('what = "bios"', "boat.x"), r"faults.0.what: .*did you mean 'bias'"),
+        (FAULT.format('what = "bias"', "boat.x"), r"faults.0.value: bias needs it"),
+        (FAULT.format('what = "bias"\nvalue = "1 kg"', "boat.x"), "'kg' cannot be converted"),
+        (FAULT.format('what = "bias"\nvalue = [1, 2]', "boat.x"), "1 values are needed"),
+        (FAULT.format('what = "bias"\nvalue = 1', "boat.label"), "bias is of numbers"),
+        (FAULT.format('what = "bias"\nvalue = 1', "boat"), "acts on a port, boat.PORT"),
+        (FAULT.format('what = "bias"\nrate = 1', "boat.x"), "faults.0.rate: bias takes value"),
+        (FAULT.format('what = "bias"\nvalue = 1', "bote.x"), "did you mean 'boat'"),
+        (FAULT.format('what = "off"', "boat"), "a whole boat takes nan, hang, crash, power-loss"),
+        (FAULT.format('what = "hang"', "boat.x"), "hang acts on a whole component"),
+        (FAULT.format('what = "loss"', "boat.x"), "loss is of streams"),
+        (FAULT.format('what = "stuck"', "boat.mode"), "neither an output nor an input"),
+        (FAULT.format('what = "stuck"\nfor = "0 s"', "boat.x"), "faults.0.for: '0 s' is no time"),
+        (FAULT.format('what = "stuck"\ngrows_over = "1 s"', "boat.x"), "stuck acts at once"),
+        (FAULT.format('what = "stuck"\nat = "2 s"', "boat.x"), "outside the trial"),
+        (FAULT.format('what = "dropout"\nprobability = 2', "boat.x"), "from 0 to 1, found 2"),
+        (FAULT.format('what = "limit"\nlow = 2\nhigh = 1', "boat.x"), "it is above `high`"),
+        (FAULT.format('what = "delay"\ntime = "0 s"', "boat.x"), "a time above 0 is needed"),
+        (FAULT.format('what = "deviation"\ncoefficients = [1]', "boat.x"), "five of them"),
         (TRIAL + '[[events]]\nat = "0.5 s"\nset = { "boat.push" = "1 rad" }', "'rad' cannot"),
         (PLOT.format('"boat.y"'), "plot 'both': unknown signal 'boat.y'"),
         (PLOT.format('"boat.label"'), "plot 'both': boat.label is a text"),
@@ -282,12 +302,12 @@ def test_criteria_see_every_step_however_seldom_rows_are_recorded(bench, tmp_pat
     spike = """
 [record]
 every = "300 ms"
-[[events]]
+[[faults]]
+what = "fixed"
+where = "boat.x"
+value = "100 m"
 at = "400 ms"
-override = { "boat.x" = "100 m" }
-[[events]]
-at = "420 ms"
-release = ["boat.x"]
+for = "20 ms"
 """
     result = run_trial(load_trial(bench(TRIAL + spike)), tmp_path / "run", engine="direct")
     assert not result.passed

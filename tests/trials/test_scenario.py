@@ -14,6 +14,7 @@ from seatrial.cosim.assembly import assemble
 from seatrial.errors import InputError
 from seatrial.trials.scenario import read_scenario
 from seatrial.trials.trial import load_trial
+from seatrial.units import quantity
 from tests.cosim.osp_files import write_osp
 
 JSON = {
@@ -47,12 +48,16 @@ def system_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def events(system_file: Path, scenario: Path, **changes: str) -> tuple[list[Any], list[str]]:
-    """Return (time, action, key, value) of what a scenario does, and the notes."""
+    """Return (time, action, key, value, how long) of what a scenario does, and the notes."""
     trial = load_trial(str(system_file), changes={"scenario": str(scenario), **changes})
     system = assemble(trial.rig)
     try:
-        found = trial.scheduled(system).events()
-        return [(e.at_ns / 1e9, e.action, e.key, e.written) for e in found], system.notes
+        found = trial.scheduled(system)
+        acted = [(e.at_ns / 1e9, "set", e.key, e.written, None) for e in found.events()]
+        acted += [
+            (quantity(f.at, "s"), f.what, f.where, f.value, f.for_) for f in found.file.faults
+        ]
+        return sorted(acted, key=lambda one: one[0]), system.notes
     finally:
         system.free()
 
@@ -60,12 +65,10 @@ def events(system_file: Path, scenario: Path, **changes: str) -> tuple[list[Any]
 def test_json_and_yaml_say_the_same(system_file: Path, write) -> None:
     # Outputs change when the step ends that begins with the event; at the end all is reset.
     expected = [
-        (0.1, "set", "slave_uno.gain", 3.0),
-        (0.3, "override", "slave_uno.x", -1.0),
-        (0.5, "release", "slave_uno.x", None),
-        (0.7, "bias", "slave_uno.x", 0.5),
-        (1.0, "set", "slave_uno.gain", 2.0),
-        (1.1, "release", "slave_uno.x", None),
+        (0.1, "set", "slave_uno.gain", 3.0, None),
+        (0.3, "fixed", "slave_uno.x", -1.0, "0.2 s"),
+        (0.7, "bias", "slave_uno.x", 0.5, "0.4 s"),
+        (1.0, "set", "slave_uno.gain", 2.0, None),
     ]
     for name, text in (("s.json", json.dumps(JSON)), ("s.yaml", YAML)):
         assert events(system_file, write(name, text)) == (expected, [])
@@ -76,12 +79,12 @@ def test_without_an_end_all_is_reset_a_step_after_the_last_event(system_file: Pa
         '{"events": [{"time": 1, "model": "two", "variable": "u", "action": "bias", "value": 1}]}'
     )
     found, _ = events(system_file, write("s.json", text))
-    assert found == [(1.0, "bias", "two.u", 1.0), (1.1, "release", "two.u", None)]
+    assert found == [(1.0, "bias", "two.u", 1.0, "0.1 s")]
 
 
 def test_events_after_the_last_step_are_noted(system_file: Path, write) -> None:
     found, notes = events(system_file, write("s.json", json.dumps(JSON)), stop="0.5 s")
-    assert found[-1] == (0.5, "release", "slave_uno.x", None)
+    assert found[-1] == (0.3, "fixed", "slave_uno.x", -1.0, "0.2 s")
     assert notes == ["s.json: 1 of 4 events come after the last step begins"]
 
 

@@ -48,7 +48,8 @@ def test_what_nothing_reads_is_left_out_and_the_rest_is_the_same(tmp_path: Path)
     [
         '[record]\nsignals = ["vehicle.sensors.gyro"]',
         '[set]\n"vehicle.imu.period" = "20 ms"',
-        '[[events]]\nat = "500 ms"\nset = { "vehicle.failures.gyro" = "stuck" }',
+        '[[faults]]\nat = "500 ms"\nwhat = "stuck"\nwhere = "vehicle.failures.gyro"',
+        '[[faults]]\nat = "500 ms"\nwhat = "stuck"\nwhere = "vehicle.imu"',
         '[[criteria]]\nname = "still"\ncheck = "abs(vehicle.imu.gyro.z) < 1 rad/s"',
         '[[plots]]\ntitle = "gyro"\nsignals = ["vehicle.imu.gyro.z"]\n'
         '[record]\nsignals = ["vehicle.*"]',

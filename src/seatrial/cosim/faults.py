@@ -121,10 +121,12 @@ def _what_it_acts_on(
     if entry.of:
         raise InputError(f"{origin}.of: {place} is a port already; write the component alone")
     if scalars[0].role == "fault":
-        if "bus" not in kind.on:
-            takes = [name for name, one in KINDS.items() if "bus" in one.on]
-            raise InputError(f"{origin}.what: {place} takes {', '.join(takes)}, found {entry.what}")
-        return "bus"
+        inputs = system.parts[component].instance.variables.of_role("fault")
+        role = "device" if len(inputs) == 1 else "bus"
+        if role not in kind.on:
+            takes = ", ".join(name for name, one in KINDS.items() if role in one.on)
+            raise InputError(f"{origin}.what: {place} takes {takes}, found {entry.what}")
+        return role
     for on in ("signal", "stream"):
         if on in kind.on:
             return on
@@ -174,7 +176,11 @@ _OF_ANY = ("fixed", "stuck", "dropout", "delay")
 def _signal(settings: Settings, index: int, variable: Variable, draw: Draw) -> Operator:
     """Return the operator of one scalar. Raises InputError."""
     what = settings.entry.what
-    if variable.type not in (float, int) and what not in _OF_ANY:
+    if (
+        variable.type not in (float, int)
+        and what not in _OF_ANY
+        and not (variable.type is bool and what == "bias")
+    ):
         raise settings.refused("what", f"{what} is of numbers, {variable.name} is none")
     match what:
         case "fixed":

@@ -253,6 +253,8 @@ class Trial:
                 {} if end is None else {"for": f"{seconds((end.step - begin.step) * step_ns)!r} s"}
             )
             written = {"what": begin.kind, "where": begin.key, "value": begin.value}
+            if begin.kind == "bias" and isinstance(begin.value, bool):
+                written["value"] = int(begin.value)  # whether it or the bias is true
             faults.append(FaultEntry.model_validate({**written, "at": at(begin), **lasts}))
         return self.with_faults(faults, events)
 
