@@ -21,13 +21,13 @@ class Acting:
     memory: Any = None
     seen: tuple[int, Any] | None = None
     """Time and value of the last look; what came of earlier ones is in ``memory``."""
-    over: bool = False
-    """Of a stream: nothing goes wrong any more, and its texts are still numbered anew."""
+    ended_ns: int | None = None
+    """Of a stream: nothing that is sent from then on goes wrong; its texts are numbered anew."""
 
     def value(self, t_ns: int, x: Any) -> Any:
         """Return what becomes of ``x`` at ``t_ns``; a second look at a time replaces the first."""
         if self.seen is None:
-            self.memory = self.operator.first(x)
+            self.memory = self.operator.first(x, self._moment(t_ns))
         elif t_ns > self.seen[0]:
             then, before = self.seen
             self.memory = self.operator.after(self.memory, before, self._moment(then), t_ns - then)
@@ -35,9 +35,7 @@ class Acting:
         return self.operator.value(self.memory, x, self._moment(t_ns))
 
     def _moment(self, t_ns: int) -> Moment:
-        since = t_ns - self.begun_ns
-        share = min(1.0, since / self.grows_ns) if self.grows_ns else 1.0
-        return Moment(t_ns, since, 0.0 if self.over else share)
+        return Moment(t_ns, self.begun_ns, self.grows_ns, self.ended_ns)
 
 
 @dataclass
@@ -55,11 +53,14 @@ class Injected:
             return round(x)
         return x if type(x) is kind else kind(x)
 
-    def end(self, key: str) -> None:
-        """End the fault ``key``; a stream stays, with nothing going wrong: its numbers go on."""
+    def end(self, key: str, t_ns: int) -> None:
+        """End the fault ``key``; a stream stays: its numbers go on."""
+        kept = []
         for one in self.acting:
-            one.over = one.over or one.key == key
-        kept = [one for one in self.acting if not one.over or isinstance(one.operator, Stream)]
+            if one.key == key and one.ended_ns is None:
+                one.ended_ns = t_ns
+            if one.ended_ns is None or isinstance(one.operator, Stream):
+                kept.append(one)
         self.acting = kept
 
     def restarted(self, own: Any) -> None:
@@ -75,10 +76,10 @@ class Injected:
 
     def save(self) -> Any:
         """Return all that changes, for `restore`."""
-        return [(one, one.memory, one.seen, one.over) for one in self.acting]
+        return [(one, one.memory, one.seen, one.ended_ns) for one in self.acting]
 
     def restore(self, state: Any) -> None:
         """Restore what `save` returned."""
         self.acting = [one for one, *_ in state]
-        for one, memory, seen, over in state:
-            one.memory, one.seen, one.over = memory, seen, over
+        for one, memory, seen, ended_ns in state:
+            one.memory, one.seen, one.ended_ns = memory, seen, ended_ns

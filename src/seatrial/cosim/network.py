@@ -283,17 +283,17 @@ class Network:
         """End all that the fault ``key`` does; return the components that were set anew."""
         again = set()
         for place, injected in list(self._injected.items()):
-            injected.end(key)
+            injected.end(key, self._time_ns)
             if not injected.acting:
                 del self._injected[place]
                 self.signals[place] = self._own.pop(place)
         for writes in self._all_writes():
             for index, injected in list(writes.injected.items()):
-                injected.end(key)
+                injected.end(key, self._time_ns)
                 if not injected.acting:
                     del writes.injected[index]
         for name, loose in list(self._loose.items()):
-            loose.injected.end(key)
+            loose.injected.end(key, self._time_ns)
             loose.renew(self._time_ns)
             again.add(name[0])
             if not loose.injected.acting:

@@ -28,9 +28,9 @@ class _Memory(NamedTuple):
 
 @dataclass(frozen=True)
 class Stream(Operator):
-    """Chunk k, sent at t_k, goes on at t_k + s (time + jitter u_k), in its order.
+    """Chunk k, sent at t_k while the fault acts, goes on at t_k + s (time + jitter u_k).
 
-    With probability s loss it does not; with s duplicate it comes twice; with s reorder it comes
+    Chunks keep their order. With probability s loss it does not; with s duplicate it comes twice; with s reorder it comes
     ``held_ns`` later, out of order; each of its bits is wrong with probability s bit_errors. The u
     of chunk k are uniform in [0, 1) and drawn for it alone, whatever goes wrong. Texts are numbered
     anew, also when the fault has ended.
@@ -45,9 +45,11 @@ class Stream(Operator):
     duplicate: float = 0.0
     bit_errors: float = 0.0
 
-    def first(self, x: Any) -> Any:
-        """Return a stream whose text so far has been read."""
-        number = _decoded(x)[0]
+    def first(self, x: Any, moment: Moment) -> Any:
+        """Return a stream whose text so far has been read, but for chunks of since the begin."""
+        number, chunks = _decoded(x)
+        if any(sent_ns >= moment.begun_ns for sent_ns, _ in chunks):
+            return _Memory(number - 1, number - 1, text.encode(number - 1, []), 0, 0, ())
         return _Memory(number, number, x, 0, 0, ())
 
     def after(self, memory: Any, x: Any, moment: Moment, h_ns: int) -> Any:
@@ -76,7 +78,8 @@ class Stream(Operator):
             if number != source + 1:
                 raise SimulationError(f"a stream's text number {number} came after {source}")
             for sent_ns, data in chunks:
-                arrivals, last = self._arrivals(sent_ns, data, count, last, moment.share)
+                share = moment.share_at(sent_ns)
+                arrivals, last = self._arrivals(sent_ns, data, count, last, share)
                 waiting += [(due, count, found) for due, found in arrivals]
                 count += 1
         due = sorted((one for one in waiting if one[0] <= moment.t_ns), key=lambda one: one[:2])

@@ -290,9 +290,8 @@ class Sensor(Noise, Fallible, Sampled):
             raise InputError(f"{self.name}.fault: {unknown('measured output', fault.of, known)}")
         first = sum(p.size for p in self.measured[: self.measured.index(port)])
         at_ns = self._start_ns + k * self._period_ns
-        since = max(0, at_ns - round(fault.at * NS))
-        share = min(1.0, since / NS / fault.grows_over) if fault.grows_over else 1.0
-        moment = Moment(at_ns, since, share)
+        begun_ns = min(at_ns, round(fault.at * NS))
+        moment = Moment(at_ns, begun_ns, round(fault.grows_over * NS))
         normal = self.generator(k, 2).standard_normal(port.size).tolist()
         values = list(found)
         for i in range(port.size):

@@ -28,15 +28,32 @@ class Moment:
 
     t_ns: int
     """Simulated time."""
-    since_ns: int
-    """Time since it began."""
-    share: float
-    """How far it has grown, 0 to 1."""
+    begun_ns: int
+    grows_ns: int = 0
+    """In how long it grows, from its begin."""
+    ended_ns: int | None = None
+    """When it ended; None: it acts."""
+
+    @property
+    def since_ns(self) -> int:
+        """Time since it began."""
+        return self.t_ns - self.begun_ns
 
     @property
     def since(self) -> float:
         """Time since it began, s."""
         return self.since_ns / NS
+
+    @property
+    def share(self) -> float:
+        """How far it has grown, 0 to 1."""
+        return self.share_at(self.t_ns)
+
+    def share_at(self, t_ns: int) -> float:
+        """Return how far it had grown at a time, 0 before it began and after it ended."""
+        if t_ns < self.begun_ns or (self.ended_ns is not None and t_ns >= self.ended_ns):
+            return 0.0
+        return min(1.0, (t_ns - self.begun_ns) / self.grows_ns) if self.grows_ns else 1.0
 
 
 def drawing(seed: int, name: str) -> Draw:
@@ -52,7 +69,7 @@ def drawing(seed: int, name: str) -> Draw:
 class Operator(ABC):
     """What a fault makes of the value x of one signal at a moment: y."""
 
-    def first(self, x: Any) -> Any:
+    def first(self, x: Any, moment: Moment) -> Any:
         """Return what is remembered as the fault begins with the value ``x``."""
         return None
 
@@ -177,7 +194,7 @@ class Dropout(Random):
 
     probability: float
 
-    def first(self, x: Any) -> Any:
+    def first(self, x: Any, moment: Moment) -> Any:
         """Return the value before."""
         return x
 
@@ -194,7 +211,7 @@ class Dropout(Random):
 class Stuck(Operator):
     """y = x(at)."""
 
-    def first(self, x: Any) -> Any:
+    def first(self, x: Any, moment: Moment) -> Any:
         """Return the value at the beginning."""
         return x
 
@@ -209,7 +226,7 @@ class Delay(Operator):
 
     time_ns: int
 
-    def first(self, x: Any) -> Any:
+    def first(self, x: Any, moment: Moment) -> Any:
         """Return the samples that are not shown yet, the oldest being shown."""
         return ((0, x),)
 
@@ -234,7 +251,7 @@ class Lag(Operator):
 
     time: float
 
-    def first(self, x: Any) -> Any:
+    def first(self, x: Any, moment: Moment) -> Any:
         """Return y at the beginning."""
         return x
 
@@ -253,7 +270,7 @@ class Slow(Operator):
 
     rate: float
 
-    def first(self, x: Any) -> Any:
+    def first(self, x: Any, moment: Moment) -> Any:
         """Return y at the beginning."""
         return x
 
@@ -274,7 +291,7 @@ class Runaway(Operator):
     level: float
     rate: float
 
-    def first(self, x: Any) -> Any:
+    def first(self, x: Any, moment: Moment) -> Any:
         """Return y at the beginning."""
         return x
 
@@ -301,9 +318,9 @@ class Wrapped(Operator):
     low: float
     high: float
 
-    def first(self, x: Any) -> Any:
+    def first(self, x: Any, moment: Moment) -> Any:
         """Return what the other remembers."""
-        return self.inner.first(x)
+        return self.inner.first(x, moment)
 
     def after(self, memory: Any, x: Any, moment: Moment, h_ns: int) -> Any:
         """Return what the other remembers."""
