@@ -31,6 +31,31 @@ def test_gains_place_the_poles():
     assert hold.get("heave") == pytest.approx(KP * 0.1 + KI * 0.1 * 0.1)
 
 
+@pytest.mark.parametrize(("kind", "axis"), [(DepthHold, "depth"), (HeadingHold, "heading")])
+def test_it_begins_where_the_first_valid_measurement_is(kind, axis):
+    """A sensor that is late has nothing at first: its 0 is no place to start from."""
+    late = started(kind, **{f"{axis}_valid": False, f"{axis}_wanted": 2.0, axis: 0.0})
+    demand = {"depth": "heave", "heading": "yaw_moment"}[axis]
+    for k in range(5):
+        assert late.get(demand) == 0.0
+        late.advance(0.1 * k, 0.1)
+    values = {f"{axis}_valid": True, f"{axis}_wanted": 2.5, axis: 2.5}
+    at_once = started(kind, **values)
+    for name, value in values.items():
+        late.set(name, value)
+    for k in range(5):
+        assert late.get(demand) == at_once.get(demand) == 0.0
+        late.advance(0.5 + 0.1 * k, 0.1)
+        at_once.advance(0.1 * k, 0.1)
+    for one in (late, at_once):
+        one.set(f"{axis}_valid", False)  # lost later: the last one stays
+        one.set(f"{axis}_wanted", 2.0)
+    for k in range(5):
+        assert late.get(demand) == at_once.get(demand) != 0.0
+        late.advance(1.0 + 0.1 * k, 0.1)
+        at_once.advance(0.5 + 0.1 * k, 0.1)
+
+
 def test_own_damping_is_added_by_speed():
     """Full ahead for long: D = 2 + 17 |2.16|, for the moving target and in the position gain."""
     more = {"damping": 2.0, "damping_per_speed": 17.0, "damping_rate": 1.2, "surge": 93.4}

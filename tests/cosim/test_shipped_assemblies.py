@@ -30,7 +30,10 @@ PORTS = {
     "mavlink.rates": "mavlink.gyro",
 }
 LATER = {
-    "hydrone": {"guidance.depth_wanted mavlink.nav_depth"},
+    "hydrone": {
+        "guidance.depth_wanted mavlink.nav_depth",
+        "compass.valid heading_hold.heading_valid",
+    },
     "mariner": {
         "guidance.depth_wanted mavlink.nav_depth",
         "imu.valid mavlink.imu_valid",
@@ -46,11 +49,13 @@ LATER = {
         *(f"allocation.{n} mavlink.share.{n}" for n in ("port", "starboard", "vertical")),
         "ahrs.valid mavlink.imu_valid",
         "ahrs.valid mavlink.heading_valid",
+        "ahrs.valid heading_hold.heading_valid",
         "ahrs.euler.psi mavlink.heading",
         "ahrs.euler.phi mavlink.roll_pitch.phi",
         "ahrs.euler.theta mavlink.roll_pitch.theta",
         "depth.depth mavlink.depth",
         "depth.valid mavlink.depth_valid",
+        "depth.valid depth_hold.depth_valid",
         "positioning.position_n guidance.position_n",
         "positioning.position_n mavlink.position_n",
     },

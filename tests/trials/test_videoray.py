@@ -63,4 +63,5 @@ def test_on_its_tether_it_holds_depth_and_heading(seed, tmp_path):
     # It was at work: through 20 m of tether, taut at the end, against a current.
     assert found.signals["tether.greatest_tension"][-1] > 1.5
     place = [found.signals[f"loop.vehicle.hull.position.{axis}"][-1] for axis in "xyz"]
-    assert math.dist(place, (0.0, 0.0, 0.0)) == pytest.approx(20.0, abs=0.6)
+    # Of its 20 m a bow across the current takes up to a metre.
+    assert 19.0 < math.dist(place, (0.0, 0.0, 0.0)) < 20.1

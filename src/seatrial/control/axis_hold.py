@@ -39,6 +39,9 @@ class AxisHold(Sampled):
     What is steady (weight that buoyancy does not balance, a tether's pull, a current) ends up in
     I. Not modelled: lags of thrusters and sensors; keep w well below their inverse.
 
+    It waits for the first measurement that is valid, with no demand. One that is lost later
+    leaves the last one.
+
     Gains may change at any step: I is kept as a demand, so that what it holds stays.
 
     A subclass declares mass, capacity, ``damping``, ``damping_per_speed``, inputs and the demand,
@@ -68,6 +71,10 @@ class AxisHold(Sampled):
         """Return the position wanted and the one measured."""
         raise TypeError(f"{type(self).__name__} does not define what it holds")
 
+    def _is_valid(self) -> bool:
+        """Return whether the position measured is one."""
+        return True
+
     def _apart(self, a: float, b: float) -> float:
         """Return position a less position b."""
         return a - b
@@ -81,6 +88,8 @@ class AxisHold(Sampled):
 
     def update(self, t: float, k: int) -> None:
         """Advance integral, filtered rate and target."""
+        if self._waits():
+            return
         wanted, rate, error = self._demanded(), self._filtered_rate(), self._error()
         kp, _, ki = self._gains()
         cut_off = (self._limited(wanted) - wanted) / kp
@@ -91,11 +100,17 @@ class AxisHold(Sampled):
 
     def _demanded(self) -> float:
         """Return the demand before it is limited."""
+        if self._waits():
+            return 0.0
         kp, kd, _ = self._gains()
         g = self._target_rate()
         damping = kd * (g - self._filtered_rate()) + self._damping() * g
         demanded: float = kp * self._error() + damping + self._integral
         return demanded
+
+    def _waits(self) -> bool:
+        """Return whether nothing has been measured yet."""
+        return self._before is None and not self._is_valid()
 
     def _gains(self) -> tuple[float, float, float]:
         """Return Kp, Kd and Ki."""

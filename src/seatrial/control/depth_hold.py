@@ -30,13 +30,14 @@ class DepthHold(AxisHold):
 
     depth_wanted = Input("m", "depth to hold, positive down")
     depth = Input("m", "measured depth, positive down")
+    depth_valid = Input("1", "whether the depth is one", type=bool, start=True, optional=True)
 
     heave = Output("N", "heave force asked of the thrusters, positive down")
 
-    feedthrough: ClassVar = {"heave": ("depth_wanted", "depth", "surge")}
+    feedthrough: ClassVar = {"heave": ("depth_wanted", "depth", "depth_valid", "surge")}
     terminals: ClassVar = {
         "wanted": terminal("depth_wanted"),
-        "sensors": terminal("depth"),
+        "sensors": terminal("depth", "depth_valid"),
         "demanded": terminal("surge"),
         "held": terminal("heave"),
     }
@@ -47,6 +48,10 @@ class DepthHold(AxisHold):
 
     def _axis(self) -> tuple[float, float, float]:
         return self.mass, self.capacity, self.rate_limit
+
+    def _is_valid(self) -> bool:
+        valid: bool = self.depth_valid
+        return valid
 
     def _places(self) -> tuple[float, float]:
         return self.depth_wanted, self.depth

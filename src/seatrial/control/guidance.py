@@ -200,6 +200,10 @@ class Guidance(GuidanceOrders):
         """Remember the goal, how far it is met, and the age of what was received."""
         guided = self._decide()
         wanted = guided.decision.command
+        if wanted.motion == NEUTRAL:  # it begins anew where the craft is by then
+            self._before = []
+            self._remember(guided.decision)
+            return
         turning, sinking = self._rates(guided)
         self._before = [
             wanted.heading + self.period * turning,

@@ -35,13 +35,14 @@ class HeadingHold(AxisHold):
 
     heading_wanted = Input("rad", "heading to hold, clockwise from north")
     heading = Input("rad", "measured heading, clockwise from north")
+    heading_valid = Input("1", "whether the heading is one", type=bool, start=True, optional=True)
 
     yaw_moment = Output("N.m", "yaw moment asked of the thrusters, positive to starboard")
 
-    feedthrough: ClassVar = {"yaw_moment": ("heading_wanted", "heading", "surge")}
+    feedthrough: ClassVar = {"yaw_moment": ("heading_wanted", "heading", "heading_valid", "surge")}
     terminals: ClassVar = {
         "wanted": terminal("heading_wanted"),
-        "sensors": terminal("heading"),
+        "sensors": terminal("heading", "heading_valid"),
         "demanded": terminal("surge"),
         "held": terminal("yaw_moment"),
     }
@@ -52,6 +53,10 @@ class HeadingHold(AxisHold):
 
     def _axis(self) -> tuple[float, float, float]:
         return self.inertia, self.capacity, self.rate_limit
+
+    def _is_valid(self) -> bool:
+        valid: bool = self.heading_valid
+        return valid
 
     def _places(self) -> tuple[float, float]:
         return self.heading_wanted, self.heading
