@@ -86,6 +86,16 @@ def test_the_status_says_what_is_rejected(yard: Yard, tmp_path: Path) -> None:
     assert "reads version 1.0 only" in seatrial("ssp", "check", "x.ssp", cwd=tmp_path).stdout
 
 
+@pytest.mark.parametrize("extra", ["Elements", "Connections", "ParameterBindings", "Connectors"])
+def test_a_second_list_is_rejected_by_name(yard: Yard, tmp_path: Path, extra: str) -> None:
+    doubled = f"<ssd:{extra}/><ssd:{extra}/></ssd:System>"
+    yard.package(tmp_path / "x.ssp", MINIMAL.replace("</ssd:System>", doubled))
+    done = seatrial("ssp", "check", "x.ssp", cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (1, "")
+    assert f"a second ssd:{extra} in ssd:System" in done.stdout
+    assert "validates against the schema" in done.stdout  # FMPy does, whose schema has one of each
+
+
 def test_a_wrong_package_or_tool_is_one_message(yard: Yard, tmp_path: Path) -> None:
     yard.package(tmp_path / "x.ssp", MINIMAL.replace("resources/Hull.fmu", "../Hull.fmu"))
     done = seatrial("run", "x.ssp", cwd=tmp_path)

@@ -13,7 +13,7 @@ from lxml import etree
 
 from ...errors import InputError
 from ...fmi.xmlfile import read_xml
-from .documents import NAMESPACES, child, children, schema_problems, tag
+from .documents import NAMESPACES, children, schema_problems, tag
 from .model import FMU
 from .parameters import KINDS
 
@@ -162,7 +162,7 @@ def element_connections(view: View) -> Iterator[Any]:
 
 def no_outputs(view: View) -> Iterator[Any]:
     """Yield the system of a description if it has no output connector of its own."""
-    top = child(view.root, "ssd:System")
+    top = next((one for one in children(view.root) if tag(one) == "ssd:System"), None)
     if top is not None:
         kinds = [one.get("kind") for one in _listed(top, "ssd:Connectors")]
         if "output" not in kinds:
@@ -328,8 +328,8 @@ def _full(name: str) -> str:
 
 
 def _listed(element: Any, name: str) -> list[Any]:
-    found = child(element, name)
-    return [] if found is None else list(children(found))
+    # A second list, which the reader refuses, is looked at too: here nothing is left out by it.
+    return [one for found in children(element) if tag(found) == name for one in children(found)]
 
 
 def _end(connection: Any, side: str) -> tuple[str, str]:

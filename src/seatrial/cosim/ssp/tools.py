@@ -187,7 +187,7 @@ def takes_systems(tool: str) -> bool:
 def findings(path: Path) -> list[Finding]:
     """Return what the tools do with the package at ``path``, in the order of `TOOLS`.
 
-    Raises InputError for what is no package, no XML, or has lists twice.
+    Raises InputError for what is no package or no XML.
     """
     package = open_package(path, path.name, Notes())
     label = package.shown(package.description)
