@@ -40,6 +40,9 @@ class ArduPilot(ArduPilotPorts):
     started again, from another port too, goes on with the motion as it is then (``restarts``). See
     `Lockstep` for what is repeated or comes from others.
 
+    ArduSub's home is at altitude 0, wherever the lake is: its simulated pressure sensor feels
+    water below that only.
+
     **Conventions.** Position and velocity in {n} from ``latitude``, ``longitude``, ``altitude``,
     which is the firmware's home; rates and specific force in {b}, level at rest
     (0, 0, -``gravity``); attitude ZYX. ``wind_angle`` is where the apparent wind blows to,
@@ -160,6 +163,8 @@ class ArduPilot(ArduPilotPorts):
         ).geodetic((0.0, 0.0, 0.0))
         heading = math.degrees(self.true_attitude[2]) % 360.0
         defaults = str(Path(self.defaults).resolve()) if self.defaults else ""
+        if self.firmware == "sub":
+            altitude = 0.0  # above it, its simulated pressure sensor is in the air
         home = (latitude, longitude, altitude, heading)
         return arguments(port, home, h, self.speedup, defaults=defaults, serial0=self.serial0)
 
