@@ -20,6 +20,8 @@ WRITTEN = {
         f"harness/trials/{NAME}-mission.toml",
         f"harness/trials/{NAME}-sketch.toml",
         f"harness/firmware/{NAME}/{NAME}.ino",
+        f"harness/rigs/ardupilot/{NAME}.toml",
+        f"hil_profiles/{NAME}.parm",
         f"hil_profiles/{NAME}.toml",
     },
     "rov": {
@@ -28,6 +30,8 @@ WRITTEN = {
         f"harness/rigs/pilots/{NAME}.toml",
         f"harness/trials/{NAME}.toml",
         f"harness/trials/{NAME}-mission.toml",
+        f"harness/rigs/ardupilot/{NAME}.toml",
+        f"hil_profiles/{NAME}.parm",
         f"hil_profiles/{NAME}.toml",
     },
 }
@@ -210,7 +214,7 @@ def test_a_file_in_the_place_of_a_folder_is_refused(tmp_path):
         ("", "NAME '': letters"),
         ("x" * 41, "40 at most"),
         ("{vehicle}", "NAME '{vehicle}': letters"),
-        ("hydrone", "seatrial ships harness/rigs/pilots/hydrone.toml, "),
+        ("hydrone", "seatrial ships harness/rigs/ardupilot/hydrone.toml, "),
         ("fleet", "seatrial ships harness/trials/fleet.toml, which yours would hide"),
     ],
 )

@@ -15,9 +15,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
+from pymavlink import mavutil
 
-from tests.command import SEATRIAL
+from seatrial.trials.run_folder import Run, load_run
+from tests.command import SEATRIAL, seatrial
 
 from .test_dronecan_multicast import ROOT, alone, can_be_alone
 
@@ -87,3 +90,150 @@ def test_a_mission_is_driven_without_a_failsafe(vehicle: str, tmp_path: Path) ->
     assert manifest["status"] == "stopped"
     assert all(math.isfinite(value) for value in itertools.chain.from_iterable(path))
     assert list((tmp_path / "run" / "autopilot.sitl.ardupilot" / "logs").glob("*.BIN"))
+
+
+ROUND = {
+    # vehicle: (firmware, options, time to come back at most, s)
+    "hydrone": ("rover", (), 240.0),
+    "otter": ("rover", (), 190.0),
+    "mariner": ("rover", (), 3000.0),
+    "bluerov2": ("sub", ("--choose", "step=2.5 ms"), 150.0),
+    "videoray": ("sub", ("--choose", "step=2.5 ms"), 150.0),
+}
+
+
+def rounded(vehicle: str, firmware: str, out: Path, *options: str, cwd: Path = ROOT) -> Path:
+    """Send a vehicle round its square, where it comes back, and return the run's folder."""
+    command = [
+        SEATRIAL, "run", "square", "--vehicle", vehicle,
+        "--autopilot", f"ardupilot={Path(FOLDER, f'ardu{firmware}').resolve()}", "--out", out,
+        "--engine", "direct", "--set", f"autopilot.sitl.ardupilot.speedup={SPEEDUP}", *options,
+    ]  # fmt: skip
+    quoted = subprocess.list2cmdline(list(map(str, command)))
+    done = subprocess.run(alone(quoted), cwd=cwd, capture_output=True, text=True, timeout=1500)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return out
+
+
+@pytest.mark.parametrize("vehicle", ROUND)
+def test_the_trial_square(vehicle: str, tmp_path: Path) -> None:
+    firmware, options, at_most = ROUND[vehicle]
+    run = load_run(rounded(vehicle, firmware, tmp_path / "run", *options))
+    assert run.manifest["status"] == "complete"
+    assert run.time[-1] < at_most
+
+
+@pytest.mark.parametrize(
+    ("like", "firmware", "options"),
+    [("usv", "rover", ()), ("rov", "sub", ("--choose", "step=2.5 ms"))],
+)
+def test_a_new_vehicle_goes_round_too(
+    like: str, firmware: str, options: tuple[str, ...], tmp_path: Path
+) -> None:
+    done = seatrial("new", "vehicle", "my-own", "--like", like, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    rounded("my-own", firmware, tmp_path / "run", *options, cwd=tmp_path)
+
+
+def test_log_and_record_have_one_clock(tmp_path: Path) -> None:
+    """The truth as the firmware logs it is that of the record 11 to 14 ms later: a step and a bit."""
+    run = load_run(rounded("otter", "rover", tmp_path / "run"))
+    (path,) = (tmp_path / "run" / "autopilot.sitl.ardupilot" / "logs").glob("*.BIN")
+    log = mavutil.mavlink_connection(str(path))
+    rows = []
+    while (row := log.recv_match(type="SIM2")) is not None:
+        rows.append((row.TimeUS / 1e6, row.PN, row.PE))
+    logged = np.array(rows)
+    north, east = (run.signals[f"vehicle.hull.position.{axis}"] for axis in "xy")
+    for part in np.array_split(logged, 3):
+
+        def off(late: float, part: np.ndarray = part) -> float:
+            x, y = (np.interp(part[:, 0] + late, run.time, each) for each in (north, east))
+            return float(np.mean((x - part[:, 1]) ** 2 + (y - part[:, 2]) ** 2))
+
+        candidates = np.arange(-0.1, 0.1, 0.001)
+        assert 0.005 < candidates[np.argmin([off(late) for late in candidates])] < 0.02
+
+
+FAULT = """
+rig     = "square"
+choices = {{ vehicle = "{vehicle}", autopilot = "ardupilot", program = "{program}", step = "{step}" }}
+stop    = "{stop} s"
+[set]
+"autopilot.sitl.ardupilot.speedup" = {speedup}
+[record]
+signals = ["vehicle.motion.*", "marks.*", "mission.station.*"]
+every   = "200 ms"
+[[events]]
+at  = "{at} s"
+set = {{ {what} }}
+"""
+HOLD, AUTO_ROVER, AUTO_SUB = 4, 10, 3
+GNSS, COMPASS = (f'"mission.station.without.{name}" = true' for name in ("gnss", "compass"))
+
+
+def after(what: str, vehicle: str, at: float, stop: float, folder: Path) -> Run:
+    """Sail the square with a fault on the way, and return the run."""
+    sub = vehicle == "bluerov2"
+    program = Path(FOLDER, "ardusub" if sub else "ardurover").resolve()
+    trial = folder / "fault.toml"
+    trial.write_text(
+        FAULT.format(
+            vehicle=vehicle, program=program, at=at, stop=stop, what=what, speedup=SPEEDUP,
+            step="2.5 ms" if sub else "10 ms",
+        )
+    )  # fmt: skip
+    command = [SEATRIAL, "run", trial, "--engine", "direct", "--out", folder / "run"]
+    quoted = subprocess.list2cmdline(list(map(str, command)))
+    done = subprocess.run(alone(quoted), cwd=folder, capture_output=True, text=True, timeout=900)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return load_run(folder / "run")
+
+
+def at_the_end(run: Run) -> tuple[int, bool, bool]:
+    """Return the mode, and whether it is armed and had a failsafe."""
+    found = [run.signals[f"mission.station.{name}"][-1] for name in ("mode", "armed", "failsafe")]
+    return int(found[0]), bool(found[1]), bool(found[2])
+
+
+def test_without_gnss_the_hydrone_holds_after_8_s(tmp_path: Path) -> None:
+    run = after(GNSS, "hydrone", 100, 150, tmp_path)
+    assert at_the_end(run) == (HOLD, True, True)
+    failed = run.time[np.argmax(run.signals["mission.station.failsafe"] > 0)]
+    assert 106.0 < failed < 112.0
+    assert abs(run.signals["vehicle.hull.velocity.u"][-1]) < 0.05
+
+
+def test_without_compasses_the_hydrone_comes_back(tmp_path: Path) -> None:
+    run = after(COMPASS, "hydrone", 100, 220, tmp_path)
+    assert at_the_end(run)[2] is False
+    assert run.signals["marks.passed"][-1] == 4
+
+
+def test_with_one_thruster_the_otter_lies_still_and_armed(tmp_path: Path) -> None:
+    run = after('"vehicle.port_propeller.fault" = "off"', "otter", 80, 150, tmp_path)
+    assert at_the_end(run) == (AUTO_ROVER, True, False)
+    assert run.signals["marks.passed"][-1] == 1
+    assert abs(run.signals["vehicle.hull.velocity.u"][-1]) < 0.05
+
+
+def test_with_a_stuck_rudder_the_mariner_circles(tmp_path: Path) -> None:
+    run = after('"vehicle.machine.fault" = "stuck"', "mariner", 700, 1900, tmp_path)
+    assert at_the_end(run) == (AUTO_ROVER, True, False)
+    turned = run.signals["vehicle.ship.attitude.psi"]
+    assert abs(turned[-1] - turned[np.argmin(abs(run.time - 700))]) > 4.0
+    assert run.signals["marks.passed"][-1] == 1
+
+
+def test_without_gnss_the_bluerov2_drifts_off_at_its_depth(tmp_path: Path) -> None:
+    run = after(GNSS, "bluerov2", 70, 160, tmp_path)
+    assert at_the_end(run) == (AUTO_SUB, True, False)
+    x, y, z = (run.signals[f"vehicle.hull.position.{axis}"] for axis in "xyz")
+    assert max(abs(x[-1]), abs(y[-1])) > 15.0
+    assert 2.0 < z[-1] < 8.0
+
+
+def test_with_a_thruster_less_the_bluerov2_goes_on(tmp_path: Path) -> None:
+    run = after('"vehicle.thrusters.t1.fault" = "off"', "bluerov2", 70, 160, tmp_path)
+    assert at_the_end(run) == (AUTO_SUB, True, False)
+    assert run.signals["marks.passed"][-1] >= 3

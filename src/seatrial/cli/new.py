@@ -104,6 +104,7 @@ def _say(name: str, like: str, files: dict[Path, str]) -> None:
         (f"seatrial describe sil --vehicle {name}", "its components and connections"),
         (f"seatrial run {name} --autopilot nmea0183", "the same, with a feed for chart plotters"),
         (f"seatrial run {name}-mission", "for a ground station at UDP port 14550"),
+        (f"seatrial run square --vehicle {name} --autopilot ardupilot=PROGRAM", "under ArduPilot"),
     ]
     if like == "usv":
         steps.append((f"seatrial run {name}-sketch", "its Arduino sketch; needs g++"))

@@ -184,15 +184,15 @@ def test_after_the_last_waypoint_the_vehicle_may_do_as_it_likes(bench):
     assert not bench.station.get("failsafe")
 
 
-def test_a_submarine_arms_where_it_is_and_has_its_sticks_at_rest(bench):
+def test_a_submarine_arms_where_it_is_and_has_manual_control_at_rest(bench):
     vehicle = bench.vehicle()
     vehicle.kind = mavlink.MAV_TYPE_SUBMARINE
     bench.run(vehicle, 10.0)
     modes = [int(m.param2) for m in vehicle.received if getattr(m, "command", 0) == 176]
     assert modes == [2, 3]  # depth hold, auto: ArduSub's numbers
-    sticks = [m for m in vehicle.received if m.get_type() == "MANUAL_CONTROL"]
-    assert {(m.x, m.y, m.z, m.r, m.buttons) for m in sticks} == {(0, 0, 500, 0, 0)}
-    assert len(sticks) >= 8
+    manual = [m for m in vehicle.received if m.get_type() == "MANUAL_CONTROL"]
+    assert {(m.x, m.y, m.z, m.r, m.buttons) for m in manual} == {(0, 0, 500, 0, 0)}
+    assert len(manual) >= 8
 
 
 def test_instruments_are_taken_and_given_back(bench):

@@ -168,7 +168,7 @@ class GroundStation(Waypoints, Sampled):
         self._send(mavlink.MAVLink_heartbeat_message(_STATION, _NO_AUTOPILOT, 0, 0, active, 3))
         vehicle = self._conversation.newest.get("HEARTBEAT")
         if vehicle is not None and vehicle.type == mavlink.MAV_TYPE_SUBMARINE:
-            # Its failsafe wants a pilot: sticks at rest, as a joystick sends them.
+            # Its failsafe wants a pilot: manual control at rest, as a joystick sends it.
             at_rest = (0, 0, 500, 0)
             self._send(mavlink.MAVLink_manual_control_message(vehicle.get_srcSystem(), *at_rest, 0))
 
