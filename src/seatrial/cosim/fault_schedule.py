@@ -1,4 +1,4 @@
-"""What goes wrong in a run, and when."""
+"""The faults of a run, which begin and end at communication points."""
 
 from __future__ import annotations
 

@@ -30,8 +30,8 @@ class _Memory(NamedTuple):
 class Stream(Operator):
     """Chunk k, sent at t_k while the fault acts, goes on at t_k + s (time + jitter u_k).
 
-    Chunks keep their order. With probability s loss it does not; with s duplicate it comes twice;
-    with s reorder it comes ``held_ns`` later, out of order; each of its bits is wrong with
+    Chunks keep their order. With probability s loss it does not; with s duplicate it comes
+    twice; with s reorder it comes ``held_ns`` later, out of order; each of its bits is wrong with
     probability s bit_errors. The u of chunk k are uniform in [0, 1) and drawn for it alone,
     whatever goes wrong. Texts are numbered anew, also when the fault has ended.
     """

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import itertools
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 from pydantic import Field
 
+from ..cosim.fault_entry import FaultEntry
 from ..cosim.files import FileModel, Source, find_file, read_toml, validated
 from ..cosim.system import Engine
 from ..errors import InputError
@@ -32,14 +33,17 @@ class TrialEntry(FileModel):
 class CampaignFile(FileModel):
     """The content of a campaign file.
 
-    Every combination of ``grid`` values is one case of every trial. With ``scale``, each case
-    is run as it is and then with one parameter at a time multiplied by each factor.
+    Every combination of ``grid`` values, and of ``faults``, is one case of every trial. With
+    ``scale``, each case is run as it is and then with one parameter at a time multiplied by each
+    factor.
     """
 
     title: str = ""
     trials: list[str | TrialEntry] = Field(min_length=1)
     set: dict[str, Any] = Field(default_factory=dict)
     grid: dict[str, list[Any]] = Field(default_factory=dict)
+    faults: dict[str, list[FaultEntry]] = Field(default_factory=dict)
+    """Faults by the names of cases: each is one more value of every combination."""
     scale: dict[str, list[float]] = Field(default_factory=dict)
 
 
@@ -74,12 +78,26 @@ class Campaign:
         for values in itertools.product(*grid.values()):
             chosen = dict(zip(grid, values, strict=True))
             varied = base.changed(chosen, f"{origin}: grid")
-            yield Case(_name(trial, chosen), varied, {**common, **chosen})
-            for key, factors in self.file.scale.items():
-                for factor in factors:
-                    scaled = varied.scaled(key, factor, f"{origin}: scale")
-                    shown = {**chosen, f"{key} times": factor}
-                    yield Case(_name(trial, shown), scaled, {**common, **shown})
+            for named, failing in self._failing(varied):
+                found = {**chosen, **named}
+                yield Case(_name(trial, found), failing, {**common, **found})
+                yield from self._scaled(failing, common, found)
+
+    def _failing(self, trial: Trial) -> Iterator[tuple[dict[str, str], Trial]]:
+        """Yield the trial with the faults of each name; without any, as it is."""
+        if not self.file.faults:
+            yield {}, trial
+        for name, entries in self.file.faults.items():
+            yield {"faults": name}, trial.with_faults(entries)
+
+    def _scaled(
+        self, trial: Trial, common: Mapping[str, Any], chosen: dict[str, Any]
+    ) -> Iterator[Case]:
+        for key, factors in self.file.scale.items():
+            for factor in factors:
+                scaled = trial.scaled(key, factor, f"{self.read_from.path}: scale")
+                shown = {**chosen, f"{key} times": factor}
+                yield Case(_name(trial, shown), scaled, {**common, **shown})
 
 
 def load_campaign(name: str) -> Campaign:

@@ -67,7 +67,7 @@ class Bench:
         self.vehicle.estimates = Estimates(position_valid=valid, heading_valid=valid)
         self.transport = RecordingTransport()
         self.settings = Settings(**settings)
-        self.parameters = vehicle_parameters(self.vehicle, self.settings)
+        self.parameters = vehicle_parameters(self.vehicle, self.settings, failures=failures)
         self.ticks, self.pace = 0, 1.0
         self.node = Node(
             self.vehicle,

@@ -7,6 +7,8 @@ from pymavlink.dialects.v20 import all as mavlink
 
 from seatrial.errors import InputError
 from seatrial.faults.catalogue import FAILURES as FAULTS
+from seatrial.faults.catalogue import KINDS
+from seatrial.faults.text import read_text
 from seatrial.links.mavlink.service_failures import UNITS, failing_units
 
 from .bench import Bench
@@ -137,3 +139,49 @@ def test_they_come_out_at_ports_and_back_in_telemetry(started, connect):  # noqa
         boat, station, "SYS_STATUS", lambda m: not m.onboard_control_sensors_health & bits
     )
     assert status.onboard_control_sensors_present & bits == bits
+
+
+SIM = [
+    ({"SIM_GPS1_ENABLE": 0}, "gps", "off"),
+    ({"SIM_GPS1_JAM": 1}, "gps", "intermittent"),
+    ({"SIM_MAG1_FAIL": 1}, "mag", "off"),
+    ({"SIM_BARO_DISABLE": 1}, "baro", "off"),
+    ({"SIM_BARO_FREEZE": 1}, "baro", "stuck"),
+    ({"SIM_BARO_GLITCH": 2}, "baro", "bias of=depth value=-2.0 at=0.0"),
+    ({"SIM_GYR1_BIAS_Z": 0.1}, "gyro", "bias of=gyro value=0.0,0.0,0.1 at=0.0"),
+    ({"SIM_ENGINE_FAIL": 2}, "motor2", "off"),
+]
+
+
+@pytest.mark.parametrize(("parameters", "unit", "text"), SIM)
+def test_simulation_parameters_are_faults_of_the_catalogue(parameters, unit, text):
+    boat = bench("gps mag baro gyro motor1 motor2")
+    for name, value in parameters.items():
+        assert boat.parameters.put(name, value) is None
+    found = dict(boat.node.failures.texts(0.0))
+    assert found.pop(unit) == text
+    assert set(found.values()) == {"none"}
+    assert read_text(text).what in KINDS
+
+
+def test_a_glitch_in_degrees_moves_the_position_by_their_length():
+    """A degree of latitude is 111.3 km on this sphere, one of longitude half of that at 60 N."""
+    boat = bench("gps")
+    for axis, value in zip("XYZ", (0.001, -0.001, 3.0), strict=True):
+        boat.parameters.put(f"SIM_GPS1_GLTCH_{axis}", value)
+    fault = read_text(boat.node.failures.texts(math.radians(60.0))["gps"])
+    assert (fault.what, fault.of) == ("bias", "position_n")
+    assert fault.settings["value"] == pytest.approx([111.32, -55.66, -3.0], rel=1e-4)
+
+
+def test_a_command_goes_before_a_parameter_and_only_units_that_fail_have_one():
+    boat = bench("gps motor1")
+    boat.parameters.put("SIM_GPS1_ENABLE", 0)
+    boat.command(INJECT, GPS, STUCK)
+    assert boat.node.failures.texts(0.0)["gps"] == "stuck"
+    boat.command(INJECT, GPS, OK)
+    assert boat.node.failures.texts(0.0)["gps"] == "off"
+    names = set(boat.parameters)
+    assert {"SIM_GPS1_ENABLE", "SIM_ENGINE_FAIL", "SIM_ENGINE_MUL"} <= names
+    assert not {"SIM_MAG1_FAIL", "SIM_BARO_FREEZE"} & names
+    assert not any(n.startswith("SIM_GPS1") for n in bench("gps", autopilot="px4").parameters)

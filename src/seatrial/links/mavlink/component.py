@@ -52,7 +52,8 @@ class Mavlink(MavlinkPorts):
     those of `service_streams` and of each link.
 
     **Kinds of vehicle**: ``ardupilotmega`` has the modes of ArduPilot's Rover (boats) and Sub
-    (submarines), ``px4`` those of PX4. It starts disarmed, in the mode hold.
+    (submarines), ``px4`` those of PX4. It starts in ``mode_start``, and disarmed unless
+    ``armed_start`` is on.
 
     **Outputs** are named after the inputs of `Guidance`. ``manual`` is 0 unless the vehicle is
     armed in a manual mode. ``target_valid`` is false without a set-point: it then stays.
@@ -72,8 +73,8 @@ class Mavlink(MavlinkPorts):
 
     **Live**: stations set the ``speedup``, which a trial may pace its run by, and inject failures:
     ``failure`` goes to the input ``fault`` of devices, for the units that ``failures`` lists
-    (`FailureService`). At a speed-up of 0 it stands still in its step, serves its links, and so
-    keeps everything waiting (`stand_still`).
+    (`FailureService`), and so do what ArduPilot's SIM_ parameters mean (`simulated_faults`). At a
+    speed-up of 0 it stands still in its step, serves its links, and so keeps everything waiting (`stand_still`).
 
     **Signatures**: with ``signing_key_file``, whose first line is the pass phrase, unsigned and
     repeated frames are refused, heartbeats too, and peers that come by themselves are sent nothing
@@ -116,10 +117,12 @@ class Mavlink(MavlinkPorts):
         try:
             identity = self._identity()
             kind = dialect(self.autopilot_type, submerged=identity.submerged)
-            mode = kind.mode("hold")
-            assert mode is not None
+            mode = kind.mode(self.mode_start)
+            if mode is None:
+                raise InputError(f"mode_start: this kind of vehicle has no {self.mode_start!r}")
             origin = Origin(self.latitude, self.longitude, self.altitude)
             vehicle = Vehicle(identity, kind, origin, mode, receiver=self._receiver())
+            vehicle.armed = self.armed_start == "on"
             self._outputs = Outputs(read_servos(self.actuators))
             self._value_names = value_names(self.names, NAMED_VALUES)
             self._begun = t
@@ -163,7 +166,7 @@ class Mavlink(MavlinkPorts):
         self.leg_wait, self.leg_circle = leg.wait, leg.circle
         tuned = [self._parameters[name] for name in self._tunable_names]
         self.tunable = (*tuned, *(0.0,) * (MOST_TUNABLES - len(tuned)))
-        failing = self._node.failures.failing
+        failing = self._node.failures.texts(self.latitude)
         if failing != self._failing:  # seldom, and there are many
             self._failing = dict(failing)
             self.failure = [failing.get(unit, "none") for unit in UNITS]
@@ -260,7 +263,8 @@ class Mavlink(MavlinkPorts):
 
     def _table(self, vehicle: Vehicle, settings: Settings) -> ParameterTable:
         file = ParameterFile(Path(self.parameter_file)) if self.parameter_file else None
-        table = vehicle_parameters(vehicle, settings, self.actuators, self.tunables, file)
+        units = failing_units(self.failures)
+        table = vehicle_parameters(vehicle, settings, self.actuators, self.tunables, file, units)
         self._tunable_names = [one.name for one in tunable_parameters(self.tunables)]
         return table
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 from .parameter_file import ParameterFile
 from .parameter_table import ParameterTable
 from .parameters_ardupilot import ardupilot_parameters
@@ -10,6 +12,7 @@ from .parameters_servo import read_servos
 from .parameters_simulation import simulation_parameters
 from .parameters_tunable import tunable_parameters, with_tunables
 from .settings import Settings
+from .simulated_faults import fault_parameters
 from .vehicle import Vehicle
 
 
@@ -19,10 +22,12 @@ def vehicle_parameters(
     actuators: str = "",
     tunables: str = "",
     file: ParameterFile | None = None,
+    failures: Collection[str] = (),
 ) -> ParameterTable:
     """Return the parameters of a vehicle: those of its kind, of the simulation, of the rig.
 
-    ``actuators`` as in `read_servos`, ``tunables`` as in `tunable_parameters`. Raises InputError.
+    ``failures`` are the units that can fail, ``actuators`` as in `read_servos`, ``tunables`` as in
+    `tunable_parameters`. Raises InputError.
     """
     is_px4 = vehicle.dialect.name == "px4"
     if is_px4:
@@ -30,5 +35,7 @@ def vehicle_parameters(
     else:
         definitions = ardupilot_parameters(vehicle.identity, settings, read_servos(actuators))
     definitions = [*definitions, *simulation_parameters(settings, is_px4=is_px4)]
+    if not is_px4:
+        definitions += fault_parameters(settings, failures)
     definitions = with_tunables(definitions, tunable_parameters(tunables), settings)
     return ParameterTable(definitions, settings, file)

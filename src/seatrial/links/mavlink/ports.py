@@ -30,6 +30,9 @@ _NED = ("north", "east", "down")
 NAMED_VALUES = 8
 """Values of `named`."""
 
+START_MODES = ("hold", "loiter", "auto", "return")
+"""Modes in which it may start: those that need neither set-point nor manual control."""
+
 _MANUAL = ("surge", "sway", "yaw", "heave")
 _CHANNELS = tuple(f"ch{number}" for number in range(1, CHANNELS + 1))
 _NAMED = tuple(f"n{number}" for number in range(1, NAMED_VALUES + 1))
@@ -64,6 +67,8 @@ class MavlinkPorts(Logging, Reachable, TrueMotion, Sampled):
         check=start_us,
         role="start-time",
     )
+    mode_start = Parameter("hold", "1", "mode at the start", choices=START_MODES)
+    armed_start = Parameter("off", "1", "whether it is armed at the start", choices=("off", "on"))
     failsafe = Parameter("hold", "1", "what it does when left alone", choices=ACTIONS)
     station_timeout = Parameter(5.0, "s", "silence after which a ground station is lost", min=0.0)
     manual_timeout = Parameter(3.0, "s", "time for which manual control is valid", min=0.0)

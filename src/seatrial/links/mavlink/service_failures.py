@@ -19,6 +19,7 @@ from .service import (
     whole,
 )
 from .settings import Settings
+from .simulated_faults import simulated_faults
 from .transport import Sender, Transport
 from .vehicle import Vehicle
 
@@ -83,6 +84,21 @@ class FailureService(Service):
         super().__init__(vehicle, transport)
         self._settings = settings
         self.failing = dict.fromkeys(units, "none")
+
+    def texts(self, latitude: float) -> Mapping[str, str]:
+        """Return the fault of each unit, as its input ``fault`` takes it.
+
+        A command goes before what the SIM_ parameters say. ``latitude`` is that of the origin.
+        """
+        simulated = self._settings.simulated
+        if not simulated:
+            return self.failing
+        submerged = self.vehicle.identity.submerged
+        faults = simulated_faults(simulated, latitude, submerged=submerged)
+        return {
+            unit: faults.get(unit, "none") if failure == "none" else failure
+            for unit, failure in self.failing.items()
+        }
 
     @property
     def commands(self) -> Mapping[int, Handler]:

@@ -60,6 +60,8 @@ class Settings:
     speedup: float = 1.0
     """Simulated seconds per second of wall time; while paused, those before and afterwards."""
     paused: bool = False
+    simulated: dict[str, float] = field(default_factory=dict)
+    """What stations have set of the SIM_ parameters that are faults."""
     failures_allowed: bool = True
     """Whether stations may inject failures."""
 
