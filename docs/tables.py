@@ -22,6 +22,7 @@ from parts import (  # noqa: E402, F401  each registers its parts
     can,
     can_signals,
     dronecan,
+    faults,
     hydrone,
     mavlink,
     nmea0183,

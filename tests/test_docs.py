@@ -251,7 +251,7 @@ def test_keys_and_defaults_are_those_of_the_model(model: type[BaseModel]) -> Non
     shown = key_tables()[model]
     if "COMPONENT" in shown:  # every other table of a vehicle file
         shown["components"] = shown.pop("COMPONENT")
-    fields = model.model_fields
+    fields = {field.alias or name: field for name, field in model.model_fields.items()}
     assert list(shown) == list(fields) or sorted(shown) == sorted(fields)
     for key, field in fields.items():
         default = field.get_default(call_default_factory=True, validated_data={})

@@ -141,7 +141,7 @@ def test_the_lower_identifier_wins(rig, discards: bool, counts: list[int]) -> No
 def test_a_broken_transmitter_is_notified_of_each_error_until_it_is_off_the_bus(rig) -> None:
     """Each error adds 8 to its counter; it goes off above 255."""
     with Simulation(rig(bus=', recovery = "off"'), engine="fmu", set=SENDS) as simulation:
-        simulation.set("can.fault.n1", "defective")
+        simulation.inject("defective", "can.n1")
         simulation.run(0.1)
         attempts = math.ceil(256 / 8)
         names = (

@@ -74,7 +74,8 @@ class Mavlink(MavlinkPorts):
     **Live**: stations set the ``speedup``, which a trial may pace its run by, and inject failures:
     ``failure`` goes to the input ``fault`` of devices, for the units that ``failures`` lists
     (`FailureService`), and so do what ArduPilot's SIM_ parameters mean (`simulated_faults`). At a
-    speed-up of 0 it stands still in its step, serves its links, and so keeps everything waiting (`stand_still`).
+    speed-up of 0 it stands still in its step, serves its links, and so keeps everything waiting
+    (`stand_still`).
 
     **Signatures**: with ``signing_key_file``, whose first line is the pass phrase, unsigned and
     repeated frames are refused, heartbeats too, and peers that come by themselves are sent nothing
