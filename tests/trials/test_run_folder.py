@@ -38,7 +38,7 @@ def test_a_run_reads_back_exactly(write_run):
     [
         ("nominal", {}, True),
         ("transversal", {}, False),
-        ("nominal", {"status": "stopped"}, False),
+        ("nominal", {"status": "stopped"}, None),
         ("nominal", {"criteria": []}, None),
     ],
 )

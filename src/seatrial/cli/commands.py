@@ -102,4 +102,6 @@ def loaded(name: str) -> Any:
         parent.add_typer(found, name=name, help=COMMANDS[name].help)
     else:
         parent.command(name)(found)
-    return typer.main.get_group(parent).commands[name]
+    from .answer import with_options
+
+    return with_options(typer.main.get_group(parent).commands[name])

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from ..trials.compare import compare as compare_runs
+from .answer import answer
 from .show import console
 from .statuses import FAILED
 
@@ -18,6 +20,11 @@ def compare(
 ) -> None:
     """Compare two runs signal by signal; status 1 if their signals differ."""
     comparison = compare_runs(run_a, run_b)
+    answer.result = {
+        **asdict(comparison),
+        "worst": comparison.worst,
+        "summary": comparison.summary,
+    }
     console.print(comparison.table())
     console.print(comparison.summary)
     if not comparison.identical:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import Annotated
 
 import typer
@@ -17,6 +18,7 @@ from ..trials.readable import number, person_scale
 from ..trials.report import write_report
 from ..trials.run import Result
 from ..trials.trial import load_trial
+from .answer import answer
 from .options import (
     Autopilot,
     Choices,
@@ -69,6 +71,13 @@ def convergence(
                 loaded, out, halvings=halvings, engine=chosen, hooks=hooks, done=done
             )
         page = write_report(folder)
+    answer.result = {
+        "folder": str(folder),
+        "steps_s": found.steps,
+        "converges": found.converges,
+        "outputs": [asdict(output) for output in found.outputs],
+        "discrete": [asdict(one) for one in found.discrete],
+    }
     _print(found)
     console.print(f"report: {page}", soft_wrap=True)
     if not found.converges:

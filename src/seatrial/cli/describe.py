@@ -18,6 +18,7 @@ from ..cosim.system import Joint, System
 from ..cosim.unread import leave_out_unread
 from ..trials.naming import by_path, named_components
 from ..trials.trial import choices_in, is_trial, load_trial
+from .answer import answer
 from .options import Autopilot, Choices, Every, Match, Vehicle, changes_of
 from .show import MOST_SHOWN, console, print_more, print_notes
 
@@ -81,6 +82,17 @@ def _print_rig(system: System, pattern: str, every: bool) -> None:
             for name, value in top.file.shows.items()
             if _matches(pattern, name)
         ],
+    }
+    answer.result = {
+        "title": top.file.title or top.read_from.name,
+        "choices": dict(top.choices),
+        "components": {path: placed.entry.what for path, placed in system.rig.components.items()},
+        "connections": [
+            {"from": one.source, "to": one.target, "factor": one.factor, "offset": one.offset}
+            for one in joints
+        ],
+        "not_made": lists["not made"],
+        "unfed_inputs": lists["inputs that nothing feeds"],
     }
     for title, lines in lists.items():
         _print_list(title, lines, len(lines) if every else MOST_SHOWN)

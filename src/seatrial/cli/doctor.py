@@ -14,6 +14,7 @@ from rich.markup import escape
 
 from ..errors import InputError
 from ..fmi.cache import cache_folder, is_safe
+from .answer import answer
 from .show import console
 
 _PLATFORMS = {("Linux", "x86_64"), ("Windows", "AMD64")}
@@ -32,8 +33,10 @@ def doctor() -> None:
     for name, check in checks:
         good, text = check()
         missing += not good
+        answer.result.setdefault("checks", []).append({"name": name, "ok": good, "text": text})
         mark = "[green]ok[/green]     " if good else "[red]missing[/red]"
         console.print(f"{mark}  {name}: {escape(text)}", soft_wrap=True)
+    answer.result["preload"] = preload_line()
     console.print("\nTo load a Python FMU in a program without Python, start it as:")
     console.print(f"  {preload_line()} PROGRAM", soft_wrap=True, markup=False)
     if missing:

@@ -11,6 +11,7 @@ from ..errors import InputError
 from ..trials.logs.mcap_file import write_mcap
 from ..trials.logs.parquet_file import write_parquet
 from ..trials.run_folder import load_run
+from .answer import answer
 from .show import console, print_notes
 
 
@@ -31,4 +32,5 @@ def export(
     print_notes(run.notes)
     path = out or folder / ("signals.mcap" if mcap else "signals.parquet")
     (write_mcap if mcap else write_parquet)(run, path)
+    answer.result = {"file": str(path), "bytes": path.stat().st_size}
     console.print(f"{path}  ({path.stat().st_size / 1000:.0f} kB)", soft_wrap=True)

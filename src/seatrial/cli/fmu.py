@@ -26,6 +26,7 @@ from ..fmi.load import load_fmu, open_instance
 from ..fmi.loaded import LoadedFmu
 from ..fmi.osp import osp_file, osp_xml
 from ..fmi.source import ComponentSource, find_source, named_sources, shipped_sources
+from .answer import answer
 from .options import Every, Match, Variant
 from .show import MOST_SHOWN, console, print_more, print_notes
 from .terminals import print_proposals, print_terminals
@@ -64,6 +65,7 @@ def build(
         source = _buildable(name)
         values = _start_values(source, parameters, variant) if parameters else None
         path = build_fmu(source, out / f"{source.name}.fmu", values)
+        answer.result.setdefault("files", []).append(str(path))
         console.print(f"{path}  ({path.stat().st_size / 1000:.0f} kB)", soft_wrap=True)
         if osp:
             _write_osp(source, out)
@@ -91,6 +93,7 @@ def check(
     for name in names or list(shipped_sources()):
         found = _problems(name)
         problems += len(found)
+        answer.result.setdefault("problems", {})[name] = found
         console.print(f"{name}: {'no problem found' if not found else ''}", soft_wrap=True)
         for problem in found:
             console.print(f"  {escape(problem)}", soft_wrap=True)
@@ -125,6 +128,9 @@ def describe(
     if pattern and not shown:
         raise InputError(f"{name}: no variable matches {pattern!r}")
     most = len(shown) if every else MOST_SHOWN
+    columns = ("name", "causality", "type", "unit", "start", "minimum", "maximum", "description")
+    rows = [dict(zip(columns, _cells(variable), strict=True)) for variable in shown]
+    answer.result = {"title": title, "variables": rows}
     if len(shown) > most:
         console.print(f"{len(shown)} variables: {_counts(shown)}", soft_wrap=True)
     table = Table(box=None, padding=(0, 2, 0, 0))

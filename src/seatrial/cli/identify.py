@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
 
@@ -16,6 +17,7 @@ from ..trials.identify.study import Study, study
 from ..trials.identify.vehicle_file import base_vehicle, write_vehicle
 from ..trials.output import claim_folder
 from ..trials.report import REPORT
+from .answer import answer
 from .show import console
 
 VEHICLE = "vehicle.toml"
@@ -41,6 +43,12 @@ def identify(
     if parameters is not None:
         write_vehicle(found, base, parameters)
     page = write_page(found, folder, None if parameters is None else VEHICLE)
+    answer.result = {
+        "folder": str(folder),
+        "accepted": found.accepted,
+        "parameters": None if parameters is None else str(parameters),
+        "verdicts": [asdict(verdict) for verdict in found.verdicts],
+    }
     _print(found)
     if parameters is not None:
         console.print(f"parameters: {parameters}", soft_wrap=True)

@@ -10,6 +10,7 @@ from ..errors import InputError
 from ..fmi.source import named_sources
 from ..reading import toml_content
 from ..shipped import available
+from .answer import answer
 from .show import console
 
 _KINDS = {
@@ -23,13 +24,25 @@ _KINDS = {
     "experiments": "harness/identification",
     "hulls (estimate)": "harness/hulls",
 }
+_KEYS = {
+    "vehicles of rigs (--vehicle)": "vehicles",
+    "autopilots of rigs (--autopilot)": "autopilots",
+    "parameters of vehicles": "parameters",
+    "FMUs": "fmus",
+}
+"""How the kinds are called for programs, where that differs."""
 
 
 def list_all() -> None:
     """List trials, campaigns, rigs, vehicles, profiles, experiments and FMUs by name."""
-    for kind, folder in _KINDS.items():
-        _print(kind, {name: _title(path) for name, path in available(folder).items()})
-    _print("FMUs", {name: source.title for name, source in named_sources().items()})
+    listed = {
+        kind: {name: _title(path) for name, path in available(folder).items()}
+        for kind, folder in _KINDS.items()
+    }
+    listed["FMUs"] = {name: source.title for name, source in named_sources().items()}
+    answer.result = {_KEYS.get(kind, kind): titles for kind, titles in listed.items()}
+    for kind, titles in listed.items():
+        _print(kind, titles)
 
 
 def _print(kind: str, titles: dict[str, str]) -> None:

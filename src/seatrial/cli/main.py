@@ -13,6 +13,7 @@ import typer
 from .. import __version__
 from ..errors import InputError, SeatrialError, SimulationError
 from ..printable import PrintableFormatter, printable
+from .answer import answer, renewed
 from .commands import LazyGroup
 from .starting import interrupting
 from .statuses import BAD_INPUT, BROKEN
@@ -20,15 +21,15 @@ from .unread import dropping_unread
 
 _INTERRUPTED = 130
 """Status of Typer's own for a command that was interrupted."""
+_MISUSED = "the command was not used as it is meant: stderr says why"
 _ALLOCATIONS = 200_000
 """Between two garbage collections; at Python's 700 they take up to a tenth of a start."""
 
 app = typer.Typer(
     cls=LazyGroup,
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
-    context_settings={"max_content_width": 110},
+    context_settings={"max_content_width": 110, "help_option_names": ["-h", "--help"]},
     rich_markup_mode=None,  # plain help: what draws boxes takes half of the time of a start
     help="Sea trials before the water: co-simulated trials of marine vehicles.",
 )
@@ -47,6 +48,9 @@ def main() -> None:
 
 
 def _run() -> None:
+    renewed()
+    if "--json" in sys.argv[1:]:  # before anything is said, and whatever else is wrong
+        answer.begin("json")
     try:
         app()
     except InputError as error:
@@ -61,6 +65,8 @@ def _run() -> None:
     except SystemExit as end:
         if end.code == _INTERRUPTED:
             _complain(SimulationError("stopped"), BROKEN)
+        status = end.code if isinstance(end.code, int) else int(end.code is not None)
+        answer.end(status, _MISUSED if status == BAD_INPUT else None)
         raise
     except Exception as error:  # Python's own status 1 would say that a criterion failed
         if _comes_of_interruption(error):
@@ -78,6 +84,7 @@ def _comes_of_interruption(error: BaseException | None) -> bool:
 
 
 def _complain(error: SeatrialError, status: int) -> None:
+    answer.end(status, str(error))
     print(printable(f"seatrial: {error}"), file=sys.stderr)
     sys.exit(status)
 
@@ -91,7 +98,8 @@ def _version(wanted: bool) -> None:
 @app.callback()
 def _options(
     version: Annotated[
-        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version.")
+        bool,
+        typer.Option("--version", "-V", callback=_version, is_eager=True, help="Show the version."),
     ] = False,
 ) -> None:
     """Options before the command."""

@@ -11,6 +11,7 @@ from rich.markup import escape
 
 from ..errors import InputError, unknown
 from ..shipped import shipped_folder
+from .answer import answer
 from .show import console
 
 new_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
@@ -46,6 +47,7 @@ def vehicle(
     for path, text in files.items():
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text, "utf-8", newline="\n")
+    answer.result = {"files": [str(path) for path in files]}
     _say(name, like, files)
 
 

@@ -9,6 +9,7 @@ import typer
 
 from ..trials.campaign_report import CAMPAIGN, write_campaign_report
 from ..trials.report import write_report
+from .answer import answer
 from .show import console
 
 
@@ -18,4 +19,5 @@ def report(
     """Write the report of a run again."""
     is_campaign = (folder / CAMPAIGN).is_file()
     page = write_campaign_report(folder) if is_campaign else write_report(folder)
+    answer.result = {"report": str(page)}
     console.print(f"report: {page}", soft_wrap=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -19,6 +20,9 @@ from ..trials.report import write_report
 from ..trials.run import Result
 from ..trials.supervision import run_supervised
 from ..trials.trial import Trial, load_trial
+from .answer import answer
+from .junit import write_junit
+from .named import refuse_rig, runnable
 from .options import (
     Autopilot,
     Choices,
@@ -31,14 +35,26 @@ from .options import (
     engine_named,
     is_campaign,
 )
-from .show import console, print_case, print_notes, print_reachable, print_verdicts
+from .show import (
+    console,
+    print_case,
+    print_notes,
+    print_reachable,
+    print_verdicts,
+    run_entry,
+)
 from .statuses import FAILED
 from .stopping import stoppable
 from .watch import Watch
 
 
 def run(
-    trial: Annotated[str, typer.Argument(help="A trial or campaign: a name, a file or a package.")],
+    trial: Annotated[
+        str,
+        typer.Argument(
+            help="A trial or campaign: a name, a file or a package.", autocompletion=runnable
+        ),
+    ],
     settings: Settings = None,
     faults: Faults = None,
     choices: Choices = None,
@@ -63,6 +79,12 @@ def run(
     network: Annotated[
         bool, typer.Option("--network", help="Allow other hosts, and connections from them.")
     ] = False,
+    junit: Annotated[
+        Path | None, typer.Option("--junit", metavar="FILE", help="Write a JUnit file, too.")
+    ] = None,
+    no_report: Annotated[
+        bool, typer.Option("--no-report", help="Write no report: seatrial report makes it.")
+    ] = False,
 ) -> None:
     """Run a trial, or a campaign of trials, and say what holds."""
     chosen = engine_named(engine)
@@ -85,8 +107,10 @@ def run(
             raise InputError("--real-time and --overrun work with a trial, not with a campaign")
         if in_real_time:
             raise InputError("--realtime works with a trial, not with a campaign")
-        _run_campaign(campaign, out, chosen)
+        _run_campaign(campaign, out, chosen, Leaves(junit, not no_report))
         return
+    refuse_rig(trial)
+    leaves = Leaves(junit, not no_report)
     loaded = load_trial(trial, changes=changes, origin="--set")
     loaded = loaded.failing([read_fault(text, "--fault") for text in faults or []], "--fault")
     if in_real_time and loaded.file.real_time is None:
@@ -104,18 +128,20 @@ def run(
             )
             result = run_supervised(loaded, out, engine=chosen, hooks=hooks)
         print_verdicts(result)
-        _print_page(_page(lambda: write_report(result.folder), [result]))
+        answer.result = {"trial": loaded.name, "runs": [run_entry(result)]}
+        leaves.write_junit([(loaded.name, result)])
+        _print_page(leaves.page(lambda: write_report(result.folder), [result]))
     _exit_with([result])
 
 
-def _run_campaign(campaign: Campaign, out: Path | None, engine: Engine) -> None:
+def _run_campaign(campaign: Campaign, out: Path | None, engine: Engine, leaves: Leaves) -> None:
     cases = campaign.cases()
     with stoppable() as stop:
         with Watch(campaign.read_from.name) as watch:
 
             def done(case: Case, result: Result) -> None:
                 watch.log(lambda: print_case(case, result))
-                _page(lambda: write_report(result.folder), [result])
+                leaves.page(lambda: write_report(result.folder), [result])
 
             hooks = Hooks(
                 building=watch.building,
@@ -125,29 +151,47 @@ def _run_campaign(campaign: Campaign, out: Path | None, engine: Engine) -> None:
             )
             watch.expect(len(cases))
             folder, finished = run_campaign(campaign, out, engine=engine, hooks=hooks, done=done)
-        page = _page(lambda: write_campaign_report(folder), [result for _, result in finished])
+        results = [result for _, result in finished]
+        page = leaves.page(lambda: write_campaign_report(folder), results)
+        leaves.write_junit([(case.name, result) for case, result in finished])
     passed = sum(result.passed for _, result in finished)
     console.print(f"{passed} of {len(cases)} cases pass")
+    entries = [{"case": case.name, "set": case.set, **run_entry(r)} for case, r in finished]
+    answer.result = {"campaign": campaign.read_from.name, "folder": str(folder), "runs": entries}
     _print_page(page)
     if len(finished) < len(cases):
         raise SimulationError(f"stopped; {len(finished)} of {len(cases)} cases are on disk")
     _exit_with([result for _, result in finished])
 
 
-def _page(write: Callable[[], Path], results: list[Result]) -> Path | None:
-    """Write a page and return where; None if it cannot be, of runs that say already what failed.
+@dataclass(frozen=True)
+class Leaves:
+    """What a command leaves besides run folders."""
 
-    Raises SimulationError: nothing that a person wrote is wrong with it.
-    """
-    try:
-        return write()
-    except (OSError, InputError) as error:
-        why = f"{error.filename}: {error.strerror}" if isinstance(error, OSError) else str(error)
-        message = f"cannot write the report: {why}"
-        if not any(result.status == "failed" for result in results):
-            raise SimulationError(message) from None
-        print_notes([message])
-        return None
+    junit: Path | None
+    report: bool
+
+    def page(self, write: Callable[[], Path], results: list[Result]) -> Path | None:
+        """Write a page and return where; None if none is wanted, or of runs that have failed.
+
+        Raises SimulationError: nothing that a person wrote is wrong with it.
+        """
+        if not self.report:
+            return None
+        try:
+            return write()
+        except (OSError, InputError) as error:
+            where = f"{error.filename}: {error.strerror}" if isinstance(error, OSError) else error
+            message = f"cannot write the report: {where}"
+            if not any(result.status == "failed" for result in results):
+                raise SimulationError(message) from None
+            print_notes([message])
+            return None
+
+    def write_junit(self, runs: list[tuple[str, Result]]) -> None:
+        """Write the JUnit file, if one is wanted. Raises OSError."""
+        if self.junit is not None:
+            write_junit(self.junit, runs)
 
 
 def _print_page(page: Path | None) -> None:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console, ConsoleOptions, RenderableType
 from rich.markup import escape
@@ -11,6 +12,8 @@ from rich.segment import Segment
 
 from ..printable import printable
 from ..trials.ending import is_whole
+from ..trials.readable import number
+from .answer import answer
 
 if TYPE_CHECKING:
     from ..trials.campaign import Case
@@ -24,6 +27,11 @@ MOST_SHOWN = 200
 
 class SafeConsole(Console):
     """A console on which no text acts: control characters are shown, colours are rich's own."""
+
+    def print(self, *objects: Any, **options: Any) -> None:
+        """Print, unless the user wants nothing but errors."""
+        if not answer.quiet:
+            super().print(*objects, **options)
 
     def render(
         self, renderable: RenderableType, options: ConsoleOptions | None = None
@@ -39,6 +47,7 @@ console = SafeConsole(highlight=False, emoji=False)
 def print_notes(notes: Iterable[str]) -> None:
     """Print what a user should know and what is no error."""
     for note in notes:
+        answer.notes.append(note)
         console.print(f"[dim]note: {escape(note)}[/dim]", soft_wrap=True)
 
 
@@ -61,11 +70,18 @@ def print_verdicts(result: Result) -> None:
     print_notes(result.notes)
     for name, _, verdict in result.verdicts:
         said = verdict.detail
+        if answer.verbose and verdict.margin:
+            said += f", margin {verdict.margin}"
         if verdict.expected == "fail":
             said += f"; expected to fail: {verdict.why}"
         console.print(f"{_mark(verdict)}  {escape(name)}: {escape(said)}", soft_wrap=True)
     if not result.verdicts and is_whole(result.status):
         console.print("the trial has no criteria")
+    if result.status == "stopped":
+        console.print("the criteria were not evaluated")
+    if answer.verbose:
+        for what, seconds in result.wall.items():
+            console.print(f"{what}: {number(seconds)} s of wall time", soft_wrap=True)
     if result.status != "complete":
         colour = "yellow" if is_whole(result.status) else "red"
         console.print(f"[{colour}]{escape(result.status.upper())}[/{colour}]", soft_wrap=True)
@@ -87,3 +103,18 @@ def print_case(case: Case, result: Result) -> None:
         mark = f"[red]{result.status.upper()}[/red]"
     why = f"  ({', '.join(failed)})" if failed else ""
     console.print(f"{mark}  {escape(case.name)}{escape(why)}", soft_wrap=True)
+
+
+def run_entry(result: Result) -> dict[str, Any]:
+    """Return a run for programs."""
+    return {
+        "folder": str(result.folder),
+        "status": result.status,
+        "error": result.error,
+        "passed": result.passed,
+        "wall_s": result.wall,
+        "verdicts": [
+            {"name": name, "check": check, **asdict(verdict)}
+            for name, check, verdict in result.verdicts
+        ],
+    }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
 
@@ -14,6 +15,7 @@ from ..cosim.ssp.tools import TOOLS, findings
 from ..errors import InputError, unknown
 from ..trials.export import export_ssp
 from ..trials.trial import choices_in
+from .answer import answer
 from .options import Autopilot, Choices, Variant, Vehicle, changes_of
 from .show import console, print_notes
 
@@ -53,6 +55,7 @@ def export(
         name, out, variant, choices=chosen, tool=tool, version=_version(version)
     )
     print_notes(notes)
+    answer.result = {"file": str(path)}
     console.print(f"{path}  ({path.stat().st_size / 1000:.0f} kB)", soft_wrap=True)
 
 
@@ -80,6 +83,7 @@ def check(
             console.print(
                 f"  {mark}  {escape(finding.where)}: {escape(finding.text)}", soft_wrap=True
             )
+    answer.result = {"rejected": rejected, "findings": [asdict(one) for one in found]}
     if rejected or any(one.rejects for one in found):
         raise typer.Exit(1)
 

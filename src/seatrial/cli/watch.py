@@ -11,6 +11,7 @@ from typing import Protocol
 from rich.markup import escape
 
 from ..printable import printable
+from .answer import answer
 from .show import console
 
 PERIOD = 5.0
@@ -23,7 +24,9 @@ class Watch:
     def __init__(self, name: str, clock: Callable[[], float] = time.perf_counter) -> None:
         self._cases, self._case = 1, 0
         self._clock, self._started = clock, clock()
-        self._display: _Display = _Bar(name) if console.is_terminal else _Lines(name, clock)
+        self._display: _Display = (
+            _Bar(name) if console.is_terminal and not answer.quiet else _Lines(name, clock)
+        )
 
     def __enter__(self) -> Watch:
         return self
@@ -109,7 +112,7 @@ class _Lines:
         """Leave that unsaid: what goes wrong then is one message."""
 
     def show(self, share: float, state: str) -> None:
-        if self._clock() >= self._next:
+        if self._clock() >= self._next and not answer.quiet:
             self._next = self._clock() + PERIOD
             line = printable(f"{self._name}: {100 * share:.0f} %, {state}")
             print(line, file=sys.stderr, flush=True)

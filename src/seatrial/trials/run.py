@@ -30,7 +30,7 @@ class Result:
     """complete, ended (by a criterion), ended by COMPONENT, stopped or failed."""
     error: str | None
     verdicts: list[tuple[str, str, Verdict]]
-    """(name, check, verdict) of each criterion; empty if the run failed."""
+    """(name, check, verdict) of each criterion; empty if the run failed or was stopped."""
     notes: list[str]
     """What the user should know: of the rig, of the steps, of the pace."""
     wall: dict[str, float] = field(default_factory=dict)
@@ -74,7 +74,7 @@ def run_trial(
     finally:
         with contextlib.suppress(KeyboardInterrupt), hooks.interruptible():
             prepared.system.free()  # nothing of the run depends on it any more
-    verdicts = [] if run.status == "failed" else run.evaluate()
+    verdicts = [] if run.status in ("failed", "stopped") else run.evaluate()
     return Result(folder, run.status, run.error, verdicts, run.notes(), wall)
 
 

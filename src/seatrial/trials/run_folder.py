@@ -52,7 +52,12 @@ class Run:
 
     @property
     def passed(self) -> bool | None:
-        """Whether the run came to an end of its own, all criteria as expected; None without any."""
+        """Whether the run came to an end of its own, all criteria as expected.
+
+        None without any, and of a run that was stopped.
+        """
+        if self.manifest["status"] == "stopped":
+            return None
         if not is_whole(self.manifest["status"]):
             return False
         if not self.manifest["criteria"]:
@@ -86,7 +91,8 @@ def load_run(folder: Path | str) -> Run:
     """
     folder = Path(folder)
     manifest = read_manifest(folder)
-    files = (SIGNALS, VERDICTS, TIMING)
+    evaluated = manifest["status"] != "stopped"  # one that was stopped is not
+    files = (SIGNALS, VERDICTS, TIMING) if evaluated else (SIGNALS, TIMING)
     notes = [f"{name} is missing" for name in files if not _has_content(folder / name)]
     time: FloatArray = np.empty(0)
     signals: dict[str, Any] = {}
