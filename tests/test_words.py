@@ -66,6 +66,7 @@ BY_RIGHT = (
     Right("pin, pins", "*harness/firmware/*", "", "of a board"),
     Right("pin, pins, wire, wires, wiring", "*sketch*", "", "of a board"),
     Right("pin, wires, wired", "*test-with-pytest*", "", "of a board"),
+    Right("pin, wires", "*tutorials/ci.md*", "", "of a board"),
     Right("pin", "*mavlink/*", "LEAK1_PIN", "of ArduPilot's parameters"),
     Right("pin, wires", "docs/reference/*", r"PIN KIND|PROFILE:LINK", "of a board"),
     Right("wires, pin, pins", "*hil_profiles/*", "", "of a board"),

@@ -138,6 +138,7 @@ def test_a_vehicle_is_a_mavlink_peer() -> None:
         answer = vehicle.expect("COMMAND_ACK", within="1 s", command=400)
         assert answer.result == 0
         assert bench.get("autopilot.mavlink.armed")
+        bench.assert_holds("abs(vehicle.motion.attitude.phi) < 10 deg")
         with pytest.raises(AssertionError, match=r"HEARTBEAT, type=99 was not received"):
             vehicle.expect("HEARTBEAT", within="1.5 s", type=99)
 

@@ -6,7 +6,10 @@ value; elsewhere both are the same number.
 
 from __future__ import annotations
 
+import importlib
 import random
+import sys
+import typing
 
 import numpy as np
 import pytest
@@ -15,7 +18,9 @@ from seatrial.trials.grammar import tree
 from seatrial.trials.predicates import TINY, Record
 from seatrial.trials.robustness import Evaluation
 
-rtamt = pytest.importorskip("rtamt", reason="its parser does not import on Python 3.13")
+# Its parser imports a module that Python 3.13 has no more: the names are those of typing.
+sys.modules.setdefault("typing.io", typing)
+rtamt = importlib.import_module("rtamt")
 
 NAMES = ("x", "y", "z")
 OPERATORS = (

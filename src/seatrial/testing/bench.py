@@ -66,7 +66,14 @@ class Bench(Simulation):
         units = {name: signal.unit for name, signal in self.signals.items()}
         recorded = self.recording.signals
         name = self._master.system.rig.read_from.name
-        hold_or_fail(condition, during, recorded.t, recorded, units, name)
+        hold_or_fail(condition, during, recorded.t, recorded, units, name, self._path)
+
+    def _path(self, written: str) -> str:
+        """Return the path of an output that the rig shows by another name, or the name."""
+        if written in self.signals:
+            return written
+        component, variables = self._variables(written)
+        return f"{component}.{variables[0].name}" if len(variables) == 1 else written
 
     def report_sections(self, *, failed: bool) -> list[tuple[str, str]]:
         """Return what a report of the test shows."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -28,10 +28,15 @@ def hold_or_fail(
     signals: Mapping[str, Any],
     units: Mapping[str, str],
     where: str,
+    path: Callable[[str], str],
 ) -> None:
-    """Raise AssertionError, with a plot, for a condition that does not hold; InputError."""
+    """Raise AssertionError, with a plot, for a condition that does not hold; InputError.
+
+    ``path`` returns the name as it is recorded of one that a rig shows.
+    """
     __tracebackhide__ = True
     criterion = parse(condition)
+    criterion = criterion.renamed({name: path(name) for name in criterion.signals})
     criterion.check_units(units)
     rows = _rows(time, during)
     chosen = {

@@ -52,6 +52,15 @@ class TrialRun:
         """The recorded signals."""
         return self.result.signals
 
+    @cached_property
+    def _paths(self) -> dict[str, str]:
+        """How signals are recorded that the criteria name by what a rig shows."""
+        criteria = self.result.manifest["criteria"]
+        return {name: path for entry in criteria for name, path in entry["paths"].items()}
+
+    def _path(self, written: str) -> str:
+        return self._paths.get(written, written)
+
     def assert_holds(self, condition: str, *, during: During = None) -> None:
         """Assert a criterion on the recorded signals, ``during`` a part of the run or all of it.
 
@@ -61,7 +70,8 @@ class TrialRun:
         __tracebackhide__ = True
         signals = self.signals
         units = {name: entry["unit"] for name, entry in self.result.manifest["signals"].items()}
-        hold_or_fail(condition, during, signals.t, signals, units, self._loaded.name)
+        name = self._loaded.name
+        hold_or_fail(condition, during, signals.t, signals, units, name, self._path)
 
     def assert_passed(self) -> None:
         """Assert that the run came to its end and every criterion is as its trial expects."""
@@ -72,7 +82,10 @@ class TrialRun:
     def failures(self) -> str:
         """Return what a person should see of criteria that are not as expected."""
         said = []
-        criteria = [criterion for _, criterion in self._loaded.criteria]
+        criteria = [
+            criterion.renamed({n: self._path(n) for n in criterion.signals})
+            for _, criterion in self._loaded.criteria
+        ]
         for verdict, criterion in zip(self.result.verdicts, criteria, strict=False):
             if is_as_expected(vars(verdict)):
                 continue

@@ -32,7 +32,7 @@ final value is the last row's, so let the trial run until the signal rests.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -57,6 +57,8 @@ class Criterion:
 
     text: str
     says: Formula | Settling
+    paths: Mapping[str, str] = field(default_factory=dict)
+    """Of signals whose names in the text are not those in ``says``."""
 
     @property
     def kinds(self) -> dict[str, set[Kind]]:
@@ -88,10 +90,11 @@ class Criterion:
 
     def renamed(self, names: Mapping[str, str]) -> Criterion:
         """Return the criterion with other names of signals; its text stays."""
+        paths = {name: path for name, path in names.items() if path != name}
         if isinstance(self.says, Settling):
             subject = ex.renamed(self.says.subject, names)
-            return replace(self, says=replace(self.says, subject=subject))
-        return replace(self, says=formulas.renamed(self.says, names))
+            return replace(self, says=replace(self.says, subject=subject), paths=paths)
+        return replace(self, says=formulas.renamed(self.says, names), paths=paths)
 
     def check_units(self, units: Units) -> None:
         """Check signals and dimensions against ``units``, unit by name of every signal there is.

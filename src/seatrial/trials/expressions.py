@@ -119,7 +119,11 @@ def written(node: Expression) -> str:
         return quantity_text((node.value - measure.offset) / measure.factor, node.unit, 6)
     parts = [written(argument) for argument in node.arguments]
     if node.name in FUNCTIONS:
-        return f"{node.name}({', '.join(parts)})"
+        bare = [
+            part[1:-1] if isinstance(argument, Operation) and argument.name in "+-*/" else part
+            for part, argument in zip(parts, node.arguments, strict=True)
+        ]
+        return f"{node.name}({', '.join(bare)})"
     if node.name == "negative":
         return f"-{parts[0]}"
     return f"({f' {node.name} '.join(parts)})"

@@ -55,7 +55,10 @@ def manifest(trial: Trial, system: System, engine: Engine) -> dict[str, Any]:
             for v in part.instance.variables.values()
             if v.causality == "output"
         },
-        "criteria": [entry.model_dump() for entry in trial.file.criteria],
+        "criteria": [
+            {**entry.model_dump(), "paths": dict(criterion.paths)}
+            for entry, (_, criterion) in zip(trial.file.criteria, trial.criteria, strict=True)
+        ],
         "plots": [entry.model_dump() for entry in trial.file.plots],
         "events": [entry.model_dump() for entry in trial.file.events],
         "faults": [entry.written for entry in trial.file.faults],

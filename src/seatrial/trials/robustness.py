@@ -28,7 +28,7 @@ import numpy as np
 
 from . import sliding
 from .expressions import BoolArray, FloatArray
-from .formulas import PREDICATES, Formula, Interval, Logic, Temporal, Until
+from .formulas import PREDICATES, Formula, Interval, Logic, Temporal, Until, is_timeless
 from .predicates import Predicate, Record
 from .sliding import Rows
 
@@ -68,8 +68,8 @@ class Evaluation:
     def decisive(self, node: Formula, row: int) -> tuple[Predicate, int] | None:
         """Return the predicate, and its row, that decides a formula at a row; None if none does.
 
-        It is the one nearest to its limit, or furthest beyond it. Where something had to happen
-        and did, it is the first time.
+        It is the one nearest to its limit, or furthest beyond it. Where a condition had to be met
+        at some time and was, it is the first time.
         """
         if isinstance(node, PREDICATES):
             return node, row
@@ -166,7 +166,9 @@ class Evaluation:
         inside = values[start:end]
         if node.name in ("always", "historically"):
             return start + int(np.argmin(inside))
-        return start + int(np.argmax(inside > 0) if (inside > 0).any() else np.argmax(inside))
+        if is_timeless(node.parts[0]) and (inside > 0).any():
+            return start + int(np.argmax(inside > 0))
+        return start + int(np.argmax(inside))
 
     def _decisive_until(self, node: Until, row: int, side: int) -> tuple[Predicate, int] | None:
         first, second = (self.margins(part)[side] for part in node.parts)

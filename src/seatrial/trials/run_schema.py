@@ -110,6 +110,7 @@ class _Plot(_Entry):
 class _Criterion(_Entry):
     name: str
     check: str
+    paths: dict[str, str] = Field(default_factory=dict)
 
 
 _Pair = Annotated[tuple[bool | int, bool | int], Strict(False)]
