@@ -15,8 +15,9 @@ from ..links.arduino.build import build_host
 from ..links.arduino.component import Arduino
 from ..links.arduino.dialect import LIMITS
 from ..links.arduino.emulator import build_emulator, build_firmware
+from ..links.arduino.libraries import read_source
 from ..links.arduino.mcus import MCUS
-from ..links.arduino.sketch import Sketch, find_sketch, read_source
+from ..links.arduino.sketch import Sketch, find_sketch
 from ..links.arduino.unsupported import unsupported
 from ..links.arduino.wiring import PARTS, read_uarts, read_wires
 from ..printable import printable

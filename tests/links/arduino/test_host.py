@@ -10,7 +10,7 @@ import serial
 from seatrial.errors import InputError, SimulationError
 from seatrial.links.arduino.component import Arduino
 from seatrial.links.arduino.dialect import narrowed
-from seatrial.links.arduino.sketch import with_prototypes
+from seatrial.links.arduino.prototypes import with_prototypes
 
 from .bench import Bench, write_sketch
 

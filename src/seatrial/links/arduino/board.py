@@ -44,10 +44,12 @@ class Inputs:
 
 
 class Board:
-    """A running ``program``, ``name`` in messages."""
+    """A running ``program``, ``name`` in messages; ``source`` has the lines of addresses."""
 
-    def __init__(self, name: str, program: Path, *arguments: str) -> None:
-        self.name, self._program = name, program
+    def __init__(
+        self, name: str, program: Path, *arguments: str, source: Path | None = None
+    ) -> None:
+        self.name, self._source = name, source or program
         theirs_in, self._requests = os.pipe()
         self._answers, theirs_out = os.pipe()
         try:
@@ -141,7 +143,8 @@ class Board:
         match = _ADDRESS.search(output)
         if match is None:
             return output
-        command = ["addr2line", "-e", str(self._program), match[1]]
+        tool = "avr-addr2line" if self._source.suffix == ".elf" else "addr2line"
+        command = [tool, "-e", str(self._source), match[1]]
         with contextlib.suppress(OSError):
             found = subprocess.run(command, capture_output=True, text=True, check=False)
             if (line := found.stdout.strip().split(" (")[0]) and not line.startswith("?"):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Any, ClassVar
 
 from ...component import NS, Component
@@ -13,8 +14,8 @@ from ..endpoints.url import other_end
 from ..text import Inbox, Outbox
 from .board import DUTY, EDGE, UART, Board, Event, Inputs
 from .build import build_host
-from .emulator import build_emulator, firmware_file
-from .mcus import CLOCK, MCUS
+from .emulator import build_emulator, build_firmware, firmware_file
+from .mcus import CLOCK, MCUS, Mcu
 from .ports import ArduinoPorts
 from .pulses import Pulses
 from .real_board import RealBoard
@@ -150,11 +151,23 @@ class Arduino(ArduinoPorts):
         if self.backend == "host":
             if self.firmware:
                 raise InputError("firmware needs the back end 'simavr'; 'host' runs a sketch")
-            program, *more = build_host(find_sketch(self.sketch), mcu), str(self.patience)
-        else:
-            firmware = firmware_file(self.sketch, self.firmware, mcu)
-            program, *more = build_emulator(mcu), str(firmware), mcu.name, ",".join(mcu.ports)
-        self._board = Board(self.name, program, *more)
+            sketch = find_sketch(self.sketch, self.libraries, self.flags)
+            self._board = Board(self.name, build_host(sketch, mcu), str(self.patience))
+            return
+        firmware = firmware_file(self.firmware) if self.firmware else self._built(mcu)
+        pins = ",".join(mcu.ports)
+        self._board = Board(
+            self.name,
+            build_emulator(mcu),
+            str(self.patience),
+            str(firmware),
+            mcu.name,
+            pins,
+            source=firmware,
+        )
+
+    def _built(self, mcu: Mcu) -> Path:
+        return build_firmware(find_sketch(self.sketch, self.libraries, self.flags), mcu)
 
     def _connect(self, inputs: Inputs) -> None:
         for uart, rate in self._rates.items():

@@ -45,6 +45,9 @@ def narrowed(source: str) -> str:
             at += 1
             continue
         run = _run(found, at)
+        if len(run) == 1 and found[at].text == "int" and _marks_postfix(found, at):
+            at += 1
+            continue
         out[run[0]] = _narrow([found[i].text for i in run])
         out[run[0] + 1 : run[-1] + 1] = [""] * (run[-1] - run[0])
         at = run[-1] + 1
@@ -64,6 +67,15 @@ def _run(found: list[Token], at: int) -> list[int]:
             return run  # a directive ends with its line
         run.append(following)
         at = following
+
+
+def _marks_postfix(found: list[Token], at: int) -> bool:
+    """Return whether an int is the parameter that makes an operator ++ or -- a postfix one."""
+    before = [t.text for t in found[max(0, at - 40) : at] if t.kind != "space"]
+    if before[-1:] not in (["("], [","]) or "operator" not in before:
+        return False
+    since = before[len(before) - before[::-1].index("operator") :]
+    return since[:3] in (["+", "+", "("], ["-", "-", "("]) and ")" not in since
 
 
 def _narrow(words: list[str]) -> str:

@@ -8,10 +8,11 @@ from __future__ import annotations
 from pathlib import Path
 
 from ...errors import InputError
-from .build import run
+from .build import include_folders, run, with_used_libraries
+from .libraries import ASSEMBLY, SOURCES
 from .mcus import Mcu
 from .resources import TEXTS, cached, contents, laid_out
-from .sketch import SOURCES, Sketch, find_sketch, included, read_source
+from .sketch import Sketch
 from .toolchain import arduino_core, need, version
 
 _FLAGS = ("-Os", "-g", "-w", "-ffunction-sections", "-fdata-sections", "-DF_CPU=16000000L")
@@ -32,10 +33,8 @@ def build_emulator(mcu: Mcu) -> Path:
     return cached("emulator", key, "", make)
 
 
-def firmware_file(sketch: str, firmware: str, mcu: Mcu) -> Path:
-    """Return the firmware to run: a user's own, or a sketch's, built. Raises InputError."""
-    if not firmware:
-        return build_firmware(find_sketch(sketch), mcu)
+def firmware_file(firmware: str) -> Path:
+    """Return a user's own firmware. Raises InputError if it is none."""
     file = Path(firmware).expanduser()
     if file.suffix not in (".hex", ".elf"):
         raise InputError(f"firmware: {firmware!r} is neither a .hex nor a .elf file")
@@ -50,60 +49,87 @@ def build_firmware(sketch: Sketch, mcu: Mcu) -> Path:
     Raises InputError for what the compiler finds, with the sketch's files and lines.
     """
     need("simavr")
-    key = [mcu, version("avr-g++"), TEXTS, sketch.merged(), _FLAGS, contents(sketch.files())]
-    servo = laid_out() / "avr"
+    key = [mcu, version("avr-g++"), TEXTS, sketch.merged(), _FLAGS, sketch.flags]
+    key.append(contents(sketch.files()))
 
     def make(file: Path, scratch: Path) -> None:
+        bundled = _bundled_libraries()
+        more = [*bundled, *(f / "utility" for f in bundled)]
         main = scratch / f"{sketch.name}.ino.cpp"
-        main.write_text(sketch.merged())
-        libraries = _bundled_libraries(sketch)
-        sources = [main, *sketch.others, *sketch.library_sources(), servo / "Servo.cpp"]
-        for library in libraries:
-            sources += [f for f in sorted(library.rglob("*")) if f.suffix in SOURCES]
-        includes = [sketch.folder, *sketch.libraries, servo, *libraries]
-        includes += [library / "utility" for library in libraries]
-        objects = [_object(f, mcu, includes, scratch, i) for i, f in enumerate(sources)]
+        includer = [f"-I{f}" for f in (*include_folders(sketch), *more)]
+        used = with_used_libraries(sketch, [*_compiler(main, mcu, sketch.flags), *includer], main)
+        includes = [*include_folders(used), *more]
+        objects = [
+            _object(f, mcu, used.flags, includes, scratch, i)
+            for i, f in enumerate([main, *used.others, *used.library_sources()])
+        ]
+        archives = [_bundled(mcu, sketch.flags), _core(mcu, sketch.flags)]
         link = ["avr-gcc", "-Os", "-Wl,--gc-sections", f"-mmcu={mcu.name}", "-o", str(file)]
-        run([*link, *map(str, objects), str(_core(mcu)), "-lm"], sketch.name)
+        group = ["-Wl,--start-group", *map(str, archives), "-Wl,--end-group"]
+        run([*link, *map(str, objects), *group, "-lm"], sketch.name)
 
     return cached(f"firmware-{sketch.name}", key, ".elf", make)
 
 
-def _bundled_libraries(sketch: Sketch) -> list[Path]:
-    names = ["Wire", "SPI", "EEPROM"]
-    # It claims the pins' interrupts, which a sketch may have routines of its own for.
-    headers = {header for file in sketch.files() for header, _ in included(read_source(file))}
-    if "SoftwareSerial.h" in headers:
-        names.append("SoftwareSerial")
+def _bundled_libraries() -> list[Path]:
+    """Return the folders of the libraries that a sketch needs not bring: the core's, and Servo."""
     shelf = arduino_core() / "libraries"
-    return [shelf / name / "src" for name in names if (shelf / name).is_dir()]
+    names = ("Wire", "SPI", "EEPROM", "SoftwareSerial")
+    return [*(shelf / name / "src" for name in names), laid_out() / "avr"]
 
 
-def _compiler(file: Path, mcu: Mcu, includes: list[Path]) -> list[str]:
-    core = arduino_core()
-    places = [core / "cores" / "arduino", core / "variants" / mcu.variant, *includes]
-    defines = [d for d in mcu.defines if not d.startswith("-D__")]
-    compiler = ["avr-gcc"] if file.suffix in (".c", ".S") else ["avr-g++", *_CXX]
-    # Debian's core lacks a constant that avr-gcc 5 does not define in C++.
-    more = ["-DDECIMAL_DIG=__DECIMAL_DIG__"]
-    return [*compiler, f"-mmcu={mcu.name}", *_FLAGS, *more, *defines, *(f"-I{p}" for p in places)]
+def _bundled(mcu: Mcu, flags: tuple[str, ...]) -> Path:
+    """Return the bundled libraries as an archive: what a sketch does not use is not linked.
+
+    So their interrupt routines are only there with the rest of them: a sketch may have its own.
+    """
+    folders = _bundled_libraries()
+    core = [f for each in folders[:-1] for f in sorted(each.rglob("*")) if f.suffix in SOURCES]
+    files = [*core, folders[-1] / "Servo.cpp"]
+    return _archive("bundled", files, [*folders, *(f / "utility" for f in folders)], mcu, flags)
 
 
-def _object(file: Path, mcu: Mcu, includes: list[Path], scratch: Path, number: int) -> Path:
+def _core(mcu: Mcu, flags: tuple[str, ...]) -> Path:
+    """Return the Arduino core as an archive."""
+    folder = arduino_core() / "cores" / "arduino"
+    files = [f for f in sorted(folder.iterdir()) if f.suffix in (*SOURCES, *ASSEMBLY)]
+    return _archive("core", files, [], mcu, flags)
+
+
+def _archive(
+    name: str, files: list[Path], includes: list[Path], mcu: Mcu, flags: tuple[str, ...]
+) -> Path:
+    def make(file: Path, scratch: Path) -> None:
+        objects = [_object(f, mcu, flags, includes, scratch, i) for i, f in enumerate(files)]
+        run(["avr-ar", "rcs", str(file), *map(str, objects)], f"the Arduino {name}")
+
+    key = [mcu, version("avr-g++"), contents(files), _FLAGS, _CXX, flags]
+    return cached(f"{name}-avr", key, ".a", make)
+
+
+def _object(
+    file: Path,
+    mcu: Mcu,
+    flags: tuple[str, ...],
+    includes: list[Path],
+    scratch: Path,
+    number: int,
+) -> Path:
+    """Return the object file of one source; its folder is searched for headers first."""
     compiled = scratch / f"{number}.o"
-    assembler = ["-x", "assembler-with-cpp"] if file.suffix == ".S" else []
-    command = [*_compiler(file, mcu, includes), *assembler, "-c", str(file), "-o", str(compiled)]
+    places = [f"-I{place}" for place in includes]
+    command = [*_compiler(file, mcu, flags), *places, "-c", str(file), "-o", str(compiled)]
     run(command, file.name)
     return compiled
 
 
-def _core(mcu: Mcu) -> Path:
-    """Return the Arduino core as a library."""
-    folder = arduino_core() / "cores" / "arduino"
-    files = [f for f in sorted(folder.iterdir()) if f.suffix in (*SOURCES, ".S")]
-
-    def make(file: Path, scratch: Path) -> None:
-        objects = [_object(f, mcu, [], scratch, i) for i, f in enumerate(files)]
-        run(["avr-ar", "rcs", str(file), *map(str, objects)], "the Arduino core")
-
-    return cached("core-avr", [mcu, version("avr-g++"), contents(files), _FLAGS, _CXX], ".a", make)
+def _compiler(file: Path, mcu: Mcu, flags: tuple[str, ...]) -> list[str]:
+    """Return the compiler for a source with its options."""
+    core = arduino_core()
+    places = (core / "cores" / "arduino", core / "variants" / mcu.variant)
+    defines = [d for d in mcu.defines if not d.startswith("-D__")]
+    command = ["avr-gcc"] if file.suffix in (".c", *ASSEMBLY) else ["avr-g++", *_CXX]
+    # Debian's core lacks a constant that avr-gcc 5 does not define in C++.
+    command += [f"-mmcu={mcu.name}", *_FLAGS, "-DDECIMAL_DIG=__DECIMAL_DIG__", *defines, *flags]
+    command += ["-x", "assembler-with-cpp"] if file.suffix in ASSEMBLY else []
+    return [*command, *(f"-I{p}" for p in places)]

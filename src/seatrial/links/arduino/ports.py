@@ -8,6 +8,7 @@ from ...component import Component, Input, Output, Parameter, Reachable, Termina
 from ...unit_table import STANDARD_GRAVITY
 from ..safe_state_bytes import UNSET, check_safe_state
 from .mcus import MCUS
+from .sketch import read_flags
 from .uart_links import read_links, read_monitors
 from .wiring import OTHERS, SERVOS, UARTS, read_uarts, read_wires
 
@@ -27,6 +28,10 @@ class ArduinoPorts(Reachable, Component):
     sketch = Parameter("", "1", "folder of the sketch, or its .ino", role="file")
     firmware = Parameter(
         "", "1", "simavr: a .hex or .elf file in the place of a sketch", role="file"
+    )
+    libraries = Parameter("", "1", "folders of libraries, relative to the sketch's folder; with ;")
+    flags = Parameter(
+        "", "1", "options of the compiler, as -DNAME=VALUE; separated by spaces", check=read_flags
     )
     uarts = Parameter("0 115200", "1", "UART BAUD of each line; with ;", check=read_uarts)
     wires = Parameter(
@@ -57,7 +62,10 @@ class ArduinoPorts(Reachable, Component):
         min=1e-3,
     )
     patience = Parameter(
-        5.0, "s", "host: time for which a sketch may run without calling anything", min=1e-3
+        5.0,
+        "s",
+        "time for which a sketch may run without calling anything: longer, it hangs",
+        min=1e-3,
     )
     magnetic_field = Parameter(
         (2.3e-5, 0.0, 0.0),

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import json
+import shlex
 from dataclasses import dataclass
 from pathlib import Path
 
 from ...errors import InputError
-from .tokens import Token, tokens
+from .libraries import SOURCES, compiled, files_of, find_libraries, read_source
+from .prototypes import with_prototypes
 
-SOURCES = (".c", ".cpp", ".cc", ".cxx")
-HEADERS = (".h", ".hh", ".hpp", ".inc")
+_INOS = (".ino", ".pde")
+_FLAGS = ("-D", "-U", "-f", "-std=", "-W")
 
 
 @dataclass(frozen=True)
 class Sketch:
-    """A folder with ``NAME/NAME.ino``, more tabs, and ``libraries`` beside or in it.
+    """A folder with ``NAME/NAME.ino``, more tabs, its ``src``, and ``libraries`` beside or in it.
 
     ``tabs`` begin with the main one, then in alphabetical order, as the IDE joins them.
     """
@@ -24,9 +26,11 @@ class Sketch:
     folder: Path
     tabs: tuple[Path, ...]
     others: tuple[Path, ...]
-    """Sources that are compiled by themselves: ``.cpp`` and ``.c`` of the sketch."""
+    """Sources that are compiled by themselves: ``.cpp`` and ``.c``, and those of ``src``."""
     libraries: tuple[Path, ...]
     """Folders with the headers of the libraries that it includes."""
+    flags: tuple[str, ...] = ()
+    """Options of the compiler, for the sketch, its libraries and the core."""
 
     def merged(self) -> str:
         """Return the C++ file of all tabs, with prototypes; errors name the tabs' lines."""
@@ -35,160 +39,80 @@ class Sketch:
 
     def library_sources(self) -> list[Path]:
         """Return the sources of the libraries."""
-        return [file for folder in self.libraries for file in _sources(folder)]
+        return [file for folder in self.libraries for file in compiled(folder)]
+
+    def own_files(self) -> list[Path]:
+        """Return the sources and headers in its folder and its ``src``, besides the tabs."""
+        return files_of(self.folder)
 
     def files(self) -> list[Path]:
         """Return every file that goes into it."""
-        own = [f for f in sorted(self.folder.rglob("*")) if f.suffix in (*SOURCES, *HEADERS)]
-        theirs = [
-            f
-            for folder in self.libraries
-            for f in sorted(folder.rglob("*"))
-            if f.suffix in (*SOURCES, *HEADERS)
-        ]
-        return [*self.tabs, *own, *theirs]
+        theirs = [file for folder in self.libraries for file in files_of(folder)]
+        return [*self.tabs, *self.own_files(), *theirs]
 
 
-def find_sketch(place: str | Path) -> Sketch:
-    """Return the sketch of a folder or of its ``.ino``.
+def find_sketch(place: str | Path, libraries: str = "", flags: str = "") -> Sketch:
+    """Return the sketch of a folder, of its ``.ino``, or of the ``.cpp`` with its ``setup()``.
 
-    Libraries are folders of ``libraries`` in the sketch's folder or beside it that a file of the
-    sketch includes. Raises InputError if there is no sketch.
+    Libraries are searched in the folders of ``libraries`` (see `read_library_folders`), then in
+    ``libraries`` in the sketch's folder and beside it. Raises InputError if there is no sketch,
+    and for files that cannot be read.
     """
     path = Path(place).expanduser()
-    folder = path.parent if path.suffix in (".ino", ".pde") else path
-    folder = folder.resolve()
-    main = folder / f"{folder.name}.ino"
-    if path.suffix == ".ino" and path.is_file() and path.resolve() != main:
-        raise InputError(
-            f"{path}: an Arduino sketch lies in a folder of its own name: {path.stem}/{path.name}"
-        )
-    if not main.is_file():
+    folder = (path if path.is_dir() else path.parent).resolve()
+    main = path.resolve() if path.is_file() else _main(folder)
+    if main is None or main.suffix not in (*_INOS, *SOURCES):
         raise InputError(f"{place}: no sketch there (a folder NAME with NAME.ino is needed)")
-    tabs = (main, *sorted(f for f in folder.glob("*.ino") if f != main))
-    others = tuple(f for f in sorted(folder.iterdir()) if f.suffix in SOURCES)
-    return Sketch(folder.name, folder, tabs, others, _libraries(folder, [*tabs, *others]))
-
-
-def read_source(file: Path) -> str:
-    """Return a source file's text. Raises InputError if it is not UTF-8."""
+    joined = main.suffix in _INOS
+    named = folder / f"{folder.name}.ino"
+    if joined and main != named and named.is_file():
+        raise InputError(f"{path} is a tab of the sketch {named}: give that, or its folder")
+    more = sorted(f for f in folder.iterdir() if f.suffix in _INOS and f != main)
+    tabs = (main, *more) if joined else ()
+    sources = [f for f in sorted(folder.iterdir()) if f.suffix in SOURCES]
+    if (folder / "src").is_dir():
+        sources += compiled(folder / "src")
+    shelves = [*read_library_folders(libraries, folder)]
+    shelves += [folder / "libraries", folder.parent / "libraries"]
+    headers = [f for f in files_of(folder) if f.parent == folder or folder / "src" in f.parents]
     try:
-        return file.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{file}: cannot be read: {error}") from None
+        found = find_libraries([*tabs, *headers], shelves)
+    except OSError as error:
+        raise InputError(f"{place}: cannot be read: {error}") from None
+    return Sketch(main.stem, folder, tabs, tuple(sources), found, read_flags(flags))
 
 
-def included(source: str) -> list[tuple[str, int]]:
-    """Return the headers that a source includes, with their lines."""
+def read_library_folders(text: str, folder: Path) -> tuple[Path, ...]:
+    """Return the folders of libraries that ``text`` names, with ``;`` between them.
+
+    They are relative to ``folder``, the sketch's. Raises InputError for one that is not there.
+    """
     found = []
-    for token in tokens(source):
-        if token.kind == "include":
-            name = token.text.partition("include")[2].split("//")[0].strip()
-            found.append((name.strip('<>" \t'), token.line))
-    return found
-
-
-def _libraries(folder: Path, files: list[Path]) -> tuple[Path, ...]:
-    found: list[Path] = []
-    waiting = list(files)
-    while waiting:
-        for header, _ in included(read_source(waiting.pop())):
-            library = _library(folder, header)
-            if library is not None and library not in found:
-                found.append(library)
-                waiting += [f for f in library.rglob("*") if f.suffix in (*SOURCES, *HEADERS)]
+    for part in filter(None, (each.strip() for each in text.split(";"))):
+        shelf = folder / Path(part).expanduser()
+        if not shelf.is_dir():
+            raise InputError(f"libraries: {part!r}: there is no folder {shelf}")
+        found.append(shelf.resolve())
     return tuple(found)
 
 
-def _library(folder: Path, header: str) -> Path | None:
-    for shelf in (folder / "libraries", folder.parent / "libraries"):
-        for library in sorted(shelf.iterdir()) if shelf.is_dir() else ():
-            for place in (library / "src", library):
-                if (place / header).is_file():
-                    return place
-    return None
+def read_flags(text: str) -> tuple[str, ...]:
+    """Return the options of ``-DNAME=VALUE -UNAME -fOPTION``. Raises InputError for others."""
+    try:
+        found = tuple(shlex.split(text))
+    except ValueError as error:
+        raise InputError(f"flags: {text!r}: {error}") from None
+    for flag in found:
+        if not flag.startswith(_FLAGS) or flag in ("-D", "-U"):
+            raise InputError(
+                f"flags: {flag!r} is not allowed: options that begin with {', '.join(_FLAGS)} "
+                "are, their values in the same word; folders of headers are for 'libraries'"
+            )
+    return found
 
 
-def _sources(folder: Path) -> list[Path]:
-    every = folder.rglob("*") if folder.name == "src" else folder.glob("*")
-    return sorted(f for f in every if f.suffix in SOURCES)
-
-
-# ---------------------------------------------------------------------- prototypes
-
-
-def with_prototypes(source: str) -> str:
-    """Return ``source`` with prototypes of its functions before the first of them.
-
-    As the Arduino IDE does it: functions with default arguments, templates, and members get
-    none, nor do functions that the sketch declares itself.
-    """
-    found = [t for t in tokens(source) if t.kind not in ("space", "include")]
-    found = _without_directives(found, source)
-    prototypes: list[str] = []
-    first: Token | None = None
-    for begin, end in _definitions(found):
-        words = found[begin:end]
-        first = first or words[0]
-        if not any(t.text in ("=", "template", "operator", "~") for t in words):
-            prototypes.append(" ".join(t.text for t in words) + ";")
-    if first is None:
-        return source
-    lines = source.split("\n")
-    at = first.line - 1
-    name, line = _place(lines, at)
-    marked = [*prototypes, f"#line {line} {name}"]
-    return "\n".join([*lines[:at], *marked, *lines[at:]])
-
-
-def _place(lines: list[str], at: int) -> tuple[str, int]:
-    """Return the file and line that line ``at`` stands for, by the directive before it."""
-    for back in range(at - 1, -1, -1):
-        if lines[back].startswith("#line "):
-            _, number, name = lines[back].split(" ", 2)
-            return name, int(number) + at - back - 1
-    return '"sketch"', at + 1
-
-
-def _without_directives(found: list[Token], source: str) -> list[Token]:
-    lines = source.split("\n")
-    directives = set()
-    for number, line in enumerate(lines, 1):
-        continued = number - 1 in directives and lines[number - 2].endswith("\\")
-        if line.lstrip().startswith("#") or continued:
-            directives.add(number)
-    return [t for t in found if t.line not in directives]
-
-
-def _definitions(found: list[Token]) -> list[tuple[int, int]]:
-    """Return where functions at the outermost level begin, and where their bodies do."""
-    result, depth, begin = [], 0, 0
-    for at, token in enumerate(found):
-        if token.text == "{":
-            if depth == 0 and _is_function(found[begin:at]):
-                result.append((begin, at))
-            depth += 1
-        elif token.text == "}":
-            depth -= 1
-            if depth == 0:
-                begin = at + 1
-        elif token.text == ";" and depth == 0:
-            begin = at + 1
-    return result
-
-
-def _is_function(words: list[Token]) -> bool:
-    """Return whether tokens before a brace are 'TYPE NAME ( ... )'."""
-    texts = [t.text for t in words]
-    if "(" not in texts or texts[-1] != ")" or texts[0] in ("namespace", "extern"):
-        return False
-    name = texts.index("(") - 1
-    before = texts[:name]
-    types = [t for t in words[:name] if t.kind == "word"]
-    return (
-        words[name].kind == "word"
-        and bool(types)
-        and "::" not in before[-1:]
-        and "=" not in before
-        and texts[0] not in ("class", "enum", "union", "ISR", "else", "if", "while", "for")
-    )
+def _main(folder: Path) -> Path | None:
+    """Return the ``.ino`` of a folder's own name, or the only one there."""
+    found = sorted(f for f in folder.iterdir() if f.suffix in _INOS) if folder.is_dir() else []
+    named = [f for f in found if f.stem == folder.name]
+    return named[0] if named else found[0] if len(found) == 1 else None

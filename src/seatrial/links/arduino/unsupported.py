@@ -5,8 +5,9 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from .libraries import ASSEMBLY, header_by_folder, included, read_source
 from .resources import TEXTS
-from .sketch import Sketch, included, read_source
+from .sketch import Sketch
 from .tokens import tokens
 
 _ELSE = "use the back end simavr, or"
@@ -61,6 +62,9 @@ def unsupported(sketch: Sketch) -> list[str]:
     """
     problems = []
     for file in [*sketch.tabs, *sketch.others, *sketch.library_sources()]:
+        if file.suffix in ASSEMBLY:
+            problems.append(f"{file}:1: {_WORDS['asm']}; use the back end simavr")
+            continue
         source = _unconditional(read_source(file))
         for header, line in included(source):
             if not _has(sketch, file, header):
@@ -104,7 +108,7 @@ def _has(sketch: Sketch, file: Path, header: str) -> bool:
     if header in _STANDARD or f"core/{header}" in TEXTS:
         return True
     places = (file.parent, sketch.folder, *sketch.libraries)
-    return any((place / header).is_file() for place in places)
+    return any((f / header).is_file() or header_by_folder(f, header) for f in places)
 
 
 def _missing(header: str) -> str:

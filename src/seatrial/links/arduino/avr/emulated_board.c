@@ -1,4 +1,4 @@
-/* A board on simavr: FD FIRMWARE MCU PINS, where PINS has port and bit of each, as E0,E1,... */
+/* A board on simavr: FD PATIENCE FIRMWARE MCU PINS, where PINS has port and bit of each, as E0,E1,... */
 #include <sim_avr.h>
 #include <sim_elf.h>
 #include <sim_hex.h>
@@ -188,13 +188,13 @@ static int load(const char *file, const char *mcu)
 
 int main(int count, char **arguments)
 {
-    if (count < 5)
+    if (count < 6)
         return 2;
     link_out = atoi(arguments[1]);
     avr_global_logger_set(logged);
-    if (!load(arguments[2], arguments[3]))
+    if (!load(arguments[3], arguments[4]))
         end("simavr cannot load the firmware for this microcontroller");
-    const char *at = arguments[4];
+    const char *at = arguments[5];
     for (int pin = 0; pin < PINS && *at; pin++, at += at[2] ? 3 : 2) {
         ports[pin] = at[0];
         bits[pin] = at[1];
