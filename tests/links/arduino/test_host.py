@@ -141,10 +141,6 @@ def test_what_cannot_be_is_refused_with_its_line(tmp_path, source, expected):
             r"crashed: Segmentation fault \(.*one\.ino:5\)",
         ),
         ("void setup() { Serial.begin(9600); }\nvoid loop() {}\n", "UART 0 at 9600 baud.*115200"),
-        (
-            "#include <avr/wdt.h>\nvoid setup() { wdt_enable(WDTO_1S); }\nvoid loop() {}\n",
-            "watchdog",
-        ),
     ],
 )
 def test_a_sketch_that_goes_wrong_ends_its_component_only(tmp_path, source, expected):

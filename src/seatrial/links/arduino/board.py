@@ -22,8 +22,9 @@ _EVENT = struct.Struct("<BBHQ")
 _INPUT = struct.Struct("<BBHd")
 _HEAD = struct.Struct("<IQI")
 _ADDRESS = re.compile(r" \[at (0x[0-9a-f]+)\]")
-UART, EDGE, DUTY = ord("T"), ord("P"), ord("D")
-"""Kinds of events: a byte has left a UART; a pin has another level, or is modulated."""
+UART, EDGE, DUTY, WIDTH, EEPROM, RESET = (ord(letter) for letter in "TPDHeR")
+"""Kinds of events: a byte has left a UART; a pin has another level, is modulated with a share, high
+for so long; a byte of the EEPROM has changed; the board has started again."""
 
 _ANSWER_S = 20.0
 """Wall clock: a program that takes this long for one step hangs where it cannot report it."""

@@ -12,8 +12,9 @@ from ...errors import InputError
 from ..endpoints.endpoint import Endpoint
 from ..endpoints.url import other_end
 from ..text import Inbox, Outbox
-from .board import DUTY, EDGE, UART, Board, Event, Inputs
+from .board import DUTY, EDGE, EEPROM, RESET, UART, WIDTH, Board, Event, Inputs
 from .build import build_host
+from .eeprom import ERASED, read_eeprom, write_eeprom
 from .emulator import build_emulator, build_firmware, firmware_file
 from .mcus import CLOCK, MCUS, Mcu
 from .ports import ArduinoPorts
@@ -67,7 +68,7 @@ class Arduino(ArduinoPorts):
     feedthrough: ClassVar = {}
     discrete = True
     rolls_back = False
-    transient = Component.transient | {"_board", "_monitors", "_pulses", "_wires"}
+    transient = Component.transient | {"_board", "_eeprom", "_monitors", "_pulses", "_wires"}
 
     def __init__(self, name: str = "component") -> None:
         super().__init__(name)
@@ -84,6 +85,7 @@ class Arduino(ArduinoPorts):
             self._wires = read_wires(self.wires, mcu)
             there = {*range(mcu.uarts), *(w.number for w in self._wires if w.kind in _SOFT)}
             self._rates = {k: v for k, v in read_uarts(self.uarts).items() if k in there}
+            self._eeprom = read_eeprom(self.eeprom, mcu)
             self._begin()
             self._monitors = open_links(self.monitors, "monitors")
         except InputError as error:
@@ -94,7 +96,7 @@ class Arduino(ArduinoPorts):
         self._pulses = {w.place: Pulses() for w in self._wires if w.kind in _WATCHED}
         self._rx: list[dict[str, Any]] = [{} for _ in range(UARTS)]
         self._tx: list[dict[str, Any]] = [{} for _ in range(UARTS)]
-        self._sent = self._received = 0
+        self._sent = self._received = self._resets = 0
         self._cycle = 0
 
     def step(self, t: float, h: float) -> None:
@@ -117,6 +119,7 @@ class Arduino(ArduinoPorts):
         real = self._board if isinstance(self._board, RealBoard) else None
         self.exceeded += real.exceeded if real is not None else 0
         self.on_wall_clock, self.connected = real is not None, real is None or real.connected
+        self.resets = self._resets
         self.bytes_sent, self.bytes_received = self._sent, self._received
         widths, shares, levels = [0.0] * 12, [0.0] * 8, [False] * 8
         for wire in self._wires:
@@ -133,6 +136,8 @@ class Arduino(ArduinoPorts):
         if self._board is not None:
             self._board.close()
             self._board = None
+            if self.eeprom_after:
+                write_eeprom(self.eeprom_after, self._eeprom)
         for monitor in self._monitors.values():
             monitor.close()
         self._monitors = {}
@@ -172,6 +177,9 @@ class Arduino(ArduinoPorts):
     def _connect(self, inputs: Inputs) -> None:
         for uart, rate in self._rates.items():
             inputs.put("S", uart, rate)
+        for address, byte in enumerate(self._eeprom):
+            if byte != ERASED:
+                inputs.put("E", 0, byte, address)
         for wire in self._wires:
             if wire.kind in PARTS:
                 inputs.put("I", wire.place, value=PARTS[wire.kind])
@@ -240,7 +248,13 @@ class Arduino(ArduinoPorts):
             if kind == EDGE:
                 self._pulses[index].edge(value, cycle)
             elif kind == DUTY:
-                self._pulses[index].modulated(value / 255.0)
+                self._pulses[index].modulated(value / 65535.0)
+            elif kind == WIDTH:
+                self._pulses[index].high_for(value / 1e6)
+            elif kind == EEPROM:
+                self._eeprom[value] = index
+            elif kind == RESET:
+                self._resets += 1
             elif kind == UART and not self.cut[index]:
                 received[index].append(event)
         for uart, events_of_it in enumerate(received):

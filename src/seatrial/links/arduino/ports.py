@@ -33,6 +33,10 @@ class ArduinoPorts(Reachable, Component):
     flags = Parameter(
         "", "1", "options of the compiler, as -DNAME=VALUE; separated by spaces", check=read_flags
     )
+    eeprom = Parameter(
+        "", "1", "bytes that the EEPROM begins with, a binary file; none: erased", role="file"
+    )
+    eeprom_after = Parameter("", "1", "binary file for what the EEPROM holds at the end")
     uarts = Parameter("0 115200", "1", "UART BAUD of each line; with ;", check=read_uarts)
     wires = Parameter(
         "",
@@ -117,6 +121,7 @@ class ArduinoPorts(Reachable, Component):
     output = Output("1", "levels of digital outputs", type=bool, axes=_axes("o"))
     connected = Output("1", "board: whether one has sent, and all that have still do", type=bool)
     on_wall_clock = Output("1", "whether it needs real time: board", type=bool, role="wall-clock")
+    resets = Output("1", "times that the board started again, by its watchdog", type=int)
     bytes_sent = Output("1", "bytes that left the UARTs", type=int)
     bytes_received = Output("1", "bytes that were put on the lines to the UARTs", type=int)
 

@@ -17,10 +17,15 @@ class Pulses:
         self._width = 0
         self._share = 0.0
         self._given: float | None = None
+        self._held = 0.0
 
     def modulated(self, share: float) -> None:
         """Take in that hardware keeps the pin high for a share of the time, without edges."""
         self._given = share
+
+    def high_for(self, seconds: float) -> None:
+        """Take in how long at a time hardware keeps the pin high."""
+        self._held = seconds
 
     def edge(self, level: int, cycle: int) -> None:
         """Take in that the pin has another level."""
@@ -39,6 +44,8 @@ class Pulses:
 
     def width(self, now: int) -> float:
         """Return the last whole pulse's width, s; 0 if none came for 0.1 s."""
+        if self._given is not None:
+            return self._held
         return self._width / CLOCK if self._fall >= 0 and now - self._fall < _LOST else 0.0
 
     def share(self, now: int) -> float:

@@ -4,5 +4,9 @@ DATA_FILES = (
     "Servo.cpp",
     "Servo.h",
     "emulated_board.c",
+    "hangs.h",
     "lines.h",
+    "memory.h",
+    "modulation.h",
+    "ticks.h",
 )

@@ -3,6 +3,7 @@
 #include <sim_elf.h>
 #include <sim_hex.h>
 #include <avr_adc.h>
+#include <avr_eeprom.h>
 #include <avr_extint.h>
 #include <avr_ioport.h>
 #include <avr_timer.h>
@@ -32,6 +33,14 @@ static void logged(avr_t *from, const int level, const char *format, va_list val
 
 static void slept(avr_t *of, avr_cycle_count_t cycles) { (void)of, (void)cycles; }
 
+#include "ticks.h"
+
+static void end(const char *why)
+{
+    link_answer(avr ? ticks() : 0, why);
+    _exit(0);
+}
+
 /* ------------------------------------------------------------------ pins */
 
 static avr_irq_t *pin_irq(uint8_t pin)
@@ -44,48 +53,28 @@ static avr_irq_t *pin_irq(uint8_t pin)
 static void turned(avr_irq_t *irq, uint32_t value, void *which)
 {
     (void)irq;
-    link_put(OUT_EDGE, *(uint8_t *)which, value ? 1 : 0, avr->cycle);
+    link_put(OUT_EDGE, *(uint8_t *)which, value ? 1 : 0, ticks());
 }
 
-/* simavr does not turn pins that a timer modulates: its registers are read, at the end of a step. */
-static const struct output { uint8_t pin, timer, compare; } mega[] = {
-    {2, 3, 1}, {3, 3, 2}, {4, 0, 1}, {5, 3, 0}, {6, 4, 0}, {7, 4, 1}, {8, 4, 2}, {9, 2, 1},
-    {10, 2, 0}, {11, 1, 0}, {12, 1, 1}, {13, 0, 0}, {44, 5, 2}, {45, 5, 1}, {46, 5, 0}, {0, 0, 0},
-}, uno[] = {{3, 2, 1}, {5, 0, 1}, {6, 0, 0}, {9, 1, 0}, {10, 1, 1}, {11, 2, 0}, {0, 0, 0}};
-static const uint16_t control[] = {0x44, 0x80, 0xB0, 0x90, 0xA0, 0x120};
-static const uint16_t compares[] = {0x47, 0x88, 0xB3, 0x98, 0xA8, 0x128};
-static int watched[PINS], shares[PINS];
-
-static void tell_modulated(void)
-{
-    for (const struct output *each = ports[0] == 'E' ? mega : uno; each->pin; each++) {
-        if (!watched[each->pin])
-            continue;
-        int wide = each->timer != 0 && each->timer != 2;
-        uint16_t at = (uint16_t)(compares[each->timer] + each->compare * (wide ? 2 : 1));
-        int on = avr->data[control[each->timer]] & 0x80 >> 2 * each->compare;
-        int share = on ? avr->data[at] : -1;
-        if (share >= 0 && share != shares[each->pin])
-            link_put(OUT_DUTY, each->pin, (uint16_t)share, avr->cycle);
-        shares[each->pin] = share;
-    }
-}
+#include "modulation.h"
+#include "memory.h"
+#include "hangs.h"
 
 static void watch(uint8_t pin)
 {
     watched[pin] = 1;
-    shares[pin] = -1;
+    shares[pin] = -1.0;
     avr_irq_register_notify(pin_irq(pin), turned, &numbers[pin]);
 }
 
-static avr_cycle_count_t wave_due(avr_t *of, avr_cycle_count_t when, void *unused)
+static avr_cycle_count_t wave_due(avr_t *of, avr_cycle_count_t cycle, void *unused)
 {
-    (void)of, (void)unused;
+    (void)of, (void)cycle, (void)unused;
     wave *one;
-    while ((one = wave_turn(when, CLOCK)))
+    while ((one = wave_turn(ticks(), CLOCK)))
         avr_raise_irq(pin_irq(one->pin), one->level);
     uint64_t next = wave_next();
-    return next == NEVER ? 0 : next;
+    return next == NEVER ? 0 : cycle_of((double)next);
 }
 
 static void restart_waves(void)
@@ -93,7 +82,7 @@ static void restart_waves(void)
     uint64_t next = wave_next();
     avr_cycle_timer_cancel(avr, wave_due, 0);
     if (next != NEVER)
-        avr_cycle_timer_register(avr, next > avr->cycle ? next - avr->cycle : 1, wave_due, 0);
+        later((double)next, wave_due, 0);
 }
 
 /* ------------------------------------------------------------------ I2C */
@@ -137,12 +126,13 @@ static void take_input(const link_input *input)
     case IN_LEVEL: avr_raise_irq(pin_irq(index), input->number != 0.0); break;
     case IN_FREQUENCY:
     case IN_PULSE:
-        wave_set(index, input->kind == IN_PULSE, input->number, avr->cycle);
+        wave_set(index, input->kind == IN_PULSE, input->number, ticks());
         restart_waves();
         break;
     case IN_QUANTITY: part_quantities[index % QUANTITIES] = input->number; break;
     case IN_PART: part_add((uint8_t)input->value, index); break;
     case IN_WATCH: watch(index); break;
+    case IN_EEPROM: memory_preload(input->value, (uint8_t)input->number); break;
     }
 }
 
@@ -152,10 +142,10 @@ static avr_cycle_count_t stop(avr_t *of, avr_cycle_count_t when, void *unused)
     return 0; /* it is there so that no run of instructions goes beyond the target */
 }
 
-static void end(const char *why)
+static void was_reset(avr_t *of)
 {
-    link_answer(avr ? avr->cycle : 0, why);
-    _exit(0);
+    (void)of;
+    link_put(OUT_RESET, 0, 0, ticks());
 }
 
 static int load(const char *file, const char *mcu)
@@ -182,6 +172,7 @@ static int load(const char *file, const char *mcu)
     firmware.frequency = (uint32_t)CLOCK;
     avr_load_firmware(avr, &firmware);
     avr->frequency = (uint32_t)CLOCK;
+    avr_register_io_write(avr, CLKPR, clock_written, 0);
     avr->vcc = avr->avcc = avr->aref = 5000;
     return 1;
 }
@@ -191,6 +182,7 @@ int main(int count, char **arguments)
     if (count < 6)
         return 2;
     link_out = atoi(arguments[1]);
+    patience = (uint64_t)(atof(arguments[2]) * CLOCK);
     avr_global_logger_set(logged);
     if (!load(arguments[3], arguments[4]))
         end("simavr cannot load the firmware for this microcontroller");
@@ -202,21 +194,26 @@ int main(int count, char **arguments)
     }
     for (int uart = 0; uart < UARTS; uart++)
         connect_uart(uart);
+    memory_begin();
+    avr->reset = was_reset;
+    hang_forget();
     twi_input = avr_io_getirq(avr, AVR_IOCTL_TWI_GETIRQ(0), TWI_IRQ_INPUT);
     avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_TWI_GETIRQ(0), TWI_IRQ_OUTPUT), twi, 0);
     avr->run_cycle_limit = 1000;
     for (;;) {
         target = link_await(take_input);
-        if (target > avr->cycle)
-            avr_cycle_timer_register(avr, target - avr->cycle, stop, 0);
-        while (avr->cycle < target) {
+        while (ticks() < target) {
+            later((double)target, stop, 0);
             int state = avr_run(avr);
+            hang_observe(state);
             if (state == cpu_Crashed)
                 end("the microcontroller crashed: an instruction that is none, or the stack ran into the data");
             if (state == cpu_Done)
                 end("the microcontroller sleeps with interrupts off: it will never wake");
         }
         tell_modulated();
+        memory_tell();
+        line_check();
         link_answer(target, "");
     }
 }

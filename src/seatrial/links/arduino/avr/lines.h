@@ -36,29 +36,31 @@ static int another(line *one, double when)
     return one->waiting = 0;
 }
 
-static avr_cycle_count_t arrive(avr_t *of, avr_cycle_count_t when, void *which)
+static avr_cycle_count_t arrive(avr_t *of, avr_cycle_count_t cycle, void *which)
 {
     line *one = (line *)which;
-    (void)of;
+    double when = (double)ticks();
+    (void)of, (void)cycle;
     if (one->input)
         avr_raise_irq(one->input, one->bytes[one->first]);
-    return another(one, (double)when) ? (avr_cycle_count_t)(begins(one) + LINE_BITS * CLOCK / one->baud) : 0;
+    return another(one, when) ? cycle_of(begins(one) + LINE_BITS * CLOCK / one->baud) : 0;
 }
 
 /* Start bit, data from the lowest on, stop bit, each for as long as the line has it. */
-static avr_cycle_count_t arrive_bit(avr_t *of, avr_cycle_count_t when, void *which)
+static avr_cycle_count_t arrive_bit(avr_t *of, avr_cycle_count_t cycle, void *which)
 {
     line *one = (line *)which;
-    (void)of;
+    double when = (double)ticks();
+    (void)of, (void)cycle;
     if (one->bit == 0)
-        one->begun = (double)when;
+        one->begun = when;
     int frame = one->bytes[one->first] << 1 | 0x200, at = one->bit++;
     if (at < 10) {
         avr_raise_irq(pin_irq((uint8_t)one->rx_pin), frame >> at & 1);
-        return (avr_cycle_count_t)(one->begun + (at + 1) * CLOCK / one->baud);
+        return cycle_of(one->begun + (at + 1) * CLOCK / one->baud);
     }
     one->bit = 0;
-    return another(one, (double)when) ? (avr_cycle_count_t)fmax(begins(one), (double)when + 1) : 0;
+    return another(one, when) ? cycle_of(fmax(begins(one), when + 1)) : 0;
 }
 
 static void queue(line *one, uint8_t data, double earliest)
@@ -71,12 +73,12 @@ static void queue(line *one, uint8_t data, double earliest)
     one->bytes[one->count] = data;
     one->earliest[one->count++] = earliest;
     if (!one->waiting && one->baud > 0.0) {
-        double begin = fmax(begins(one), (double)avr->cycle);
+        double begin = fmax(begins(one), (double)ticks());
         one->waiting = 1;
         if (one->rx_pin)
-            avr_cycle_timer_register(avr, (avr_cycle_count_t)begin + 1 - avr->cycle, arrive_bit, one);
+            later(begin + 1, arrive_bit, one);
         else
-            avr_cycle_timer_register(avr, (avr_cycle_count_t)(begin + LINE_BITS * CLOCK / one->baud) - avr->cycle, arrive, one);
+            later(begin + LINE_BITS * CLOCK / one->baud, arrive, one);
     }
 }
 
@@ -84,7 +86,7 @@ static void transmitted(avr_irq_t *irq, uint32_t value, void *which)
 {
     (void)irq;
     if (!lines[(intptr_t)which].tx_pin)
-        link_put(OUT_UART, (uint8_t)(intptr_t)which, (uint16_t)(value & 0xFF), avr->cycle);
+        link_put(OUT_UART, (uint8_t)(intptr_t)which, (uint16_t)(value & 0xFF), ticks());
 }
 
 static void connect_uart(int index)
@@ -103,16 +105,16 @@ static void connect_uart(int index)
 /* ------------------------------------------------------------------ at pins */
 
 /* In the middle of each bit of a byte that a pin sends, the stop bit the last. */
-static avr_cycle_count_t sample(avr_t *of, avr_cycle_count_t when, void *which)
+static avr_cycle_count_t sample(avr_t *of, avr_cycle_count_t cycle, void *which)
 {
     line *one = (line *)which;
-    (void)of;
+    (void)of, (void)cycle;
     if (one->sampled++ <= 8) {
         one->sending = (uint8_t)(one->sending >> 1 | (one->level ? 0x80 : 0));
-        return (avr_cycle_count_t)(one->began + (one->sampled + 0.5) * CLOCK / one->baud);
+        return cycle_of(one->began + (one->sampled + 0.5) * CLOCK / one->baud);
     }
     one->sampled = 0;
-    link_put(OUT_UART, (uint8_t)(one - lines), one->sending, when);
+    link_put(OUT_UART, (uint8_t)(one - lines), one->sending, ticks());
     return 0;
 }
 
@@ -124,9 +126,9 @@ static void driven(avr_irq_t *irq, uint32_t value, void *which)
     one->level = value != 0;
     if (!fell || one->sampled || one->baud <= 0.0)
         return;
-    one->began = (double)avr->cycle;
+    one->began = (double)ticks();
     one->sampled = 1;
-    avr_cycle_timer_register(avr, (avr_cycle_count_t)(1.5 * CLOCK / one->baud), sample, one);
+    later(one->began + 1.5 * CLOCK / one->baud, sample, one);
 }
 
 static void line_to_pin(line *one, uint8_t pin)

@@ -15,6 +15,7 @@
 
 #include "avr/interrupt.h"
 #include "avr/pgmspace.h"
+#include "avr/wdt.h"
 #include "avr_libc.h"
 
 typedef uint8_t byte;

@@ -1,8 +1,11 @@
-/* EEPROM: erased at the start of every run. */
+/* EEPROM: its content at the start is the component's. */
 #ifndef EEPROM_h
 #define EEPROM_h
 
 #include "Arduino.h"
+
+#pragma pack(push)
+#pragma pack()
 
 #ifdef BOARD_MEGA
 #define EEPROM_SIZE 4096
@@ -57,5 +60,7 @@ extern EEPROMClass EEPROM;
 
 inline EERef::operator uint8_t() const { return EEPROM.read(at_); }
 inline EERef &EERef::operator=(uint8_t value) { EEPROM.update(at_, value); return *this; }
+
+#pragma pack(pop)
 
 #endif

@@ -4,6 +4,9 @@
 
 #include "Arduino.h"
 
+#pragma pack(push)
+#pragma pack()
+
 #define SPI_MODE0 0x00
 #define SPI_MODE1 0x04
 #define SPI_MODE2 0x08
@@ -41,5 +44,7 @@ private:
 };
 
 extern SPIClass SPI;
+
+#pragma pack(pop)
 
 #endif

@@ -4,6 +4,9 @@
 
 #include "Arduino.h"
 
+#pragma pack(push)
+#pragma pack()
+
 #define MIN_PULSE_WIDTH 544
 #define MAX_PULSE_WIDTH 2400
 #define DEFAULT_PULSE_WIDTH 1500
@@ -24,5 +27,7 @@ public:
 private:
     uint8_t index_;
 };
+
+#pragma pack(pop)
 
 #endif

@@ -4,6 +4,9 @@
 
 #include "Arduino.h"
 
+#pragma pack(push)
+#pragma pack()
+
 #define _SS_MAX_RX_BUFF 64
 
 class SoftwareSerial : public Stream {
@@ -30,5 +33,7 @@ private:
     int line_ = -1;
     uint32_t byte_us_ = 0;
 };
+
+#pragma pack(pop)
 
 #endif

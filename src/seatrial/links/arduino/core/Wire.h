@@ -4,6 +4,9 @@
 
 #include "Arduino.h"
 
+#pragma pack(push)
+#pragma pack()
+
 #define BUFFER_LENGTH 32
 #define WIRE_HAS_END 1
 #define WIRE_HAS_TIMEOUT 1
@@ -43,5 +46,7 @@ private:
 };
 
 extern TwoWire Wire;
+
+#pragma pack(pop)
 
 #endif

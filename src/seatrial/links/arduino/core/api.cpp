@@ -113,6 +113,8 @@ void interrupts() { machine::enable(true); charge(1); }
 void noInterrupts() { machine::enable(false); charge(1); }
 bool interrupts_enabled() { return machine::enabled(); }
 
+uint8_t &sketch_reset_flags = machine::reset_flags;
+
 void wdt_enable(uint8_t timeout) { machine::watchdog((uint64_t)(240000ull << timeout)); }
 void wdt_disable() { machine::watchdog(0); }
 void wdt_reset() { charge(1); machine::feed(); }

@@ -1,6 +1,7 @@
 /* What hangs on the board: Serial, SoftwareSerial, Wire, SPI, Servo, EEPROM. Costs in cycles as in api.cpp. */
 #include "Arduino.h"
 #include "EEPROM.h"
+#include "avr/eeprom.h"
 #include "SPI.h"
 #include "Servo.h"
 #include "SoftwareSerial.h"
@@ -188,8 +189,44 @@ void Servo::writeMicroseconds(int us)
     machine::set_servo(index_, servos[index_].pin, servos[index_].us);
 }
 
-static uint8_t eeprom[EEPROM_SIZE];
-static bool eeprom_erased = (memset(eeprom, 0xFF, sizeof eeprom), true);
 EEPROMClass EEPROM;
-uint8_t EEPROMClass::read(int at) { charge(12); return eeprom_erased && at >= 0 && at < EEPROM_SIZE ? eeprom[at] : 0xFF; }
-void EEPROMClass::write(int at, uint8_t value) { machine::pass_until(machine::now + 54400); if (at >= 0 && at < EEPROM_SIZE) eeprom[at] = value; }
+
+static uint8_t memory_read(uintptr_t at) { charge(12); return at < EEPROM_SIZE ? machine::remembered((uint16_t)at) : 0xFF; }
+
+static void memory_write(uintptr_t at, uint8_t value)
+{
+    machine::pass_until(machine::now + 54400);
+    if (at < EEPROM_SIZE)
+        machine::remember((uint16_t)at, value);
+}
+
+uint8_t EEPROMClass::read(int at) { return memory_read((uintptr_t)at); }
+void EEPROMClass::write(int at, uint8_t value) { memory_write((uintptr_t)at, value); }
+
+/* Variables of EEMEM are in a section of their own; where they are in it is their address. */
+extern "C" __attribute__((weak)) char __start_sketch_eemem[], __stop_sketch_eemem[];
+
+static uintptr_t place_in_memory(const void *at)
+{
+    char *place = (char *)at;
+    return place >= __start_sketch_eemem && place < __stop_sketch_eemem ? (uintptr_t)(place - __start_sketch_eemem) : (uintptr_t)at;
+}
+
+void eeprom_read_block(void *to, const void *from, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        ((uint8_t *)to)[i] = memory_read(place_in_memory(from) + i);
+}
+
+void eeprom_write_block(const void *from, void *to, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        memory_write(place_in_memory(to) + i, ((const uint8_t *)from)[i]);
+}
+
+void eeprom_update_block(const void *from, void *to, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (memory_read(place_in_memory(to) + i) != ((const uint8_t *)from)[i])
+            memory_write(place_in_memory(to) + i, ((const uint8_t *)from)[i]);
+}

@@ -3,6 +3,7 @@
 #include <pthread.h>
 #include <signal.h>
 #include <stdarg.h>
+#include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/time.h>
 #include <ucontext.h>
@@ -20,10 +21,12 @@ void serve_serial_events();
 namespace machine {
 
 uint64_t now;
+uint8_t reset_flags = 1;
 
 namespace {
 
-constexpr int INTERRUPTS = 6, SERVOS = 12;
+constexpr int INTERRUPTS = 6, CONFIGURED = 16, SERVOS = 12;
+constexpr int EEPROM_MOST = 4096;
 constexpr size_t STACK = 64 << 10, GUARD = 64 << 10;
 constexpr uint64_t FRAME = (uint64_t)(0.02 * CLOCK);
 #ifdef BOARD_MEGA
@@ -37,7 +40,7 @@ uint64_t last_call, patience;
 char *stack;
 
 struct Pin {
-    bool level, input, watched;
+    bool level, driven, watched;
     int share; /* of 255; -1: no PWM */
     double edge;
 } pins[PINS];
@@ -58,6 +61,9 @@ struct Interrupt {
 bool interrupts_on = true, in_interrupt;
 uint64_t watchdog_cycles, watchdog_due = NEVER;
 double adc[16];
+uint8_t memory[EEPROM_MOST];
+link_input configured[CONFIGURED]; /* lines: the same after a reset */
+int configured_count;
 
 void show(uint8_t pin)
 {
@@ -79,14 +85,30 @@ void put_level(uint8_t pin, bool to)
     }
 }
 
+void configure(const link_input *input)
+{
+    uint8_t uart = input->index % UARTS;
+    if (input->kind == IN_BAUD)
+        set_line(uart, input->number);
+    else if (input->kind == IN_RX_PIN)
+        put_line_at(uart, input->value, -1);
+    else
+        put_line_at(uart, -1, input->value);
+}
+
 void take_input(const link_input *input)
 {
     uint8_t index = input->index;
     switch (input->kind) {
     case IN_UART: put_on_line(index % UARTS, (uint8_t)input->value, input->number); break;
-    case IN_BAUD: set_line(index % UARTS, input->number); break;
-    case IN_RX_PIN: put_line_at(index % UARTS, input->value, -1); break;
-    case IN_TX_PIN: put_line_at(index % UARTS, -1, input->value); break;
+    case IN_BAUD:
+    case IN_RX_PIN:
+    case IN_TX_PIN:
+        if (configured_count < CONFIGURED)
+            configured[configured_count++] = *input;
+        configure(input);
+        break;
+    case IN_EEPROM: memory[input->value % EEPROM_MOST] = (uint8_t)input->number; break;
     case IN_VOLTS: adc[index % 16] = input->number; break;
     case IN_LEVEL: put_level(index % PINS, input->number != 0.0); break;
     case IN_FREQUENCY: wave_set(index, 0, input->number, now); break;
@@ -132,6 +154,8 @@ void turn_modulated(uint8_t pin)
     one.edge += period * (one.level ? high : 1.0 - high);
 }
 
+#include "reset.h"
+
 /* When the first thing falls due, and, in `do_it`, let it happen at its time. */
 uint64_t first(bool do_it)
 {
@@ -161,7 +185,7 @@ uint64_t first(bool do_it)
     } else if (all == servo_next) {
         turn_servos();
     } else if (all == watchdog_due) {
-        end("the watchdog was not fed in time: the board would start again");
+        reset();
     } else {
         link_answer(now, "");
         target = link_await(take_input);
@@ -211,14 +235,19 @@ void crashed(int number, siginfo_t *info, void *context)
         end("it overran its stack of %zu kB: a recursion without end, or large local arrays "
             "(the board has 8 kB or less in all)",
             STACK >> 10);
+    if (at == nullptr && ((ucontext_t *)context)->uc_mcontext.gregs[REG_RIP] == 0)
+        reset(); /* a jump to the beginning of the program */
     greg_t place = ((ucontext_t *)context)->uc_mcontext.gregs[REG_RIP];
     end("it crashed: %s [at 0x%llx]", strsignal(number), (unsigned long long)place);
 }
 
-/* Twice in a second of CPU time: a loop without any code in it is not instrumented. */
+/* Ten times in a second of CPU time: a loop without any code in it is not instrumented. Often it waits
+ * for the watchdog. */
 void watch_for_hang(int)
 {
     static uint64_t before = NEVER;
+    if (now == before && watchdog_due != NEVER)
+        pass_until(watchdog_due);
     if (now == before)
         end("it does not go on and calls nothing: an endless loop");
     before = now;
@@ -238,14 +267,15 @@ void catch_crashes()
     ticking.sa_handler = watch_for_hang;
     ticking.sa_flags = SA_RESTART | SA_ONSTACK;
     sigaction(SIGVTALRM, &ticking, nullptr);
-    itimerval twice = {{0, 500000}, {0, 500000}};
-    setitimer(ITIMER_VIRTUAL, &twice, nullptr);
+    itimerval often = {{0, 100000}, {0, 100000}};
+    setitimer(ITIMER_VIRTUAL, &often, nullptr);
 }
 
 void *run(void *)
 {
     catch_crashes();
-    target = link_await(take_input);
+    if (!resumed)
+        target = link_await(take_input);
     next_due = first(false);
     setup();
     for (;;) {
@@ -289,16 +319,27 @@ void drive(uint8_t pin, bool to)
     if (pins[pin].share >= 0)
         modulated--;
     pins[pin].share = -1;
+    pins[pin].driven = true;
     put_level(pin, to);
 }
 
 bool level(uint8_t pin) { return pin < PINS && pins[pin].level; }
+uint8_t remembered(uint16_t at) { return memory[at % EEPROM_MOST]; }
+
+void remember(uint16_t at, uint8_t value)
+{
+    if (memory[at % EEPROM_MOST] != value)
+        link_put(OUT_EEPROM, value, at, now);
+    memory[at % EEPROM_MOST] = value;
+}
+
 double volts(uint8_t channel) { return adc[channel % 16]; }
 
 void modulate(uint8_t pin, int share)
 {
     if (pin >= PINS)
         return;
+    pins[pin].driven = true;
     if (pins[pin].share < 0) {
         modulated++;
         pins[pin].level = true;
@@ -382,6 +423,10 @@ int main(int, char **arguments)
     patience = (uint64_t)(atof(arguments[2]) * CLOCK);
     for (Pin &pin : pins)
         pin.share = -1;
+    memset(memory, 0xFF, sizeof memory);
+    program = arguments;
+    if (arguments[3])
+        resume(atoi(arguments[3]));
     stack = (char *)mmap(nullptr, GUARD + STACK, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     stack += GUARD;
     mprotect(stack, STACK, PROT_READ | PROT_WRITE);

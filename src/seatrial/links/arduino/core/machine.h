@@ -37,6 +37,9 @@ void set_servo(int servo, int pin, double us); /* pin -1: detached */
 void on_edge(uint8_t interrupt, void (*handler)(), int mode);
 void enable(bool interrupts);
 bool enabled();
+uint8_t remembered(uint16_t at); /* EEPROM */
+void remember(uint16_t at, uint8_t value);
+extern uint8_t reset_flags; /* MCUSR */
 void watchdog(uint64_t cycles); /* 0: off */
 void feed();
 

@@ -40,9 +40,13 @@ enum {
     IN_PULSE = 'R',     /* width of the servo pulses at pin `index`, s */
     IN_QUANTITY = 'V',  /* `index` as in parts.h */
     IN_PART = 'I',      /* I2C device of type `value` at address `index` */
+    IN_EEPROM = 'E',    /* byte `number` of the EEPROM, at address `value` */
     IN_WATCH = 'W',     /* pin `index` is to be reported */
     OUT_UART = 'T',     /* byte `value` left UART `index` */
-    OUT_DUTY = 'D',     /* pin `index` is modulated by hardware: high for `value` of 255 */
+    OUT_DUTY = 'D',     /* pin `index` is modulated by hardware: high for `value` of 65535 */
+    OUT_WIDTH = 'H',    /* and high for `value` microseconds at a time */
+    OUT_EEPROM = 'e',   /* byte `index` is in the EEPROM at address `value` now */
+    OUT_RESET = 'R',    /* the board has started again */
     OUT_EDGE = 'P',     /* pin `index` is now at level `value` */
 };
 

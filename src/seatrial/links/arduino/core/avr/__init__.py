@@ -1,7 +1,9 @@
 """Headers of avr-libc that sketches include."""
 
 DATA_FILES = (
+    "eeprom.h",
     "interrupt.h",
+    "io.h",
     "pgmspace.h",
     "wdt.h",
 )

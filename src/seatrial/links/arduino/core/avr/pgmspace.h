@@ -7,7 +7,12 @@
 #define PGM_P const char *
 #define PSTR(text) (text)
 #define pgm_read_byte(at) (*(const uint8_t *)(at))
-#define pgm_read_word(at) (*(const uint16_t *)(at))
+/* A table of addresses is read by words on the board; an address is longer here. */
+template <typename T> uintptr_t sketch_flash_word(T *const *at) { return (uintptr_t)*at; }
+template <typename T> uintptr_t sketch_flash_word(T **at) { return (uintptr_t)*at; }
+inline uint16_t sketch_flash_word(const volatile void *at) { return *(const uint16_t *)at; }
+inline uint16_t sketch_flash_word(uintptr_t at) { return *(const uint16_t *)at; }
+#define pgm_read_word(at) sketch_flash_word(at)
 #define pgm_read_dword(at) (*(const uint32_t *)(at))
 #define pgm_read_float(at) (*(const float *)(at))
 #define pgm_read_ptr(at) (*(const void *const *)(at))
