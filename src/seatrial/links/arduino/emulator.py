@@ -5,6 +5,8 @@ simavr is the system's and stays outside this process: it is under the GPL.
 
 from __future__ import annotations
 
+import re
+import subprocess
 from pathlib import Path
 
 from ...errors import InputError
@@ -67,8 +69,20 @@ def build_firmware(sketch: Sketch, mcu: Mcu) -> Path:
         link = ["avr-gcc", "-Os", "-Wl,--gc-sections", f"-mmcu={mcu.name}", "-o", str(file)]
         group = ["-Wl,--start-group", *map(str, archives), "-Wl,--end-group"]
         run([*link, *map(str, objects), *group, "-lm"], sketch.name)
+        _check_memory(file, mcu, sketch.name)
 
     return cached(f"firmware-{sketch.name}", key, ".elf", make)
+
+
+def _check_memory(elf: Path, mcu: Mcu, name: str) -> None:
+    """Raise InputError if the variables of a firmware do not fit: the linker does not say."""
+    done = subprocess.run(["avr-size", "-A", str(elf)], capture_output=True, text=True, check=True)
+    sizes = dict(re.findall(r"^\.(data|bss|noinit)\s+(\d+)", done.stdout, re.MULTILINE))
+    if (used := sum(map(int, sizes.values()))) >= mcu.ram:
+        raise InputError(
+            f"{name} does not fit: its variables take {used} bytes, and the {mcu.board} has "
+            f"{mcu.ram} for them and the stack"
+        )
 
 
 def _bundled_libraries() -> list[Path]:

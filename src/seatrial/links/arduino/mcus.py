@@ -21,8 +21,9 @@ class Mcu:
     analog: int
     first_analog: int
     uarts: int
+    ram: int
     eeprom: int
-    """Bytes of EEPROM."""
+    """Bytes of memory."""
     ports: tuple[str, ...]
     """Port and bit of each pin, as ``B7``."""
 
@@ -67,6 +68,6 @@ _MEGA = "E0-1 E4-5 G5 E3 H3-6 B4-7 J1-0 H1-0 D3-0 A0-7 C7-0 D7 G2-0 L7-0 B3-0 F0
 _UNO = "D0-7 B0-5 C0-5"
 
 MCUS = {
-    "atmega2560": Mcu("atmega2560", "Mega", "mega", 70, 16, 54, 4, 4096, _ports(_MEGA)),
-    "atmega328p": Mcu("atmega328p", "Uno", "standard", 20, 6, 14, 1, 1024, _ports(_UNO)),
+    "atmega2560": Mcu("atmega2560", "Mega", "mega", 70, 16, 54, 4, 8192, 4096, _ports(_MEGA)),
+    "atmega328p": Mcu("atmega328p", "Uno", "standard", 20, 6, 14, 1, 2048, 1024, _ports(_UNO)),
 }

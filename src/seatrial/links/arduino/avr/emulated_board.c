@@ -136,10 +136,19 @@ static void take_input(const link_input *input)
     }
 }
 
+static int stop_set;
+
 static avr_cycle_count_t stop(avr_t *of, avr_cycle_count_t when, void *unused)
 {
     (void)of, (void)when, (void)unused;
-    return 0; /* it is there so that no run of instructions goes beyond the target */
+    return stop_set = 0; /* it is there so that no run of instructions goes beyond the target */
+}
+
+static void crashed(void)
+{
+    char text[160];
+    snprintf(text, sizeof text, "the microcontroller crashed: an instruction that is none, or the stack ran into the data [at 0x%x]", avr->pc);
+    end(text);
 }
 
 static void was_reset(avr_t *of)
@@ -203,11 +212,13 @@ int main(int count, char **arguments)
     for (;;) {
         target = link_await(take_input);
         while (ticks() < target) {
-            later((double)target, stop, 0);
+            if (!stop_set)
+                later((double)target, stop, 0);
+            stop_set = 1;
             int state = avr_run(avr);
             hang_observe(state);
             if (state == cpu_Crashed)
-                end("the microcontroller crashed: an instruction that is none, or the stack ran into the data");
+                crashed();
             if (state == cpu_Done)
                 end("the microcontroller sleeps with interrupts off: it will never wake");
         }
