@@ -1,4 +1,4 @@
-"""The table of the campaign of faults: ``python docs/fault_campaign.py`` runs it and writes it anew.
+"""The table of the campaign of faults: ``python docs/fault_campaign.py`` makes it anew.
 
 With the folder of a run of that campaign, the table is made of that.
 """
