@@ -28,6 +28,7 @@ _KEYS = {
     "vehicles of rigs (--vehicle)": "vehicles",
     "autopilots of rigs (--autopilot)": "autopilots",
     "parameters of vehicles": "parameters",
+    "hulls (estimate)": "hulls",
     "FMUs": "fmus",
 }
 """How the kinds are called for programs, where that differs."""

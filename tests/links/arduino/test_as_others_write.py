@@ -1,4 +1,4 @@
-"""What sketches of other people have in them, rebuilt small; the firmware is the reference."""
+"""Idioms of other people's sketches, rebuilt small; the firmware is the reference."""
 
 import pytest
 

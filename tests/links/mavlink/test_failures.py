@@ -181,7 +181,7 @@ def test_a_command_goes_before_a_parameter_and_only_units_that_fail_have_one():
     assert boat.node.failures.texts(0.0)["gps"] == "stuck"
     boat.command(INJECT, GPS, OK)
     assert boat.node.failures.texts(0.0)["gps"] == "off"
-    names = set(boat.parameters)
+    names = set(boat.parameters.names)
     assert {"SIM_GPS1_ENABLE", "SIM_ENGINE_FAIL", "SIM_ENGINE_MUL"} <= names
     assert not {"SIM_MAG1_FAIL", "SIM_BARO_FREEZE"} & names
-    assert not any(n.startswith("SIM_GPS1") for n in bench("gps", autopilot="px4").parameters)
+    assert not any(n.startswith("SIM_GPS1") for n in bench("gps", autopilot="px4").parameters.names)
