@@ -8,6 +8,8 @@ from collections.abc import Iterable, Sequence
 INTERRUPTED = "interrupted by the user"
 """Message of a component that a signal interrupted; a message crosses the FMI, an exception not."""
 _MOST_LISTED = 30
+_NEAREST, _LIKE = 10, 0.4
+"""Of more names the ones shown: so many, at least so like (difflib's ratio)."""
 
 
 class SeatrialError(Exception):
@@ -35,15 +37,20 @@ class DiscardError(SimulationError):
 
 
 def unknown(what: str, found: object, allowed: Iterable[str]) -> str:
-    """Return 'unknown WHAT FOUND' with near misses, or with all that is allowed.
+    """Return 'unknown WHAT FOUND' with what is allowed, of very many names those most like it.
 
     >>> unknown("port", "atitude", ["attitude", "force"])
     "unknown port 'atitude'; did you mean 'attitude'? (known: attitude, force)"
     """
     names = sorted(set(allowed))
-    near = difflib.get_close_matches(str(found), names, n=2, cutoff=0.6)
-    hint = f"; did you mean {' or '.join(map(repr, near))}?" if near else ";"
-    return f"unknown {what} {str(found)!r}{hint} (known: {listed(names) or 'none'})"
+    near = difflib.get_close_matches(str(found), names, n=_NEAREST, cutoff=_LIKE)
+    meant = difflib.get_close_matches(str(found), near, n=2, cutoff=0.6)
+    hint = f"; did you mean {' or '.join(map(repr, meant))}?" if meant else ";"
+    if len(names) > _MOST_LISTED and near:
+        known = f"{', '.join(near)}, ... ({len(names)} in all)"
+    else:
+        known = listed(names) or "none"
+    return f"unknown {what} {str(found)!r}{hint} (known: {known})"
 
 
 def listed(names: Sequence[str]) -> str:

@@ -173,3 +173,38 @@ def test_a_shell_completes_commands_options_and_trials(folder: Path) -> None:
     assert completed("conv") == ["convergence"]
     assert completed("run --jun") == ["--junit"]
     assert "hydrone-landing" in completed("run hydrone-l")
+
+
+def test_what_an_fmu_prints_is_not_in_the_document(folder: Path) -> None:
+    (folder / "talks.py").write_text(
+        "import os\n\nfrom seatrial.component import Component, Output\n\n\n"
+        'class Talks(Component):\n    """Talks."""\n\n    x = Output("1", "x")\n\n'
+        "    def step(self, t, h):\n        os.write(1, b'chatter\\n')\n"
+    )
+    (folder / "rig.toml").write_text(
+        'step = "10 ms"\n[components]\nt = { fmu = "talks.py:Talks" }\n'
+    )
+    (folder / "t.toml").write_text('rig = "rig.toml"\nstop = "20 ms"\n')
+    command = [SEATRIAL, "run", "t.toml", "--engine", "direct", "--json", "--no-report"]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=folder, check=False)
+    assert json.loads(done.stdout)["status"] == 0
+    assert "chatter" in done.stderr
+
+
+@pytest.mark.parametrize("json_too", [(), ("--json",)])
+@pytest.mark.parametrize(("arguments", "status"), [(("list",), 3), (("describe", "nosuch"), 2)])
+def test_a_full_disk_behind_stdout_is_told(
+    arguments: tuple[str, ...], status: int, json_too: tuple[str, ...], tmp_path: Path
+) -> None:
+    with open("/dev/full", "wb") as full:
+        done = subprocess.run(
+            [SEATRIAL, *arguments, *json_too],
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            cwd=tmp_path,
+            check=False,
+        )
+    assert done.returncode == status
+    assert ("No space left" in done.stderr) == (status == 3 or bool(json_too))
+    assert "Traceback" not in done.stderr

@@ -10,15 +10,19 @@ from __future__ import annotations
 import io
 import json
 import math
+import os
 import sys
 from dataclasses import dataclass, field
-from typing import Annotated, Any, TextIO
+from typing import Annotated, Any
 
 import typer
 
 from .. import __version__
+from .statuses import BROKEN
+from .unread import say_lost, write
 
 FORMAT = 1
+_STDOUT, _STDERR = 1, 2
 _OPTIONS = ("json", "quiet", "verbose")
 
 
@@ -32,18 +36,18 @@ class Answer:
     result: dict[str, Any] = field(default_factory=dict)
     """What the command found, for programs; each command has its own keys."""
     notes: list[str] = field(default_factory=list)
-    _stdout: TextIO | None = None
-    """Where the document goes; None without --json."""
-
-    @property
-    def is_json(self) -> bool:
-        """Whether a document is wanted."""
-        return self._stdout is not None
+    is_json: bool = False
+    """Whether a document is wanted."""
+    _before: Any = None
+    _ours: Any = None
+    """stdout as it was, and as the document goes to it."""
 
     def begin(self, name: str) -> None:
         """Take one of the options."""
         if name == "json" and not self.is_json:
-            self._stdout, sys.stdout = sys.stdout, io.StringIO()
+            self.is_json = True
+            self._before, sys.stdout = sys.stdout, io.StringIO()
+            self._ours = _apart(self._before)
         elif name == "quiet":
             self.quiet = True
         elif name == "verbose":
@@ -51,10 +55,10 @@ class Answer:
 
     def end(self, status: int, error: str | None = None) -> None:
         """Write the document, if one is wanted, and let stdout be what it was."""
-        if self._stdout is None:
+        if not self.is_json:
             return
         said = sys.stdout.getvalue() if isinstance(sys.stdout, io.StringIO) else ""
-        sys.stdout, self._stdout, stdout = self._stdout, None, self._stdout
+        sys.stdout, self.is_json = self._before, False
         document = {
             "format": FORMAT,
             "seatrial": __version__,
@@ -65,11 +69,28 @@ class Answer:
             "result": _plain(self.result),
             "lines": said.splitlines(),
         }
-        print(json.dumps(document, indent=2, allow_nan=False), file=stdout)
+        if lost := write(self._ours, json.dumps(document, indent=2, allow_nan=False) + "\n"):
+            say_lost(lost)
+            raise SystemExit(status or BROKEN)
 
 
 answer = Answer()
 """Of the command that runs: `main` makes a new one for each."""
+
+
+def _apart(stream: Any) -> Any:
+    """Return a stream to stdout that is ours alone: what FMUs print themselves goes to stderr.
+
+    C keeps what an FMU prints until the process ends: so stdout's descriptor is not given back.
+    """
+    try:
+        if stream is None or stream.fileno() != _STDOUT:
+            return stream
+        ours = os.dup(_STDOUT)
+        os.dup2(_STDERR, _STDOUT)
+    except (OSError, ValueError):  # a stream of Python's own, a descriptor that is closed
+        return stream
+    return os.fdopen(ours, "w", encoding=stream.encoding, errors=stream.errors)
 
 
 def renewed() -> Answer:

@@ -28,10 +28,13 @@ from ..fmi.osp import osp_file, osp_xml
 from ..fmi.source import ComponentSource, find_source, named_sources, shipped_sources
 from .answer import answer
 from .options import Every, Match, Variant
-from .show import MOST_SHOWN, console, print_more, print_notes
+from .show import MOST_SHOWN, console, print_more, print_notes, print_table
 from .terminals import print_proposals, print_terminals
 
 fmu_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
+
+_WIDEST_NAME = 40
+"""Of the column of names, in characters, where a terminal has not the width for all columns."""
 
 Named = Annotated[str, typer.Argument(metavar="FMU", help="A shipped name, x.fmu or my.py:Class.")]
 
@@ -134,11 +137,13 @@ def describe(
     if len(shown) > most:
         console.print(f"{len(shown)} variables: {_counts(shown)}", soft_wrap=True)
     table = Table(box=None, padding=(0, 2, 0, 0))
-    for heading in ("variable", "causality", "type", "unit", "start", "min", "max", "description"):
-        table.add_column(heading)
+    names = max((len(v.name) for v in shown[:most]), default=0)
+    table.add_column("variable", overflow="fold", min_width=min(names, _WIDEST_NAME))
+    for heading in ("causality", "type", "unit", "start", "min", "max", "description"):
+        table.add_column(heading, overflow="fold")
     for variable in shown[:most]:
         table.add_row(*(escape(cell) for cell in _cells(variable)))
-    console.print(table)
+    print_table(table)
     if len(shown) > most:
         print_more(len(shown) - most)
     for line in _dependencies(through, {v.name for v in shown[:most]}, most):

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console, ConsoleOptions, RenderableType
 from rich.markup import escape
 from rich.segment import Segment
+from rich.table import Table
 
 from ..printable import printable
 from ..trials.ending import is_whole
@@ -42,6 +43,7 @@ class SafeConsole(Console):
 
 
 console = SafeConsole(highlight=False, emoji=False)
+_UNBOUNDED = console.options.update_width(10_000)
 
 
 def print_notes(notes: Iterable[str]) -> None:
@@ -49,6 +51,14 @@ def print_notes(notes: Iterable[str]) -> None:
     for note in notes:
         answer.notes.append(note)
         console.print(f"[dim]note: {escape(note)}[/dim]", soft_wrap=True)
+
+
+def print_table(table: Table) -> None:
+    """Print a table: as wide as a terminal is, and for programs as wide as its lines are."""
+    if console.is_terminal:
+        console.print(table)
+    else:
+        console.print(table, width=console.measure(table, options=_UNBOUNDED).maximum)
 
 
 def print_more(count: int) -> None:

@@ -14,7 +14,7 @@ from ..fmi.instance import Variables
 from ..fmi.proposals import proposed_terminals
 from ..fmi.terminals import scalars_of
 from ..terminals import Terminal
-from .show import console
+from .show import console, print_table
 
 
 def print_terminals(terminals: Mapping[str, Terminal], variables: Variables) -> None:
@@ -23,7 +23,7 @@ def print_terminals(terminals: Mapping[str, Terminal], variables: Variables) -> 
         return
     table = Table(box=None, padding=(0, 2, 0, 0))
     for heading in ("terminal", "rule", "member", "variables", "direction"):
-        table.add_column(heading)
+        table.add_column(heading, overflow="fold")
     for name, terminal in terminals.items():
         head = [name, terminal.rule]
         for member, target in terminal.members.items():
@@ -32,7 +32,7 @@ def print_terminals(terminals: Mapping[str, Terminal], variables: Variables) -> 
             ways = dict.fromkeys(v.causality for v in scalars_of(variables, target).values())
             table.add_row(*map(escape, [*head, member, shown, ", ".join(ways)]))
             head = ["", ""]
-    console.print(table)
+    print_table(table)
 
 
 def print_proposals(fmu: str, variables: Variables) -> None:
