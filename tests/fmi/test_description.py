@@ -17,6 +17,11 @@ from .conftest import built_once, source
 
 WAITS = "ardupilot"
 """It steps as its firmware does, and waits for that without end."""
+NEEDED = {
+    "ground-station": {"link": "udpin:127.0.0.1:0"},
+    "marks": {"count": 1.0, "radius": 4.0},
+}
+"""Values of parameters without which one does nothing."""
 SOME = ("canbus", "gnss", "mavlink", "sailboat", "station-keeping", "tether")
 """A link, a bus, a sensor, a controller, a hull and one with a step of its own."""
 
@@ -107,12 +112,18 @@ def test_what_cannot_be_described_is_refused(
     ],
 )
 def test_a_shipped_fmu_runs_alone_in_fmpy(name: str, tmp_path: Path) -> None:
-    """FMPy finds no problem in it; with its defaults nothing of ours drives it."""
+    """FMPy finds no problem in it; with its defaults, or what it needs, nothing of ours drives it."""
     path = built_once(shipped_sources()[name], tmp_path / f"{name}.fmu")
     assert validate_fmu(str(path)) == []
     description = read_model_description(str(path))
     assert description.modelName == name
-    result = simulate_fmu(str(path), validate=False, stop_time=0.5, output_interval=0.05)
+    result = simulate_fmu(
+        str(path),
+        validate=False,
+        stop_time=0.5,
+        output_interval=0.05,
+        start_values=NEEDED.get(name, {}),
+    )
     outputs = [v.name for v in description.modelVariables if v.causality == "output"]
     assert len(result) == 11
     assert result["time"][-1] == pytest.approx(0.5)

@@ -17,7 +17,7 @@ from tests.command import seatrial
 
 from .conftest import EXPERIMENT
 
-BASE = EXPERIMENT + '\n[result]\nvehicle = "videoray"\nthruster = "horizontal-thruster"\n'
+BASE = EXPERIMENT + '\n[result]\nvehicle = "videoray"\nvariant = "source"\nthruster = "horizontal-thruster"\n'
 
 
 def found_in(path):
@@ -91,7 +91,7 @@ def test_the_vehicle_file_is_the_base_with_a_variant(pool, tmp_path):
 def test_another_axis_is_added_to_an_identified_vehicle(pool, tmp_path):
     first = found_in(pool(text=BASE))
     write_vehicle(first, base_vehicle(first), tmp_path / "vehicle.toml")
-    text = BASE.replace('"videoray"', '"vehicle.toml"').replace('axis = "surge"', 'axis = "heave"')
+    text = BASE.replace('"videoray"\nvariant = "source"', '"vehicle.toml"').replace('axis = "surge"', 'axis = "heave"')
     second = found_in(pool(text=text.replace("[known]", "[known]  # on z")))
     write_vehicle(second, base_vehicle(second), tmp_path / "both.toml")
     names = load_vehicle(str(tmp_path / "both.toml")).parameter_set("rov", None).values
@@ -111,7 +111,8 @@ def test_without_a_vehicle_the_file_has_what_was_identified(pool, tmp_path):
     [
         ('"videoray"', '"videoary"', "did you mean 'videoray'"),
         ('"horizontal-thruster"', '"horizontal"', "result.thruster: unknown component table"),
-        ('vehicle = "videoray"', 'vehicle = "videoray"\nvariant = "x"', "result.variant: unknown"),
+        ('variant = "source"', 'variant = "x"', "result.variant: unknown"),
+        ('variant = "source"', "", "drivable of .* has surge drag by point-drag, too.*: source$"),
     ],
 )
 def test_a_base_that_is_not_there(pool, old, new, expected):

@@ -97,11 +97,16 @@ class Events:
     notes: list[str] = field(default_factory=list)
 
     def spans(self) -> Iterator[tuple[Acted, Acted | None]]:
-        """Yield each fault with what is done next to its variable, None if nothing."""
+        """Yield each fault with what is done next to its variable, None if nothing.
+
+        One whose successor acts at the same instant has no effect.
+        """
         for index, begin in enumerate(self.acted):
             if begin.kind in ("fixed", "bias"):
                 later = (one for one in self.acted[index + 1 :] if one.key == begin.key)
-                yield begin, next(later, None)
+                end = next(later, None)
+                if end is None or end.step > begin.step:
+                    yield begin, end
 
 
 def read_scenario(path: Path) -> Scenario:

@@ -88,7 +88,33 @@ def base_vehicle(study: Study) -> Vehicle | None:
     if result.variant is not None and result.variant not in vehicle.file.variants:
         what = unknown("variant", result.variant, vehicle.file.variants)
         raise InputError(f"{path}: result.variant: {what} in {vehicle.read_from.path}")
+    _check_drag(study, vehicle)
     return vehicle
+
+
+def _check_drag(study: Study, vehicle: Vehicle) -> None:
+    """Raise InputError if a term beside linear and quadratic drag has the axis' drag, too.
+
+    What is identified is all of the drag along the axis: the result would have it twice.
+    """
+    file, path = study.experiment.file, study.experiment.read_from.path
+    result, variants = file.result, vehicle.file.variants
+    other = {"point-drag"} if file.axis == "surge" else {"point-drag", "crossflow-drag"}
+
+    def twice(variant: str | None) -> list[str]:
+        own = vehicle.file.components.get(result.component, {})
+        changes = variants.get(variant or "", {}).get(result.component, {})
+        terms = {**own, **changes}.get("terms")
+        return sorted(other & set(str(terms.value).split())) if terms is not None else []
+
+    chosen = result.variant or vehicle.file.default
+    if found := twice(chosen):
+        without = [name for name in variants if not twice(name)]
+        raise InputError(
+            f"{path}: result.variant: {chosen or 'the vehicle itself'} of "
+            f"{vehicle.read_from.name} has {file.axis} drag by {' and '.join(found)}, too, and "
+            f"what is identified is all of it; variants without: {', '.join(without) or 'none'}"
+        )
 
 
 def write_vehicle(study: Study, vehicle: Vehicle | None, path: Path) -> None:
