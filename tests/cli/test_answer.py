@@ -193,7 +193,7 @@ def test_what_an_fmu_prints_is_not_in_the_document(folder: Path) -> None:
 
 @pytest.mark.parametrize("json_too", [(), ("--json",)])
 @pytest.mark.parametrize(("arguments", "status"), [(("list",), 3), (("describe", "nosuch"), 2)])
-def test_a_full_disk_behind_stdout_is_told(
+def test_a_full_disk_behind_stdout_is_an_error(
     arguments: tuple[str, ...], status: int, json_too: tuple[str, ...], tmp_path: Path
 ) -> None:
     with open("/dev/full", "wb") as full:

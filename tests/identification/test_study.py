@@ -17,7 +17,10 @@ from tests.command import seatrial
 
 from .conftest import EXPERIMENT
 
-BASE = EXPERIMENT + '\n[result]\nvehicle = "videoray"\nvariant = "source"\nthruster = "horizontal-thruster"\n'
+BASE = (
+    EXPERIMENT
+    + '\n[result]\nvehicle = "videoray"\nvariant = "source"\nthruster = "horizontal-thruster"\n'
+)
 
 
 def found_in(path):
@@ -91,7 +94,9 @@ def test_the_vehicle_file_is_the_base_with_a_variant(pool, tmp_path):
 def test_another_axis_is_added_to_an_identified_vehicle(pool, tmp_path):
     first = found_in(pool(text=BASE))
     write_vehicle(first, base_vehicle(first), tmp_path / "vehicle.toml")
-    text = BASE.replace('"videoray"\nvariant = "source"', '"vehicle.toml"').replace('axis = "surge"', 'axis = "heave"')
+    text = BASE.replace('"videoray"\nvariant = "source"', '"vehicle.toml"').replace(
+        'axis = "surge"', 'axis = "heave"'
+    )
     second = found_in(pool(text=text.replace("[known]", "[known]  # on z")))
     write_vehicle(second, base_vehicle(second), tmp_path / "both.toml")
     names = load_vehicle(str(tmp_path / "both.toml")).parameter_set("rov", None).values

@@ -10,6 +10,7 @@ import typer
 from ..errors import InputError
 from ..trials.logs.mcap_file import write_mcap
 from ..trials.logs.parquet_file import write_parquet
+from ..trials.logs.ros2_bag import write_ros2_bag
 from ..trials.run_folder import load_run
 from .answer import answer
 from .show import console, print_notes
@@ -21,16 +22,27 @@ def export(
     parquet: Annotated[
         bool, typer.Option("--parquet", help="For pandas, DuckDB, MATLAB; needs pyarrow.")
     ] = False,
+    ros2: Annotated[
+        bool, typer.Option("--ros2", help="A ROS 2 bag, with MCAP inside; needs rosbags.")
+    ] = False,
     out: Annotated[
-        Path | None, typer.Option(help="The file (default: in the run's folder).")
+        Path | None, typer.Option(help="The file, or the bag (default: in the run's folder).")
     ] = None,
 ) -> None:
-    """Write the record of a run as an MCAP or a Parquet file."""
-    if mcap == parquet:
-        raise InputError("export needs one of --mcap and --parquet")
+    """Write the record of a run as an MCAP or a Parquet file, or as a ROS 2 bag."""
+    if [mcap, parquet, ros2].count(True) != 1:
+        raise InputError("export needs one of --mcap, --parquet and --ros2")
     run = load_run(folder)
     print_notes(run.notes)
-    path = out or folder / ("signals.mcap" if mcap else "signals.parquet")
-    (write_mcap if mcap else write_parquet)(run, path)
-    answer.result = {"file": str(path), "bytes": path.stat().st_size}
-    console.print(f"{path}  ({path.stat().st_size / 1000:.0f} kB)", soft_wrap=True)
+    write, name = (
+        (write_mcap, "signals.mcap")
+        if mcap
+        else (write_parquet, "signals.parquet")
+        if parquet
+        else (write_ros2_bag, "ros2")
+    )
+    path = out or folder / name
+    write(run, path)
+    size = sum(file.stat().st_size for file in (path.iterdir() if path.is_dir() else [path]))
+    answer.result = {"file": str(path), "bytes": size}
+    console.print(f"{path}  ({size / 1000:.0f} kB)", soft_wrap=True)

@@ -6,6 +6,7 @@ import zlib
 from dataclasses import replace
 
 from ..errors import InputError
+from ..units import quantity
 from .parameters import ParameterSet, load_vehicle, split_reference
 from .part import Part
 from .profile import Profile, Profiles
@@ -23,6 +24,7 @@ def give_parameters(system: System, part: Part, profiles: Profiles) -> None:
     """
     placed = system.rig.components[part.name]
     entry, where = placed.entry, placed.where
+    part.home = _home(placed.scope, profiles)
     _give_seed(part, system.seed)
     if entry.parameters:
         _give_parameter_set(part, _parameter_set(system, placed))
@@ -75,6 +77,13 @@ def _give_profile(part: Part, section: str, profile: Profile, where: str) -> Non
         scalars = settable(variables, port, f"{where}: {part.name}")
         for name, given in from_written(value, scalars, {}, origin).items():
             part.given[name] = replace(given, source=source)
+
+
+def _home(scope: Scope, profiles: Profiles) -> tuple[float, float, float] | None:
+    if scope.home is None:
+        return profiles.home()
+    latitude, longitude, altitude = scope.home
+    return quantity(latitude, "rad"), quantity(longitude, "rad"), quantity(altitude, "m")
 
 
 def _give_home(part: Part, scope: Scope) -> None:

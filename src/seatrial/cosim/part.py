@@ -28,6 +28,8 @@ class Part:
     """Values set by the rig's user, by variable name; the others keep the FMU's start values."""
     outline: Outline | None = None
     """Of the vehicle whose parameters it has, if its file has one."""
+    home: tuple[float, float, float] | None = None
+    """Origin of {n} where it is, if its rig says one: latitude and longitude, rad; altitude, m."""
     presets: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     is_sum: bool = False
     """It takes no step: every algorithm evaluates it where values move."""

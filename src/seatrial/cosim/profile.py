@@ -194,6 +194,13 @@ class Profiles:
         if self._own is not None:
             self._load(self._own)
 
+    def home(self) -> tuple[float, float, float] | None:
+        """Return latitude and longitude, rad, and altitude, m, of the rig's own profile."""
+        if self._own is None:
+            return None
+        home = self._load(self._own).file.home
+        return home.latitude, home.longitude, home.altitude
+
     def find(self, written: str, where: str) -> tuple[Profile, str]:
         """Return the profile and the section of "SECTION" or "PROFILE:SECTION".
 

@@ -74,6 +74,7 @@ class _Component(_Entry):
         default_factory=dict
     )
     outline: _Outline | None = None
+    home: Annotated[tuple[Number, Number, Number], Strict(False)] | None = None
 
     @model_validator(mode="after")
     def _has_what_is_viewed(self) -> _Component:

@@ -14,6 +14,7 @@ from ...cosim.paths import split_path
 from ...errors import InputError
 from ...fmi.cache import write_named
 from ..run_folder import MANIFEST, Run
+from .foxglove import write_scene
 from .record import Column, columns, nanoseconds
 
 _SCHEMAS: Mapping[str, Mapping[str, str]] = {
@@ -41,8 +42,9 @@ def write_mcap(run: Run, path: Path) -> None:
     Each component is a channel of its name, with a JSON message per row of the record and a
     JSON schema that names type, unit and description of each signal; ``hull.position.x`` is
     ``x`` of ``position`` in the channel ``/hull``. Times are those of the simulation, ns;
-    numbers read back exactly. The manifest is attached. Raises InputError for a record that
-    begins before the time 0, which the format has not.
+    numbers read back exactly. Craft are in channels of Foxglove's schemas too (`foxglove`). The
+    manifest is attached. Raises InputError for a record that begins before the time 0, which
+    the format has not.
     """
     from mcap.writer import Writer
 
@@ -60,6 +62,7 @@ def write_mcap(run: Run, path: Path) -> None:
     for number, time in enumerate(times):
         for channel, row in channels:
             writer.add_message(channel, time, row(number), time, number)
+    write_scene(writer, run, times)
     manifest = json.dumps(run.manifest, ensure_ascii=False, indent=1).encode()
     writer.add_attachment(0, 0, MANIFEST, "application/json", manifest)
     writer.finish()  # type: ignore[no-untyped-call]
