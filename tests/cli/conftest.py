@@ -33,7 +33,17 @@ def start(write, tmp_path: Path, vehicle: Vehicle) -> Iterator[Start]:
             isolated=str(isolated).lower(), device=vehicle.device, safe=SAFE.hex(), start_takes=start_takes
         ))  # fmt: skip
         write("trial.toml", 'rig = "rig.toml"\nstop = "1000 s"\n')
-        command = [SEATRIAL, "run", "trial.toml", "--engine", "direct", "--realtime", "--out", out]
+        command = [
+            SEATRIAL,
+            "run",
+            "trial.toml",
+            "--engine",
+            "direct",
+            "--real-time",
+            "1",
+            "--out",
+            out,
+        ]
         command.append("--hardware")  # the terminal is this test's, which a run cannot know
         pipe = subprocess.PIPE
         processes.append(

@@ -101,7 +101,8 @@ def test_a_criterion_that_fails_is_status_one(tmp_path: Path) -> None:
         (["run", "hydrone-landing", "--real-time", "1", "--overrun", "wait"], "'catch-up', 'slip'"),
         (["run", "hydrone-landing", "--overrun", "slip"], "--overrun needs --real-time"),
         (["run", "hydrone-pads", "--real-time", "2"], "work with a trial, not with a campaign"),
-        (["run", "hydrone-pads", "--realtime"], "works with a trial, not with a campaign"),
+        (["run", "hydrone-pads", "--record", "all"], "works with a trial, not with a campaign"),
+        (["run", "hydrone-landing", "--record", "some"], "unknown level 'some'"),
         (["convergence", "hydrone-pads"], "hydrone-pads is a campaign"),
         (
             ["convergence", "hydrone-landing", "--halvings", "1"],
@@ -177,18 +178,13 @@ def test_convergence_of_a_trial(trial: str, status: int, expected: str, tmp_path
     assert "Accuracy of the coupling" in page.read_text("utf-8")
 
 
-@pytest.mark.parametrize(
-    ("written", "factor"), [(("--real-time", "2"), 2.0), (("--realtime",), 1.0)]
-)
-def test_the_command_line_sets_the_pace(
-    written: tuple[str, ...], factor: float, boat: Path
-) -> None:
-    pace = (*written, "--overrun", "slip", "--set", "stop=0.2 s")
+def test_the_command_line_sets_the_pace(boat: Path) -> None:
+    pace = ("--real-time", "2", "--overrun", "slip", "--set", "stop=0.2 s")
     done = seatrial("run", "trial.toml", "--engine", "direct", "--out", "r", *pace, cwd=boat)
     assert done.returncode == 0, done.stderr
     assert "deadline" in done.stdout
     pacing = json.loads((boat / "r" / "timing.json").read_text("utf-8"))["pacing"]
-    assert (pacing["factor"], pacing["overrun"]) == (factor, "slip")
+    assert (pacing["factor"], pacing["overrun"]) == (2.0, "slip")
 
 
 def test_a_campaign_runs_and_reports(boat: Path, write) -> None:

@@ -68,7 +68,7 @@ def meddled(write, vehicle: Vehicle, does: str, engine: str) -> tuple[str, bytes
     meddler = f'meddler = {{ fmu = "meddler.py:Meddler", set = {{ does = "{does}" }} }}\nport = '
     write("rig.toml", rig.replace("port = ", meddler))
     folder = write("trial.toml", 'rig = "rig.toml"\nstop = "1000 s"\n').parent
-    command = [SEATRIAL, "run", "trial.toml", "--engine", engine, "--realtime", "--hardware"]
+    command = [SEATRIAL, "run", "trial.toml", "--engine", engine, "--real-time", "1", "--hardware"]
     done = subprocess.run(
         [*command, "--out", "run"], cwd=folder, capture_output=True, text=True, timeout=60
     )

@@ -30,7 +30,8 @@ def test_a_record_as_mcap_and_as_parquet(run: Path, tmp_path: Path) -> None:
     assert done.stdout.startswith("run/signals.mcap  (")
     with (run / "signals.mcap").open("rb") as file:
         statistics = make_reader(file).get_summary().statistics
-    assert statistics.message_count == 2 * rows(run)  # hull and downwash
+    # Hull and downwash; the scene once; frame and pose of the craft.
+    assert statistics.message_count == 2 * rows(run) + 1 + 2 * rows(run)
     done = seatrial("export", "run", "--parquet", "--out", "x.parquet", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert parquet.read_metadata(tmp_path / "x.parquet").num_rows == rows(run)
@@ -39,8 +40,8 @@ def test_a_record_as_mcap_and_as_parquet(run: Path, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "expected"),
     [
-        (("run",), "export needs one of --mcap and --parquet"),
-        (("run", "--mcap", "--parquet"), "export needs one of --mcap and --parquet"),
+        (("run",), "export needs one of --mcap, --parquet and --ros2"),
+        (("run", "--mcap", "--parquet"), "export needs one of --mcap, --parquet and --ros2"),
         ((".", "--mcap"), "is not a run folder"),
         (("run", "--mcap", "--out", "no/x.mcap"), "cannot write no/x.mcap: No such file"),
     ],

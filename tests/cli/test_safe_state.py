@@ -163,7 +163,17 @@ def test_a_can_bus_gets_its_frames(whose: str, number: int, write, tmp_path: Pat
     vehicle = Vehicle()
     write("rig.toml", CAN_RIG.format(link=f"python-can:slcan:{vehicle.device}:250000"))
     write("trial.toml", 'rig = "rig.toml"\nstop = "1000 s"\n')
-    command = [SEATRIAL, "run", "trial.toml", "--engine", "direct", "--realtime", "--out", "run"]
+    command = [
+        SEATRIAL,
+        "run",
+        "trial.toml",
+        "--engine",
+        "direct",
+        "--real-time",
+        "1",
+        "--out",
+        "run",
+    ]
     command.append("--hardware")
     pipe = subprocess.PIPE
     process = subprocess.Popen(command, cwd=tmp_path, stdout=pipe, stderr=pipe, text=True)
@@ -182,7 +192,17 @@ def test_a_can_bus_gets_its_frames(whose: str, number: int, write, tmp_path: Pat
 def test_clients_of_a_can_gateway_get_its_frames(write, tmp_path: Path) -> None:
     write("rig.toml", CAN_RIG.format(link="slcan-tcp:127.0.0.1:0"))
     write("trial.toml", 'rig = "rig.toml"\nstop = "1000 s"\n')
-    command = [SEATRIAL, "run", "trial.toml", "--engine", "direct", "--realtime", "--out", "run"]
+    command = [
+        SEATRIAL,
+        "run",
+        "trial.toml",
+        "--engine",
+        "direct",
+        "--real-time",
+        "1",
+        "--out",
+        "run",
+    ]
     process = subprocess.Popen(
         command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
         env={**os.environ, "PYTHONUNBUFFERED": "1"},

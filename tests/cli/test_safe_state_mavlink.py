@@ -48,7 +48,8 @@ def run(write, tmp_path: Path) -> Iterator[Any]:
             "trial.toml",
             "--engine",
             "direct",
-            "--realtime",
+            "--real-time",
+            "1",
             "--out",
             "run",
         ]

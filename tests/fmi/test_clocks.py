@@ -70,12 +70,12 @@ def test_every_kind_ticks_at_its_time_whatever_the_step(clocks, step: Fraction) 
 
 
 def test_ticks_do_not_drift(clocks) -> None:
-    """After 3000 ticks a third of a second is still one, to the nanosecond."""
+    """After 300 ticks a third of a second is still one, to the nanosecond."""
     instance = clocks()
-    for k in range(1000):
+    for k in range(100):
         instance.step(float(k), 1.0)
     count, when = read(instance, "count_third", "when_third")
-    assert (count, when) == (3001, 1000.0)
+    assert (count, when) == (301, 100.0)
 
 
 def test_clocked_variables_are_exchanged_when_their_clock_ticks(clocks) -> None:

@@ -20,7 +20,7 @@ gateway = {{ fmu = "can-gateway", set = {{ link = "python-can:udp_multicast:{GRO
 "bus.n1" = "gateway.bus"
 """
 COMMAND = [sys.executable, "-c", "from seatrial.cli import main; main()", "run", "trial.toml"]
-OPTIONS = ["--engine", "direct", "--realtime", "--network", "--out", "run"]
+OPTIONS = ["--engine", "direct", "--real-time", "1", "--network", "--out", "run"]
 DEADLINE_S = 60.0
 
 

@@ -11,7 +11,7 @@ import pytest
 from plotly.subplots import make_subplots
 
 from seatrial.trials.figure import Figure
-from seatrial.trials.plots import Deck, Line, Mark, PadPoint, Panel, deck_figure, time_figure
+from seatrial.trials.plots import Deck, Event, Line, Mark, PadPoint, Panel, deck_figure, time_figure
 
 
 def decoded(figure: Figure):
@@ -25,7 +25,7 @@ def array(written):
 def figures():
     time = np.linspace(0.0, 1.0, 11)
     panel = Panel("roll", "deg", [Line("a", time), Line("b", 2 * time)], [Mark("limit", 1.0)])
-    yield time_figure(time, [[panel, panel], [panel]], events=[0.5])
+    yield time_figure(time, [[panel, panel], [panel]], events=[Event("1", "1: it fails", 0.5, 0.7)])
     yield deck_figure([Deck("landing", [PadPoint(0.1, 0.2, ["a"], 1, 1)], (2.0, 1.0))] * 2)
 
 

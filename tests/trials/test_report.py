@@ -14,7 +14,7 @@ import plotly
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.trials.campaign_report import write_campaign_report
+from seatrial.trials.campaign_report import write_campaign_report, write_case_report
 from seatrial.trials.plotly_js import plotly_js
 from seatrial.trials.plots import MAX_POINTS, Line, Panel, decimate, time_figure
 from seatrial.trials.report import points_of_a_line, write_report
@@ -323,8 +323,30 @@ def test_a_run_without_a_record(write_run):
 def test_events_are_listed_and_drawn(write_run):
     events = [{"at": "12 s", "set": {"hull.current": [1, 0, 0]}, "override": {}, "release": []}]
     page = Page(write_report(write_run(changes={"events": events})))
-    assert 'set {"hull.current": [1, 0, 0]}' in page.text
-    assert any(shape["x0"] == 12 for f in page.figures for shape in f["layout"].get("shapes", []))
+    assert "1 12 s hull.current = [1, 0, 0]" in " ".join(page.text.split())
+    layouts = [figure["layout"] for figure in page.figures if "shapes" in figure["layout"]]
+    assert any(shape["x0"] == 12 for layout in layouts for shape in layout["shapes"])
+    flags = [flag for layout in layouts for flag in layout["annotations"] if flag["text"] == "1"]
+    assert flags
+    assert {(flag["x"], flag["hovertext"]) for flag in flags} == {
+        (12, "1: hull.current = [1, 0, 0]")
+    }
+
+
+def test_a_fault_is_shaded_as_long_as_it_lasts(write_run):
+    faults = [
+        {"what": "off", "where": "hull", "at": "12 s", "for": "500 ms"},
+        {"what": "off", "where": "hull", "at": "13 s", "for": None},
+    ]
+    page = Page(write_report(write_run(changes={"faults": faults})))
+    assert "1 12 s 500 ms what = off, where = hull" in " ".join(page.text.split())
+    shades = [
+        (shape["x0"], shape["x1"])
+        for figure in page.figures
+        for shape in figure["layout"].get("shapes", [])
+        if shape["type"] == "rect" and "yref" in shape and "domain" in shape["yref"]
+    ]
+    assert set(shades) == {(12, 12.5)}
 
 
 def test_same_run_same_page(write_run):
@@ -403,7 +425,7 @@ def test_a_campaign_has_every_case_and_pad(campaign):
     write_report(folder / cases[0]["folder"])
     page = Page(write_campaign_report(folder))
     assert_self_contained(page)
-    assert page.references == ["landing-nominal/report.html"]
+    assert page.references == ["landing-nominal/report.html", "plotly.js"]
     for case in cases:
         assert case["name"] in page.text
         assert case["set"]["downwash.pad"] in page.text
@@ -473,9 +495,20 @@ def test_plots_come_before_the_tables_of_connections(write_run):
 
 def test_the_page_carries_the_library_whole(write_run):
     page = write_report(write_run()).read_text(encoding="utf-8")
-    packed = re.search(r'<script type="text/plain" id="plotly">(.*?)</script>', page)[1]
+    packed = re.search(r'<script>window.packedPlotly = "(.*?)";</script>', page)[1]
     library = Path(plotly.__file__).with_name("package_data") / "plotly.min.js"
     assert zlib.decompress(base64.b64decode(packed)) == library.read_bytes()
+
+
+def test_pages_of_a_campaign_share_the_library(campaign):
+    folder, cases = campaign
+    pages = [write_case_report(folder / cases[0]["folder"]), write_campaign_report(folder)]
+    library = (folder / "plotly.js").read_text("ascii")
+    assert library == f'window.packedPlotly = "{plotly_js()}";\n'
+    for page in pages:
+        assert page.stat().st_size < 0.5e6
+        (address,) = re.findall(r'<script src="([^"]*)"', page.read_text("utf-8"))
+        assert (page.parent / address).resolve() == (folder / "plotly.js").resolve()
 
 
 def test_a_deck_of_unknown_size_shows_its_points_alone(write_run) -> None:

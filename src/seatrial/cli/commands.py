@@ -56,7 +56,9 @@ COMMANDS = {
         "estimate:estimate",
         "Estimate the damping of a hull from its dimensions, as lines of a vehicle file too.",
     ),
-    "export": Command("export:export", "Write the record of a run as an MCAP or a Parquet file."),
+    "export": Command(
+        "export:export", "Write the record of a run as MCAP, Parquet or a ROS 2 bag."
+    ),
     "identify": Command(
         "identify:identify",
         "Identify an axis of a vehicle from a log; status 1 if the model is to be rejected.",

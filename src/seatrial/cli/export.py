@@ -29,7 +29,7 @@ def export(
         Path | None, typer.Option(help="The file, or the bag (default: in the run's folder).")
     ] = None,
 ) -> None:
-    """Write the record of a run as an MCAP or a Parquet file, or as a ROS 2 bag."""
+    """Write the record of a run as MCAP, Parquet or a ROS 2 bag."""
     if [mcap, parquet, ros2].count(True) != 1:
         raise InputError("export needs one of --mcap, --parquet and --ros2")
     run = load_run(folder)

@@ -14,7 +14,7 @@ from ..cosim.system import Engine
 from ..errors import InputError, SimulationError
 from ..links.hardware import allow_devices, allow_network
 from ..trials.campaign import Campaign, Case, load_campaign, run_campaign
-from ..trials.campaign_report import write_campaign_report
+from ..trials.campaign_report import write_campaign_report, write_case_report
 from ..trials.hooks import Hooks
 from ..trials.report import write_report
 from ..trials.run import Result
@@ -64,11 +64,8 @@ def run(
     out: Out = None,
     real_time: Annotated[
         float | None,
-        typer.Option(metavar="FACTOR", help="Simulated seconds per second of wall time."),
+        typer.Option(metavar="FACTOR", help="In real time: simulated seconds per second of it."),
     ] = None,
-    in_real_time: Annotated[
-        bool, typer.Option("--realtime", help="In real time: as the trial says, or factor 1.")
-    ] = False,
     overrun: Annotated[
         str | None,
         typer.Option(metavar="POLICY", help="In real time: 'catch-up', 'slip' or 'abort'."),
@@ -79,6 +76,14 @@ def run(
     network: Annotated[
         bool, typer.Option("--network", help="Allow other hosts, and connections from them.")
     ] = False,
+    record: Annotated[
+        str,
+        typer.Option(
+            metavar="LEVEL",
+            help="What is recorded: 'all' outputs, as the 'trial' says, or what 'criteria' and "
+            "plots need.",
+        ),
+    ] = "trial",
     junit: Annotated[
         Path | None, typer.Option("--junit", metavar="FILE", help="Write a JUnit file, too.")
     ] = None,
@@ -105,17 +110,15 @@ def run(
             raise InputError("--choose works with a trial; a campaign has choices in its grid")
         if pace:
             raise InputError("--real-time and --overrun work with a trial, not with a campaign")
-        if in_real_time:
-            raise InputError("--realtime works with a trial, not with a campaign")
+        if record != "trial":
+            raise InputError("--record works with a trial, not with a campaign")
         _run_campaign(campaign, out, chosen, Leaves(junit, not no_report))
         return
     refuse_rig(trial)
     leaves = Leaves(junit, not no_report)
     loaded = load_trial(trial, changes=changes, origin="--set")
     loaded = loaded.failing([read_fault(text, "--fault") for text in faults or []], "--fault")
-    if in_real_time and loaded.file.real_time is None:
-        pace.setdefault("factor", 1.0)
-    loaded = _paced(loaded, pace)
+    loaded = _paced(loaded, pace).recording(record, "--record")
     print_notes(loaded.notes)
     with stoppable() as stop:
         with Watch(loaded.name) as watch:
@@ -141,7 +144,7 @@ def _run_campaign(campaign: Campaign, out: Path | None, engine: Engine, leaves: 
 
             def done(case: Case, result: Result) -> None:
                 watch.log(lambda: print_case(case, result))
-                leaves.page(lambda: write_report(result.folder), [result])
+                leaves.page(lambda: write_case_report(result.folder), [result])
 
             hooks = Hooks(
                 building=watch.building,

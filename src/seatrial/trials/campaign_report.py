@@ -12,14 +12,19 @@ from ..errors import InputError
 from ..whole_file import write_whole
 from . import run_schema
 from .decks import Pad, deck, pads
+from .plotly_js import plotly_js
 from .plots import deck_figure
 from .readable import quantity_text
-from .report import REPORT, render
+from .report import REPORT, render, write_report
 from .run_folder import load_run, read_manifest
 from .run_schema import checked_json
 from .sailing import PolarPoint, polar_figure, polar_point
 
 CAMPAIGN = "campaign.json"
+
+
+LIBRARY = "plotly.js"
+"""Plotly's JavaScript, beside a campaign's page: once for all of its pages."""
 
 
 @dataclass(frozen=True)
@@ -40,6 +45,20 @@ class Case:
     note: str
 
 
+def write_case_report(folder: Path) -> Path:
+    """Write the report of a run in the folder of its campaign, and return its path.
+
+    Raises InputError.
+    """
+    _share_library(folder.parent)
+    return write_report(folder, f"../{LIBRARY}")
+
+
+def _share_library(folder: Path) -> None:
+    if not (folder / LIBRARY).is_file():
+        write_whole(folder / LIBRARY, f'window.packedPlotly = "{plotly_js()}";\n')
+
+
 def write_campaign_report(folder: Path | str) -> Path:
     """Write ``report.html`` into a campaign folder and return its path.
 
@@ -51,8 +70,10 @@ def write_campaign_report(folder: Path | str) -> Path:
     campaign = checked_json(folder / CAMPAIGN, run_schema.CAMPAIGN)
     cases = [_case(folder, entry) for entry in campaign["cases"]]
     title = campaign.get("title") or campaign["name"]
+    _share_library(folder)
     page = render(
         "campaign.html.j2",
+        library=LIBRARY,
         title=title,
         cases=cases,
         settings=list(dict.fromkeys(key for case in cases for key in case.settings)),

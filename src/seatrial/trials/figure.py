@@ -60,7 +60,7 @@ class Figure:
         """Add an annotation, at axes if a column is named."""
         x, y = _axes(column)
         on = {"xref": x, "yref": y} if column else {}
-        self.layout.setdefault("annotations", []).append({**attributes, **on})
+        self.layout.setdefault("annotations", []).append({**on, **attributes})
 
     def shape(self, column: int = 1, **attributes: Any) -> None:
         """Add a shape."""

@@ -21,6 +21,14 @@ _PANEL_HEIGHT = 165
 _GUTTER = 0.09
 _GRID = "#e6eaee"
 _EVENT = {"color": "#9aa5af", "width": 1, "dash": "dot"}
+_SPAN = {"fillcolor": "rgba(161,92,0,0.08)", "line": {"width": 0}, "layer": "below"}
+_FLAG: dict[str, Any] = {
+    "y": 1,
+    "yanchor": "top",
+    "xanchor": "left",
+    "showarrow": False,
+    "font": {"size": 10, "color": "#a15c00"},
+}
 _TITLE: dict[str, Any] = {
     "x": 0,
     "y": 1,
@@ -56,6 +64,17 @@ class Panel:
     unit: str
     lines: Sequence[Line]
     marks: Sequence[Mark] = ()
+
+
+@dataclass(frozen=True)
+class Event:
+    """Something that happens in the run: from ``at``, s, on, or until ``end``."""
+
+    label: str
+    """Short: its number in the list of the page."""
+    text: str
+    at: float
+    end: float | None = None
 
 
 @dataclass(frozen=True)
@@ -103,10 +122,16 @@ def decimate(
 def time_figure(
     time: FloatArray,
     columns: Sequence[Sequence[Panel]],
-    events: Sequence[float] = (),
+    events: Sequence[Event] = (),
     most_points: int = MAX_POINTS,
 ) -> Figure:
-    """Return panels in columns, all over the same time, with events as vertical lines."""
+    """Return panels in columns, all over the same time.
+
+    Events are vertical lines, and shades as long as they last, with their labels in the first
+    panel of each column. The layout's ``meta`` has what a page needs to place the panels below
+    each other where it is narrow, and to show one time in all figures: ``panels`` is their
+    number, ``panel_height`` that of each in pixels.
+    """
     height = _PANEL_HEIGHT * max(len(column) for column in columns) + 70
     figure = Figure()
     for number, (panel, across, along, is_last) in enumerate(_placed(columns, height), start=1):
@@ -121,10 +146,22 @@ def time_figure(
             figure.x_axis(number, title={"text": "time, s"})
         place: dict[str, Any] = {"xref": f"{x} domain", "yref": f"{y} domain", **_TITLE}
         figure.annotate(text=_panel_title(panel), **place)
-        for at in events:
-            figure.vertical(at, _EVENT, number)
-    figure.lay_out(height=height, showlegend=False, **layout())
+        is_first = along[1] == 1.0
+        for event in events:
+            _draw_event(figure, event, number, has_flag=is_first)
+    meta = {"panels": sum(map(len, columns)), "panel_height": _PANEL_HEIGHT}
+    figure.lay_out(height=height, showlegend=False, meta=meta, **layout())
     return figure
+
+
+def _draw_event(figure: Figure, event: Event, number: int, *, has_flag: bool) -> None:
+    figure.vertical(event.at, _EVENT, number)
+    y = f"y{number if number > 1 else ''} domain"
+    if event.end is not None:
+        figure.shape(number, type="rect", yref=y, y0=0, y1=1, x0=event.at, x1=event.end, **_SPAN)
+    if has_flag:
+        flag = {"x": event.at, "text": escape(event.label), "hovertext": escape(event.text)}
+        figure.annotate(number, **{**_FLAG, **flag, "yref": y})
 
 
 def _placed(

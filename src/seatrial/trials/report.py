@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
@@ -13,13 +12,12 @@ import numpy as np
 from jinja2 import Environment, FileSystemBytecodeCache, FileSystemLoader, StrictUndefined
 
 from ..cosim.paths import split_axis, split_path
-from ..errors import InputError
 from ..fmi.cache import cache_folder
-from ..units import quantity
 from ..whole_file import write_whole
 from .accuracy_section import accuracy_section
 from .convergence import load_convergence
 from .decks import deck, pads
+from .event_marks import events_of, happenings
 from .expressions import FloatArray
 from .parameter_tables import parameter_tables, value_text
 from .plotly_js import plotly_js
@@ -78,12 +76,17 @@ class Port:
         return signal.removeprefix(f"{self.component}.{self.name}").lstrip(".") or self.name
 
 
-def write_report(folder: Path | str) -> Path:
-    """Write ``report.html`` into a run folder and return its path. Raises InputError."""
+def write_report(folder: Path | str, library: str | None = None) -> Path:
+    """Write ``report.html`` into a run folder and return its path. Raises InputError.
+
+    The page has Plotly's JavaScript in it, or takes it from the address ``library``, relative to
+    it: pages of a campaign share one.
+    """
     run = load_run(folder)
     convergence = load_convergence(run.folder)
     page = render(
         "report.html.j2",
+        library=library,
         run=run,
         manifest=run.manifest,
         title=run.manifest["trial"].get("title") or run.name,
@@ -94,16 +97,20 @@ def write_report(folder: Path | str) -> Path:
         step_times=step_times(run.timing),
         pacing=pacing(run.timing),
         accuracy=None if convergence is None else accuracy_section(convergence),
-        events=[_event_text(event) for event in _happenings(run)],
+        happenings=happenings(run),
     )
     path = run.folder / REPORT
     write_whole(path, page)
     return path
 
 
-def render(template: str, **content: Any) -> str:
-    """Return a page from a template of this package; ``content`` is escaped there."""
-    return _environment().get_template(template).render(plotly_js=plotly_js(), **content)
+def render(template: str, library: str | None = None, **content: Any) -> str:
+    """Return a page from a template of this package; ``content`` is escaped there.
+
+    It has Plotly's JavaScript in it, unless ``library`` is its address.
+    """
+    content["plotly_js"] = "" if library else plotly_js()
+    return _environment().get_template(template).render(library=library, **content)
 
 
 @cache
@@ -293,8 +300,8 @@ def _alike_craft(run: Run, ports: Iterable[Port]) -> list[list[str]]:
 
 
 def _over_time(run: Run, columns: Sequence[Sequence[Panel]]) -> str:
-    events = [at for at in map(_event_time, _happenings(run)) if at is not None]
-    return time_figure(run.time, columns, events, points_of_a_line(len(run.signals))).json()
+    points = points_of_a_line(len(run.signals))
+    return time_figure(run.time, columns, events_of(run), points).json()
 
 
 def points_of_a_line(signals: int) -> int:
@@ -320,27 +327,6 @@ def _text_signal(run: Run, signal: str) -> TextSignal:
 
 
 # ---------------------------------------------------------------------- tables
-
-
-def _happenings(run: Run) -> list[Any]:
-    """Return events and faults."""
-    return [*run.manifest.get("events", []), *run.manifest.get("faults", [])]
-
-
-def _event_time(event: Any) -> float | None:
-    try:
-        return quantity(event["at"], "s")
-    except (InputError, KeyError, TypeError):
-        return None
-
-
-def _event_text(event: Any) -> tuple[str, str]:
-    """Return when an event happens and what, both as text."""
-    if not isinstance(event, dict):
-        return "", str(event)
-    actions = {key: value for key, value in event.items() if key != "at" and value}
-    what = "; ".join(f"{key} {json.dumps(value)}" for key, value in actions.items())
-    return str(event.get("at", "")), what
 
 
 def _flat(content: Any, prefix: str = "") -> Iterator[tuple[str, str]]:

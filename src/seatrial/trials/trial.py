@@ -27,6 +27,8 @@ from .surroundings import GROUPS, CurrentEntry, SeaEntry, WindEntry, set_surroun
 from .utc import Utc, instant_of, set_start_time
 from .verdict import Expectation
 
+_LEVELS = ("all", "trial", "criteria")
+
 
 class RecordEntry(FileModel):
     """What is recorded: signal patterns, and how often (default: every communication step)."""
@@ -272,6 +274,24 @@ class Trial:
             validated(FaultEntry, one, Path(f"{origin}.{i}")) for i, one in enumerate(written)
         ]
         return self.with_faults(faults)
+
+    def recording(self, level: str, origin: str) -> Trial:
+        """Return the trial with other signals recorded: "all" outputs, or what "criteria" need.
+
+        The latter are those that criteria and plots read; "trial" leaves what the file says.
+        Raises InputError for another level, and if there is nothing that criteria need.
+        """
+        if level not in _LEVELS:
+            raise InputError(f"{origin}: {unknown('level', level, _LEVELS)}")
+        needed = {signal for _, criterion in self.criteria for signal in criterion.signals}
+        needed |= {signal for plot in self.file.plots for signal in plot.signals}
+        if level == "criteria" and not needed:
+            raise InputError(f"{origin}: {self.name} has neither criteria nor plots")
+        signals = {"all": ["*"], "criteria": sorted(needed), "trial": None}[level]
+        if signals is None:
+            return self
+        record = self.file.record.model_copy(update={"signals": signals})
+        return replace(self, file=self.file.model_copy(update={"record": record}))
 
     def scaled(self, key: str, factor: float, origin: str) -> Trial:
         """Return the trial with the number ``component.port`` multiplied by ``factor``."""
