@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+import traceback
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -11,6 +13,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
+from .errors import InputError
 from .ports import Port
 
 Vector = NDArray[np.float64]
@@ -48,11 +51,12 @@ def compile_model(
 ) -> Model:
     """Compile ``equations`` for the given ports; ``texts`` are the text parameters' values.
 
-    Raises TypeError if the equations' result does not match the ports.
+    Raises TypeError if the equations' result does not match the ports, and InputError, with
+    file and line, for whatever they raise.
     """
     x, u, p = (_symbols(ports) for ports in (states, inputs, parameters))
     named_p = SimpleNamespace(**vars(p.named), **texts)
-    derivatives, other = equations(x.named, u.named, named_p)
+    derivatives, other = _evaluated(name, equations, x.named, u.named, named_p)
     dx = _stacked(f"{name}: derivatives", derivatives, states)
     y = _stacked(f"{name}: outputs", other, outputs)
     rhs = ca.Function("rhs", [x.all, u.all, p.all], [ca.cse(dx)])
@@ -68,6 +72,35 @@ def compile_model(
         u_names=_names(inputs),
         y_names=_names(outputs),
     )
+
+
+def _evaluated(
+    name: str, equations: Equations, x: SimpleNamespace, u: SimpleNamespace, p: SimpleNamespace
+) -> Any:
+    """Return what the equations give: derivatives, and outputs beside the states.
+
+    Raises InputError that points at the line of the equations that raised.
+    """
+    try:
+        found = equations(x, u, p)
+    except Exception as error:
+        frames = traceback.extract_tb(error.__traceback__)
+        code = getattr(equations, "__code__", None)
+        own = [frame for frame in frames if code and frame.filename == code.co_filename]
+        line = (own or frames)[-1]
+        known = [f"{key} has {', '.join(vars(each)) or 'nothing'}" for key, each in _of(x, u, p)]
+        hint = f" ({'; '.join(known)})" if isinstance(error, AttributeError) else ""
+        raise InputError(
+            f"{name}: {Path(line.filename).name}, line {line.lineno}: {line.line}: "
+            f"{type(error).__name__}: {error}{hint}"
+        ) from error
+    if not (isinstance(found, tuple) and len(found) == 2):
+        raise TypeError(f"{name}: equations return derivatives and outputs, found {found!r}")
+    return found
+
+
+def _of(*named: SimpleNamespace) -> Iterator[tuple[str, SimpleNamespace]]:
+    return zip("xup", named, strict=True)
 
 
 def rk4_between(rhs: ca.Function) -> ca.Function:

@@ -128,7 +128,7 @@ class Plant(Component):
         text parameter is a plain string. ``self`` carries no values: the result is compiled
         once per class and choice of text parameters.
         """
-        raise TypeError(f"{type(self).__name__} defines no equations")
+        raise NotImplementedError
 
     # ------------------------------------------------------------------ running
 
@@ -278,6 +278,8 @@ class Plant(Component):
 
     @classmethod
     def _compile(cls, texts: Mapping[str, str]) -> Model:
+        if cls.equations is Plant.equations:
+            raise TypeError(f"{cls.__name__} defines no equations")
         stub = cls.__new__(cls)  # has the methods and no values
         model = compile_model(
             cls.__name__,

@@ -381,6 +381,20 @@ def test_equations_that_do_not_match_the_ports(equations, message: str) -> None:
         declared(equations)("it").initialise()
 
 
+def test_a_mistake_in_equations_is_named_with_its_line() -> None:
+    def equations(self, x, u, p):
+        half = x.x / 2
+        return {"x": half * u.speed}, {}
+
+    line = equations.__code__.co_firstlineno + 2
+    message = (
+        rf"^Odd: test_plant.py, line {line}: return {{'x': half \* u.speed}}, {{}}: AttributeError: "
+        r".* no attribute 'speed' \(x has x; u has u; p has max_step, x_start\)$"
+    ).replace("'x'", '"x"')
+    with pytest.raises(InputError, match=message):
+        declared(equations)("it").initialise()
+
+
 def test_a_plant_without_equations_says_so() -> None:
     class Empty(Plant):
         x = State("m", "x")

@@ -12,6 +12,7 @@ from typer.testing import CliRunner
 from seatrial.cli.fmu import fmu_app
 from seatrial.cosim.assembly import assemble
 from seatrial.cosim.flattening import load_rig
+from tests.command import seatrial
 from tests.fmi.boats import BARGE
 from tests.fmi.native import changed
 
@@ -79,3 +80,15 @@ def test_names_in_any_case_and_other_units_are_proposed(
     assert shown("describe", "my boat.fmu").endswith(
         'reading = { wind_speed = "my_boat.Wind_Speed", depth = "my_boat.Depth" }\n'
     )
+
+
+def test_a_file_without_a_class_is_answered_with_its_classes(tmp_path: Path) -> None:
+    (tmp_path / "boat.py").write_text("class Hull(Plant):\n    pass\n\n\nclass Plain:\n    pass\n")
+    (tmp_path / "empty.py").write_text("x = 1\n")
+    done = seatrial("fmu", "build", "boat.py", cwd=tmp_path)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == "seatrial: boat.py: a class is needed: boat.py:Hull\n"
+    done = seatrial("fmu", "build", "empty.py", cwd=tmp_path)
+    assert "a class is needed, as in empty.py:Boat, and the file has none" in done.stderr
+    done = seatrial("fmu", "build", "none.py", cwd=tmp_path)
+    assert f"none.py: there is no file {tmp_path / 'none.py'}" in done.stderr

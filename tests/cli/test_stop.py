@@ -162,7 +162,9 @@ def test_a_signal_during_initialisation_leaves_no_run(name: str, start, tmp_path
     process.send_signal(signal.SIGINT)
     stopped(process)
     left = {p.name for p in (tmp_path / "run").glob("*")}
-    assert left == ({"campaign.json", "plotly.js", "report.html"} if name == "campaign.toml" else set())
+    assert left == (
+        {"campaign.json", "plotly.js", "report.html"} if name == "campaign.toml" else set()
+    )
     assert (tmp_path / "run").exists() == (name == "campaign.toml")
 
 

@@ -45,6 +45,19 @@ def test_greatest_difference_and_its_time(write_run):
     assert text(found).index("a.b") < text(found).index("hull.position.x")
 
 
+def test_directions_are_compared_the_shorter_way_round(write_run):
+    almost = np.full(201, np.pi - 0.01)
+    turned = np.full(201, 4 * np.pi)
+    found = both(
+        write_run,
+        {"extra": {"a.b": ("rad", almost), "a.c": ("rad", turned), "a.d": ("m", almost)}},
+        {"extra": {"a.b": ("rad", -almost), "a.c": ("rad", 0 * turned), "a.d": ("m", -almost)}},
+    )
+    gaps = {d.signal: d.absolute for d in found.differences if d.signal.startswith("a.")}
+    expected = {"a.b": 0.02, "a.c": 4 * np.pi, "a.d": 2 * np.pi - 0.02}
+    assert gaps == pytest.approx(expected)
+
+
 def test_signals_of_one_run_only_and_other_units(write_run):
     ones = np.ones(201)
     found = both(

@@ -10,7 +10,7 @@ import typer
 
 from ..trials.compare import compare as compare_runs
 from .answer import answer
-from .show import console
+from .show import console, print_table
 from .statuses import FAILED
 
 
@@ -25,7 +25,7 @@ def compare(
         "worst": comparison.worst,
         "summary": comparison.summary,
     }
-    console.print(comparison.table())
+    print_table(comparison.table())
     console.print(comparison.summary)
     if not comparison.identical:
         raise typer.Exit(FAILED)

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
-from rich.console import Console, ConsoleOptions, RenderableType
+from rich.console import Console, ConsoleOptions, Group, RenderableType
 from rich.markup import escape
 from rich.segment import Segment
 from rich.table import Table
@@ -53,7 +53,7 @@ def print_notes(notes: Iterable[str]) -> None:
         console.print(f"[dim]note: {escape(note)}[/dim]", soft_wrap=True)
 
 
-def print_table(table: Table) -> None:
+def print_table(table: Table | Group) -> None:
     """Print a table: as wide as a terminal is, and for programs as wide as its lines are."""
     if console.is_terminal:
         console.print(table)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import importlib
 import os
 import re
@@ -106,11 +107,27 @@ def find_source(text: str, relative_to: Path) -> ComponentSource | Path:
     if ".py:" in text:
         file, _, class_name = text.rpartition(":")
         return _user_source((relative_to / file).resolve(), class_name, text)
+    if text.endswith(".py"):
+        raise InputError(_lacks_class((relative_to / text).resolve(), text))
     if text not in components().names():
         raise InputError(
             unknown("FMU", text, components().names()) + "; or give a path: x.fmu, my_boat.py:Class"
         )
     return _indexed(text)
+
+
+def _lacks_class(path: Path, text: str) -> str:
+    """Return what to say of a file without a class: those that it has."""
+    if not path.is_file():
+        return f"{text}: there is no file {path}"
+    try:
+        tree = ast.parse(path.read_bytes(), filename=str(path))
+    except (SyntaxError, ValueError) as error:
+        return f"{text}: {error}"
+    names = [node.name for node in tree.body if isinstance(node, ast.ClassDef) and node.bases]
+    if not names:
+        return f"{text}: a class is needed, as in {text}:Boat, and the file has none"
+    return f"{text}: a class is needed: {' or '.join(f'{text}:{name}' for name in names)}"
 
 
 def named_sources() -> dict[str, ComponentSource]:

@@ -31,7 +31,10 @@ class Difference:
     signal: str
     unit: str
     absolute: float | None = None
-    """Greatest difference, in the signal's unit; infinite where only one is a number."""
+    """Greatest difference, in the signal's unit; infinite where only one is a number.
+
+    Of an angle that never leaves one turn, the shorter way round.
+    """
     relative: float | None = None
     """The same as a share of the greatest magnitude in the column."""
     time: float | None = None
@@ -161,12 +164,19 @@ def _difference(name: str, run_a: Run, run_b: Run, in_a: Any, in_b: Any) -> Diff
         first = float(time[np.argmax(unequal)]) if unequal.any() else None
         return Difference(name, unit, relative=float(unequal.mean()), time=first)
     gap = _gap(a, b)
+    if unit == "rad" and _is_direction(a) and _is_direction(b):
+        gap = np.minimum(gap, np.abs(2.0 * np.pi - gap))  # pi and -pi are the same
     row = int(np.argmax(gap))
     absolute = float(gap[row])
     magnitude = np.abs(np.concatenate([a, b]))
     scale = float(np.max(magnitude, initial=0.0, where=np.isfinite(magnitude)))
     relative = absolute / scale if scale else absolute
     return Difference(name, unit, absolute, relative, float(time[row]) if absolute else None)
+
+
+def _is_direction(angle: FloatArray) -> bool:
+    """Return whether an angle, rad, never leaves one turn: beyond, turns are counted."""
+    return bool(np.nanmax(np.abs(angle), initial=0.0) <= 2.0 * np.pi)
 
 
 def _gap(a: FloatArray, b: FloatArray) -> FloatArray:

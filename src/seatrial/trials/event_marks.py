@@ -59,7 +59,8 @@ def _texts(written: Any) -> tuple[str, str, str]:
     """Return when it happens, how long it lasts, and what, as texts."""
     if not isinstance(written, dict):
         return "", "", str(written)
-    keys = {k: v for k, v in written.items() if k not in ("at", "for") and v not in (None, "", {}, [])}
+    named = {key: value for key, value in written.items() if key not in ("at", "for")}
+    keys = {key: value for key, value in named.items() if value not in (None, "", {}, [])}
     if set(keys) == {"set"}:
         keys = keys["set"]
     what = ", ".join(
