@@ -153,6 +153,7 @@ def test_what_is_nested_is_read_nested_and_written_again_the_same(
     assert second.read_bytes() == first.read_bytes()
 
 
+@pytest.mark.interop
 def test_a_shipped_rig_of_rigs_survives_a_package(tmp_path: Path) -> None:
     choices = {"vehicle": "hydrone", "algorithm": "plain-jacobi"}
     path, _ = export_ssp("sil", tmp_path / "sil.ssp", choices=choices)

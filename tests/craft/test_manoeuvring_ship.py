@@ -233,6 +233,7 @@ def test_figures_of_the_steps(degrees, overshoot, rudder):
         assert t[outside] == pytest.approx(175.5, abs=0.1)
 
 
+@pytest.mark.interop
 def test_propeller_turns_the_cubic_ship_off_its_course():
     t, x, _ = step("cubic", 5.0)
     psi = np.degrees(x[:, 2])

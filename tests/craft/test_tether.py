@@ -413,6 +413,7 @@ def test_the_current_of_a_trial_is_one_that_is_connected():
         np.testing.assert_allclose(np.hstack(here), np.hstack(there), rtol=1e-12, atol=1e-12)
 
 
+@pytest.mark.interop
 def test_the_layers_of_a_trials_current_are_the_profile_of_the_cable():
     ends = {"bottom_position": [4.0, 0.0, 38.0]}
     profile = tether(

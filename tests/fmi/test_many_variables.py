@@ -122,6 +122,7 @@ def test_groups_of_many_variables_take_time_that_grows_with_their_number(tmp_pat
     assert time.process_time() - begun < 5.0
 
 
+@pytest.mark.interop
 def test_a_trial_of_a_component_with_very_many_outputs(tmp_path: Path) -> None:
     """What it does not ask for is not recorded, not listed and not noted line by line."""
     write_fmu(tmp_path / "big.fmu", 3, 2 * COUNT * 10)

@@ -41,6 +41,7 @@ def test_parameters_of_the_vehicle(pool):
     assert found.whiteness.white
 
 
+@pytest.mark.interop
 def test_held_out_data_is_not_seen(pool, surge):
     clean = found_in(pool())
     spoilt = [*surge["ax"][:420], *surge["ax"][:180]]
