@@ -62,7 +62,7 @@ class Helm:
             uarts="0 38400",
             wires=f"9 servo 1; 11 output 1; {_LEVELS}; {_VOLTAGES}",
         )
-        for number in range(1, 7):
+        for number in (1, 2, 3, 5, 6):
             self.bench.one.set(f"level.i{number}", True)  # jumpers open, end switches closed
         self.rudder = self.psi = self.r = 0.0
         self.amperes, self.volts = 0.0, 12.0
@@ -75,7 +75,7 @@ class Helm:
         one = self.bench.one
         analogue = (
             self.volts * 560 / 10560,
-            self.amperes * 0.05,
+            self.amperes * 0.01,  # ohm: the jumper of pin 4 is closed
             0.4545,
             0.4545,
             0.55 + 0.01 * self.rudder,

@@ -282,3 +282,88 @@ void loop() { if (Serial.available()) Serial.write(Serial.read()); if (millis() 
         assert bench.run(0.2) == b"hello"
         bench.run(0.2)  # millis() counts half as fast
         assert bench.one.get("pulse.s1") == pytest.approx(0.00175, abs=1e-6)
+
+
+@both
+def test_a_switch_to_ground_is_seen_whatever_the_pull_up_does(tmp_path, backend):
+    """ATmega2560 data sheet, 13.2: a pull-up has 20 to 50 kOhm; a closed switch wins."""
+    source = """
+void setup() {
+  Serial.begin(115200);
+  pinMode(22, INPUT_PULLUP); pinMode(23, INPUT_PULLUP); pinMode(24, OUTPUT); pinMode(25, INPUT_PULLUP);
+}
+void loop() {
+  delay(20);
+  digitalWrite(24, !digitalRead(24));  // the same port
+  Serial.print(digitalRead(22)); Serial.print(digitalRead(23)); Serial.print(digitalRead(25)); Serial.print(' ');
+}
+"""
+    wires = "22 input 1; 23 input 2; 24 output 1"
+    with Bench(write_sketch(tmp_path, source), backend, wires=wires) as bench:
+        bench.one.set("level.i2", True)
+        assert set(bench.run(0.1).split()[1:]) == {b"011"}  # closed, open, nothing there
+        bench.one.set("level.i1", True)
+        bench.one.set("level.i2", False)
+        assert set(bench.run(0.1).split()[1:]) == {b"101"}
+
+
+@both
+def test_a_magnetometer_tests_itself(tmp_path, backend):
+    """HMC5883L, data sheet rev E, "self test": 1.16 Ga in x and y, 1.08 in z, at 390 counts a gauss."""
+    source = """
+#include <Wire.h>
+void set(byte at, byte value) { Wire.beginTransmission(0x1E); Wire.write(at); Wire.write(value); Wire.endTransmission(); }
+void show() {
+  Wire.beginTransmission(0x1E); Wire.write(3); Wire.endTransmission();
+  Wire.requestFrom(0x1E, 6);
+  for (int i = 0; i < 3; i++) { int high = Wire.read(), all = high << 8 | Wire.read(); Serial.print(all); Serial.print(' '); }
+}
+void setup() {
+  Serial.begin(115200); Wire.begin();
+  set(1, 0xA0);
+  const byte modes[] = {0x11, 0x12, 0x10};
+  for (byte mode : modes) { set(0, mode); set(2, 1); delay(10); show(); }
+}
+void loop() {}
+"""
+    field = {"magnetic_field.north": 2e-5, "magnetic_field.east": 0.0, "magnetic_field.down": 1e-5}
+    with Bench(write_sketch(tmp_path, source), backend, wires="0x1E hmc5883l", **field) as bench:
+        said = [int(number) for number in bench.run(0.2).split()]
+    assert said == [452, 421, 452, -452, -421, -452, 78, 39, 0]  # x, z, y
+
+
+@pytest.mark.parametrize("mcu", ["atmega2560", "atmega328p"])
+def test_i2c_by_its_registers(tmp_path, mcu):
+    """Statuses of a master as the ATmega2560 data sheet has them in tables 24-2 and 24-3."""
+    source = """
+byte go(byte control) { TWCR = _BV(TWINT) | _BV(TWEN) | control; while (!(TWCR & _BV(TWINT))) {} return TWSR & 0xF8; }
+byte send(byte data) { TWDR = data; return go(0); }
+void say(byte status) { Serial.print(status, HEX); Serial.print(' '); }
+void stop() { TWCR = _BV(TWINT) | _BV(TWEN) | _BV(TWSTO); while (TWCR & _BV(TWSTO)) {} }
+void setup() {
+  Serial.begin(115200);
+  TWBR = 12;
+  say(go(_BV(TWSTA))); say(send(0x68 << 1)); say(send(0x75));
+  say(go(_BV(TWSTA))); say(send(0x68 << 1 | 1)); say(go(_BV(TWEA))); say(TWDR); say(go(0)); stop();
+  say(go(_BV(TWSTA))); say(send(0x11 << 1)); stop();
+  say(go(_BV(TWSTA))); say(send(0x11 << 1 | 1)); stop();
+}
+void loop() {}
+"""
+    with Bench(write_sketch(tmp_path, source), "simavr", mcu=mcu, wires="0x68 mpu6050") as bench:
+        assert bench.run(0.1).decode().split() == (
+            ["8", "18", "28", "10", "40", "50", "68", "58", "8", "20", "8", "48"]
+        )
+
+
+@both
+def test_wire_tells_an_absent_device_from_a_deaf_one(tmp_path, backend):
+    """Arduino's reference of Wire: 2 is a NACK of the address."""
+    source = """
+#include <Wire.h>
+byte ask(byte at) { Wire.beginTransmission(at); Wire.write(0); return Wire.endTransmission(); }
+void setup() { Serial.begin(115200); Wire.begin(); Serial.print(ask(0x68)); Serial.print(ask(0x69)); }
+void loop() {}
+"""
+    with Bench(write_sketch(tmp_path, source), backend, wires="0x68 mpu6050") as bench:
+        assert bench.run(0.1) == b"02"

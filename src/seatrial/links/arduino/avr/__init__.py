@@ -5,6 +5,7 @@ DATA_FILES = (
     "Servo.h",
     "emulated_board.c",
     "hangs.h",
+    "i2c.h",
     "lines.h",
     "memory.h",
     "modulation.h",

@@ -23,8 +23,6 @@ static avr_t *avr;
 static char ports[PINS], bits[PINS];
 static uint8_t numbers[PINS];
 static uint64_t target;
-static avr_irq_t *twi_input;
-static int twi_reading;
 
 static void logged(avr_t *from, const int level, const char *format, va_list values)
 {
@@ -46,6 +44,18 @@ static void end(const char *why)
 static avr_irq_t *pin_irq(uint8_t pin)
 {
     return avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ(ports[pin]), bits[pin] - '0');
+}
+
+/* A level from outside, which a pull-up does not change. */
+static void pin_put(uint8_t pin, int level)
+{
+    static uint8_t masks[128], values[128];
+    uint8_t port = (uint8_t)ports[pin] & 127, bit = (uint8_t)(1 << (bits[pin] - '0'));
+    masks[port] |= bit;
+    values[port] = (uint8_t)(level ? values[port] | bit : values[port] & ~bit);
+    avr_ioport_external_t all = {.name = port, .mask = masks[port], .value = values[port]};
+    avr_ioctl(avr, AVR_IOCTL_IOPORT_SET_EXTERNAL(ports[pin]), &all);
+    avr_raise_irq(pin_irq(pin), (uint32_t)level);
 }
 
 #include "lines.h"
@@ -72,7 +82,7 @@ static avr_cycle_count_t wave_due(avr_t *of, avr_cycle_count_t cycle, void *unus
     (void)of, (void)cycle, (void)unused;
     wave *one;
     while ((one = wave_turn(ticks(), CLOCK)))
-        avr_raise_irq(pin_irq(one->pin), one->level);
+        pin_put(one->pin, one->level);
     uint64_t next = wave_next();
     return next == NEVER ? 0 : cycle_of((double)next);
 }
@@ -85,30 +95,7 @@ static void restart_waves(void)
         later((double)next, wave_due, 0);
 }
 
-/* ------------------------------------------------------------------ I2C */
-
-static void twi(avr_irq_t *irq, uint32_t value, void *unused)
-{
-    (void)irq, (void)unused;
-    avr_twi_msg_irq_t message;
-    message.u.v = value;
-    uint8_t address = message.u.twi.addr;
-    if (message.u.twi.msg & TWI_COND_STOP)
-        part_open = 0;
-    if (message.u.twi.msg & TWI_COND_START) {
-        twi_reading = address & 1;
-        if (part_begin(address >> 1, twi_reading))
-            avr_raise_irq(twi_input, avr_twi_irq_msg(TWI_COND_ACK, address, 1));
-    }
-    if (!part_open)
-        return;
-    if (message.u.twi.msg & TWI_COND_WRITE) {
-        avr_raise_irq(twi_input, avr_twi_irq_msg(TWI_COND_ACK, address, 1));
-        part_write(message.u.twi.data);
-    }
-    if (message.u.twi.msg & TWI_COND_READ)
-        avr_raise_irq(twi_input, avr_twi_irq_msg(TWI_COND_READ, address, part_read()));
-}
+#include "i2c.h"
 
 /* ------------------------------------------------------------------ running */
 
@@ -123,7 +110,7 @@ static void take_input(const link_input *input)
     case IN_VOLTS:
         avr_raise_irq(avr_io_getirq(avr, AVR_IOCTL_ADC_GETIRQ, ADC_IRQ_ADC0 + index), (uint32_t)(input->number * 1000.0 + 0.5));
         break;
-    case IN_LEVEL: avr_raise_irq(pin_irq(index), input->number != 0.0); break;
+    case IN_LEVEL: pin_put(index, input->number != 0.0); break;
     case IN_FREQUENCY:
     case IN_PULSE:
         wave_set(index, input->kind == IN_PULSE, input->number, ticks());
@@ -206,8 +193,7 @@ int main(int count, char **arguments)
     memory_begin();
     avr->reset = was_reset;
     hang_forget();
-    twi_input = avr_io_getirq(avr, AVR_IOCTL_TWI_GETIRQ(0), TWI_IRQ_INPUT);
-    avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_TWI_GETIRQ(0), TWI_IRQ_OUTPUT), twi, 0);
+    connect_i2c();
     avr->run_cycle_limit = 1000;
     for (;;) {
         target = link_await(take_input);

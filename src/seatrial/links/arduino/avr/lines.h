@@ -56,7 +56,7 @@ static avr_cycle_count_t arrive_bit(avr_t *of, avr_cycle_count_t cycle, void *wh
         one->begun = when;
     int frame = one->bytes[one->first] << 1 | 0x200, at = one->bit++;
     if (at < 10) {
-        avr_raise_irq(pin_irq((uint8_t)one->rx_pin), frame >> at & 1);
+        pin_put((uint8_t)one->rx_pin, frame >> at & 1);
         return cycle_of(one->begun + (at + 1) * CLOCK / one->baud);
     }
     one->bit = 0;
@@ -134,7 +134,7 @@ static void driven(avr_irq_t *irq, uint32_t value, void *which)
 static void line_to_pin(line *one, uint8_t pin)
 {
     one->rx_pin = pin;
-    avr_raise_irq(pin_irq(pin), 1);
+    pin_put(pin, 1);
 }
 
 static void line_from_pin(line *one, uint8_t pin)

@@ -27,8 +27,9 @@ void yield() { charge(8); }
 void pinMode(uint8_t pin, uint8_t mode)
 {
     charge(60);
-    if (mode == INPUT_PULLUP)
-        machine::drive(pin, true);
+    machine::direct(pin, mode == OUTPUT);
+    if (mode != OUTPUT)
+        machine::drive(pin, mode == INPUT_PULLUP);
 }
 
 void digitalWrite(uint8_t pin, uint8_t level) { charge(70); machine::drive(pin, level != LOW); }
@@ -50,6 +51,7 @@ void analogWrite(uint8_t pin, int value)
     bool able = pin == 3 || pin == 5 || pin == 6 || (pin >= 9 && pin <= 11);
 #endif
     charge(100);
+    machine::direct(pin, true);
     if (value <= 0 || value >= 255 || !able)
         machine::drive(pin, value >= (able ? 255 : 128));
     else

@@ -40,9 +40,11 @@ uint64_t last_call, patience;
 char *stack;
 
 struct Pin {
-    bool level, driven, watched;
-    int share; /* of 255; -1: no PWM */
-    double edge;
+    bool level = false, watched = false;
+    bool output = false, latch = false; /* DDR and PORT: of an input, whether it is pulled up */
+    int outside = -1;                   /* level that is driven from outside; -1: nothing is there */
+    int share = -1;                     /* of 255; -1: no PWM */
+    double edge = 0.0;
 } pins[PINS];
 int modulated;
 
@@ -85,6 +87,25 @@ void put_level(uint8_t pin, bool to)
     }
 }
 
+void settle(uint8_t pin)
+{
+    const Pin &one = pins[pin];
+    put_level(pin, one.output || one.outside < 0 ? one.latch : one.outside > 0);
+}
+
+void put_output(uint8_t pin, bool to)
+{
+    pins[pin].output = true;
+    pins[pin].latch = to;
+    settle(pin);
+}
+
+void put_outside(uint8_t pin, bool to)
+{
+    pins[pin].outside = to;
+    settle(pin);
+}
+
 void configure(const link_input *input)
 {
     uint8_t uart = input->index % UARTS;
@@ -110,7 +131,7 @@ void take_input(const link_input *input)
         break;
     case IN_EEPROM: memory[input->value % EEPROM_MOST] = (uint8_t)input->number; break;
     case IN_VOLTS: adc[index % 16] = input->number; break;
-    case IN_LEVEL: put_level(index % PINS, input->number != 0.0); break;
+    case IN_LEVEL: put_outside(index % PINS, input->number != 0.0); break;
     case IN_FREQUENCY: wave_set(index, 0, input->number, now); break;
     case IN_PULSE: wave_set(index, 1, input->number, now); break;
     case IN_QUANTITY: part_quantities[index % QUANTITIES] = input->number; break;
@@ -122,7 +143,7 @@ void take_input(const link_input *input)
 void turn_servos()
 {
     if (servo_turn >= 0 && servos[servo_turn].pin >= 0)
-        put_level((uint8_t)servos[servo_turn].pin, false);
+        put_output((uint8_t)servos[servo_turn].pin, false);
     if (++servo_turn == servo_count) {
         uint64_t following = frame_start + FRAME;
         servo_turn = -1;
@@ -132,7 +153,7 @@ void turn_servos()
     if (servo_turn == 0)
         frame_start = now;
     if (servos[servo_turn].pin >= 0)
-        put_level((uint8_t)servos[servo_turn].pin, true);
+        put_output((uint8_t)servos[servo_turn].pin, true);
     servo_next = now + (uint64_t)lround(servos[servo_turn].us * 16.0);
 }
 
@@ -150,7 +171,7 @@ void turn_modulated(uint8_t pin)
 {
     Pin &one = pins[pin];
     double high = one.share / 255.0, period = modulation_period(pin);
-    put_level(pin, !one.level);
+    put_output(pin, !one.level);
     one.edge += period * (one.level ? high : 1.0 - high);
 }
 
@@ -181,7 +202,7 @@ uint64_t first(bool do_it)
         turn_modulated((uint8_t)which);
     } else if (all == wave_due) {
         wave *one = wave_turn(now, CLOCK);
-        put_level(one->pin, one->level);
+        put_outside(one->pin, one->level);
     } else if (all == servo_next) {
         turn_servos();
     } else if (all == watchdog_due) {
@@ -319,8 +340,16 @@ void drive(uint8_t pin, bool to)
     if (pins[pin].share >= 0)
         modulated--;
     pins[pin].share = -1;
-    pins[pin].driven = true;
-    put_level(pin, to);
+    pins[pin].latch = to;
+    settle(pin);
+}
+
+void direct(uint8_t pin, bool output)
+{
+    if (pin >= PINS)
+        return;
+    pins[pin].output = output;
+    settle(pin);
 }
 
 bool level(uint8_t pin) { return pin < PINS && pins[pin].level; }
@@ -339,11 +368,9 @@ void modulate(uint8_t pin, int share)
 {
     if (pin >= PINS)
         return;
-    pins[pin].driven = true;
     if (pins[pin].share < 0) {
         modulated++;
-        pins[pin].level = true;
-        show(pin);
+        put_output(pin, true);
         pins[pin].edge = (double)now + modulation_period(pin) * share / 255.0;
     }
     pins[pin].share = share;
@@ -357,7 +384,7 @@ void set_servo(int servo, int pin, double us)
     if (servo < 0)
         return;
     if (pin != servos[servo].pin && servos[servo].pin >= 0)
-        put_level((uint8_t)servos[servo].pin, false);
+        put_output((uint8_t)servos[servo].pin, false);
     servos[servo] = {pin, us};
     if (servo_next == NEVER && pin >= 0)
         servo_next = now + 64;
@@ -421,8 +448,6 @@ int main(int, char **arguments)
     using namespace machine;
     link_out = atoi(arguments[1]);
     patience = (uint64_t)(atof(arguments[2]) * CLOCK);
-    for (Pin &pin : pins)
-        pin.share = -1;
     memset(memory, 0xFF, sizeof memory);
     program = arguments;
     if (arguments[3])

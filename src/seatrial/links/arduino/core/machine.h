@@ -16,7 +16,8 @@ void charge(uint32_t cycles);
 /* Let time pass until `when`, or, with `event`, until something has happened. */
 void pass_until(uint64_t when, bool event = false);
 
-void drive(uint8_t pin, bool level); /* an output, from now on */
+void drive(uint8_t pin, bool level); /* of an input: whether it is pulled up */
+void direct(uint8_t pin, bool output);
 bool level(uint8_t pin);
 double volts(uint8_t channel);
 void modulate(uint8_t pin, int share); /* PWM, 0 to 255 */

@@ -69,9 +69,8 @@ void resume(int file)
         configure(&configured[each]);
     for (int pin = 0; pin < PINS; pin++) {
         pins[pin].share = -1;
-        if (pins[pin].driven)
-            put_level((uint8_t)pin, false);
-        pins[pin].driven = false;
+        pins[pin].output = pins[pin].latch = false;
+        settle((uint8_t)pin);
     }
     reset_flags = 8; /* WDRF */
     resumed = true;

@@ -75,10 +75,14 @@ static void part_measure_field(part *one)
 {
     static const double per_gauss[] = {1370, 1090, 820, 660, 440, 390, 330, 230};
     static const int place[] = {0, 2, 1}; /* x, z, y */
+    static const double bias[] = {1.16, 1.16, 1.08}; /* gauss: a coil's, from which the field is taken */
+    int test = one->registers[0] & 3;
     if ((one->registers[2] & 3) > 1)
         return;
     for (int axis = 0; axis < 3; axis++) {
-        double raw = part_quantities[Q_FIELD + axis] * 1e4 * per_gauss[one->registers[1] >> 5];
+        double gauss = part_quantities[Q_FIELD + axis] * 1e4;
+        gauss = test == 1 ? bias[axis] : test == 2 ? -bias[axis] : gauss;
+        double raw = gauss * per_gauss[one->registers[1] >> 5];
         int16_t value = fabs(raw) > 2047.5 ? -4096 : part_rounded(raw, -2048, 2047);
         part_store(one->registers + 3 + 2 * place[axis], value);
     }
@@ -145,8 +149,9 @@ static uint8_t part_crc4(void)
 
 static void part_command_pressure(part *one, uint8_t command)
 {
-    memset(one->latched, 0, sizeof one->latched);
-    if (command >= 0xA0 && command <= 0xAE) {
+    int reads = command <= 0x1E || (command >= 0x40 && command <= 0x5A); /* others: nothing drives the bus */
+    memset(one->latched, reads ? 0 : 0xFF, sizeof one->latched);
+    if (command >= 0xA0 && command <= 0xAC) {
         uint16_t word = part_prom[(command - 0xA0) / 2];
         if (command == 0xA0)
             word = (uint16_t)(part_crc4() << 12);
