@@ -134,13 +134,43 @@ void loop() { delay(500); Serial.println(ticks); }
 
 
 @both
-def test_a_uart_at_another_rate_than_its_line_is_noticed(tmp_path, backend):
-    source = "void setup() { Serial.begin(9600); }\nvoid loop() {}\n"
-    with (
-        Bench(write_sketch(tmp_path, source), backend) as bench,
-        pytest.raises(SimulationError, match=r"UART 0 at 96\d\d baud.*115200"),
-    ):
-        bench.run(1.0)
+def test_a_uart_that_stays_at_another_rate_than_its_line_is_noticed(tmp_path, backend):
+    source = "void setup() { Serial.begin(9600); }\nvoid loop() { Serial.print('x'); delay(50); }\n"
+    with Bench(write_sketch(tmp_path, source), backend) as bench:
+        assert bench.run(1.9) == b""
+        with pytest.raises(SimulationError, match=r"UART 0 open at 96\d\d baud.*115200"):
+            bench.run(0.2)
+
+
+@both
+def test_a_uart_that_is_not_open_has_no_rate(tmp_path, backend):
+    sketch = write_sketch(tmp_path, "void setup() {}\nvoid loop() {}\n")
+    with Bench(sketch, backend, uarts="0 9600; 1 4800") as bench:
+        assert bench.run(2.5) == b""
+
+
+@both
+def test_a_sketch_finds_the_rate_of_its_instrument(tmp_path, backend):
+    source = """
+const long rates[] = {4800, 9600, 115200, 38400};
+void setup() {
+  Serial.begin(115200);
+  for (long rate : rates) {
+    Serial1.begin(rate);
+    for (unsigned long begun = millis(); millis() - begun < 1200;) {
+      if (Serial1.read() == '$') { Serial.print(rate); return; }
+    }
+    Serial1.end();
+  }
+}
+void loop() {}
+"""
+    sketch = write_sketch(tmp_path, source)
+    with Bench(sketch, backend, uarts="0 115200; 1 38400") as bench:
+        for _ in range(50):
+            bench.receive(1, b"$GPHDT,1,T*00\r\n")
+            bench.run(0.1)
+        assert bench.sent[0] == b"38400"
 
 
 @both

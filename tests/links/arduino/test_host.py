@@ -140,7 +140,10 @@ def test_what_cannot_be_is_refused_with_its_line(tmp_path, source, expected):
             "volatile byte *nowhere = 0;\nvoid setup() {}\nvoid loop() {\n  delay(50);\n  *nowhere = 1;\n}\n",
             r"crashed: Segmentation fault \(.*one\.ino:5\)",
         ),
-        ("void setup() { Serial.begin(9600); }\nvoid loop() {}\n", "UART 0 at 9600 baud.*115200"),
+        (
+            "void setup() { Serial.begin(9600); }\nvoid loop() {}\n",
+            "UART 0 open at 9600 baud.*115200",
+        ),
     ],
 )
 def test_a_sketch_that_goes_wrong_ends_its_component_only(tmp_path, source, expected):
@@ -148,7 +151,7 @@ def test_a_sketch_that_goes_wrong_ends_its_component_only(tmp_path, source, expe
         running(tmp_path, source, patience=0.5) as bench,
         pytest.raises(SimulationError, match=f"(?s)mega: at .* s of its time .*{expected}"),
     ):
-        bench.run(2.0)
+        bench.run(2.1)
 
 
 def test_two_of_one_sketch_have_nothing_in_common(tmp_path):

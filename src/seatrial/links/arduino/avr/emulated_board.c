@@ -14,6 +14,7 @@
 
 #include "link.h"
 #include "parts.h"
+#include "rates.h"
 #include "waves.h"
 
 #define CLOCK 16e6

@@ -1,4 +1,4 @@
-/* A sketch that goes round without calling anything or returning, and UARTs at another rate than their lines. */
+/* A sketch that goes round without calling anything or returning, and UARTs that stay at another rate than their lines. */
 #ifndef HANGS_H
 #define HANGS_H
 
@@ -38,19 +38,19 @@ static void hang_observe(int state)
     }
 }
 
+/* End the run if a UART stays open at another rate than its line's. */
 static void line_check(void)
 {
-    static const uint16_t status[] = {0xC0, 0xC8, 0xD0, 0x130}; /* UCSRnA; UBRRn is 4 further */
-    for (int uart = 0; uart < (ports[0] == 'E' ? UARTS : 1); uart++) {
-        uint8_t a = avr->data[status[uart]], b = avr->data[status[uart] + 1];
-        double divisor = word_at((uint16_t)(status[uart] + 4)) + 1.0;
-        double baud = CLOCK / divider / (a & 2 ? 8.0 : 16.0) / divisor;
-        double line_baud = lines[uart].baud;
-        if (!(b & 0x18) || line_baud <= 0.0 || lines[uart].rx_pin || lines[uart].tx_pin)
-            continue;
-        if (fabs(baud / line_baud - 1.0) > 0.04) {
-            char text[120];
-            snprintf(text, sizeof text, "it opens UART %d at %.0f baud, and the line there has %.0f", uart, baud, line_baud);
+    static uint64_t since[UARTS];
+    static double rates[UARTS];
+    for (int uart = 0; uart < UARTS; uart++) {
+        if (at_line_rate(uart) || rates[uart] != uart_rate(uart))
+            since[uart] = ticks();
+        rates[uart] = uart_rate(uart);
+        if ((double)(ticks() - since[uart]) > OTHER_RATE_S * CLOCK) {
+            char text[160];
+            snprintf(text, sizeof text, "it has UART %d open at %.0f baud, and the line there has %.0f", uart,
+                     uart_rate(uart), lines[uart].baud);
             end(text);
         }
     }

@@ -22,6 +22,23 @@ typedef struct {
 
 static line lines[UARTS];
 
+/* The rate of a UART by its registers, baud; 0 while it is closed. simavr has TXEN set at the start. */
+static double uart_rate(int uart)
+{
+    static const uint16_t status[] = {0xC0, 0xC8, 0xD0, 0x130}; /* UCSRnA; UBRRn is 4 further */
+    const uint8_t *at = avr->data + status[uart];
+    double divisor = (at[4] | at[5] << 8) + 1.0;
+    int open = at[1] & 0x10 || (at[1] & 0x08 && divisor > 1.0);
+    return open ? CLOCK / divider / (at[0] & 2 ? 8.0 : 16.0) / divisor : 0.0;
+}
+
+static int at_line_rate(int uart)
+{
+    const line *one = &lines[uart];
+    int none = (uart && ports[0] != 'E') || one->rx_pin || one->tx_pin;
+    return none || rates_match(uart_rate(uart), one->baud);
+}
+
 /* When the next byte that waits begins. */
 static double begins(const line *one) { return fmax(one->earliest[one->first], one->free); }
 
@@ -41,7 +58,7 @@ static avr_cycle_count_t arrive(avr_t *of, avr_cycle_count_t cycle, void *which)
     line *one = (line *)which;
     double when = (double)ticks();
     (void)of, (void)cycle;
-    if (one->input)
+    if (one->input && at_line_rate((int)(one - lines)))
         avr_raise_irq(one->input, one->bytes[one->first]);
     return another(one, when) ? cycle_of(begins(one) + LINE_BITS * CLOCK / one->baud) : 0;
 }
@@ -85,7 +102,7 @@ static void queue(line *one, uint8_t data, double earliest)
 static void transmitted(avr_irq_t *irq, uint32_t value, void *which)
 {
     (void)irq;
-    if (!lines[(intptr_t)which].tx_pin)
+    if (!lines[(intptr_t)which].tx_pin && at_line_rate((int)(intptr_t)which))
         link_put(OUT_UART, (uint8_t)(intptr_t)which, (uint16_t)(value & 0xFF), ticks());
 }
 

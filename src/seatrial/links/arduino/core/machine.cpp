@@ -208,6 +208,7 @@ uint64_t first(bool do_it)
     } else if (all == watchdog_due) {
         reset();
     } else {
+        refuse_other_rates();
         link_answer(now, "");
         target = link_await(take_input);
     }

@@ -50,6 +50,7 @@ void set_line(uint8_t uart, double baud);
 void put_line_at(uint8_t uart, int rx_pin, int tx_pin); /* -1: as before */
 double next_on_lines();                                 /* when a byte has arrived or left, in cycles */
 void serve_lines();
+void refuse_other_rates(); /* of UARTs and their lines, if they stay */
 void report_byte(uint8_t uart, uint8_t data);
 void reschedule();
 

@@ -1,5 +1,6 @@
 /* The machine's UARTs: bytes that wait on the line, in the ring of 64, and to be sent. */
 #include "machine.h"
+#include "rates.h"
 
 #include <math.h>
 
@@ -19,6 +20,8 @@ struct Incoming {
 
 struct Uart {
     double line_baud = 0.0, bit = 0.0; /* baud; cycles of a bit, 0 while closed */
+    bool other_rate = false;           /* it is not open at its line's: what comes and goes is lost */
+    uint64_t since = 0;                /* when it became so */
     int rx_pin = -1, tx_pin = -1;      /* of a line at pins */
     bool muted = false, overflowed = false;
     std::deque<Incoming> line;
@@ -88,7 +91,7 @@ static void arrive(Uart &uart)
     uart.line.pop_front();
     uart.line_free = uart.arrival;
     schedule(uart);
-    if (uart.bit <= 0.0 || uart.muted)
+    if (uart.bit <= 0.0 || uart.muted || uart.other_rate)
         return;
     if (uart.in.size() < RING - 1)
         uart.in.push_back(data);
@@ -106,7 +109,8 @@ void serve_lines()
             return;
         }
         if (one.sent == due) {
-            report_byte((uint8_t)each, one.shifting);
+            if (!one.other_rate)
+                report_byte((uint8_t)each, one.shifting);
             shift_next(one, one.sent);
             return;
         }
@@ -118,12 +122,21 @@ void serve_lines()
 void open_uart(uint8_t uart, uint32_t baud)
 {
     Uart &one = uarts[uart];
-    if (baud && one.line_baud > 0.0 && fabs(baud / one.line_baud - 1.0) > 0.03)
-        end("it opens UART %d at %u baud, and the line there has %.0f", uart, baud, one.line_baud);
+    one.other_rate = !rates_match(baud, one.line_baud);
+    one.since = now;
     one.bit = baud ? CLOCK / baud : 0.0;
     one.in.clear();
     schedule(one);
     reschedule();
+}
+
+void refuse_other_rates()
+{
+    for (int uart = 0; uart < UARTS; uart++) {
+        const Uart &one = uarts[uart];
+        if (one.other_rate && (double)(now - one.since) > OTHER_RATE_S * CLOCK)
+            end("it has UART %d open at %.0f baud, and the line there has %.0f", uart, CLOCK / one.bit, one.line_baud);
+    }
 }
 
 int received(uint8_t uart) { return (int)uarts[uart].in.size(); }

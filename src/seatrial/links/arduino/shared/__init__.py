@@ -3,5 +3,6 @@
 DATA_FILES = (
     "link.h",
     "parts.h",
+    "rates.h",
     "waves.h",
 )
