@@ -397,3 +397,24 @@ void loop() {}
 """
     with Bench(write_sketch(tmp_path, source), backend, wires="0x68 mpu6050") as bench:
         assert bench.run(0.1) == b"02"
+
+
+@pytest.mark.parametrize(("mcu", "uart", "pin"), [("atmega2560", 1, 19), ("atmega328p", 0, 0)])
+def test_bits_of_a_line_are_at_the_pin_of_its_uart(tmp_path, mcu, uart, pin):
+    """A start bit and the six zeros of '@' last 7 bits; the line is high at rest (RS-232's mark)."""
+    source = f"""
+void setup() {{
+  Serial.begin(9600);
+  int rest = digitalRead({pin});
+  long width = pulseIn({pin}, LOW, 2000000);
+  Serial.print(rest); Serial.print(' '); Serial.print(width);
+}}
+void loop() {{}}
+"""
+    rates = "; ".join(f"{each} 9600" for each in range(uart + 1))
+    with Bench(write_sketch(tmp_path, source), "simavr", mcu=mcu, uarts=rates) as bench:
+        bench.run(0.5)
+        bench.receive(uart, b"@")
+        rest, width = bench.run(0.2).split()
+    assert rest == b"1"
+    assert int(width) == pytest.approx(7 / 9600 * 1e6, rel=0.01)

@@ -175,8 +175,6 @@ class Arduino(ArduinoPorts):
         return build_firmware(find_sketch(self.sketch, self.libraries, self.flags), mcu)
 
     def _connect(self, inputs: Inputs) -> None:
-        for uart, rate in self._rates.items():
-            inputs.put("S", uart, rate)
         for address, byte in enumerate(self._eeprom):
             if byte != ERASED:
                 inputs.put("E", 0, byte, address)
@@ -187,6 +185,8 @@ class Arduino(ArduinoPorts):
                 inputs.put("W", wire.place)
             elif wire.kind in _SOFT:
                 inputs.put(_SOFT[wire.kind], wire.number, value=wire.place)
+        for uart, rate in self._rates.items():  # at the pins where it is connected
+            inputs.put("S", uart, rate)
 
     def _put_bytes(self, inputs: Inputs) -> None:
         for uart, text in enumerate(self.rx):

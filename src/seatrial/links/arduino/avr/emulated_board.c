@@ -105,7 +105,7 @@ static void take_input(const link_input *input)
     uint8_t index = input->index;
     switch (input->kind) {
     case IN_UART: queue(&lines[index % UARTS], (uint8_t)input->value, input->number); break;
-    case IN_BAUD: lines[index % UARTS].baud = input->number; break;
+    case IN_BAUD: line_at_rate(&lines[index % UARTS], input->number); break;
     case IN_RX_PIN: line_to_pin(&lines[index % UARTS], (uint8_t)input->value); break;
     case IN_TX_PIN: line_from_pin(&lines[index % UARTS], (uint8_t)input->value); break;
     case IN_VOLTS:

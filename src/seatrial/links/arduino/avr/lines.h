@@ -2,8 +2,7 @@
 #ifndef LINES_H
 #define LINES_H
 
-/* simavr takes 11 bits for a byte, always: a line at full rate would overrun it. */
-#define LINE_BITS 11.0
+#define UART_BITS 11 /* simavr takes so many for a byte, always: a line at full rate would overrun it */
 
 typedef struct {
     uint8_t *bytes;
@@ -13,7 +12,7 @@ typedef struct {
     avr_irq_t *input;
     int waiting;
     int rx_pin, tx_pin; /* of the board; 0: the UART's */
-    int bit;            /* that arrives next at a pin */
+    int bit, received;  /* that arrives next; level at the pin where it does */
     double begun;       /* when its byte did */
     int level, sampled; /* of the pin that sends; which bit comes next, 0 between bytes */
     double began;       /* when its byte did */
@@ -32,11 +31,12 @@ static double uart_rate(int uart)
     return open ? CLOCK / divider / (at[0] & 2 ? 8.0 : 16.0) / divisor : 0.0;
 }
 
+static int has_uart(const line *one) { return one == lines || ports[0] == 'E'; }
+
 static int at_line_rate(int uart)
 {
     const line *one = &lines[uart];
-    int none = (uart && ports[0] != 'E') || one->rx_pin || one->tx_pin;
-    return none || rates_match(uart_rate(uart), one->baud);
+    return !has_uart(one) || one->rx_pin || one->tx_pin || rates_match(uart_rate(uart), one->baud);
 }
 
 /* When the next byte that waits begins. */
@@ -53,30 +53,31 @@ static int another(line *one, double when)
     return one->waiting = 0;
 }
 
-static avr_cycle_count_t arrive(avr_t *of, avr_cycle_count_t cycle, void *which)
+static void put_received(line *one, int level)
 {
-    line *one = (line *)which;
-    double when = (double)ticks();
-    (void)of, (void)cycle;
-    if (one->input && at_line_rate((int)(one - lines)))
-        avr_raise_irq(one->input, one->bytes[one->first]);
-    return another(one, when) ? cycle_of(begins(one) + LINE_BITS * CLOCK / one->baud) : 0;
+    static const uint8_t of_uarts[UARTS] = {0, 19, 17, 15};
+    if (level != one->received && (one->rx_pin || has_uart(one)))
+        pin_put(one->rx_pin ? (uint8_t)one->rx_pin : of_uarts[one - lines], level);
+    one->received = level;
 }
 
-/* Start bit, data from the lowest on, stop bit, each for as long as the line has it. */
-static avr_cycle_count_t arrive_bit(avr_t *of, avr_cycle_count_t cycle, void *which)
+/* Start bit, data from the lowest on, stop bits, each for as long as the line has it; then the UART has it. */
+static avr_cycle_count_t arrive(avr_t *of, avr_cycle_count_t cycle, void *which)
 {
     line *one = (line *)which;
     double when = (double)ticks();
     (void)of, (void)cycle;
     if (one->bit == 0)
         one->begun = when;
-    int frame = one->bytes[one->first] << 1 | 0x200, at = one->bit++;
-    if (at < 10) {
-        pin_put((uint8_t)one->rx_pin, frame >> at & 1);
+    uint8_t data = one->bytes[one->first];
+    int at = one->bit++;
+    if (at < (one->rx_pin ? 10 : UART_BITS)) {
+        put_received(one, (data << 1 | 0x600) >> at & 1);
         return cycle_of(one->begun + (at + 1) * CLOCK / one->baud);
     }
     one->bit = 0;
+    if (!one->rx_pin && one->input && at_line_rate((int)(one - lines)))
+        avr_raise_irq(one->input, data);
     return another(one, when) ? cycle_of(fmax(begins(one), when + 1)) : 0;
 }
 
@@ -90,12 +91,8 @@ static void queue(line *one, uint8_t data, double earliest)
     one->bytes[one->count] = data;
     one->earliest[one->count++] = earliest;
     if (!one->waiting && one->baud > 0.0) {
-        double begin = fmax(begins(one), (double)ticks());
         one->waiting = 1;
-        if (one->rx_pin)
-            later(begin + 1, arrive_bit, one);
-        else
-            later(begin + LINE_BITS * CLOCK / one->baud, arrive, one);
+        later(fmax(begins(one), (double)ticks()) + 1, arrive, one);
     }
 }
 
@@ -151,7 +148,14 @@ static void driven(avr_irq_t *irq, uint32_t value, void *which)
 static void line_to_pin(line *one, uint8_t pin)
 {
     one->rx_pin = pin;
-    pin_put(pin, 1);
+    one->received = 0;
+    put_received(one, 1);
+}
+
+static void line_at_rate(line *one, double baud)
+{
+    one->baud = baud;
+    put_received(one, 1); /* at rest */
 }
 
 static void line_from_pin(line *one, uint8_t pin)
