@@ -418,3 +418,71 @@ void loop() {{}}
         rest, width = bench.run(0.2).split()
     assert rest == b"1"
     assert int(width) == pytest.approx(7 / 9600 * 1e6, rel=0.01)
+
+
+@both
+def test_a_constructor_that_reads_before_the_adc_is_on_goes_on(tmp_path, backend):
+    source = """
+struct Knob { int first; Knob() { first = analogRead(A0); } } knob;
+void setup() { Serial.begin(115200); Serial.print(analogRead(A0)); }
+void loop() {}
+"""
+    sketch = write_sketch(tmp_path, source)
+    with Bench(sketch, backend, wires="A0 voltage 1", patience=0.1) as bench:
+        bench.one.set("voltage.v1", 2.5)
+        assert bench.run(0.2) == b"512"
+
+
+@both
+def test_every_analogue_channel_has_its_voltage(tmp_path, backend):
+    """ATmega2560 data sheet, 26.7: ADC = V 1024 / Vref."""
+    source = """
+const byte pins[] = {A0, A7, A8, A15};
+void setup() { Serial.begin(115200); for (byte at : pins) { Serial.print(analogRead(at)); Serial.print(' '); } }
+void loop() {}
+"""
+    wires = "A0 voltage 1; A7 voltage 2; A8 voltage 3; A15 voltage 4"
+    with Bench(write_sketch(tmp_path, source), backend, wires=wires) as bench:
+        for number, volts in enumerate((1.0, 2.5, 3.3, 5.0), 1):
+            bench.one.set(f"voltage.v{number}", volts)
+        assert bench.run(0.1).split() == [b"204", b"512", b"675", b"1023"]
+
+
+@pytest.mark.parametrize("mcu", ["atmega2560", "atmega328p"])
+def test_voltages_against_the_internal_reference_and_the_band_gap_against_the_supply(tmp_path, mcu):
+    """1.1 V, both: what an input of 0.5 V counts, and how a sketch measures its own 5 V."""
+    source = """
+void setup() {
+  Serial.begin(115200);
+#ifdef INTERNAL1V1
+  analogReference(INTERNAL1V1); Serial.print(analogRead(A1)); Serial.print(' ');
+  ADMUX = _BV(REFS0) | 0x1E;
+#else
+  analogReference(INTERNAL); Serial.print(analogRead(A1)); Serial.print(' ');
+  ADMUX = _BV(REFS0) | 0x0E;
+#endif
+  delay(2);
+  ADCSRA |= _BV(ADSC);
+  while (ADCSRA & _BV(ADSC)) {}
+  Serial.print(ADC);
+}
+void loop() {}
+"""
+    with Bench(write_sketch(tmp_path, source), "simavr", mcu=mcu, wires="A1 voltage 1") as bench:
+        bench.one.set("voltage.v1", 0.5)
+        counted, gap = map(int, bench.run(0.1).split())
+    assert counted == 465  # 0.5 / 1.1 * 1024
+    assert gap == pytest.approx(1.1 / 5.0 * 1024, abs=1)
+
+
+@both
+def test_modulation_that_is_switched_off_is_none(tmp_path, backend):
+    source = """
+void setup() { pinMode(7, OUTPUT); analogWrite(7, 128); }
+void loop() { if (millis() > 100) analogWrite(7, 0); }
+"""
+    with Bench(write_sketch(tmp_path, source), backend, wires="7 pwm 1") as bench:
+        bench.run(0.08)
+        assert bench.one.get("duty.p1") == pytest.approx(128 / 255, abs=0.005)
+        bench.run(0.1)
+        assert bench.one.get("duty.p1") == 0.0

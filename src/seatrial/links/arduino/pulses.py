@@ -29,10 +29,10 @@ class Pulses:
 
     def edge(self, level: int, cycle: int) -> None:
         """Take in that the pin has another level."""
+        self._given = None
         if level == self.level:
             return
         self.level = level
-        self._given = None
         if not level:
             if self._rise >= 0:
                 self._width = cycle - self._rise

@@ -3,6 +3,7 @@
 DATA_FILES = (
     "Servo.cpp",
     "Servo.h",
+    "adc.h",
     "emulated_board.c",
     "hangs.h",
     "i2c.h",

@@ -97,6 +97,7 @@ static void restart_waves(void)
 }
 
 #include "i2c.h"
+#include "adc.h"
 
 /* ------------------------------------------------------------------ running */
 
@@ -108,9 +109,7 @@ static void take_input(const link_input *input)
     case IN_BAUD: line_at_rate(&lines[index % UARTS], input->number); break;
     case IN_RX_PIN: line_to_pin(&lines[index % UARTS], (uint8_t)input->value); break;
     case IN_TX_PIN: line_from_pin(&lines[index % UARTS], (uint8_t)input->value); break;
-    case IN_VOLTS:
-        avr_raise_irq(avr_io_getirq(avr, AVR_IOCTL_ADC_GETIRQ, ADC_IRQ_ADC0 + index), (uint32_t)(input->number * 1000.0 + 0.5));
-        break;
+    case IN_VOLTS: adc_put(index, input->number); break;
     case IN_LEVEL: pin_put(index, input->number != 0.0); break;
     case IN_FREQUENCY:
     case IN_PULSE:
@@ -170,7 +169,6 @@ static int load(const char *file, const char *mcu)
     avr_load_firmware(avr, &firmware);
     avr->frequency = (uint32_t)CLOCK;
     avr_register_io_write(avr, CLKPR, clock_written, 0);
-    avr->vcc = avr->avcc = avr->aref = 5000;
     return 1;
 }
 
@@ -195,6 +193,7 @@ int main(int count, char **arguments)
     avr->reset = was_reset;
     hang_forget();
     connect_i2c();
+    connect_adc();
     avr->run_cycle_limit = 1000;
     for (;;) {
         target = link_await(take_input);
