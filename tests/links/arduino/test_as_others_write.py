@@ -486,3 +486,15 @@ void loop() { if (millis() > 100) analogWrite(7, 0); }
         assert bench.one.get("duty.p1") == pytest.approx(128 / 255, abs=0.005)
         bench.run(0.1)
         assert bench.one.get("duty.p1") == 0.0
+
+
+@pytest.mark.parametrize(("use", "says"), [("= 1", "writes to"), ("+ 0", "reads from")])
+def test_a_pointer_to_nowhere_ends_it_with_its_address_and_line(tmp_path, use, says):
+    source = (
+        f"void setup() {{}}\nvoid loop() {{\n  delay(5);\n  *(volatile byte *)0x9000 {use};\n}}\n"
+    )
+    with (
+        Bench(write_sketch(tmp_path, source), "simavr") as bench,
+        pytest.raises(SimulationError, match=rf"{says} address 0x9000, .*one\.ino:[345]"),
+    ):
+        bench.run(0.1)

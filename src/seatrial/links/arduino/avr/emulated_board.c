@@ -25,9 +25,13 @@ static char ports[PINS], bits[PINS];
 static uint8_t numbers[PINS];
 static uint64_t target;
 
+static char trouble[200]; /* what simavr said first of a crash */
+
 static void logged(avr_t *from, const int level, const char *format, va_list values)
 {
-    (void)from, (void)level, (void)format, (void)values;
+    (void)from;
+    if (level == LOG_ERROR && !*trouble)
+        vsnprintf(trouble, sizeof trouble, format, values);
 }
 
 static void slept(avr_t *of, avr_cycle_count_t cycles) { (void)of, (void)cycles; }
@@ -133,8 +137,15 @@ static avr_cycle_count_t stop(avr_t *of, avr_cycle_count_t when, void *unused)
 
 static void crashed(void)
 {
-    char text[160];
-    snprintf(text, sizeof text, "the microcontroller crashed: an instruction that is none, or the stack ran into the data [at 0x%x]", avr->pc);
+    char text[200];
+    unsigned address;
+    const char *at = strstr(trouble, "Address ");
+    if (at && sscanf(at, "Address %x", &address) == 1)
+        snprintf(text, sizeof text, "it %s address 0x%04x, beyond the memory [at 0x%x]",
+                 strstr(trouble, "write") ? "writes to" : "reads from", address, avr->pc);
+    else
+        snprintf(text, sizeof text, "the microcontroller crashed: an instruction that is none, or the stack ran into "
+                 "the data [at 0x%x]", avr->pc);
     end(text);
 }
 
