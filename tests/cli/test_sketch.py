@@ -76,3 +76,65 @@ def test_whoever_opens_the_terminal_of_a_uart_talks_with_the_sketch(tmp_path):
                 assert port.read(4) == b"HLLO"
         finally:
             run.kill()
+
+
+@pytest.mark.interop
+def test_libraries_and_flags_are_the_profiles_or_the_commands(tmp_path):
+    need("host")
+    library = tmp_path / "shelf" / "Depth"
+    library.mkdir(parents=True)
+    (library / "Depth.h").write_text("inline int depth() { return GIVEN; }\n")
+    source = "#include <Depth.h>\nvoid setup() { Serial.begin(115200); Serial.print(depth()); }\nvoid loop() {}\n"
+    sketch = str(write_sketch(tmp_path, source))
+    given = ("--libraries", "../shelf", "--flags", "-DGIVEN=3")
+    for arguments in (("check", sketch), ("build", sketch), ("run", sketch, "--seconds", "0.1")):
+        assert seatrial("sketch", *arguments, cwd=tmp_path).returncode == 2
+        done = seatrial("sketch", *arguments, *given, cwd=tmp_path)
+        assert done.returncode == 0, done.stderr
+    (tmp_path / "hil_profiles").mkdir()
+    (tmp_path / "hil_profiles" / "mine.toml").write_text(
+        'title = "mine"\n[links.mega]\nkind = "arduino"\nlibraries = "../shelf"\nflags = "-DGIVEN=3"\n'
+    )
+    done = seatrial("sketch", "build", sketch, "--profile", "mine:mega", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+
+
+NEW = {
+    "harness/firmware/my-helm_2/my-helm_2.ino",
+    "harness/rigs/autopilots/my-helm_2.toml",
+    "harness/trials/my-helm_2.toml",
+    "hil_profiles/my-helm_2.toml",
+}
+
+
+def test_new_writes_what_runs_at_once(tmp_path):
+    need("host")
+    done = seatrial("sketch", "new", "my-helm_2", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    written = {p.relative_to(tmp_path).as_posix(): p for p in tmp_path.rglob("*") if p.is_file()}
+    assert written.keys() == NEW
+    assert all(f"\n  {path}\n" in done.stdout for path in written)
+    assert not any("@" in path.read_text() for path in written.values())
+    steps = [
+        line.split("  ")[1] for line in done.stdout.splitlines() if line.startswith("  seatrial")
+    ]
+    run, _, check, terminals, describe = (step.removeprefix("seatrial ").split() for step in steps)
+    short = ("--set", "stop=21 s", "--engine", "direct", "--out", "out")
+    for command in ([*run, *short], check, [*terminals, "--seconds", "0.1"], describe):
+        done = seatrial(*command, cwd=tmp_path)
+        assert done.returncode == 0, done.stdout + done.stderr
+    assert seatrial("profile", "check", "my-helm_2", cwd=tmp_path).returncode == 0
+    again = seatrial("sketch", "new", "my-helm_2", cwd=tmp_path)
+    assert again.returncode == 2
+    assert "nothing is written, for there is already" in again.stderr
+
+
+@pytest.mark.interop
+def test_the_firmware_of_new_and_another_vehicle(tmp_path):
+    need("simavr")
+    assert seatrial("sketch", "new", "helm", cwd=tmp_path).returncode == 0
+    for given in (["--set", "autopilot.mega.backend=simavr"], ["--vehicle", "otter"]):
+        done = seatrial(
+            "run", "helm", *given, "--set", "stop=21 s", "--out", given[-1], cwd=tmp_path
+        )
+        assert done.returncode == 0, done.stdout + done.stderr

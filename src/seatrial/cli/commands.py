@@ -66,7 +66,7 @@ COMMANDS = {
     "fmu": Command("fmu:fmu_app", "List, build, check and describe FMUs."),
     "profile": Command("profile:profile_app", "Check and describe profiles of electronics."),
     "decode": Command("decode:decode_app", "Show recorded streams as text."),
-    "sketch": Command("sketch:sketch_app", "Check, build and run Arduino sketches."),
+    "sketch": Command("sketch:sketch_app", "Begin, check, build and run Arduino sketches."),
     "osp": Command("osp:osp_app", "Export system structures of OSP-IS, for libcosim."),
     "ssp": Command("ssp:ssp_app", "Export and check SSP packages."),
 }

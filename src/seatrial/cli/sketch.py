@@ -1,4 +1,4 @@
-"""``seatrial sketch``: check, build and run Arduino sketches."""
+"""``seatrial sketch``: begin, check, build and run Arduino sketches."""
 
 from __future__ import annotations
 
@@ -21,6 +21,7 @@ from ..links.arduino.sketch import Sketch, find_sketch
 from ..links.arduino.unsupported import unsupported
 from ..links.arduino.wiring import PARTS, read_uarts, read_wires
 from ..printable import printable
+from .templates import checked_name, texts, write
 
 sketch_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
 
@@ -30,19 +31,45 @@ _SERIAL = re.compile(r"\bSerial([123]?)\s*\.\s*begin\s*\(\s*(\d*)")
 _FOLDER = Annotated[str, typer.Argument(metavar="SKETCH", help="A sketch's folder or .ino.")]
 _BACKEND = Annotated[str, typer.Option(help="'host' or 'simavr'.")]
 _MCU = Annotated[str, typer.Option(help="atmega2560 or atmega328p.")]
-_PROFILE = Annotated[str, typer.Option(help="PROFILE:LINK whose wires to use: gloria:mega.")]
+_PROFILE = Annotated[str, typer.Option(help="PROFILE:LINK whose parameters to use: gloria:mega.")]
+_LIBRARIES = Annotated[str, typer.Option(help="Folders of libraries, from the sketch's on; with ;")]
+_FLAGS = Annotated[str, typer.Option(help="Options of the compiler, as '-DNAME=VALUE'.")]
 
 
 @sketch_app.callback()
 def _options() -> None:
-    """Check, build and run Arduino sketches."""
+    """Begin, check, build and run Arduino sketches."""
 
 
 @sketch_app.command()
-def check(sketch: _FOLDER, profile: _PROFILE = "", mcu: _MCU = "") -> None:
+def new(
+    name: Annotated[
+        str, typer.Argument(metavar="NAME", help="Letters, digits, '-' and '_', 40 at most.")
+    ],
+) -> None:
+    """Write a sketch with its profile, rig and trial that run at once, below the current folder."""
+    sketch = texts(checked_name(name), "usv", "harness/firmware")
+    steps = [
+        (f"seatrial run {name}", "on the shipped catamaran"),
+        (f"seatrial run {name} --set autopilot.mega.backend=simavr", "its firmware"),
+        (f"seatrial sketch check harness/firmware/{name} --profile {name}:mega", "its lines"),
+        (f"seatrial sketch run harness/firmware/{name} --profile {name}:mega", "with a terminal"),
+        (f"seatrial describe sil --autopilot {name}", "what is connected to it"),
+    ]
+    write({**sketch, **texts(name, "sketch")}, "replace the sketch by yours", steps)
+
+
+@sketch_app.command()
+def check(
+    sketch: _FOLDER,
+    profile: _PROFILE = "",
+    mcu: _MCU = "",
+    libraries: _LIBRARIES = "",
+    flags: _FLAGS = "",
+) -> None:
     """Say what a sketch is made of, what of it is unsupported, and if its lines fit a profile."""
-    found = find_sketch(sketch)
-    values = _values(profile, mcu)
+    values = _values(profile, mcu=mcu, libraries=libraries, flags=flags)
+    found = _found(sketch, values)
     board = MCUS[values["mcu"]]
     print(printable(f"{found.name} on the {board.board} ({board.name})"))
     for kind, files in (
@@ -65,10 +92,18 @@ def check(sketch: _FOLDER, profile: _PROFILE = "", mcu: _MCU = "") -> None:
 
 
 @sketch_app.command()
-def build(sketch: _FOLDER, backend: _BACKEND = "host", mcu: _MCU = "") -> None:
+def build(
+    sketch: _FOLDER,
+    profile: _PROFILE = "",
+    backend: _BACKEND = "host",
+    mcu: _MCU = "",
+    libraries: _LIBRARIES = "",
+    flags: _FLAGS = "",
+) -> None:
     """Build a sketch, and say where the program or the firmware is."""
-    board = MCUS[_values("", mcu)["mcu"]]
-    found = find_sketch(sketch)
+    values = _values(profile, mcu=mcu, libraries=libraries, flags=flags)
+    board = MCUS[values["mcu"]]
+    found = _found(sketch, values)
     if backend == "host":
         print(build_host(found, board))
     elif backend == "simavr":
@@ -84,6 +119,8 @@ def run(
     profile: _PROFILE = "",
     backend: _BACKEND = "host",
     mcu: _MCU = "",
+    libraries: _LIBRARIES = "",
+    flags: _FLAGS = "",
     seconds: Annotated[float, typer.Option(help="How long.")] = float("inf"),
 ) -> None:
     """Run a sketch in real time, each UART at a pseudo-terminal that any terminal program opens.
@@ -91,8 +128,9 @@ def run(
     Its sensors rest: for a boat around it, run a rig. Ends with Ctrl-C.
     """
     board = Arduino(Path(sketch).stem)
-    values = {**_values(profile, mcu), "backend": backend, "sketch": sketch}
-    if not profile and (opened := _opened(find_sketch(sketch))):
+    values = _values(profile, mcu=mcu, libraries=libraries, flags=flags)
+    values |= {"backend": backend, "sketch": sketch}
+    if not profile and (opened := _opened(_found(sketch, values))):
         values["uarts"] = opened
     for name, value in values.items():
         board.set(name, value)
@@ -125,8 +163,12 @@ def _opened(sketch: Sketch) -> str:
     return "; ".join(f"{uart} {rate}" for uart, rate in sorted(found.items()))
 
 
-def _values(profile: str, mcu: str) -> dict[str, Any]:
-    """Return the parameters of a profile's board, as PROFILE:LINK says."""
+def _found(sketch: str, values: dict[str, Any]) -> Sketch:
+    return find_sketch(sketch, values.get("libraries", ""), values.get("flags", ""))
+
+
+def _values(profile: str, **given: str) -> dict[str, Any]:
+    """Return the parameters of a profile's board, as PROFILE:LINK says, with those given."""
     values: dict[str, Any] = {}
     if profile:
         name, _, link = profile.rpartition(":")
@@ -135,9 +177,9 @@ def _values(profile: str, mcu: str) -> dict[str, Any]:
         values = load_profile(name).parameters(f"links.{link}")
         if not values.keys() <= Arduino.ports.keys():
             raise InputError(f"{profile} is not a link of the kind 'arduino'")
-    if mcu and mcu not in MCUS:
-        raise InputError(f"mcu {mcu!r}: {' or '.join(MCUS)} is needed")
-    values["mcu"] = mcu or values.get("mcu", "atmega2560")
+    values = {"mcu": "atmega2560", **values, **{k: v for k, v in given.items() if v}}
+    if values["mcu"] not in MCUS:
+        raise InputError(f"mcu {values['mcu']!r}: {' or '.join(MCUS)} is needed")
     return values
 
 

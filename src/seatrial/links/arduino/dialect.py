@@ -9,7 +9,7 @@ from .tokens import Token, tokens
 LIMITS = (
     "products and sums of int are computed with 32 bits: an overflow of 16 bits stays hidden "
     "until the value is stored",
-    "pointers, size_t and enums have the computer's widths, and structures its padding",
+    "pointers, size_t and enums have the computer's widths",
     "double is another word for float, and int for short: what is defined for both, is twice",
     "code takes about 12 cycles from one jump to the next, whatever it computes: timing of the "
     "code itself is a guess (simavr counts cycles)",
