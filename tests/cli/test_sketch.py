@@ -39,6 +39,21 @@ def test_check_refuses(tmp_path, source, expected):
     assert expected in done.stderr
 
 
+def test_check_counts_registers_and_leaves_them_to_the_emulator(tmp_path):
+    source = "void setup() {\n  DDRB = 1;\n  DDRB = 2; DDRB = 4;\n  cli();\n}\nvoid loop() {}\n"
+    sketch = str(write_sketch(tmp_path, source))
+    done = seatrial("sketch", "check", sketch, cwd=tmp_path)
+    assert done.returncode == 2
+    assert "one.ino:2: DDRB is a register" in done.stderr
+    assert done.stderr.count("DDRB") == 1
+    assert "(and 2 more)" in done.stderr
+    done = seatrial("sketch", "check", sketch, "--backend", "simavr", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "nothing is unsupported" in done.stdout
+    done = seatrial("sketch", "check", sketch, "--backend", "avr", cwd=tmp_path)
+    assert "back end 'avr': 'host' or 'simavr' is needed" in done.stderr
+
+
 def test_check_names_pins_that_have_no_line(tmp_path):
     source = "#include <SoftwareSerial.h>\nSoftwareSerial gps(4, 3);\nvoid setup() { gps.begin(9600); }\nvoid loop() {}\n"
     sketch = write_sketch(tmp_path, source)

@@ -63,6 +63,7 @@ def new(
 def check(
     sketch: _FOLDER,
     profile: _PROFILE = "",
+    backend: _BACKEND = "host",
     mcu: _MCU = "",
     libraries: _LIBRARIES = "",
     flags: _FLAGS = "",
@@ -82,10 +83,12 @@ def check(
     for wire in read_wires(values.get("wires", ""), board):
         place = f"0x{wire.place:02x}" if wire.kind in PARTS else f"pin {wire.place}"
         print(printable(f"  {place}: {wire.kind} {wire.number or ''}".rstrip()))
-    print("what the back end 'host' does not show:")
-    for limit in LIMITS:
-        print(printable(f"  {limit}"))
-    problems = [*unsupported(found), *_lines(found, values)]
+    problems = _lines(found, values)
+    if _checked_backend(backend) == "host":
+        print("what the back end 'host' does not show:")
+        for limit in LIMITS:
+            print(printable(f"  {limit}"))
+        problems = [*unsupported(found), *problems]
     if problems:
         raise InputError("\n".join(problems))
     print("nothing is unsupported")
@@ -104,13 +107,11 @@ def build(
     values = _values(profile, mcu=mcu, libraries=libraries, flags=flags)
     board = MCUS[values["mcu"]]
     found = _found(sketch, values)
-    if backend == "host":
+    if _checked_backend(backend) == "host":
         print(build_host(found, board))
-    elif backend == "simavr":
+    else:
         build_emulator(board)
         print(build_firmware(found, board))
-    else:
-        raise InputError(f"back end {backend!r}: 'host' or 'simavr' is needed")
 
 
 @sketch_app.command()
@@ -129,7 +130,7 @@ def run(
     """
     board = Arduino(Path(sketch).stem)
     values = _values(profile, mcu=mcu, libraries=libraries, flags=flags)
-    values |= {"backend": backend, "sketch": sketch}
+    values |= {"backend": _checked_backend(backend), "sketch": sketch}
     if not profile and (opened := _opened(_found(sketch, values))):
         values["uarts"] = opened
     for name, value in values.items():
@@ -161,6 +162,12 @@ def _opened(sketch: Sketch) -> str:
         if match[2]
     }
     return "; ".join(f"{uart} {rate}" for uart, rate in sorted(found.items()))
+
+
+def _checked_backend(backend: str) -> str:
+    if backend not in ("host", "simavr"):
+        raise InputError(f"back end {backend!r}: 'host' or 'simavr' is needed")
+    return backend
 
 
 def _found(sketch: str, values: dict[str, Any]) -> Sketch:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from pathlib import Path
 
 from .libraries import ASSEMBLY, header_by_folder, included, read_source
@@ -58,7 +59,8 @@ _UNDECLARED = re.compile(r"error: '(\w+)' was not declared")
 def unsupported(sketch: Sketch) -> list[str]:
     """Return what is unsupported, a line each: ``FILE:LINE: WHAT: what to do``.
 
-    What lies between #if and #endif is left to the compiler: it may be for another board.
+    A word that a file has again is counted. What lies between #if and #endif is left to the
+    compiler: it may be for another board.
     """
     problems = []
     for file in [*sketch.tabs, *sketch.others, *sketch.library_sources()]:
@@ -69,9 +71,13 @@ def unsupported(sketch: Sketch) -> list[str]:
         for header, line in included(source):
             if not _has(sketch, file, header):
                 problems.append(f"{file}:{line}: {_missing(header)}")
-        for token in tokens(source):
-            if token.kind == "word" and (what := _unknown(token.text)):
-                problems.append(f"{file}:{token.line}: {what}")
+        words = [t for t in tokens(source) if t.kind == "word" and _unknown(t.text)]
+        counts = Counter(token.text for token in words)
+        first = {token.text: token for token in reversed(words)}
+        for token in sorted(first.values(), key=lambda token: token.line):
+            again = counts[token.text] - 1
+            more = f" (and {again} more)" if again else ""
+            problems.append(f"{file}:{token.line}: {_unknown(token.text)}{more}")
     return problems
 
 
@@ -117,5 +123,5 @@ def _missing(header: str) -> str:
         return f"<{header}> is of the AVR's hardware: {_ELSE} the Arduino API"
     return (
         f"the library of <{header}> is not there: put its folder into 'libraries' in or beside "
-        "the sketch's folder"
+        "the sketch's folder, or name the folder that it is in with the parameter 'libraries'"
     )
