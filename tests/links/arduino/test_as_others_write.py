@@ -498,3 +498,26 @@ def test_a_pointer_to_nowhere_ends_it_with_its_address_and_line(tmp_path, use, s
         pytest.raises(SimulationError, match=rf"{says} address 0x9000, .*one\.ino:[345]"),
     ):
         bench.run(0.1)
+
+
+@both
+@pytest.mark.parametrize(
+    ("mcu", "which", "volts"),
+    [
+        ("atmega2560", "INTERNAL2V56", 2.56),
+        ("atmega2560", "INTERNAL1V1", 1.1),
+        ("atmega328p", "INTERNAL", 1.1),
+    ],
+)
+def test_an_internal_reference_is_that_of_the_board(tmp_path, backend, mcu, which, volts):
+    source = f"""
+void setup() {{
+  Serial.begin(115200); analogReference({which}); Serial.print(analogRead(A2));
+  analogReference(DEFAULT); Serial.print(' '); Serial.print(analogRead(A2));
+}}
+void loop() {{}}
+"""
+    with Bench(write_sketch(tmp_path, source), backend, mcu=mcu, wires="A2 voltage 1") as bench:
+        bench.one.set("voltage.v1", 0.7)
+        counted = [int(word) for word in bench.run(0.1).split()]
+    assert counted == [int(0.7 / volts * 1024), int(0.7 / 5.0 * 1024)]

@@ -38,9 +38,12 @@ typedef uint16_t word;
 #define MSBFIRST 1
 #define DEFAULT 1
 #define EXTERNAL 0
-#define INTERNAL 3
+#ifdef BOARD_MEGA
 #define INTERNAL1V1 2
 #define INTERNAL2V56 3
+#else
+#define INTERNAL 3
+#endif
 #define DEC 10
 #define HEX 16
 #define OCT 8

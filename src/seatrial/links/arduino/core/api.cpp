@@ -34,12 +34,23 @@ void pinMode(uint8_t pin, uint8_t mode)
 
 void digitalWrite(uint8_t pin, uint8_t level) { charge(70); machine::drive(pin, level != LOW); }
 int16_t digitalRead(uint8_t pin) { charge(60); return machine::level(pin); }
-void analogReference(uint8_t) { charge(10); }
+
+static double reference = 5.0; /* V */
+
+void analogReference(uint8_t which)
+{
+    charge(10);
+#ifdef BOARD_MEGA
+    reference = which == INTERNAL2V56 ? 2.56 : which == INTERNAL1V1 ? 1.1 : 5.0;
+#else
+    reference = which == INTERNAL ? 1.1 : 5.0;
+#endif
+}
 
 int16_t analogRead(uint8_t pin)
 {
     charge(1792);
-    double count = machine::volts((uint8_t)(pin >= A0 ? pin - A0 : pin)) / 5.0 * 1024.0;
+    double count = machine::volts((uint8_t)(pin >= A0 ? pin - A0 : pin)) / reference * 1024.0;
     return (int16_t)(count < 0.0 ? 0.0 : count > 1023.0 ? 1023.0 : count);
 }
 
