@@ -17,6 +17,7 @@ DATA_FILES = (
     "devices.cpp",
     "machine.cpp",
     "machine.h",
+    "pins.h",
     "reset.h",
     "sketch.h",
     "texts.cpp",

@@ -1,0 +1,71 @@
+/* Pins: what is at them, from inside and from outside, and their modulation. */
+#ifndef PINS_H
+#define PINS_H
+
+struct Pin {
+    bool level = false, watched = false;
+    bool output = false, latch = false; /* DDR and PORT: of an input, whether it is pulled up */
+    int outside = -1;                   /* level that is driven from outside; -1: nothing is there */
+    int share = -1;                     /* of 255; -1: no PWM */
+    double edge = 0.0;
+} pins[PINS];
+int modulated;
+
+void show(uint8_t pin)
+{
+    if (pins[pin].watched)
+        link_put(OUT_EDGE, pin, pins[pin].level, now);
+}
+
+void put_level(uint8_t pin, bool to)
+{
+    if (pins[pin].level == to)
+        return;
+    pins[pin].level = to;
+    show(pin);
+    for (int each = 0; each < INTERRUPTS; each++) {
+        Interrupt &one = externals[each];
+        bool wanted = one.mode == 1 || one.mode == (to ? 3 : 2);
+        if (INTERRUPT_PIN[each] == pin && one.handler && wanted)
+            one.pending = true;
+    }
+}
+
+void settle(uint8_t pin)
+{
+    const Pin &one = pins[pin];
+    put_level(pin, one.output || one.outside < 0 ? one.latch : one.outside > 0);
+}
+
+void put_output(uint8_t pin, bool to)
+{
+    pins[pin].output = true;
+    pins[pin].latch = to;
+    settle(pin);
+}
+
+void put_outside(uint8_t pin, bool to)
+{
+    pins[pin].outside = to;
+    settle(pin);
+}
+
+double modulation_period(uint8_t pin)
+{
+#ifdef BOARD_MEGA
+    bool fast = pin == 4 || pin == 13;
+#else
+    bool fast = pin == 5 || pin == 6;
+#endif
+    return CLOCK / (fast ? 976.5625 : 490.196);
+}
+
+void turn_modulated(uint8_t pin)
+{
+    Pin &one = pins[pin];
+    double high = one.share / 255.0, period = modulation_period(pin);
+    put_output(pin, !one.level);
+    one.edge += period * (one.level ? high : 1.0 - high);
+}
+
+#endif
