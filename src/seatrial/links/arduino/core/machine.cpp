@@ -182,7 +182,7 @@ void refuse_hang()
 {
     if (now - last_call > patience)
         end("it has run for %.3g s of its time without returning from loop() or calling anything: "
-            "an endless loop",
+            "an endless loop (or a wait longer than its patience)",
             (double)(now - last_call) / CLOCK);
 }
 
