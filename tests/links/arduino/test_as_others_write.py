@@ -118,6 +118,25 @@ def test_a_sketch_of_one_cpp_or_of_another_name(tmp_path, backend):
         assert bench.run(0.1) == b"4"
 
 
+@both
+def test_a_sketch_with_lines_of_another_tool_and_a_copy_for_older_ones(tmp_path, backend):
+    source = """#line 1 "Other.ino"
+#include <Arduino.h>
+#line 5
+void setup() { Serial.begin(115200); Serial.print(__LINE__); later(); }
+  # line 40
+void later() { Serial.print(__LINE__); }
+void loop() {}
+"""
+    folder = write_sketch(tmp_path, source)
+    (folder / "one.pde").write_text(source)
+    with Bench(folder, backend) as bench:
+        assert bench.run(0.1) == b"540"
+    (folder / "one.ino").write_text(source.replace("later();", "nowhere();"))
+    with pytest.raises(InputError, match=r"Other\.ino:5.*nowhere"):
+        Bench(folder, backend)
+
+
 @pytest.mark.parametrize(("mcu", "timer"), [("atmega2560", 5), ("atmega328p", 1)])
 def test_a_timer_is_the_sketchs_as_long_as_it_has_no_servo(tmp_path, mcu, timer):
     source = """

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import re
+
 from .tokens import Token, tokens
+
+_LINE = re.compile(r"""\s*#\s*line\s+(?P<number>\d+)(?:\s+(?P<name>".*"))?""")
 
 
 def with_prototypes(source: str) -> str:
@@ -30,12 +34,17 @@ def with_prototypes(source: str) -> str:
 
 
 def _place(lines: list[str], at: int) -> tuple[str, int]:
-    """Return the file and line that line ``at`` stands for, by the directive before it."""
+    """Return the file and line that line ``at`` stands for, by the directives before it.
+
+    A sketch may have directives of its own: without a file's name the one before holds.
+    """
+    line = None
     for back in range(at - 1, -1, -1):
-        if lines[back].startswith("#line "):
-            _, number, name = lines[back].split(" ", 2)
-            return name, int(number) + at - back - 1
-    return '"sketch"', at + 1
+        if match := _LINE.match(lines[back]):
+            line = int(match["number"]) + at - back - 1 if line is None else line
+            if match["name"]:
+                return match["name"], line
+    return '"sketch"', at + 1 if line is None else line
 
 
 def _without_directives(found: list[Token], source: str) -> list[Token]:

@@ -67,7 +67,7 @@ def find_sketch(place: str | Path, libraries: str = "", flags: str = "") -> Sket
     named = folder / f"{folder.name}.ino"
     if joined and main != named and named.is_file():
         raise InputError(f"{path} is a tab of the sketch {named}: give that, or its folder")
-    more = sorted(f for f in folder.iterdir() if f.suffix in _INOS and f != main)
+    more = sorted(f for f in folder.iterdir() if f.suffix in _INOS and f.stem != main.stem)
     tabs = (main, *more) if joined else ()
     sources = [f for f in sorted(folder.iterdir()) if f.suffix in SOURCES]
     if (folder / "src").is_dir():
