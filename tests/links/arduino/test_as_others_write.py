@@ -85,7 +85,7 @@ def test_libraries_of_headers_conditions_and_other_folders(tmp_path, backend):
         "Deep/src/deep.cpp": '#include "deep.h"\nint deep() { return 5; }',
         "Deep/examples/e/e.cpp": "#error an example",
         "Wide/wide.h": '#include <Deep/extra.h>\n#include "deep.h"\ninline int wide() { return deep() + EXTRA; }',
-        "Deep/extra.h": "#define EXTRA 2",
+        "Deep/extra.h": "#include <pins_arduino.h>\n#define EXTRA 2",
         "Other/other.h": "int other();",
         "Other/other.cpp": "#error for another board",
     }.items():

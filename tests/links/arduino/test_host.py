@@ -112,6 +112,11 @@ void loop() { delay(20); while (Serial1.available()) Serial.write(Serial1.read()
         ("#include <avr/sleep.h>\n" + NOTHING, r"one\.ino:1: <avr/sleep\.h>.*simavr"),
         (NOTHING + "ISR(TIMER1_OVF_vect) {}\n", r"one\.ino:3: ISR: .*attachInterrupt"),
         (
+            "#include <avr/interrupt.h>\n#ifdef __AVR__\nSIGNAL(TIMER0_COMPA_vect) {}\n#endif\n"
+            + NOTHING,
+            r"TIMER0_COMPA_vect: interrupt routines .* simavr(?s:.)*one\.ino:3",
+        ),
+        (
             "#ifdef __AVR__\n#include <Ethernet.h>\n#endif\n" + NOTHING,
             r"one\.ino:2:10: fatal error: (?s:.)*the library of <Ethernet\.h>.*libraries",
         ),

@@ -18,6 +18,7 @@ DATA_FILES = (
     "machine.cpp",
     "machine.h",
     "pins.h",
+    "pins_arduino.h",
     "reset.h",
     "sketch.h",
     "texts.cpp",
