@@ -32,8 +32,9 @@ class Contact(OverSeabed, Component):
 
     **Step.** The force is held while the craft moves, which alone would add energy: it is that
     of the penetration half a step ahead, by the present velocity. Damping and friction are
-    those of the present. For the effective mass m of the craft at a corner, with added
-    mass, a step h is short enough below 0.3 sqrt(m / k) and m v_s / (mu N).
+    those of the present. For the effective mass m of the craft at a corner, with added mass, a
+    step is short enough below 0.3 sqrt(m / k) and m v_s / (mu N). A bounce then loses energy from
+    d v = 0.05 on, and without damping its speed is kept within 0.3 %.
 
     **Record.** ``touching`` changes at touch and release; ``touches`` counts the former, and
     ``impact_speed`` is how fast the corner that pressed hardest then went in. All three are of
@@ -89,15 +90,19 @@ class Contact(OverSeabed, Component):
         self._ahead = 0.0
         self._was_touching = False
         self._touches = 0
+        self._closing = 0.0
         self._impact_speed = 0.0
 
     def step(self, t: float, h: float) -> None:
         """Note whether something is touched at ``t``, and how long a force acts."""
-        pressed = list(self._pressed())
-        if pressed and not self._was_touching:
+        near = ((depth, rate) for depth, rate, *_ in self._near())
+        depth, rate = max(near, default=(-1.0, 0.0))
+        if depth > 0.0 and not self._was_touching:
             self._touches += 1
-            self._impact_speed = max(pressed)[1]
-        self._was_touching = bool(pressed)
+            # The force begins half a step ahead, and may have slowed it already.
+            self._impact_speed = max(rate, self._closing)
+        self._was_touching = depth > 0.0
+        self._closing = rate
         self._ahead = 0.5 * h
 
     def outputs(self, t: float) -> None:
@@ -120,12 +125,6 @@ class Contact(OverSeabed, Component):
         self.force, self.moment, self.normal_force = force, moment, total
         self.penetration, self.touching = deepest, deepest > 0.0
         self.touches, self.impact_speed = self._touches, self._impact_speed
-
-    def _pressed(self) -> Iterator[tuple[float, float]]:
-        """Yield penetration and its rate of each corner that is inside."""
-        for depth, rate, *_ in self._near():
-            if depth > 0.0:
-                yield depth, rate
 
     def _near(self) -> Iterator[tuple[float, float, Vector3, Vector3, Vector3]]:
         """Yield of each corner near something: penetration, rate, normal, arm, velocity in {n}."""
