@@ -34,7 +34,7 @@ class Contact(OverSeabed, Component):
     of the penetration half a step ahead, by the present velocity. Damping and friction are
     those of the present. For the effective mass m of the craft at a corner, with added mass, a
     step is short enough below 0.3 sqrt(m / k) and m v_s / (mu N). A bounce then loses energy from
-    d v = 0.05 on, and without damping its speed is kept within 0.3 %.
+    d v = 0.05 on, and without damping its speed is kept within 0.5 %.
 
     **Record.** ``touching`` changes at touch and release; ``touches`` counts the former, and
     ``impact_speed`` is how fast the corner that pressed hardest then went in. All three are of
