@@ -24,6 +24,7 @@ KNOWN = {"fault": "none", "target_valid": True, "leg": 1}
 """A craft that is sent to where it is has no direction: it is always sent somewhere."""
 HALF_CIRCLES = {"course", "heading_wanted"}
 """Headings that are published from -pi to pi."""
+PLACES = {"position", "station_position", "first_position", "second_position"}
 SAMPLES = 40
 
 
@@ -37,9 +38,7 @@ def headings(port):
 def is_horizontal(port):
     """Say if a port's first two values are north and east."""
     axes = tuple((port.axes or ())[:2])
-    return axes == ("north", "east") or (
-        port.name in ("position", "station_position") and axes == ("x", "y")
-    )
+    return axes == ("north", "east") or (port.name in PLACES and axes == ("x", "y"))
 
 
 def turned(port, value, angle):

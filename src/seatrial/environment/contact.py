@@ -46,13 +46,7 @@ class Contact(OverSeabed, Component):
     Raises InputError at the start for a seabed that cannot be.
     """
 
-    exercised: ClassVar = {
-        "seabed_depth": 1.0,
-        "seabed_slope": 0.1,
-        "obstacles": "box 1 0 0 1 1 1 10",
-        "position": [0.1, 0.2, 0.6],
-        "velocity": [0.1, 0.2, 0.3],
-    }
+    exercised: ClassVar = {"seabed_depth": 1.0, "seabed_slope": 0.1, "box_size": [2.0, 2.0, 2.0]}
 
     box_size = Parameter((1.0, 1.0, 1.0), "m", "length, breadth and height of the box", axes="xyz")
     box_center = Parameter(0.0, "m", "middle of the box from the body origin", axes="xyz")
@@ -79,10 +73,12 @@ class Contact(OverSeabed, Component):
         "motion": terminal("position", "velocity", "attitude", "rates"),
         "wrench": terminal("force", "moment"),
     }
-    feedthrough: ClassVar = dict.fromkeys(
-        ("force", "moment", "normal_force", "penetration", "touching"),
-        ("position", "velocity", "attitude", "rates"),
-    ) | dict.fromkeys(("touches", "impact_speed"), ())
+    feedthrough: ClassVar = {
+        **dict.fromkeys(
+            ("force", "moment", "normal_force"), ("position", "velocity", "attitude", "rates")
+        ),
+        **dict.fromkeys(("penetration", "touching"), ("position", "attitude")),
+    }
 
     def start(self, t: float) -> None:
         """Start without contact; raises InputError as the class says."""
