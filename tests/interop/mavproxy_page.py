@@ -48,6 +48,8 @@ def session(folder: Path) -> Iterator[MavProxy]:
         (home / "square.txt").write_text(shown("square.txt"), "utf-8")
         wait_for(lambda: trial.is_running, "the trial's first step")
         proxy.expect(r"Received \d+ parameters")
+        # It may ask for all of them once more, and shows none meanwhile.
+        proxy.insist("param show FS_ACTION", r"FS_ACTION +\d", each_s=5.0)
         yield proxy
 
 
