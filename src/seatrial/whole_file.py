@@ -31,3 +31,12 @@ def write_whole(path: Path, content: bytes | str, *, synced: bool = False) -> No
         if isinstance(error, OSError):
             raise OSError(error.errno, error.strerror, str(path)) from None
         raise
+
+
+def stamp(path: Path) -> tuple[int, int]:
+    """Return what changes with the content of a file, for caches; zeros without one."""
+    try:
+        found = path.stat()
+    except OSError:  # whoever reads it says so
+        return (0, 0)
+    return found.st_mtime_ns, found.st_size

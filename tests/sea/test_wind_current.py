@@ -1,4 +1,4 @@
-"""Wind, its loads, currents, drift and memory against reference data and closed forms."""
+"""Wind, its loads, currents and drift against reference data and closed forms."""
 
 import math
 
@@ -18,7 +18,6 @@ from seatrial.sea.current import (
     wind_driven,
 )
 from seatrial.sea.drift import mean_drift, slow_drift
-from seatrial.sea.memory import fitted
 from seatrial.sea.quadrature import integrals
 from seatrial.sea.wind_loads import (
     BLENDERMANN,
@@ -170,20 +169,3 @@ def test_drift_is_the_mean_and_the_differences_of_frequencies():
     assert spectrum[1] > 1.0
     assert (spectrum[2:] < 1e-9 * spectrum[1]).all()
     assert slow_drift(a[:1] * np.exp(1j * 0.7), d[:1]) == pytest.approx(a[0] ** 2 * d[0])
-
-
-def test_memory_is_near_the_panels_and_takes_energy():
-    data = table("coef_barge_T020")
-    infinite = data["A33"][-1]
-    assert infinite == pytest.approx(content("cummins")["barge_T020_33"]["Ainf"], rel=1e-5)
-    data = data[:-1]
-    w = data["omega"]
-    memory = fitted(w, data["A33"], data["B33"], infinite)
-    wanted = data["B33"] + 1j * w * (data["A33"] - infinite)
-    error = np.linalg.norm(memory.response(w) - wanted) / np.linalg.norm(wanted)
-    assert error == pytest.approx(0.0523, abs=5e-4)
-    assert (memory.response(np.geomspace(1e-3, 100.0, 400)).real >= 0.0).all()
-    a, b, c = memory.matrices()
-    for at in (0.5, 4.0, 12.0):
-        states = np.linalg.solve(1j * at * np.eye(len(a)) - a, b)
-        assert c @ states == pytest.approx(memory.response(np.array([at]))[0], rel=1e-10)

@@ -179,6 +179,12 @@ def attachment_motion(
     }
 
 
+def velocity_through_water(R: Any, nu: Any, u: SimpleNamespace) -> Any:
+    """Return nu_r (6,): ``nu`` less the velocity of current and waves; ``R`` body to {n}."""
+    water = u.current + getattr(u, "water_velocity", _STILL)
+    return ca.vertcat(nu[:3] - R.T @ water, nu[3:])
+
+
 def mass_matrix(p: SimpleNamespace) -> Any:
     """Return M_RB + M_A (6, 6) about the body origin (Fossen), from CasADi numbers or symbols."""
     xx, yy, zz, xy, xz, yz = ca.vertsplit(p.inertia)
@@ -217,13 +223,12 @@ def six_dof_motion(
     R = rotation_matrix(attitude)
     velocity, rates = nu[:3], nu[3:]
     at_sea = hasattr(u, "water_velocity")
-    water, met = u.current, _STILL
+    met = _STILL
     if at_sea:
-        water = water + u.water_velocity
         met = u.water_acceleration + ca.vertcat(u.water_shear * (R @ velocity)[2], 0)
         water_acceleration = water_acceleration + met
-    relative = velocity - R.T @ water
-    nu_r = ca.vertcat(relative, rates)
+    nu_r = velocity_through_water(R, nu, u)
+    relative = nu_r[:3]
     M = mass_matrix(p)
     context = Context(position, attitude, R, nu, nu_r, M, u, p)
     tau = external_load(R, u, p)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from ..component import Component, Parameter
 from ..errors import InputError
+from ..whole_file import stamp
 from .grid_file import read_grid
 from .obstacles import read_obstacles
 from .plane import Plane
@@ -48,20 +49,11 @@ class OverSeabed(Component):
                 self.seabed_slope,
                 self.seabed_direction,
                 self.seabed_file,
-                _stamp(self.seabed_file),
+                stamp(Path(self.seabed_file)) if self.seabed_file else (0, 0),
                 self.obstacles,
             )
         except InputError as error:
             raise InputError(f"{self.name}: {error}") from None
-
-
-def _stamp(file: str) -> tuple[int, int]:
-    """Return what changes with the content of a file; zeros without one."""
-    try:
-        found = Path(file).stat() if file else None
-    except OSError:  # whoever reads it says so
-        found = None
-    return (0, 0) if found is None else (found.st_mtime_ns, found.st_size)
 
 
 @lru_cache(64)
