@@ -9,6 +9,7 @@ import importlib.util
 import json
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 import tomllib
@@ -72,6 +73,8 @@ ELSEWHERE = {
     DOCS / "performance.md",  # a benchmark
 }
 """Pages whose examples other tests run, or none."""
+MADE = {HOW_TO / "panel-codes.md": ("barge_capytaine.nc", "vehicles/barge.nc")}
+"""What a page makes with a tool that is not installed here: reference data, and its place."""
 LIVE = re.compile(r"^\$ seatrial run (\S+-mission)\n", re.M)
 """A trial for ground stations: it goes on while the rest of the page is run."""
 STATION_PORT = "14550"
@@ -133,6 +136,9 @@ def run_page(page: Path, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     if any(LIVE.match(block.text) for block in found):
         found = [block._replace(text=block.text.replace(STATION_PORT, port)) for block in found]
     write_files(found, folder)
+    if page in MADE:
+        made, place = MADE[page]
+        shutil.copy(ROOT / "tests/reference" / made, folder / place)
     with ExitStack() as background:
         run_blocks(page, [live(block, folder, port, background) for block in found])
     for file in folder.glob("*.py"):

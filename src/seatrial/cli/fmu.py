@@ -208,7 +208,7 @@ def _start_values(
     values = {}
     for port, entry in chosen.values.items():
         scalars = settable(variables, port, chosen.origin)
-        given = from_entry(entry, scalars, chosen.origin)
+        given = from_entry(entry, scalars, chosen.origin, chosen.folder)
         values.update({name: one.value for name, one in given.items()})
     return values
 

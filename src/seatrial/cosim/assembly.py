@@ -38,8 +38,8 @@ def assemble(
             if scope.path not in profiles:
                 profiles[scope.path] = Profiles(scope.file.profile, scope.read_from.path.parent)
             give_parameters(system, system.parts[name], profiles[scope.path])
-        for key, written, where in rig.settings:
-            system.set(key, written, where)
+        for setting in rig.settings:
+            system.set(*setting)
         _refuse_idle_variant(system)
         connect(system)
         for name, placed in rig.components.items():

@@ -39,7 +39,8 @@ def give_parameters(system: System, part: Part, profiles: Profiles) -> None:
         if variable is not None and variable.causality == "structuralParameter":
             part.given.update(from_written(written, [variable], {}, f"{where}.set: {port}"))
         else:
-            system.set(f"{part.name}.{port}", written, f"{where}.set")
+            folder = placed.scope.read_from.path.parent
+            system.set(f"{part.name}.{port}", written, f"{where}.set", folder)
 
 
 def variants_of(placed: Placed) -> list[str]:
@@ -60,7 +61,7 @@ def _give_parameter_set(part: Part, values: ParameterSet) -> None:
     part.presets, part.outline = values.presets, values.outline
     for port, value in values.values.items():
         scalars = settable(part.instance.variables, port, values.origin)
-        part.given.update(from_entry(value, scalars, values.origin))
+        part.given.update(from_entry(value, scalars, values.origin, values.folder))
 
 
 def _give_profile(part: Part, section: str, profile: Profile, where: str) -> None:

@@ -55,6 +55,8 @@ class ParameterSet:
     presets: dict[str, dict[str, Entry]] = field(default_factory=dict)
     origin: str = ""
     outline: Outline | None = None
+    folder: Path | None = None
+    """Of the file, which names of files in it are relative to."""
 
 
 @dataclass(frozen=True)
@@ -79,7 +81,7 @@ class Vehicle:
         values = {**file.components.get(table, {}), **changes}
         suffix = f", variant {chosen}" if chosen else ""
         origin = f"vehicles/{path.name} [{table}]{suffix}"
-        return ParameterSet(values, file.presets.get(table, {}), origin, file.outline)
+        return ParameterSet(values, file.presets.get(table, {}), origin, file.outline, path.parent)
 
 
 def split_reference(written: str, fmu: str) -> tuple[str, str]:

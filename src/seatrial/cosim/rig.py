@@ -18,6 +18,7 @@ from ..units import quantity
 from .files import FileModel, Source, validated
 from .paths import joined
 from .registry import ALGORITHMS
+from .values import Setting
 
 LONGEST_S = 9.0e9
 """Times are counted in ns in 64 bits: 285 years."""
@@ -213,11 +214,12 @@ class Rig:
         return dict(_placed(self.top))
 
     @property
-    def settings(self) -> list[tuple[str, Any, str]]:
-        """What rigs set in the rigs inside them, the inner first: (path, as written, where)."""
+    def settings(self) -> list[Setting]:
+        """What rigs set in the rigs inside them, the inner first."""
         return [
-            (f"{joined(scope.path, name)}.{key}", written, f"{scope.read_from.path}: {place}")
+            Setting(f"{joined(scope.path, name)}.{key}", written, f"{path}: {place}", path.parent)
             for scope in self.top.all()
+            for path in [scope.read_from.path]
             for name, entry in scope.file.components.items()
             for place in [f"components.{name}.set"]
             if entry.rig

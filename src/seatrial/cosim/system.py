@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any, Literal, Protocol
 
 from ..errors import InputError, unknown
@@ -13,7 +14,7 @@ from .joining import Resolver
 from .part import Part
 from .paths import split_path
 from .rig import Rig
-from .values import Given, from_written, port_names, port_scalars
+from .values import Given, from_written, placed, port_names, port_scalars
 
 Engine = Literal["fmu", "direct"]
 
@@ -93,16 +94,18 @@ class System:
     tunings: list[Tuned] = field(default_factory=list)
     """What lets tunables of links start at the values that their targets are given."""
 
-    def set(self, key: str, written: Any, origin: str) -> None:
+    def set(self, key: str, written: Any, origin: str, folder: Path | None = None) -> None:
         """Set ``component.port`` to what a person wrote, before the run.
 
-        Raises InputError for an unknown component or port, or a value that does not fit.
+        Names of files are relative to ``folder``. Raises InputError for an unknown component or
+        port, or a value that does not fit.
         """
         for part, port, scalars in self._settable(key, origin):
             for variable in scalars:
                 self.refuse_connected(part.name, variable.name, origin)
             presets = part.presets.get(port, {})
-            part.given.update(from_written(written, scalars, presets, f"{origin}: {key}"))
+            given = placed(written, scalars, folder)
+            part.given.update(from_written(given, scalars, presets, f"{origin}: {key}"))
         self._tune(key, origin)
 
     def scale(self, key: str, factor: float, origin: str) -> None:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import base64
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from pathlib import Path
+from typing import Any, NamedTuple
 
 from ..errors import InputError, unknown
 from ..fmi.instance import Value, Variable, Variables
@@ -23,6 +24,23 @@ class Given:
     origin: str
     source: str = ""
     mark: str = ""
+
+
+class Setting(NamedTuple):
+    """What a person sets: a port by its path."""
+
+    key: str
+    written: Any
+    origin: str
+    folder: Path | None = None
+    """Of the file that says it: names of files are relative to it; None: to where we are."""
+
+
+def placed(written: Any, scalars: Sequence[Variable], folder: Path | None) -> Any:
+    """Return the name of a file as it is from here, if ``written`` is one; else ``written``."""
+    if folder is None or not written or scalars[0].role != "file":
+        return written
+    return str(folder / written) if isinstance(written, str) else written
 
 
 def storable(value: Value) -> Scalar:
@@ -45,9 +63,15 @@ def port_names(variables: Variables) -> list[str]:
     return sorted({*variables.ports, *variables})
 
 
-def from_entry(entry: Entry, scalars: Sequence[Variable], origin: str) -> dict[str, Given]:
-    """Return a parameter file's entry as scalars. Raises InputError naming ``origin``."""
-    values = entry.value if isinstance(entry.value, list) else [entry.value] * len(scalars)
+def from_entry(
+    entry: Entry, scalars: Sequence[Variable], origin: str, folder: Path | None = None
+) -> dict[str, Given]:
+    """Return a parameter file's entry as scalars; ``folder`` is that of the file.
+
+    Raises InputError naming ``origin``.
+    """
+    said = placed(entry.value, scalars, folder)
+    values = said if isinstance(said, list) else [said] * len(scalars)
     _check_count(len(values), scalars, origin)
     units = entry.unit if isinstance(entry.unit, list) else [entry.unit] * len(scalars)
     _check_count(len(units), scalars, f"{origin}: units")

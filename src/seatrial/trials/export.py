@@ -98,8 +98,8 @@ def _set_up(trial: Trial) -> System:
     try:
         trial = trial.dated(system)
         trial.surround(system)
-        for key, written, origin in trial.settings():
-            system.set(key, written, origin)
+        for setting in trial.settings():
+            system.set(*setting)
     except BaseException:
         system.free()
         raise

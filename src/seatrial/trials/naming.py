@@ -53,7 +53,7 @@ def named_components(trial: Trial, system: System) -> set[str]:
     signals |= set(matching(output_names(system), patterns))
     if file.real_time is not None:
         signals |= {s for s in (file.real_time.factor, file.real_time.paused) if isinstance(s, str)}
-    keys = {event.key for event in trial.events()} | {key for key, _, _ in trial.settings()}
+    keys = {event.key for event in trial.events()} | {setting.key for setting in trial.settings()}
     keys |= {key for key, _, _ in trial.scales}
     located = [system.located(name, where) for name in signals | keys]
     faulty = {c for entry in file.faults for c in components_of(system, entry, where)}

@@ -82,8 +82,8 @@ def prepare(trial: Trial, engine: Engine, hooks: Hooks) -> Prepared:
     try:
         trial = trial.dated(system)
         trial.surround(system)
-        for key, written, origin in trial.settings():
-            system.set(key, written, origin)
+        for setting in trial.settings():
+            system.set(*setting)
         for key, factor, origin in trial.scales:
             system.scale(key, factor, origin)
         is_asked = "signals" in trial.file.record.model_fields_set

@@ -19,6 +19,7 @@ from ..cosim.isolation import KEY_END, isolated_in, isolating
 from ..cosim.packages import is_package, read_package
 from ..cosim.rig import Isolated, Rig, duration_ns
 from ..cosim.system import System
+from ..cosim.values import Setting
 from ..errors import InputError, unknown
 from ..shipped import available
 from .criteria import Criterion, parse
@@ -213,10 +214,11 @@ class Trial:
             if entry is not None:
                 set_surroundings(system, group, entry, f"{self.read_from.path}: {group}")
 
-    def settings(self) -> list[tuple[str, Any, str]]:
-        """Return what the trial sets: (component.port, as written, who says so)."""
-        where = f"{self.read_from.path}: set"
-        return [*((k, v, where) for k, v in self.file.set.items()), *self.overrides]
+    def settings(self) -> list[Setting]:
+        """Return what the trial sets, by component.port."""
+        path = self.read_from.path
+        own = [Setting(k, v, f"{path}: set", path.parent) for k, v in self.file.set.items()]
+        return [*own, *(Setting(*override) for override in self.overrides)]
 
     def events(self) -> list[Event]:
         """Return all events in time order, as written where times are equal."""
