@@ -9,7 +9,7 @@ from ..component import NS
 from ..cosim.clock import Pacer
 from ..cosim.master import Master
 from ..errors import SimulationError
-from .trial import RealTimeEntry
+from .trial_file import RealTimeEntry
 
 _LEAST_FACTOR = 1e-9
 

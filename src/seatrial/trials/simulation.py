@@ -20,7 +20,7 @@ from .output import write_json, write_json_into_reserve, write_json_with_reserve
 from .pacing import Pace
 from .preparation import Prepared
 from .termination import TerminationConditions
-from .trial import CriterionEntry
+from .trial_file import CriterionEntry
 from .verdict import Verdict
 
 _OURS = "ended by an error of seatrial itself"

@@ -5,15 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Annotated, Any
-
-from pydantic import AfterValidator, Field, model_validator
-from pydantic_core import PydanticCustomError
+from typing import Any
 
 from ..component import seconds
-from ..cosim.clock import OverrunPolicy
 from ..cosim.fault_entry import FaultEntry
-from ..cosim.files import FileModel, Source, find_file, read_toml, validated
+from ..cosim.files import Source, find_file, read_toml, validated
 from ..cosim.flattening import load_rig
 from ..cosim.isolation import KEY_END, isolated_in, isolating
 from ..cosim.packages import is_package, read_package
@@ -24,115 +20,12 @@ from ..errors import InputError, unknown
 from ..shipped import available
 from .criteria import Criterion, parse
 from .scenario import Acted, Scenario, events_of, read_scenario
-from .surroundings import GROUPS, CurrentEntry, SeaEntry, WindEntry, set_surroundings
-from .utc import Utc, instant_of, set_start_time
-from .verdict import Expectation
+from .seabed_entry import set_seabed, water_depth
+from .surroundings import GROUPS, SeaEntry, set_surroundings
+from .trial_file import EventEntry, RealTimeEntry, TrialFile
+from .utc import instant_of, set_start_time
 
 _LEVELS = ("all", "trial", "criteria")
-
-
-class RecordEntry(FileModel):
-    """What is recorded: signal patterns, and how often (default: every communication step)."""
-
-    signals: list[str] = Field(default_factory=lambda: ["*"])
-    every: str | None = None
-
-
-class CriterionEntry(FileModel):
-    """A named condition that must hold; with ``ends`` the run ends where that is decided."""
-
-    name: str
-    check: str
-    ends: bool = False
-    expect: Expectation = "pass"
-    """Of the trial as its file has it: whoever changes a setting expects that all hold."""
-    why: str = ""
-    """Why it is expected to fail: what is published, a defect that is known."""
-
-    @model_validator(mode="after")
-    def _says_why(self) -> CriterionEntry:
-        if (self.expect == "fail") != bool(self.why):
-            raise PydanticCustomError("why", 'expect = "fail" needs why, and only that')
-        return self
-
-
-_FORMER = {
-    "override": '[[faults]] what = "fixed", where, value, at, for',
-    "bias": '[[faults]] what = "bias", where, value, at, for',
-    "release": "the key `for` of [[faults]]",
-}
-
-
-class EventEntry(FileModel):
-    """Something that happens at a time: ports are set."""
-
-    at: str
-    set: dict[str, Any] = Field(default_factory=dict)
-
-    @model_validator(mode="before")
-    @classmethod
-    def _refuse_former_keys(cls, written: Any) -> Any:
-        """Say what has become of override, bias and release."""
-        for key, what in _FORMER.items():
-            if isinstance(written, dict) and key in written:
-                raise PydanticCustomError(
-                    "former",
-                    "'{key}' is written as a fault now: {what}",
-                    {"key": key, "what": what},
-                )
-        return written
-
-
-class PlotEntry(FileModel):
-    """Signals of one unit that a report draws together, over time."""
-
-    title: str
-    signals: list[str] = Field(min_length=1)
-
-
-def _signal(written: str) -> str:
-    if "." not in written:
-        raise PydanticCustomError("signal", "A signal, component.port, is needed")
-    return written
-
-
-_Signal = Annotated[str, AfterValidator(_signal)]
-
-
-class RealTimeEntry(FileModel):
-    """How a run keeps to wall time."""
-
-    factor: Annotated[float, Field(ge=1e-9, allow_inf_nan=False)] | _Signal = 1.0
-    """Simulated seconds per second of wall time, or the signal that gives it."""
-    paused: _Signal | None = None
-    """Signal with the seconds of wall time that are excluded."""
-    overrun: OverrunPolicy = "catch-up"
-
-
-class TrialFile(FileModel):
-    """The content of a trial file."""
-
-    title: str = ""
-    rig: str
-    choices: dict[str, str] = Field(default_factory=dict)
-    """Of the rig: the vehicle, the autopilot."""
-    start: str = "0 s"
-    stop: str
-    variant: str | None = None
-    seed: int = Field(default=1, ge=0)
-    utc: Utc | None = None
-    sea: SeaEntry | None = None
-    current: CurrentEntry | None = None
-    wind: WindEntry | None = None
-    set: dict[str, Any] = Field(default_factory=dict)
-    record: RecordEntry = Field(default_factory=RecordEntry)
-    real_time: RealTimeEntry | None = None
-    criteria: list[CriterionEntry] = Field(default_factory=list)
-    plots: list[PlotEntry] = Field(default_factory=list)
-    events: list[EventEntry] = Field(default_factory=list)
-    faults: list[FaultEntry] = Field(default_factory=list)
-    scenario: str | None = None
-    """A scenario file of libcosim, whose events come after those of the same time here."""
 
 
 @dataclass(frozen=True)
@@ -208,11 +101,17 @@ class Trial:
         return replace(self, file=self.file.model_copy(update={"utc": utc}))
 
     def surround(self, system: System) -> None:
-        """Give a system the trial's sea, current and wind. Raises InputError."""
+        """Give a system the trial's seabed, sea, current and wind. Raises InputError."""
+        path, seabed = self.read_from.path, self.file.seabed
+        if seabed is not None:
+            set_seabed(system, seabed, f"{path}: seabed", path.parent)
         for group in GROUPS:
             entry = getattr(self.file, group)
+            if seabed is not None and isinstance(entry, SeaEntry):
+                depth = water_depth(system, entry.depth, seabed, f"{path}: seabed")
+                entry = entry.model_copy(update={"depth": depth})
             if entry is not None:
-                set_surroundings(system, group, entry, f"{self.read_from.path}: {group}")
+                set_surroundings(system, group, entry, f"{path}: {group}")
 
     def settings(self) -> list[Setting]:
         """Return what the trial sets, by component.port."""
@@ -310,8 +209,8 @@ class Trial:
         """Return the trial with settings changed: ``component.port``, or a key of the trial.
 
         Keys of the trial are variant, seed, start, stop, utc, scenario, ``choices.NAME``, and those
-        of its sea, current and wind such as ``sea.height``, unless a component has that name; of
-        its rig, step, algorithm and ``component.isolated``. Raises InputError.
+        of its sea, current, wind and seabed such as ``sea.height``, unless a component has that
+        name; of its rig, step, algorithm and ``component.isolated``. Raises InputError.
         """
         keys = ("variant", "seed", "start", "stop", "utc", "scenario")
         rig_keys = ("step", "algorithm")
@@ -334,7 +233,7 @@ class Trial:
             elif key in rig_keys:
                 of_rig[key] = value
             else:
-                known = (*keys, *rig_keys, f"{_CHOICES}NAME", *(f"{g}.KEY" for g in GROUPS))
+                known = (*keys, *rig_keys, f"{_CHOICES}NAME", *(f"{g}.KEY" for g in _TABLES))
                 raise InputError(f"{origin}: {unknown('key', key, known)}, or component.port")
         content = {**self.file.model_dump(exclude_unset=True), **own}
         if changes:
@@ -356,9 +255,9 @@ class Trial:
         return _checked(replace(changed, overrides=tuple(overrides)))
 
     def _group_in(self, key: str) -> str | None:
-        """Return sea, current or wind if a key of it is meant, not a component of that name."""
+        """Return the table of the trial that a key is of, if no component has its name."""
         group, dot, _ = key.partition(".")
-        if not dot or group not in GROUPS:
+        if not dot or group not in _TABLES:
             return None
         of_rig = {path.partition(".")[0] for path in self.rig.components}
         return None if group in of_rig else group
@@ -401,6 +300,7 @@ def load_trial(
 
 
 _CHOICES = "choices."
+_TABLES = (*GROUPS, "seabed")
 """What the key of a choice begins with, among settings."""
 
 
