@@ -106,14 +106,16 @@ def run_campaign(
     *,
     out: str | Path | None = None,
     engine: str = "direct",
+    jobs: int | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> CampaignResult:
     """Run every case of a campaign, as ``seatrial run`` does, and return what they left.
 
     ``campaign`` is a name or the path of a ``.toml`` file; ``out`` and ``engine`` are as for
-    `run_trial`. ``progress`` is called after each case with how many are done, and of how many.
-    A case that could not go on, or whose process died, has the status ``failed`` and does not end
-    the campaign.
+    `run_trial`. ``jobs`` cases run side by side, None: as many as there are cores; what they leave
+    does not depend on it. ``progress`` is called after each case with how many are done, and of how
+    many. A case that could not go on, or whose process died, has the status ``failed`` and does
+    not end the campaign.
 
     Raises InputError for bad input in any case, before the first one runs; KeyboardInterrupt for
     a campaign that was interrupted: its folder holds the cases so far, for
@@ -135,7 +137,7 @@ def run_campaign(
 
     with confined():
         target = None if out is None else Path(out)
-        folder, results = run(loaded, target, engine=as_engine(engine), done=done)
+        folder, results = run(loaded, target, engine=as_engine(engine), jobs=jobs, done=done)
     if any(result.status == "stopped" for _, result in results):
         raise KeyboardInterrupt
     return CampaignResult(folder)

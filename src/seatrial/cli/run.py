@@ -14,7 +14,7 @@ from ..cosim.system import Engine
 from ..errors import InputError, SimulationError
 from ..links.hardware import allow_devices, allow_network
 from ..trials.campaign import Campaign, Case, load_campaign, run_campaign
-from ..trials.campaign_report import write_campaign_report, write_case_report
+from ..trials.campaign_report import write_campaign_report
 from ..trials.hooks import Hooks
 from ..trials.report import write_report
 from ..trials.run import Result
@@ -87,6 +87,16 @@ def run(
     junit: Annotated[
         Path | None, typer.Option("--junit", metavar="FILE", help="Write a JUnit file, too.")
     ] = None,
+    jobs: Annotated[
+        int | None,
+        typer.Option(
+            metavar="N", min=1, help="Cases of a campaign side by side (default: every core)."
+        ),
+    ] = None,
+    resume: Annotated[
+        bool,
+        typer.Option("--resume", help="Go on with a campaign that was stopped, in --out's folder."),
+    ] = False,
     no_report: Annotated[
         bool, typer.Option("--no-report", help="Write no report: seatrial report makes it.")
     ] = False,
@@ -112,8 +122,13 @@ def run(
             raise InputError("--real-time and --overrun work with a trial, not with a campaign")
         if record != "trial":
             raise InputError("--record works with a trial, not with a campaign")
-        _run_campaign(campaign, out, chosen, Leaves(junit, not no_report))
+        if resume and out is None:
+            raise InputError("--resume needs the campaign's folder, --out FOLDER")
+        how = How(chosen, jobs, resume)
+        _run_campaign(campaign, out, how, Leaves(junit, not no_report))
         return
+    if jobs is not None or resume:
+        raise InputError("--jobs and --resume work with a campaign; a trial is one run")
     refuse_rig(trial)
     leaves = Leaves(junit, not no_report)
     loaded = load_trial(trial, changes=changes, origin="--set")
@@ -137,23 +152,39 @@ def run(
     _exit_with([result])
 
 
-def _run_campaign(campaign: Campaign, out: Path | None, engine: Engine, leaves: Leaves) -> None:
+@dataclass(frozen=True)
+class How:
+    """How the cases of a campaign are run."""
+
+    engine: Engine
+    jobs: int | None
+    resume: bool
+
+
+def _run_campaign(campaign: Campaign, out: Path | None, how: How, leaves: Leaves) -> None:
     cases = campaign.cases()
     with stoppable() as stop:
         with Watch(campaign.read_from.name) as watch:
 
             def done(case: Case, result: Result) -> None:
                 watch.log(lambda: print_case(case, result))
-                leaves.page(lambda: write_case_report(result.folder), [result])
+                watch.count(failed=not result.passed)
 
             hooks = Hooks(
                 building=watch.building,
-                progress=watch.progress,
+                progress=watch.campaign,
                 stop_requested=stop.requested,
                 interruptible=stop.interruptible,
             )
             watch.expect(len(cases))
-            folder, finished = run_campaign(campaign, out, engine=engine, hooks=hooks, done=done)
+            folder, finished = run_campaign(
+                campaign,
+                out,
+                **vars(how),
+                pages=leaves.report,
+                hooks=hooks,
+                done=done,
+            )
         results = [result for _, result in finished]
         page = leaves.page(lambda: write_campaign_report(folder), results)
         leaves.write_junit([(case.name, result) for case, result in finished])
@@ -162,8 +193,12 @@ def _run_campaign(campaign: Campaign, out: Path | None, engine: Engine, leaves: 
     entries = [{"case": case.name, "set": case.set, **run_entry(r)} for case, r in finished]
     answer.result = {"campaign": campaign.read_from.name, "folder": str(folder), "runs": entries}
     _print_page(page)
-    if len(finished) < len(cases):
-        raise SimulationError(f"stopped; {len(finished)} of {len(cases)} cases are on disk")
+    whole = sum(result.status != "stopped" for _, result in finished)
+    if whole < len(cases):
+        raise SimulationError(
+            f"stopped; {whole} of {len(cases)} cases came to an end: "
+            f"--out {folder} --resume goes on"
+        )
     _exit_with([result for _, result in finished])
 
 

@@ -24,6 +24,8 @@ class Watch:
     def __init__(self, name: str, clock: Callable[[], float] = time.perf_counter) -> None:
         self._cases, self._case = 1, 0
         self._clock, self._started = clock, clock()
+        self._begun: float | None = None
+        self._failed = 0
         self._display: _Display = (
             _Bar(name) if console.is_terminal and not answer.quiet else _Lines(name, clock)
         )
@@ -56,10 +58,33 @@ class Watch:
         state = f"{passed:.1f} of {whole:g} s, {factor:.1f} x real time{case}"
         self._display.show((self._case + passed / whole) / self._cases, state)
 
+    def campaign(self, passed: float, whole: float) -> None:
+        """Show how far all runs of a campaign are, side by side; simulated time in s."""
+        if self._begun is None:
+            self._begun = self._clock()
+        elapsed = self._clock() - self._begun
+        factor = passed / elapsed if elapsed > 0 else 0.0
+        left = f", {_duration((whole - passed) / factor)} left" if factor > 0 else ""
+        failed = f", {self._failed} failed" if self._failed else ""
+        state = f"{self._case} of {self._cases} cases{failed}, {factor:.1f} x real time{left}"
+        self._display.show(passed / whole, state)
+
+    def count(self, *, failed: bool) -> None:
+        """Count a case that has failed."""
+        self._failed += failed
+
     def log(self, show: Callable[[], None]) -> None:
         """Print something above the bar, at the end of a case."""
         self._case += 1
         show()
+
+
+def _duration(seconds: float) -> str:
+    """Return a time that is left, in the unit that says it shortest."""
+    for unit, of_it in (("h", 3600.0), ("min", 60.0)):
+        if seconds >= 2.0 * of_it:
+            return f"{seconds / of_it:.0f} {unit}"
+    return f"{seconds:.0f} s"
 
 
 class _Display(Protocol):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -15,11 +15,14 @@ from ..cosim.fault_entry import FaultEntry
 from ..cosim.files import FileModel, Source, find_file, read_toml, validated
 from ..cosim.system import Engine
 from ..errors import InputError
-from .hooks import Hooks, StoppedError
+from .hooks import Hooks
 from .output import claim_folder, write_json
+from .pool import Pool, cores
+from .resuming import kept_results, set_aside
 from .run import Result
-from .supervision import Supervisor
 from .trial import Trial, load_trial
+
+INDEX = "campaign.json"
 
 
 class TrialEntry(FileModel):
@@ -123,43 +126,62 @@ def run_campaign(
     out: Path | None,
     *,
     engine: Engine = "fmu",
+    jobs: int | None = None,
+    pages: bool = False,
+    resume: bool = False,
     hooks: Hooks | None = None,
     done: Callable[[Case, Result], None] = lambda _case, _result: None,
 ) -> tuple[Path, list[tuple[Case, Result]]]:
     """Run every case into a folder of its own below ``out``, which must not hold anything yet.
 
-    None makes a new folder ``runs/NAME-DATE-TIME``. ``done`` is called after each case. Stops
-    after the case that was asked to stop. A case that ends its process has failed. Returns the
-    folder and the results of the cases that began. Raises InputError for bad input, in
+    None makes a new folder ``runs/NAME-DATE-TIME``. With ``resume`` ``out`` may be what this
+    campaign has left: cases that came to an end are kept, the others run again. ``jobs`` cases run
+    side by side, None: as many as there are cores; what they leave does not depend on it. With
+    ``pages`` each case gets its report. ``done`` is called after each case, in the order of the
+    cases. Stops after the cases that were asked to stop. A case that ends its process has failed.
+    Returns the folder and the results of the cases that began. Raises InputError for bad input, in
     any case, and StoppedError, before the first one runs.
     """
     cases = campaign.cases()
-    with Supervisor([case.trial for case in cases], engine, hooks) as supervisor:
-        for number in range(len(cases)):
-            supervisor.check(number)
-        out = claim_folder(out, campaign.read_from.name, "campaign.json")
-        finished: list[tuple[Case, Result]] = []
-        _write_index(campaign, out, finished)
-        for number, case in enumerate(cases):
-            try:
-                result = supervisor.run(number, out / f"{number + 1:02d}-{_slug(case.name)}")
-            except StoppedError:
-                break
-            finished.append((case, result))
-            _write_index(campaign, out, finished)
-            done(case, result)
-            if result.status == "stopped":
-                break
-    return out, finished
+    folders = [f"{n:02d}-{_slug(case.name)}" for n, case in enumerate(cases, 1)]
+    left = out if resume and out is not None and (out / INDEX).is_file() else None
+    results: dict[int, Result] = {}
+    if left is not None:
+        known = {f: (case.name, case.set) for f, case in zip(folders, cases, strict=True)}
+        results = {folders.index(r.folder.name): r for r in kept_results(left / INDEX, known)}
+    told = 0
+
+    def tell() -> None:
+        nonlocal told
+        while told in results:
+            done(cases[told], results[told])
+            told += 1
+
+    with Pool([case.trial for case in cases], engine, hooks, jobs or cores()) as pool:
+        pool.check()
+        folder = left or claim_folder(out, campaign.read_from.name, INDEX)
+        waiting = {n: folder / f for n, f in enumerate(folders) if n not in results}
+        set_aside(list(waiting.values()))
+        _write_index(campaign, folder, cases, results)
+        tell()
+        for number, result in pool.run(waiting, pages=pages):
+            results[number] = result
+            _write_index(campaign, folder, cases, results)
+            tell()
+    for number in sorted(n for n in results if n > told):  # of a campaign that was stopped
+        done(cases[number], results[number])
+    return folder, [(cases[n], results[n]) for n in sorted(results)]
 
 
-def _write_index(campaign: Campaign, out: Path, finished: list[tuple[Case, Result]]) -> None:
-    cases = [
+def _write_index(
+    campaign: Campaign, out: Path, cases: Sequence[Case], results: Mapping[int, Result]
+) -> None:
+    rows = [
         {
-            "name": case.name,
+            "name": cases[number].name,
             "folder": result.folder.name,
-            "trial": case.trial.name,
-            "set": case.set,
+            "trial": cases[number].trial.name,
+            "set": cases[number].set,
             "passed": result.passed,
             "status": result.status,
             "verdicts": [
@@ -167,10 +189,10 @@ def _write_index(campaign: Campaign, out: Path, finished: list[tuple[Case, Resul
                 for name, check, verdict in result.verdicts
             ],
         }
-        for case, result in finished
+        for number, result in sorted(results.items())
     ]
-    index = {"name": campaign.read_from.name, "title": campaign.file.title, "cases": cases}
-    write_json(out / "campaign.json", index)
+    index = {"name": campaign.read_from.name, "title": campaign.file.title, "cases": rows}
+    write_json(out / INDEX, index)
 
 
 def _name(trial: Trial, chosen: dict[str, Any]) -> str:

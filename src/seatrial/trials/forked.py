@@ -16,7 +16,7 @@ import warnings
 from collections.abc import Callable
 from itertools import takewhile
 from pathlib import Path
-from typing import NoReturn
+from typing import ClassVar, NoReturn
 
 from ..fmi.exit_status import how_ended
 from ..links.safe_state import ENVIRONMENT
@@ -25,7 +25,7 @@ from .call_trace import CallTrace
 from .forked_child import ASKING, ORDER, Child, flush_c_streams
 from .link import Frame, Link
 
-_SLICE_MS = 50
+SLICE_MS = 50
 """A stop is passed on within this time."""
 _EXIT_S = 10.0
 """Wall time for a child that is to end at once; one that takes longer is killed."""
@@ -43,6 +43,9 @@ class Forked:
     The safe states that it and its own processes held are sent when they have ended without
     doing so themselves; ``sent`` has a line for each.
     """
+
+    _others: ClassVar[set[Forked]] = set()
+    """Those that live: a copy of this process must not keep their ends open."""
 
     def __init__(self, body: Callable[[Child], None]) -> None:
         _fill_standard_streams()
@@ -69,9 +72,16 @@ class Forked:
         self._waiting.register(self._states.fileno(), select.POLLIN)
         self._status: int | None = None
         self._to_end_by = float("inf")
+        self._others.add(self)
 
-    def frames(self, asked: int) -> list[Frame] | None:
+    def descriptors(self) -> tuple[int, int]:
+        """Return what can be waited at until there is something for `frames`."""
+        return self.link.fileno(), self._states.fileno()
+
+    def frames(self, asked: int, *, wait: bool = True) -> list[Frame] | None:
         """Return the frames that come within a moment; None once the child has ended.
+
+        Without ``wait`` they are those that are there.
 
         ``asked`` is how urgently it is to stop: 1 after its step, 2 at once. It is killed if it
         does not do the latter.
@@ -79,7 +89,8 @@ class Forked:
         ended = self._has_ended()  # before it is looked whether there is anything left to read
         if not ended:
             self._ask(asked)
-        ready = {descriptor for descriptor, _ in self._waiting.poll(0 if ended else _SLICE_MS)}
+        slice_ms = 0 if ended or not wait else SLICE_MS
+        ready = {descriptor for descriptor, _ in self._waiting.poll(slice_ms)}
         self.sent += self._states.of_ended()
         if self.link.fileno() in ready:
             frames = self.link.receive()
@@ -111,12 +122,19 @@ class Forked:
             self.link.close()
             self._wait()
         finally:  # whatever went wrong, the vehicle gets its neutral
+            self._others.discard(self)
             self.sent += self._states.all()
             self._states.close()
             self._stack.close()
             signal.pthread_sigmask(signal.SIG_SETMASK, mask)
 
     # ------------------------------------------------------------------ inside
+
+    def _let_go(self) -> None:
+        """Close what a copy of the parent has of it: it would not notice the parent's end."""
+        self.link.close()
+        self._states.close()
+        self._stack.close()
 
     def _ask(self, level: int) -> None:
         level = min(level, 2)
@@ -158,6 +176,8 @@ class Forked:
         status = 1
         gc.freeze()  # what it looks through, it would copy: the memory is shared
         try:
+            for other in self._others:
+                other._let_go()
             os.environ[ENVIRONMENT] = str(self._states.left_to_child())
             faulthandler.enable(self._stack, all_threads=False)
             child = Child(link, self.call_trace, parent)

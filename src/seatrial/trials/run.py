@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ..cosim.master import Master
+from ..cosim.part import Part
 from ..cosim.system import Engine
 from .ending import is_whole
 from .hooks import Hooks, StoppedError
@@ -78,9 +79,28 @@ def run_trial(
     return Result(folder, run.status, run.error, verdicts, run.notes(), wall)
 
 
-def check_trial(trial: Trial, engine: Engine = "fmu", hooks: Hooks | None = None) -> None:
-    """Raise InputError for what `run_trial` would refuse before it starts the components."""
-    prepare(trial, engine, hooks or Hooks()).system.free()
+def check_trial(trial: Trial, engine: Engine = "fmu", hooks: Hooks | None = None) -> bool:
+    """Raise InputError for what `run_trial` would refuse before it starts the components.
+
+    Return whether it must run alone: it keeps to wall time, or programs outside connect to it.
+    """
+    system = prepare(trial, engine, hooks or Hooks()).system
+    try:
+        return trial.file.real_time is not None or any(
+            _has_links(part) for part in system.parts.values()
+        )
+    finally:
+        system.free()
+
+
+def _has_links(part: Part) -> bool:
+    """Say if programs outside can connect to a component."""
+    if not part.instance.variables.of_role("address"):
+        return False
+    links = part.instance.variables.get("links")
+    given = part.given.get("links")
+    value = given.value if given else links.start if links else ""
+    return links is None or bool(value)
 
 
 @contextlib.contextmanager

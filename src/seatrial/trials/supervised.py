@@ -19,9 +19,9 @@ from .trial import Trial
 
 
 def serve(trials: Sequence[Trial], engine: Engine, child: Child) -> None:
-    """Carry out orders until there are no more: ``check`` and ``run``, each by number.
+    """Carry out orders until there are no more: ``check``, ``run`` and ``report``, by number.
 
-    Each ends with one frame: ``checked``, ``done`` or ``error``.
+    Each ends with one frame: ``done`` or ``error``.
     """
     forward_output(child.link)
     here = Path.cwd()
@@ -32,12 +32,15 @@ def serve(trials: Sequence[Trial], engine: Engine, child: Child) -> None:
 
 
 def _carried_out(order: Frame, trials: Sequence[Trial], engine: Engine, child: Child) -> Frame:
-    what, number, *rest = order
+    what, number, folder = order
     try:
+        out = None if folder is None else Path(folder)
         if what == "check":
-            check_trial(trials[number], engine, _hooks(child))
-            return ["checked"]
-        out = None if rest[0] is None else Path(rest[0])
+            alone = check_trial(trials[number], engine, _hooks(child))
+            return ["done", {"alone": alone}]
+        if what == "report" and out is not None:
+            report_of_case(out)
+            return ["done", {}]
         result = run_trial(trials[number], out, engine=engine, hooks=_hooks(child))
         return ["done", _written(result)]
     except SeatrialError as error:
@@ -50,6 +53,13 @@ def _carried_out(order: Frame, trials: Sequence[Trial], engine: Engine, child: C
     except BaseException as error:  # SystemExit too: nothing that a component does is an end
         text = "".join(traceback.format_exception(error)).strip()
         return ["error", SimulationError.__name__, f"an error of seatrial itself:\n{text}"]
+
+
+def report_of_case(folder: Path) -> None:
+    """Write the report of a run in the folder of its campaign. Raises InputError, OSError."""
+    from .campaign_report import write_case_report  # which few runs need
+
+    write_case_report(folder)
 
 
 def _hooks(child: Child) -> Hooks:

@@ -11,7 +11,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from types import TracebackType
-from typing import Any, NoReturn
+from typing import Any, Literal, NoReturn
 
 from ..cosim.system import Engine
 from ..errors import InputError, SimulationError
@@ -24,11 +24,12 @@ from .predicates import Limit
 from .preloading import preload
 from .run import Result, check_trial, run_trial
 from .run_folder import MANIFEST, written_status
-from .supervised import serve
+from .supervised import report_of_case, serve
 from .trial import Trial
 from .verdict import Verdict
 
 _ERRORS = {kind.__name__: kind for kind in (InputError, SimulationError, StoppedError)}
+Order = Literal["check", "run", "report"]
 _IN_PROCESS = not hasattr(os, "fork")
 """Windows cannot copy a process: trials run in this one there."""
 
@@ -43,6 +44,7 @@ class Supervisor:
         self._trials, self._engine, self._hooks = trials, engine, hooks or Hooks()
         self._forked: Forked | None = None
         self._busy = False
+        self._order: tuple[Order, int, Path | None] = ("check", 0, None)
         self._forget()
 
     def __enter__(self) -> Supervisor:
@@ -59,11 +61,7 @@ class Supervisor:
 
     def check(self, number: int) -> None:
         """Raise what `check_trial` raises; SimulationError if that ends its process."""
-        if _IN_PROCESS:
-            return check_trial(self._trials[number], self._engine, self._hooks)
-        if self._ordered("check", number) is None:
-            raise self._dead_before_start()
-        return None
+        self._whole("check", number)
 
     def run(self, number: int, out: Path | None) -> Result:
         """Run a trial as `run_trial` does; a run that ends its process has failed.
@@ -71,13 +69,76 @@ class Supervisor:
         Raises what `run_trial` raises; SimulationError if its process ends before the components
         are there.
         """
+        result = self._whole("run", number, out)
+        assert isinstance(result, Result)
+        return result
+
+    def begin(self, what: Order, number: int, folder: Path | None = None) -> None:
+        """Begin to check or run a trial, or to write the report of its folder."""
+        self._forget()
+        self._order = what, number, folder
         if _IN_PROCESS:
-            return run_trial(self._trials[number], out, engine=self._engine, hooks=self._hooks)
-        content = self._ordered("run", number, None if out is None else str(out))
-        if content is None:
-            return self._dead(number, out)
+            return
+        if self._forked is None:
+            preload(self._trials, self._engine)
+            self._forked = Forked(partial(serve, self._trials, self._engine))
+        self._busy = True
+        self._forked.link.send(what, number, None if folder is None else str(folder))
+
+    def descriptors(self) -> tuple[int, ...]:
+        """Return what can be waited at until `poll` may find something."""
+        return self._forked.descriptors() if self._forked is not None else ()
+
+    def poll(self, *, wait: bool = True) -> Result | bool | None:
+        """Return what came of the order, within a moment; None while it is carried out.
+
+        It is the result of a run; of a check, whether the trial must run alone. Raises what
+        `check` and `run` raise.
+        """
+        what, number, folder = self._order
+        if self._forked is None:
+            return self._in_process()
+        frames = self._forked.frames(self._hooks.stop_requested(), wait=wait)
+        if frames is None:
+            self._busy = False
+            if what != "run":
+                raise self._dead_before_start()
+            return self._dead(number, folder)
+        for kind, *content in frames:
+            if kind == "error":
+                self._busy = False
+                self._raise(*content)
+            if kind == "done":
+                self._busy = False
+                return self._outcome(content[0])
+            self._handle(kind, content)
+        return None
+
+    # ------------------------------------------------------------------ inside
+
+    def _whole(self, what: Order, number: int, folder: Path | None = None) -> Result | bool:
+        """Carry out an order to its end."""
+        self.begin(what, number, folder)
+        while (outcome := self.poll()) is None:
+            pass
+        return outcome
+
+    def _in_process(self) -> Result | bool:
+        what, number, folder = self._order
+        trial = self._trials[number]
+        if what == "check":
+            return check_trial(trial, self._engine, self._hooks)
+        if what == "report" and folder is not None:
+            report_of_case(folder)
+            return True
+        return run_trial(trial, folder, engine=self._engine, hooks=self._hooks)
+
+    def _outcome(self, content: dict[str, Any]) -> Result | bool:
+        what, _, out = self._order
+        if what != "run":
+            return bool(content.get("alone", True))
         folder = self._shown(out)
-        result = _result(folder, content)
+        result = result_of(folder, content)
         self._note_sent(result)
         if is_whole(result.status) or result.status == "ended":
             try:
@@ -88,32 +149,10 @@ class Supervisor:
                 raise SimulationError(f"{folder / MANIFEST} says {said!r} of a run that has ended")
         return result
 
-    # ------------------------------------------------------------------ inside
-
     def _forget(self) -> None:
         """Forget the run before."""
         self._loading, self._folder = "", Path()
         self._manifest: dict[str, Any] = {}
-
-    def _ordered(self, *order: Any) -> Any:
-        """Give an order and return what came of it; None if the process has ended."""
-        self._forget()
-        if self._forked is None:
-            preload(self._trials, self._engine)
-            self._forked = Forked(partial(serve, self._trials, self._engine))
-        self._busy = True
-        self._forked.link.send(*order)
-        while (frames := self._forked.frames(self._hooks.stop_requested())) is not None:
-            for kind, *content in frames:
-                if kind == "error":
-                    self._busy = False
-                    self._raise(*content)
-                if kind in ("done", "checked"):
-                    self._busy = False
-                    return content[0] if content else {}
-                self._handle(kind, content)
-        self._busy = False
-        return None
 
     def _handle(self, kind: str, content: Frame) -> None:
         """Pass on what happens in the process."""
@@ -196,7 +235,8 @@ def run_supervised(
         return supervisor.run(0, out)
 
 
-def _result(folder: Path, content: dict[str, Any]) -> Result:
+def result_of(folder: Path, content: dict[str, Any]) -> Result:
+    """Return a result whose verdicts are written as (name, check, keys of a `Verdict`)."""
     verdicts = []
     for name, check, row in content["verdicts"]:
         verdict = Verdict(**row)

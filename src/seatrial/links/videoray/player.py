@@ -25,7 +25,7 @@ class StreamPlayer(Component):
     discrete = True
     transient = Component.transient | {"_pieces"}
 
-    file = Parameter("", "1", "recorded stream; empty: nothing is played")
+    file = Parameter("", "1", "recorded stream; empty: nothing is played", role="file")
     direction = Parameter(
         "to-device", "1", "which way is played", choices=("to-device", "from-device")
     )
