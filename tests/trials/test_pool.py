@@ -22,7 +22,7 @@ from seatrial.component import Component, Output, Parameter
 
 
 class Case(Component):
-    """Leaves a file while it lives; dies, or waits, if it is told to."""
+    """Leaves a file while it lives; dies, or waits, if it is to."""
 
     way = Parameter("", "1", "run, die or wait")
     number = Parameter(0.0, "1", "of the case")
@@ -72,16 +72,16 @@ def content(folder: Path) -> dict[str, bytes]:
 def test_what_they_leave_does_not_depend_on_how_many_run_side_by_side(cases, tmp_path):
     campaign, left = cases(NUMBERS), []
     for jobs in (1, 3):
-        told = []
+        ended = []
         folder, results = run_campaign(
             campaign,
             tmp_path / f"j{jobs}",
             engine="direct",
             jobs=jobs,
-            done=lambda case, result, told=told: told.append((case.name, result.passed)),
+            done=lambda case, result, ended=ended: ended.append((case.name, result.passed)),
         )
-        assert told == [(f"t, number {n}", n < 3.5) for n in range(1, 6)]
-        assert [result.passed for _, result in results] == [passed for _, passed in told]
+        assert ended == [(f"t, number {n}", n < 3.5) for n in range(1, 6)]
+        assert [result.passed for _, result in results] == [passed for _, passed in ended]
         left.append({n: d for n, d in content(folder).items() if "manifest" not in n})
     assert left[0] == left[1]
     assert len(left[0]) == 6

@@ -14,7 +14,7 @@ from ..cosim.system import Engine
 from ..errors import InputError, SimulationError
 from ..links.hardware import allow_devices, allow_network
 from ..trials.campaign import Campaign, Case, load_campaign, run_campaign
-from ..trials.campaign_report import write_campaign_report
+from ..trials.campaign_report import write_campaign_report, write_case_report
 from ..trials.hooks import Hooks
 from ..trials.report import write_report
 from ..trials.run import Result
@@ -181,7 +181,7 @@ def _run_campaign(campaign: Campaign, out: Path | None, how: How, leaves: Leaves
                 campaign,
                 out,
                 **vars(how),
-                pages=leaves.report,
+                page=write_case_report if leaves.report else None,
                 hooks=hooks,
                 done=done,
             )

@@ -20,6 +20,7 @@ from .output import claim_folder, write_json
 from .pool import Pool, cores
 from .resuming import kept_results, set_aside
 from .run import Result
+from .supervised import Page
 from .trial import Trial, load_trial
 
 INDEX = "campaign.json"
@@ -127,7 +128,7 @@ def run_campaign(
     *,
     engine: Engine = "fmu",
     jobs: int | None = None,
-    pages: bool = False,
+    page: Page | None = None,
     resume: bool = False,
     hooks: Hooks | None = None,
     done: Callable[[Case, Result], None] = lambda _case, _result: None,
@@ -136,9 +137,9 @@ def run_campaign(
 
     None makes a new folder ``runs/NAME-DATE-TIME``. With ``resume`` ``out`` may be what this
     campaign has left: cases that came to an end are kept, the others run again. ``jobs`` cases run
-    side by side, None: as many as there are cores; what they leave does not depend on it. With
-    ``pages`` each case gets its report. ``done`` is called after each case, in the order of the
-    cases. Stops after the cases that were asked to stop. A case that ends its process has failed.
+    side by side, None: as many as there are cores; what they leave does not depend on it. ``page``
+    writes the report of each case, by its folder. ``done`` is called after each case, in the order
+    of the cases. Stops after the cases that were asked to stop. A case that ends its process has failed.
     Returns the folder and the results of the cases that began. Raises InputError for bad input, in
     any case, and StoppedError, before the first one runs.
     """
@@ -149,26 +150,26 @@ def run_campaign(
     if left is not None:
         known = {f: (case.name, case.set) for f, case in zip(folders, cases, strict=True)}
         results = {folders.index(r.folder.name): r for r in kept_results(left / INDEX, known)}
-    told = 0
+    shown = 0
 
-    def tell() -> None:
-        nonlocal told
-        while told in results:
-            done(cases[told], results[told])
-            told += 1
+    def show() -> None:
+        nonlocal shown
+        while shown in results:
+            done(cases[shown], results[shown])
+            shown += 1
 
-    with Pool([case.trial for case in cases], engine, hooks, jobs or cores()) as pool:
+    with Pool([case.trial for case in cases], engine, hooks, jobs or cores(), page) as pool:
         pool.check()
         folder = left or claim_folder(out, campaign.read_from.name, INDEX)
         waiting = {n: folder / f for n, f in enumerate(folders) if n not in results}
         set_aside(list(waiting.values()))
         _write_index(campaign, folder, cases, results)
-        tell()
-        for number, result in pool.run(waiting, pages=pages):
+        show()
+        for number, result in pool.run(waiting):
             results[number] = result
             _write_index(campaign, folder, cases, results)
-            tell()
-    for number in sorted(n for n in results if n > told):  # of a campaign that was stopped
+            show()
+    for number in sorted(n for n in results if n > shown):  # of a campaign that was stopped
         done(cases[number], results[number])
     return folder, [(cases[n], results[n]) for n in sorted(results)]
 

@@ -17,6 +17,7 @@ from ..errors import SimulationError
 from .forked import SLICE_MS
 from .hooks import Hooks, StoppedError
 from .run import Result
+from .supervised import Page, no_page
 from .supervision import Order, Supervisor
 from .trial import Trial
 
@@ -29,15 +30,23 @@ def cores() -> int:
 
 
 class Pool:
-    """Runs trials in ``jobs`` processes. Use it as a context manager.
+    """Runs trials in ``jobs`` processes; ``page`` writes their reports.
+
+    Use it as a context manager.
 
     ``hooks.progress`` is called with the simulated time of all trials, done and to do, s. A trial
     that keeps to wall time, or that programs outside connect to, runs beside no other such one.
     """
 
     def __init__(
-        self, trials: Sequence[Trial], engine: Engine, hooks: Hooks | None, jobs: int
+        self,
+        trials: Sequence[Trial],
+        engine: Engine,
+        hooks: Hooks | None,
+        jobs: int,
+        page: Page | None = None,
     ) -> None:
+        self._has_pages = page is not None
         self._hooks = hooks or Hooks()
         self._passed = [0.0] * len(trials)
         self._durations = [seconds(trial.stop_ns - trial.start_ns) for trial in trials]
@@ -46,7 +55,7 @@ class Pool:
         self._stopping = False
         slots = range(max(1, min(jobs, len(trials))))
         own = [replace(self._hooks, progress=partial(self._progress, slot)) for slot in slots]
-        self._all = [Supervisor(trials, engine, each) for each in own]
+        self._all = [Supervisor(trials, engine, each, page or no_page) for each in own]
         self._idle = list(self._all)
 
     def __enter__(self) -> Pool:
@@ -76,7 +85,7 @@ class Pool:
         if wrong:
             raise wrong[min(wrong)]
 
-    def run(self, folders: Mapping[int, Path], *, pages: bool) -> Iterator[tuple[int, Result]]:
+    def run(self, folders: Mapping[int, Path]) -> Iterator[tuple[int, Result]]:
         """Yield number and result of each trial of ``folders`` as it ends, run into its folder.
 
         Once a stop is requested no other one begins. Raises what `Supervisor.run` raises.
@@ -98,7 +107,7 @@ class Pool:
                     results[number] = outcome
                     self._passed[number] = self._durations[number]
                     self._stopping |= outcome.status == "stopped"
-                    if pages:
+                    if self._has_pages:
                         self._begin("report", number, outcome.folder)
                         continue
                 yield number, results.pop(number)

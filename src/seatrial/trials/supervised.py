@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import traceback
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -17,9 +17,18 @@ from .link import Frame
 from .run import Result, check_trial, run_trial
 from .trial import Trial
 
+Page = Callable[[Path], object]
+"""Writes the report of a run's folder."""
 
-def serve(trials: Sequence[Trial], engine: Engine, child: Child) -> None:
+
+def no_page(_folder: Path) -> None:
+    """Write no report."""
+
+
+def serve(trials: Sequence[Trial], engine: Engine, page: Page, child: Child) -> None:
     """Carry out orders until there are no more: ``check``, ``run`` and ``report``, by number.
+
+    ``page`` writes the report of a run's folder.
 
     Each ends with one frame: ``done`` or ``error``.
     """
@@ -28,10 +37,12 @@ def serve(trials: Sequence[Trial], engine: Engine, child: Child) -> None:
     while (orders := child.link.receive()) is not None:
         for order in orders:
             os.chdir(here)  # a component may have left it
-            child.link.send(*_carried_out(order, trials, engine, child))
+            child.link.send(*_carried_out(order, trials, engine, page, child))
 
 
-def _carried_out(order: Frame, trials: Sequence[Trial], engine: Engine, child: Child) -> Frame:
+def _carried_out(
+    order: Frame, trials: Sequence[Trial], engine: Engine, page: Page, child: Child
+) -> Frame:
     what, number, folder = order
     try:
         out = None if folder is None else Path(folder)
@@ -39,7 +50,7 @@ def _carried_out(order: Frame, trials: Sequence[Trial], engine: Engine, child: C
             alone = check_trial(trials[number], engine, _hooks(child))
             return ["done", {"alone": alone}]
         if what == "report" and out is not None:
-            report_of_case(out)
+            page(out)
             return ["done", {}]
         result = run_trial(trials[number], out, engine=engine, hooks=_hooks(child))
         return ["done", _written(result)]
@@ -53,13 +64,6 @@ def _carried_out(order: Frame, trials: Sequence[Trial], engine: Engine, child: C
     except BaseException as error:  # SystemExit too: nothing that a component does is an end
         text = "".join(traceback.format_exception(error)).strip()
         return ["error", SimulationError.__name__, f"an error of seatrial itself:\n{text}"]
-
-
-def report_of_case(folder: Path) -> None:
-    """Write the report of a run in the folder of its campaign. Raises InputError, OSError."""
-    from .campaign_report import write_case_report  # which few runs need
-
-    write_case_report(folder)
 
 
 def _hooks(child: Child) -> Hooks:

@@ -24,7 +24,7 @@ from .predicates import Limit
 from .preloading import preload
 from .run import Result, check_trial, run_trial
 from .run_folder import MANIFEST, written_status
-from .supervised import report_of_case, serve
+from .supervised import Page, no_page, serve
 from .trial import Trial
 from .verdict import Verdict
 
@@ -37,11 +37,19 @@ _IN_PROCESS = not hasattr(os, "fork")
 class Supervisor:
     """Runs trials one after the other in a child, and in another one once that has died.
 
-    This process loads no component and opens no device. Use it as a context manager.
+    This process loads no component and opens no device. ``page`` writes the report of a run's
+    folder, if one is ordered. Use it as a context manager.
     """
 
-    def __init__(self, trials: Sequence[Trial], engine: Engine, hooks: Hooks | None = None) -> None:
+    def __init__(
+        self,
+        trials: Sequence[Trial],
+        engine: Engine,
+        hooks: Hooks | None = None,
+        page: Page = no_page,
+    ) -> None:
         self._trials, self._engine, self._hooks = trials, engine, hooks or Hooks()
+        self._page = page
         self._forked: Forked | None = None
         self._busy = False
         self._order: tuple[Order, int, Path | None] = ("check", 0, None)
@@ -81,7 +89,7 @@ class Supervisor:
             return
         if self._forked is None:
             preload(self._trials, self._engine)
-            self._forked = Forked(partial(serve, self._trials, self._engine))
+            self._forked = Forked(partial(serve, self._trials, self._engine, self._page))
         self._busy = True
         self._forked.link.send(what, number, None if folder is None else str(folder))
 
@@ -129,7 +137,7 @@ class Supervisor:
         if what == "check":
             return check_trial(trial, self._engine, self._hooks)
         if what == "report" and folder is not None:
-            report_of_case(folder)
+            self._page(folder)
             return True
         return run_trial(trial, folder, engine=self._engine, hooks=self._hooks)
 
