@@ -37,7 +37,7 @@ class Case(Component):
         here = Path(os.environ["CASES"])
         if self.way == "die":
             os._exit(7)
-        (here / f"{os.getpid()}-{self.number:g}").touch()
+        (here / f"{os.getpid()}-{self.way}-{self.number:g}").touch()
         while self.way == "wait" and not (here / "go").exists():
             time.sleep(0.01)
 '''

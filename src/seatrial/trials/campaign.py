@@ -139,7 +139,9 @@ def run_campaign(
     campaign has left: cases that came to an end are kept, the others run again. ``jobs`` cases run
     side by side, None: as many as there are cores; what they leave does not depend on it. ``page``
     writes the report of each case, by its folder. ``done`` is called after each case, in the order
-    of the cases. Stops after the cases that were asked to stop. A case that ends its process has failed.
+    of the cases. Stops after the cases that were asked to stop. A case that ends its process has
+    failed.
+
     Returns the folder and the results of the cases that began. Raises InputError for bad input, in
     any case, and StoppedError, before the first one runs.
     """
