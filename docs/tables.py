@@ -24,6 +24,7 @@ from parts import (  # noqa: E402, F401  each registers its parts
     dronecan,
     faults,
     hydrone,
+    hydrone_deck,
     mavlink,
     nmea0183,
     nmea2000,

@@ -454,6 +454,7 @@ VERDICTS = "-trials"
 SLOW = {
     "hydrone-stated",
     "hydrone-sensitivity",
+    "hydrone-sensitivity-more",
     "hydrone-three-variants",
     "vehicles-campaign",
     *(f"videoray-rejection{part}" for part in ("", "-table75", "-table81")),
