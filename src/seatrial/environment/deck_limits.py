@@ -1,4 +1,4 @@
-"""How near a drone that stands on a craft's deck is to sliding, tipping and a wet bow."""
+"""Sliding, tipping and a wet bow: limits of a deck with a drone on it."""
 
 from __future__ import annotations
 
