@@ -82,3 +82,23 @@ def thruster_ship_cases() -> str:
     axes = ("x, m", "y, m", "psi, rad")
     head = [f"{model} {axis}" for model in ("nonlinear", "linear") for axis in axes]
     return table(("case", *head), lines)
+
+
+@part("thruster-ship-sweep")
+def thruster_ship_sweep() -> str:
+    """The shares of the control effort that the source sets up, nonlinear less linear at 10 s."""
+    lines = []
+    with elsewhere() as folder:
+        run_campaign(load_campaign("thruster-ship-sweep"), folder / "out", engine="direct")
+        for case in json.loads((folder / "out/campaign.json").read_text())["cases"]:
+            signals = load_run(folder / "out" / case["folder"]).signals
+            apart = [
+                signals[f"nonlinear.{s}"][-1] - signals[f"linear.{s}"][-1]
+                for s in ("position.x", "position.y", "attitude.psi")
+            ]
+            (demand,) = case["set"].values()
+            shares = [100 * f / most for f, most in zip(demand, (2.5e5, 2.5e5, 1e7), strict=True)]
+            shown = [number(1e3 * value, 3).replace("-", "−") for value in apart]
+            lines.append((*(f"{share:g}" if share else "" for share in shares), *shown))
+    head = ("F_x, %", "F_y, %", "M_z, %", "x apart, mm", "y apart, mm", "psi apart, mrad")
+    return table(head, lines)
