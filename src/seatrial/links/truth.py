@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from ..component import Component, Input, Parameter, terminal
 from ..craft.kinematics import specific_force, to_ned
+from ..errors import SimulationError
 from .geodesy import Ned
 
 MOTION = terminal(
@@ -17,6 +18,15 @@ MOTION = terminal(
 )
 """Terminal of `TrueMotion`'s inputs."""
 
+_LIMITS = {
+    "position_n": (1e6, "m"),
+    "velocity_n": (100.0, "m/s"),
+    "attitude": (10.0, "rad"),
+    "rates": (35.0, "rad/s"),
+    "specific_force": (160.0, "m/s2"),
+}
+"""Beyond these no boat moves, and inertial units of 2000 deg/s and 16 g measure nothing."""
+
 
 @dataclass(frozen=True)
 class Truth:
@@ -27,6 +37,17 @@ class Truth:
     attitude: Ned
     rates: Ned
     specific_force: Ned
+
+
+def require_possible(truth: Truth, whom: str) -> None:
+    """Raise SimulationError for a motion that no craft has: ``whom``'s estimator would be upset."""
+    for name, (limit, unit) in _LIMITS.items():
+        for value in getattr(truth, name):
+            if not abs(value) <= limit:
+                what = name.removesuffix("_n").replace("_", " ")
+                raise SimulationError(
+                    f"the {what} is {value!r} {unit}, at most {limit:g} {unit} is sent to {whom}"
+                )
 
 
 class TrueMotion(Component):

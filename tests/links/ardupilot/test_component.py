@@ -10,7 +10,7 @@ import time
 import pytest
 
 from seatrial.errors import InputError, SimulationError
-from seatrial.links.ardupilot import watchdog
+from seatrial.links import watchdog
 from seatrial.links.ardupilot.component import ArduPilot
 from seatrial.links.ardupilot.reply import FIELDS
 

@@ -12,12 +12,13 @@ from ..endpoints.udp import UdpListener
 from ..endpoints.url import open_endpoints, other_end
 from ..geodesy import Origin
 from ..mavlink.parameters_servo import read_servos
-from .firmware import Firmware, arguments, by_hand, check_program
+from ..program import Program, check_program
+from ..watchdog import Watchdog
+from .firmware import arguments, by_hand
 from .lockstep import Lockstep
 from .packet import MOST_CHANNELS
 from .ports import LOOP_HZ, ArduPilotPorts
 from .reply import RANGES, blows_from, read_fields, reply
-from .watchdog import Watchdog
 
 LONGEST_STEP = 0.1
 """A firmware's time stands still while steps are as long as this, s."""
@@ -70,7 +71,7 @@ class ArduPilot(ArduPilotPorts):
     def __init__(self, name: str = "component") -> None:
         super().__init__(name)
         self._lockstep: Lockstep | None = None
-        self._firmware: Firmware | None = None
+        self._firmware: Program | None = None
 
     # ------------------------------------------------------------------ running
 
@@ -149,7 +150,8 @@ class ArduPilot(ArduPilotPorts):
         options = self._options(h)
         if self.program:
             folder = Path(self.run_folder, self.name) if self.run_folder else None
-            self._firmware = Firmware(self.name, check_program(self.program), options, folder)
+            command = [str(check_program(self.program)), *options]
+            self._firmware = Program(self.name, "ArduPilot", command, folder)
         else:
             command = by_hand(f"ardu{self.firmware}", options)
             self._watchdog.say(f"start ArduPilot, in a folder of its own:\n  {command}")

@@ -7,8 +7,8 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from ...errors import InputError, SimulationError, unknown
-from ..truth import Truth
+from ...errors import InputError, unknown
+from ..truth import Truth, require_possible
 
 RANGES = tuple(f"rng_{number}" for number in range(1, 7))
 FIELDS = ("windvane", "velocity_wind", "airspeed", *RANGES, "rc", "battery")
@@ -19,14 +19,6 @@ before ``velocity_wind``, and ``windvane`` with its ``speed`` before ``airspeed`
 """
 
 _encoded = json.JSONEncoder(separators=(",", ":"), allow_nan=False).encode
-_LIMITS = {
-    "position_n": (1e6, "m"),
-    "velocity_n": (100.0, "m/s"),
-    "attitude": (10.0, "rad"),
-    "rates": (35.0, "rad/s"),
-    "specific_force": (160.0, "m/s2"),
-}
-"""Beyond these no boat moves, and inertial units of 2000 deg/s and 16 g measure nothing."""
 
 
 def read_fields(text: str) -> tuple[str, ...]:
@@ -48,13 +40,7 @@ def reply(t: float, truth: Truth, others: Mapping[str, Any]) -> bytes:
 
     Raises SimulationError for a motion that cannot be, which would upset the firmware's estimator.
     """
-    for name, (limit, unit) in _LIMITS.items():
-        for value in getattr(truth, name):
-            if not abs(value) <= limit:
-                what = name.removesuffix("_n").replace("_", " ")
-                raise SimulationError(
-                    f"the {what} is {value!r} {unit}, at most {limit:g} {unit} is sent to ArduPilot"
-                )
+    require_possible(truth, "ArduPilot")
     content = {
         "timestamp": t,
         "imu": {"gyro": truth.rates, "accel_body": truth.specific_force},

@@ -11,7 +11,8 @@ object is called with the URL and returns an `Endpoint`::
 1. **The URL** has no spaces; what follows its first colon is the kind's own. The object raises
    InputError, with the URL, what was found and what is allowed, for one that is malformed, and
    InputError or OSError for one that cannot be opened.
-2. **Nothing waits**: every call returns at once (`udp.UdpListener.wait` is for lockstep alone).
+2. **Nothing waits**: every call returns at once (``wait`` of `udp.UdpListener` and
+   `tcp.TcpServer` is for lockstep alone).
    Connecting, accepting and trying again go on inside `Endpoint.poll`, which takes in what its
    `budget.Budget` allows: what is more waits where it is, or is lost if it came as datagrams.
 3. **After it is open nothing raises** for what the other end does. Peers come and go, bytes that

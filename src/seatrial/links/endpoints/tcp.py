@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import select
 import socket
 import time
 from collections.abc import Sequence
@@ -116,6 +117,11 @@ class TcpServer(Endpoint):
             while len(self._streams) < MOST_CLIENTS:
                 self._streams.append(_Stream(self._socket.accept()[0]))
         return _read(self._streams, self.budget)
+
+    def wait(self, timeout: float) -> bool:
+        """Wait at most ``timeout`` (s, wall time); return whether bytes or a client are there."""
+        connected = [stream.target()[0] for stream in self._streams if stream.is_open]
+        return bool(select.select([self._socket, *connected], (), (), timeout)[0])
 
     def close(self) -> None:
         """Close the server and all connections."""

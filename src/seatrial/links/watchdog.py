@@ -6,7 +6,7 @@ import datetime
 import logging
 import time
 
-from ...errors import SimulationError
+from ..errors import SimulationError
 
 FIRST_S, EVERY_S = 5.0, 30.0
 """Wall time of silence before the first message, and between others."""

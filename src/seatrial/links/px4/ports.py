@@ -1,0 +1,102 @@
+"""The PX4 component's parameters, inputs and outputs."""
+
+from __future__ import annotations
+
+import math
+from typing import ClassVar
+
+from ...component import (
+    Input,
+    Logging,
+    Noise,
+    Output,
+    Parameter,
+    Reachable,
+    Terminal,
+)
+from ...errors import InputError
+from ..endpoints.url import check_urls
+from ..mavlink.parameters_servo import read_servos
+from ..parameter_validation import start_us
+from ..truth import MOTION, TrueMotion
+
+CHANNELS = 16
+"""Of HIL_ACTUATOR_CONTROLS."""
+INSTRUMENTS = ("gnss", "compass", "barometer")
+
+_CHANNELS = tuple(f"ch{number}" for number in range(1, CHANNELS + 1))
+
+
+def _check_link(text: str) -> None:
+    check_urls(text)
+    if len(text.split()) != 1 or not text.startswith("tcpin:"):
+        raise InputError(f"link is {text!r}, one tcpin:HOST:PORT is needed")
+
+
+class Px4Ports(Logging, Noise, Reachable, TrueMotion):
+    """Parameters, inputs and outputs of `Px4`."""
+
+    link = Parameter(
+        "tcpin:127.0.0.1:4560", "1", "where the firmware connects to", check=_check_link
+    )
+    program = Parameter("", "1", "bin/px4 of a build for SITL, to be started; empty: you start it")
+    airframe = Parameter(50000.0, "1", "SYS_AUTOSTART of a started firmware", min=1.0)
+    defaults = Parameter("", "1", "file of the firmware's parameters", role="file")
+    speedup = Parameter(
+        1.0, "1", "simulated time per wall time at most; in lockstep, it may be less", min=0.01
+    )
+    wait_limit = Parameter(
+        60.0, "s", "wall time to wait for a connection, then it fails; 0: without end", min=0.0
+    )
+    answer_limit = Parameter(
+        2.0, "s", "wall time to wait for actuators, then it runs on without", min=0.01
+    )
+    actuators = Parameter(
+        "",
+        "1",
+        "CHANNEL NAME MIN NEUTRAL MAX of each output channel, pulses in us; with ;",
+        check=read_servos,
+    )
+    latitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-1.5707964, max=1.5707964)
+    longitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-math.pi, max=math.pi)
+    altitude = Parameter(0.0, "m", "of the origin")
+    date = Parameter(
+        "2026-01-01",
+        "1",
+        "UTC at the start of the run: a day, for its midnight, or an instant",
+        check=start_us,
+        role="start-time",
+    )
+
+    imu = Parameter(0.0, "m", "inertial unit from the body origin, body axes", axes="xyz")
+    gyro_noise = Parameter(6e-4, "rad/s", "of a sample, standard deviation", min=0.0)
+    accelerometer_noise = Parameter(0.007, "m/s2", "of a sample, standard deviation", min=0.0)
+    field_period = Parameter(0.02, "s", "between two samples of the magnetometer", min=1e-3)
+    field_noise = Parameter(3e-7, "T", "of a sample, standard deviation", min=0.0)
+    pressure_period = Parameter(0.02, "s", "between two samples of the barometer", min=1e-3)
+    pressure_noise = Parameter(1.0, "Pa", "of a sample, standard deviation", min=0.0)
+    gnss_period = Parameter(0.2, "s", "between two fixes", min=1e-3)
+    reception = Parameter("air", "1", "where the antenna receives", choices=("air", "everywhere"))
+    antenna = Parameter(0.0, "m", "antenna from the body origin, body axes", axes="xyz")
+    position_noise = Parameter(
+        (0.1, 0.1, 0.15), "m", "of a fix, standard deviation", axes=("north", "east", "down"),
+        min=0.0,
+    )  # fmt: skip
+    velocity_noise = Parameter(0.05, "m/s", "of a fix, standard deviation per axis", min=0.0)
+    satellites = Parameter(12.0, "1", "that a fix is of", min=4.0, max=254.0)
+
+    without = Input(
+        "1", "instruments that send nothing", axes=INSTRUMENTS, type=bool, optional=True
+    )
+
+    pulse = Output("s", "pulses of the actuators, neutral while disarmed", axes=_CHANNELS)
+    connected = Output("1", "whether a firmware is connected", type=bool)
+    armed = Output("1", "whether it says that it is armed", type=bool)
+    lockstep = Output("1", "whether each step waits for its actuators", type=bool)
+    restarts = Output("1", "times that a firmware connected again", type=int)
+    missed = Output("1", "times that actuators did not come in time", type=int)
+
+    terminals: ClassVar = {
+        "motion": MOTION,
+        "pulses": Terminal({channel: f"pulse.{channel}" for channel in _CHANNELS}),
+    }
