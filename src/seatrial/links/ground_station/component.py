@@ -16,6 +16,7 @@ from ..endpoints.endpoint import Channel, Endpoint
 from ..endpoints.url import check_urls, open_endpoints
 from ..mavlink.codec import Codec, Message
 from .conversation import ASK_AGAIN_S, Conversation
+from .dialects import Dialect
 from .errand import Errand, mission
 
 SYSTEM, COMPONENT = 255, mavlink.MAV_COMP_ID_MISSIONPLANNER
@@ -51,10 +52,11 @@ class GroundStation(Waypoints, Sampled):
     It waits for the vehicle, at ``link`` or else at ``address``, and for its estimator; uploads the
     waypoints by the mission protocol, as NAV_WAYPOINT north and east of the vehicle's home and
     ``down`` below it; arms, and starts the mission. Everything is repeated until it is answered.
-    For ArduPilot's boats, rovers and submarines, and vehicles that present themselves as such.
+    For boats and rovers of ArduPilot and PX4, for submarines of ArduPilot, and for vehicles that
+    present themselves as such.
 
     ``failsafe`` is true from the first heartbeat on that says CRITICAL or EMERGENCY, and where
-    the vehicle leaves AUTO or disarms before its last waypoint.
+    the vehicle leaves the mission's mode or disarms before its last waypoint.
 
     ``without`` takes an instrument from ArduPilot's simulated ones, which it makes of the true
     motion: GNSS (SIM_GPS1_ENABLE 0) or all compasses (SIM_MAG1_FAIL to SIM_MAG3_FAIL 1).
@@ -106,7 +108,7 @@ class GroundStation(Waypoints, Sampled):
         self.close()
         self._places = self.waypoints()
         self._channel: Channel | None = None
-        self._auto: int | None = None
+        self._started: Dialect | None = None
         self._begin()
         try:
             if self.link:
@@ -117,7 +119,7 @@ class GroundStation(Waypoints, Sampled):
     def sample(self, t: float, k: int) -> None:
         """Publish how it goes."""
         self.connected = bool(self._conversation.system)
-        self.doing, self.under_way = self._doing, self._auto is not None
+        self.doing, self.under_way = self._doing, self._started is not None
         self.armed, self.mode = self._armed, self._mode
         self.reached, self.failsafe = self._reached, self._failsafe
 
@@ -149,7 +151,7 @@ class GroundStation(Waypoints, Sampled):
         self._codec = Codec(SYSTEM, COMPONENT)
         self._conversation = Conversation(self._send)
         self._errand: Errand = mission(self._conversation, self._places, self.radius)
-        self._doing, self._auto = "", None
+        self._doing, self._started = "", None
         self._armed, self._mode, self._reached, self._failsafe = False, 0, 0, False
         self._given = {name: usual for each in FAILURES.values() for name, _, usual in each}
         self._greeted_at = self._set_at = -math.inf
@@ -189,20 +191,21 @@ class GroundStation(Waypoints, Sampled):
             self._doing = next(self._errand)
         except StopIteration as started:
             if started.value is not None:
-                self._doing, self._auto = "", started.value
+                self._doing, self._started = "", started.value
 
     def _note(self, message: Message) -> None:
         """Note what a message says of the mission."""
         kind = message.get_type()
         if kind == "MISSION_ITEM_REACHED":
-            self._reached = max(self._reached, message.seq)
+            counted = message.seq + (self._started is not None and not self._started.counts_home)
+            self._reached = max(self._reached, counted)
         if kind == "PARAM_VALUE":
             self._given[message.param_id] = message.param_value
         if kind != "HEARTBEAT":
             return
         self._armed, self._mode = bool(message.base_mode & _ARMED), message.custom_mode
-        if self._auto is not None and self._reached < len(self._places):
-            left = not self._armed or self._mode != self._auto
+        if self._started is not None and self._reached < len(self._places):
+            left = not self._armed or self._mode != self._started.shown
             self._failsafe = self._failsafe or left or message.system_status in _ALARMED
 
     def _set_instruments(self, t: float) -> None:

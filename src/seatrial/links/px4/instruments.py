@@ -148,8 +148,8 @@ class Instruments:
         return mavlink.MAVLink_hil_gps_message(
             self._start_us + (now_ns - self._start_ns) // 1000, _FIX_3D,
             deg_e7(latitude), deg_e7(longitude), int32(1e3 * altitude),
-            *(uint16(100.0 * each) for each in (*accuracy, speed)), *(int16(100.0 * v) for v in velocity),
-            course, round(of.satellites),
+            *(uint16(100.0 * each) for each in (*accuracy, speed)),
+            *(int16(100.0 * each) for each in velocity), course, round(of.satellites),
         )  # fmt: skip
 
     def _truth(self, us: int, truth: Truth) -> Message:

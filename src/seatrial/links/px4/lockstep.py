@@ -39,6 +39,8 @@ class Lockstep:
         # All the time: a request between two waits must not be missed by the second.
         self._interruption = self._held.enter_context(Interruption())
         self._peer: Channel | None = None
+        self.is_locked = self.is_armed = False
+        self.controls: tuple[float, ...] = ()
         self._forget()
 
     def wait_for_firmware(self, waiting: Callable[[], None]) -> bool:
@@ -91,9 +93,8 @@ class Lockstep:
         self._codec = Codec(_SYSTEM, mavlink.MAV_COMP_ID_AUTOPILOT1)
         self._answered_us = -1
         self._interrupted = False
-        self.is_locked = False
-        self.is_armed = False
-        self.controls: tuple[float, ...] = ()
+        self.is_locked = self.is_armed = False
+        self.controls = ()
 
     def _wait(
         self, holds: Callable[[], bool], waiting: Callable[[], None], limit: float | None
