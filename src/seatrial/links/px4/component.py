@@ -162,7 +162,7 @@ class Px4(Px4Ports):
                 "needed: PX4's estimator takes no slower inertial unit"
             )
         self._has_begun = True
-        variables = environment(round(self.airframe), self._parameters)
+        variables = environment(self, self._parameters)
         if not self.program:
             assert self._lockstep is not None
             typed = by_hand(variables, _port(self._lockstep.endpoint.url))

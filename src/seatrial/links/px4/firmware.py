@@ -9,6 +9,7 @@ from pathlib import Path
 
 from ...errors import InputError
 from ..program import check_program
+from .ports import Px4Ports
 
 PORT = 4560
 """Where the instance 0 connects to; each further one to the next."""
@@ -16,7 +17,8 @@ MOST_INSTANCES = 255
 _START = "etc/init.d-posix/rcS"
 _NAME = re.compile(r"[A-Z][A-Z0-9_]{0,15}")
 _OURS = {"SIM_GZ_EN": "0", "EKF2_GPS_DELAY": "0"}
-"""No Gazebo; and fixes here have no delay. The user's file may say otherwise."""
+"""No Gazebo; and fixes here have no delay."""
+_PLACES = {"EKF2_IMU_POS": "imu", "EKF2_GPS_POS": "antenna"}
 
 
 def check_build(program: str) -> tuple[Path, Path]:
@@ -63,11 +65,19 @@ def read_parameters(file: str) -> dict[str, str]:
     return values
 
 
-def environment(airframe: int, parameters: Mapping[str, str]) -> dict[str, str]:
-    """Return the variables by which PX4's start-up takes airframe and parameters."""
-    given = {**_OURS, **parameters}
+def environment(of: Px4Ports, parameters: Mapping[str, str]) -> dict[str, str]:
+    """Return the variables by which PX4's start-up takes airframe and parameters.
+
+    It is given where inertial unit and antenna are; ``parameters`` may say otherwise.
+    """
+    places = {
+        f"{parameter}_{axis.upper()}": f"{value:g}"
+        for parameter, port in _PLACES.items()
+        for axis, value in zip("xyz", getattr(of, port), strict=True)
+    }
+    given = {**_OURS, **places, **parameters}
     return {
-        "PX4_SYS_AUTOSTART": str(airframe),
+        "PX4_SYS_AUTOSTART": f"{of.airframe:.0f}",
         "PX4_SIMULATOR": "none",
         **{f"PX4_PARAM_{name}": value for name, value in given.items()},
     }

@@ -77,7 +77,9 @@ class Px4Ports(Logging, Noise, Reachable, TrueMotion):
     pressure_noise = Parameter(1.0, "Pa", "of a sample, standard deviation", min=0.0)
     gnss_period = Parameter(0.2, "s", "between two fixes", min=1e-3)
     reception = Parameter("air", "1", "where the antenna receives", choices=("air", "everywhere"))
-    antenna = Parameter(0.0, "m", "antenna from the body origin, body axes", axes="xyz")
+    antenna = Parameter(
+        (0.0, 0.0, -0.3), "m", "antenna from the body origin, body axes", axes="xyz"
+    )
     position_noise = Parameter(
         (0.1, 0.1, 0.15), "m", "of a fix, standard deviation", axes=("north", "east", "down"),
         min=0.0,
