@@ -15,8 +15,8 @@ from seatrial.fmi.source import shipped_sources
 
 from .conftest import built_once, source
 
-WAITS = "ardupilot"
-"""It steps as its firmware does, and waits for that without end."""
+WAITING = ("ardupilot", "px4")
+"""They step as their firmware does, and wait for that."""
 NEEDED = {
     "ground-station": {"link": "udpin:127.0.0.1:0"},
     "marks": {"count": 1.0, "radius": 4.0},
@@ -108,7 +108,7 @@ def test_what_cannot_be_described_is_refused(
     [
         pytest.param(name, marks=() if name in SOME else pytest.mark.interop)
         for name in shipped_sources()
-        if name != WAITS
+        if name not in WAITING
     ],
 )
 def test_a_shipped_fmu_runs_alone_in_fmpy(name: str, tmp_path: Path) -> None:

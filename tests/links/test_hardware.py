@@ -138,6 +138,7 @@ COMPONENTS = {
     "serial-gateway": {"links": "tcpin:0.0.0.0:0"},
     "can-gateway": {"link": "yd-raw-udp:192.0.2.1:2002"},
     "ardupilot": {"link": "udpin:0.0.0.0:0"},
+    "px4": {"link": "tcpin:0.0.0.0:0"},
     "arduino": {"monitors": "0=tcpin:0.0.0.0:0"},
 }
 

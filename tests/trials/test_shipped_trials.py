@@ -23,7 +23,9 @@ NAMES = list(FILES)
 PACED = [name for name, file in FILES.items() if "real_time" in file]
 """Trials in real time, for whoever connects."""
 WAITING = [
-    name for name, file in FILES.items() if file.get("choices", {}).get("autopilot") == "ardupilot"
+    name
+    for name, file in FILES.items()
+    if file.get("choices", {}).get("autopilot") in ("ardupilot", "px4")
 ]
 """Trials whose time stands still until a program outside connects."""
 TRIALS = [name for name in NAMES if name not in (*PACED, *WAITING)]

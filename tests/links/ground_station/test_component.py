@@ -8,7 +8,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from seatrial.errors import InputError, SimulationError
 from seatrial.links.ground_station.component import GroundStation
 
-from .vehicle import AUTO, Vehicle, placed
+from .vehicle import AUTO, Px4Vehicle, Vehicle, placed
 
 PLACES = [(30.0, 0.0, 0.0), (30.0, -40.0, 0.0), (0.0, 0.0, 2.5)]
 
@@ -27,9 +27,9 @@ class Bench:
         self.station.begin()
         self._vehicles = []
 
-    def vehicle(self, **options):
+    def vehicle(self, kind=Vehicle, **options):
         _, host, port = self.station._endpoint.url.split(":")
-        made = Vehicle((host, int(port)), **options)
+        made = kind((host, int(port)), **options)
         self._vehicles.append(made)
         return made
 
@@ -119,6 +119,31 @@ def test_what_never_comes_ends_the_run_with_what_the_vehicle_said(bench):
         bench.run(vehicle, 200.0)
 
 
+PX4_MISSION = 0x04040000
+"""PX4's custom_mode AUTO.MISSION, as QGroundControl and MAVSDK have it."""
+
+
+def test_px4_is_sent_round_in_its_own_way(bench):
+    vehicle = bench.vehicle(Px4Vehicle)
+    bench.run(vehicle, 10.0)
+    assert sorted(vehicle.items) == [0, 1, 2]  # home is none of them
+    for number, (north, east, down) in enumerate(PLACES):
+        item = vehicle.items[number]
+        assert placed(item) == pytest.approx((north, east), abs=0.02)
+        assert item.z == pytest.approx(-down)
+    orders = [m.command for m in vehicle.received if m.get_type() == "COMMAND_LONG"]
+    arm, mode = mavlink.MAV_CMD_COMPONENT_ARM_DISARM, mavlink.MAV_CMD_DO_SET_MODE
+    assert [each for each in orders if each in (arm, mode)] == [mode, arm]
+    assert (vehicle.mode, vehicle.armed) == (PX4_MISSION, True)
+    vehicle.reach(0)
+    bench.run(vehicle, 1.0)
+    assert bench.station.get("reached") == 1
+    assert bench.station.get("failsafe") is False
+    vehicle.mode = 0x03040000  # it goes into hold
+    bench.run(vehicle, 2.0)
+    assert bench.station.get("failsafe") is True
+
+
 def test_silence_ends_the_run(bench):
     with pytest.raises(SimulationError, match=r"no heartbeat within 60 s; .* said: nothing"):
         for _ in range(700):
@@ -136,7 +161,8 @@ def test_a_mission_that_is_refused_ends_the_run(bench):
 @pytest.mark.parametrize(
     ("autopilot", "kind"),
     [
-        (mavlink.MAV_AUTOPILOT_PX4, mavlink.MAV_TYPE_SURFACE_BOAT),
+        (mavlink.MAV_AUTOPILOT_PX4, mavlink.MAV_TYPE_SUBMARINE),
+        (mavlink.MAV_AUTOPILOT_GENERIC, mavlink.MAV_TYPE_SURFACE_BOAT),
         (mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA, mavlink.MAV_TYPE_QUADROTOR),
     ],
 )

@@ -1,6 +1,6 @@
 """A stand-in for ArduPilot's end of MAVLink: pymavlink's own parser, and the least that it takes.
 
-As a program it is a firmware too: the physics come from seatrial, and it steers a boat with two
+`Px4Vehicle` is one for PX4's. As a program it is a firmware too: the physics come from seatrial, and it steers a boat with two
 thrusters to its waypoints.
 """
 
@@ -57,10 +57,13 @@ class Vehicle:
         )
         health = mavlink.MAV_SYS_STATUS_PREARM_CHECK if self.healthy else 0
         self.send(mavlink.MAVLink_sys_status_message(0, 0, health, *(0,) * 10))
-        flags = mavlink.EKF_POS_HORIZ_ABS
-        self.send(mavlink.MAVLink_ekf_status_report_message(flags, *(0.0,) * 5))
+        self.estimate()
         at = [round(angle * 1e7) for angle in HOME]
         self.send(mavlink.MAVLink_home_position_message(*at, 0, 0, 0, 0, [1, 0, 0, 0], 0, 0, 0))
+
+    def estimate(self) -> None:
+        flags = mavlink.EKF_POS_HORIZ_ABS
+        self.send(mavlink.MAVLink_ekf_status_report_message(flags, *(0.0,) * 5))
 
     def attend(self) -> None:
         """Answer what came."""
@@ -95,8 +98,11 @@ class Vehicle:
             result = "denied" if self.arms_after >= 0 else "accepted"
             self.armed = result == "accepted"
         elif message.command == mavlink.MAV_CMD_DO_SET_MODE:
-            self.mode = int(message.param2)
+            self.mode = self.mode_of(message)
         self.send(mavlink.MAVLink_command_ack_message(message.command, ACK[result]))
+
+    def mode_of(self, message: mavlink.MAVLink_message) -> int:
+        return int(message.param2)
 
     def on_param_set(self, message: mavlink.MAVLink_message) -> None:
         self.parameters[message.param_id] = message.param_value
@@ -111,6 +117,22 @@ class Vehicle:
 
     def _request(self, number: int) -> None:
         self.send(mavlink.MAVLink_mission_request_int_message(255, 190, number, 0))
+
+
+class Px4Vehicle(Vehicle):
+    """PX4's differences: other modes, another message of the estimator, no item of its home."""
+
+    def __init__(self, address: tuple[str, int], deaf: tuple[str, ...] = ()) -> None:
+        super().__init__(address, deaf)
+        self.autopilot = mavlink.MAV_AUTOPILOT_PX4
+
+    def estimate(self) -> None:
+        flags = mavlink.ESTIMATOR_POS_HORIZ_ABS
+        self.send(mavlink.MAVLink_estimator_status_message(0, flags, *(0.0,) * 8))
+
+    def mode_of(self, message: mavlink.MAVLink_message) -> int:
+        """Return the main mode in the third byte, the sub-mode in the fourth."""
+        return int(message.param2) << 16 | int(message.param3) << 24
 
 
 def placed(item: mavlink.MAVLink_message) -> tuple[float, float]:

@@ -1,4 +1,4 @@
-"""How ArduPilot's simulated firmware is started."""
+"""Start of ArduPilot's simulated firmware: its options, and the command as a person types it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What differs between firmwares for a ground station that sends them on a mission."""
+"""Differences between firmwares, for a ground station that sends them on a mission."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How a build of PX4 for SITL is started: its command, and its parameters as the environment."""
+"""Start of a build of PX4 for SITL: its command, and its parameters as environment variables."""
 
 from __future__ import annotations
 
