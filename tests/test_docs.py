@@ -66,6 +66,7 @@ LONG = {HOW_TO / "identification.md", DOCS / "vehicles/guidance.md"}
 ELSEWHERE = {
     LINKS / "arduino.md",  # a fixture of the sketch's own tests
     DOCS / "autopilots.md",  # tests/links/ardupilot: time stands still until a firmware comes
+    DOCS / "px4.md",  # tests/links/px4: the same
     LINKS / "ground-stations.md",  # sessions of MAVSDK and MAVProxy, in tests/interop
     HOW_TO / "test-with-pytest.md",  # tests/testing
     DOCS / "tutorials/ci.md",  # tests/testing: a project of its own
