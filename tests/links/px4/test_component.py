@@ -119,6 +119,29 @@ def test_when_none_come_in_time_it_goes_on_and_says_so(caplog):
         peer.close()
 
 
+def test_at_shorter_steps_the_newest_actuators_are_as_old_as_their_period_at_most():
+    """Controllers every 10 ms, steps of 4 ms: they answer the third, the fifth, the eighth ..."""
+
+    def flies(peer):
+        ran = -1
+        for k in range(300):
+            peer.sense()
+            if k == 0 or 4 * k // 10 > ran:
+                ran = 4 * k // 10
+                peer.act(k / 1000)
+
+    with component(answer_limit=30.0) as made, firmware(made, flies):
+        begun = time.monotonic()
+        late = []
+        for k in range(300):
+            made.advance(0.004 * k, 0.004)
+            late.append(k - (1e6 * made.get("pulse")[0] - 1500.0) / 0.4)
+        assert time.monotonic() - begun < 20.0
+        assert made.get("missed") == 0
+        assert made.get("lockstep") is True
+    assert max(late[20:]) < 2.5
+
+
 def test_a_disarmed_firmware_may_be_silent(caplog):
     with component(answer_limit=0.1) as made:
         peer = Peer(port_of(made))

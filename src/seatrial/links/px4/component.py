@@ -13,7 +13,7 @@ from ..endpoints.url import open_endpoints, other_end
 from ..mavlink.parameters_servo import Servo, read_servos
 from ..program import Program
 from ..truth import require_possible
-from ..watchdog import Watchdog
+from ..watchdog import EVERY_S, Watchdog
 from .firmware import (
     arguments,
     by_hand,
@@ -37,10 +37,10 @@ class Px4(Px4Ports):
 
     **Lockstep.** In each communication step, from t to t + h, it gets HIL_SENSOR of t, which sets
     its clock, and its HIL_ACTUATOR_CONTROLS of that time are the output ``pulse`` from t + h on.
-    So each reaction takes one step. PX4's controllers answer only while they run, those of
-    rovers while they are armed: until the first answer, and when none comes for ``answer_limit``
-    of wall time, the run goes on without waiting, at ``speedup`` and 10 times real time at most;
-    with the next answer it is in lockstep again.
+    So each reaction takes one step. PX4's controllers answer every ``answer_period``, which may
+    be several steps, and only while they run, those of rovers while they are armed. Until the first
+    answer, and when none comes for ``answer_limit`` of wall time, the run goes on without waiting,
+    at ``speedup`` and 10 times real time at most; with the next answer it is in lockstep again.
 
     **The firmware** connects to ``link``, which only listens. While none is connected simulated
     time stands still; messages say who is being waited for and since when. After ``wait_limit``
@@ -98,7 +98,7 @@ class Px4(Px4Ports):
         )
         self._answering = Watchdog(self.name, "PX4's actuators")
         self._seen = 0
-        self._paced_until = -math.inf
+        self._paced_until = self._quiet_until = -math.inf
         self._has_begun = False
 
     def step(self, t: float, h: float) -> None:
@@ -119,10 +119,15 @@ class Px4(Px4Ports):
         messages = self._instruments.messages(self.now_ns, truth)
         before = lockstep.missed
         lockstep.exchange(
-            microseconds(self.now_ns), messages, self.answer_limit, self._while_answering
+            microseconds(self.now_ns),
+            messages,
+            self._every_us,
+            self.answer_limit,
+            self._while_answering,
         )
         self._answering.received()
-        if lockstep.missed > before and lockstep.is_armed:
+        if lockstep.missed > before and lockstep.is_armed and time.monotonic() >= self._quiet_until:
+            self._quiet_until = time.monotonic() + EVERY_S
             self._answering.say(
                 f"PX4 is armed and gave no actuators within {self.answer_limit:g} s of wall time, "
                 f"at t = {t:g} s: the run goes on without waiting for them"
@@ -162,6 +167,7 @@ class Px4(Px4Ports):
                 "needed: PX4's estimator takes no slower inertial unit"
             )
         self._has_begun = True
+        self._every_us = round(1e6 * h * max(1, math.ceil(self.answer_period / h - 1e-9)))
         variables = environment(self, self._parameters)
         if not self.program:
             assert self._lockstep is not None

@@ -26,9 +26,10 @@ class Lockstep:
     """The firmware that is connected to ``endpoint``, the first that came of those that are.
 
     Its clock is the time of the newest HIL_SENSOR. It answers one by HIL_ACTUATOR_CONTROLS of
-    that time, if a controller of its ran: most do only while they are armed. So nothing is waited
-    for before the first answer (`is_locked`); from then on each step is, until none comes in time,
-    and again from the next one on.
+    that time, if a controller of its ran: they do so at a rate of their own, and most only while
+    they are armed. So nothing is waited for before the first answer (`is_locked`); from then on the
+    newest one is never older than it should be, until none comes in time, and again from the next
+    one on.
     """
 
     def __init__(self, endpoint: TcpServer, clock: Callable[[], float] = time.monotonic) -> None:
@@ -52,11 +53,17 @@ class Lockstep:
         return self._wait(lambda: self._peer is not None, waiting, None)
 
     def exchange(
-        self, us: int, messages: Sequence[Message], limit: float, waiting: Callable[[], None]
+        self,
+        us: int,
+        messages: Sequence[Message],
+        every_us: int,
+        limit: float,
+        waiting: Callable[[], None],
     ) -> None:
-        """Send messages of the time ``us``; in lockstep, wait for its actuators for ``limit``, s.
+        """Send messages of the time ``us``; in lockstep, wait for actuators for ``limit``, s.
 
-        ``waiting`` is called while they are not there. A firmware that disconnects answers no more.
+        They come every ``every_us``: it is waited until the newest are younger. ``waiting`` is
+        called while they are not there. A firmware that disconnects answers no more.
         """
         self._take_in()
         if self._peer is None:
@@ -64,8 +71,9 @@ class Lockstep:
         self._peer.send(b"".join(self._codec.encode(each) for each in messages))
         if not self.is_locked:
             return
-        self._wait(lambda: self._answered_us >= us or self._peer is None, waiting, limit)
-        if self._answered_us < us and not self._interrupted:
+        due = us - every_us + 1  # the time of the first is 1 us late: see `microseconds`
+        self._wait(lambda: self._answered_us > due or self._peer is None, waiting, limit)
+        if self._answered_us <= due and not self._interrupted:
             self.is_locked = False
             self.missed += self._peer is not None
 

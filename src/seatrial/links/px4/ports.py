@@ -48,6 +48,9 @@ class Px4Ports(Logging, Noise, Reachable, TrueMotion):
     wait_limit = Parameter(
         60.0, "s", "wall time to wait for a connection, then it fails; 0: without end", min=0.0
     )
+    answer_period = Parameter(
+        0.01, "s", "between two of PX4's actuators; the step, if that is longer", min=1e-3
+    )
     answer_limit = Parameter(
         2.0, "s", "wall time to wait for actuators, then it runs on without", min=0.01
     )
