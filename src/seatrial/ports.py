@@ -26,7 +26,7 @@ ROLES = {
     "start-time": "UTC at the start of the run: given by a trial's utc, if it has one",
     "wall-clock": "whether it lives on the wall clock: refused but in real time at factor 1",
     "fault": "what goes wrong with it, in words: written by a trial's faults",
-    "file": "name of a file: relative to the profile that gives it",
+    "file": "name of a file: relative to the file that gives it, or to where the run begins",
     "tunables": "parameters of others that a link sets: a table in its profile",
     "tunable": "values of a link's tunables, in their order: connected to what they set",
 }

@@ -47,3 +47,9 @@ def test_of_a_trial(elsewhere):
     (elsewhere / "t.toml").write_text(trial, "utf-8")
     prepared = prepare(load_trial(str(elsewhere / "t.toml")), "direct", Hooks())
     assert depth_file(prepared.system) == str(elsewhere / "bed.csv")
+
+
+def test_else_to_where_the_run_begins(elsewhere):
+    (elsewhere / "bed.csv").rename(elsewhere.parent / "away/bed.csv")
+    (elsewhere / "r.toml").write_text(RIG.format(', set = { seabed_file = "bed.csv" }'), "utf-8")
+    assert depth_file(assemble(load_rig(str(elsewhere / "r.toml")), "direct")) == "bed.csv"

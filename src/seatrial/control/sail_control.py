@@ -10,6 +10,7 @@ from ..errors import InputError
 from ..foils import HIGH_ALPHA, SAIL_ENTRIES, sail_naca0015
 from ..sampled import Sampled
 from .sail_search import Setting, best_setting, setting
+from .sail_surface import smooth_setting
 
 _DEG = math.radians(1.0)
 
@@ -26,7 +27,9 @@ class SailControl(Sampled):
 
     **Elsewhere**: the angle in 0 ... ``sail_limit`` and the flap with the greatest drive in the
     sail's table (3.34, 3.35; `sail_search`). The source searches all angles and cuts the best
-    one off afterwards, which downwind takes a flap that is not the best.
+    one off afterwards, which downwind takes a flap that is not the best. ``optimum`` = "smooth"
+    takes the maximum of a smooth surface through the table, as the source proposes beside its
+    search (section 3.2; `sail_surface`), without a limit on heel.
 
     **Limit on heel**, ``roll_limit`` = "on" (proposed, not worked out, in chapter 5 of the
     source). In a steady state the keel takes the side force Y of the sail, and both heel the
@@ -53,8 +56,8 @@ class SailControl(Sampled):
 
     Not modelled: the lift that heel takes from the sail, unsteady flow, the weight of the sail.
 
-    Raises InputError at the start for an upwind angle beyond the limit, or a spill heel that is
-    not more than the design heel.
+    Raises InputError at the start for an upwind angle beyond the limit, a spill heel that is not
+    more than the design heel, or a limit on heel with "smooth".
     """
 
     exercised: ClassVar = {"roll_limit": "on"}
@@ -77,6 +80,12 @@ class SailControl(Sampled):
     )
     high_alpha = Parameter(
         "physical", "1", "C_L beyond 90 deg: as in the tables, or negated", choices=HIGH_ALPHA
+    )
+    optimum = Parameter(
+        "table",
+        "1",
+        "greatest drive of the table's points, or of a smooth surface through them",
+        choices=("table", "smooth"),
     )
     roll_limit = Parameter("off", "1", "whether heel is limited", choices=("off", "on"))
     design_heel = Parameter(
@@ -142,6 +151,11 @@ class SailControl(Sampled):
                 f"{self.name}: design_heel ({self.design_heel!r} rad) must be less than "
                 f"spill_heel ({self.spill_heel!r} rad)"
             )
+        if self.optimum == "smooth" and self.roll_limit == "on":
+            raise InputError(
+                f"{self.name}: optimum is 'smooth', which knows no limit on heel, and roll_limit "
+                "is 'on': one of them must be 'table' or 'off'"
+            )
         self._side = 0
         self._table = (self.sail_entry, self.high_alpha)
 
@@ -175,6 +189,8 @@ class SailControl(Sampled):
         beta = side * self.apparent_wind[1]
         allowed = self._side_force_allowed(side)
         upwind = abs(self._downwind_angle()) > self.upwind_threshold
+        if not upwind and self.optimum == "smooth":
+            return smooth_setting(table, beta, 0.0, self.sail_limit)
         if not upwind:
             return best_setting(table, beta, 0.0, self.sail_limit, allowed)
         fixed = setting(table, beta, self.upwind_sail, 0.0)

@@ -33,14 +33,18 @@ class Setting(NamedTuple):
     written: Any
     origin: str
     folder: Path | None = None
-    """Of the file that says it: names of files are relative to it; None: to where we are."""
+    """Of the file that says it: names of files are relative to it, or to where we are."""
 
 
 def placed(written: Any, scalars: Sequence[Variable], folder: Path | None) -> Any:
-    """Return the name of a file as it is from here, if ``written`` is one; else ``written``."""
-    if folder is None or not written or scalars[0].role != "file":
+    """Return the name of a file as it is from here, if ``written`` is that of one in ``folder``.
+
+    Else ``written``: the name of a file may also be relative to where the run begins.
+    """
+    if folder is None or not isinstance(written, str) or scalars[0].role != "file":
         return written
-    return str(folder / written) if isinstance(written, str) else written
+    beside = folder / written
+    return str(beside) if written and beside.exists() else written
 
 
 def storable(value: Value) -> Scalar:

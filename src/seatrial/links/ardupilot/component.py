@@ -153,8 +153,8 @@ class ArduPilot(ArduPilotPorts):
             command = [str(check_program(self.program)), *options]
             self._firmware = Program(self.name, "ArduPilot", command, folder)
         else:
-            command = by_hand(f"ardu{self.firmware}", options)
-            self._watchdog.say(f"start ArduPilot, in a folder of its own:\n  {command}")
+            typed = by_hand(f"ardu{self.firmware}", options)
+            self._watchdog.say(f"start ArduPilot, in a folder of its own:\n  {typed}")
         self._has_begun = True
 
     def _options(self, h: float) -> list[str]:

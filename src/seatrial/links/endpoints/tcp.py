@@ -8,6 +8,7 @@ import select
 import socket
 import time
 from collections.abc import Sequence
+from typing import Any
 
 from .budget import Budget
 from .endpoint import Channel, Endpoint
@@ -120,8 +121,9 @@ class TcpServer(Endpoint):
 
     def wait(self, timeout: float) -> bool:
         """Wait at most ``timeout`` (s, wall time); return whether bytes or a client are there."""
-        connected = [stream.target()[0] for stream in self._streams if stream.is_open]
-        return bool(select.select([self._socket, *connected], (), (), timeout)[0])
+        waiting: list[Any] = [self._socket]
+        waiting += [stream.target()[0] for stream in self._streams if stream.is_open]
+        return bool(select.select(waiting, (), (), timeout)[0])
 
     def close(self) -> None:
         """Close the server and all connections."""

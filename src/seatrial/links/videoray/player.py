@@ -13,7 +13,7 @@ from .stream_file import FROM_DEVICE, TO_DEVICE, read_stream
 class StreamPlayer(Component):
     """Sends what was recorded one way, at the recorded times.
 
-    ``file`` is a stream (`stream_file`), relative to the current folder; ``direction`` is
+    ``file`` is a stream (`stream_file`); ``direction`` is
     to-device, to stand for the topside, or from-device, to stand for the vehicle. In the step
     from t to t + h it puts on ``tx`` what began from t to before t + h, as the recorded one did:
     with the same rig around it and the same step, the run is the same.
