@@ -58,11 +58,11 @@ class Pilot:
     def arm(self) -> None:
         """Bring it into position mode, and arm it."""
         deadline, asked = time.monotonic() + READY_S, 0.0
-        while not self.newest or not self.newest["HEARTBEAT"].base_mode & _ARMED:
+        while not (self._has_all() and self.newest["HEARTBEAT"].base_mode & _ARMED):
             if time.monotonic() > deadline:
                 raise TimeoutError(f"it does not arm: {self.texts[-5:]}")
             self.take_in()
-            if self.newest and time.monotonic() - asked > 2.0:
+            if self._has_all() and time.monotonic() - asked > 2.0:
                 asked = time.monotonic()
                 self._command(mavutil.mavlink.MAV_CMD_DO_SET_MODE, 1.0, _POSITION_MODE)
                 self._command(mavutil.mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1.0, 0.0)
@@ -81,6 +81,9 @@ class Pilot:
             x, y, z = (max(-1.0, min(1.0, _PER_METRE * each)) for each in wanted)
             self._axes = (x, y, z)
         raise TimeoutError(f"not at {place}: {self.texts[-5:]}")
+
+    def _has_all(self) -> bool:
+        return self.newest.keys() >= {"HEARTBEAT", "LOCAL_POSITION_NED", "ATTITUDE"}
 
     def _command(self, number: int, first: float, second: float) -> None:
         self._link.mav.command_long_send(1, 1, number, 0, first, second, 0, 0, 0, 0, 0)
