@@ -34,6 +34,7 @@ from parts import (  # noqa: E402, F401  each registers its parts
     ships,
     tether,
     vehicles,
+    videoray_actuation,
     videoray_control,
     videoray_stream,
 )

@@ -456,6 +456,7 @@ SLOW = {
     "hydrone-stated",
     "hydrone-sensitivity",
     "hydrone-sensitivity-more",
+    "videoray-actuation",
     "hydrone-three-variants",
     "vehicles-campaign",
     *(f"videoray-rejection{part}" for part in ("", "-table75", "-table81")),
