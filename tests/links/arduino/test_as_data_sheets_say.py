@@ -1,5 +1,7 @@
 """Pins, UARTs, I2C, ADC and timers as the data sheets have them."""
 
+import math
+
 import pytest
 
 from seatrial.errors import SimulationError
@@ -79,6 +81,29 @@ void loop() {}
     with Bench(write_sketch(tmp_path, source), backend, wires="0x1E hmc5883l", **field) as bench:
         said = [int(number) for number in bench.run(0.2).split()]
     assert said == [452, 421, 452, -452, -421, -452, 78, 39, 0]  # x, z, y
+
+
+def test_without_a_field_there_is_the_earths_at_home(tmp_path):
+    """WMM2025 at 42.283 N 71.35 W, 1000 m, 4 July 2028: 20139, -4905, 46532 nT (MathWorks)."""
+    source = """
+#include <Wire.h>
+int two() { byte high = Wire.read(); return (int)(high << 8 | Wire.read()); }
+void setup() {
+  Serial.begin(115200); Wire.begin();
+  Wire.beginTransmission(0x1E); Wire.write(2); Wire.write(0); Wire.endTransmission();
+  delay(100);
+  Wire.beginTransmission(0x1E); Wire.write(3); Wire.endTransmission();
+  Wire.requestFrom(0x1E, 6);
+  for (int i = 0; i < 3; i++) { Serial.print(two()); Serial.print(' '); }
+}
+void loop() {}
+"""
+    place = {"latitude": math.radians(42.283), "longitude": math.radians(-71.35)}
+    home = {**place, "altitude": 1000.0, "date": "2028-07-04"}
+    with Bench(write_sketch(tmp_path, source), "host", wires="0x1E hmc5883l", **home) as bench:
+        said = [int(number) for number in bench.run(0.3).split()]
+    counts = [each * 1e-5 * 1090 for each in (20139, 46532, -4905)]  # x, z, y; 1090 per gauss
+    assert said == pytest.approx(counts, abs=1.0)
 
 
 @pytest.mark.parametrize("mcu", ["atmega2560", "atmega328p"])

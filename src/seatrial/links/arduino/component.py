@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, ClassVar
 
 from ...component import NS, Component
 from ...craft.kinematics import to_body
 from ...errors import InputError
+from ..earth_field import earth_field
 from ..endpoints.endpoint import Endpoint
 from ..endpoints.url import other_end
+from ..parameter_validation import start_us
 from ..text import Inbox, Outbox
 from .board import DUTY, EDGE, EEPROM, RESET, UART, WIDTH, Board, Event, Inputs
 from .build import build_host
@@ -46,8 +49,9 @@ class Arduino(ArduinoPorts):
     ``wind_speed``. ``PIN vane V``: a potentiometer, V volts a full turn, that points to where the
     wind comes from, clockwise from the bow: V (wind_angle + pi) / 2 pi. ``ADDRESS mpu6050`` has
     ``gyro`` and ``accelerometer``, ``hmc5883l`` the ``magnetic_field`` in body axes by
-    ``attitude``, ``ms5837`` (30BA) the pressure at ``depth`` under one atmosphere. ``PIN soft_rx
-    N`` and ``PIN soft_tx N``: the line of UART N is at these pins, for SoftwareSerial.
+    ``attitude`` (if 0, that of the World Magnetic Model at the home, at the start), ``ms5837``
+    (30BA) the pressure at ``depth`` under one atmosphere. ``PIN soft_rx N`` and ``PIN soft_tx N``:
+    the line of UART N is at these pins, for SoftwareSerial.
 
     **Time.** Inputs apply from the beginning of the step on. What happens on pins and lines is
     stamped with its cycle; an output at t has what happened before t. Bytes that arrive on
@@ -86,6 +90,7 @@ class Arduino(ArduinoPorts):
             there = {*range(mcu.uarts), *(w.number for w in self._wires if w.kind in _SOFT)}
             self._rates = {k: v for k, v in read_uarts(self.uarts).items() if k in there}
             self._eeprom = read_eeprom(self.eeprom, mcu)
+            self._field_n = self._field()
             self._begin()
             self._monitors = open_links(self.monitors, "monitors")
         except InputError as error:
@@ -228,7 +233,7 @@ class Arduino(ArduinoPorts):
             motion = [*self.gyro, *self.accelerometer]
             return [(("V", _GYRO + i), value) for i, value in enumerate(motion)]
         if kind == "hmc5883l":
-            field = to_body(self.attitude, self.magnetic_field)
+            field = to_body(self.attitude, self._field_n)
             return [(("V", _FIELD + i), value) for i, value in enumerate(field)]
         if kind == "ms5837":
             pressure = _ATMOSPHERE + self.water_density * self.gravity * self.depth
@@ -237,6 +242,13 @@ class Arduino(ArduinoPorts):
                 (("V", _TEMPERATURE), self.water_temperature),
             ]
         return []
+
+    def _field(self) -> Sequence[float]:
+        given: Sequence[float] = self.magnetic_field
+        if any(given):
+            return given
+        home = self.latitude, self.longitude, self.altitude
+        return earth_field(*home, start_us(self.date) * 1e-6)
 
     def _channel(self, wire: Wire) -> int:
         return wire.place - MCUS[self.mcu].first_analog

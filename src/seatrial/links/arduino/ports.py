@@ -6,6 +6,7 @@ from typing import ClassVar
 
 from ...component import Component, Input, Output, Parameter, Reachable, Terminal, terminal
 from ...unit_table import STANDARD_GRAVITY
+from ..parameter_validation import start_us
 from ..safe_state_bytes import UNSET, check_safe_state
 from .mcus import MCUS
 from .sketch import read_flags
@@ -72,10 +73,20 @@ class ArduinoPorts(Reachable, Component):
         min=1e-3,
     )
     magnetic_field = Parameter(
-        (2.3e-5, 0.0, 0.0),
+        0.0,
         "T",
-        "field of the earth, north-east-down",
+        "field of the earth, north-east-down; 0: that of the home and date",
         axes=("north", "east", "down"),
+    )
+    latitude = Parameter(0.0, "rad", "of the home, WGS 84", min=-1.5707964, max=1.5707964)
+    longitude = Parameter(0.0, "rad", "of the home, WGS 84", min=-3.1415927, max=3.1415927)
+    altitude = Parameter(0.0, "m", "of the home")
+    date = Parameter(
+        "2026-01-01",
+        "1",
+        "UTC at the start of the run: a day, for its midnight, or an instant",
+        check=start_us,
+        role="start-time",
     )
     water_density = Parameter(1000.0, "kg/m3", "of the water over the pressure sensor", min=0.0)
     gravity = Parameter(STANDARD_GRAVITY, "m/s2", "acceleration of gravity", min=0.0)
