@@ -174,11 +174,13 @@ def test_a_firmware_that_goes_leaves_neutral_and_one_that_comes_again_goes_on(ca
         k = locked(made, peer)
         peer.close()
         others = []
-        threading.Timer(0.2, lambda: others.append(Peer(port_of(made)))).start()
+        comes = threading.Timer(0.2, lambda: others.append(Peer(port_of(made))))
+        comes.start()
         with caplog.at_level(logging.WARNING):
             made.advance(0.01 * k, 0.01)
         assert (made.get("connected"), made.get("armed")) == (True, False)
         assert pulses(made) == [1500, 0, 1520, 0]
+        comes.join(20.0)
         (another,) = others
         another.sense()
         assert another.us == 10_000  # simulated time stood still
