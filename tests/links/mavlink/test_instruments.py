@@ -178,3 +178,24 @@ def test_where_it_goes_is_a_position_target():
     bench.enter("return")
     m = bench.one(number)
     assert (m.lat_int, m.lon_int, m.type_mask) == (-317800000, -522600000, 0xDF8)
+
+
+def test_speed_controllers_report_speed_current_and_charge():
+    bench, number = Bench(), mavlink.MAVLINK_MSG_ID_ESC_TELEMETRY_1_TO_4
+    bench.measure(motor_speeds=(0.0,) * 4, motor_currents=(0.0,) * 4)
+    bench.wait(1.0)
+    result, none = bench.request(number)
+    assert (result, none) == (mavlink.MAV_RESULT_DENIED, [])
+    turns = 50.0 * math.tau  # 3000 rpm
+    bench.measure(
+        voltage=14.8, motor_speeds=(turns, -turns / 2, 0, 0), motor_currents=(7.2, 3.6, 0.0, 0.0)
+    )
+    bench.wait(10.0)
+    m = bench.one(number)
+    assert m.rpm == [3000, 1500, 0, 0]
+    assert m.current == [720, 360, 0, 0]
+    assert m.voltage == [1480] * 4
+    # 7.2 A for 10 s are 20 mA.h.
+    assert m.totalcurrent[0] == pytest.approx(20, abs=1)
+    assert m.totalcurrent[2] == 0
+    assert m.count[0] > 10

@@ -304,6 +304,8 @@ class Mavlink(MavlinkPorts):
             voltage=self.voltage if measured else None,
             current=self.current if measured else None,
             charge=self.charge if measured else None,
+            motor_speeds=tuple(self.motor_speed),
+            motor_currents=tuple(self.motor_current),
             pulses=pulses,
             throttle=self._outputs.throttle(pulses),
             named=tuple(zip(self._value_names, self.named, strict=False)),

@@ -38,6 +38,7 @@ from .settings import Settings
 from .telemetry_board import BoardTelemetry
 from .telemetry_estimator import EstimatorTelemetry
 from .telemetry_motion import MotionTelemetry
+from .telemetry_motors import MotorTelemetry
 from .telemetry_navigation import NavigationTelemetry
 from .telemetry_odometry import OdometryTelemetry
 from .telemetry_sensors import SensorTelemetry
@@ -121,6 +122,7 @@ class Node:
             EstimatorTelemetry(vehicle, transport),
             BoardTelemetry(vehicle, transport),
             NavigationTelemetry(vehicle, transport, lambda: self.goal),
+            MotorTelemetry(vehicle, transport),
             # What the others changed is reported last.
             self.presence,
             StreamService(vehicle, transport, builders, intervals),

@@ -35,6 +35,7 @@ START_MODES = ("hold", "loiter", "auto", "return")
 
 _MANUAL = ("surge", "sway", "yaw", "heave")
 _CHANNELS = tuple(f"ch{number}" for number in range(1, CHANNELS + 1))
+MOTORS = ("m1", "m2", "m3", "m4")
 _NAMED = tuple(f"n{number}" for number in range(1, NAMED_VALUES + 1))
 
 
@@ -143,6 +144,8 @@ class MavlinkPorts(Logging, Reachable, TrueMotion, Sampled):
     voltage = Input("V", "voltage of the battery, 0 if it is not measured", optional=True)
     current = Input("A", "current out of the battery", optional=True)
     charge = Input("1", "share of the battery's charge that is left", start=1.0, optional=True)
+    motor_speed = Input("rad/s", "shaft speeds of motors", axes=MOTORS, optional=True)
+    motor_current = Input("A", "currents of motors", axes=MOTORS, optional=True)
     pulse = Input(
         "s",
         "servo pulses, 0 for none",
@@ -240,5 +243,9 @@ class MavlinkPorts(Logging, Reachable, TrueMotion, Sampled):
             | {name: f"share.{name}" for name in SHARED}
         ),
         "battery": terminal("voltage", "current", "charge"),
+        "motors": Terminal(
+            {f"speed{n}": f"motor_speed.{motor}" for n, motor in enumerate(MOTORS, 1)}
+            | {f"current{n}": f"motor_current.{motor}" for n, motor in enumerate(MOTORS, 1)}
+        ),
         "failures": Terminal({unit: f"failure.{unit}" for unit in UNITS}),
     }

@@ -92,6 +92,9 @@ class Estimates:
     current: float | None = None
     charge: float | None = None
     """Share of the battery that is left, 0 to 1."""
+    motor_speeds: tuple[float, ...] = ()
+    motor_currents: tuple[float, ...] = ()
+    """As many of both; motors that nothing is known of are 0."""
     pulses: tuple[float, ...] = (0.0,) * CHANNELS
     """Servo pulses; 0 is an output that is not used."""
     throttle: float | None = None
