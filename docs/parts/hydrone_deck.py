@@ -29,9 +29,9 @@ def _runs(name: str) -> Iterator[tuple[dict[str, Any], Run]]:
 
 @part("hydrone-deck-limits")
 def hydrone_deck_limits() -> str:
-    """The campaign hydrone-deck-limits."""
+    """The campaign hydrone-deck-pads."""
     rows = []
-    for chosen, run in _runs("hydrone-deck-limits"):
+    for chosen, run in _runs("hydrone-deck-pads"):
         phase, signals, t = chosen["choices.phase"], run.signals, run.time
         # A take-off begins with the craft at rest unloaded, which sinks under the drone at first.
         standing = (t >= 2.0) & (t < (SPOOL_UP if phase == "takeoff" else math.inf))

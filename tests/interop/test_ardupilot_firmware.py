@@ -164,12 +164,14 @@ stop    = "{stop} s"
 [record]
 signals = ["vehicle.motion.*", "marks.*", "mission.station.*"]
 every   = "200 ms"
-[[events]]
+[[{table}]]
 at  = "{at} s"
-set = {{ {what} }}
+{what}
 """
 HOLD, AUTO_ROVER, AUTO_SUB = 4, 10, 3
-GNSS, COMPASS = (f'"mission.station.without.{name}" = true' for name in ("gnss", "compass"))
+GNSS, COMPASS = (
+    f'set = {{ "mission.station.without.{name}" = true }}' for name in ("gnss", "compass")
+)
 
 
 def after(what: str, vehicle: str, at: float, stop: float, folder: Path) -> Run:
@@ -180,6 +182,7 @@ def after(what: str, vehicle: str, at: float, stop: float, folder: Path) -> Run:
     trial.write_text(
         FAULT.format(
             vehicle=vehicle, program=program, at=at, stop=stop, what=what, speedup=SPEEDUP,
+            table="events" if what.startswith("set") else "faults",
             step="2.5 ms" if sub else "10 ms",
         )
     )  # fmt: skip
@@ -211,14 +214,14 @@ def test_without_compasses_the_hydrone_comes_back(tmp_path: Path) -> None:
 
 
 def test_with_one_thruster_the_otter_lies_still_and_armed(tmp_path: Path) -> None:
-    run = after('"vehicle.port_propeller.fault" = "off"', "otter", 80, 150, tmp_path)
+    run = after('where = "vehicle.port_propeller"\nwhat = "off"', "otter", 80, 150, tmp_path)
     assert at_the_end(run) == (AUTO_ROVER, True, False)
     assert run.signals["marks.passed"][-1] == 1
     assert abs(run.signals["vehicle.hull.velocity.u"][-1]) < 0.05
 
 
 def test_with_a_stuck_rudder_the_mariner_circles(tmp_path: Path) -> None:
-    run = after('"vehicle.machine.fault" = "stuck"', "mariner", 700, 1900, tmp_path)
+    run = after('where = "vehicle.machine"\nwhat = "stuck"', "mariner", 700, 1900, tmp_path)
     assert at_the_end(run) == (AUTO_ROVER, True, False)
     turned = run.signals["vehicle.ship.attitude.psi"]
     assert abs(turned[-1] - turned[np.argmin(abs(run.time - 700))]) > 4.0
@@ -234,6 +237,6 @@ def test_without_gnss_the_bluerov2_drifts_off_at_its_depth(tmp_path: Path) -> No
 
 
 def test_with_a_thruster_less_the_bluerov2_goes_on(tmp_path: Path) -> None:
-    run = after('"vehicle.thrusters.t1.fault" = "off"', "bluerov2", 70, 160, tmp_path)
+    run = after('where = "vehicle.thrusters.t1"\nwhat = "off"', "bluerov2", 70, 160, tmp_path)
     assert at_the_end(run) == (AUTO_SUB, True, False)
     assert run.signals["marks.passed"][-1] >= 3

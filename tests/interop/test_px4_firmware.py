@@ -6,10 +6,13 @@ interface: each run has a network of its own.
 
 from __future__ import annotations
 
+import fcntl
 import json
 import os
 import subprocess
 import sys
+import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -29,6 +32,16 @@ if not can_be_alone():
     pytest.skip("no network of one's own here", allow_module_level=True)
 
 NAME = "autopilot.sitl.px4"
+
+
+@pytest.fixture(autouse=True)
+def alone_on_this_machine() -> Iterator[None]:
+    """Wait for the other workers: PX4 locks its instance for the whole machine."""
+    with (Path(tempfile.gettempdir()) / "seatrial-px4.lock").open("w") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        yield
+
+
 DEPTHS = ((10, 0, 3), (10, 10, 5), (0, 10, 5), (0, 0, 2))
 """Places north, east and deep, m."""
 BACK = {"hydrone": 210.0, "otter": 160.0}

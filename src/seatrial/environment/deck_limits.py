@@ -52,6 +52,7 @@ class DeckLimits(Component):
     tipping = Output("1", "share of the moment at which it tips")
     bow_immersion = Output("m", "bow below where it floats unloaded")
 
+    exercised: ClassVar = {"bow": [0.6, 0.0, 0.0]}
     terminals: ClassVar = {"motion": terminal("position", "attitude", "rates", "acceleration")}
     feedthrough: ClassVar = {
         **dict.fromkeys(
