@@ -11,7 +11,6 @@ import json
 import os
 import subprocess
 import sys
-import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -35,9 +34,9 @@ NAME = "autopilot.sitl.px4"
 
 
 @pytest.fixture(autouse=True)
-def alone_on_this_machine() -> Iterator[None]:
+def alone_on_this_machine(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     """Wait for the other workers: PX4 locks its instance for the whole machine."""
-    with (Path(tempfile.gettempdir()) / "seatrial-px4.lock").open("w") as file:
+    with (tmp_path_factory.getbasetemp().parent / "px4.lock").open("w") as file:
         fcntl.flock(file, fcntl.LOCK_EX)
         yield
 
