@@ -33,6 +33,7 @@ LATER = {
     "hydrone": {
         "guidance.depth_wanted mavlink.nav_depth",
         "compass.valid heading_hold.heading_valid",
+        *(f"{side}_thruster.{what} mavlink.motor_{what}.m{n}" for n, side in enumerate(("port", "starboard"), 1) for what in ("speed", "current")),
     },
     "mariner": {
         "guidance.depth_wanted mavlink.nav_depth",
