@@ -24,6 +24,9 @@ from ..fmi.export import build_fmu
 from ..fmi.instance import Value, Variable
 from ..fmi.load import load_fmu, open_instance
 from ..fmi.loaded import LoadedFmu
+from ..fmi.native.compiler import TARGETS, checked_platforms
+from ..fmi.native.equations import why_python
+from ..fmi.native.export import build_native_fmu
 from ..fmi.osp import osp_file, osp_xml
 from ..fmi.source import ComponentSource, find_source, named_sources, shipped_sources
 from .answer import answer
@@ -62,16 +65,36 @@ def build(
     osp: Annotated[
         bool, typer.Option("--osp", help="Write the OspModelDescription.xml of each beside it.")
     ] = False,
+    native: Annotated[
+        bool, typer.Option("--native", help="Plants in C, which need no Python where they run.")
+    ] = False,
+    platforms: Annotated[
+        str | None,
+        typer.Option(help=f"With --native, separated by commas: {', '.join(TARGETS)}."),
+    ] = None,
 ) -> None:
     """Build .fmu files that any FMI 2.0 tool loads."""
-    for name in names or list(shipped_sources()):
+    if platforms and not native:
+        raise InputError("--platforms is of --native: other FMUs carry all platforms they run on")
+    targets = checked_platforms(platforms or "linux64") if native else []
+    for name in names or _default_names(native):
         source = _buildable(name)
         values = _start_values(source, parameters, variant) if parameters else None
-        path = build_fmu(source, out / f"{source.name}.fmu", values)
+        path = out / f"{source.name}.fmu"
+        if native:
+            build_native_fmu(source, path, targets, values)
+        else:
+            build_fmu(source, path, values)
         answer.result.setdefault("files", []).append(str(path))
         console.print(f"{path}  ({path.stat().st_size / 1000:.0f} kB)", soft_wrap=True)
         if osp:
             _write_osp(source, out)
+
+
+def _default_names(native: bool) -> list[str]:
+    """Return the shipped components that can be built."""
+    sources = shipped_sources()
+    return [n for n, s in sources.items() if not native or not why_python(s.component_class())]
 
 
 def _write_osp(source: ComponentSource, folder: Path) -> None:

@@ -1,0 +1,1 @@
+"""Plants to FMUs in C, which need no Python where they run."""
