@@ -24,6 +24,7 @@ from seatrial.fmi.native.equations import why_python
 from seatrial.fmi.native.export import build_native_fmu
 from seatrial.fmi.source import find_source
 from seatrial.plant import Plant, State
+from tests.command import seatrial
 
 pytest.importorskip("ziglang")
 
@@ -89,7 +90,10 @@ def test_most_plants_are_native() -> None:
     assert "gnss" not in NATIVE
 
 
-@pytest.mark.parametrize("name", NATIVE)
+@pytest.mark.parametrize(
+    "name",  # the compiler takes many seconds for the largest
+    [n if n == "marine-craft" else pytest.param(n, marks=pytest.mark.long) for n in NATIVE],
+)
 def test_same_numbers_to_the_bit(name: str, tmp_path: Path) -> None:
     start_values = whole(name)
     slave = Slave(built(name, tmp_path, start_values), tmp_path)
@@ -118,6 +122,29 @@ def test_same_numbers_to_the_bit(name: str, tmp_path: Path) -> None:
     assert len(moved) == 60
     slave.fmu.terminate()
     slave.fmu.freeInstance()
+
+
+def test_a_shipped_trial_has_the_same_record(tmp_path: Path) -> None:
+    """A drone lands on a native hull, the rest of the rig in process, parameters by the rig."""
+    harness = Path(__file__).parents[2] / "harness"
+    build = ["fmu", "build", "marine-craft", "--native", "--parameters", "hydrone"]
+    assert seatrial(*build, cwd=tmp_path).returncode == 0
+    rig = (harness / "rigs" / "hydrone-open-loop.toml").read_text("utf-8")
+    python = '{ fmu = "marine-craft", parameters = "hydrone" }'
+    assert python in rig
+    native = '{ fmu = "marine-craft.fmu", parameters = "hydrone.marine-craft" }'
+    (tmp_path / "rig.toml").write_text(rig.replace(python, native), "utf-8")
+    trial = (harness / "trials" / "hydrone-open-landing.toml").read_text("utf-8")
+    trial = trial.replace('"hydrone-open-loop"', '"rig.toml"')
+    (tmp_path / "trial.toml").write_text(trial, "utf-8")
+    records = []
+    for name in ("trial.toml", "hydrone-open-landing"):
+        out = f"run-{len(records)}"
+        done = seatrial("run", name, "--out", out, cwd=tmp_path)
+        assert done.returncode == 0, done.stderr
+        records.append((tmp_path / out / "signals.csv").read_bytes())
+    assert records[0].count(b"\n") > 2000
+    assert records[0] == records[1]
 
 
 class Spring(Plant):
@@ -232,6 +259,7 @@ def test_a_host_without_python(tmp_path: Path) -> None:
     assert (run.returncode, run.stdout, run.stderr) == (0, "stepped to 1 s\n", "")
 
 
+@pytest.mark.long
 def test_sanitizers_find_nothing(tmp_path: Path) -> None:
     """The same sources with another compiler, its warnings and its checks at run time."""
     path = built("rov", tmp_path)
