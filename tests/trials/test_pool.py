@@ -12,6 +12,7 @@ import pytest
 
 from seatrial.errors import InputError
 from seatrial.trials.campaign import load_campaign, run_campaign
+from seatrial.trials.cases import changed_cases, run_cases
 from seatrial.trials.pool import Pool
 from tests.cli.test_stop import SEATRIAL, wait_for
 
@@ -94,6 +95,44 @@ def test_one_that_dies_takes_none_with_it(cases, tmp_path):
     _, results = run_campaign(campaign, tmp_path / "out", engine="direct", jobs=2)
     assert [result.status for _, result in results] == ["complete", "failed", *["complete"] * 2]
     assert "7" in str(results[1][1].error)
+
+
+def test_cases_of_a_list_of_settings_come_in_its_order(cases, tmp_path):
+    (trial,) = cases(NUMBERS).trials
+    settings = [{"case.number": n, "case.way": "wait" if n == 5 else "run"} for n in (5, 1, 4)]
+    listed, ended = changed_cases(trial, settings, "here"), []
+
+    def note(number, _result):
+        ended.append(number)
+        if len(ended) == 2:
+            (tmp_path / "seen/go").touch()
+
+    running = run_cases(listed, lambda: tmp_path, engine="direct", jobs=2, ended=note)
+    results = list(running)
+    assert ended == [1, 2, 0]
+    assert [(number, result.passed) for number, result in results] == [
+        (0, False),
+        (1, True),
+        (2, False),
+    ]
+    assert [result.folder.name for _, result in results] == [
+        "01-t-number-5-way-wait",
+        "02-t-number-1-way-run",
+        "03-t-number-4-way-run",
+    ]
+    unknown = changed_cases(trial, [{"case.nothing": 1}], "here")
+    with pytest.raises(InputError, match=r"here.*nothing"):
+        next(run_cases(unknown, lambda: tmp_path / "never", engine="direct"))
+
+
+def test_whoever_has_seen_enough_cases_closes_the_iterator(cases, tmp_path):
+    (trial,) = cases(NUMBERS).trials
+    ways = ["run", *["wait"] * 5]
+    listed = changed_cases(trial, [{"case.way": way} for way in ways], "here")
+    running = run_cases(listed, lambda: tmp_path / "out", engine="direct", jobs=2)
+    assert next(running)[0] == 0
+    running.close()
+    assert len(list((tmp_path / "out").iterdir())) <= 2
 
 
 def test_what_programs_outside_connect_to_runs_alone(cases, tmp_path):

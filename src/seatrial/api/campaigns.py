@@ -122,8 +122,9 @@ def run_campaign(
     `load_campaign_result`.
     """
     from ..links.hardware import confined
-    from ..trials.campaign import Case, load_campaign
+    from ..trials.campaign import load_campaign
     from ..trials.campaign import run_campaign as run
+    from ..trials.cases import Case
     from ..trials.run import Result
 
     loaded = load_campaign(str(campaign))

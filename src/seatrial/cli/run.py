@@ -13,8 +13,9 @@ from ..cosim.fault_entry import read_fault
 from ..cosim.system import Engine
 from ..errors import InputError, SimulationError
 from ..links.hardware import allow_devices, allow_network
-from ..trials.campaign import Campaign, Case, load_campaign, run_campaign
+from ..trials.campaign import Campaign, load_campaign, run_campaign
 from ..trials.campaign_report import write_campaign_report, write_case_report
+from ..trials.cases import Case
 from ..trials.hooks import Hooks
 from ..trials.report import write_report
 from ..trials.run import Result

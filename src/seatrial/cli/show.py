@@ -17,7 +17,7 @@ from ..trials.readable import number
 from .answer import answer
 
 if TYPE_CHECKING:
-    from ..trials.campaign import Case
+    from ..trials.cases import Case
     from ..trials.run import Result
     from ..trials.verdict import Verdict
 

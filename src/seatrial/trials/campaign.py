@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -15,10 +14,10 @@ from ..cosim.fault_entry import FaultEntry
 from ..cosim.files import FileModel, Source, find_file, read_toml, validated
 from ..cosim.system import Engine
 from ..errors import InputError
+from .cases import Case, case_folders, case_name, run_cases
 from .hooks import Hooks
 from .output import claim_folder, write_json
-from .pool import Pool, cores
-from .resuming import kept_results, set_aside
+from .resuming import kept_results
 from .run import Result
 from .supervised import Page
 from .trial import Trial, load_trial
@@ -52,15 +51,6 @@ class CampaignFile(FileModel):
 
 
 @dataclass(frozen=True)
-class Case:
-    """One run of a campaign."""
-
-    name: str
-    trial: Trial
-    set: dict[str, Any]
-
-
-@dataclass(frozen=True)
 class Campaign:
     """A campaign file, read, with its trials."""
 
@@ -84,7 +74,7 @@ class Campaign:
             varied = base.changed(chosen, f"{origin}: grid")
             for named, failing in self._failing(varied):
                 found = {**chosen, **named}
-                yield Case(_name(trial, found), failing, {**common, **found})
+                yield Case(case_name(trial, found), failing, {**common, **found})
                 yield from self._scaled(failing, common, found)
 
     def _failing(self, trial: Trial) -> Iterator[tuple[dict[str, str], Trial]]:
@@ -101,7 +91,7 @@ class Campaign:
             for factor in factors:
                 scaled = trial.scaled(key, factor, f"{self.read_from.path}: scale")
                 shown = {**chosen, f"{key} times": factor}
-                yield Case(_name(trial, shown), scaled, {**common, **shown})
+                yield Case(case_name(trial, shown), scaled, {**common, **shown})
 
 
 def load_campaign(name: str) -> Campaign:
@@ -146,33 +136,30 @@ def run_campaign(
     any case, and StoppedError, before the first one runs.
     """
     cases = campaign.cases()
-    folders = [f"{n:02d}-{_slug(case.name)}" for n, case in enumerate(cases, 1)]
     left = out if resume and out is not None and (out / INDEX).is_file() else None
-    results: dict[int, Result] = {}
+    kept: dict[int, Result] = {}
     if left is not None:
+        folders = case_folders(cases)
         known = {f: (case.name, case.set) for f, case in zip(folders, cases, strict=True)}
-        results = {folders.index(r.folder.name): r for r in kept_results(left / INDEX, known)}
-    shown = 0
+        kept = {folders.index(r.folder.name): r for r in kept_results(left / INDEX, known)}
+    results = dict(kept)
+    folder = Path()
 
-    def show() -> None:
-        nonlocal shown
-        while shown in results:
-            done(cases[shown], results[shown])
-            shown += 1
-
-    with Pool([case.trial for case in cases], engine, hooks, jobs or cores(), page) as pool:
-        pool.check()
+    def begin() -> Path:
+        nonlocal folder
         folder = left or claim_folder(out, campaign.read_from.name, INDEX)
-        waiting = {n: folder / f for n, f in enumerate(folders) if n not in results}
-        set_aside(list(waiting.values()))
         _write_index(campaign, folder, cases, results)
-        show()
-        for number, result in pool.run(waiting):
-            results[number] = result
-            _write_index(campaign, folder, cases, results)
-            show()
-    for number in sorted(n for n in results if n > shown):  # of a campaign that was stopped
-        done(cases[number], results[number])
+        return folder
+
+    def ended(number: int, result: Result) -> None:
+        results[number] = result
+        _write_index(campaign, folder, cases, results)
+
+    finished = run_cases(
+        cases, begin, engine=engine, jobs=jobs, page=page, hooks=hooks, kept=kept, ended=ended
+    )
+    for number, result in finished:
+        done(cases[number], result)
     return folder, [(cases[n], results[n]) for n in sorted(results)]
 
 
@@ -196,16 +183,3 @@ def _write_index(
     ]
     index = {"name": campaign.read_from.name, "title": campaign.file.title, "cases": rows}
     write_json(out / INDEX, index)
-
-
-def _name(trial: Trial, chosen: dict[str, Any]) -> str:
-    short = [key.rpartition(".")[2] for key in chosen]
-    parts = [
-        f"{name if short.count(name) == 1 else key} {value}"
-        for name, (key, value) in zip(short, chosen.items(), strict=True)
-    ]
-    return ", ".join([trial.name, *parts])
-
-
-def _slug(name: str) -> str:
-    return re.sub(r"[^A-Za-z0-9.]+", "-", name).strip("-")[:80]
