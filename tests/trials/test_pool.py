@@ -1,5 +1,6 @@
 """Cases of a campaign side by side: the same results, the same ends, and what goes on."""
 
+import itertools
 import json
 import os
 import signal
@@ -11,9 +12,11 @@ from pathlib import Path
 import pytest
 
 from seatrial.errors import InputError
+from seatrial.trials import campaign as campaigns
 from seatrial.trials.campaign import load_campaign, run_campaign
-from seatrial.trials.cases import changed_cases, run_cases
+from seatrial.trials.cases import case_folders, changed_cases, run_cases
 from seatrial.trials.pool import Pool
+from seatrial.trials.run import Result
 from tests.cli.test_stop import SEATRIAL, wait_for
 
 COMPONENT = '''
@@ -184,6 +187,37 @@ def test_a_campaign_that_was_stopped_goes_on(cases, tmp_path):
     assert list((tmp_path / "out").glob("0*.stopped-1"))
     run_campaign(campaign, tmp_path / "once", engine="direct", jobs=1)
     assert left["campaign.json"] == content(tmp_path / "once")["campaign.json"]
+
+
+def test_an_index_costs_no_more_per_case_in_a_long_campaign(cases, tmp_path, monkeypatch):
+    campaign = cases(f'"case.number" = {[*range(400)]}\n')
+    sizes, ends = [], []
+
+    def ended_at_once(cases, folder, *, kept, ended, **_how):
+        assert not kept
+        below = folder()
+        for number, name in enumerate(case_folders(cases)):
+            result = Result(below / name, "complete", None, [], [])
+            ended(number, result)
+            yield number, result
+            ends.append(number)
+            if number == 350:
+                raise KeyboardInterrupt
+
+    write = campaigns.write_json
+
+    def counted(path, content):
+        write(path, content)
+        sizes.append(len(content["cases"]))
+
+    monkeypatch.setattr(campaigns, "run_cases", ended_at_once)
+    monkeypatch.setattr(campaigns, "write_json", counted)
+    with pytest.raises(KeyboardInterrupt):
+        run_campaign(campaign, tmp_path / "out", engine="direct")
+    assert sizes[:101] == [*range(101)]
+    assert all(b - a <= 1 + 0.01 * a for a, b in itertools.pairwise(sizes))
+    assert len(sizes) < 250
+    assert sizes[-1] == len(ends) == 351
 
 
 def test_another_campaign_does_not_go_on(cases, tmp_path):

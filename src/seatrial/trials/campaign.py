@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import closing
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -23,6 +24,11 @@ from .supervised import Page
 from .trial import Trial, load_trial
 
 INDEX = "campaign.json"
+_UNWRITTEN = 0.01
+"""Share of the cases in the index that may have ended since it was written, while others run.
+
+It bounds what is written in all by some hundred times the index, however many cases there are.
+"""
 
 
 class TrialEntry(FileModel):
@@ -144,22 +150,34 @@ def run_campaign(
         kept = {folders.index(r.folder.name): r for r in kept_results(left / INDEX, known)}
     results = dict(kept)
     folder = Path()
+    written = -1
+
+    def write() -> None:
+        nonlocal written
+        _write_index(campaign, folder, cases, results)
+        written = len(results)
 
     def begin() -> Path:
         nonlocal folder
         folder = left or claim_folder(out, campaign.read_from.name, INDEX)
-        _write_index(campaign, folder, cases, results)
+        write()
         return folder
 
     def ended(number: int, result: Result) -> None:
         results[number] = result
-        _write_index(campaign, folder, cases, results)
+        if len(results) - written > written * _UNWRITTEN:
+            write()
 
     finished = run_cases(
         cases, begin, engine=engine, jobs=jobs, page=page, hooks=hooks, kept=kept, ended=ended
     )
-    for number, result in finished:
-        done(cases[number], result)
+    try:
+        with closing(finished):
+            for number, result in finished:
+                done(cases[number], result)
+    finally:
+        if 0 <= written < len(results):
+            write()
     return folder, [(cases[n], results[n]) for n in sorted(results)]
 
 

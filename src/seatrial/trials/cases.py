@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -60,7 +60,7 @@ def run_cases(
     hooks: Hooks | None = None,
     kept: Mapping[int, Result] | None = None,
     ended: Callable[[int, Result], None] = lambda _number, _result: None,
-) -> Iterator[tuple[int, Result]]:
+) -> Generator[tuple[int, Result], None, None]:
     """Run ``cases``, and yield index (from 0) and result of each, in the order of the cases.
 
     All cases are checked before the first one runs; then ``folder`` is called, once, and returns
