@@ -366,6 +366,37 @@ def test_a_folder_with_something_in_it_is_never_written_to(bench, tmp_path: Path
     assert [p.name for p in (tmp_path / "run").iterdir()] == ["precious"]
 
 
+def test_a_design_is_drawn_for_every_combination(bench, write, tmp_path: Path) -> None:
+    bench()
+    path = write(
+        "campaign.toml",
+        'trials = ["trial.toml"]\n[grid]\n"boat.mode" = ["calm", "storm"]\n'
+        '[design]\nkind = "latin-hypercube"\ncount = 3\n'
+        '[design.vary]\n"boat.push" = { uniform = ["0 N", "3 N"] }\n',
+    )
+    run_campaign(load_campaign(str(path)), tmp_path / "out", engine="direct")
+    index = json.loads((tmp_path / "out" / "campaign.json").read_text())
+    settings = [case["set"] for case in index["cases"]]
+    assert [each["boat.mode"] for each in settings] == ["calm"] * 3 + ["storm"] * 3
+    pushes = [float(each["boat.push"].removesuffix(" N")) for each in settings]
+    assert pushes[:3] == pushes[3:]
+    assert sorted(map(int, pushes[:3])) == [0, 1, 2]
+
+
+def test_a_key_is_drawn_or_in_the_grid(bench, write, tmp_path: Path) -> None:
+    bench()
+    path = write(
+        "campaign.toml",
+        'trials = ["trial.toml"]\n[grid]\n"boat.push" = ["0 N"]\n'
+        '[design]\nkind = "sobol"\ncount = 2\n'
+        '[design.vary]\n"boat.push" = { uniform = ["0 N", "3 N"] }\n',
+    )
+    with pytest.raises(
+        InputError, match=r"campaign.toml: design: vary: boat.push is a key of grid"
+    ):
+        run_campaign(load_campaign(str(path)), tmp_path / "out", engine="direct")
+
+
 def test_a_campaign_runs_every_combination_and_each_scaling(bench, write, tmp_path: Path) -> None:
     bench()
     path = write(

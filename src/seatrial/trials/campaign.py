@@ -16,6 +16,7 @@ from ..cosim.files import FileModel, Source, find_file, read_toml, validated
 from ..cosim.system import Engine
 from ..errors import InputError
 from .cases import Case, case_folders, case_name, run_cases
+from .designs import Design, drawn
 from .hooks import Hooks
 from .output import claim_folder, write_json
 from .resuming import kept_results
@@ -42,7 +43,8 @@ class TrialEntry(FileModel):
 class CampaignFile(FileModel):
     """The content of a campaign file.
 
-    Every combination of ``grid`` values, and of ``faults``, is one case of every trial. With
+    Every combination of ``grid`` values, and of ``faults``, is one case of every trial; with
+    ``design``, each combination is run over all that it draws. With
     ``scale``, each case is run as it is and then with one parameter at a time multiplied by each
     factor.
     """
@@ -54,6 +56,7 @@ class CampaignFile(FileModel):
     faults: dict[str, list[FaultEntry]] = Field(default_factory=dict)
     """Faults by the names of cases: each is one more value of every combination."""
     scale: dict[str, list[float]] = Field(default_factory=dict)
+    design: Design | None = None
 
 
 @dataclass(frozen=True)
@@ -75,13 +78,27 @@ class Campaign:
         own = TrialEntry(trial=entry) if isinstance(entry, str) else entry
         common, grid = {**self.file.set, **own.set}, {**self.file.grid, **own.grid}
         base = trial.changed(common, f"{origin}: set")
-        for values in itertools.product(*grid.values()):
-            chosen = dict(zip(grid, values, strict=True))
-            varied = base.changed(chosen, f"{origin}: grid")
+        for chosen, where in self._chosen(grid, origin):
+            varied = base.changed(chosen, where)
             for named, failing in self._failing(varied):
                 found = {**chosen, **named}
                 yield Case(case_name(trial, found), failing, {**common, **found})
                 yield from self._scaled(failing, common, found)
+
+    def _chosen(
+        self, grid: Mapping[str, list[Any]], origin: str
+    ) -> Iterator[tuple[dict[str, Any], str]]:
+        """Yield the settings of each case of grid and design, and where they are written."""
+        design, where = self.file.design, f"{origin}: grid"
+        rows: list[dict[str, Any]] = [{}]
+        if design is not None:
+            where = f"{origin}: grid and design"
+            if twice := design.vary.keys() & grid.keys():
+                raise InputError(f"{origin}: design: vary: {min(twice)} is a key of grid too")
+            rows = drawn(design, f"{origin}: design")
+        for values in itertools.product(*grid.values()):
+            for row in rows:
+                yield {**dict(zip(grid, values, strict=True)), **row}, where
 
     def _failing(self, trial: Trial) -> Iterator[tuple[dict[str, str], Trial]]:
         """Yield the trial with the faults of each name; without any, as it is."""

@@ -1,0 +1,121 @@
+"""Distributions as a campaign file says them: ``{ normal = ["22 kg", "1 kg"] }``."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from pydantic import Field
+from scipy import special
+
+from ..cosim.files import FileModel
+from ..errors import InputError
+from ..units import conversion
+
+Written = str | float | int
+Inverse = Callable[[np.ndarray], list[Any]]
+_FORMS = ("normal", "uniform", "lognormal", "triangular", "integers")
+_PARTS = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S.*?)?\s*$")
+
+
+class Distribution(FileModel):
+    """One of the forms, and for the numbers limits to cut it at."""
+
+    normal: list[Written] | None = Field(default=None, min_length=2, max_length=2)
+    uniform: list[Written] | None = Field(default=None, min_length=2, max_length=2)
+    lognormal: list[Written] | None = Field(default=None, min_length=2, max_length=2)
+    triangular: list[Written] | None = Field(default=None, min_length=3, max_length=3)
+    integers: list[int] | None = Field(default=None, min_length=2, max_length=2)
+    between: list[Written] | None = Field(default=None, min_length=2, max_length=2)
+
+
+def read_distribution(entry: Distribution, origin: str) -> Inverse:
+    """Return the inverse of the cumulative distribution: probabilities in (0, 1) to settings.
+
+    normal: mean, standard deviation; lognormal: those of the quantity itself, not of its logarithm;
+    uniform: low, high; triangular: low, mode, high; integers: first, last, all alike. ``between``
+    cuts off what is outside. Settings are text in the unit that the first number has, or numbers
+    if none has a unit. Raises InputError.
+    """
+    given = [form for form in _FORMS if getattr(entry, form) is not None]
+    if len(given) != 1:
+        found = ", ".join(given) or "none"
+        raise InputError(f"{origin}: exactly one of {', '.join(_FORMS)} is needed, found {found}")
+    form = given[0]
+    here = f"{origin}: {form}"
+    written = getattr(entry, form)
+    if form == "integers":
+        return _integers(written, entry, here)
+    numbers, unit = _numbers([*written, *(entry.between or [])], form == "normal", here)
+    law = _law(form, numbers[: len(written)], here)
+    low, high = 0.0, 1.0
+    if entry.between:
+        first, last = numbers[len(written) :]
+        low, high = float(law.cdf(first)), float(law.cdf(last))
+        if not high > low:
+            raise InputError(f"{origin}: between: nothing of it lies there, found {entry.between}")
+
+    def inverse(probability: np.ndarray) -> list[Any]:
+        values = law.ppf(low + (high - low) * probability)
+        if entry.between:
+            values = np.clip(values, first, last)
+        return [f"{value!r} {unit}" if unit else value for value in values.tolist()]
+
+    return inverse
+
+
+def _integers(written: list[int], entry: Distribution, here: str) -> Inverse:
+    first, last = written
+    if last < first or entry.between:
+        raise InputError(f"{here}: first and last, without between, are needed, found {written}")
+    return lambda p: [first + int(k) for k in np.floor(p * (last - first + 1)).tolist()]
+
+
+def _numbers(written: list[Written], spread: bool, here: str) -> tuple[list[float], str]:
+    """Return the numbers in the unit of the first; a spread has no offset (1 degC is 1 K)."""
+    parts = [_PARTS.match(str(each)) for each in written]
+    for each, part in zip(written, parts, strict=True):
+        if isinstance(each, bool) or part is None:
+            raise InputError(f"{here}: {each!r} is not a number, or a quantity such as '22 kg'")
+    split = [(float(part[1]), part[2] or "") for part in parts if part]
+    unit = split[0][1]
+    if any(bool(own) != bool(unit) for _, own in split):
+        raise InputError(f"{here}: all numbers with a unit, or none, found {written}")
+    numbers = []
+    for i, (number, own) in enumerate(split):
+        try:
+            factor, offset = conversion(own or "1", unit or "1")
+        except InputError as error:
+            raise InputError(f"{here}: {error}") from None
+        numbers.append(number * factor + (0.0 if spread and i == 1 else offset))
+    if not all(map(math.isfinite, numbers)):
+        raise InputError(f"{here}: finite numbers are needed, found {written}")
+    return numbers, unit
+
+
+def _law(form: str, numbers: list[float], here: str) -> Any:
+    """Return SciPy's distribution of a form."""
+    from scipy import stats  # half a second, of every command if it stood above
+
+    a, b = numbers[:2]
+    if form == "uniform":
+        _needed(b > a, "low below high", here, numbers)
+        return stats.uniform(a, b - a)
+    if form == "triangular":
+        high = numbers[2]
+        _needed(a <= b <= high and a < high, "low, mode, high in that order", here, numbers)
+        return stats.triang((b - a) / (high - a), a, high - a)
+    _needed(b > 0.0, "a positive standard deviation", here, numbers)
+    if form == "normal":
+        return stats.norm(a, b)
+    _needed(a > 0.0, "a positive mean", here, numbers)
+    spread = math.sqrt(special.log1p((b / a) ** 2))  # of the logarithm
+    return stats.lognorm(spread, scale=a * math.exp(-(spread**2) / 2.0))
+
+
+def _needed(met: bool, what: str, here: str, found: list[float]) -> None:
+    if not met:
+        raise InputError(f"{here}: {what} is needed, found {found}")
