@@ -6,7 +6,6 @@ from typing import Any, Literal
 
 import numpy as np
 from pydantic import Field
-from scipy import special
 
 from ..cosim.files import FileModel
 from ..errors import InputError
@@ -48,6 +47,8 @@ def drawn(design: Design, origin: str) -> list[dict[str, Any]]:
     lower = _lower(design, origin)
     points = np.clip(_points(design, origin), _TINY, 1.0 - _TINY)
     if design.correlation:
+        from scipy import special  # dear to import, and no other command needs it
+
         points = special.ndtr(special.ndtri(points) @ lower.T)
     columns = [inverse(points[:, i]) for i, inverse in enumerate(inverses.values())]
     return [dict(zip(inverses, row, strict=True)) for row in zip(*columns, strict=True)]

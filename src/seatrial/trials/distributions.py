@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 from pydantic import Field
-from scipy import special
 
 from ..cosim.files import FileModel
 from ..errors import InputError
@@ -112,7 +111,7 @@ def _law(form: str, numbers: list[float], here: str) -> Any:
     if form == "normal":
         return stats.norm(a, b)
     _needed(a > 0.0, "a positive mean", here, numbers)
-    spread = math.sqrt(special.log1p((b / a) ** 2))  # of the logarithm
+    spread = math.sqrt(math.log1p((b / a) ** 2))  # of the logarithm
     return stats.lognorm(spread, scale=a * math.exp(-(spread**2) / 2.0))
 
 
