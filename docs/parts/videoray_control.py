@@ -16,7 +16,7 @@ from seatrial.trials.run_folder import load_run
 
 part("videoray-surface-parameters")(partial(parameters, "videoray-surface"))
 part("videoray-surface-variants")(partial(variants, "videoray-surface"))
-for _rig in ("videoray-surface-case", "videoray-hold"):
+for _rig in ("videoray-surface-case", "videoray-hold", "videoray-estimated"):
     part(f"{_rig}-trials")(partial(verdicts, _rig))
 
 _UVR = ("u", "v", "r")

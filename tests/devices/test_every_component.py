@@ -7,6 +7,7 @@ import pytest
 from seatrial.component import Component
 from seatrial.control.guidance_orders import TARGETS
 from seatrial.control.sailing_guidance import SailingGuidance
+from seatrial.control.velocity_filter import VelocityFilter
 from seatrial.faults.catalogue import FAILURES as FAULTS
 from seatrial.fmi.source import shipped_sources
 from seatrial.units import unit
@@ -27,6 +28,11 @@ SELDOM = {
         "cross_track": {"home", "velocity_n", *(f"target_{x}" for x in ("kind", "valid"))}
         | {"target_position", "target_speed", "target_velocity", "leg_speed"},
         "state": {"leg_speed"},
+    },
+    VelocityFilter: {
+        "nu": {"depth", "depth_valid"},
+        "deviation": {"imu_valid", "depth", "depth_valid"},
+        "heading": {"imu_valid", "depth", "depth_valid"},
     },
 }
 """What acts after the first instant only, or in too few situations to be met by chance."""

@@ -1,9 +1,11 @@
 """The shipped trials of the VideoRay's control: verdicts, campaigns, figures of its page."""
 
 import json
+import re
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from seatrial.trials.campaign import load_campaign, run_campaign
 from seatrial.trials.run import run_trial
@@ -17,7 +19,9 @@ pytestmark = pytest.mark.interop
 
 # Without integral action, and with the source's law, a load is not rejected: that they show.
 FAILING = {"videoray-surface-step-p", "videoray-surface-step-flat"}
-HOLDING = [n for n in TRIALS if n.startswith(("videoray-surface", "videoray-hold"))]
+HOLDING = [
+    n for n in TRIALS if n.startswith(("videoray-surface", "videoray-hold", "videoray-estimated"))
+]
 
 
 def run(name, folder, **settings):
@@ -30,6 +34,40 @@ def test_every_criterion_holds(name, tmp_path):
     found = run(name, tmp_path / "run")
     assert found.verdicts
     assert all(v["passed"] for v in found.verdicts) == (name not in FAILING)
+
+
+PROFILES = {1: ((0.05, 0), (0.2, 0)), 2: ((0.02, 240), (0.04, 0)), 3: ((-0.01, 0), (0.02, 240))}
+"""Surge, m/s, and yaw rate, rad/s, of the source's cases, and after how many seconds."""
+
+
+def at(profile, t):
+    value, duration = profile
+    x = min(t / duration, 1.0) if duration else 1.0
+    return value * x**3 * (10 - 15 * x + 6 * x * x)
+
+
+@pytest.mark.parametrize("case", PROFILES)
+def test_the_track_is_that_of_the_trajectory(case, tmp_path):
+    """Integrated by SciPy from m22 v' + d22 v + m11 U R = 0, beginning in its steady state."""
+    m11, m22, d22 = 8.44, 12.55, 5.87
+    surge, yaw = PROFILES[case]
+
+    def slope(t, state):
+        _x, _y, psi, v = state
+        u, r = at(surge, t), at(yaw, t)
+        velocity = u * np.cos(psi) - v * np.sin(psi), u * np.sin(psi) + v * np.cos(psi)
+        return *velocity, r, -(d22 * v + m11 * u * r) / m22
+
+    start = 0.0, 0.0, 0.0, -m11 * at(surge, 0.0) * at(yaw, 0.0) / d22
+    t = np.arange(3001) / 10
+    wanted = solve_ivp(slope, (0, 300), start, t_eval=t, rtol=1e-9, atol=1e-12, max_step=1.0).y
+    found = run(f"videoray-surface-case-{case}", tmp_path / "run")
+    for row, axis in enumerate("xy"):
+        # It begins with errors of 0.01 m/s in u and v, of which about 2 cm are left.
+        assert np.abs(found.signals[f"vessel.position.{axis}"] - wanted[row]).max() < 0.03
+    criterion = next(v for v in found.verdicts if "track" in v["name"])
+    numbers = [float(n) for n in re.findall(r" - (-?[0-9.]+) m\b", criterion["check"])]
+    np.testing.assert_allclose(numbers, wanted[:2, -1], atol=1e-4)
 
 
 @pytest.mark.parametrize("variant", ["physical", "table75"])
@@ -69,10 +107,10 @@ def test_campaigns_cover_the_table_of_rejections(campaign, passing, tmp_path):
 
 
 @pytest.mark.long
-def test_heading_is_held_up_to_the_munk_limit(tmp_path):
-    """What docs/vehicles/videoray-control.md says of it."""
+def test_heading_is_held_under_way_across_a_current(tmp_path):
+    """1 N ahead: slower than the 0.25 m/s of .95 u + 11.9 u^2 = 1, for drag abeam turns aft."""
     found = run("videoray-hold-pull", tmp_path / "run")
     late = (found.time > 80) & (found.time < 110)  # under way, before the tether pulls
     off = found.signals["vehicle.hull.attitude.psi"][late] + np.radians(170)
-    assert found.signals["vehicle.hull.velocity.u"][late].mean() == pytest.approx(0.30, abs=0.01)
+    assert 0.1 < found.signals["vehicle.hull.velocity.u"][late].mean() < 0.253
     assert np.degrees(np.abs(off).max()) < 0.5

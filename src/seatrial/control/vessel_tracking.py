@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from ..component import Input, Output, Parameter
+from ..component import Input, Output, Parameter, terminal
 from .nominal_trajectory import NominalTrajectory
 
 _UVR = ("m/s", "m/s", "rad/s")
@@ -14,7 +14,8 @@ class VesselTracking(NominalTrajectory):
     """Base of laws that hold the velocities of a `SurfaceVessel` on a `NominalTrajectory`.
 
     A subclass returns from `demand` which commands it wants; ``command`` is that, each thruster's
-    held to +-``command_limit``.
+    held to +-``command_limit``. ``shares`` are the deflections of a topside whose thrusters get
+    surge + yaw and surge - yaw: (t1 + t2) / 2 and (t1 - t2) / 2.
 
     ``nu_bias`` is added to ``nu`` before the law sees it: an error of the sensors, set by a
     trial to see what it does. Source 000, table 8.1, has its disturbances there and not in the
@@ -28,7 +29,10 @@ class VesselTracking(NominalTrajectory):
 
     command = Output("1", "share of each thruster's full thrust", axes=("t1", "t2"))
 
-    feedthrough: ClassVar = {"command": ("nu", "nu_bias")}
+    shares = Output("1", "deflections of a topside that give it", axes=("surge", "yaw"))
+
+    terminals: ClassVar = {"deflections": terminal(surge="shares__surge", yaw="shares__yaw")}
+    feedthrough: ClassVar = dict.fromkeys(("command", "shares"), ("nu", "nu_bias"))
 
     def demand(self, k: int) -> tuple[float, float]:
         """Return the commands (t1, t2) wanted at instant ``k``, without limits."""
@@ -38,7 +42,9 @@ class VesselTracking(NominalTrajectory):
         """Command the thrusters."""
         super().sample(t, k)
         limit = self.command_limit
-        self.command = [min(max(share, -limit), limit) for share in self.demand(k)]
+        first, second = (min(max(share, -limit), limit) for share in self.demand(k))
+        self.command = [first, second]
+        self.shares = [(first + second) / 2.0, (first - second) / 2.0]
 
     def _measured(self) -> tuple[float, float, float]:
         (u, v, r), (bias_u, bias_v, bias_r) = self.nu, self.nu_bias

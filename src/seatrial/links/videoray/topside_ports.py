@@ -90,4 +90,11 @@ class Pro4TopsidePorts(Logging, Component):
             heading_valid="connected",
             depth_valid="connected",
         ),
+        "sensors": terminal(
+            "depth",
+            euler="attitude",
+            accelerometer="specific_force",
+            imu_valid="connected",
+            depth_valid="connected",
+        ),
     }
