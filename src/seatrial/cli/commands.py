@@ -63,6 +63,10 @@ COMMANDS = {
         "identify:identify",
         "Identify an axis of a vehicle from a log; status 1 if the model is to be rejected.",
     ),
+    "plan": Command(
+        "plan:plan",
+        "Plan a vessel's motion from wanted speeds; status 1 if its thrusters cannot do it.",
+    ),
     "fmu": Command("fmu:fmu_app", "List, build, check and describe FMUs."),
     "profile": Command("profile:profile_app", "Check and describe profiles of electronics."),
     "decode": Command("decode:decode_app", "Show recorded streams as text."),

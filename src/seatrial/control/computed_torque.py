@@ -39,7 +39,7 @@ class ComputedTorque(VesselTracking):
 
     def demand(self, k: int) -> tuple[float, float]:
         """Return the commands of the law."""
-        model, row = self._model(), self._row(k)
+        model, row = self.vessel(), self._row(k)
         accelerations = (row.acceleration[0], row.acceleration[2])
         surge, yaw = (
             wanted - self.kp * error - self.ki * learnt

@@ -104,11 +104,12 @@ class NominalTrajectory(Sampled):
             )
         )
         try:
-            self._rows = nominal_motion(self._model(), surge, yaw, self.period)
+            self._rows = nominal_motion(self.vessel(), surge, yaw, self.period)
         except InputError as error:
             raise InputError(f"{self.name}: {error}") from None
 
-    def _model(self) -> VesselModel:
+    def vessel(self) -> VesselModel:
+        """Return the model of the vessel that the parameters are."""
         return VesselModel(
             self.mass, self.damping, self.thrust, self.lever_arm, self.yaw_coupling_sign
         )

@@ -10,14 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from ..component import Component
 from ..control.heading_autopilot import HeadingAutopilot
 from ..cosim.parameters import Vehicle, load_vehicle
-from ..cosim.values import from_entry, port_names, port_scalars
 from ..craft.manoeuvring_ship import ManoeuvringShip
-from ..errors import InputError, unknown
-from ..fmi.direct import DirectInstance
+from ..errors import InputError
 from ..model import Vector
+from .parametrised import parametrise
 
 SHIP, AUTOPILOT = "manoeuvring-ship", "heading-autopilot"
 GAINS = np.geomspace(1e-5, 1e2, 1401)
@@ -153,13 +151,8 @@ def _roots(function: Callable[[float], float]) -> list[float]:
 
 
 def _ship(vehicle: Vehicle, variant: str | None) -> ManoeuvringShip:
-    if SHIP not in vehicle.file.components:
-        raise InputError(
-            f"{vehicle.read_from.path}: a vehicle with a table {SHIP!r} is needed, this one has "
-            f"{', '.join(vehicle.file.components)}"
-        )
     ship = ManoeuvringShip(vehicle.read_from.path.stem)
-    _parametrise(ship, vehicle, SHIP, variant)
+    parametrise(ship, vehicle, SHIP, variant)
     return ship
 
 
@@ -167,18 +160,5 @@ def _own_derivative_time(vehicle: Vehicle, variant: str | None, time_unit: float
     if AUTOPILOT not in vehicle.file.components:
         return []
     autopilot = HeadingAutopilot()
-    _parametrise(autopilot, vehicle, AUTOPILOT, variant)
+    parametrise(autopilot, vehicle, AUTOPILOT, variant)
     return [autopilot.derivative_gain / autopilot.proportional_gain / time_unit]
-
-
-def _parametrise(component: Component, vehicle: Vehicle, table: str, variant: str | None) -> None:
-    parameters = vehicle.parameter_set(table, variant)
-    variables = DirectInstance(component).variables
-    for name, entry in parameters.values.items():
-        scalars = port_scalars(variables, name)
-        if not scalars:
-            known = port_names(variables)
-            raise InputError(f"{parameters.origin}: {unknown('parameter', name, known)}")
-        for scalar, given in from_entry(entry, scalars, f"{parameters.origin}: {name}").items():
-            component.set(scalar, given.value)
-    component.check_parameters()
