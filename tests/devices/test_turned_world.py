@@ -62,7 +62,7 @@ def answers(cls, angle, seed):
     """Return the outputs of each sample in a world turned by ``angle``."""
     settings = dict(cls.exercised)
     for port in ports(cls, "parameter"):
-        if port.name.endswith(ERRORS):
+        if port.name.endswith(ERRORS) and not (port.limit("min", 0) or 0.0) > 0.0:
             settings[port.name] = [0.0] * port.size if port.axes else 0.0
         elif headings(port):
             settings[port.name] = turned(port, 1.0, angle)
