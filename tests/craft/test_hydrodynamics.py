@@ -50,6 +50,7 @@ def test_terms_act_alone_and_their_loads_add_up(kind):
     case["values"].update(crossflow_length=2, crossflow_draught=0.2, crossflow_coefficient=1)
     case["values"].update(point_drag=(20, 30, 40), drag_spread=(0.5, 0.3, 0.2), lift=(30, 20))
     case["values"].update(coupled_damping_force=(3, -4), coupled_damping_moment=(-5, 6))
+    case["values"].update(drag_coefficient=range(1, 10), projected_area=(0.1, 0.2, 0.3))
     case["values"].update(lift_arm=0.5, wave_damping=500, wave_depth=10)
     bare = slope([])
     alone = [slope([name]) - bare for name in TERMS if name not in (WAVES, WIND)]
@@ -183,3 +184,58 @@ def test_linear_restoring_is_the_conservative_one_to_first_order():
 
     linear, conservative = stiffness("surface-linear"), stiffness("surface-conservative")
     np.testing.assert_allclose(linear, conservative, rtol=0, atol=1e-12)
+
+
+# Source 000, table 2.1 and eq. 5.8: 93.4127 N at 4.2 knots, by C_d S = 0.04002 m2 in fresh water.
+TOP_SPEED, FULL_THRUST, DRAG_AREA = 4.2 * 1852 / 3600, 93.4127, 0.04002
+
+
+def submerged(**values):
+    """Return a ROV that displaces its mass, with nothing but the drag of Morison."""
+    hull = Rov("rov")
+    still = {"mass": 6.5, "volume": 6.5e-3, "density": 1000.0, "max_step": 0.01}
+    for name, value in {**still, "terms": "morison restoring", **values}.items():
+        hull.set(name, value)
+    return hull
+
+
+def test_morison_s_drag_balances_the_thrust_at_top_speed():
+    area = 0.289 * 0.223  # beam times height of table 2.1
+    coefficient = [DRAG_AREA / area, *[0.0] * 8]
+    hull = submerged(drag_coefficient=coefficient, projected_area=(area, 0.1, 0.1))
+    x = np.zeros(12)
+    x[6] = TOP_SPEED
+    # Four digits of C_d S.
+    assert hull.derivatives(x)[6] * 6.5 == pytest.approx(-FULL_THRUST, rel=1e-4)
+
+
+def test_cross_damping_is_the_matrix():
+    """- rho / 2 C_d S |v| v, with numbers of its own."""
+    C_d, S, v = np.arange(1.0, 10.0).reshape(3, 3), (0.1, 0.2, 0.3), np.array([0.5, -0.4, 0.3])
+    hull = submerged(drag_coefficient=C_d.ravel().tolist(), projected_area=S)
+    x = np.zeros(12)
+    x[6:9] = v
+    expected = -500.0 * C_d @ (np.array(S) * np.abs(v) * v)
+    np.testing.assert_allclose(6.5 * hull.derivatives(x)[6:9], expected, rtol=1e-12)
+
+
+def test_morison_s_equation_of_a_body_in_a_current_that_sets_in():
+    """(m + C_m rho V) v' = 1/2 rho C_d S |v_c - v| (v_c - v), held at first: a closed form.
+
+    The velocity through the water falls as 1 / (1 + a t / v_c0), a = rho C_d S v_c0^2 / 2 over
+    the mass with C_m rho V.
+    """
+    C_m, C_d, S, current = 0.7, 0.9, 0.05, 0.8
+    added = C_m * 1000.0 * 6.5e-3
+    hull = submerged(
+        drag_coefficient=[C_d, *[0.0] * 8],
+        projected_area=(S, 0.1, 0.1),
+        added_mass=(added, 0, 0, 0, 0, 0),
+    )
+    hull.set("current", (current, 0.0, 0.0))
+    hull.initialise()
+    hull.begin()
+    for k in range(500):
+        hull.advance(0.01 * k, 0.01)
+    rate = 500.0 * C_d * S * current / (6.5 + added)
+    assert hull.velocity[0] == pytest.approx(current - current / (1.0 + rate * 5.0), rel=1e-9)

@@ -11,10 +11,10 @@ from seatrial.cosim.parameters import load_vehicle
 from seatrial.cosim.profile import load_profile
 from seatrial.errors import InputError
 from seatrial.trials.campaign import load_campaign
-from seatrial.trials.identify.experiment import load_experiment
+from seatrial.trials.identify.planar_experiment import read_experiment
 from seatrial.trials.trial import load_trial
 
-READERS = (load_trial, load_rig, load_profile, load_vehicle, load_campaign, load_experiment)
+READERS = (load_trial, load_rig, load_profile, load_vehicle, load_campaign, read_experiment)
 
 
 def one(data: bytes) -> None:

@@ -11,8 +11,10 @@ from rich.box import SIMPLE
 from rich.markup import escape
 from rich.table import Table
 
-from ..trials.identify.experiment import load_experiment
-from ..trials.identify.page import physical_rows, ratio_rows, write_page
+from ..trials.identify.page import RatioRow, physical_rows, ratio_rows, write_page
+from ..trials.identify.planar_experiment import PlanarExperiment, read_experiment
+from ..trials.identify.planar_page import planar_rows, write_planar_page
+from ..trials.identify.planar_study import PlanarStudy, planar_study
 from ..trials.identify.study import Study, study
 from ..trials.identify.vehicle_file import base_vehicle, write_vehicle
 from ..trials.output import claim_folder
@@ -35,14 +37,21 @@ def identify(
     ] = None,
 ) -> None:
     """Identify an axis of a vehicle from a log; status 1 if the model is to be rejected."""
-    loaded = load_experiment(experiment)
-    found = study(loaded, log)
+    loaded = read_experiment(experiment)
+    found: Study | PlanarStudy = (
+        planar_study(loaded, log) if isinstance(loaded, PlanarExperiment) else study(loaded, log)
+    )
     base = base_vehicle(found)
     folder = claim_folder(out, f"{loaded.name}-identified", REPORT)
     parameters = folder / VEHICLE if found.accepted else None
     if parameters is not None:
         write_vehicle(found, base, parameters)
-    page = write_page(found, folder, None if parameters is None else VEHICLE)
+    beside = None if parameters is None else VEHICLE
+    page = (
+        write_planar_page(found, folder, beside)
+        if isinstance(found, PlanarStudy)
+        else write_page(found, folder, beside)
+    )
     answer.result = {
         "folder": str(folder),
         "accepted": found.accepted,
@@ -57,14 +66,20 @@ def identify(
         raise typer.Exit(_REJECTED)
 
 
-def _print(found: Study) -> None:
-    ratios = Table(box=SIMPLE, padding=(0, 1, 0, 0))
-    ratios.add_column("")
-    for heading in ("output error", "deviation", "method of source 000"):
-        ratios.add_column(heading, justify="right")
-    ratios.add_column("unit")
-    for row in ratio_rows(found):
-        ratios.add_row(row.symbol, row.ours, row.deviation, row.source, row.unit)
+def _print(found: Study | PlanarStudy) -> None:
+    if isinstance(found, PlanarStudy):
+        console.print(_table(planar_rows(found)))
+    else:
+        _print_axis(found)
+    for verdict in found.verdicts:
+        style, word = ("green", "PASS") if verdict.passed else ("red", "FAIL")
+        console.print(
+            f"[{style}]{word}[/]  {escape(verdict.name)}: {escape(verdict.detail)}", soft_wrap=True
+        )
+
+
+def _print_axis(found: Study) -> None:
+    ratios = _table(ratio_rows(found))
     period = found.fitted.period
     delays = (f"{found.delay:g}", "", f"{found.source.delay * period:g}")
     ratios.add_row("delay", *delays, "s")
@@ -76,8 +91,14 @@ def _print(found: Study) -> None:
         )
     if not found.whiteness.white:
         console.print("note: the residual is not white: something acts that the model lacks")
-    for verdict in found.verdicts:
-        style, word = ("green", "PASS") if verdict.passed else ("red", "FAIL")
-        console.print(
-            f"[{style}]{word}[/]  {escape(verdict.name)}: {escape(verdict.detail)}", soft_wrap=True
-        )
+
+
+def _table(rows: list[RatioRow]) -> Table:
+    table = Table(box=SIMPLE, padding=(0, 1, 0, 0))
+    table.add_column("")
+    for heading in ("output error", "deviation", "method of source 000"):
+        table.add_column(heading, justify="right")
+    table.add_column("unit")
+    for row in rows:
+        table.add_row(row.symbol, row.ours, row.deviation, row.source, row.unit)
+    return table

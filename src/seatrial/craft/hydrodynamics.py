@@ -23,6 +23,7 @@ from .context import Context
 from .coupled_damping import coupled_damping
 from .hull_lift import hull_lift
 from .hull_points import floating, point_drag, wave_making, wet
+from .morison import morison
 
 Term = Callable[[Context], Any]
 
@@ -158,6 +159,7 @@ TERMS: dict[str, Term] = {
     "coriolis": coriolis,
     "damping": damping,
     "coupled-damping": coupled_damping,
+    "morison": morison,
     "crossflow-drag": crossflow_drag,
     "point-drag": point_drag,
     "hull-lift": hull_lift,

@@ -25,6 +25,7 @@ from .hull_lift import HullLift
 from .hull_points import HullPoints, wet
 from .hydrodynamics import TERMS, Term, read_terms, symmetric
 from .inertia import require_positive_definite
+from .morison import Morison
 from .seaway import Places, Seaway
 from .symbolic import euler_rate_matrix, rotation_matrix, skew
 
@@ -43,7 +44,7 @@ _INERTIAS = (
 )
 
 
-class SixDofCraft(CoupledDamping, HullPoints, HullLift, Seaway):
+class SixDofCraft(CoupledDamping, HullPoints, HullLift, Morison, Seaway):
     """Base of craft in six degrees of freedom: M nu_r' = tau + the terms of `hydrodynamics`.
 
     nu_r is nu less the velocity of the water in body axes. ``terms`` names the terms that act;

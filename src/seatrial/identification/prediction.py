@@ -13,6 +13,7 @@ import numpy as np
 from ..model import Model, Vector
 from ..ports import Parameter
 from .axis_motion import AxisMotion
+from .sensitivity import sensitive_period
 
 Reading = Literal["acceleration", "place"]
 """What a sensor reads: the acceleration along the axis, or the place on it."""
@@ -87,30 +88,16 @@ def _compiled(kind: type[AxisMotion], law: str, lag: str, reading: Reading, coun
 
 
 def _step(kind: type[AxisMotion], model: Model, reading: Reading, substeps: int) -> ca.Function:
-    """Return one period: (state with sensitivities, command, unknowns and period) to the next.
-
-    Its other result is the reading at the beginning of the period, with its sensitivities: the
-    variational equations of the discrete step, so that they are exact for what is simulated.
-    """
-    unknowns, period, command = ca.SX.sym("q", len(UNKNOWNS)), ca.SX.sym("h"), ca.SX.sym("beta")
-    x = ca.SX.sym("x", len(STARTS))
+    """Return `sensitive_period` of an axis, whose reading is one."""
+    unknowns = ca.SX.sym("q", len(UNKNOWNS))
     p = _parameters(kind, dict(zip(UNKNOWNS, ca.vertsplit(unknowns), strict=True)))
-    after = x
-    for _ in range(substeps):
-        after = model.rk4(after, command, p, period / substeps)
     bias = unknowns[UNKNOWNS.index("bias")]
-    place = x[model.x_names.index("place")]
-    read = model.out(x, command, p) + bias if reading == "acceleration" else place
-    sensitivity = ca.SX.sym("S", len(STARTS), len(UNKNOWNS))
+    place = model.x_names.index("place")
 
-    def total(f: Any) -> Any:
-        return ca.jacobian(f, x) @ sensitivity + ca.jacobian(f, unknowns)
+    def read(x: Any, command: Any) -> Any:
+        return model.out(x, command, p) + bias if reading == "acceleration" else x[place]
 
-    state = ca.vertcat(x, ca.vec(sensitivity))
-    following = ca.vertcat(after, ca.vec(total(after)))
-    row = ca.vertcat(read, ca.vec(total(read)))
-    given = ca.vertcat(unknowns, period)
-    return ca.Function("period", [state, command, given], [ca.densify(following), ca.densify(row)])
+    return sensitive_period(model, unknowns, p, read, substeps)
 
 
 def _parameters(kind: type[AxisMotion], named: dict[str, Any]) -> Any:

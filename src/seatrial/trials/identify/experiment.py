@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import Any, Generic, Literal, Protocol, TypeVar
 
 from pydantic import Field, model_validator
 
@@ -96,23 +96,44 @@ class ExperimentFile(FileModel):
         return self
 
 
-@dataclass(frozen=True)
-class Experiment:
-    """An experiment as it was read, with its numbers in SI."""
+class _Logged(Protocol):
+    log: str | None
 
-    file: ExperimentFile
+
+_File = TypeVar("_File", bound=_Logged)
+
+
+@dataclass(frozen=True)
+class Named(Generic[_File]):
+    """An experiment's file, and where it was read."""
+
+    file: _File
     read_from: Source
+
+    @property
+    def name(self) -> str:
+        """Name of the file."""
+        return self.read_from.name
+
+    def log_path(self, log: Path | None) -> Path:
+        """Return the log: ``log``, of the command line, or the file's. Raises InputError."""
+        if log is not None:
+            return log
+        if self.file.log is None:
+            raise InputError(f"{self.read_from.path}: log: no log is named; name one with --log")
+        return self.read_from.path.parent / self.file.log
+
+
+@dataclass(frozen=True)
+class Experiment(Named[ExperimentFile]):
+    """An experiment of one axis as it was read, with its numbers in SI."""
+
     mass: float
     """kg, or kg.m2 for yaw: without added mass."""
     thrust: float
     """N, or N.m for yaw, of the command 1."""
     longest_delay: float
     """s."""
-
-    @property
-    def name(self) -> str:
-        """Name of the file."""
-        return self.read_from.name
 
     @property
     def rotation(self) -> bool:
@@ -124,19 +145,15 @@ class Experiment:
         """Whether a constant force is looked for; by default in heave alone."""
         return self.file.axis == "heave" if self.file.offset is None else self.file.offset
 
-    def log_path(self, log: Path | None) -> Path:
-        """Return the log: ``log``, of the command line, or the file's. Raises InputError."""
-        if log is not None:
-            return log
-        if self.file.log is None:
-            raise InputError(f"{self.read_from.path}: log: no log is named; name one with --log")
-        return self.read_from.path.parent / self.file.log
-
 
 def load_experiment(name: str) -> Experiment:
     """Read the experiment ``name``, below ``harness/identification`` or a path. InputError."""
-    path = find_file("harness/identification", name)
-    content, read_from = read_toml(path)
+    return axis_experiment(*read_toml(find_file("harness/identification", name)))
+
+
+def axis_experiment(content: dict[str, Any], read_from: Source) -> Experiment:
+    """Return the experiment of a file's content; raises InputError."""
+    path = read_from.path
     file = validated(ExperimentFile, content, path)
     yaw = file.axis == "yaw"
 

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ...cosim.files import FileModel
 from ...errors import InputError, unknown
 from ...identification.gravity import acceleration_along
 from ...identification.output_error import AxisLog
@@ -21,7 +22,11 @@ from .experiment import ColumnEntry, Experiment
 _UNITS = {
     "time": "s",
     "command": "1",
+    "port": "1",
+    "starboard": "1",
     "acceleration": "m/s2",
+    "acceleration_x": "m/s2",
+    "acceleration_y": "m/s2",
     "roll": "rad",
     "pitch": "rad",
     "depth": "m",
@@ -40,6 +45,53 @@ class Columns:
     lines: list[int]
     """Line of each row in the file."""
     values: dict[str, FloatArray]
+    named: Mapping[str, ColumnEntry]
+
+    def command(self, name: str) -> FloatArray:
+        """Return the commands (n,); raises InputError beyond -1 to 1, or if they never change."""
+        command, column = self.values[name], self.named[name].name
+        beyond = np.flatnonzero(np.abs(command) > 1.0 + 1e-9)
+        if len(beyond):
+            where, found = self._place(int(beyond[0]), column), command[beyond[0]]
+            raise InputError(f"{where}: a command from -1 to 1 is needed, found {found:g}")
+        if np.ptp(command) == 0.0:
+            raise InputError(f"{self.path}: the command {column!r} never changes")
+        return command
+
+    def heading(self) -> FloatArray:
+        """Return the heading (n,) unwrapped; raises InputError where turns cannot be counted."""
+        angle: FloatArray = np.unwrap(self.values["heading"])
+        fast = np.flatnonzero(np.abs(np.diff(angle)) > math.pi / 2)
+        if len(fast):
+            row = int(fast[0])
+            turned = math.degrees(angle[row + 1] - angle[row])
+            raise InputError(
+                f"{self._place(row + 1, self.named['heading'].name)}: the heading turns by "
+                f"{turned:.4g} deg from one row to the next; up to 90 deg can be distinguished "
+                "from a turn the other way"
+            )
+        return angle
+
+    def period(self) -> float:
+        """Return the sample period, s; raises InputError where rows are not equally spaced."""
+        time = self.values["time"]
+        if len(time) < _LEAST_ROWS:
+            raise InputError(f"{self.path}: {len(time)} rows, at least {_LEAST_ROWS} are needed")
+        steps = np.diff(time)
+        usual = float(np.median(steps))
+        wrong = np.flatnonzero(~(np.abs(steps - usual) <= _UNEVEN * abs(usual)) | (steps <= 0.0))
+        if len(wrong):
+            row = int(wrong[0])
+            missing = round(steps[row] / usual) - 1 if usual > 0.0 else 0
+            gap = f": {missing} row{'s' if missing > 1 else ''} missing" if missing > 0 else ""
+            raise InputError(
+                f"{self.path}, line {self.lines[row + 1]}: the time goes from {time[row]:g} s to "
+                f"{time[row + 1]:g} s, rows {usual:g} s apart are needed{gap}"
+            )
+        return float((time[-1] - time[0]) / (len(time) - 1))
+
+    def _place(self, row: int, column: str) -> str:
+        return f"{self.path}, line {self.lines[row]}, column {column!r}"
 
 
 def read_log(experiment: Experiment, path: Path) -> AxisLog:
@@ -50,22 +102,14 @@ def read_log(experiment: Experiment, path: Path) -> AxisLog:
     spaced, fewer than 50 rows, a command beyond -1 to 1 or one that never changes, and a heading
     that turns by more than 90 degrees between two rows, whose turns cannot be counted.
     """
-    named = {name: entry for name in _UNITS if (entry := getattr(experiment.file.columns, name))}
-    columns = _read_columns(path, named)
-    period = _period(columns)
-    command = columns.values["command"]
-    beyond = np.flatnonzero(np.abs(command) > 1.0 + 1e-9)
-    if len(beyond):
-        where = _place(columns, int(beyond[0]), named["command"].name)
-        raise InputError(f"{where}: a command from -1 to 1 is needed, found {command[beyond[0]]:g}")
-    if np.ptp(command) == 0.0:
-        raise InputError(f"{columns.path}: the command {named['command'].name!r} never changes")
+    columns = read_columns(path, experiment.file.columns)
+    period, command = columns.period(), columns.command("command")
     if "acceleration" in columns.values:
         measured = _without_gravity(experiment, columns)
     elif "depth" in columns.values:
         measured = columns.values["depth"]
     else:
-        measured = _unwrapped(columns, named["heading"].name)
+        measured = columns.heading()
     reading = "acceleration" if "acceleration" in columns.values else "place"
     return AxisLog(command, measured, period, reading, experiment.rotation)  # type: ignore[arg-type]
 
@@ -80,42 +124,12 @@ def _without_gravity(experiment: Experiment, columns: Columns) -> FloatArray:
     return acceleration_along(axis, reading, roll, pitch, reads=entry.reads)
 
 
-def _unwrapped(columns: Columns, name: str) -> FloatArray:
-    angle = np.unwrap(columns.values["heading"])
-    fast = np.flatnonzero(np.abs(np.diff(angle)) > math.pi / 2)
-    if len(fast):
-        row = int(fast[0])
-        turned = math.degrees(angle[row + 1] - angle[row])
-        raise InputError(
-            f"{_place(columns, row + 1, name)}: the heading turns by {turned:.4g} deg from one row "
-            "to the next; up to 90 deg can be distinguished from a turn the other way"
-        )
-    return angle
-
-
-def _period(columns: Columns) -> float:
-    """Return the sample period, s; raises InputError where rows are not equally spaced."""
-    time = columns.values["time"]
-    if len(time) < _LEAST_ROWS:
-        raise InputError(f"{columns.path}: {len(time)} rows, at least {_LEAST_ROWS} are needed")
-    steps = np.diff(time)
-    usual = float(np.median(steps))
-    wrong = np.flatnonzero(~(np.abs(steps - usual) <= _UNEVEN * abs(usual)) | (steps <= 0.0))
-    if len(wrong):
-        row = int(wrong[0])
-        missing = round(steps[row] / usual) - 1 if usual > 0.0 else 0
-        gap = f": {missing} row{'s' if missing > 1 else ''} missing" if missing > 0 else ""
-        raise InputError(
-            f"{columns.path}, line {columns.lines[row + 1]}: the time goes from {time[row]:g} s to "
-            f"{time[row + 1]:g} s, rows {usual:g} s apart are needed{gap}"
-        )
-    return float((time[-1] - time[0]) / (len(time) - 1))
-
-
 # ---------------------------------------------------------------------- cells
 
 
-def _read_columns(path: Path, named: Mapping[str, ColumnEntry]) -> Columns:
+def read_columns(path: Path, columns: FileModel) -> Columns:
+    """Return the columns that an experiment's table names, in SI; raises InputError."""
+    named = {name: entry for name in _UNITS if (entry := getattr(columns, name, None))}
     folder_units: dict[str, str] = {}
     if path.is_dir():
         signals = read_manifest(path)["signals"]
@@ -131,7 +145,7 @@ def _read_columns(path: Path, named: Mapping[str, ColumnEntry]) -> Columns:
     except csv.Error as error:
         raise InputError(f"{path}: not CSV: {error}") from None
     values = {what: np.array(column) * factors[what] for what, column in cells.items()}
-    return Columns(path, lines, values)
+    return Columns(path, lines, values, named)
 
 
 def _conversion(
@@ -193,7 +207,3 @@ def _number(path: Path, line: int, column: str, cell: str) -> float:
             f"{path}, line {line}, column {column!r}: a finite number is needed, found {cell!r}"
         )
     return value
-
-
-def _place(columns: Columns, row: int, column: str) -> str:
-    return f"{columns.path}, line {columns.lines[row]}, column {column!r}"

@@ -10,6 +10,7 @@ from ...cosim.parameters import Entry, Vehicle, VehicleFile, load_vehicle
 from ...errors import InputError, unknown
 from ...whole_file import write_whole
 from ..readable import number
+from .planar_study import PlanarStudy
 from .study import Physical, Study
 
 VARIANT = "identified"
@@ -21,19 +22,25 @@ _PORTS = {
 } | {"yaw": ("added_inertia.zz", "linear_damping_moment.r", "quadratic_damping_moment.r")}
 """Scalars of a craft in six degrees of freedom that an axis decides: added mass and drags."""
 _UNITS = {True: ("kg.m2", "N.m.s/rad", "N.m.s2/rad2"), False: _FORCE}
-
+_SAME_DRAG = {"point-drag", "morison"}
+"""Terms with drag along all axes; ``crossflow-drag`` has it across the bow."""
 
 _NO_LAG = 1e-3
 """Time constant that is written where none was found, s."""
 
 
-def identified_entries(study: Study) -> dict[str, dict[str, Entry]]:
+def identified_entries(study: Study | PlanarStudy) -> dict[str, dict[str, Entry]]:
     """Return the parameters by component table and scalar name, deviations in ``source``.
 
     Added mass and drag of the axis; with ``result.thruster``, that table's delay and time
-    constant.
+    constant, or, of turns, the mean of both thrusters' full thrust.
     """
     result = study.experiment.file.result
+    if isinstance(study, PlanarStudy):
+        tables = {result.component: _of_sway(study)}
+        if result.thruster is not None:
+            tables[result.thruster] = _full_thrust(study)
+        return tables
     tables = {result.component: _of_the_craft(study)}
     if result.thruster is not None:
         tables[result.thruster] = _of_the_thruster(study)
@@ -64,18 +71,43 @@ def _of_the_thruster(study: Study) -> dict[str, Entry]:
     }
 
 
+def _of_sway(study: PlanarStudy) -> dict[str, Entry]:
+    found, known = study.fit, study.experiment.file.known.source
+    values = {
+        "mass": found.values["mass"] - study.dry_mass,
+        "linear": found.values["linear"],
+        "quadratic": found.values["quadratic"],
+    }
+    return {
+        port: _entry(
+            study,
+            values[name],
+            unit,
+            f"standard deviation {number(found.deviation(name), 3)}; surge and yaw: "
+            f"{study.known_from}; arm: {known}",
+        )
+        for port, name, unit in zip(_PORTS["sway"], values, _FORCE, strict=True)
+    }
+
+
+def _full_thrust(study: PlanarStudy) -> dict[str, Entry]:
+    first, second = (study.fit.values[name] for name in ("thrust_1", "thrust_2"))
+    remark = f"mean of port, {number(first, 4)} N, and starboard, {number(second, 4)} N"
+    return {"full_thrust": _entry(study, (first + second) / 2, "N", remark)}
+
+
 def _physical(study: Study, value: Physical, unit: str) -> Entry:
     known = study.experiment.file.known.source
     remark = f"standard deviation {number(value.deviation, 3)}; thrust and mass: {known}"
     return _entry(study, value.value, unit, remark)
 
 
-def _entry(study: Study, value: float, unit: str, remark: str) -> Entry:
+def _entry(study: Study | PlanarStudy, value: float, unit: str, remark: str) -> Entry:
     source = f"identified from {study.log_path.name}, {study.experiment.file.axis}: {remark}"
     return Entry(value=value, unit=unit, source=source, mark="identified")
 
 
-def base_vehicle(study: Study) -> Vehicle | None:
+def base_vehicle(study: Study | PlanarStudy) -> Vehicle | None:
     """Return the vehicle that the result is added to, if one is named. Raises InputError."""
     result, path = study.experiment.file.result, study.experiment.read_from.path
     if result.vehicle is None:
@@ -92,14 +124,14 @@ def base_vehicle(study: Study) -> Vehicle | None:
     return vehicle
 
 
-def _check_drag(study: Study, vehicle: Vehicle) -> None:
+def _check_drag(study: Study | PlanarStudy, vehicle: Vehicle) -> None:
     """Raise InputError if a term beside linear and quadratic drag has the axis' drag, too.
 
     What is identified is all of the drag along the axis: the result would have it twice.
     """
     file, path = study.experiment.file, study.experiment.read_from.path
     result, variants = file.result, vehicle.file.variants
-    other = {"point-drag"} if file.axis == "surge" else {"point-drag", "crossflow-drag"}
+    other = _SAME_DRAG if file.axis == "surge" else _SAME_DRAG | {"crossflow-drag"}
 
     def twice(variant: str | None) -> list[str]:
         own = vehicle.file.components.get(result.component, {})
@@ -117,7 +149,7 @@ def _check_drag(study: Study, vehicle: Vehicle) -> None:
         )
 
 
-def write_vehicle(study: Study, vehicle: Vehicle | None, path: Path) -> None:
+def write_vehicle(study: Study | PlanarStudy, vehicle: Vehicle | None, path: Path) -> None:
     """Write a vehicle file: ``vehicle`` with the variant `VARIANT`, which is the default.
 
     The variant is that of the experiment's ``result.variant``, or the vehicle's default, with
