@@ -62,6 +62,13 @@ class Sailboat(PlanarCraft):
     flow, which the boat's rates turn. The sail's centre of effort is ``sail_arm`` behind its
     axis, along the boom. ``sail`` and ``rudder`` turn their trailing edges to port when
     positive: a positive ``rudder`` turns the boat to port. T is that of a tether or tow.
+    ``sail_torque`` = N - x_axis Y is the moment of S about the sail's axis: positive opens a sail
+    to port further.
+
+    **Rate of the sail.** With ``sail_swing`` "on" the flow at the sail's centre of effort has what
+    it moves against the boat, as the last term of 2.18 has it, its second row with the right sign:
+
+        a -= sail_rate sail_arm sin(sail),    b += sail_rate sail_arm cos(sail)
 
     ``apparent_wind`` is the flow at the centre of effort of a sail amidships: its speed and
     the direction it blows to, atan2(to starboard, to the bow).
@@ -69,8 +76,8 @@ class Sailboat(PlanarCraft):
     In the sea of a trial its current is added to ``current``, M R^T V' of the water that speeds
     up and the loads of waves in surge, sway, roll and yaw to the right-hand side.
 
-    Not modelled: heave, pitch; the rate of the sail in its flow; what one foil's wake does
-    to another; finite span; stall with memory; the righting moment of a real hull at large heel.
+    Not modelled: heave, pitch; inertia of the sail; what one foil's wake does to another; finite
+    span; stall with memory; the righting moment of a real hull at large heel.
     """
 
     places: ClassVar = Places(x=0, y=1, z=None, psi=3, u=4, v=5)
@@ -109,8 +116,12 @@ class Sailboat(PlanarCraft):
     high_alpha = Parameter(
         "physical", "1", "C_L beyond 90 deg: as in the tables, or negated", choices=HIGH_ALPHA
     )
+    sail_swing = Parameter(
+        "off", "1", "whether the rate of the sail acts on its flow", choices=("off", "on")
+    )
 
     sail = Input("rad", "angle of the sail, boom to port positive")
+    sail_rate = Input("rad/s", "rate of that angle, with sail_swing", optional=True)
     flap = Input("rad", "size of the flap's angle, towards the side of the lift, 0 to 30 deg")
     rudder = Input("rad", "angle of the rudder, trailing edge to port positive")
     wind = Input(
@@ -133,6 +144,7 @@ class Sailboat(PlanarCraft):
     sail_load = Output(_LOAD_UNITS, "force and moment of the sail, body axes", **_LOAD)
     keel_load = Output(_LOAD_UNITS, "force and moment of the keel, body axes", **_LOAD)
     rudder_load = Output(_LOAD_UNITS, "force and moment of the rudder, body axes", **_LOAD)
+    sail_torque = Output("N.m", "moment of the sail about its axis, positive opens it to port")
     apparent_wind = Output(
         ("m/s", "rad"),
         "apparent wind at the sail, and where it blows to from the bow, to starboard positive",
@@ -144,11 +156,15 @@ class Sailboat(PlanarCraft):
         "angles": terminal("rudder", "sail", "flap"),
     }
     feedthrough: ClassVar = {
-        "sail_load": ("sail", "flap", "wind"),
+        "sail_load": ("sail", "sail_rate", "flap", "wind"),
+        "sail_torque": ("sail", "sail_rate", "flap", "wind"),
         "keel_load": ("current",),
         "rudder_load": ("rudder", "current"),
         "apparent_wind": ("wind",),
-        "acceleration": ("sail", "flap", "rudder", "wind", "current", "attachment_force"),
+        "acceleration": (
+            *("sail", "sail_rate", "flap", "rudder"),
+            *("wind", "current", "attachment_force"),
+        ),
     }
 
     def start(self, t: float) -> None:
@@ -231,6 +247,7 @@ class Sailboat(PlanarCraft):
             **motion_outputs(x.eta, x.nu, nu_dot),
             **attached,
             **foils,
+            "sail_torque": foils["sail_load"][3] - p.sail_axis[0] * foils["sail_load"][1],
             "apparent_wind": apparent_wind,
         }
 
@@ -279,6 +296,9 @@ def _foil_loads(
     flows = {
         name: flow_at(place, air if name == "sail" else water, nu) for name, place in places.items()
     }
+    if p.sail_swing == "on":
+        swing = u.sail_rate * p.sail_arm
+        flows["sail"] += swing * ca.vertcat(-ca.sin(u.sail), ca.cos(u.sail))
     half_air, half_water = 0.5 * p.air_density, 0.5 * p.water_density
     return {
         "sail_load": foil_load(

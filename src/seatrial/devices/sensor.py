@@ -133,6 +133,8 @@ class Sensor(Noise, Fallible, Sampled):
     measured: ClassVar[tuple[Measured, ...]] = ()
     published: ClassVar[tuple[Derived, ...]] = ()
     """The measured outputs, then those that are computed from them."""
+    empty_is_lost: ClassVar[bool] = True
+    """Whether a measurement that has nothing in it is a lost one."""
 
     delay = Parameter(0.0, "s", "time from measurement to output", min=0.0)
     dropout = Parameter(0.0, "1", "probability that a measurement is lost", min=0.0, max=1.0)
@@ -253,7 +255,7 @@ class Sensor(Noise, Fallible, Sampled):
         found = self._garbage(k) if fault == "garbage" else self._noisy()
         if written.of:
             found = self._disturbed(found, written, k)
-        if all(y is None for y in found):
+        if self.empty_is_lost and all(y is None for y in found):
             return self._last, self._count, False
         values = [0.0 if y is None else y for y in found]
         if fault == "wrong":
