@@ -99,6 +99,40 @@ def test_derivative_and_partial_loads():
         np.testing.assert_allclose(boat.get(port), load, rtol=1e-9)
 
 
+def loaded(**inputs):
+    boat = gloria("physical", **inputs)
+    boat.initialise()
+    return boat
+
+
+@pytest.mark.parametrize("angle", [0.7, -1.2, 0.0])
+def test_torque_about_the_axis_of_the_sail_is_arm_times_force(angle):
+    boat = loaded(sail=angle, flap=0.2, wind=(5, 2))
+    X, Y, *_ = boat.get("sail_load")
+    # The centre of effort is 0.228 m along a boom that points aft and by the angle to port.
+    x, y = -0.228 * math.cos(angle), -0.228 * math.sin(angle)
+    assert boat.get("sail_torque") == pytest.approx(x * Y - y * X, abs=1e-12)
+
+
+@pytest.mark.parametrize(("angle", "rate"), [(0.7, 2.0), (-1.2, -0.5), (0.1, 1.5)])
+def test_a_sail_that_swings_meets_the_wind_that_its_centre_of_effort_does(angle, rate):
+    def place(at):
+        return np.array([-0.228 * math.cos(at), -0.228 * math.sin(at)])
+
+    velocity = (place(angle + 1e-6 * rate) - place(angle - 1e-6 * rate)) / 2e-6
+    swinging = loaded(sail=angle, sail_rate=rate, sail_swing="on", wind=(5, 2))
+    still = loaded(sail=angle, wind=np.array([5, 2]) - velocity)
+    np.testing.assert_allclose(swinging.get("sail_load"), still.get("sail_load"), rtol=1e-7)
+    assert loaded(sail=angle, sail_rate=rate, wind=(5, 2)).get("sail_load") == loaded(
+        sail=angle, wind=(5, 2)
+    ).get("sail_load")
+
+
+@pytest.mark.parametrize("rate", [3.0, -3.0])
+def test_still_air_resists_a_swing(rate):
+    assert loaded(sail=0.4, sail_rate=rate, sail_swing="on").get("sail_torque") * rate < 0.0
+
+
 def hull_part(**left):
     """Return M nu' at the probe with only the named part of the hull's equation left."""
     nothing = {**NO_FOILS, **NO_DAMPING, "GM_T": 0.0}

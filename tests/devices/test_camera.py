@@ -35,7 +35,11 @@ def frames(component, count, *ports):
 def test_bearing_and_size(away, diameter, heading):
     north, east = 100.0 + away[0], -50.0 + away[1]
     seen = camera(
-        (north, east, 0.0), diameter, position=[100.0, -50.0, 0.0], attitude=[0, 0, heading]
+        (north, east, 0.0),
+        diameter,
+        position=[100.0, -50.0, 0.0],
+        attitude=[0, 0, heading],
+        width=2.0,
     )
     distance = math.hypot(*away)
     assert seen.get("detected") == 1
