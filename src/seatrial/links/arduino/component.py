@@ -25,11 +25,12 @@ from .pulses import Pulses
 from .real_board import RealBoard
 from .sketch import find_sketch
 from .uart_links import open_links
-from .wiring import PARTS, UARTS, Wire, read_uarts, read_wires
+from .wiring import PARTS, STEPPERS, UARTS, Wire, read_uarts, read_wires
 
-_GYRO, _FORCE, _FIELD, _PRESSURE, _TEMPERATURE = 0, 3, 6, 9, 10
+_GYRO, _FORCE, _FIELD, _PRESSURE, _TEMPERATURE, _FRAME = 0, 3, 6, 9, 10, 11
+_PIXELS = 320
 _ATMOSPHERE = 101325.0
-_WATCHED = ("servo", "pwm", "output")
+_WATCHED = ("servo", "pwm", "output", "step", "direction")
 _SOFT = {"soft_rx": "r", "soft_tx": "t"}
 
 
@@ -50,7 +51,9 @@ class Arduino(ArduinoPorts):
     wind comes from, clockwise from the bow: V (wind_angle + pi) / 2 pi. ``ADDRESS mpu6050`` has
     ``gyro`` and ``accelerometer``, ``hmc5883l`` the ``magnetic_field`` in body axes by
     ``attitude`` (if 0, that of the World Magnetic Model at the home, at the start), ``ms5837``
-    (30BA) the pressure at ``depth`` under one atmosphere. ``PIN soft_rx N`` and ``PIN soft_tx N``:
+    (30BA) the pressure at ``depth`` under one atmosphere, ``pixy`` what a camera detects, in pixels
+    of 320 over ``view_width``. ``PIN step N`` counts the pulses to the driver of a stepper motor N,
+    down while ``PIN direction N`` is low. ``PIN soft_rx N`` and ``PIN soft_tx N``:
     the line of UART N is at these pins, for SoftwareSerial.
 
     **Time.** Inputs apply from the beginning of the step on. What happens on pins and lines is
@@ -60,6 +63,9 @@ class Arduino(ArduinoPorts):
     their stop bit is over. A monitor receives what its UART sends, and its input goes to the UART
     with the next step, besides what is on ``rx``. Bytes that come or go while a line is ``cut``
     are lost.
+
+    **Supply.** Below ``supply_min`` the board is off: pins low, lines silent, what arrives lost.
+    When it is enough again the sketch begins anew, with the EEPROM as it was.
 
     The sketch runs in a process of its own. If it crashes, overruns its stack, runs for
     ``patience`` without returning or calling anything, or opens a UART at another rate than
@@ -77,6 +83,7 @@ class Arduino(ArduinoPorts):
     def __init__(self, name: str = "component") -> None:
         super().__init__(name)
         self._board: Board | RealBoard | None = None
+        self._off = False
         self._monitors: dict[int, Endpoint] = {}
 
     # ------------------------------------------------------------------ running
@@ -96,17 +103,18 @@ class Arduino(ArduinoPorts):
         except InputError as error:
             self.close()
             raise InputError(f"{self.name}: {error}") from None
-        self._begun_ns = self.now_ns
-        self._last: dict[tuple[str, int], float] = {}
-        self._pulses = {w.place: Pulses() for w in self._wires if w.kind in _WATCHED}
         self._rx: list[dict[str, Any]] = [{} for _ in range(UARTS)]
         self._tx: list[dict[str, Any]] = [{} for _ in range(UARTS)]
         self._sent = self._received = self._resets = 0
-        self._cycle = 0
+        self._steps = [0] * STEPPERS
+        self._power_on()
 
     def step(self, t: float, h: float) -> None:
         """Let the board run from ``t`` to ``t + h``."""
         inputs = Inputs()
+        if self._without_supply():
+            self._put_bytes(Inputs())  # nobody reads them
+            return
         if not self._last:
             self._connect(inputs)
         self._put_bytes(inputs)
@@ -124,7 +132,7 @@ class Arduino(ArduinoPorts):
         real = self._board if isinstance(self._board, RealBoard) else None
         self.exceeded += real.exceeded if real is not None else 0
         self.on_wall_clock, self.connected = real is not None, real is None or real.connected
-        self.resets = self._resets
+        self.resets, self.powered, self.steps = self._resets, not self._off, self._steps
         self.bytes_sent, self.bytes_received = self._sent, self._received
         widths, shares, levels = [0.0] * 12, [0.0] * 8, [False] * 8
         for wire in self._wires:
@@ -138,9 +146,9 @@ class Arduino(ArduinoPorts):
 
     def close(self) -> None:
         """End what runs."""
-        if self._board is not None:
-            self._board.close()
-            self._board = None
+        if self._board is not None or self._off:
+            self._end_board()
+            self._off = False
             if self.eeprom_after:
                 write_eeprom(self.eeprom_after, self._eeprom)
         for monitor in self._monitors.values():
@@ -175,6 +183,34 @@ class Arduino(ArduinoPorts):
             pins,
             source=firmware,
         )
+
+    def _power_on(self) -> None:
+        """Let cycles count from now on, with nothing on pins and wires yet."""
+        self._begun_ns, self._cycle = self.now_ns, 0
+        self._last: dict[tuple[str, int], float] = {}
+        self._pulses = {w.place: Pulses() for w in self._wires if w.kind in _WATCHED}
+        drivers = {w.number: w.place for w in self._wires if w.kind == "direction"}
+        self._step_pins = {
+            w.place: (w.number - 1, drivers.get(w.number)) for w in self._wires if w.kind == "step"
+        }
+
+    def _without_supply(self) -> bool:
+        """Follow the supply of a simulated board; return whether it is off."""
+        off = bool(self.supply < self.supply_min and self.backend != "board")
+        if off and not self._off:
+            self._end_board()
+            self._power_on()
+        elif self._off and not off:
+            self._begin()
+            self._power_on()
+            self._resets += 1
+        self._off = off
+        return off
+
+    def _end_board(self) -> None:
+        if self._board is not None:
+            self._board.close()
+            self._board = None
 
     def _built(self, mcu: Mcu) -> Path:
         return build_firmware(find_sketch(self.sketch, self.libraries, self.flags), mcu)
@@ -235,6 +271,8 @@ class Arduino(ArduinoPorts):
         if kind == "hmc5883l":
             field = to_body(self.attitude, self._field_n)
             return [(("V", _FIELD + i), value) for i, value in enumerate(field)]
+        if kind == "pixy":
+            return self._blocks()
         if kind == "ms5837":
             pressure = _ATMOSPHERE + self.water_density * self.gravity * self.depth
             return [
@@ -242,6 +280,17 @@ class Arduino(ArduinoPorts):
                 (("V", _TEMPERATURE), self.water_temperature),
             ]
         return []
+
+    def _blocks(self) -> list[tuple[tuple[str, int], float]]:
+        """Return what a pixy has of a frame: number, blocks, signature, x and width of each."""
+        focal = _PIXELS / 2.0 / math.tan(0.5 * self.view_width)
+        values: list[float] = [self.sight_frame, self.sight_count]
+        sights = zip(self.sight_kind, self.sight_bearing, self.sight_size, strict=True)
+        for signature, bearing, size in sights:
+            ahead = min(max(bearing, -1.5), 1.5)
+            width = 2.0 * focal * math.tan(0.5 * min(max(size, 0.0), 3.0))
+            values += [signature, _PIXELS / 2.0 + focal * math.tan(ahead), width]
+        return [(("V", _FRAME + i), float(value)) for i, value in enumerate(values)]
 
     def _field(self) -> Sequence[float]:
         given: Sequence[float] = self.magnetic_field
@@ -253,11 +302,17 @@ class Arduino(ArduinoPorts):
     def _channel(self, wire: Wire) -> int:
         return wire.place - MCUS[self.mcu].first_analog
 
+    def _count_step(self, motor: int, direction: int | None) -> None:
+        up = direction is None or self._pulses[direction].level
+        self._steps[motor] += 1 if up else -1
+
     def _take(self, events: list[Event]) -> None:
         received: list[list[Event]] = [[] for _ in range(UARTS)]
         for event in events:
             kind, index, value, cycle = event
             if kind == EDGE:
+                if value and index in self._step_pins and not self._pulses[index].level:
+                    self._count_step(*self._step_pins[index])
                 self._pulses[index].edge(value, cycle)
             elif kind == DUTY:
                 self._pulses[index].modulated(value / 65535.0)

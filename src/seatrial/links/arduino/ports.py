@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import ClassVar
 
 from ...component import Component, Input, Output, Parameter, Reachable, Terminal, terminal
@@ -11,7 +12,7 @@ from ..safe_state_bytes import UNSET, check_safe_state
 from .mcus import MCUS
 from .sketch import read_flags
 from .uart_links import read_links, read_monitors
-from .wiring import OTHERS, SERVOS, UARTS, read_uarts, read_wires
+from .wiring import BLOCKS, OTHERS, SERVOS, STEPPERS, UARTS, read_uarts, read_wires
 
 BACKENDS = ("host", "simavr", "board")
 _UARTS = tuple(f"uart{i}" for i in range(UARTS))
@@ -88,6 +89,12 @@ class ArduinoPorts(Reachable, Component):
         check=start_us,
         role="start-time",
     )
+    supply_min = Parameter(
+        3.7, "V", "supply below which it is off: reset at 2.7 V behind a regulator", min=0.0
+    )
+    view_width = Parameter(
+        math.radians(75.0), "rad", "field of view over the 320 pixels of a pixy", min=0.1, max=3.1
+    )
     water_density = Parameter(1000.0, "kg/m3", "of the water over the pressure sensor", min=0.0)
     gravity = Parameter(STANDARD_GRAVITY, "m/s2", "acceleration of gravity", min=0.0)
 
@@ -118,6 +125,17 @@ class ArduinoPorts(Reachable, Component):
         axes=("phi", "theta", "psi"),
         optional=True,
     )
+    supply = Input("V", "voltage of its supply", start=7.4, optional=True)
+    sight_bearing = Input(
+        "rad",
+        "bearing of what a pixy detects, to starboard",
+        axes=_axes("d", BLOCKS),
+        optional=True,
+    )
+    sight_size = Input("rad", "apparent diameter of it", axes=_axes("d", BLOCKS), optional=True)
+    sight_kind = Input("1", "signature of it", type=int, axes=_axes("d", BLOCKS), optional=True)
+    sight_count = Input("1", "how many it detects in the frame", type=int, optional=True)
+    sight_frame = Input("1", "number of the frame", type=int, optional=True)
     depth = Input("m", "depth of the pressure sensor", optional=True)
     water_temperature = Input("K", "temperature of the water", start=293.15, optional=True)
     receiver = Input(
@@ -130,15 +148,28 @@ class ArduinoPorts(Reachable, Component):
     pulse = Output("s", "width of the last servo pulse, 0 for none", axes=_axes("s", SERVOS))
     duty = Output("1", "share of time that PWM outputs are high", axes=_axes("p"))
     output = Output("1", "levels of digital outputs", type=bool, axes=_axes("o"))
+    steps = Output(
+        "1", "step pulses, less those while direction was low", type=int, axes=_axes("m", STEPPERS)
+    )
+    powered = Output("1", "whether its supply is enough", type=bool)
     connected = Output("1", "board: whether one has sent, and all that have still do", type=bool)
     on_wall_clock = Output("1", "whether it needs real time: board", type=bool, role="wall-clock")
-    resets = Output("1", "times that the board started again, by its watchdog", type=int)
+    resets = Output(
+        "1", "times that the board started again, by its watchdog or its supply", type=int
+    )
     bytes_sent = Output("1", "bytes that left the UARTs", type=int)
     bytes_received = Output("1", "bytes that were put on the lines to the UARTs", type=int)
 
     terminals: ClassVar = {
         "sensors": terminal("gyro", "accelerometer", "wind_speed", "wind_angle", "depth"),
         "truth": terminal("attitude"),
+        "camera": terminal(
+            bearing="sight_bearing",
+            size="sight_size",
+            kind="sight_kind",
+            detected="sight_count",
+            frame="sight_frame",
+        ),
         "pulses": Terminal({f"ch{n}": f"pulse.s{n}" for n in range(1, SERVOS + 1)}),
         # What drives the board, or is its instrument, is above it.
         **{uart: terminal(down=f"rx.{uart}", up=f"tx.{uart}") for uart in _UARTS},

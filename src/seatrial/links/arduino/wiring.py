@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from ...errors import InputError, unknown
 from .mcus import MCUS, Mcu
 
-UARTS, SERVOS, OTHERS = 4, 12, 8
-PARTS = {"mpu6050": 1, "hmc5883l": 2, "ms5837": 3}
+UARTS, SERVOS, OTHERS, STEPPERS, BLOCKS = 4, 12, 8, 4, 6
+PARTS = {"mpu6050": 1, "hmc5883l": 2, "ms5837": 3, "pixy": 4}
 """I2C devices, by the numbers of ``shared/parts.h``."""
 
 _NUMBERED = {
@@ -18,6 +18,8 @@ _NUMBERED = {
     "input": OTHERS,
     "voltage": OTHERS,
     "receiver": OTHERS,
+    "step": STEPPERS,
+    "direction": STEPPERS,
     "soft_rx": UARTS - 1,
     "soft_tx": UARTS - 1,
 }

@@ -1,8 +1,8 @@
 /* Simulated I2C devices: registers as their data sheets have them, quantities from outside.
  *
  * MPU-6050: InvenSense RM-MPU-6000A, registers and sensitivities. HMC5883L: Honeywell
- * 900405 rev E. MS5837-30BA: TE ENG_DS_MS5837-30BA. Axes are the body's: x bow, y starboard,
- * z down.
+ * 900405 rev E. MS5837-30BA: TE ENG_DS_MS5837-30BA. Pixy: the CMUcam5's serial protocol, object
+ * blocks, which on I2C are read as a stream. Axes are the body's: x bow, y starboard, z down.
  */
 #ifndef SEATRIAL_PARTS_H
 #define SEATRIAL_PARTS_H
@@ -11,13 +11,16 @@
 #include <stdint.h>
 #include <string.h>
 
-enum { PART_MPU6050 = 1, PART_HMC5883L, PART_MS5837 };
-enum { Q_GYRO = 0, Q_FORCE = 3, Q_FIELD = 6, Q_PRESSURE = 9, Q_TEMPERATURE = 10, QUANTITIES = 11 };
+enum { PART_MPU6050 = 1, PART_HMC5883L, PART_MS5837, PART_PIXY };
+enum { PIXY_BLOCKS = 6, PIXY_NUMBERS = 3 /* signature, x, width */ };
+enum { Q_GYRO = 0, Q_FORCE = 3, Q_FIELD = 6, Q_PRESSURE = 9, Q_TEMPERATURE = 10, Q_FRAME = 11, Q_BLOCKS = 12, Q_BLOCK = 13,
+    QUANTITIES = Q_BLOCK + PIXY_BLOCKS * PIXY_NUMBERS };
 
 typedef struct {
     uint8_t type, address, pointer, pointed, command, reading;
     uint8_t registers[128];
     uint8_t latched[8];
+    double frame;
 } part;
 
 static double part_quantities[QUANTITIES] = {
@@ -166,6 +169,37 @@ static void part_command_pressure(part *one, uint8_t command)
     }
 }
 
+static void part_append(part *one, unsigned word)
+{
+    one->registers[one->command++] = (uint8_t)word;
+    one->registers[one->command++] = (uint8_t)(word >> 8);
+}
+
+/* A frame begins with one sync more than its blocks have. What is left of the one before is dropped
+ * at its end only: a master that is slow reads older blocks, never half of two. */
+static void part_frame(part *one)
+{
+    if (one->pointer < one->command || one->frame == part_quantities[Q_FRAME])
+        return;
+    one->frame = part_quantities[Q_FRAME];
+    one->pointer = one->command = 0;
+    int blocks = (int)fmin(fmax(part_quantities[Q_BLOCKS], 0.0), PIXY_BLOCKS);
+    if (blocks)
+        part_append(one, 0xAA55);
+    for (int block = 0; block < blocks; block++) {
+        const double *of = part_quantities + Q_BLOCK + PIXY_NUMBERS * block;
+        unsigned width = (unsigned)part_rounded(of[2], 1, 320);
+        unsigned words[5] = {(unsigned)part_rounded(of[0], 1, 7), (unsigned)part_rounded(of[1], 0, 319), 100, width, width > 200 ? 200 : width};
+        unsigned sum = 0;
+        part_append(one, 0xAA55);
+        for (int word = 0; word < 5; word++)
+            sum += words[word];
+        part_append(one, sum & 0xFFFF);
+        for (int word = 0; word < 5; word++)
+            part_append(one, words[word]);
+    }
+}
+
 /* Address a device; returns whether one answers. */
 static int part_begin(uint8_t address, int reading)
 {
@@ -180,6 +214,8 @@ static int part_begin(uint8_t address, int reading)
         part_measure_motion(part_open);
     if (reading && part_open->type == PART_HMC5883L)
         part_measure_field(part_open);
+    if (reading && part_open->type == PART_PIXY)
+        part_frame(part_open);
     part_open->reading = 0;
     return 1;
 }
@@ -189,7 +225,9 @@ static int part_write(uint8_t data)
     part *one = part_open;
     if (!one)
         return 0;
-    if (one->type == PART_MS5837) {
+    if (one->type == PART_PIXY) {
+        return 1; /* its servos and brightness are not there */
+    } else if (one->type == PART_MS5837) {
         part_command_pressure(one, data);
     } else if (!one->pointed) {
         one->pointer = data & 127;
@@ -208,6 +246,8 @@ static uint8_t part_read(void)
         return 0xFF;
     if (one->type == PART_MS5837)
         return one->reading < 8 ? one->latched[one->reading++] : 0;
+    if (one->type == PART_PIXY)
+        return one->pointer < one->command ? one->registers[one->pointer++] : 0;
     uint8_t data = one->registers[one->pointer];
     one->pointer = (one->pointer + 1) & 127;
     if (one->type == PART_HMC5883L && one->pointer == 9)
