@@ -265,3 +265,39 @@ def test_refuses_a_mode_that_it_has_not():
 def test_refuses_radii_that_do_not_go_together():
     with pytest.raises(InputError, match=r"capture_radius .* must be less than drift_limit"):
         guidance(drift_limit=20.0)
+
+
+def test_it_keeps_clear_of_what_a_camera_has_confirmed():
+    """An obstacle of 1 m ahead at 40 m, seen once, twice, three times; then no more."""
+    settings = {
+        "mode": "guided",
+        "armed": True,
+        "position_valid": True,
+        "heading_valid": True,
+        "target_kind": "heading",
+        "target_valid": True,
+        "target_heading": 1.5,
+        "target_speed": 1.0,
+        "heading": 1.5,
+        "velocity_n": [0.0, 2.0, 0.0],
+        "wind": [5.0, 0.0],
+        "clearance": 8.0,
+        "turn_rate": 10.0,
+        "forget": 5.0,
+    }
+    guidance = started(SailingGuidance, **settings)
+    size = 2 * math.asin(0.5 / 40.0)
+    courses = []
+    for k in range(120):
+        if k < 5:
+            guidance.set("frame", k + 1)
+            guidance.set("detected", 2)
+            guidance.set("sight_bearing", [0.0, -0.01, 0, 0, 0, 0])
+            guidance.set("sight_size", [size, 0.1, 0, 0, 0, 0])
+            guidance.set("sight_kind", [2, 1, 0, 0, 0, 0])  # a buoy is no obstacle
+        guidance.advance(0.1 * k, 0.1)
+        courses.append(guidance.get("course"))
+    assert courses[1] == pytest.approx(1.5)
+    assert abs(courses[5] - 1.5) == pytest.approx(math.asin(8.0 / 40.0), abs=1e-9)
+    assert courses[-1] == pytest.approx(1.5)
+    assert (guidance.get("avoiding"), guidance.get("obstacles")) == (False, 0)

@@ -9,11 +9,14 @@ from ..component import Input, Output, Parameter, terminal
 from .guidance_motion import BEAT, FOLLOW, MANUAL, NEUTRAL, Command
 from .guidance_orders import Decision, GuidanceOrders
 from .guidance_path import Point, bearing
+from .lookout import OBSTACLE, Track, clear_heading, placed, watched
 from .sailing_course import Laid, laid, side, turn, turned
 
 MODES = ("manual", "hold", "guided", "auto", "return", "loiter")
 """Values of the input ``mode``."""
 
+SLOTS = tuple(f"d{number}" for number in range(1, 7))
+"""Detections of a camera's frame."""
 _ANY_SPEED = 1.0  # m/s; the wind decides how fast it goes, 0 is to stop
 
 
@@ -29,6 +32,8 @@ class _Sailed(NamedTuple):
     wearing: bool = False
     held: tuple[bool, bool] = (False, False)
     """Whether the autopilots for heading and sail act."""
+    avoided: float = 0.0
+    """By how much the course was turned for an obstacle."""
 
 
 class SailingGuidance(GuidanceOrders):
@@ -70,10 +75,17 @@ class SailingGuidance(GuidanceOrders):
     the point, until within ``capture_radius``, from where its way takes it some lengths on.
     A circle is sailed as far as the wind allows: upwind it becomes boards.
 
+    **Lookout.** With a ``clearance`` it keeps clear of obstacles that a camera detects
+    (``detected`` in ``frame``, each with ``sight_bearing``, ``sight_size``, ``sight_kind``). One is
+    taken for a sphere of ``obstacle_diameter``, which gives its distance and so its place; seen
+    ``confirmations`` times and within ``lookout_range``, it is kept clear of until it was not seen
+    for ``forget`` (`watched`, `clear_heading`). The course turns to the nearest that passes, no
+    closer to the wind than ``closest``. ``avoiding`` and ``obstacles`` are as of the last sample.
+
     ``wind`` is the true wind: where it blows to. Positions in {n}, m; headings clockwise from
     north, rad; ``heading_wanted`` is the heading while no autopilot holds it.
 
-    Not modelled: other boats, laylines that allow for leeway and current.
+    Not modelled: the motion of obstacles, laylines that allow for leeway and current.
 
     Raises InputError at the start for capture_radius not less than drift_limit, and in a run for
     a mode or kind of target that is none.
@@ -160,13 +172,32 @@ class SailingGuidance(GuidanceOrders):
         tunable=True,
     )
 
+    clearance = Parameter(
+        0.0, "m", "distance kept from obstacles, 0: it looks for none", min=0.0, tunable=True
+    )
+    obstacle_diameter = Parameter(
+        1.0, "m", "what an obstacle is taken to measure", min=1e-3, tunable=True
+    )
+    lookout_range = Parameter(60.0, "m", "distance at which one matters", min=0.0, tunable=True)
+    confirmations = Parameter(3.0, "1", "sightings that make an obstacle", min=1.0, tunable=True)
+    forget = Parameter(20.0, "s", "without a sighting, after which it is gone", min=0.0)
+
     mode = Input("1", f"one of {', '.join(MODES)}", type=str, start="hold")
     wind = Input("m/s", "true wind over ground: where it blows to, {n}", axes=("north", "east"))
+    sight_bearing = Input(
+        "rad", "bearing of each detection, to starboard", axes=SLOTS, optional=True
+    )
+    sight_size = Input("rad", "apparent diameter of each", axes=SLOTS, optional=True)
+    sight_kind = Input("1", "kind of each: 2 obstacle", type=int, axes=SLOTS, optional=True)
+    detected = Input("1", "number of detections in the frame", type=int, optional=True)
+    frame = Input("1", "number of the frame", type=int, optional=True)
 
     engaged = Output("1", "which autopilots act", type=bool, axes=("heading", "sail"))
     direct = Output("1", "rudder to starboard, -1 to 1, and sheet, 0 to 1", axes=("yaw", "sheet"))
     course = Output("rad", "course to be on in the end, clockwise from north")
     wearing = Output("1", "whether it turns the long way, away from the wind", type=bool)
+    avoiding = Output("1", "whether it has turned from its course for an obstacle", type=bool)
+    obstacles = Output("1", "number of obstacles that matter", type=int)
     state = Output(
         "1", "0 neutral, 1 piloted, 2 stays, 3 follows a leg, 4 steers, 5 beats", type=int
     )
@@ -192,6 +223,9 @@ class SailingGuidance(GuidanceOrders):
     terminals: ClassVar = {
         **GuidanceOrders.terminals,
         "estimate": terminal("wind"),
+        "sightings": terminal(
+            "detected", "frame", bearing="sight_bearing", size="sight_size", kind="sight_kind"
+        ),
         "wanted": terminal(
             "heading_wanted",
             heading_engaged="engaged__heading",
@@ -208,6 +242,8 @@ class SailingGuidance(GuidanceOrders):
         super().reset(t)
         self._tack, self._slow = 0, False
         self._before: float | None = None
+        self._tracks: list[Track] = []
+        self._avoided, self._frame, self._seen = 0.0, 0, 0
 
     def sample(self, t: float, k: int) -> None:
         """Publish the heading wanted, and which autopilots act."""
@@ -220,12 +256,15 @@ class SailingGuidance(GuidanceOrders):
         self.heading_wanted = math.remainder(sailed.heading, math.tau)
         self.course = math.remainder(sailed.course, math.tau)
         self.wearing = sailed.wearing
+        self.avoiding, self.obstacles = bool(self._avoided), self._seen
 
     def update(self, t: float, k: int) -> None:
         """Remember task, tack and heading wanted."""
         sailed = self._decide()
         self._remember(sailed.decision)
         self._tack, self._before, self._slow = sailed.tack, sailed.heading, self._is_slow()
+        self._avoided, self._seen = sailed.avoided, len(self._near())
+        self._look_out(t)
 
     # ------------------------------------------------------------------ deciding
 
@@ -266,11 +305,25 @@ class SailingGuidance(GuidanceOrders):
                 wanted = wanted._replace(motion=BEAT, across=0.0, integral_rate=0.0)
                 past = decision.past._replace(integral=0.0)
                 decision = decision._replace(command=wanted, start=here, past=past)
-                return self._towards(decision, to_end.course, tack, before)
+                return self._clear_of_obstacles(decision, to_end.course, tack, before)
         along = laid(wanted.heading, eye, tack, closest, self.margin)
         if along.beats:
             decision = decision._replace(command=wanted._replace(integral_rate=0.0))
-        return self._towards(decision, along.course, along.tack, before)
+        return self._clear_of_obstacles(decision, along.course, along.tack, before)
+
+    def _clear_of_obstacles(
+        self, decision: Decision, course: float, tack: int, before: float
+    ) -> _Sailed:
+        """Turn towards a course, or the nearest to it that keeps clear of obstacles."""
+        near = self._near()
+        if not near:
+            return self._towards(decision, course, tack, before)
+        here, closest = self._here(), self.closest
+        clear = clear_heading(
+            course, near, here, self.clearance, self._eye(), closest, self._avoided
+        )
+        avoided = math.remainder(clear - course, math.tau)
+        return self._towards(decision, clear, tack, before)._replace(avoided=avoided)
 
     def _laid_to(self, end: Point, tack: int, closest: float) -> Laid:
         """Return the course to the end of a leg; on the other tack only if wearing pays."""
@@ -300,6 +353,30 @@ class SailingGuidance(GuidanceOrders):
         return _ANY_SPEED
 
     # ------------------------------------------------------------------ what is measured
+
+    def _near(self) -> list[Track]:
+        """Return the obstacles that matter."""
+        here = self._here()[:2]
+        return [
+            track
+            for track in self._tracks
+            if track[3] >= self.confirmations and math.dist(track[:2], here) <= self.lookout_range
+        ]
+
+    def _look_out(self, t: float) -> None:
+        """Take in a new frame."""
+        if self.frame == self._frame or not self.clearance:
+            return
+        self._frame = self.frame
+        here = self._here()
+        rows = zip(self.sight_bearing, self.sight_size, self.sight_kind, strict=True)
+        seen = [
+            placed(bearing, size, self.obstacle_diameter, here, self.heading)
+            for bearing, size, kind in list(rows)[: max(0, self.detected)]
+            if kind == OBSTACLE
+        ]
+        there = [each for each in seen if each is not None]
+        self._tracks = watched(self._tracks, there, t, self.forget)
 
     def _eye(self) -> float:
         """Return where the wind comes from, rad clockwise from north."""
