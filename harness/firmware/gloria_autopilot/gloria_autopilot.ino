@@ -7,6 +7,9 @@
 // radio:            commands and telemetry on Serial2; telemetry to the Uno on Serial3
 //
 // Commands: "H 90" holds a heading, "A" sails round the marks, "S" lets the sail out and stops.
+//
+// Compiled with -DTWO_BOARDS: the sail has a stepper motor (step 22, direction 23), the marks come from
+// the shore by the Uno, and so does what its camera sees.
 
 #include <Servo.h>
 #include <Wire.h>
@@ -15,16 +18,28 @@ const byte MPU = 0x68;
 const byte CUPS_PIN = 2, RUDDER_PIN = 9, FLAP_PIN = 10, SAIL_PIN = 11;
 const unsigned long CONTROL_MS = 50, TELEMETRY_MS = 500;
 
-// Where the marks are counted from, 1e-7 degrees, and the marks, m north and east of it.
+// Where the marks are counted from, 1e-7 degrees, and the marks: m north and east of it; the side on
+// which one is left, 1 to port, -1 to starboard, 0 on any; how near it is passed, m.
 const long HOME_LAT = -228620000L, HOME_LON = -432230000L;
-const float MARKS[][2] = {{-34.7, 197.0}, {-20.0, 0.0}, {60.0, 60.0}};
-const int MARK_COUNT = sizeof(MARKS) / sizeof(MARKS[0]);
-const float MARK_RADIUS = 8.0;
+struct Mark { float north, east; int8_t side; float radius; };
+const byte MOST_MARKS = 8;
+#ifdef TWO_BOARDS
+Mark marks[MOST_MARKS];
+byte markCount = 0;
+#else
+Mark marks[MOST_MARKS] = {{-34.7, 197.0, 0, 8.0}, {-20.0, 0.0, 0, 8.0}, {60.0, 60.0, 0, 8.0}};
+byte markCount = 3;
+#endif
 
 // PID of the heading: N.m per rad, rad.s and rad/s.
 const float KP = 40.0, KI = 2.3, KD = 100.0, INTEGRAL_LIMIT = 3.0;
 const float RUDDER_LIMIT = 12.0 * DEG_TO_RAD;
 const float TURN_RATE = 6.0 * DEG_TO_RAD;
+#ifdef TWO_BOARDS
+const bool LIES_TO = true;  // without a mark to go to
+#else
+const bool LIES_TO = false;
+#endif
 
 Servo rudderServo, flapServo, sailServo;
 
@@ -37,14 +52,20 @@ float windSpeed = 0, windAngle = PI;      // apparent; where it blows to from th
 float windNorth = 0, windEast = 0;        // true; where it blows to
 float yawRate = 0, rollRate = 0, heel = 0, rudder = 0, sail = 0;
 bool haveHeading = false, haveFix = false, haveWind = false, saturated = false;
-int mark = 0, nmeaBad = 0;
+byte mark = 0;
+int nmeaBad = 0;
 volatile unsigned int cupPulses = 0;
 
 void setup() {
   Serial.begin(115200);
   Serial1.begin(38400);
   Serial2.begin(57600);
+#ifdef TWO_BOARDS
+  Serial3.begin(9600);
+  beginSail();
+#else
   Serial3.begin(19200);
+#endif
   rudderServo.attach(RUDDER_PIN);
   flapServo.attach(FLAP_PIN);
   sailServo.attach(SAIL_PIN);
@@ -65,6 +86,10 @@ void loop() {
   static unsigned long controlled = 0, reported = 0;
   readNmea();
   readRadio();
+#ifdef TWO_BOARDS
+  readShore();
+  turnSail();
+#endif
   if (millis() - controlled >= CONTROL_MS) {
     controlled += CONTROL_MS;
     readMotion();
@@ -76,7 +101,11 @@ void loop() {
   if (millis() - reported >= TELEMETRY_MS) {
     reported += TELEMETRY_MS;
     report(Serial2);
+#ifdef TWO_BOARDS
+    reportToShore();
+#else
     report(Serial3);
+#endif
   }
 }
 
@@ -255,19 +284,51 @@ void report(Print &to) {
   to.println(nmeaBad);
 }
 
+// ---------------------------------------------------------------- marks
+
+float north2(byte i) { return marks[i].north - north; }
+float east2(byte i) { return marks[i].east - east; }
+
+// A mark with a side is passed tangent to a circle about it, or, within that, along it.
+float towards(byte i) {
+  float n = north2(i), e = east2(i), distance = sqrt(n * n + e * e);
+  float aside = distance > marks[i].radius ? asin(marks[i].radius / distance) : HALF_PI;
+  return wrapped(atan2(e, n) + marks[i].side * aside);
+}
+
+// One on any side is passed within its radius. Another when it was near and lies abeam or behind on the
+// way to the next, which leaves it on its side; the last one, when it is abeam.
+bool isPassed(byte i) {
+  static byte near = 255;  // the mark that was
+  float n = north2(i), e = east2(i), radius = marks[i].radius;
+  float squared = n * n + e * e;
+  if (!marks[i].side) return squared < radius * radius;
+  if (squared < 4.0 * radius * radius) near = i;
+  if (near != i) return false;
+  float course = i + 1 < markCount ? atan2(east2(i + 1), north2(i + 1)) : heading;
+  float ahead = n * cos(course) + e * sin(course), starboard = e * cos(course) - n * sin(course);
+  bool passed = ahead < 0.5 * radius && starboard * marks[i].side < -0.5 * radius;
+  if (passed) near = 255;
+  return passed;
+}
+
 // ---------------------------------------------------------------- control
 
 void navigate() {
-  if (mode == MARKED && haveFix && mark < MARK_COUNT) {  // after the last one she sails on
-    float n = MARKS[mark][0] - north, e = MARKS[mark][1] - east;
-    if (n * n + e * e < MARK_RADIUS * MARK_RADIUS) {
+  if (mode == MARKED && haveFix && mark < markCount) {  // after the last one she sails on
+    if (isPassed(mark)) {
       mark++;
     } else {
-      headingTarget = atan2(e, n);
+      headingTarget = towards(mark);
     }
   }
+#ifdef TWO_BOARDS
+  float target = clearOfObstacle(headingTarget);
+#else
+  float target = headingTarget;
+#endif
   // The heading wanted turns at a steady rate, and never through the eye of the wind.
-  float turn = wrapped(headingTarget - headingWanted);
+  float turn = wrapped(target - headingWanted);
   float eye = wrapped(atan2(-windEast, -windNorth) - headingWanted);
   bool through = haveWind && turn * eye > 0 && abs(eye) < abs(turn);
   float step = TURN_RATE * CONTROL_MS / 1000.0;
@@ -306,7 +367,7 @@ float sailFor(float away) {
 
 void trim() {
   static int side = 1;
-  if (mode == STOPPED || !haveWind || !haveHeading) {
+  if (mode == STOPPED || !haveWind || !haveHeading || (mode == MARKED && mark >= markCount && LIES_TO)) {
     sail = 90.0 * DEG_TO_RAD;
   } else {
     float away = wrapped(heading - atan2(windEast, windNorth));  // from dead downwind
@@ -315,6 +376,10 @@ void trim() {
     float lee = abs(heel + rollRate) - 28.0 * DEG_TO_RAD;  // a second ahead
     if (lee > 0) sail = constrain(sail + lee, 0.0, HALF_PI);
   }
+#ifdef TWO_BOARDS
+  aimSail(side * sail);
+#else
   sailServo.writeMicroseconds(1500 + (int)round(side * sail * (500.0 / PI)));
+#endif
   flapServo.writeMicroseconds(1500);
 }

@@ -365,14 +365,14 @@ class SailingGuidance(GuidanceOrders):
 
     def _look_out(self, t: float) -> None:
         """Take in a new frame."""
-        if self.frame == self._frame or not self.clearance:
+        if not self.clearance:
             return
+        here, count = self._here(), max(0, self.detected) if self.frame != self._frame else 0
         self._frame = self.frame
-        here = self._here()
         rows = zip(self.sight_bearing, self.sight_size, self.sight_kind, strict=True)
         seen = [
             placed(bearing, size, self.obstacle_diameter, here, self.heading)
-            for bearing, size, kind in list(rows)[: max(0, self.detected)]
+            for bearing, size, kind in list(rows)[:count]
             if kind == OBSTACLE
         ]
         there = [each for each in seen if each is not None]

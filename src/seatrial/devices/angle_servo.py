@@ -39,8 +39,9 @@ class AngleServo(Actuator, Sampled):
 
     command = Input("rad", "angle wanted")
     angle = Output("rad", "angle of the shaft")
+    speed = Output("rad/s", "rate of the shaft, mean of the period that ends with this move")
 
-    feedthrough: ClassVar = {"angle": ("command", "fault")}
+    feedthrough: ClassVar = dict.fromkeys(("angle", "speed"), ("command", "fault"))
 
     def reset(self, t: float) -> None:
         """Start at rest; raises InputError for angles out of order."""
@@ -59,16 +60,21 @@ class AngleServo(Actuator, Sampled):
 
     def sample(self, t: float, k: int) -> None:
         """Move towards the command."""
+        self.angle = self._moved(t)
+        self.speed = (self.angle - self._angle) / self.period
+
+    def _moved(self, t: float) -> float:
+        """Return the angle after the move of this instant."""
         received = self.received(t, [self.command], [self.angle_min], [self.angle_max])
         if received is None or self.fault == "stuck":
-            self.angle = self._angle
-            return
+            return self._angle
         wanted = min(max(received[0], self.angle_min), self.angle_max)
         if self.fault == "wrong":
             further = SHARE_WRONG * (self.angle_max - self.angle_min)
             wanted = min(wanted + further, self.angle_max)
         most = self.rate * self.period / self.slowness
-        self.angle = self._angle + min(max(wanted - self._angle, -most), most)
+        move: float = min(max(wanted - self._angle, -most), most)
+        return self._angle + move
 
     def update(self, t: float, k: int) -> None:
         """Remember where the shaft is."""
