@@ -72,6 +72,7 @@ ELSEWHERE = {
     DOCS / "tutorials/ci.md",  # tests/testing: a project of its own
     REFERENCE / "cli.md",  # made from the commands' own help
     DOCS / "performance.md",  # a benchmark
+    HOW_TO / "watch-a-run.md",  # tests/live: pages that wait for a browser
 }
 """Pages whose examples other tests run, or none."""
 MADE = {HOW_TO / "panel-codes.md": ("barge_capytaine.nc", "vehicles/barge.nc")}

@@ -10,6 +10,7 @@ from .connecting import connect
 from .loading import load_part
 from .profile import Profiles
 from .rig import Rig
+from .shape_ports import resolve_shapes
 from .system import Engine, System
 from .tuning import connect_tunables
 
@@ -45,6 +46,7 @@ def assemble(
         for name, placed in rig.components.items():
             connect_tunables(system, system.parts[name], profiles[placed.scope.path])
         _yield_to_connections(system)
+        resolve_shapes(system)
     except BaseException:
         system.free()
         raise

@@ -59,6 +59,7 @@ def _give_seed(part: Part, seed: int) -> None:
 
 def _give_parameter_set(part: Part, values: ParameterSet) -> None:
     part.presets, part.outline = values.presets, values.outline
+    part.shape, part.vehicle = values.body, values.vehicle
     for port, value in values.values.items():
         scalars = settable(part.instance.variables, port, values.origin)
         part.given.update(from_entry(value, scalars, values.origin, values.folder))

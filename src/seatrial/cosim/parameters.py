@@ -10,6 +10,7 @@ from pydantic import Field
 
 from ..errors import InputError, unknown
 from .files import FileModel, Source, find_file, read_toml, validated
+from .shape import Shape, ShapePart
 
 Mark = Literal["stated", "corrected", "assumed", "identified"]
 
@@ -42,9 +43,22 @@ class VehicleFile(FileModel):
     default: str | None = None
     outline: Outline | None = None
     """Drawn by reports; the components have no such parameters."""
+    shape: dict[str, Shape] = Field(default_factory=dict)
+    """What is drawn in three dimensions of the component with a table, by table."""
     variants: dict[str, dict[str, dict[str, Entry]]] = Field(default_factory=dict)
     presets: dict[str, dict[str, dict[str, Entry]]] = Field(default_factory=dict)
     components: dict[str, dict[str, Entry]] = Field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Body:
+    """What is drawn of a component: its parts, and where they are written."""
+
+    parts: list[ShapePart]
+    path: Path
+    table: str
+    tables: tuple[str, ...]
+    """All tables of the file."""
 
 
 @dataclass(frozen=True)
@@ -55,6 +69,9 @@ class ParameterSet:
     presets: dict[str, dict[str, Entry]] = field(default_factory=dict)
     origin: str = ""
     outline: Outline | None = None
+    body: Body | None = None
+    vehicle: tuple[Path, str] | None = None
+    """The file and the table in it."""
     folder: Path | None = None
     """Of the file, which names of files in it are relative to."""
 
@@ -81,7 +98,22 @@ class Vehicle:
         values = {**file.components.get(table, {}), **changes}
         suffix = f", variant {chosen}" if chosen else ""
         origin = f"vehicles/{path.name} [{table}]{suffix}"
-        return ParameterSet(values, file.presets.get(table, {}), origin, file.outline, path.parent)
+        body = Body(file.shape[table], path, table, self.tables) if table in file.shape else None
+        return ParameterSet(
+            values,
+            file.presets.get(table, {}),
+            origin,
+            file.outline,
+            body,
+            (path, table),
+            path.parent,
+        )
+
+    @property
+    def tables(self) -> tuple[str, ...]:
+        """The tables of components, of some variants alone too."""
+        of_variants = (table for changes in self.file.variants.values() for table in changes)
+        return tuple(dict.fromkeys([*self.file.components, *of_variants]))
 
 
 def split_reference(written: str, fmu: str) -> tuple[str, str]:
@@ -101,7 +133,7 @@ def load_vehicle(name: str, relative_to: Path | None = None) -> Vehicle:
     """Read the vehicle file ``name`` (shipped, or a path). Raises InputError."""
     path = find_file("vehicles", name, relative_to)
     content, read_from = read_toml(path)
-    known = {"title", "source", "default", "outline", "variants", "presets"}
+    known = {"title", "source", "default", "outline", "shape", "variants", "presets"}
     components = {key: value for key, value in content.items() if key not in known}
     top: dict[str, Any] = {key: value for key, value in content.items() if key in known}
     for key, value in components.items():
@@ -109,7 +141,11 @@ def load_vehicle(name: str, relative_to: Path | None = None) -> Vehicle:
             raise InputError(f"{path}: {key}: {unknown('key', key, known)}")
     components = {name: _numbered(table, f"{path}: {name}") for name, table in components.items()}
     content = {**top, "components": components}
-    return Vehicle(validated(VehicleFile, content, path, ours="components"), read_from)
+    vehicle = Vehicle(validated(VehicleFile, content, path, ours="components"), read_from)
+    for table in vehicle.file.shape:
+        if table not in vehicle.tables:
+            raise InputError(f"{path}: shape: {unknown('component table', table, vehicle.tables)}")
+    return vehicle
 
 
 def _numbered(table: dict[str, Any], where: str) -> dict[str, Any]:

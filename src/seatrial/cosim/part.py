@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from ..fmi.instance import Instance
-from .parameters import Outline
+from .parameters import Body, Outline
 from .values import Given
 
 
@@ -28,6 +29,14 @@ class Part:
     """Values set by the rig's user, by variable name; the others keep the FMU's start values."""
     outline: Outline | None = None
     """Of the vehicle whose parameters it has, if its file has one."""
+    shape: Body | None = None
+    """What is drawn of it, as its vehicle's file has it."""
+    vehicle: tuple[Path, str] | None = None
+    """The file and the table that its parameters are of."""
+    drawn: list[dict[str, Any]] = field(default_factory=list)
+    """The shape with signals in the place of ports, for manifests."""
+    meshes: dict[str, Path] = field(default_factory=dict)
+    """Files that the shape shows, by their names in a run's folder."""
     home: tuple[float, float, float] | None = None
     """Origin of {n} where it is, if its rig says one: latitude and longitude, rad; altitude, m."""
     presets: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)

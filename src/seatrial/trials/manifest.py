@@ -121,6 +121,8 @@ def _component(part: Part, feeders: Mapping[str, str], step: float) -> dict[str,
         shown["views"] = {kind: dict(ports) for kind, ports in part.instance.views.items()}
     if part.outline is not None:
         shown["outline"] = {"length": part.outline.length, "beam": part.outline.beam}
+    if part.drawn:
+        shown["shape"] = part.drawn
     if part.home is not None and "motion" in part.instance.terminals:
         shown["home"] = list(part.home)
     return {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import shutil
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -10,7 +11,8 @@ from pathlib import Path
 
 from ..cosim.master import Master
 from ..cosim.part import Part
-from ..cosim.system import Engine
+from ..cosim.shape_ports import MESHES
+from ..cosim.system import Engine, System
 from .ending import is_whole
 from .hooks import Hooks, StoppedError
 from .output import claim_folder
@@ -67,6 +69,7 @@ def run_trial(
         hooks.refuse_if_stopped()
         folder = claim_folder(out, trial.name, "manifest.json", here)
         hooks.claimed(folder)
+        _copy_meshes(prepared.system, folder)
         _set_run_folder(master, folder)
         run = Run(prepared, master, folder, hooks, wall)
         if trial.file.real_time is not None:
@@ -109,6 +112,14 @@ def _timed(wall: dict[str, float], what: str) -> Iterator[None]:
     begun = time.perf_counter()
     yield
     wall[what] = time.perf_counter() - begun
+
+
+def _copy_meshes(system: System, folder: Path) -> None:
+    """Copy the files that the vehicles' shapes show to the run's folder, which is then whole."""
+    for part in system.parts.values():
+        for name, path in part.meshes.items():
+            (folder / MESHES).mkdir(exist_ok=True)
+            shutil.copyfile(path, folder / MESHES / name)
 
 
 def _set_run_folder(master: Master, out: Path) -> None:

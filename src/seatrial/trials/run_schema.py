@@ -19,6 +19,7 @@ from pydantic import (
     model_validator,
 )
 
+from ..cosim.shape import Drawn, carried
 from ..errors import InputError
 from ..ports import VIEWS
 from ..reading import json_content
@@ -57,6 +58,36 @@ class _Outline(_Entry):
     beam: Number
 
 
+class _Moved(_Entry):
+    """What moves a part: the signal, of which gain times the value plus offset is the port's."""
+
+    signal: str
+    gain: Number = 1.0
+    offset: Number = 0.0
+
+
+class _Turn(_Moved):
+    about: list[Number] = Field(min_length=3, max_length=3)
+    factor: Number = 1.0
+
+
+class _Stretch(_Moved):
+    full: Number = Field(gt=0.0)
+
+
+class _Slide(_Moved):
+    along: list[Number] = Field(min_length=3, max_length=3)
+
+
+class _ShapePart(Drawn):
+    """A part of a shape, with signals in the place of ports."""
+
+    turn: _Turn | None = None
+    stretch: _Stretch | None = None
+    slide: _Slide | None = None
+    sha256: str | None = Field(default=None, pattern="^[0-9a-f]{64}$")
+
+
 def _views(views: dict[str, dict[str, str]]) -> dict[str, dict[str, str]]:
     for kind, ports in views.items():
         lacking = [port for port in VIEWS.get(kind, ()) if port not in ports]
@@ -74,6 +105,9 @@ class _Component(_Entry):
         default_factory=dict
     )
     outline: _Outline | None = None
+    shape: Annotated[list[_ShapePart], AfterValidator(carried)] = Field(
+        default_factory=list, max_length=200
+    )
     home: Annotated[tuple[Number, Number, Number], Strict(False)] | None = None
 
     @model_validator(mode="after")

@@ -49,6 +49,8 @@ class Craft:
     specific_force: Array | None
     geodetic: Array | None
     size: tuple[float, float] | None
+    component: str
+    """Path of the component whose motion it is."""
 
 
 def crafts(run: Run) -> list[Craft]:
@@ -115,6 +117,7 @@ def _craft(run: Run, component: str, name: str, world: Origin | None) -> Craft:
         force,
         geodetic,
         None if outline is None else (float(outline["length"]), float(outline["beam"])),
+        component,
     )
 
 

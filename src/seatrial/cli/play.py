@@ -1,0 +1,51 @@
+"""``seatrial play``: a run in three dimensions, played back in a browser."""
+
+from __future__ import annotations
+
+import webbrowser
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ..trials.run_folder import load_run
+from .answer import answer
+from .show import console
+from .stopping import stoppable
+
+Port = Annotated[
+    int, typer.Option("--port", metavar="N", min=0, max=65535, help="Port (0: any that is free).")
+]
+Open = Annotated[bool, typer.Option("--open", help="Open the page in a browser.")]
+
+
+def play(
+    folder: Annotated[Path, typer.Argument(metavar="RUN", help="Folder of a run.")],
+    ghost: Annotated[
+        Path | None, typer.Argument(metavar="[RUN2]", help="A second run, shown as a ghost.")
+    ] = None,
+    port: Port = 0,
+    open_: Open = False,
+) -> None:
+    """Play a run back in three dimensions, in a browser."""
+    from ..live.playback import Playback
+    from ..live.server import PageServer
+
+    run = load_run(folder)
+    other = None if ghost is None else load_run(ghost)
+    server = PageServer(port)
+    try:
+        playback = Playback(server, run, other)
+        show_address(server.address, open_)
+        with stoppable() as stop:
+            playback.run(stop.requested)
+    finally:
+        server.stop()
+
+
+def show_address(address: str, open_: bool) -> None:
+    """Say where a page is, and open it if that is wanted."""
+    answer.result = {"page": address}
+    console.print(f"page: {address}  (Ctrl-C ends it)", soft_wrap=True)
+    if open_:
+        webbrowser.open(address)

@@ -1,0 +1,1 @@
+"""Runs to look at: a scene in three dimensions, live, played back and in reports."""

@@ -1,0 +1,95 @@
+"""Where everything in a run is, at any time: poses and signals between the recorded rows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from ..trials.expressions import FloatArray
+from ..trials.logs.scene import Craft, crafts
+from ..trials.run_folder import Run
+
+_FRD = np.array([1.0, 0.0, 0.0, 0.0])
+"""Quaternion (x, y, z, w) that takes ahead, starboard, down to ahead, left, up."""
+
+
+@dataclass(frozen=True)
+class Pose:
+    """Of a craft's body axes (ahead, starboard, down) in the world (east, north, up), m."""
+
+    position: FloatArray
+    wxyz: FloatArray
+
+    @property
+    def ahead(self) -> FloatArray:
+        """Horizontal unit vector to where the bow points."""
+        w, x, y, z = self.wxyz
+        bow = np.array([1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 0.0])
+        length = float(np.linalg.norm(bow))
+        return bow / length if length > 0.0 else np.array([1.0, 0.0, 0.0])
+
+
+class Frame:
+    """A run at one time, linear between its rows."""
+
+    def __init__(self, motion: Motion, time: float) -> None:
+        self._motion = motion
+        self.time = time
+        """s."""
+        rows = motion.run.time
+        self.row = int(np.clip(np.searchsorted(rows, time, "right") - 1, 0, len(rows) - 1))
+        """The last row that is not later."""
+        self._next = min(self.row + 1, len(rows) - 1)
+        span = rows[self._next] - rows[self.row]
+        self._share = min(max((time - rows[self.row]) / span, 0.0), 1.0) if span > 0.0 else 0.0
+
+    def pose(self, craft: int) -> Pose:
+        """Return where a craft is, by its number in `Motion.crafts`."""
+        of_it, turns = self._motion.crafts[craft], self._motion.turns[craft]
+        turn = self._between(turns)
+        return Pose(self._between(of_it.position), turn / np.linalg.norm(turn))
+
+    def value(self, signal: str) -> float | None:
+        """Return a signal; None if it was not recorded as a number, or is none here."""
+        column = self._motion.run.signals.get(signal)
+        if not isinstance(column, np.ndarray):
+            return None
+        value = float(self._between(column))
+        return value if np.isfinite(value) else None
+
+    def values(self, signals: list[str]) -> FloatArray:
+        """Return signals that are recorded as numbers."""
+        return np.array([self._between(self._motion.run.signals[name]) for name in signals])
+
+    def _between(self, column: Any) -> FloatArray:
+        before, after = column[self.row], column[self._next]
+        return np.asarray(before + self._share * (after - before))
+
+
+class Motion:
+    """The craft of a run with a record of at least one row."""
+
+    def __init__(self, run: Run) -> None:
+        self.run = run
+        self.crafts: list[Craft] = crafts(run)
+        self.turns = [_turns(craft) for craft in self.crafts]
+        """Quaternions (w, x, y, z) of body axes with z down, row by row."""
+
+    def at(self, time: float) -> Frame:
+        """Return the run at a time, s; before its start and after its end, what was there."""
+        return Frame(self, time)
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """Times of the first and the last row, s."""
+        return float(self.run.time[0]), float(self.run.time[-1])
+
+
+def _turns(craft: Craft) -> FloatArray:
+    down = (Rotation.from_quat(craft.orientation) * Rotation.from_quat(_FRD)).as_quat()
+    jumps = np.sum(down[1:] * down[:-1], axis=1) < 0.0
+    signs = np.where(np.concatenate([[0], np.cumsum(jumps)]) % 2 == 1, -1.0, 1.0)
+    return np.asarray((signs[:, None] * down)[:, [3, 0, 1, 2]])
