@@ -26,6 +26,7 @@ from parts import (  # noqa: E402, F401  each registers its parts
     hydrone,
     hydrone_deck,
     mavlink,
+    native,
     nmea0183,
     nmea2000,
     profile,

@@ -44,17 +44,15 @@ class FixedThrusters(Component):
     position = OfEach("m", "position from the body origin")
     direction = OfEach("1", "direction of the positive thrust, a unit vector, or 0 for none,")
 
-    def effects(self) -> dict[int, list[float]]:
-        """Return (d_i, r_i x d_i), force and moment per newton, by index from 0.
+    def effects(self) -> list[list[float] | None]:
+        """Return (d_i, r_i x d_i), force and moment per newton, of each; None for no thruster.
 
         Raises InputError for a direction that is neither zero nor of length 1 within 1e-6.
         """
-        pairs = enumerate(zip(self.position, self.direction, strict=True))
-        return {
-            index: effect(f"{self.name}.direction_{index + 1}", *pair)
-            for index, pair in pairs
-            if any(pair[1])
-        }
+        return [
+            effect(f"{self.name}.direction_{number}", *pair) if any(pair[1]) else None
+            for number, pair in enumerate(zip(self.position, self.direction, strict=True), 1)
+        ]
 
 
 def effect(name: str, position: tuple[float, ...], direction: tuple[float, ...]) -> list[float]:

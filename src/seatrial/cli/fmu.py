@@ -24,8 +24,8 @@ from ..fmi.export import build_fmu
 from ..fmi.instance import Value, Variable
 from ..fmi.load import load_fmu, open_instance
 from ..fmi.loaded import LoadedFmu
+from ..fmi.native.carriers import why_python
 from ..fmi.native.compiler import TARGETS, checked_platforms
-from ..fmi.native.equations import why_python
 from ..fmi.native.export import build_native_fmu
 from ..fmi.osp import osp_file, osp_xml
 from ..fmi.source import ComponentSource, find_source, named_sources, shipped_sources
@@ -66,7 +66,7 @@ def build(
         bool, typer.Option("--osp", help="Write the OspModelDescription.xml of each beside it.")
     ] = False,
     native: Annotated[
-        bool, typer.Option("--native", help="Plants in C, which need no Python where they run.")
+        bool, typer.Option("--native", help="Components in C, which need no Python where they run.")
     ] = False,
     platforms: Annotated[
         str | None,

@@ -102,7 +102,7 @@ class ThrusterMatrixAllocation(FixedThrusters, ThrustCurve, ThrusterPulses):
                 f"{self.name}.thrust_curve is {list(self.thrust_curve)}, whose thrust falls from "
                 "command 0 on: it must rise"
             )
-        effects = self.effects()
+        effects = {i: each for i, each in enumerate(self.effects()) if each is not None}
         self._channels = list(effects)
         rows = range(6) if self.moments == "all" else (_SURGE, _SWAY, _HEAVE, _YAW)
         matrix = np.array([[effect[row] for effect in effects.values()] for row in rows])

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from ..component import NS, Noise
+from .delays import last_due
 from .fault import SLOWER, Fallible
 
 INTERVAL_NS = 200_000_000
@@ -57,8 +58,8 @@ class Actuator(Noise, Fallible):
             case "stuck":
                 return self._taken
             case "delayed":
-                due = [entry[1] for entry in self._late if entry[0] <= now_ns]
-                return due[-1] if due else self._taken
+                due = last_due(self._late, now_ns)
+                return self._taken if due is None else due[1]
             case "garbage":
                 drawn: list[float] = self._drawn(now_ns).uniform(low, high).tolist()
                 return drawn
@@ -73,7 +74,8 @@ class Actuator(Noise, Fallible):
         self._taken = self.received(t, command, low, high)
         if self.fault == "delayed":
             now_ns = round(t * NS)
-            self._late = [entry for entry in self._late if entry[0] > now_ns]
+            while self._late and self._late[0][0] <= now_ns:
+                self._late.pop(0)
             self._late.append([now_ns + LATE_NS, list(command)])
         else:
             self._late = []

@@ -40,12 +40,12 @@ class Propulsion(FixedThrusters):
 
     def start(self, t: float) -> None:
         """Work out each thruster's force and moment; raises InputError for a bad direction."""
-        self._effects = [[index, *effect] for index, effect in self.effects().items()]
+        self._effects = self.effects()
 
     def outputs(self, t: float) -> None:
         """Sum the thrusters."""
-        thrusts, total = self.thrust, [0.0] * 6
-        for index, *effect in self._effects:
-            for i, part in enumerate(effect):
-                total[i] += part * thrusts[index]
+        total = [0.0] * 6
+        for thrust, effect in zip(self.thrust, self._effects, strict=True):
+            if effect is not None:
+                total = [load + part * thrust for load, part in zip(total, effect, strict=True)]
         self.force, self.moment = total[:3], total[3:]

@@ -11,6 +11,7 @@ from ..errors import InputError, unknown
 from ..faults.operators import Bias, Deviation, Drift, Moment, Operator, Scale
 from ..faults.text import Written
 from ..sampled import Sampled
+from .delays import last_due
 from .fault import SHARE_WRONG, SLOWER, Fallible
 
 Validity = Literal["", "whole", "axes"]
@@ -217,8 +218,8 @@ class Sensor(Noise, Fallible, Sampled):
         if self._instant_ns() == now_ns and not self._late_ns():
             self._publish(*self._measurement(self._next))
             return
-        due = [entry for entry in self._queue if entry[0] <= now_ns]
-        self._publish(*(due[-1][1:] if due else self._shown))
+        due = last_due(self._queue, now_ns)
+        self._publish(*(self._shown if due is None else due[1:]))
 
     # ------------------------------------------------------------------ inside
 
@@ -286,20 +287,21 @@ class Sensor(Noise, Fallible, Sampled):
 
     def _disturbed(self, found: Sequence[Value], fault: Written, k: int) -> Sequence[Value]:
         """Return the measurement ``k`` with a fault of one output."""
-        port = next((p for p in self.measured if p.name == fault.of), None)
-        if port is None:
-            known = [p.name for p in self.measured]
+        known = [port.name for port in self.measured]
+        if fault.of not in known:
             raise InputError(f"{self.name}.fault: {unknown('measured output', fault.of, known)}")
-        first = sum(p.size for p in self.measured[: self.measured.index(port)])
         at_ns = self._start_ns + k * self._period_ns
         begun_ns = min(at_ns, round(fault.at * NS))
         moment = Moment(at_ns, begun_ns, round(fault.grows_over * NS))
-        normal = self.generator(k, 2).standard_normal(port.size).tolist()
-        values = list(found)
-        for i in range(port.size):
-            x = values[first + i]
-            if x is not None:
-                values[first + i] = _faulty(fault, i, normal[i], x, moment)
+        values, first = list(found), 0
+        for port in self.measured:
+            if port.name == fault.of:
+                normal = self.generator(k, 2).standard_normal(port.size).tolist()
+                for i in range(port.size):
+                    x = values[first + i]
+                    if x is not None:
+                        values[first + i] = _faulty(fault, i, normal[i], x, moment)
+            first += port.size
         return values
 
     def _publish(self, values: list[Value], count: int, valid: bool) -> None:
@@ -307,7 +309,7 @@ class Sensor(Noise, Fallible, Sampled):
         for port in self.published:
             found = values[place : place + port.size]
             shown = [0.0 if y is None else y for y in found]
-            self.values[port.offset : port.offset + port.size] = shown
+            setattr(self, port.name, shown[0] if port.axes is None else shown)
             if port.validity:
                 there: Any = [valid and y is not None for y in found]
                 whole = port.validity == "whole"

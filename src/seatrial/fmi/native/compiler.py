@@ -1,13 +1,18 @@
-"""The C compiler of native FMUs: Zig's, which pip installs and which builds for any platform."""
+"""C compilers of native FMUs: Zig's, which pip installs and which builds for any platform.
+
+What only this machine runs may be built by the compiler that it has.
+"""
 
 from __future__ import annotations
 
 import importlib.util
 import os
+import platform as machine
+import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from ...errors import InputError, unknown
@@ -21,6 +26,15 @@ TARGETS = {
 }
 """Zig's name of each platform, by FMI's, and the suffix of a library."""
 
+_HERE = {
+    ("Linux", "x86_64"): "linux64",
+    ("Linux", "aarch64"): "aarch64-linux",
+    ("Windows", "AMD64"): "win64",
+    ("Darwin", "x86_64"): "darwin64",
+}
+HERE = _HERE.get((machine.system(), machine.machine()), "")
+"""FMI's name of this machine's platform, empty for one that is not among `TARGETS`."""
+
 FLAGS = (
     "-std=c99",
     "-O2",
@@ -30,7 +44,7 @@ FLAGS = (
     "-Wall",
     "-ffp-contract=off",  # a fused multiplication and addition is another number
     "-fno-builtin",  # and so is x * x for pow(x, 2)
-    "-fno-sanitize=undefined",
+    "-fno-math-errno",
 )
 
 
@@ -52,13 +66,28 @@ def library(sources: Mapping[str, bytes], platform: str) -> bytes:
     if importlib.util.find_spec("ziglang") is None:
         raise InputError("native FMUs need a C compiler to build: pip install 'seatrial[native]'")
     target, suffix = TARGETS[platform]
+    command = [sys.executable, "-m", "ziglang", "cc", "-target", target, "-fno-sanitize=undefined"]
+    return _built(sources, command, suffix, platform)
+
+
+def library_here(sources: Mapping[str, bytes], platform: str) -> bytes:
+    """Return the same for this machine's ``platform``, by its own compiler if it has one."""
+    compiler = shutil.which("cc")
+    if compiler is None:
+        return library(sources, platform)
+    return _built(sources, [compiler], TARGETS[platform][1], platform)
+
+
+def _built(
+    sources: Mapping[str, bytes], compiler: Sequence[str], suffix: str, platform: str
+) -> bytes:
     files = [name for name in sorted(sources) if name.endswith(".c")]
     with tempfile.TemporaryDirectory() as folder:
         for name, content in sources.items():
             Path(folder, name).write_bytes(content)
         own = f"model{suffix}"
-        command = [sys.executable, "-m", "ziglang", "cc", "-target", target, *FLAGS, "-s", "-I."]
-        command += [*files, "-o", own, *([] if platform == "win64" else ["-lm"])]
+        command = [*compiler, *FLAGS, "-s", "-I.", *files, "-o", own]
+        command += [] if platform == "win64" else ["-lm"]
         kept = {"ZIG_GLOBAL_CACHE_DIR": str(cache_folder("zig")), "ZIG_LOCAL_CACHE_DIR": folder}
         run = subprocess.run(
             command, cwd=folder, env=os.environ | kept, capture_output=True, text=True

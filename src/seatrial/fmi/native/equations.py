@@ -2,30 +2,25 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 
 import casadi as ca
 
-from ...component import Component, Parameter
+from ...component import Component
 from ...errors import InputError, SimulationError
 from ...plant import Plant
-from ...ports import Port, ScalarPort
+from ...ports import Port
+from .tables import table, tables
 
 _HEADER = """\
-/* Sizes and tables of a plant: by value reference, and the references of its vectors. */
-#include <math.h>
-
-#define MODEL_GUID "{guid}"
 enum {{
-    SCALARS = {scalars}, STATES = {x}, INPUTS = {u}, PARAMETERS = {p}, OUTPUTS = {y},
-    MAX_STEP = {max_step}
+    STATES = {x}, INPUTS = {u}, PARAMETERS = {p}, OUTPUTS = {y}, MAX_STEP = {max_step}
 }};
-enum {{ INPUT, FIXED, TUNABLE, BUILT_IN, OUTPUT, TEXT }};
+extern const int model_x[], model_x_start[], model_u[], model_p[], model_y[];
 
-extern const double model_starts[], model_lows[], model_highs[];
-extern const int model_kinds[], model_x[], model_x_start[], model_u[], model_p[], model_y[];
-extern const char *const model_names[], *const model_units[], *const model_texts[];
+typedef struct {{
+    double x[STATES + 1];
+}} Memory;
 
 void model_rk4(const double *x, const double *u, const double *p, double h, double *next);
 void model_out(const double *x, const double *u, const double *p, double *y);
@@ -51,14 +46,12 @@ _OWN = ("step", "outputs", "_load", "_publish", "_compiled", "advance", "refresh
 """Methods that `plant.c` has in C: who overrides one is another component."""
 
 
-def why_python(cls: type[Component]) -> str:
-    """Return why a component cannot be native, empty if it can."""
-    if not issubclass(cls, Plant):
-        return "it is no plant: equations alone become C"
-    if any(p.type is not float and p.kind != "parameter" for p in cls.ports.values()):
+def why_python(plant: type[Plant]) -> str:
+    """Return why a plant cannot be native, empty if it can."""
+    if any(p.type is not float and p.kind != "parameter" for p in plant.ports.values()):
         return "it has inputs of text"
     for name in _OWN:
-        owner = next(each for each in cls.__mro__ if name in vars(each))
+        owner = next(each for each in plant.__mro__ if name in vars(each))
         # With nothing around them they run on the equations of `Plant`: `started` sees to it.
         if owner not in (Plant, Component) and owner.__name__ != "SurroundedPlant":
             return f"{owner.__name__}.{name} is more than equations"
@@ -89,11 +82,9 @@ def started(plant: Plant, name: str) -> Plant:
     return plant
 
 
-def header(plant: Plant, guid: str) -> str:
-    """Return ``model.h``."""
+def header(plant: Plant) -> str:
+    """Return what ``model.h`` has of a plant."""
     return _HEADER.format(
-        guid=guid,
-        scalars=len(plant.scalars),
         x=_size(plant.state_ports),
         u=_size(plant.input_ports),
         p=_size(plant.parameter_ports),
@@ -112,66 +103,17 @@ def model(plant: Plant) -> str:
         for what in ("arg", "res", "iw", "w"):
             size = getattr(function, f"sz_{what}")()
             sizes[f"{function.name()}_{what}"] = max(1, size)
-    return f'{generator.dump()}\n#include "model.h"\n{_CALLS.format(**sizes)}\n{_tables(plant)}'
-
-
-def _tables(plant: Plant) -> str:
-    scalars, values = plant.scalars, plant.values
-    texts = [s.port.type is str for s in scalars]
     starts = [plant.ports[f"{p.name}_start"] for p in plant.state_ports]
-    lows, highs = ([_limit(s, which) for s in scalars] for which in ("min", "max"))
-    numbers = [
-        "0.0" if text else repr(float(values[s.reference]))
-        for s, text in zip(scalars, texts, strict=True)
+    own = [
+        table("int", "x", _references(plant.state_ports)),
+        table("int", "x_start", _references(starts)),
+        table("int", "u", _references(plant.input_ports)),
+        table("int", "p", _references(plant.parameter_ports)),
+        table("int", "y", _references(plant.output_ports)),
     ]
-    return "\n".join(
-        [
-            _table("double", "starts", numbers),
-            _table("double", "lows", lows),
-            _table("double", "highs", highs),
-            _table("int", "kinds", [_kind(s) for s in scalars]),
-            _table("int", "x", _references(plant.state_ports)),
-            _table("int", "x_start", _references(starts)),
-            _table("int", "u", _references(plant.input_ports)),
-            _table("int", "p", _references(plant.parameter_ports)),
-            _table("int", "y", _references(plant.output_ports)),
-            _table("char *const", "names", [_quoted(s.name) for s in scalars]),
-            _table("char *const", "units", [_quoted(s.unit) for s in scalars]),
-            _table(
-                "char *const",
-                "texts",
-                [
-                    _quoted(values[s.reference] if text else "")
-                    for s, text in zip(scalars, texts, strict=True)
-                ],
-            ),
-            "",
-        ]
-    )
-
-
-def _table(kind: str, name: str, cells: Sequence[str]) -> str:
-    rows = ",\n    ".join(cells or ["0"])
-    return f"const {kind} model_{name}[] = {{\n    {rows}\n}};"
-
-
-def _kind(scalar: ScalarPort) -> str:
-    port = scalar.port
-    if port.type is str:
-        return "TEXT"
-    if not isinstance(port, Parameter):
-        return port.kind.upper()
-    if port.role:  # seas, currents, winds: the equations know of none
-        return "BUILT_IN"
-    return "TUNABLE" if port.tunable else "FIXED"
-
-
-def _limit(scalar: ScalarPort, which: str) -> str:
-    port = scalar.port
-    value = port.limit(which, scalar.index) if isinstance(port, Parameter) else None  # type: ignore[arg-type]
-    if value is None:
-        return "-INFINITY" if which == "min" else "INFINITY"
-    return repr(float(value)).replace("inf", "INFINITY")
+    # What has a role the equations know nothing of: seas, currents, winds.
+    common = tables(plant, lambda port: bool(port.role))
+    return "\n".join([generator.dump(), '#include "model.h"', _CALLS.format(**sizes), *own, common])
 
 
 def _references(ports: Sequence[Port]) -> list[str]:
@@ -180,11 +122,3 @@ def _references(ports: Sequence[Port]) -> list[str]:
 
 def _size(ports: Sequence[Port]) -> int:
     return sum(port.size for port in ports)
-
-
-def _quoted(text: str) -> str:
-    """Return a C string: JSON escapes as C does, and other characters are bytes in octal."""
-    return "".join(
-        c if ord(c) < 128 else "".join(f"\\{byte:03o}" for byte in c.encode())
-        for c in json.dumps(text, ensure_ascii=False)
-    )

@@ -1,9 +1,10 @@
-"""Plants to native FMUs: FMI 2.0 co-simulation in C, with its sources."""
+"""Components to native FMUs: FMI 2.0 co-simulation in C, with its sources."""
 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
@@ -11,6 +12,7 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 import fmpy
 
 from ... import __version__
+from ...component import Component
 from ...errors import InputError
 from ...plant import Plant
 from ..cache import write_named
@@ -19,10 +21,14 @@ from ..direct import DirectInstance
 from ..export import zipped
 from ..source import ComponentSource
 from ..terminals import PLACE, terminals_xml
+from .carriers import checked, why_refused
 from .compiler import TARGETS, library
-from .equations import header, model, started, why_python
+from .equations import header as plant_header
+from .equations import model, started
+from .statements import Translation
+from .tables import header
 
-_OWN = Path(__file__).with_name("plant.c")
+_OWN = Path(__file__).parent
 _HEADERS = ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h")
 """FMI's own (2-clause BSD, as they say), from FMPy: they travel with the sources."""
 
@@ -32,30 +38,28 @@ def build_native_fmu(
     destination: Path,
     platforms: Sequence[str],
     start_values: Mapping[str, Any] | None = None,
+    compiled: Callable[[Mapping[str, bytes], str], bytes] = library,
 ) -> Path:
     """Build the native FMU of ``source`` at ``destination`` (a file) and return its path.
 
     ``start_values`` (by port name, SI) are baked in; text parameters, waves, current and wind
     cannot change afterwards. The same input gives the same bytes. Raises InputError for a
-    component that is no plant, values it cannot start with, and without a compiler; nothing is
-    written then.
+    component that has no C, naming the line, values it cannot start with, and without a
+    compiler; nothing is written then.
     """
     cls = source.component_class()
-    why = why_python(cls)
+    why = why_refused(cls)
     if why:
         raise InputError(f"{source.origin} cannot be native: {why}")
-    plant = cls(source.name)
-    assert isinstance(plant, Plant)
-    for port, value in (start_values or {}).items():
-        plant.set(port, value)
-    sources = _sources(started(plant, source.origin))
+    sources, own = _sources(partial(_made, source, start_values or {}), source.origin)
     root = _described(source, sources, start_values or {})
-    sources["model.h"] = header(plant, str(root.get("guid"))).encode()
+    example = cls(source.name)
+    sources["model.h"] = header(example, str(root.get("guid")), own).encode()
     files = {f"sources/{name}": content for name, content in sources.items()}
     for platform in platforms:
         name = f"{source.stem}{TARGETS[platform][1]}"
-        files[f"binaries/{platform}/{name}"] = library(sources, platform)
-    instance = DirectInstance(cls(source.name))
+        files[f"binaries/{platform}/{name}"] = compiled(sources, platform)
+    instance = DirectInstance(example)
     if instance.terminals:
         files[PLACE] = terminals_xml(instance.terminals, instance.variables)
     indent(root)
@@ -65,10 +69,30 @@ def build_native_fmu(
     return destination
 
 
-def _sources(plant: Plant) -> dict[str, bytes]:
+def _made(source: ComponentSource, values: Mapping[str, Any]) -> Component:
+    component = source.component_class()(source.name)
+    for port, value in values.items():
+        component.set(port, value)
+    return component
+
+
+def _sources(made: Callable[[], Component], name: str) -> tuple[dict[str, bytes], str]:
+    """Return the sources by file name, but for ``model.h``, and what that has of its own."""
     folder = Path(fmpy.__file__).parent / "c-code"
-    headers = {name: (folder / name).read_bytes() for name in _HEADERS}
-    return {"model.c": model(plant).encode(), "plant.c": _OWN.read_bytes(), **headers}
+    component = made()
+    if isinstance(component, Plant):
+        plant = started(component, name)
+        text, own, parts = model(plant), plant_header(plant), ["plant.c"]
+    else:
+        translation = Translation(component)
+        checked(made(), name)
+        text, own, parts = translation.model(), translation.header(), translation.parts()
+    ours = ("component.h", "fmi2.c", *parts)
+    return {
+        "model.c": text.encode(),
+        **{each: _OWN.joinpath(each).read_bytes() for each in ours},
+        **{each: (folder / each).read_bytes() for each in _HEADERS},
+    }, own
 
 
 def _described(

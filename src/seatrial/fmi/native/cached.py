@@ -1,0 +1,69 @@
+"""Native FMUs in the user's cache, for rigs that run on this machine."""
+
+from __future__ import annotations
+
+import hashlib
+import sys
+import zipfile
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from ...component import Component
+from ...errors import InputError
+from ...plant import Plant
+from ...ports import Parameter, Port
+from ..bundle_name import bundle_name
+from ..cache import cache_folder
+from ..source import ComponentSource
+from .carriers import checked
+from .compiler import FLAGS, HERE, library_here
+from .export import build_native_fmu
+from .translation.unit import BUILT_IN_ROLES
+
+
+def native_fmu(source: ComponentSource, values: Mapping[str, Any] | None = None) -> Path:
+    """Return the native FMU of ``source`` for this machine, built if it is not there yet.
+
+    ``values`` (by port or scalar, SI) are parameters as a rig gives them. Texts, waves, current and
+    wind are built in; numbers are not, and are to be set before the run as ever: one FMU serves
+    all of them. The machine's own C compiler builds it (``cc``), else Zig's.
+
+    Raises InputError, with the reason, for a component that has no C, values that it cannot
+    start with or that cannot be built in, and without a compiler.
+    """
+    if not HERE:
+        raise InputError("native FMUs are for x86-64 and AArch64 only, which this machine is not")
+    cls = source.component_class()
+    given = values or {}
+    own = {n: v for n, v in given.items() if n in cls.ports and is_built_in(cls, cls.ports[n])}
+    text = f"{_tool_tag()} {sorted(own.items())!r}"
+    tag = hashlib.sha256(text.encode()).hexdigest()[:12]
+    path = cache_folder("native") / f"{bundle_name(source)}-{tag}.fmu"
+    if not zipfile.is_zipfile(path):
+        component = cls(source.name)
+        for name, value in given.items():
+            component.set(name, value)
+        checked(component, source.origin)
+        build_native_fmu(source, path, (HERE,), own, library_here)
+    return path
+
+
+def is_built_in(cls: type[Component], port: Port) -> bool:
+    """Return whether a native FMU has a value of this port built in."""
+    if not isinstance(port, Parameter):
+        return False
+    # A plant's equations know nothing of what has a role: seas, currents, winds.
+    by_role = bool(port.role) if issubclass(cls, Plant) else port.role in BUILT_IN_ROLES
+    return port.type is str or by_role
+
+
+@cache
+def _tool_tag() -> str:
+    """Return a tag of what besides the component decides an FMU's bytes."""
+    digest = hashlib.sha256(repr((FLAGS, HERE, sys.version_info[:2])).encode())
+    folder = Path(__file__).parent
+    for file in sorted([*folder.rglob("*.py"), *folder.rglob("*.[ch]")]):
+        digest.update(file.read_bytes())
+    return digest.hexdigest()

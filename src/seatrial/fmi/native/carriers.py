@@ -1,0 +1,45 @@
+"""Which components have a native carrier."""
+
+from __future__ import annotations
+
+from ...component import Component
+from ...errors import InputError, SimulationError
+from ...plant import Plant
+from . import equations
+from .translation.domain import TranslationError
+from .translation.unit import Unit
+
+
+def why_python(cls: type[Component]) -> str:
+    """Return why a component cannot be native, empty if it can with the values it starts with."""
+    why = why_refused(cls)
+    if why or issubclass(cls, Plant):
+        return why
+    try:
+        Unit(cls()).translate()
+    except TranslationError as error:
+        return str(error)
+    return ""
+
+
+def why_refused(cls: type[Component]) -> str:
+    """Return why a component cannot be native, whatever its methods do, else nothing."""
+    if issubclass(cls, Plant):
+        return equations.why_python(cls)
+    if not cls.rolls_back:
+        return "it reaches outside the simulation"
+    texts = [p.name for p in cls.ports.values() if p.type is str and p.kind != "parameter"]
+    texts = [name for name in texts if cls.ports[name].role != "fault"]
+    return f"its ports {', '.join(texts)} are texts" if texts else ""
+
+
+def checked(component: Component, name: str) -> None:
+    """Start a component, which makes all its checks, with the values that it has.
+
+    Raises InputError for values that it cannot start with.
+    """
+    try:
+        component.setup(0.0)
+        component.initialise()
+    except SimulationError as error:
+        raise InputError(f"{name}: {error}") from None

@@ -1,0 +1,69 @@
+/* What an instance consists of. `model.h` has the sizes, tables and memory of its component. */
+
+#ifndef COMPONENT_H
+#define COMPONENT_H
+
+#include <stdint.h>
+
+#include "fmi2Functions.h"
+
+#define NS 1e9
+#define TEXT_SIZE 256
+#define QUEUE_SIZE 256    /* entries that wait for their time, at most */
+#define FAULT_SETTINGS 4  /* value, rate, factor, coefficients */
+#define FAULT_VALUES 16   /* of one setting, at most */
+#define ERROR_SIZE 1024
+
+typedef struct {
+    int first, count;
+} Queue;
+
+typedef struct {
+    int what, of, bad;
+    double at, grows_over;
+    int counts[FAULT_SETTINGS];
+    double settings[FAULT_SETTINGS][FAULT_VALUES];
+} Fault;
+
+#include "model.h"
+
+typedef enum { INSTANTIATED, INITIALISING, RUNNING, TERMINATED } Phase;
+
+typedef struct {
+    double values[SCALARS + 1]; /* of all types, by value reference */
+    long long now_ns;
+    Phase phase;
+    int stale, restart, failed;
+    char texts[TEXTS + 1][TEXT_SIZE]; /* inputs of text */
+    Fault fault;
+    Memory memory;
+} State;
+
+typedef struct {
+    State state;
+    fmi2CallbackLogger log;
+    fmi2ComponentEnvironment environment;
+    char name[256];
+    char error[ERROR_SIZE]; /* of the call that runs; empty: none */
+    char shown[8][32];      /* numbers for a message */
+    int shown_count;
+} Instance;
+
+/* What a component does: these are in plant.c, or written from its Python. */
+void model_start(Instance *self, double t);
+void model_step(Instance *self, double t, double h);
+void model_outputs(Instance *self, double t);
+
+/* A text was set: what it means. */
+void model_text(Instance *self, int text);
+
+/* Note what is wrong; the call that runs will fail. */
+#if defined(__GNUC__)
+__attribute__((format(printf, 2, 3)))
+#endif
+void fail(Instance *self, const char *format, ...);
+
+/* Write a number so that it reads back exactly. */
+const char *shown(Instance *self, double value);
+
+#endif

@@ -1,0 +1,102 @@
+/* What C from Python needs to do as Python does, to the bit. */
+
+#ifndef RUNTIME_H
+#define RUNTIME_H
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "component.h"
+
+#define V (self->state.values)
+#define M (self->state.memory)
+
+/* ------------------------------------------------------------------ numbers */
+
+static inline double divided(Instance *self, double a, double b, const char *where) {
+    if (b == 0.0) fail(self, "%s: division by zero at %s", self->name, where);
+    return a / b;
+}
+
+/* The result has the sign of the divisor. */
+static inline double modulo(Instance *self, double a, double b, const char *where) {
+    if (b == 0.0) fail(self, "%s: modulo by zero at %s", self->name, where);
+    const double rest = fmod(a, b);
+    if (rest == 0.0) return __builtin_copysign(0.0, b);
+    return (b < 0.0) != (rest < 0.0) ? rest + b : rest;
+}
+
+static inline double checked(Instance *self, double result, double x, const char *where) {
+    if (!isfinite(result) && isfinite(x))
+        fail(self, "%s: there is no value for %s at %s", self->name, shown(self, x), where);
+    return result;
+}
+
+static inline double power(Instance *self, double a, double b, const char *where) {
+    return checked(self, pow(a, b), a, where);
+}
+
+static inline long long whole(Instance *self, double x, const char *where) {
+    if (__builtin_fabs(x) < 9.2e18) return (long long)x;
+    fail(self, "%s: %s is too large a number at %s", self->name, shown(self, x), where);
+    return 0;
+}
+
+static inline long long floored(Instance *self, long long a, long long b, const char *where) {
+    if (b == 0) {
+        fail(self, "%s: division by zero at %s", self->name, where);
+        return 0;
+    }
+    return a / b - (a % b != 0 && (a < 0) != (b < 0));
+}
+
+static inline long long whole_modulo(Instance *self, long long a, long long b, const char *where) {
+    return a - floored(self, a, b, where) * b;
+}
+
+static inline int checked_index(Instance *self, long long index, int size) {
+    const long long place = index < 0 ? index + size : index;
+    if (0 <= place && place < size) return (int)place;
+    fail(self, "%s: there is no item %lld of %d", self->name, index, size);
+    return 0;
+}
+
+double norm(int count, const double *values);                /* math.hypot */
+double compensated(int count, const double *values);         /* sum, from Python 3.12 on */
+int right_of(const double *table, int count, double x);      /* bisect.bisect_right */
+int left_of(const double *table, int count, double x);       /* bisect.bisect_left */
+double interpolated(double x, int count, const double *xs, const double *ys); /* numpy.interp */
+
+/* ------------------------------------------------------------------ queues */
+
+int appended(Instance *self, Queue *queue, const char *where); /* the place of the new entry */
+
+static inline int entry_at(Instance *self, const Queue *queue, long long index) {
+    const long long place = index < 0 ? index + queue->count : index;
+    if (0 <= place && place < queue->count) return (int)((queue->first + place) % QUEUE_SIZE);
+    fail(self, "%s: there is no entry %lld of %d", self->name, index, queue->count);
+    return 0;
+}
+
+#define drop_first(queue) ((queue).first = ((queue).first + 1) % QUEUE_SIZE, (queue).count--)
+#define drop_last(queue) ((queue).count--)
+
+/* ------------------------------------------------------------------ random numbers */
+
+typedef struct {
+    uint64_t counter[4], key[2], drawn[4];
+    int used;
+} Philox;
+
+/* The generator of a sample, as seatrial's `Noise.generator`: NumPy's Philox by seed and kind. */
+void begin_draws(Instance *self, Philox *draws, double seed, uint64_t kind, long long stream,
+                 long long index);
+double drawn_random(Philox *draws);
+double drawn_standard_normal(Philox *draws);
+
+/* ------------------------------------------------------------------ faults */
+
+int present_fault(Instance *self); /* its number; fails for a text that is none */
+int fault_index(Instance *self, int setting, long long index);
+
+#endif

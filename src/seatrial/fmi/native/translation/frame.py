@@ -1,0 +1,307 @@
+"""A C function as it is written: its variables, its branches and where they meet."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from functools import partial
+from typing import Any
+
+from .domain import (
+    C_TYPES,
+    Choice,
+    Known,
+    Num,
+    Seq,
+    Shape,
+    TranslationError,
+    built,
+    flattened,
+    joined,
+    leaves,
+    number,
+    shape_of,
+)
+
+_WORD = re.compile(r"[A-Za-z_]\w*")
+
+EXPRESSIONS: dict[type, Callable[[Any, Any], Any]] = {}
+STATEMENTS: dict[type, Callable[[Any, Any], None]] = {}
+"""What is done for a kind of syntax, with the frame and the node."""
+
+
+def expression(*kinds: type) -> Callable[[Any], Any]:
+    """Register a function that evaluates nodes of these kinds."""
+    return partial(_registered, EXPRESSIONS, kinds)
+
+
+def statement(*kinds: type) -> Callable[[Any], Any]:
+    """Register a function that executes nodes of these kinds."""
+    return partial(_registered, STATEMENTS, kinds)
+
+
+def _registered(where: dict[type, Any], kinds: Sequence[type], function: Any) -> Any:
+    where.update(dict.fromkeys(kinds, function))
+    return function
+
+
+def merged(values: Sequence[Any]) -> Shape:
+    """Return the shape of what is one of the values."""
+    shape = shape_of(values[0])
+    for value in values[1:]:
+        shape = joined(shape, shape_of(value))
+    return shape
+
+
+class Join:
+    """A place that control reaches in several ways: from each, names and what they are there."""
+
+    def __init__(self, frame: Frame, label: str = "") -> None:
+        self.frame, self.label = frame, label
+        self.sites: list[tuple[dict[str, Any], list[Any]]] = []
+
+    def come(self, names: dict[str, Any]) -> None:
+        """Come from here with these names."""
+        slot: list[Any] = []
+        self.frame.code.append(slot)
+        self.sites.append((dict(names), slot))
+
+    def names(self) -> dict[str, Any] | None:
+        """Return what the names are there, None if nothing comes."""
+        if not self.sites:
+            return None
+        if self.label and len(self.sites) == 1 and self.sites[0][1] is self.frame.code[-1]:
+            return self.sites[0][0]  # what comes is just above
+        common = [n for n in self.sites[0][0] if all(n in names for names, _ in self.sites)]
+        found = {name: self._met(name) for name in common}
+        if self.label:
+            for _, slot in self.sites:
+                slot.append(f"goto {self.label};")
+            self.frame.code.append(f"{self.label}:;")
+        return found
+
+    def _met(self, name: str) -> Any:
+        values = [names[name] for names, _ in self.sites]
+        first = values[0]
+        if all(value is first for value in values):
+            return first
+        shape = merged(values)
+        kinds = leaves(shape)
+        columns = [flattened(value, shape) for value in values]
+        texts = []
+        for place, kind in enumerate(kinds):
+            own = {column[place] for column in columns}
+            same = own.pop() if len(own) == 1 else None
+            if same is not None:
+                texts.append(same)
+                continue
+            temp = self.frame.variable(kind)
+            texts.append(temp)
+            for (_, slot), column in zip(self.sites, columns, strict=True):
+                if column[place] is not None:
+                    slot.append(f"{temp} = {column[place]};")
+        value = built(shape, iter(texts))
+        if isinstance(value, Seq):
+            value.fresh = all(isinstance(v, Seq) and v.fresh for v in values)
+        return value
+
+
+class Frame:
+    """One function of Python as it becomes C: names, the C written so far, and where it returns."""
+
+    def __init__(
+        self, unit: Any, title: str, where: tuple[str, int], scope: Any, owner: type | None
+    ) -> None:
+        self.unit, self.title, self.owner = unit, title, owner
+        self.file, self.line = where
+        self.scope: dict[str, Any] = scope
+        self.names: dict[str, Any] | None = {}
+        """Local names; None where control does not come."""
+        self.code: list[Any] = []
+        self.variables: list[tuple[str, str]] = []
+        self.loops: list[tuple[Join, Join]] = []
+        self.returns = Join(self)
+        self.counter = [0]
+        self.stored: set[str] = set()
+        """Attributes of the component that it has set."""
+
+    def inner(self, names: dict[str, Any]) -> Frame:
+        """Return a frame for a function that is written in this one's place."""
+        frame = Frame(self.unit, self.title, (self.file, self.line), self.scope, self.owner)
+        frame.names, frame.code, frame.variables = names, self.code, self.variables
+        frame.counter, frame.stored = self.counter, self.stored
+        frame.returns = Join(frame, self.label())
+        return frame
+
+    # ------------------------------------------------------------------ syntax
+
+    def evaluate(self, node: ast.expr) -> Any:
+        """Return the value of an expression."""
+        handler = EXPRESSIONS.get(type(node))
+        if handler is None:
+            raise self.refused(f"{type(node).__name__} in an expression", node)
+        return handler(self, node)
+
+    def execute(self, body: Iterable[ast.stmt]) -> None:
+        """Execute statements until control does not come any further."""
+        for node in body:
+            if self.names is None:
+                return
+            self.line = node.lineno
+            handler = STATEMENTS.get(type(node))
+            if handler is None:
+                raise self.refused(f"a statement {type(node).__name__}", node)
+            handler(self, node)
+
+    def place(self) -> str:
+        """Return the current line of Python as a C string."""
+        return f'"{self.file.rpartition("/")[2]}:{self.line}"'
+
+    def refused(self, what: str, node: ast.AST | None = None) -> TranslationError:
+        """Return the error for a construct without C, at a node or the current line."""
+        line = getattr(node, "lineno", self.line)
+        return TranslationError(f"{self.file}:{line} ({self.title}): {what} has no C")
+
+    def stores(self, attributes: Iterable[str]) -> None:
+        """Note that attributes of the component have changed: what was known of them is not."""
+        self.stored |= set(attributes)
+        for name in attributes:
+            (self.names or {}).pop(f"self.{name}", None)
+
+    # ------------------------------------------------------------------ C
+
+    def emit(self, text: str) -> None:
+        """Write a line of C."""
+        self.code.append(text)
+
+    def variable(self, kind: str) -> str:
+        """Return the name of a new C variable."""
+        self.counter[0] += 1
+        name = f"{kind}{self.counter[0]}"
+        self.variables.append((C_TYPES[kind], name))
+        return name
+
+    def label(self) -> str:
+        """Return a new label."""
+        self.counter[0] += 1
+        return f"L{self.counter[0]}"
+
+    def num(self, kind: str, text: str) -> Num:
+        """Return a new number with the value of a C expression."""
+        name = self.variable(kind)
+        self.emit(f"{name} = {text};")
+        return Num(kind, name)
+
+    def loaded(self, shape: Shape, texts: Iterator[str]) -> Any:
+        """Return the value of a shape from C expressions, copied to variables."""
+        return built(
+            shape, (self.num(k, t).text for k, t in zip(leaves(shape), texts, strict=True))
+        )
+
+    @contextmanager
+    def block(self, opening: str) -> Iterator[None]:
+        """Write what is emitted inside as a block."""
+        outer, self.code = self.code, []
+        outer.append(opening)
+        outer.append(self.code)
+        yield
+        outer.append("}")
+        self.code = outer
+
+    def branch(self, condition: Num | Known, yes: Callable[[], Any], no: Callable[[], Any]) -> Any:
+        """Return what ``yes`` or ``no`` returns, by a condition; each may change names."""
+        if isinstance(condition, Known):
+            return yes() if condition.value else no()
+        join, before = Join(self), self.names
+        for opening, act in ((f"if ({condition.text}) {{", yes), ("else {", no)):
+            with self.block(opening):
+                self.names = dict(before or {})
+                value = act()
+                if self.names is not None:
+                    join.come({**self.names, "": value})
+        self.names = names = join.names()
+        return Known(None) if names is None else names.pop("", Known(None))
+
+    def each(self, choice: Choice, act: Callable[[Any], Any]) -> Any:
+        """Return what ``act`` returns for the alternative that a choice is."""
+        flags = self._flags(choice, act)
+        return self.alternatives(choice, act) if flags is None else flags
+
+    def alternatives(self, choice: Choice, act: Callable[[Any], Any]) -> Any:
+        """Return the same; ``act`` may change names."""
+        join, before = Join(self), self.names
+        for at, value in enumerate(choice.alternatives):
+            last = at == len(choice.alternatives) - 1
+            word = "else " if at else ""
+            with self.block(f"{word}{{" if last else f"{word}if ({choice.tag} == {at}) {{"):
+                self.names = dict(before or {})
+                result = act(value)
+                if self.names is not None:
+                    join.come({**self.names, "": result})
+        self.names = names = join.names()
+        return Known(None) if names is None else names.pop("", Known(None))
+
+    def _flags(self, choice: Choice, act: Callable[[Any], Any]) -> Any:
+        """Return the results if all are known truth values, which takes no branches."""
+        outer, before, own = self.code, self.names, len(self.variables)
+        self.code = []
+        try:
+            results = [act(value) for value in choice.alternatives]
+            silent = not self.code
+        finally:
+            self.code, self.names = outer, before
+            del self.variables[own:]
+        if not silent or not all(
+            isinstance(r, Known) and isinstance(r.value, bool) for r in results
+        ):
+            return None
+        true = [i for i, r in enumerate(results) if r.value]
+        if len(true) in (0, len(results)):
+            return Known(bool(true))
+        return self.num("b", " || ".join(f"{choice.tag} == {i}" for i in true))
+
+    def text_of(self, value: Any, kind: str = "") -> str:
+        """Return the C expression of a number. Raises TranslationError for anything else."""
+        plain = isinstance(value, Known) and isinstance(value.value, (bool, int, float))
+        if not plain and not isinstance(value, Num):
+            raise self.refused(f"{value!r:.80} where a number is needed")
+        return number(value, kind)
+
+
+def pruned(variables: Sequence[tuple[str, str]], code: Sequence[Any]) -> tuple[list[Any], set[str]]:
+    """Return code without what nothing reads, and the names of the variables that are left."""
+    rows, names = list(_flat(code)), {name for _, name in variables}
+    while True:
+        told = [row for row in rows if not row.startswith("/*")]
+        counts = Counter(word for row in told for word in _WORD.findall(row))
+        writes = Counter(row.partition(" = ")[0] for row in told)
+        kept: list[Any] = []
+        for row in rows:
+            name, is_set, value = row.partition(" = ")
+            if not (is_set and name in names and counts[name] == writes[name]):
+                kept.append(row)
+            elif "(self" in value or "drawn_" in value:
+                kept.append(f"(void){value}")
+        if kept == rows:
+            return kept, {name for name in names if counts[name]}
+        rows = kept
+
+
+def lines(code: Sequence[Any]) -> Iterator[str]:
+    """Yield the lines of nested code, indented by their braces."""
+    depth = 1
+    for text in _flat(code):
+        depth -= text.startswith("}")
+        yield f"{'    ' * depth}{text}"
+        depth += text.endswith("{")
+
+
+def _flat(code: Sequence[Any]) -> Iterator[str]:
+    for each in code:
+        if isinstance(each, str):
+            yield each
+        else:
+            yield from _flat(each)

@@ -1,0 +1,329 @@
+"""Statements of Python."""
+
+from __future__ import annotations
+
+import ast
+from typing import Any
+
+from .domain import (
+    Closure,
+    Known,
+    Queue,
+    Seq,
+    Shape,
+    built,
+    fits,
+    flattened,
+    joined,
+    leaves,
+    shape_of,
+)
+from .expressions import narrowing, unpacked
+from .frame import Frame, Join, statement
+from .operations import binary, compared, either, truth, with_item
+
+
+@statement(ast.Pass, ast.Import, ast.ImportFrom)
+def _pass(frame: Frame, node: ast.stmt) -> None:
+    if not isinstance(node, ast.Pass):
+        raise frame.refused("an import inside a function", node)
+
+
+@statement(ast.Expr)
+def _expression(frame: Frame, node: ast.Expr) -> None:
+    if isinstance(node.value, ast.Constant):  # a docstring
+        return
+    call = node.value
+    is_method = isinstance(call, ast.Call) and isinstance(call.func, ast.Attribute)
+    if is_method and call.func.attr == "append":  # type: ignore[attr-defined]
+        _append(frame, call.func.value, frame.evaluate(call.args[0]))  # type: ignore[attr-defined]
+        return
+    frame.evaluate(call)
+
+
+def _append(frame: Frame, target: ast.expr, value: Any) -> None:
+    if frame.unit.is_own(frame, target):
+        frame.unit.enqueue(frame, target.attr, value)  # type: ignore[attr-defined]
+        return
+    before = frame.evaluate(target)
+    if not getattr(before, "fresh", False):
+        raise frame.refused("append to a list that has another name too", target)
+    after = type(before)(list, [*before.items, value])
+    assign(frame, target, after)
+
+
+@statement(ast.Assign)
+def _assign(frame: Frame, node: ast.Assign) -> None:
+    value = frame.evaluate(node.value)
+    _note(frame, node)
+    for target in node.targets:
+        assign(frame, target, value)
+
+
+@statement(ast.AnnAssign)
+def _annotated(frame: Frame, node: ast.AnnAssign) -> None:
+    if node.value is not None:
+        value = frame.evaluate(node.value)
+        _note(frame, node)
+        assign(frame, node.target, value)
+
+
+@statement(ast.AugAssign)
+def _augmented(frame: Frame, node: ast.AugAssign) -> None:
+    target = node.target
+    before = frame.evaluate(_read(target))
+    value = binary(frame, node.op, before, frame.evaluate(node.value))
+    _note(frame, node)
+    assign(frame, target, value)
+
+
+def _read(target: Any) -> Any:
+    """Return an assignment's target as an expression."""
+    copy = type(target)(**{name: getattr(target, name) for name in target._fields})
+    copy.ctx = ast.Load()
+    return ast.copy_location(copy, target)
+
+
+def _note(frame: Frame, node: ast.stmt) -> None:
+    text = ast.unparse(node).replace("*/", "* /").replace("\n", " ")
+    frame.emit(f"/* {text:.100} */")
+
+
+def assign(frame: Frame, target: ast.expr, value: Any) -> None:
+    """Give a target of an assignment its value."""
+    if isinstance(target, ast.Name):
+        if frame.names is not None:
+            previous = [n for n, v in frame.names.items() if v is value and n != target.id]
+            if previous and hasattr(value, "fresh"):
+                value.fresh = False
+            frame.names = {**frame.names, target.id: value}
+    elif isinstance(target, (ast.Tuple, ast.List)):
+        _unpack(frame, list(target.elts), unpacked(frame, value))
+    elif isinstance(target, ast.Attribute):
+        frame.unit.store(frame, frame.evaluate(target.value), target.attr, value)
+    elif isinstance(target, ast.Subscript):
+        index = frame.evaluate(target.slice)
+        if frame.unit.is_own(frame, target.value):
+            frame.unit.changes_in_place(frame, target.value.attr)  # type: ignore[attr-defined]
+        elif not getattr(frame.evaluate(_read(target.value)), "fresh", True):
+            raise frame.refused("a change of a list that has another name too", target)
+        before = frame.evaluate(_read(target.value))
+        after = with_item(frame, before, index, value)
+        after.fresh = True  # it is the same list as before
+        assign(frame, target.value, after)
+    else:
+        raise frame.refused(f"an assignment to {type(target).__name__}", target)
+
+
+def _unpack(frame: Frame, targets: list[ast.expr], values: list[Any]) -> None:
+    stars = [i for i, target in enumerate(targets) if isinstance(target, ast.Starred)]
+    if stars:
+        at, more = stars[0], len(values) - len(targets) + 1
+        middle = Seq(list, values[at : at + more])
+        values = [*values[:at], middle, *values[at + more :]]
+        starred = targets[at]
+        assert isinstance(starred, ast.Starred)
+        targets = [*targets[:at], starred.value, *targets[at + 1 :]]
+    if len(targets) != len(values):
+        raise frame.refused(f"unpacking {len(values)} values to {len(targets)} names")
+    for target, value in zip(targets, values, strict=True):
+        assign(frame, target, value)
+
+
+@statement(ast.If)
+def _if(frame: Frame, node: ast.If) -> None:
+    act = narrowing(frame, node.test)
+    act(lambda: frame.execute(node.body), lambda: frame.execute(node.orelse))
+
+
+@statement(ast.Return)
+def _return(frame: Frame, node: ast.Return) -> None:
+    value = frame.evaluate(node.value) if node.value else Known(None)
+    frame.returns.come({"": value})
+    frame.names = None
+
+
+@statement(ast.Raise)
+def _raise(frame: Frame, node: ast.Raise) -> None:
+    frame.unit.fail(frame, node)
+    frame.names = None
+
+
+@statement(ast.FunctionDef)
+def _function(frame: Frame, node: ast.FunctionDef) -> None:
+    assert frame.names is not None
+    frame.names = {**frame.names, node.name: Closure(node, frame)}
+
+
+@statement(ast.Break, ast.Continue)
+def _leave(frame: Frame, node: ast.stmt) -> None:
+    breaks, continues = frame.loops[-1]
+    (breaks if isinstance(node, ast.Break) else continues).come(frame.names or {})
+    frame.names = None
+
+
+# ------------------------------------------------------------------ loops
+
+
+@statement(ast.For)
+def _for(frame: Frame, node: ast.For) -> None:
+    backwards = _reversed(node.iter)
+    values = frame.evaluate(backwards or node.iter)
+    if isinstance(values, Queue):
+        _over_queue(frame, node, values, backwards is not None)
+        return
+    if backwards is not None:
+        values = Seq(list, unpacked(frame, values)[::-1])
+    breaks = Join(frame, frame.label())
+    for value in unpacked(frame, values):
+        continues = Join(frame, frame.label())
+        frame.loops.append((breaks, continues))
+        assign(frame, node.target, value)
+        frame.execute(node.body)
+        frame.loops.pop()
+        _arrive(frame, continues)
+        if frame.names is None:
+            break
+    else:
+        if node.orelse:
+            frame.execute(node.orelse)
+    _arrive(frame, breaks)
+
+
+def _reversed(node: ast.expr) -> ast.expr | None:
+    """Return what ``reversed`` is asked of."""
+    named = isinstance(node, ast.Call) and isinstance(node.func, ast.Name)
+    return node.args[0] if named and node.func.id == "reversed" else None  # type: ignore[attr-defined]
+
+
+def _arrive(frame: Frame, join: Join) -> None:
+    """Go on where a join is."""
+    if frame.names is not None:
+        if not join.sites:
+            return
+        join.come(frame.names)
+    frame.names = join.names()
+
+
+def _over_queue(frame: Frame, node: ast.For, queue: Queue, backwards: bool) -> None:
+    count = frame.num("i", f"{frame.unit.queue(queue)}.count")
+    at = frame.num("i", f"{count.text} - 1" if backwards else "0")
+    test = f"{at.text} >= 0" if backwards else f"{at.text} < {count.text}"
+    step = f"{at.text} += {-1 if backwards else 1};"
+
+    def begin() -> None:
+        assign(frame, node.target, frame.unit.queue_entry(frame, queue, at))
+
+    _looped(frame, node.body, lambda: frame.num("b", test), step, begin)
+
+
+@statement(ast.While)
+def _while(frame: Frame, node: ast.While) -> None:
+    _looped(frame, node.body, lambda: truth(frame, frame.evaluate(node.test)), "", lambda: None)
+
+
+def _looped(frame: Frame, body: list[ast.stmt], test: Any, step: str, begin: Any) -> None:
+    """Write a loop of C. The shapes of names that change in it are found by trying."""
+    assert frame.names is not None
+    changed = {
+        n.id
+        for each in body
+        for n in ast.walk(each)
+        if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store) and n.id in frame.names
+    }
+    shapes = {name: shape_of(frame.names[name]) for name in sorted(changed)}
+    before, code = dict(frame.names), frame.code
+    while True:
+        frame.names, frame.code = dict(before), []
+        found = _attempt(frame, body, test, step, begin, shapes)
+        if found is None:
+            code += frame.code
+            frame.code = code
+            return
+        shapes = found
+
+
+def _attempt(
+    frame: Frame, body: list[ast.stmt], test: Any, step: str, begin: Any, shapes: dict[str, Shape]
+) -> dict[str, Shape] | None:
+    """Write the loop with those shapes; return others if they are too narrow."""
+    assert frame.names is not None
+    before = dict(frame.names)
+    variables = {name: [frame.variable(k) for k in leaves(s)] for name, s in shapes.items()}
+    for name, shape in shapes.items():
+        _set(frame, variables[name], frame.names[name], shape)
+        frame.names[name] = built(shape, iter(variables[name]))
+    breaks, continues = Join(frame, frame.label()), Join(frame, frame.label())
+    known = set(frame.names)
+    with frame.block("for (;;) {"):
+        flag = test()
+        if isinstance(flag, Known) and not flag.value:
+            frame.code, frame.names = [], before
+            return None
+        with frame.block(f"if (!{frame.text_of(flag, 'b')}) {{"):
+            breaks.come(frame.names)
+        begin()
+        frame.loops.append((breaks, continues))
+        frame.execute(body)
+        frame.loops.pop()
+        _arrive(frame, continues)
+        if frame.names is not None:
+            ends = {name: frame.names[name] for name in shapes}
+            wider = {n: joined(shapes[n], shape_of(v)) for n, v in ends.items()}
+            if any(not fits(v, shapes[n]) for n, v in ends.items()):
+                return wider
+            for name, value in ends.items():
+                _set(frame, variables[name], value, shapes[name])
+        if step:
+            frame.emit(step)
+    names = breaks.names()
+    frame.names = None if names is None else {n: v for n, v in names.items() if n in known}
+    return None
+
+
+def _set(frame: Frame, variables: list[str], value: Any, shape: Shape) -> None:
+    texts = flattened(value, shape)
+    kinds = leaves(shape)
+    copies = [
+        None if t is None else frame.num(k, t).text for k, t in zip(kinds, texts, strict=True)
+    ]
+    for variable, copy in zip(variables, copies, strict=True):
+        if copy is not None:
+            frame.emit(f"{variable} = {copy};")
+
+
+# ------------------------------------------------------------------ match
+
+
+@statement(ast.Match)
+def _match(frame: Frame, node: ast.Match) -> None:
+    subject = frame.evaluate(node.subject)
+    _cases(frame, subject, list(node.cases))
+
+
+def _cases(frame: Frame, subject: Any, cases: list[ast.match_case]) -> None:
+    if not cases:
+        return
+    case, *others = cases
+    flag = _matches(frame, subject, case.pattern)
+    guard = case.guard
+    if guard is not None and not (isinstance(flag, Known) and not flag.value):
+        flag = frame.branch(flag, lambda: truth(frame, frame.evaluate(guard)), lambda: Known(False))
+    frame.branch(flag, lambda: frame.execute(case.body), lambda: _cases(frame, subject, others))
+
+
+def _matches(frame: Frame, subject: Any, pattern: ast.pattern) -> Any:
+    if isinstance(pattern, ast.MatchValue):
+        return compared(frame, ast.Eq(), subject, frame.evaluate(pattern.value))
+    if isinstance(pattern, ast.MatchSingleton):
+        return compared(frame, ast.Is(), subject, Known(pattern.value))
+    if isinstance(pattern, ast.MatchOr):
+        result: Any = Known(False)
+        for each in pattern.patterns:
+            result = either(frame, result, _matches(frame, subject, each))
+        return result
+    if isinstance(pattern, ast.MatchAs) and pattern.pattern is None:
+        if pattern.name:
+            frame.names = {**(frame.names or {}), pattern.name: subject}
+        return Known(True)
+    raise frame.refused(f"a pattern {type(pattern).__name__}", pattern)

@@ -1,0 +1,413 @@
+"""A component as C: its ports, the attributes that it remembers, and its methods."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from typing import Any
+
+from ....component import Component as Base
+from ....ports import Parameter, Port
+from .domain import (
+    C_TYPES,
+    Choice,
+    Closure,
+    Component,
+    Draws,
+    FaultValues,
+    Known,
+    Method,
+    Num,
+    Queue,
+    Record,
+    Seq,
+    Shape,
+    Super,
+    TranslationError,
+    UnshapedError,
+    flattened,
+    is_record_class,
+    joined,
+    leaves,
+    opened,
+    shape_of,
+)
+from .expressions import unpacked
+from .frame import Frame, lines
+from .functions import appended_attributes, found_method, inlined, invoke, record
+from .intrinsics import FAULTS, INTRINSICS, OTHER, drawn, fault_value
+from .library import LIBRARY, method
+from .messages import OWN_NAME, failure
+from .operations import binary, is_known, python_of, truth
+from .statements import assign
+
+ROOTS = ("start", "step", "outputs")
+"""Methods that the runtime calls: ``model_NAME`` in C."""
+BUILT_IN_ROLES = ("sea", "current", "wind", "file", "run-folder")
+"""Roles of parameters whose values are built in."""
+_PASSES = 12
+
+
+class Unit:
+    """The translation of one component."""
+
+    def __init__(self, example: Base) -> None:
+        self.example, self.cls = example, type(example)
+        self.own = Component()
+        self.attributes: dict[str, Shape] = {}
+        self.queues: dict[str, Shape] = {}
+        self.appended = appended_attributes(self.cls)
+        self.changed_in_place: set[str] = set()
+        self.aliased: set[str] = set()
+        self.made: dict[str, Known] = {}
+        """Objects that are built in, by the method that makes them."""
+        self.tables: dict[Any, tuple[str, str, int]] = {}
+        self.changed = True
+        self._begin()
+
+    def _begin(self) -> None:
+        self.counter = 0
+        self.functions: list[str] = []
+        self.written: dict[Any, Any] = {}
+        self.open: set[Any] = set()
+        self.changed = False
+
+    # ------------------------------------------------------------------ whole
+
+    def translate(self) -> str:
+        """Return the functions of C. Raises TranslationError naming file, line and construct."""
+        for _ in range(_PASSES):
+            self._begin()
+            roots, missing = [], ""
+            for name in ROOTS:
+                try:
+                    roots.append(self._root(name))
+                except UnshapedError as error:
+                    missing = str(error)
+            if not self.changed:
+                if missing:
+                    raise TranslationError(missing)
+                both = self.changed_in_place & self.aliased
+                if both:
+                    raise TranslationError(
+                        f"{self.cls.__name__}.{sorted(both)[0]} changes in place and is known by "
+                        "another name too: that has no C"
+                    )
+                return "\n".join([*self.functions, *roots])
+        raise TranslationError(f"{self.cls.__name__}: the types of its attributes do not settle")
+
+    def _root(self, name: str) -> str:
+        function, owner = found_method(self.cls, name)
+        file = function.__code__.co_filename
+        where = (file, function.__code__.co_firstlineno)
+        frame = Frame(self, f"{self.cls.__name__}.{name}", where, {}, owner)
+        kinds = "dd" if name == "step" else "d"
+        arguments = [Num("d", text) for text, _ in zip(("t", "h"), kinds, strict=False)]
+        if function is not vars(Base).get(name):
+            invoke(frame, function, owner, [self.own, *arguments], {})
+        parameters = "".join(f", double {a.text}" for a in arguments)
+        unused = "".join(f"    (void){a.text};\n" for a in arguments)
+        declared = "".join(f"    {t} {n} = 0;\n" for t, n in frame.variables)
+        body = "\n".join(lines(frame.code))
+        return (
+            f"void model_{name}(Instance *self{parameters}) {{\n{declared}    (void)self;\n{unused}"
+            f"{body}\n}}\n"
+        )
+
+    def memory(self) -> Iterator[str]:
+        """Yield the fields of the struct that holds what the component remembers."""
+        for name, shape in self.attributes.items():
+            for kind in "bid":
+                count = leaves(shape).count(kind)
+                if count:
+                    yield f"{C_TYPES[kind]} {name}_{kind}[{count}];"
+        for name, shape in self.queues.items():
+            yield f"Queue {name}_q;"
+            yield f"double {name}_e[QUEUE_SIZE][{max(1, len(leaves(shape)))}];"
+
+    def constants(self) -> Iterator[str]:
+        """Yield the tables of numbers that are looked up by an index of the run."""
+        for table, (name, kind, _) in self.tables.items():
+            cells = ", ".join(repr(v) for v in table)
+            yield f"static const {C_TYPES[kind]} {name}[] = {{{cells}}};"
+
+    def constant_table(self, values: Any) -> tuple[str, str, int] | None:
+        """Return name, kind and size of a table of C; None for what is no list of numbers."""
+        if not isinstance(values, (tuple, list, range)) or not values:
+            return None
+        kinds = {type(v) for v in values}
+        if not kinds <= {int, float}:
+            return None
+        kind = "d" if float in kinds else "i"
+        key = tuple(float(v) if kind == "d" else v for v in values)
+        if key not in self.tables:
+            self.tables[key] = (f"table_{len(self.tables)}", kind, len(key))
+        return self.tables[key]
+
+    # ------------------------------------------------------------------ attributes
+
+    def attribute(self, frame: Frame, owner: Any, name: str) -> Any:
+        """Return an attribute of a value."""
+        if isinstance(owner, Choice):
+            return frame.each(owner, lambda one: self.attribute(frame, one, name))
+        if isinstance(owner, Component):
+            return self._own(frame, name)
+        if isinstance(owner, Super):
+            found, where = found_method(_class_of(self, owner.receiver), name, owner.owner)
+            return Method(found, where, owner.receiver)
+        if isinstance(owner, Known) and not is_record_class(type(owner.value)):
+            if isinstance(owner.value, (list, tuple, dict)):
+                return Method(name, None, opened(owner))
+            try:
+                return Known(getattr(owner.value, name))
+            except AttributeError:
+                raise frame.refused(f"{name} of {owner.value!r:.60}") from None
+        owner = opened(owner)
+        if isinstance(owner, Record):
+            if name in owner.fields:
+                return owner.fields[name]
+            found, where = found_method(owner.cls, name)
+            if callable(found) or isinstance(found, property):
+                return self._bound(frame, found, where, owner)
+        return Method(name, None, owner)
+
+    def _own(self, frame: Frame, name: str) -> Any:
+        if name in self.cls.ports:
+            return self._port(frame, self.cls.ports[name])
+        match name:
+            case "name":
+                return Known(OWN_NAME)
+            case "now_ns" | "_now_ns":
+                return frame.num("i", "self->state.now_ns")
+            case "now":
+                return frame.num("d", "(double)self->state.now_ns / 1e9")
+        known = (frame.names or {}).get(f"self.{name}")
+        if known is not None:
+            return known
+        if name in self.appended:
+            return Queue(name) if name in self.queues else Seq(list, [], fresh=False)
+        if name in self.attributes:
+            shape = self.attributes[name]
+            return frame.loaded(shape, iter(self._fields(name, shape)))
+        found, where = found_method(self.cls, name)
+        if where is None:
+            raise UnshapedError(
+                f"{frame.file}:{frame.line} ({frame.title}): {name} is read and nothing sets it"
+            )
+        return self._bound(frame, found, where, self.own)
+
+    def _bound(self, frame: Frame, found: Any, where: Any, receiver: Any) -> Any:
+        if isinstance(found, property):
+            return invoke(frame, found.fget, where, [receiver], {})
+        if isinstance(found, staticmethod):
+            return Known(found.__func__)
+        if isinstance(found, classmethod):
+            return Method(found.__func__, where, Known(_class_of(self, receiver)))
+        if hasattr(found, "__code__") or hasattr(found, "__wrapped__"):
+            return Method(found, where, receiver)
+        getter, base = found_method(type(found), "__get__")
+        if base is not None and hasattr(getter, "__code__"):
+            arguments = [Known(found), receiver, Known(_class_of(self, receiver))]
+            return invoke(frame, getter, base, arguments, {})
+        return Known(found)
+
+    def _port(self, frame: Frame, port: Port) -> Any:
+        if port.kind == "parameter" and (port.type is str or port.role in BUILT_IN_ROLES):
+            return Known(getattr(self.example, port.name))
+        references = range(port.offset, port.offset + port.size)
+        if port.type is str:
+            if port.role != "fault":
+                raise frame.refused(f"the text {port.name}")
+            code = frame.num("b", "self->state.fault.what")
+            return Choice(code.text, tuple(Known(name) for name in (*FAULTS, OTHER)))
+        reading = {float: "V[{}]", int: "(long long)V[{}]", bool: "V[{}] != 0"}[port.type]
+        kind = {float: "d", int: "i", bool: "b"}[port.type]
+        values = [frame.num(kind, reading.format(r)) for r in references]
+        return values[0] if port.axes is None else Seq(tuple, values, fresh=False)
+
+    def remembers(self, name: str) -> bool:
+        """Return whether a name is an attribute that the component sets."""
+        return name in self.attributes
+
+    def _fields(self, name: str, shape: Shape) -> list[str]:
+        counts = dict.fromkeys("bid", 0)
+        texts = []
+        for kind in leaves(shape):
+            texts.append(f"M.{name}_{kind}[{counts[kind]}]")
+            counts[kind] += 1
+        return texts
+
+    def store(self, frame: Frame, owner: Any, name: str, value: Any) -> None:
+        """Give an attribute its value."""
+        if not isinstance(owner, Component):
+            raise frame.refused(f"an assignment to {name} of {owner!r:.60}")
+        if name in self.cls.ports:
+            self._publish(frame, self.cls.ports[name], value)
+        elif name in self.appended:
+            if not (isinstance(value, Seq) and not value.items):
+                raise frame.refused(f"a list from elsewhere as {name}, which is appended to,")
+            if name in self.queues:
+                frame.emit(f"M.{name}_q.count = 0;")
+        else:
+            self._remember(frame, name, value)
+            frame.stores([name])
+
+    def _remember(self, frame: Frame, name: str, value: Any) -> None:
+        before = self.attributes.get(name)
+        shape = shape_of(value)
+        wider = shape if before is None else joined(before, shape)
+        if wider != before:
+            self.attributes[name], self.changed = wider, True
+        if isinstance(value, Seq):
+            if not value.fresh:
+                self.aliased.add(name)
+            value.fresh = False
+        texts = flattened(value, wider)
+        # All are read before one is written: they may be parts of each other.
+        for field, text in zip(self._fields(name, wider), texts, strict=True):
+            if text is not None:
+                frame.emit(f"{field} = {text};")
+
+    def _publish(self, frame: Frame, port: Port, value: Any) -> None:
+        if isinstance(port, Parameter) or port.kind != "output":
+            raise frame.refused(f"an assignment to {port.name}, which is no output,")
+        if port.type is str:
+            raise frame.refused(f"the text {port.name}")
+        values = [value] if port.axes is None else unpacked(frame, value)
+        if len(values) != port.size:
+            raise frame.refused(f"{len(values)} values for the {port.size} of {port.name}")
+        for at, each in enumerate(values):
+            text = self._converted(frame, port, each)
+            frame.emit(f"V[{port.offset + at}] = {text};")
+
+    def _converted(self, frame: Frame, port: Port, value: Any) -> str:
+        if isinstance(value, Choice):
+            value = frame.each(value, lambda one: one)
+        if port.type is bool:
+            return frame.text_of(truth(frame, value), "d")
+        if port.type is int and not isinstance(value, Known) and value.kind == "d":
+            return f"(double)whole(self, {value.text}, {frame.place()})"
+        return frame.text_of(value, "d")
+
+    # ------------------------------------------------------------------ queues
+
+    def is_own(self, frame: Frame, node: ast.expr) -> bool:
+        """Return whether a node is an attribute of the component itself."""
+        return isinstance(node, ast.Attribute) and isinstance(frame.evaluate(node.value), Component)
+
+    def changes_in_place(self, frame: Frame, name: str) -> None:
+        """Note that an item of an attribute is assigned to."""
+        if name in self.queues:
+            raise frame.refused(f"a change within {name}")
+        self.changed_in_place.add(name)
+
+    def queue(self, queue: Queue) -> str:
+        """Return the C expression of a queue."""
+        return f"(&M.{queue.name}_q)[0]"
+
+    def enqueue(self, frame: Frame, name: str, value: Any) -> None:
+        """Append to an attribute, which thereby becomes a queue."""
+        before, shape = self.queues.get(name), shape_of(value)
+        wider = shape if before is None else joined(before, shape)
+        if wider != before:
+            self.queues[name], self.changed = wider, True
+        at = frame.num("i", f"appended(self, &M.{name}_q, {frame.place()})")
+        for place, text in enumerate(flattened(value, wider)):
+            if text is not None:
+                frame.emit(f"M.{name}_e[{at.text}][{place}] = (double)({text});")
+
+    def queue_entry(self, frame: Frame, queue: Queue, index: Any) -> Any:
+        """Return an entry of a queue."""
+        shape = self.queues[queue.name]
+        text = frame.text_of(index, "i")
+        at = frame.num("i", f"entry_at(self, &M.{queue.name}_q, {text})")
+        kinds = leaves(shape)
+        cells = [f"({C_TYPES[k]})M.{queue.name}_e[{at.text}][{i}]" for i, k in enumerate(kinds)]
+        return frame.loaded(shape, iter(cells))
+
+    # ------------------------------------------------------------------ calls
+
+    def call(self, frame: Frame, function: Any, arguments: list[Any], named: dict[str, Any]) -> Any:
+        """Return what a function returns."""
+        if isinstance(function, Choice):
+            return frame.each(function, lambda one: self.call(frame, one, arguments, named))
+        if isinstance(function, Closure):
+            return inlined(frame, function, arguments, named)
+        if isinstance(function, Method):
+            return self._method(frame, function, arguments, named)
+        if not isinstance(function, Known):
+            raise frame.refused(f"a call of {function!r:.60}")
+        own = function.value
+        if own is super:
+            return Super(frame.owner or self.cls, self._receiver(frame))
+        handler = LIBRARY.get(own) if callable(own) else None
+        known = all(map(is_known, [*arguments, *named.values()]))
+        if handler is not None and not (known and own in _PURE):
+            return handler(frame, *arguments, **named)
+        if known:
+            return self._evaluated(frame, own, arguments, named)
+        if is_record_class(own):
+            return record(frame, own, arguments, named)
+        if hasattr(own, "__self__") and hasattr(own, "__func__"):
+            receiver = Known(own.__self__)
+            return invoke(frame, own.__func__, type(own.__self__), [receiver, *arguments], named)
+        return invoke(frame, own, None, arguments, named)
+
+    def _receiver(self, frame: Frame) -> Any:
+        names = frame.names or {}
+        return next(iter(names.values())) if names else self.own
+
+    def _method(
+        self, frame: Frame, function: Method, arguments: list[Any], named: dict[str, Any]
+    ) -> Any:
+        own, receiver = function.function, function.receiver
+        if isinstance(receiver, Draws):
+            return drawn(frame, own, receiver, arguments)
+        if isinstance(own, str):
+            return method(frame, own, receiver, arguments, named)
+        if own in INTRINSICS:
+            return INTRINSICS[own](frame, *arguments, **named)
+        return invoke(frame, own, function.owner, [receiver, *arguments], named)
+
+    def _evaluated(
+        self, frame: Frame, function: Any, arguments: list[Any], named: dict[str, Any]
+    ) -> Known:
+        try:
+            values = [python_of(a) for a in arguments]
+            return Known(function(*values, **{n: python_of(v) for n, v in named.items()}))
+        except TranslationError:
+            raise
+        except Exception as error:
+            raise frame.refused(f"{function!r:.60} ({error})") from None
+
+    # ------------------------------------------------------------------ for the other modules
+
+    def assign(self, frame: Frame, target: ast.expr, value: Any) -> None:
+        """Give a target of an assignment its value."""
+        assign(frame, target, value)
+
+    def added(self, frame: Frame, a: Any, b: Any) -> Any:
+        """Return a + b."""
+        return binary(frame, ast.Add(), a, b)
+
+    def fail(self, frame: Frame, node: ast.Raise) -> None:
+        """Write what raises an error."""
+        frame.emit(failure(frame, node))
+
+    def fault_value(self, frame: Frame, values: FaultValues, index: Any) -> Any:
+        """Return one number of a fault's setting."""
+        return fault_value(frame, values, index)
+
+    def fault_values(self, frame: Frame, values: FaultValues, kind: type) -> Any:
+        """Return the five coefficients of a fault."""
+        return Seq(kind, [fault_value(frame, values, Known(i)) for i in range(5)])
+
+
+def _class_of(unit: Unit, receiver: Any) -> type:
+    return receiver.cls if isinstance(receiver, Record) else unit.cls
+
+
+_LISTS = (list, tuple, dict, zip, enumerate, reversed, iter, next, len, any, all, sum)
+_OBJECTS = (type, getattr, setattr, hasattr, isinstance)
+_PURE = set(LIBRARY) - {*_LISTS, *_OBJECTS}
+"""Functions that are evaluated when all their arguments are known."""

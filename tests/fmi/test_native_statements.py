@@ -1,0 +1,236 @@
+"""Sampled and memoryless components as native FMUs: the numbers of Python to the bit."""
+
+from __future__ import annotations
+
+import random
+from pathlib import Path
+from typing import Any
+
+import pytest
+from fmpy.validation import validate_fmu
+
+from seatrial.component import Component, Input, Output, Parameter
+from seatrial.errors import InputError, SimulationError
+from seatrial.faults.text import FAILURES, fault_text
+from seatrial.fmi.index import component_class, components
+from seatrial.fmi.native.cached import is_built_in
+from seatrial.fmi.native.compiler import HERE, library_here
+from seatrial.fmi.native.equations import why_python
+from seatrial.fmi.native.export import build_native_fmu
+from seatrial.fmi.source import find_source
+from seatrial.plant import Plant
+from seatrial.sampled import Sampled
+from tests.fmi.native_slave import Slave
+
+pytestmark = pytest.mark.skipif(HERE != "linux64", reason="loads libraries of Linux")
+
+QUICK = ("gnss", "station-keeping", "thruster")
+CANDIDATES = [
+    name
+    for name in components().names()
+    if not issubclass(component_class(name), Plant)
+    and not component_class(name).__module__.startswith("seatrial.links")
+]
+STEPS = (0.01, 0.025, 0.004, 0.1)
+
+
+def built(name: str, folder: Path, values: Any = None) -> Path:
+    source = find_source(name, Path.cwd())
+    path = folder / f"{source.stem}.fmu"
+    return build_native_fmu(source, path, (HERE,), values, library_here)
+
+
+def exercised(name: str) -> dict[str, Any]:
+    """Values with which everything in a component acts, but for its surroundings."""
+    cls = component_class(name)
+    return {n: v for n, v in cls.exercised.items() if n in cls.ports and cls.ports[n].role != "sea"}
+
+
+def faults_of(cls: type[Component]) -> list[str]:
+    """Return texts of every fault that a device can have."""
+    found = ["none", *FAILURES]
+    for port in getattr(cls, "measured", ()):
+        of = port.name
+        found += [
+            fault_text("bias", of, {"value": [0.25] * port.size}, 1.0, 2.0),
+            fault_text("noise", of, {"value": [0.5]}, 0.5),
+            fault_text("drift", of, {"rate": [0.1]}, 1.0),
+            fault_text("scale", of, {"factor": [1.5]}, 0.5, 1.0),
+            fault_text("deviation", of, {"coefficients": [0.1, 0.2, 0.3, 0.4, 0.5]}, 1.0),
+        ]
+    return found
+
+
+class Pair:
+    """A component in Python and its native FMU, which get the same."""
+
+    def __init__(self, name: str, folder: Path, values: dict[str, Any]) -> None:
+        self.python = component_class(name)("x")
+        for port, value in values.items():
+            self.python.set(port, value)
+        self.slave = Slave(built(name, folder, values), folder)
+        self.faults = faults_of(type(self.python))
+        fmu = self.slave.fmu
+        self.setters = {
+            float: fmu.setReal,
+            int: fmu.setInteger,
+            bool: fmu.setBoolean,
+            str: fmu.setString,
+        }
+        self.getters = {float: fmu.getReal, int: fmu.getInteger, bool: fmu.getBoolean}
+        self.drawn = random.Random(name)
+        self.time = 0.0
+
+    def begin(self) -> None:
+        self.python.setup(0.0)
+        self.python.initialise()
+        self.python.begin()
+        self.slave.begin()
+
+    def feed(self, k: int) -> None:
+        """Give both the same random inputs."""
+        for scalar in self.python.scalars:
+            port = scalar.port
+            if port.kind != "input" or (port.type is str and (port.role != "fault" or k % 13)):
+                continue
+            value = self._value(port.type, k)
+            if port.type is float:
+                value += port.start[scalar.index]
+            self.python.write([scalar.reference], [value], port.type)
+            self.setters[port.type]([scalar.reference], [value])
+
+    def _value(self, kind: type, k: int) -> Any:
+        if kind is float:
+            return self.drawn.uniform(-0.2, 0.2)
+        if kind is int:
+            return self.drawn.randrange(3)
+        if kind is bool:
+            return k < 40 or self.drawn.random() < 0.7
+        return self.drawn.choice(self.faults)
+
+    def step(self, h: float) -> None:
+        self.python.advance(self.time, h)
+        self.slave.fmu.doStep(self.time, h)
+        self.time = self.python.now
+
+    def outputs(self) -> list[str]:
+        """Return the outputs, which are equal."""
+        found = []
+        for kind, get in self.getters.items():
+            outputs = [
+                s.reference
+                for s in self.python.scalars
+                if s.port.kind == "output" and s.port.type is kind
+            ]
+            if outputs:
+                python = [float(v).hex() for v in self.python.read(outputs, kind)]
+                assert [float(v).hex() for v in get(outputs)] == python
+                found += python
+        return found
+
+
+@pytest.mark.parametrize(
+    "name", [n if n in QUICK else pytest.param(n, marks=pytest.mark.interop) for n in CANDIDATES]
+)
+def test_same_numbers_to_the_bit(name: str, tmp_path: Path) -> None:
+    """Random inputs, faults and steps; saved and restored states; a run anew."""
+    if why_python(component_class(name)):
+        pytest.skip("it stays Python")
+    pair = Pair(name, tmp_path, exercised(name))
+    assert validate_fmu(str(next(tmp_path.glob("*.fmu")))) == []
+    pair.begin()
+    seen, kept = set(), None
+    for k in range(300):
+        pair.feed(k)
+        pair.outputs()
+        pair.step(STEPS[k % 4])
+        seen.add(tuple(pair.outputs()))
+        if k == 150:
+            kept = (pair.slave.serialized(), pair.python.get_state(), pair.drawn.getstate())
+            begun = pair.time
+    last = pair.outputs()
+    assert kept is not None
+    pair.slave.restore(kept[0])
+    pair.python.set_state(kept[1])
+    pair.drawn.setstate(kept[2])
+    pair.time = begun
+    for k in range(151, 300):
+        pair.feed(k)
+        pair.step(STEPS[k % 4])
+    assert pair.outputs() == last
+    changing = any(s.port.kind == "input" for s in pair.python.scalars)
+    assert len(seen) > (20 if changing and name not in ("esc",) else 0)
+
+
+def test_parameters_are_numbers_of_the_run(tmp_path: Path) -> None:
+    """One FMU, another compass: numbers are set by whoever runs it."""
+    pair = Pair("compass", tmp_path, {})
+    for port, value in {"variation": 0.1, "delay": 0.03, "seed": 12.0, "dropout": 0.5}.items():
+        pair.python.set(port, value)
+        pair.slave.fmu.setReal([pair.slave.reference[port]], [value])
+    pair.begin()
+    for k in range(100):
+        pair.feed(k)
+        pair.step(0.02)
+        pair.outputs()
+
+
+class Doubler(Sampled):
+    """Doubles its input, and refuses what is too large."""
+
+    limit = Parameter(1.0, "V", "largest input", min=0.0)
+    u = Input("V", "input")
+    y = Output("V", "twice that")
+
+    def sample(self, t: float, k: int) -> None:
+        if self.u > self.limit:
+            raise InputError(f"{self.name}.u is {self.u!r} V, allowed {self.limit:.1f} V")
+        self.y = 2.0 * self.u
+
+
+class Opener(Sampled):
+    """Does what no C can."""
+
+    y = Output("V", "length of a file")
+
+    def sample(self, t: float, k: int) -> None:
+        with open("x") as file:
+            self.y = len(file.read())
+
+
+def test_a_component_of_ones_own(tmp_path: Path) -> None:
+    path = built(f"{__file__}:Doubler", tmp_path)
+    slave = Slave(path, tmp_path)
+    slave.fmu.setReal([slave.reference["u"]], [0.75])
+    slave.begin()
+    assert slave.fmu.getReal([slave.reference["y"]]) == [1.5]
+    slave.fmu.setReal([slave.reference["u"]], [1.25])
+    with pytest.raises(Exception, match="fmi2GetReal"):
+        slave.fmu.getReal([slave.reference["y"]])
+    assert slave.messages == ["x.u is 1.25 V, allowed 1.0 V"]
+    python = Doubler("x")
+    python.set("u", 1.25)
+    python.setup(0.0)
+    with pytest.raises((InputError, SimulationError), match=r"x\.u is 1\.25 V, allowed 1\.0 V"):
+        python.initialise()
+
+
+def test_what_has_no_c_is_named_with_its_line(tmp_path: Path) -> None:
+    line = next(
+        n
+        for n, text in enumerate(Path(__file__).read_text().splitlines(), 1)
+        if "with open(" in text
+    )
+    with pytest.raises(
+        InputError, match=rf"{Path(__file__).name}:{line} \(Opener.sample\): .*With"
+    ):
+        built(f"{__file__}:Opener", tmp_path)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_built_in_are_texts_and_surroundings() -> None:
+    gnss, wind = component_class("gnss"), component_class("wind")
+    assert is_built_in(gnss, gnss.ports["reception"])
+    assert not is_built_in(gnss, gnss.ports["seed"])
+    assert not is_built_in(gnss, gnss.ports["fault"])
+    assert is_built_in(wind, wind.ports["wind_speed"])
