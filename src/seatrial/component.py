@@ -22,7 +22,7 @@ from __future__ import annotations
 
 import math
 import zlib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, ClassVar
 
 import numpy as np
@@ -218,12 +218,41 @@ class Component:
 
     def read(self, references: Sequence[int], kind: type) -> list[Any]:
         """Return scalars of one type by reference, recomputed if inputs changed since."""
-        if not self._of_type[kind].issuperset(references):
-            raise InputError(f"{self.name}: {self._misfit(references, self._of_type[kind], kind)}")
+        self._refuse_misfit(references, kind)
         if self._stale:
             self.refresh()
         values = self.values
         return [values[r] for r in references]
+
+    def reader(self, references: Sequence[int], kind: type) -> Callable[[], list[Any]]:
+        """Return what does the same as `read` of these references, again and again."""
+        self._refuse_misfit(references, kind)
+        places = _places(references)
+
+        def read() -> list[Any]:
+            if self._stale:
+                self.refresh()
+            if places is not None:
+                return self.values[places]
+            values = self.values
+            return [values[r] for r in references]
+
+        return read
+
+    def writer(self, references: Sequence[int], kind: type) -> Callable[[Sequence[Scalar]], None]:
+        """Return what does the same as `write` to these references, again and again."""
+        if kind is str or not self._inputs.issuperset(references):
+            return lambda values: self._write(references, values, kind)
+
+        def write(values: Sequence[Any]) -> None:
+            if not math.isfinite(sum(values)):
+                self._write(references, values, kind)
+            own = self.values
+            for reference, value in zip(references, values, strict=True):
+                own[reference] = value
+            self._stale = True
+
+        return write
 
     def refresh(self) -> None:
         """Recompute the outputs if an input or parameter was set since they were computed.
@@ -267,11 +296,12 @@ class Component:
         self.refresh()
         self._phase = _RUNNING
 
-    def advance(self, t: float, h: float) -> None:
+    def advance(self, t: float, h: float, *, publish: bool = True) -> None:
         """Step from ``t`` to ``t + h`` (s), both as the caller's doubles have them.
 
         Time is snapped: the component counts whole nanoseconds itself and takes the caller's
-        ``t`` for the time it has reached, if they differ by less than 1 % of ``h``.
+        ``t`` for the time it has reached, if they differ by less than 1 % of ``h``. The outputs
+        follow now, or if not ``publish``, when they are read: by then inputs may have changed.
 
         Raises SimulationError if an output is not finite afterwards.
         """
@@ -281,9 +311,10 @@ class Component:
             self._now_ns = given
         self.step(self.now, seconds(h_ns))
         self._now_ns += h_ns
-        self._stale = False
-        self.outputs(self.now)
-        self._check_outputs()
+        self._stale = not publish
+        if publish:
+            self.outputs(self.now)
+            self._check_outputs()
 
     def begin_anew(self) -> None:
         """Return to before `setup`, with all parameters and inputs at their start values."""
@@ -353,6 +384,10 @@ class Component:
             raise InputError(
                 f"{self.name}.{name} is {value!r} {unit}, allowed {_range_text(low, high)} {unit}"
             )
+
+    def _refuse_misfit(self, references: Sequence[int], kind: type) -> None:
+        if not self._of_type[kind].issuperset(references):
+            raise InputError(f"{self.name}: {self._misfit(references, self._of_type[kind], kind)}")
 
     def _misfit(self, references: Iterable[int], allowed: frozenset[int], kind: type) -> str:
         reference = next(r for r in references if r not in allowed)
@@ -442,6 +477,12 @@ class Reachable:
 
 def _is_fixed(port: Port) -> bool:
     return isinstance(port, Parameter) and not port.tunable
+
+
+def _places(references: Sequence[int]) -> slice | None:
+    """Return the slice that references are, if they stand side by side in their order."""
+    first, after = references[0], references[0] + len(references)
+    return slice(first, after) if [*references] == [*range(first, after)] else None
 
 
 def _range_text(low: float | None, high: float | None) -> str:

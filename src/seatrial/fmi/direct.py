@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import traceback
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any
 
@@ -25,6 +25,9 @@ class DirectInstance(ByType):
         self.restarts = True
         self.ended_at: float | None = None
         self.terminals, self.views = component.terminals, component.views
+        self._publishes = any(port.kind == "output" for port in component.ports.values())
+        self._stepped = False
+        """The outputs of the last step have not been computed yet."""
 
     def set_start(self, values: Mapping[str, Value]) -> None:
         """Set parameters and start values by variable name, before `initialise`."""
@@ -41,13 +44,18 @@ class DirectInstance(ByType):
         self._call("begin", self.component.begin)
 
     def step(self, t: float, h: float) -> None:
-        """Advance from ``t`` to ``t + h``, s."""  # an error is a discarded step, as in the FMU
+        """Advance from ``t`` to ``t + h``, s; the outputs follow when they are read.
+
+        Most depend on inputs that are written before. An error of either is a discarded step, as
+        in the FMU.
+        """
         try:
-            self.component.advance(t, h)
+            self.component.advance(t, h, publish=not self._publishes)
         except KeyboardInterrupt:
             raise
         except BaseException as error:  # SystemExit too, as in the FMU
             raise DiscardError(str(self._error("step", error))) from error
+        self._stepped = self._publishes
 
     def get_state(self) -> Any:
         """Return a copy of the whole state."""
@@ -74,12 +82,34 @@ class DirectInstance(ByType):
         self._call("close", self.component.close)
 
     def _reader(self, variables: list[Variable], kind: Any) -> Reader:
-        component, references = self.component, [v.reference for v in variables]
-        return lambda: self._call("read", lambda: component.read(references, kind))
+        own = self.component.reader([v.reference for v in variables], kind)
+
+        def read() -> list[Any]:
+            try:
+                values = own()
+            except KeyboardInterrupt:
+                raise
+            except BaseException as error:  # SystemExit too, as in the FMU
+                if self._stepped:
+                    raise DiscardError(str(self._error("step", error))) from error
+                raise self._error("read", error) from error
+            self._stepped = False
+            return values
+
+        return read
 
     def _writer(self, variables: list[Variable], kind: Any) -> Writer:
-        component, references = self.component, [v.reference for v in variables]
-        return lambda values: self._call("write", lambda: component.write(references, values, kind))
+        own = self.component.writer([v.reference for v in variables], kind)
+
+        def write(values: Sequence[Any]) -> None:
+            try:
+                own(values)
+            except KeyboardInterrupt:
+                raise
+            except BaseException as error:
+                raise self._error("write", error) from error
+
+        return write
 
     def _call(self, what: str, call: Callable[[], Any]) -> Any:
         try:
