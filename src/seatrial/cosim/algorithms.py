@@ -104,22 +104,22 @@ class Remembering(Algorithm):
 
     def __init__(self, network: Network, feedthrough: Feedthrough) -> None:
         self._network, self._feedthrough = network, feedthrough
-        self._past = [[PastInputs(one) for one in node.writes] for node in network.nodes.values()]
+        self.past = [[PastInputs(one) for one in node.writes] for node in network.nodes.values()]
         """By component, in their order."""
 
     def save(self) -> Any:
         """Return the inputs of the point before."""
-        return [past.previous for of_node in self._past for past in of_node]
+        return [past.previous for of_node in self.past for past in of_node]
 
     def restore(self, state: Any) -> None:
         """Restore what `save` returned."""
-        pasts = [past for of_node in self._past for past in of_node]
+        pasts = [past for of_node in self.past for past in of_node]
         for past, previous in zip(pasts, state, strict=True):
             past.previous = previous
 
     def forget(self) -> None:
         """Hold what comes next: there is no point before."""
-        for of_node in self._past:
+        for of_node in self.past:
             for past in of_node:
                 past.previous = None
 
@@ -193,7 +193,7 @@ class Extrapolated(Remembering):
 
     def __init__(self, network: Network, feedthrough: Feedthrough) -> None:
         super().__init__(network, feedthrough)
-        self._nodes = list(zip(network.nodes.values(), self._past, strict=True))
+        self._nodes = list(zip(network.nodes.values(), self.past, strict=True))
 
     def advance(self, steps: int, t_ns: int, h_ns: int) -> None:
         """Write extrapolated inputs, step all, read, propagate."""
@@ -203,7 +203,7 @@ class Extrapolated(Remembering):
                 for past in inputs:
                     writes = past.writes
                     values = writes.values(network.signals)
-                    writes.write(_ahead(values, past.previous, writes.continuous))
+                    writes.write(ahead(values, past.previous, writes.continuous))
                     past.previous = values
                 network.step(node, t_ns, node.every * h_ns)
         arrive(network, self._feedthrough, steps + 1, t_ns + h_ns)
@@ -238,12 +238,13 @@ def stepping_order(network: Network) -> list[str]:
     return order
 
 
-def _ahead(
+def ahead(
     values: Sequence[Any], previous: Sequence[Any] | None, continuous: Sequence[int]
 ) -> Sequence[Any]:
+    """Return values extrapolated by half a step, where they are continuous."""
     if previous is None or not continuous:
         return values
-    ahead = list(values)
+    found = list(values)
     for i in continuous:
-        ahead[i] += 0.5 * (values[i] - previous[i])
-    return ahead
+        found[i] += 0.5 * (values[i] - previous[i])
+    return found

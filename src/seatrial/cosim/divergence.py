@@ -40,39 +40,43 @@ class DivergenceWatch:
         places: dict[int, list[int]] = {}
         for source in sources:
             places.setdefault(network.nodes[source[0]].every, []).append(network.places[source])
-        self._paces = [_Pace(network, every, sorted(of)) for every, of in sorted(places.items())]
+        self.paces = [Pace(network, every, sorted(of)) for every, of in sorted(places.items())]
 
     def look(self, steps: int) -> None:
         """Look at the signals after a communication step. Raises SimulationError."""
-        for pace in self._paces:
+        for pace in self.paces:
             if steps % pace.every == 0:
                 pace.look(steps // pace.every)
 
     def save(self) -> list[Any]:
         """Return what it has seen, for `restore`."""
-        return [pace.save() for pace in self._paces]
+        return [pace.save() for pace in self.paces]
 
     def restore(self, memory: list[Any]) -> None:
         """Restore what `memory` returned."""
-        for pace, seen in zip(self._paces, memory, strict=True):
+        for pace, seen in zip(self.paces, memory, strict=True):
             pace.restore(seen)
 
 
-class _Pace:
+class Pace:
     """The connections whose values come every so many communication steps."""
 
     def __init__(self, network: Network, every: int, places: list[int]) -> None:
         self.every = every
-        self._network, self._places = network, places
-        self._rows: list[list[Any]] = []
-        self._last: NDArray[np.float64] = np.zeros(len(places))
+        self._network, self.places = network, places
+        self.rows = np.zeros((_LOOKED_AT, len(places)))
+        self.seen = np.zeros(1, np.int64)
+        """How many rows there are."""
+        self.last: NDArray[np.float64] = np.zeros(len(places))
         """Swing of each connection in the block before."""
-        self._first = np.zeros(len(places))
+        self.first = np.zeros(len(places))
         """Swing of each connection when it began to grow."""
-        self._jump = np.ones(len(places))
+        self.jump = np.ones(len(places))
         """Largest factor by which it grew from one block to the next since then."""
-        self._growing = np.zeros(len(places), int)
+        self.growing = np.zeros(len(places), np.int64)
         """Blocks in a row in which it grew."""
+        self._all = (self.rows, self.seen, self.last, self.first, self.jump, self.growing)
+        # They stay where they are in memory: the compiled master looks there too.
 
     def look(self, steps: int) -> None:
         """Look at the signals after a step of these connections. Raises SimulationError."""
@@ -80,20 +84,21 @@ class _Pace:
         if turn >= _LOOKED_AT:
             return
         if turn == 0:
-            self._rows = []
+            self.seen[0] = 0
         signals = self._network.signals
-        self._rows.append([signals[place] for place in self._places])
-        if len(self._rows) == _LOOKED_AT:
-            self._evaluate(np.array(self._rows, float))
+        self.rows[self.seen[0]] = [signals[place] for place in self.places]
+        self.seen[0] += 1
+        if self.seen[0] == _LOOKED_AT:
+            self._evaluate(self.rows)
 
     def save(self) -> Any:
-        """Return what it has seen: rows are added, arrays replaced, so references do."""
-        return list(self._rows), self._last, self._first, self._jump, self._growing
+        """Return a copy of what it has seen."""
+        return [one.copy() for one in self._all]
 
     def restore(self, memory: Any) -> None:
         """Restore what `memory` returned."""
-        rows, self._last, self._first, self._jump, self._growing = memory
-        self._rows = list(rows)
+        for own, one in zip(self._all, memory, strict=True):
+            own[...] = one
 
     def _evaluate(self, rows: NDArray[np.float64]) -> None:
         with np.errstate(all="ignore"):
@@ -102,23 +107,23 @@ class _Pace:
             size = np.abs(rows).max(axis=0)
             rough = (swing >= change) & (swing > _NOISE * np.maximum(1.0, size))
             rough &= _turns(np.sign(np.diff(rows, axis=0))) >= _TURNS
-            grows = rough & (swing > self._last) & (self._last > 0.0)
-            factor = np.where(grows, swing / self._last, 1.0)
-        going_on = grows & (self._growing > 0)
-        self._first = np.where(going_on, self._first, self._last)
-        self._jump = np.where(going_on, np.maximum(self._jump, factor), factor)
-        self._growing = np.where(grows, self._growing + 1, 0)
-        self._last = np.where(rough, swing, 0.0)
+            grows = rough & (swing > self.last) & (self.last > 0.0)
+            factor = np.where(grows, swing / self.last, 1.0)
+        going_on = grows & (self.growing > 0)
+        self.first[:] = np.where(going_on, self.first, self.last)
+        self.jump[:] = np.where(going_on, np.maximum(self.jump, factor), factor)
+        self.growing[:] = np.where(grows, self.growing + 1, 0)
+        self.last[:] = np.where(rough, swing, 0.0)
         with np.errstate(all="ignore"):
-            growth = swing / self._first / self._jump
-        bad = (self._growing >= _BLOCKS) & (growth > _GROWTH)
+            growth = swing / self.first / self.jump
+        bad = (self.growing >= _BLOCKS) & (growth > _GROWTH)
         if bad.any():
-            worst = int(np.argmax(np.where(bad, growth, 0.0)))
-            self._refuse(worst, rows[-1, worst])
+            self.refuse(int(np.argmax(np.where(bad, growth, 0.0))))
 
-    def _refuse(self, index: int, value: float) -> None:
-        source = self._network.names[self._places[index]]
-        before = _BLOCK * self.every * int(self._growing[index])
+    def refuse(self, index: int) -> None:
+        """Raise SimulationError for the connection ``index``."""
+        value, source = self.rows[-1, index], self._network.names[self.places[index]]
+        before = _BLOCK * self.every * int(self.growing[index])
         raise SimulationError(
             f"the coupling diverges at t = {self._network.time_ns / NS!r} s: "
             f"{self._network.targets(source)} swings from step to step, more than "

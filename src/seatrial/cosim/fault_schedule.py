@@ -78,6 +78,12 @@ class Schedule:
             if phase == _ACTING and fault.end_ns is not None and now >= fault.end_ns:
                 self.end(master, fault)
 
+    def next_ns(self) -> int | None:
+        """Return when the next fault begins or ends, ns; None if none does any more."""
+        times = [f.begin_ns for f in self.faults if self._phases[f.key] == _PENDING]
+        times += [f.end_ns for f in self.faults if self._phases[f.key] == _ACTING and f.end_ns]
+        return min(times, default=None)
+
     def end(self, master: Stepped, fault: Fault) -> None:
         """End a fault now, whether it has begun or not. Raises SimulationError."""
         if self._phases[fault.key] == _ACTING:

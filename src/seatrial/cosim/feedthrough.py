@@ -29,7 +29,7 @@ _MEMORY = 8
 
 
 @dataclass
-class _Visit:
+class Visit:
     """Outputs of one node to read once the inputs they depend on were moved."""
 
     node: Node
@@ -37,12 +37,12 @@ class _Visit:
 
 
 @dataclass
-class _Group:
+class Group:
     """Visits that belong together: of one component, or of all components of a loop."""
 
     outputs: list[Name]
     is_loop: bool
-    visits: list[_Visit] = field(default_factory=list)
+    visits: list[Visit] = field(default_factory=list)
     relaxation: float = 1.0
     """What the loop last settled with."""
 
@@ -52,21 +52,24 @@ class Feedthrough:
 
     def __init__(self, network: Network) -> None:
         self._network = network
-        self._groups = _groups(network)
-        visited = {name for group in self._groups for name in group.outputs}
+        self.groups = _groups(network)
+        """In the order in which they are visited."""
+        visited = {name for group in self.groups for name in group.outputs}
         for name, node in network.nodes.items():
             outputs = [
                 v.name for v in node.part.instance.variables.values() if v.causality == "output"
             ]
-            node.reads = network.add_chunks(node, [n for n in outputs if (name, n) not in visited])
-        for group in self._groups:
+            rest = [n for n in outputs if (name, n) not in visited]
+            node.reads = node.independent = network.add_chunks(node, rest)
+        for group in self.groups:
             for component in dict.fromkeys(component for component, _ in group.outputs):
                 node = network.nodes[component]
                 of_node = [n for c, n in group.outputs if c == component]
-                group.visits.append(_Visit(node, network.add_chunks(node, of_node)))
+                group.visits.append(Visit(node, network.add_chunks(node, of_node)))
         network.bind_inputs()
         for node in network.nodes.values():
             node.written_by_visit = self._writes_all(node)
+            self._defer_reads(node)
 
     def propagate(self, steps: int) -> None:
         """Visit everything that has a value at this communication point.
@@ -74,9 +77,9 @@ class Feedthrough:
         ``steps`` counts communication steps: a component with a longer step of its own has
         values at whole multiples only. Raises SimulationError for a loop that does not settle.
         """
-        for group in self._groups:
+        for group in self.groups:
             if group.is_loop:
-                self._solve(group, steps)
+                self.solve(group, steps)
             else:
                 for visit in group.visits:
                     if steps % visit.node.every == 0:
@@ -86,41 +89,57 @@ class Feedthrough:
     def among(self, names: Collection[str]) -> Feedthrough:
         """Return the visits to some components alone."""
         some = copy(self)
-        some._groups = [
+        some.groups = [
             replace(group, visits=[v for v in group.visits if v.node.part.name in names])
-            for group in self._groups
+            for group in self.groups
         ]
         return some
 
     def forget(self) -> None:
         """Visit nothing any more but sums, which take no step: values move by steps alone."""
-        visits = [v for group in self._groups for v in group.visits if v.node.part.is_sum]
-        self._groups = [_Group([], is_loop=False, visits=[visit]) for visit in visits]
+        visits = [v for group in self.groups for v in group.visits if v.node.part.is_sum]
+        self.groups = [Group([], is_loop=False, visits=[visit]) for visit in visits]
         for node in self._network.nodes.values():
             if not node.part.is_sum:
-                node.reads, node.written_by_visit = node.chunks, False
+                node.reads = node.independent = node.chunks
+                node.written_by_visit = False
 
     def save(self) -> list[float]:
         """Return what the loops have learned, for a rollback."""
-        return [group.relaxation for group in self._groups]
+        return [group.relaxation for group in self.groups]
 
     def restore(self, state: list[float]) -> None:
         """Restore what `save` returned."""
-        for group, relaxation in zip(self._groups, state, strict=True):
+        for group, relaxation in zip(self.groups, state, strict=True):
             group.relaxation = relaxation
 
     def _writes_all(self, node: Node) -> bool:
         """Say if everything that feeds a node is final when its last visit writes its inputs."""
-        turns = [i for i, g in enumerate(self._groups) if any(v.node is node for v in g.visits)]
-        if not turns or self._groups[turns[-1]].is_loop:
+        turns = [i for i, g in enumerate(self.groups) if any(v.node is node for v in g.visits)]
+        if not turns or self.groups[turns[-1]].is_loop:
             return False
-        read_in = {name: i for i, group in enumerate(self._groups) for name in group.outputs}
+        read_in = {name: i for i, group in enumerate(self.groups) for name in group.outputs}
         sources = [connection.source for writes in node.writes for connection in writes.connections]
         return all(read_in.get(source, -1) < turns[-1] for source in sources)
 
+    def _defer_reads(self, node: Node) -> None:
+        """Let the first visit read all outputs of a node, if nobody needs the others before.
+
+        A component computes all its outputs at once: it need not do so before its inputs came.
+        """
+        turns = [(i, v) for i, g in enumerate(self.groups) for v in g.visits if v.node is node]
+        if not turns or self.groups[turns[0][0]].is_loop:
+            return
+        first, visit = turns[0]
+        early = [v.node for group in self.groups[: first + 1] for v in group.visits]
+        needed = {one.source[0] for other in early for w in other.writes for one in w.connections}
+        if node.part.name not in needed:
+            visit.chunks = [*node.independent, *visit.chunks]
+            node.reads = []
+
     # ------------------------------------------------------------------ loops
 
-    def _solve(self, group: _Group, steps: int) -> None:
+    def solve(self, group: Group, steps: int) -> None:
         """Find a fixed point of a loop: as it was last found, else in every other way.
 
         Relaxation is for iterations that grow, acceleration for those that shrink too slowly.
@@ -154,7 +173,7 @@ class Feedthrough:
             f"a relaxation of {_LEAST_RELAXATION:g}; break it with a component that has a state"
         )
 
-    def _iterate(self, group: _Group, places: list[int], steps: int) -> tuple[bool, float]:
+    def _iterate(self, group: Group, places: list[int], steps: int) -> tuple[bool, float]:
         """Return whether the loop settles, and the factor between the last two changes."""
         signals, relaxation = self._network.signals, group.relaxation
         change, factor, growing = 0.0, 0.0, 0
@@ -173,7 +192,7 @@ class Feedthrough:
                         signals[place] = a + relaxation * (b - a)
         return False, factor
 
-    def _accelerate(self, group: _Group, places: list[int], steps: int) -> tuple[bool, float]:
+    def _accelerate(self, group: Group, places: list[int], steps: int) -> tuple[bool, float]:
         """Return the same as `_iterate`, with Anderson's acceleration of the real outputs.
 
         Each new point is the combination of the last ones whose changes cancel best.
@@ -200,7 +219,7 @@ class Feedthrough:
                     signals[places[i]] = value
         return False, factor
 
-    def _sweep(self, group: _Group, places: list[int], steps: int) -> tuple[list[Any], list[Any]]:
+    def _sweep(self, group: Group, places: list[int], steps: int) -> tuple[list[Any], list[Any]]:
         """Visit a loop once; return its values before and after."""
         signals = self._network.signals
         before = [signals[p] for p in places]
@@ -211,7 +230,7 @@ class Feedthrough:
         return before, [signals[p] for p in places]
 
 
-def _groups(network: Network) -> list[_Group]:
+def _groups(network: Network) -> list[Group]:
     """Return the outputs to visit, in dependency order."""
     depends = _dependencies(network)
     outputs = {
@@ -220,7 +239,7 @@ def _groups(network: Network) -> list[_Group]:
     groups = [g for g in ordered_groups(depends) if any(n in depends for n in g)]
     scheduled = _scheduled(groups, depends)
     named = [([n for n in group if n in outputs], is_loop) for group, is_loop in scheduled]
-    return [_Group(names, is_loop) for names, is_loop in named if names]
+    return [Group(names, is_loop) for names, is_loop in named if names]
 
 
 def _dependencies(network: Network) -> dict[Name, list[Name]]:

@@ -126,7 +126,7 @@ class Iterated(Remembering):
     def _inputs(self) -> list[_Inputs]:
         """Return all inputs at the beginning of a step, extrapolated to its end."""
         inputs = []
-        for of_node in self._past:
+        for of_node in self.past:
             for past in of_node:
                 writes = past.writes
                 begin = writes.values(self._network.signals)

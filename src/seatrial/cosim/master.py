@@ -10,12 +10,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..component import NS
 from ..errors import InputError
 from ..faults.operators import Fixed
 from .algorithms import Algorithm
+from .compiled.choice import is_compiled
 from .divergence import DivergenceWatch
 from .fault_schedule import Schedule
 from .feedthrough import Feedthrough
@@ -26,6 +27,13 @@ from .registry import ALGORITHMS
 from .rollback import Checkpoint, Rollback
 from .system import System
 from .timing import StepTimes
+
+if TYPE_CHECKING:
+    from .compiled.rows import Rows
+    from .compiled.steps import CompiledSteps
+
+_MOST_STEPS = 256
+"""Longest block of compiled steps: progress is shown and signals are taken between two."""
 
 
 @dataclass(frozen=True)
@@ -53,6 +61,9 @@ class Master:
         self.steps = 0
         self._network = Network(system)
         self._network.time_ns = start_ns
+        self._ends = False
+        """Whether a component has asked for the end."""
+        self._compiled: CompiledSteps | None = None
         self.faults = Schedule()
         """What goes wrong, and when; add to it before `initialise` or at any point."""
 
@@ -69,6 +80,8 @@ class Master:
     @property
     def step_times(self) -> dict[str, StepTimes]:
         """Wall time of each component's steps."""
+        if self._compiled is not None:
+            self._compiled.merge_times()
         return {name: node.times for name, node in self._network.nodes.items()}
 
     @property
@@ -106,14 +119,30 @@ class Master:
         self._algorithm = self._chosen()
         self._rollback = Rollback(self._network, self._feedthrough, self._algorithm)
         self._watch = DivergenceWatch(self._network)
+        if is_compiled(self.system):
+            self._compiled = self._compiled_steps()
         self.faults.act(self)
 
     def step(self) -> None:
         """Advance everything by one communication step. Raises SimulationError."""
-        self._rollback.advance(self.steps, self.time_ns, self.step_ns)
-        self.steps += 1
-        self._watch.look(self.steps)
+        self.advance(1)
+
+    def advance(self, most: int, rows: Rows | None = None) -> int:
+        """Advance by up to ``most`` communication steps; return by how many, one at least.
+
+        Compiled steps go on until somebody must look: a fault begins or ends, a component asks for
+        the end. ``rows`` gets the points in between. Raises SimulationError.
+        """
+        compiled = self._compiled
+        if compiled is not None and not self._network.is_disturbed and not self._ends:
+            taken = self._advance_compiled(compiled, most, rows)
+        else:
+            self._in_python()
+            self._rollback.advance(self.steps, self.time_ns, self.step_ns)
+            self.steps, taken = self.steps + 1, 1
+            self._watch.look(self.steps)
         self.faults.act(self)
+        return taken
 
     def ended(self) -> list[str]:
         """Return the components that have asked to end the simulation."""
@@ -211,6 +240,8 @@ class Master:
         self.faults.restore(snapshot.faults)
         self._watch.restore(snapshot.watch)
         self.steps = snapshot.checkpoint.steps
+        self._in_python()
+        self._ends = bool(self.ended())
 
     def free(self, snapshot: Snapshot) -> None:
         """Release a state."""
@@ -233,6 +264,36 @@ class Master:
         return [*notes, *self._algorithm.notes(self.steps)]
 
     # ------------------------------------------------------------------ inside
+
+    def _compiled_steps(self) -> CompiledSteps:
+        from .compiled.steps import CompiledSteps
+
+        return CompiledSteps(
+            self._network, self._feedthrough, self._algorithm, self._watch, self.step_ns
+        )
+
+    def _advance_compiled(self, compiled: CompiledSteps, most: int, rows: Rows | None) -> int:
+        next_ns = self.faults.next_ns()
+        if next_ns is not None:
+            most = min(most, max(1, -((self.time_ns - next_ns) // self.step_ns)))
+        begun, compiled.taken = self.steps, 0
+        try:
+            taken = self._rollback.advance_block(
+                compiled, begun, self.time_ns, min(most, _MOST_STEPS), rows
+            )
+        except BaseException:
+            self.steps = begun + compiled.taken
+            raise
+        self.steps = begun + taken
+        if taken > compiled.taken:  # a discarded step, which Python has repeated
+            self._watch.look(self.steps)
+        self._ends = compiled.ends
+        return taken
+
+    def _in_python(self) -> None:
+        """Note that what the compiled steps know is no longer so."""
+        if self._compiled is not None:
+            self._compiled.is_current = False
 
     def _follow(self, component: str) -> None:
         """Read a component's outputs where they follow at once what was set."""
@@ -306,6 +367,7 @@ class Master:
         self._rollback.forget()
         self._algorithm.forget()
         self._feedthrough.propagate(self.steps)
+        self._in_python()
 
 
 def _override(component: str, name: str) -> str:

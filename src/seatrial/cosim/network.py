@@ -24,7 +24,7 @@ from .timing import StepTimes
 Name = tuple[str, str]
 
 _TIMES_NOMINAL = 1e3
-_ANY_QUANTITY = 1e20
+ANY_QUANTITY = 1e20
 """Larger than any quantity in SI units: the limit of a signal that declares no nominal value."""
 
 
@@ -85,6 +85,8 @@ class Node:
     """All outputs."""
     reads: list[Chunk] = field(default_factory=list)
     """Outputs to read after a step: those that no feed-through visit reads anyway."""
+    independent: list[Chunk] = field(default_factory=list)
+    """Outputs that follow from the state alone."""
     writes: list[Writes] = field(default_factory=list)
     written_by_visit: bool = False
     """Its last feed-through visit leaves every input as a step with held inputs needs it."""
@@ -202,11 +204,11 @@ class Network:
         for chunk in chunks:
             values = chunk.read()
             if chunk.is_real:
-                if not -_ANY_QUANTITY < sum(values) < _ANY_QUANTITY:
-                    self._refuse_excess(chunk, values)
+                if not -ANY_QUANTITY < sum(values) < ANY_QUANTITY:
+                    self.refuse_excess(chunk, values)
                 for i, limit in chunk.limits:
                     if not -limit <= values[i] <= limit:
-                        self._refuse_excess(chunk, values)
+                        self.refuse_excess(chunk, values)
             self.signals[chunk.start : chunk.stop] = values
             if self._injected:
                 self._disturb(chunk.start, chunk.stop)
@@ -222,6 +224,12 @@ class Network:
         node.part.instance.step(t_ns / NS, h_ns / NS)
         node.times.add(perf_counter_ns() - begun, t_ns)
 
+    @property
+    def is_disturbed(self) -> bool:
+        """Whether faults act on signals."""
+        writes = self._all_writes()
+        return bool(self._injected or self._loose or any(one.injected for one in writes))
+
     def nominal(self, name: Name) -> float:
         """Return an output's nominal value, 1 where none is declared."""
         return abs(self.system.parts[name[0]].instance.variables[name[1]].nominal or 1.0)
@@ -235,14 +243,15 @@ class Network:
         ]
         return f"the connection {'.'.join(source)} -> {', '.join(ends)}"
 
-    def _refuse_excess(self, chunk: Chunk, values: Sequence[float]) -> None:
+    def refuse_excess(self, chunk: Chunk, values: Sequence[float]) -> None:
+        """Raise ExcessError if one of the values is not finite or out of bounds."""
         limits = dict(chunk.limits)
         for i, value in enumerate(values):
             name = self.names[chunk.start + i]
             when = f"at t = {self.time_ns / NS!r} s"
             if not math.isfinite(value):
                 raise ExcessError(f"{'.'.join(name)} is {value} {when}")
-            if abs(value) > limits.get(i, _ANY_QUANTITY) and name in self._sources:
+            if abs(value) > limits.get(i, ANY_QUANTITY) and name in self._sources:
                 nominal = limits[i] / _TIMES_NOMINAL if i in limits else None
                 excess = (
                     f"more than 1000 times its nominal value {nominal!r}"
@@ -397,11 +406,11 @@ class Network:
 
     def independent(self) -> list[list[Any]]:
         """Return, freshly read, the outputs that follow from states alone."""
-        return [chunk.read() for node in self.nodes.values() for chunk in node.reads]
+        return [chunk.read() for node in self.nodes.values() for chunk in node.independent]
 
     def refuse_unrestored(self, before: list[list[Any]]) -> None:
         """Raise SimulationError if restored states do not give what `independent` returned."""
-        chunks = [chunk for node in self.nodes.values() for chunk in node.reads]
+        chunks = [chunk for node in self.nodes.values() for chunk in node.independent]
         for chunk, values, now in zip(chunks, before, self.independent(), strict=True):
             for place, (was, value) in enumerate(zip(values, now, strict=True), chunk.start):
                 if value != was:

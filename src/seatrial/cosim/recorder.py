@@ -14,7 +14,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..component import NS
 from ..errors import InputError
+from .compiled.rows import Rows
 from .master import Master
 from .system import System
 from .values import storable
@@ -78,21 +80,20 @@ class Recorder:
         self._write()
         # Text is always quoted: a lone carriage return in it would end the row otherwise.
         self._writer = csv.writer(self._row, lineterminator="\n", quoting=csv.QUOTE_NONNUMERIC)
-        self._watched_places = {name: places[name] for name in watch}
+        self._watched_places = [places[name] for name in watch]
         self._watched: dict[str, array[float] | list[str]] = {
             name: list[str]() if isinstance(master.signals[places[name]], str) else array("d")
             for name in watch
         }
         self._times = array("d")
+        self.rows = self._block()
+        """For `Master.advance`, which leaves there what `take` records; None where texts are."""
 
     def record(self, *, last: bool = False) -> None:
         """Write a row if one is due at the master's time, or if it is the ``last``."""
         master = self._master
         signals = master.signals
-        if self._watched:
-            self._times.append(master.time)
-            for name, place in self._watched_places.items():
-                self._watched[name].append(signals[place])
+        self._watch(master.time, [signals[place] for place in self._watched_places])
         if master.steps % self.every and not last:
             return
         row: list[Any] = [signals[i] for i in self._places]
@@ -102,6 +103,22 @@ class Recorder:
             row[column] = storable(row[column])
         self._writer.writerow([master.time, *row])
         self._write()
+
+    def take(self) -> None:
+        """Record the points that the last block of steps left in ``rows``."""
+        assert self.rows is not None
+        master, count = self._master, len(self._watched)
+        first, table = self.rows.taken()
+        for row_number, values in enumerate(table.tolist()):
+            steps = first + row_number * self.rows.every
+            time = (master.start_ns + steps * master.step_ns) / NS
+            self._watch(time, values[:count])
+            if steps % self.every == 0:
+                row = values[count:]
+                for column in self._whole_numbers:
+                    row[column] = int(row[column])
+                self._writer.writerow([time, *row])
+                self._write()
 
     def watched(self) -> tuple[NDArray[np.float64], dict[str, NDArray[np.float64] | list[str]]]:
         """Return time and watched signals, texts as lists, at every communication step so far."""
@@ -117,6 +134,21 @@ class Recorder:
             self._file.close()
         except OSError as error:
             raise self._named(error) from None
+
+    def _block(self) -> Rows | None:
+        signals, places = self._master.signals, [*self._watched_places, *self._places]
+        if any(isinstance(signals[place], (str, bytes)) for place in places):
+            return None
+        self._whole_numbers = [
+            column for column, i in enumerate(self._places) if isinstance(signals[i], int)
+        ]
+        return Rows(places, 1 if self._watched else self.every)
+
+    def _watch(self, time: float, values: Sequence[Any]) -> None:
+        if self._watched:
+            self._times.append(time)
+            for column, value in zip(self._watched.values(), values, strict=True):
+                column.append(value)
 
     def _write(self) -> None:
         """Write the row that was made, or nothing."""

@@ -9,13 +9,17 @@ because nothing here depends on the wall clock.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..component import NS
 from ..errors import DiscardError, FatalError, SimulationError
 from .algorithms import Algorithm
 from .feedthrough import Feedthrough
 from .network import Network
+
+if TYPE_CHECKING:
+    from .compiled.rows import Rows
+    from .compiled.steps import CompiledSteps
 
 _STEPS_BETWEEN = 250
 _HALVINGS = 6
@@ -48,18 +52,28 @@ class Rollback:
 
     def advance(self, steps: int, t_ns: int, h_ns: int) -> None:
         """Advance by one communication step. Raises SimulationError."""
-        if not self._obstacle and (
-            self._checkpoint is None or steps - self._checkpoint.steps >= _STEPS_BETWEEN
-        ):
-            self._save(steps)
+        self._save_if_due(steps)
         try:
             self.algorithm.advance(steps, t_ns, h_ns)
             return
         except DiscardError as refused:
             error = refused  # left here: what follows must not be reported as caused by it
-        if self._checkpoint is None:
-            raise SimulationError(f"{error}\n(not tried in smaller steps: {self._obstacle})")
-        self._repeat(steps, t_ns, h_ns, error)
+        self._try_again(steps, t_ns, h_ns, error)
+
+    def advance_block(
+        self, compiled: CompiledSteps, steps: int, t_ns: int, count: int, rows: Rows | None
+    ) -> int:
+        """Advance by up to ``count`` compiled steps; return by how many. Raises SimulationError."""
+        self._save_if_due(steps)
+        h_ns = compiled.step_ns
+        if self._checkpoint is not None:
+            count = min(count, self._checkpoint.steps + _STEPS_BETWEEN - steps)
+        try:
+            return compiled.take(steps, t_ns, count, rows)
+        except DiscardError as refused:
+            error = refused
+        self._try_again(steps + compiled.taken, t_ns + compiled.taken * h_ns, h_ns, error)
+        return compiled.taken + 1
 
     def forget(self) -> None:
         """Say that something was changed from outside: the steps before cannot be run again."""
@@ -99,6 +113,18 @@ class Rollback:
         self._free(checkpoint.states)
 
     # ------------------------------------------------------------------ inside
+
+    def _save_if_due(self, steps: int) -> None:
+        if not self._obstacle and (
+            self._checkpoint is None or steps - self._checkpoint.steps >= _STEPS_BETWEEN
+        ):
+            self._save(steps)
+
+    def _try_again(self, steps: int, t_ns: int, h_ns: int, error: DiscardError) -> None:
+        """Repeat a discarded step in smaller ones, if there is a state to begin from."""
+        if self._checkpoint is None:
+            raise SimulationError(f"{error}\n(not tried in smaller steps: {self._obstacle})")
+        self._repeat(steps, t_ns, h_ns, error)
 
     def _repeat(self, steps: int, t_ns: int, h_ns: int, error: DiscardError) -> None:
         """Return to the beginning of a discarded step, and take it in parts."""

@@ -37,6 +37,21 @@ class StepTimes:
             self.longest_ns = elapsed_ns
             self.longest_at_ns = at_ns
 
+    def merge(
+        self,
+        count: int,
+        total_ns: int,
+        longest_ns: int,
+        longest_at_ns: int,
+        bins: Sequence[int],
+    ) -> None:
+        """Add durations that were counted elsewhere, later than these."""
+        if longest_ns > self.longest_ns or self.longest_at_ns is None:
+            self.longest_ns, self.longest_at_ns = longest_ns, longest_at_ns
+        self.count += count
+        self.total_ns += total_ns
+        self.bins = [own + more for own, more in zip(self.bins, bins, strict=True)]
+
     def as_json(self) -> dict[str, Any]:
         """Return what ``timing.json`` says, times in s; empty bins beyond the last are left out.
 

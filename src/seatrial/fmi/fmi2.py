@@ -56,7 +56,9 @@ class Fmi2Slave(Fmi2Access):
         super().__init__(fmu, name)
         self._do_step = self._functions["DoStep"]
         self.restarts = True
-        self._never_back = int(not self.rolls_back)
+        self.never_back = int(not self.rolls_back)
+        self.is_native = not fmu.simulation.needsExecutionTool
+        """Whether it is C that may be called from C: others may need Python's interpreter."""
         tool = fmu.description.generationTool or ""
         self._is_pythonfmu = tool.startswith(("seatrial", "PythonFMU"))
 
@@ -73,11 +75,29 @@ class Fmi2Slave(Fmi2Access):
         """Advance from ``t`` to ``t + h``, s, or to where the FMU asks to end the simulation."""
         if self.ended_at is not None:
             return
-        status = self._do_step(self._c, t, h, self._never_back)
+        status = self._do_step(self._c, t, h, self.never_back)
+        if status not in ACCEPTED or self._messages:
+            self.stepped(t, h, status)
+
+    def stepped(self, t: float, h: float, status: int) -> None:
+        """Take what a step returned. Raises SimulationError."""
         if status not in ACCEPTED and not (status == DISCARD and self._ends(t)):
             self._refuse(f"DoStep(t = {t!r} s, h = {h!r} s)", status)
-        if self._messages:
-            self._messages.forward()
+        self._messages.forward()
+
+    def forward(self) -> None:
+        """Log what the FMU has said since."""
+        self._messages.forward()
+
+    def address(self, function: str) -> int:
+        """Return where a function of the library is, 0 if it has none of that name."""
+        found = self._functions[function]
+        return 0 if isinstance(found, Missing) else ctypes.cast(found, ctypes.c_void_p).value or 0
+
+    @property
+    def component(self) -> int:
+        """What its functions take first, as C has it."""
+        return int(self._c if isinstance(self._c, int) else self._c.value)
 
     def _ends(self, t: float) -> bool:
         """Say if a discarded step is the FMU's end, which it may have in the midst of a step.

@@ -19,6 +19,9 @@ ACCEPTED = (OK, WARNING)
 _WORDS = ("ok", "warning", "discard", "error", "fatal", "pending")
 _MOST_KEPT = 50
 
+said = ctypes.c_int32()
+"""Set by every message that is kept: what calls FMUs from C sees there that one came."""
+
 
 def word(status: int) -> str:
     """Return FMI's name of a status, or the number of one that FMI does not have."""
@@ -41,6 +44,7 @@ class Messages:
 
     def keep(self, status: int, message: bytes | None) -> None:
         """Keep a message with its fmi2Status or fmi3Status; only count them after many."""
+        said.value = 1
         if len(self._kept) < _MOST_KEPT:
             self._kept.append((status, (message or b"").decode("utf-8", "replace")))
         else:

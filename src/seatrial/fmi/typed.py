@@ -32,6 +32,12 @@ class TypedAccess(FmuInstance):
         """Return an array as what FMPy's functions take."""
         return values
 
+    def answered(self, function: str, status: int) -> None:
+        """Take what a get or a set returned. Raises SimulationError."""
+        if status not in ACCEPTED:
+            self._refuse(function, status)
+        self._refuse_logged_errors(function)
+
     def _getter(self, variables: list[Variable], kind: Any) -> Reader:
         count = len(variables)
         vr = (ctypes.c_uint * count)(*(v.reference for v in variables))
@@ -42,10 +48,8 @@ class TypedAccess(FmuInstance):
 
         def read() -> list[Any]:
             status = get(c, vr, count, argument)
-            if status not in ACCEPTED:
-                self._refuse(function, status)
-            if messages:
-                self._refuse_logged_errors(function)
+            if status not in ACCEPTED or messages:
+                self.answered(function, status)
             if kind is float or kind is int:
                 plain: list[Any] = values[:]
                 return plain
@@ -67,9 +71,7 @@ class TypedAccess(FmuInstance):
             self._refuse_unfit(variables, kind, values)
             own[:] = [v.encode() for v in values] if kind is str else values
             status = put(c, vr, count, argument)
-            if status not in ACCEPTED:
-                self._refuse(function, status)
-            if messages:
-                self._refuse_logged_errors(function)
+            if status not in ACCEPTED or messages:
+                self.answered(function, status)
 
         return write

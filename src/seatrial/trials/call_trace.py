@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import ctypes
 import mmap
 from collections.abc import Callable, Sequence
 from typing import Any, cast
 
+from ..cosim.compiled.marks import Marks
 from ..fmi.instance import Instance, Reader, Writer
 
 _CALLS = {
@@ -54,6 +56,11 @@ class CallTrace:
         if not 0 <= number < len(names):
             return "", ""
         return names[number], f"{_WORDS[kind]} at t = {self._times[_TIME]!r} s"
+
+    @property
+    def address(self) -> int:
+        """Where the cells are."""
+        return ctypes.addressof(ctypes.c_int64.from_buffer(self.cells))
 
     def traced(self, instance: Instance, number: int) -> Instance:
         """Return ``instance``, component ``number``, with its calls noted before they are made."""
@@ -113,6 +120,12 @@ class _Traced:
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._instance, name)
+
+    @property
+    def marks(self) -> Marks:
+        """What is noted of its calls in C."""
+        codes = {call: self._number * len(_WORDS) + _KINDS[call] + 1 for call in Marks.CALLS}
+        return Marks(self._trace.address, codes)
 
     @property
     def ended_at(self) -> float | None:

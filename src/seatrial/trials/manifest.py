@@ -11,6 +11,7 @@ from typing import Any
 
 from .. import __version__
 from ..component import seconds
+from ..cosim.compiled.choice import is_compiled
 from ..cosim.files import Source
 from ..cosim.part import Part
 from ..cosim.system import Engine, System
@@ -32,6 +33,7 @@ def manifest(trial: Trial, system: System, engine: Engine) -> dict[str, Any]:
         "rig": {**_file(trial.rig.read_from), "title": trial.rig.file.title},
         **_composition(trial, system),
         "engine": engine,
+        "master": "compiled" if is_compiled(system) else "python",
         "algorithm": trial.rig.file.algorithm,
         "variant": system.variant,
         "seed": system.seed,

@@ -168,17 +168,32 @@ class Run:
                 break
             if stopping:
                 return "stopped"
+            before = master.steps
             if pace is None:
-                master.step()
+                self._advance(steps - before)
             else:
                 pace.step(stop_requested)
-            if pace is not None or master.steps % _LOOKED_EVERY == 0:
+            if pace is not None or master.steps // _LOOKED_EVERY > before // _LOOKED_EVERY:
                 self._show_progress()
         self._hooks.progress(self._whole_s, self._whole_s)
         master.terminate()
         if decided is not None:
             return decided
         return ended_by(enders) if enders and not over else "complete"
+
+    def _advance(self, most: int) -> None:
+        """Step up to the next point at which something else than recording is done."""
+        master, rows = self._master, self._recorder.rows
+        if self._events:
+            ahead_ns = self._events[0].at_ns - master.time_ns
+            most = min(most, -(-ahead_ns // master.step_ns))
+        if rows is None or self._termination.has_any:
+            master.step()
+            return
+        try:
+            master.advance(most, rows)
+        finally:
+            self._recorder.take()
 
     @property
     def _whole_s(self) -> float:

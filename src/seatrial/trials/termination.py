@@ -43,9 +43,14 @@ class TerminationConditions:
             if wanted != {"text"}
         }
 
+    @property
+    def has_any(self) -> bool:
+        """Whether there are such criteria."""
+        return bool(self._conditions or self._goals)
+
     def status(self) -> str | None:
         """Return the status of a run that is over now, ended or complete; else None."""
-        if not self._conditions and not self._goals:
+        if not self.has_any:
             return None
         signals = self._master.signals
         numbers: dict[str, FloatArray] = {

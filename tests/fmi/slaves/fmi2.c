@@ -8,7 +8,7 @@
 
 enum { K, INTERNAL_STEP, GAIN, LARGEST_STEP, U, Q1, Q2, X, Y, P1, P2, SPEED, ECHO, TROUBLE_TIME, REALS };
 enum { TROUBLE, I, J, MODE_IN, MODE, NEVER_BACK, INTEGERS };
-enum { FINE, NOT_A_NUMBER, DISCARD, ERROR, FATAL, WARN, BAD_START, NEGATIVE, BEYOND };
+enum { FINE, NOT_A_NUMBER, DISCARD, ERROR, FATAL, WARN, BAD_START, NEGATIVE, BEYOND, END };
 
 typedef struct {
     fmi2CallbackFunctions calls;
@@ -108,6 +108,7 @@ static fmi2Status trouble(Slave *s) {
     case FATAL: free(s); return fmi2Fatal;
     case NEGATIVE: return (fmi2Status)-1;
     case BEYOND: return (fmi2Status)6;
+    case END: return fmi2Discard;
     case WARN: return say(s, fmi2Warning, "reefing");
     }
     return fmi2OK;
@@ -146,6 +147,15 @@ fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *s) {
     return fmi2OK;
 }
 
+fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Boolean *ends) {
+    *ends = fmi2True;
+    return ((Slave *)c)->integer[TROUBLE] == END ? fmi2OK : fmi2Error;
+}
+fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Real *time) {
+    *time = ((Slave *)c)->time;
+    return ((Slave *)c)->integer[TROUBLE] == END ? fmi2OK : fmi2Error;
+}
+
 #define UNUSED(function) fmi2Status function() { return fmi2Error; }
 UNUSED(fmi2SerializedFMUstateSize)
 UNUSED(fmi2SerializeFMUstate)
@@ -155,7 +165,5 @@ UNUSED(fmi2SetRealInputDerivatives)
 UNUSED(fmi2GetRealOutputDerivatives)
 UNUSED(fmi2CancelStep)
 UNUSED(fmi2GetStatus)
-UNUSED(fmi2GetRealStatus)
 UNUSED(fmi2GetIntegerStatus)
-UNUSED(fmi2GetBooleanStatus)
 UNUSED(fmi2GetStringStatus)

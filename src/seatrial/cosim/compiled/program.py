@@ -1,0 +1,296 @@
+"""The program of a communication step: operations for `master.c`, and calls for Python.
+
+An operation acts where (steps + phase) is a multiple of ``every``: a component with a longer step
+of its own is written and stepped at the beginning of it (phase 0) and read at its end (phase 1).
+Values stand where `Network.signals` has them. What C cannot do, of components in Python, of texts
+and bytes, and of connections with tables, is a call: C returns, Python does it as ever.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, cast
+
+from ..algorithms import (
+    Algorithm,
+    Extrapolated,
+    GaussSeidel,
+    PastInputs,
+    ahead,
+)
+from ..feedthrough import Feedthrough, Group
+from ..network import Chunk, Network, Node, Writes
+from .marks import Marks
+from .structures import (
+    ARRIVE,
+    BOOLEAN,
+    CALL,
+    GET,
+    INTEGER,
+    LOOP,
+    REAL,
+    STEP,
+    STORE,
+    WRITE,
+    Operation,
+    Times,
+)
+
+if TYPE_CHECKING:
+    from ...fmi.fmi2 import Fmi2Slave
+
+_TYPES: dict[type, tuple[int, str, Any]] = {
+    float: (REAL, "Real", ctypes.c_double),
+    int: (INTEGER, "Integer", ctypes.c_int),
+    bool: (BOOLEAN, "Boolean", ctypes.c_int),
+}
+
+
+class Program:
+    """The operations of a communication step of ``step_ns``, by one of `choice.ALGORITHMS`."""
+
+    def __init__(
+        self, network: Network, feedthrough: Feedthrough, algorithm: Algorithm, step_ns: int
+    ) -> None:
+        self.operations: list[Operation] = []
+        self.calls: list[list[Callable[[int, int], None]]] = []
+        """Of each operation CALL: what Python does, by the steps taken and its time, ns."""
+        self.asked: dict[int, tuple[Fmi2Slave, str]] = {}
+        """By operation: which FMU is called, and the function."""
+        self.chunks: dict[int, Chunk] = {}
+        """By operation STORE."""
+        self.loops: dict[int, Group] = {}
+        self.past: dict[int, PastInputs] = {}
+        """By operation WRITE that extrapolates."""
+        self.times: dict[str, Times] = {}
+        """Of each component that C steps."""
+        self.fetched: dict[int, list[int]] = {}
+        """Of each operation CALL: the places that Python must have before."""
+        self.left: dict[int, list[Chunk]] = {}
+        """Of each operation CALL: what Python has read, for C."""
+        self.kept: list[Any] = []
+        """Arrays that operations point to."""
+        self._network, self._feedthrough, self._step_ns = network, feedthrough, step_ns
+        nodes = list(network.nodes.values())
+        if isinstance(algorithm, GaussSeidel):
+            self._in_turn([network.nodes[name] for name in algorithm.order])
+        else:
+            past = algorithm.past if isinstance(algorithm, Extrapolated) else None
+            self._together(nodes, past)
+        for group in feedthrough.groups:
+            self._visit(group)
+
+    # ------------------------------------------------------------------ algorithms
+
+    def _together(self, nodes: Sequence[Node], past: list[list[PastInputs]] | None) -> None:
+        """Jacobi: inputs change nobody's outputs before all have stepped."""
+        for i, node in enumerate(nodes):
+            if past is not None:
+                for one in past[i]:
+                    self._write(node, one.writes, 0, one)
+            elif not node.written_by_visit:
+                self._write_all(node, 0)
+        for node in nodes:
+            self._step(node, 0, 0)
+        self._add(Operation(kind=ARRIVE, every=1))
+        for node in nodes:
+            self._read(node, node.reads)
+
+    def _in_turn(self, nodes: Sequence[Node]) -> None:
+        """Gauss-Seidel: what a longer step ends with is known when it ends."""
+        self._add(Operation(kind=ARRIVE, every=1))
+        for node in nodes:
+            self._write_all(node, 1)
+            self._step(node, 1, self._step_ns * (1 - node.every))
+            self._read(node, node.chunks)
+
+    def _visit(self, group: Group) -> None:
+        if not group.is_loop:
+            for visit in group.visits:
+                self._write_all(visit.node, 1)
+                self._read(visit.node, visit.chunks)
+            return
+        if not all(
+            all(self._setting(visit.node, writes) for writes in visit.node.writes)
+            and all(self._getting(visit.node, chunk) for chunk in visit.chunks)
+            for visit in group.visits
+        ):
+            chunks = [chunk for visit in group.visits for chunk in visit.chunks]
+            places = [
+                place for v in group.visits for one in v.node.writes for place in one.places
+            ] + [self._network.places[name] for name in group.outputs]
+            self._call(lambda steps, _t: self._feedthrough.solve(group, steps + 1), places, chunks)
+            return
+        places = [self._network.places[name] for name in group.outputs]
+        reals = [isinstance(self._network.signals[place], float) for place in places]
+        loop = Operation(kind=LOOP, every=1, count=len(places))
+        loop.places = self._array(ctypes.c_int64, places)
+        loop.reals = self._array(ctypes.c_uint8, reals)
+        loop.numbers = self._array(ctypes.c_double, [0.0] * (2 * len(places)))
+        self._add(loop)
+        self.loops[len(self.operations) - 1] = group
+        begun = len(self.operations)
+        for visit in group.visits:
+            self._write_all(visit.node, 1)
+            self._read(visit.node, visit.chunks)
+        loop.length = len(self.operations) - begun
+
+    # ------------------------------------------------------------------ operations
+
+    def _write_all(self, node: Node, phase: int) -> None:
+        for writes in node.writes:
+            self._write(node, writes, phase)
+
+    def _write(
+        self, node: Node, writes: Writes, phase: int, past: PastInputs | None = None
+    ) -> None:
+        slave = self._setting(node, writes)
+        if slave is None:
+            self._call(self._written(node, writes, phase, past), writes.places)
+            return
+        variables = [node.part.instance.variables[one.target[1]] for one in writes.connections]
+        kind, name, of_fmu = _TYPES[variables[0].type]
+        count = len(variables)
+        operation = Operation(kind=WRITE, type=kind, every=node.every, phase=phase, count=count)
+        operation.places = self._array(ctypes.c_int64, writes.places)
+        operation.numbers = self._array(ctypes.c_double, [0.0] * count)
+        operation.values = ctypes.cast(
+            operation.numbers if kind == REAL and not past else self._array(of_fmu, [0] * count),
+            ctypes.c_void_p,
+        )
+        operation.scaled = len(writes.scales)
+        operation.which = self._array(ctypes.c_int64, [i for i, _, _ in writes.scales])
+        operation.factors = self._array(ctypes.c_double, [f for _, f, _ in writes.scales])
+        operation.offsets = self._array(ctypes.c_double, [o for _, _, o in writes.scales])
+        if past and kind == REAL:
+            operation.continuous = len(writes.continuous)
+            operation.moving = self._array(ctypes.c_int64, writes.continuous)
+            operation.previous = self._array(ctypes.c_double, [0.0] * count)
+            self.past[len(self.operations)] = past
+        self._ask(operation, node, slave, f"Set{name}", variables)
+
+    def _read(self, node: Node, chunks: Sequence[Chunk]) -> None:
+        for chunk in chunks:
+            slave = self._getting(node, chunk)
+            if slave is None:
+                self._call(self._as_read(node, chunk), [], [chunk])
+                continue
+            names = [name for _, name in self._network.names[chunk.start : chunk.stop]]
+            variables = [node.part.instance.variables[name] for name in names]
+            number, name, of_fmu = _TYPES[variables[0].type]
+            values = ctypes.cast(self._array(of_fmu, [0] * len(names)), ctypes.c_void_p)
+            common = {"type": number, "every": node.every, "phase": 1, "count": len(names)}
+            get = Operation(kind=GET, values=values, **common)
+            self._ask(get, node, slave, f"Get{name}", variables)
+            store = Operation(kind=STORE, values=values, start=chunk.start, **common)
+            store.limited = len(chunk.limits)
+            store.bounded = self._array(ctypes.c_int64, [i for i, _ in chunk.limits])
+            store.limits = self._array(ctypes.c_double, [limit for _, limit in chunk.limits])
+            self.chunks[len(self.operations)] = chunk
+            self._add(store)
+
+    def _step(self, node: Node, phase: int, start: int) -> None:
+        slave, length = slave_of(node, "DoStep"), node.every * self._step_ns
+        if slave is None:
+
+            def step(steps: int, t_ns: int) -> None:
+                if (steps + phase) % node.every == 0:
+                    self._network.step(node, t_ns + start, length)
+
+            self._call(step, [])
+            return
+        times = self.times[node.part.name] = Times(longest_at_ns=-1)
+        operation = Operation(kind=STEP, every=node.every, phase=phase, start=start, length=length)
+        operation.never_back = slave.never_back
+        operation.times = ctypes.pointer(times)
+        self._ask(operation, node, slave, "DoStep", [])
+
+    def _ask(
+        self,
+        operation: Operation,
+        node: Node,
+        slave: Fmi2Slave,
+        function: str,
+        variables: list[Any],
+    ) -> None:
+        """Add an operation that calls a function of an FMU."""
+        operation.function, operation.component = slave.address(function), slave.component
+        operation.references = self._array(ctypes.c_uint32, [v.reference for v in variables])
+        marks = getattr(node.part.instance, "marks", None)
+        if marks is not None:
+            operation.mark = marks.codes[Marks.CALLS[operation.kind]]
+        self.asked[len(self.operations)] = slave, function
+        self._add(operation)
+
+    def _add(self, operation: Operation) -> None:
+        self.operations.append(operation)
+
+    # ------------------------------------------------------------------ calls
+
+    def _call(
+        self,
+        call: Callable[[int, int], None],
+        fetched: Sequence[int],
+        left: Sequence[Chunk] = (),
+    ) -> None:
+        """Add a call; those that follow each other are one operation."""
+        if not (self.operations and self.operations[-1].kind == CALL):
+            self._add(Operation(kind=CALL, every=1, start=len(self.calls)))
+            self.calls.append([])
+        at = len(self.operations) - 1
+        self.calls[-1].append(call)
+        self.fetched.setdefault(at, []).extend(fetched)
+        self.left.setdefault(at, []).extend(left)
+
+    def _written(
+        self, node: Node, writes: Writes, phase: int, past: PastInputs | None
+    ) -> Callable[[int, int], None]:
+        signals = self._network.signals
+
+        def write(steps: int, _t_ns: int) -> None:
+            if (steps + phase) % node.every:
+                return
+            values = writes.values(signals)
+            if past is None:
+                writes.write(values)
+            else:
+                writes.write(ahead(values, past.previous, writes.continuous))
+                past.previous = values
+
+        return write
+
+    def _as_read(self, node: Node, chunk: Chunk) -> Callable[[int, int], None]:
+        def read(steps: int, _t_ns: int) -> None:
+            if (steps + 1) % node.every == 0:
+                self._network.read([chunk])
+
+        return read
+
+    # ------------------------------------------------------------------ arrays
+
+    def _array(self, kind: Any, values: Sequence[Any]) -> Any:
+        array = (kind * max(1, len(values)))(*values)
+        self.kept.append(array)
+        return array
+
+    def _setting(self, node: Node, writes: Writes) -> Fmi2Slave | None:
+        """Return the FMU whose inputs C can write: numbers, without tables; else None."""
+        kind = node.part.instance.variables[writes.connections[0].target[1]].type
+        if kind not in _TYPES or writes.mappings or (writes.scales and kind is not float):
+            return None
+        return slave_of(node, f"Set{_TYPES[kind][1]}")
+
+    def _getting(self, node: Node, chunk: Chunk) -> Fmi2Slave | None:
+        """Return the FMU whose outputs C can read: numbers; else None."""
+        kind = node.part.instance.variables[self._network.names[chunk.start][1]].type
+        return slave_of(node, f"Get{_TYPES[kind][1]}") if kind in _TYPES else None
+
+
+def slave_of(node: Node, function: str) -> Fmi2Slave | None:
+    """Return the FMU of a component, if it has a function that C may call; else None."""
+    instance = node.part.instance
+    if not getattr(instance, "is_native", False):
+        return None
+    slave = cast("Fmi2Slave", instance)
+    return slave if slave.address(function) else None
