@@ -478,10 +478,17 @@ def test_zeros_keep_their_places() -> None:
 
 METHODS = ["RK23", "RK45", "DOP853", "Radau", "BDF"]
 # Measured errors of each at the tolerances below, times about five.
-TOLERANCE = {"RK23": 3e-7, "RK45": 3e-8, "DOP853": 1e-9, "Radau": 2e-10, "BDF": 1e-6}
+TOLERANCE = {
+    "RK23": 3e-7,
+    "RK45": 3e-8,
+    "DOP853": 1e-9,
+    "Radau": 2e-10,
+    "BDF": 1e-6,
+    "CVODES": 1e-6,
+}
 
 
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("method", [*METHODS, "CVODES"])
 def test_reference_follows_the_closed_form(method: str) -> None:
     t = np.linspace(0.0, 4.0, 17)
     got = Logistic("plant").reference(t, method=method, rtol=1e-8, atol=1e-10)
@@ -596,6 +603,26 @@ def test_reference_agrees_with_scipys_solve_ivp() -> None:
     expected = integrate.solve_ivp(slope, (0, 10), [2.5, 0.0], "Radau", t, rtol=1e-11, atol=1e-13)
     got = plant.reference(t, lambda t, x: {"torque": 3.0 * math.sin(2 * t)}, rtol=1e-12)
     np.testing.assert_allclose(got.x, expected.y.T, rtol=0, atol=2e-9)
+
+
+def test_sundials_takes_inputs_as_expressions_with_jumps_between_pieces() -> None:
+    def push(t, x):
+        return {"a": ca.if_else(t < 0.5, 7.0, -11.0)}
+
+    t = [0.0, 0.25, 0.5, 1.0]
+    got = Cart("plant").reference(t, push, [0.5], method="CVODES", rtol=1e-10, atol=1e-12)
+    np.testing.assert_allclose(got["v"], [0.0, 1.75, 3.5, -2.0], rtol=0, atol=1e-9)
+    plant = Pendulum("plant")
+    plant.set("theta_start", 2.5)
+    exact = plant.reference(np.linspace(0, 10, 21), lambda t, x: {"torque": 3.0 * np.sin(2 * t)})
+    got = plant.reference(
+        np.linspace(0, 10, 21), lambda t, x: {"torque": 3.0 * ca.sin(2 * t)}, method="CVODES"
+    )
+    np.testing.assert_allclose(got.x, exact.x, rtol=0, atol=1e-6)
+    with pytest.raises(InputError, match="inputs that are expressions of CasADi"):
+        plant.reference([0, 1], lambda t, x: {"torque": 1.0 if t < 1 else 2.0}, method="CVODES")
+    with pytest.raises(InputError, match="unknown input 'lift'"):
+        plant.reference([0.0, 1.0], lambda t, x: {"lift": 1.0}, method="CVODES")
 
 
 def test_reference_leaves_the_running_plant_alone() -> None:
