@@ -84,7 +84,9 @@ class Plant(Component):
 
     max_step = Parameter(0.01, "s", "longest integration sub-step", min=1e-6)
 
-    transient = Component.transient | {"_buffers", "_u", "_p", "_h", "_x1", "_y"}
+    transient = Component.transient | {"_buffers", "_u", "_p", "_h", "_x1", "_y", "machine"}
+    machine: Callable[[ca.Function], ca.Function] = staticmethod(lambda function: function)
+    """What makes others, with the same numbers, of the functions of a step."""
 
     state_ports: ClassVar[tuple[Port, ...]] = ()
     input_ports: ClassVar[tuple[Port, ...]] = ()
@@ -344,8 +346,8 @@ class Plant(Component):
         self._h, self._x1 = np.zeros(1), np.zeros(len(model.x_names))
         self._y = np.zeros(len(model.y_names))
         self._buffers = {
-            "rk4": bind(model.rk4, [self._x, self._u, self._p, self._h], self._x1),
-            "out": bind(model.out, [self._x, self._u, self._p], self._y),
+            "rk4": bind(self.machine(model.rk4), [self._x, self._u, self._p, self._h], self._x1),
+            "out": bind(self.machine(model.out), [self._x, self._u, self._p], self._y),
         }
 
     def _load(self) -> None:

@@ -17,6 +17,7 @@ from seatrial.cosim.compiled.rows import Rows
 from seatrial.cosim.flattening import load_rig
 from seatrial.cosim.master import Master
 from seatrial.errors import SimulationError
+from seatrial.fmi import on_demand
 
 from ..fmi.native import build_native_fmu
 from . import bodies
@@ -278,7 +279,7 @@ def test_changes_from_outside_count_at_once_and_states_come_back(fmus: Path) -> 
 
 
 def test_without_a_compiler_python_steps(fmus: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(library, "_compilers", list)
+    monkeypatch.setattr(on_demand, "_compilers", list)
     monkeypatch.setenv("SEATRIAL_CACHE", str(fmus / "empty"))
     library.library.cache_clear()
     try:

@@ -272,7 +272,8 @@ def _scheduled(
 ) -> list[tuple[list[Name], bool]]:
     """Join groups of one component that can be read together, keeping the dependency order.
 
-    True marks a group that is a loop.
+    True marks a group that is a loop. A component whose outputs are not ready all waits, if another
+    is: it computes them all at once.
     """
     index = {name: i for i, group in enumerate(groups) for name in group}
     needs = [
@@ -282,12 +283,18 @@ def _scheduled(
     waiting = {
         i: unrolled(g, depends) if loops_on_itself(g, depends) else g for i, g in enumerate(groups)
     }
+    owner = [group[0][0] for group in groups]
     scheduled: list[tuple[list[Name], bool]] = []
     while waiting:
-        ready = [i for i in waiting if needs[i].isdisjoint(waiting)]
-        first = waiting[ready[0]]
+        ready = {i: None for i in waiting if needs[i].isdisjoint(waiting)}
+        late = {
+            owner[i]
+            for i in waiting
+            if any(k not in ready or owner[k] != owner[i] for k in needs[i] & waiting.keys())
+        }
+        chosen = next((i for i in ready if owner[i] not in late), next(iter(ready)))
+        first, taken = waiting[chosen], [chosen]
         is_loop = loops_on_itself(first, depends)
-        taken = [ready[0]]
         if not is_loop:
             of_node = [i for i in ready if waiting[i][0][0] == first[0][0]]
             taken = [i for i in of_node if not loops_on_itself(waiting[i], depends)]

@@ -136,8 +136,8 @@ class SurroundedPlant(Plant):
         model, rk4 = self._surrounded_models[key]
         inputs = len(self._u)
         u = np.zeros((3, inputs + len(self._around)))
-        held, advance = bind(rk4, [self._x, *u, self._p, self._h], self._x1)
-        out, publish = bind(model.out, [self._x, u[0], self._p], self._y)
+        held, advance = bind(self.machine(rk4), [self._x, *u, self._p, self._h], self._x1)
+        out, publish = bind(self.machine(model.out), [self._x, u[0], self._p], self._y)
         self._bound = _Bound(u[:, :inputs], u[:, inputs:], advance, publish, (u, held, out))
 
     @classmethod

@@ -9,7 +9,9 @@ from typing import Any
 
 from ..component import Component
 from ..errors import DiscardError, InputError, SimulationError
+from ..plant import Plant
 from ..ports import Input, Parameter, ScalarPort
+from .compiled_functions import compiled_function
 from .instance import ByType, Reader, Value, Variable, Variables, Writer
 
 
@@ -25,6 +27,8 @@ class DirectInstance(ByType):
         self.restarts = True
         self.ended_at: float | None = None
         self.terminals, self.views = component.terminals, component.views
+        if isinstance(component, Plant):
+            component.machine = compiled_function
         self._publishes = any(port.kind == "output" for port in component.ports.values())
         self._stepped = False
         """The outputs of the last step have not been computed yet."""
