@@ -7,13 +7,13 @@ import platform
 import sys
 import sysconfig
 from collections.abc import Callable
-from pathlib import Path
 
 import typer
 from rich.markup import escape
 
 from ..errors import InputError
 from ..fmi.cache import cache_folder, is_safe
+from ..fmi.libpython import find_libpython
 from .answer import answer
 from .show import console
 
@@ -48,21 +48,6 @@ def preload_line() -> str:
     library = find_libpython()
     packages = sysconfig.get_path("purelib")
     return f"LD_PRELOAD={library or 'libpython3.x.so (not found)'} PYTHONPATH={packages}"
-
-
-def find_libpython() -> Path | None:
-    """Return the shared library of this interpreter, or of the system's equal version."""
-    name = f"libpython{sys.version_info.major}.{sys.version_info.minor}.so"
-    folders = [
-        Path(str(sysconfig.get_config_var("LIBDIR") or "")),
-        Path(sys.base_prefix) / "lib",
-        Path("/usr/lib") / str(sysconfig.get_config_var("MULTIARCH") or ""),
-    ]
-    for folder in folders:
-        for candidate in (folder / f"{name}.1.0", folder / name):
-            if candidate.is_file():
-                return candidate
-    return None
 
 
 def _python() -> tuple[bool, str]:

@@ -29,6 +29,7 @@ from ..fmi.native.compiler import TARGETS, checked_platforms
 from ..fmi.native.export import build_native_fmu
 from ..fmi.osp import osp_file, osp_xml
 from ..fmi.source import ComponentSource, find_source, named_sources, shipped_sources
+from ..fmi.standalone.export import build_standalone_fmu
 from .answer import answer
 from .options import Every, Match, Variant
 from .show import MOST_SHOWN, console, print_more, print_notes, print_table
@@ -68,6 +69,10 @@ def build(
     native: Annotated[
         bool, typer.Option("--native", help="Components in C, which need no Python where they run.")
     ] = False,
+    standalone: Annotated[
+        bool,
+        typer.Option("--standalone", help="With Python inside, for Linux on x86-64 without one."),
+    ] = False,
     platforms: Annotated[
         str | None,
         typer.Option(help=f"With --native, separated by commas: {', '.join(TARGETS)}."),
@@ -76,6 +81,8 @@ def build(
     """Build .fmu files that any FMI 2.0 tool loads."""
     if platforms and not native:
         raise InputError("--platforms is of --native: other FMUs carry all platforms they run on")
+    if native and standalone:
+        raise InputError("--native FMUs need no Python, --standalone ones carry it: name one")
     targets = checked_platforms(platforms or "linux64") if native else []
     for name in names or _default_names(native):
         source = _buildable(name)
@@ -83,6 +90,9 @@ def build(
         path = out / f"{source.name}.fmu"
         if native:
             build_native_fmu(source, path, targets, values)
+        elif standalone:
+            glibc = build_standalone_fmu(source, path, values)
+            print_notes([f"{path} runs on Linux on x86-64 with glibc {glibc} or newer"])
         else:
             build_fmu(source, path, values)
         answer.result.setdefault("files", []).append(str(path))

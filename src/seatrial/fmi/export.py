@@ -52,20 +52,35 @@ def cached_fmu(source: ComponentSource, code: str) -> Path:
 
 def fmu_bytes(source: ComponentSource, start_values: Mapping[str, Any] | None = None) -> bytes:
     """Return the content of the FMU file; see `build_fmu`."""
-    carried = bundled(source)
-    files = {f"resources/{name}": data for name, data in carried.files.items()}
+    binaries = {
+        f"binaries/{library.parent.name}/{source.stem}{library.suffix}": library.read_bytes()
+        for library in sorted(_BINARIES.rglob("*pythonfmu-export.*"))
+    }
+    return zipped(fmu_files(source, start_values, binaries))
+
+
+def pythonfmu_library(platform: str) -> Path:
+    """Return pythonfmu's library for one of FMI's platforms."""
+    return next((_BINARIES / platform).glob("*pythonfmu-export.*"))
+
+
+def fmu_files(
+    source: ComponentSource,
+    start_values: Mapping[str, Any] | None,
+    carried: Mapping[str, bytes],
+) -> dict[str, bytes]:
+    """Return the files of a component's FMU by path, with those ``carried`` besides its own."""
+    bundle = bundled(source)
+    files = {f"resources/{name}": data for name, data in bundle.files.items()}
     if start_values:
         text = json.dumps(dict(sorted(start_values.items())), indent=1)
         files[f"resources/{START_VALUES}"] = text.encode()
     instance = DirectInstance(source.component_class()(source.name))
     if instance.terminals:
         files[PLACE] = terminals_xml(instance.terminals, instance.variables)
-    identifier = source.stem
-    for binary in sorted(_BINARIES.rglob("*pythonfmu-export.*")):
-        folder = binary.parent.name
-        files[f"binaries/{folder}/{identifier}{binary.suffix}"] = binary.read_bytes()
-    description = _model_description(source, carried, files, start_values or {})
-    return zipped({"modelDescription.xml": description, **files})
+    files |= carried
+    description = _model_description(source, bundle, files, start_values or {})
+    return {"modelDescription.xml": description, **files}
 
 
 def _model_description(

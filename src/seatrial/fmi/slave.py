@@ -190,11 +190,15 @@ def _drop_interpreter_handle(resources: str | None) -> None:
     """Release the binary's handle of the interpreter now, because at unloading it does so twice.
 
     The second release writes to freed memory: a process can die of it after all work is done.
-    Where the binary itself started the interpreter it still needs the handle, to end it.
+    Where the binary itself started the interpreter it still needs the handle, to end it. That of a
+    standalone FMU, which its launcher loads, never does.
     """
-    if not resources or not sys.orig_argv or sys.platform != "linux":
+    if not resources or sys.platform != "linux":
         return
-    for path in (Path(resources).parent / "binaries" / "linux64").glob("*.so"):
+    launched = list(Path(resources, "python", "lib").glob("libpythonfmu-export.so"))
+    if not launched and not sys.orig_argv:
+        return
+    for path in launched or (Path(resources).parent / "binaries" / "linux64").glob("*.so"):
         library = ctypes.CDLL(str(path), mode=os.RTLD_NOLOAD | os.RTLD_LAZY)
         library.finalizePythonInterpreter()
         _ctypes.dlclose(library._handle)

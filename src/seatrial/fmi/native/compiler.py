@@ -57,7 +57,9 @@ def checked_platforms(text: str) -> list[str]:
     return names
 
 
-def library(sources: Mapping[str, bytes], platform: str) -> bytes:
+def library(
+    sources: Mapping[str, bytes], platform: str, libraries: Sequence[str] = ("-lm",)
+) -> bytes:
     """Return the shared library of C ``sources`` by file name, for a platform of `TARGETS`.
 
     The same sources give the same bytes. Raises InputError if there is no compiler, or it finds
@@ -67,19 +69,28 @@ def library(sources: Mapping[str, bytes], platform: str) -> bytes:
         raise InputError("native FMUs need a C compiler to build: pip install 'seatrial[native]'")
     target, suffix = TARGETS[platform]
     command = [sys.executable, "-m", "ziglang", "cc", "-target", target, "-fno-sanitize=undefined"]
-    return _built(sources, command, suffix, platform)
+    return _built(sources, command, suffix, platform, libraries)
 
 
-def library_here(sources: Mapping[str, bytes], platform: str) -> bytes:
-    """Return the same for this machine's ``platform``, by its own compiler if it has one."""
+def library_here(
+    sources: Mapping[str, bytes], platform: str, libraries: Sequence[str] = ("-lm",)
+) -> bytes:
+    """Return the same for this machine's ``platform``, by its own compiler if it has one.
+
+    ``libraries`` are options of the linker.
+    """
     compiler = shutil.which("cc")
     if compiler is None:
-        return library(sources, platform)
-    return _built(sources, [compiler], TARGETS[platform][1], platform)
+        return library(sources, platform, libraries)
+    return _built(sources, [compiler], TARGETS[platform][1], platform, libraries)
 
 
 def _built(
-    sources: Mapping[str, bytes], compiler: Sequence[str], suffix: str, platform: str
+    sources: Mapping[str, bytes],
+    compiler: Sequence[str],
+    suffix: str,
+    platform: str,
+    libraries: Sequence[str],
 ) -> bytes:
     files = [name for name in sorted(sources) if name.endswith(".c")]
     with tempfile.TemporaryDirectory() as folder:
@@ -87,7 +98,7 @@ def _built(
             Path(folder, name).write_bytes(content)
         own = f"model{suffix}"
         command = [*compiler, *FLAGS, "-s", "-I.", *files, "-o", own]
-        command += [] if platform == "win64" else ["-lm"]
+        command += [] if platform == "win64" else libraries
         kept = {"ZIG_GLOBAL_CACHE_DIR": str(cache_folder("zig")), "ZIG_LOCAL_CACHE_DIR": folder}
         run = subprocess.run(
             command, cwd=folder, env=os.environ | kept, capture_output=True, text=True
