@@ -61,6 +61,8 @@ class Right(NamedTuple):
 BY_RIGHT = (
     Right("wire, wires, wired, wiring", "*arduino*", "", "electrical, and Arduino's library Wire"),
     Right("pin, pins", "*arduino*", "", "of a board"),
+    Right("pin", "*gprs*", "", "of a SIM card"),
+    Right("pin", "docs/reference/link-keys.md", "SIM card", "of a SIM card"),
     Right("room", "src/seatrial/links/arduino/*", "", "free space of a buffer"),
     Right("wire", "*harness/firmware/*", r"\bWire\b", "Arduino's library"),
     Right("pin, pins", "*harness/firmware/*", "", "of a board"),

@@ -1,4 +1,4 @@
-"""What a camera has seen, kept as places, and headings that stay clear of them."""
+"""Places of what a camera has seen, and headings that stay clear of them."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 OBSTACLE = 2
 """Kind of a detection that is avoided."""
-_STICKS = math.radians(30.0)
+_PREFERENCE = math.radians(30.0)
 """By how much the other side has to be better, once a side is chosen."""
 _WEIGHT = 0.4
 """Of a new sighting in the place of what was seen before."""
@@ -91,7 +91,7 @@ def clear_heading(
             if not free or _off(edge, eye) < closest:
                 continue
             turned = math.remainder(edge - wanted, math.tau)
-            cost = abs(turned) + (_STICKS if turned * side < 0.0 else 0.0)
+            cost = abs(turned) + (_PREFERENCE if turned * side < 0.0 else 0.0)
             if cost < least:
                 best, least = wanted + turned, cost
     return best

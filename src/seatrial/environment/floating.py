@@ -1,4 +1,4 @@
-"""What floats in a boat's way: buoys on their moorings, and obstacles that move."""
+"""Buoys on their moorings, and obstacles that move."""
 
 from __future__ import annotations
 

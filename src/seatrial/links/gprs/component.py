@@ -10,7 +10,7 @@ from .at_commands import Command, Line, read_line, result
 from .connection import Connection
 from .registration import ACTIVE, ERRORS, INITIAL, NO_SIM_PIN, Answer, RefusedError, Silent
 
-_ROOM = 2048
+_BUFFER = 2048
 """Characters that wait for it while it is busy; more are lost."""
 _KEPT_FOR_COMPATIBILITY = (
     *(
@@ -106,7 +106,7 @@ class GprsModem(Connection):
             self._receive_chunk(time_ns, data)
         text = b"".join(data for _, data in incoming).decode("latin-1")
         if self._awake:
-            self._waiting = (self._waiting + text)[:_ROOM]
+            self._waiting = (self._waiting + text)[:_BUFFER]
         self._work()
         self._use_air(end_ns)
         while self._agenda and self._agenda[0][0] <= end_ns:

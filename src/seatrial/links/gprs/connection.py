@@ -61,14 +61,14 @@ class Connection(Registration):
         return Silent([self.address])
 
     def _shut(self, command: Command) -> Answer:
-        self._close_connection(told=True)
+        self._close_connection(notify=True)
         self._ip_state = INITIAL
         return Silent(["SHUT OK"])
 
     def _deactivate(self) -> None:
         """Lose the context, after too long without a network."""
         if self._ip_state not in (INITIAL, STARTED):
-            self._close_connection(told=False)
+            self._close_connection(notify=False)
             self._ip_state = DEACTIVATED
             self._unsolicited("+PDP: DEACT")
 
@@ -114,10 +114,10 @@ class Connection(Registration):
         text = "CONNECT FAIL" if self._multiple else f"STATE: {CLOSED}\r\n\r\nCONNECT FAIL"
         self._unsolicited(self._prefix() + text)
 
-    def _close_connection(self, told: bool) -> None:
-        if told and self._ip_state == CONNECTED:
+    def _close_connection(self, notify: bool) -> None:
+        if notify and self._ip_state == CONNECTED:
             self._transmit(segments.Segment(segments.CLOSE, self._connection))
-        elif not told:
+        elif not notify:
             self._air = []
         if self._ip_state in (CONNECTED, CONNECTING):
             self._ip_state = CLOSED
@@ -130,7 +130,7 @@ class Connection(Registration):
             raise RefusedError(NOT_ALLOWED)
         if self._multiple and command.number(0) != self._index:
             raise RefusedError(NOT_ALLOWED)
-        self._close_connection(told=True)
+        self._close_connection(notify=True)
         return Silent([f"{self._prefix()}CLOSE OK"])
 
     def _status(self, command: Command) -> Answer:
@@ -209,7 +209,7 @@ class Connection(Registration):
 
     def _send_failed(self) -> None:
         self._busy = False
-        self._close_connection(told=False)
+        self._close_connection(notify=False)
         self._unsolicited(f"{self._prefix()}SEND FAIL")
         self._unsolicited(f"{self._prefix()}CLOSED")
 
@@ -234,7 +234,7 @@ class Connection(Registration):
         elif segment.kind == segments.ACKNOWLEDGE:
             self._acknowledge(int.from_bytes(segment.data[:4]))
         elif segment.kind == segments.CLOSE:
-            self._close_connection(told=False)
+            self._close_connection(notify=False)
             self._unsolicited(f"{self._prefix()}CLOSED")
         elif segment.kind == segments.DATA:
             self._arrived += len(segment.data)

@@ -212,7 +212,7 @@ class Registration(GprsPorts):
         if not command.number(0):
             self._forget("attach")
             self._attached = False
-            self._close_connection(told=True)
+            self._close_connection(notify=True)
             self._ip_state = INITIAL
             return []
         if self._attached:
@@ -242,6 +242,6 @@ class Registration(GprsPorts):
         "+CFUN": "_function_command",
     }
 
-    def _close_connection(self, told: bool) -> None:
-        """End the connection; ``told``: the base station is to know."""
+    def _close_connection(self, notify: bool) -> None:
+        """End the connection; ``notify`` the base station of it or not."""
         raise NotImplementedError

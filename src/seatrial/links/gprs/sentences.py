@@ -1,4 +1,4 @@
-"""What boat and base station say to each other: sentences of the form of NMEA 0183.
+"""Sentences between boat and base station, of the form of NMEA 0183.
 
     $PGLM,SERIES,NUMBER,TOTAL,NORTH,EAST,SIDE,RADIUS*hh      base station: a mark
     $PGLT,SERIES,HELD,PASSED,NORTH,EAST,HEADING,SPEED*hh     boat: where she is
