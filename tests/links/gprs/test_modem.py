@@ -128,6 +128,13 @@ def test_sent_after_latency_and_throughput(step):
     assert modem.modem.get("bytes_up") == size
 
 
+def test_a_line_feed_after_a_command_is_no_data():
+    modem = connected()
+    assert modem.send(b"AT+CIPSEND=3\r\n") == b"\r\n> "
+    assert lines(modem.send(b"a\r\n", 3)) == ["SEND OK"]
+    assert (modem.modem.get("bytes_up"), modem.base.get("bad")) == (3, 1)
+
+
 def test_data_until_control_z_and_taken_back_by_escape():
     modem = connected()
     assert modem.say("AT+CIPSEND") == b"\r\n> "

@@ -12,6 +12,7 @@ from .registration import ACTIVE, ERRORS, INITIAL, NO_SIM_PIN, Answer, RefusedEr
 
 _BUFFER = 2048
 """Characters that wait for it while it is busy; more are lost."""
+_LINE_FEED, _RETURN = 0x0A, 0x0D
 _KEPT_FOR_COMPATIBILITY = (
     *(
         "V",
@@ -189,12 +190,16 @@ class GprsModem(Connection):
         while place < len(text) and not self._busy:
             byte = ord(text[place])
             place += 1
+            ended, self._line_ended = self._line_ended, False
+            if ended and byte == _LINE_FEED:  # of the line before, not the first byte of data
+                continue
             if self._prompted != -1:
                 self._take_data(byte)
                 continue
             if self._echo:
                 self._say(bytes([byte]))
             whole = line.take(byte)
+            self._line_ended = byte == _RETURN
             if whole is not None:
                 self._obey(whole)
         self._waiting = text[place:] + self._waiting

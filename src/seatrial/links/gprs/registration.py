@@ -56,7 +56,7 @@ class Registration(GprsPorts):
         self._line: dict[str, Any] = {}
         self._waiting, self._said = "", ""
         self._rest: list[list[Any]] = []
-        self._busy = self._awake = self._unlocked = self._on_air = False
+        self._busy = self._awake = self._unlocked = self._on_air = self._line_ended = False
         self._echo, self._verbose_errors, self._creg, self._radio = True, 0, 0, True
         self._attached = self._wants_attach = self._registered = False
         self._covered_since = self._lost_since = -1
