@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from fmpy.validation import validate_fmu
 
+import seatrial
 from seatrial.component import Component, Input, Output, Parameter
 from seatrial.errors import InputError, SimulationError
 from seatrial.faults.text import FAILURES, fault_text
@@ -226,6 +227,26 @@ def test_what_has_no_c_is_named_with_its_line(tmp_path: Path) -> None:
     ):
         built(f"{__file__}:Opener", tmp_path)
     assert list(tmp_path.iterdir()) == []
+
+
+def _values(rig: str, engine: str, steps: int, **settings: Any) -> list[list[float]]:
+    with seatrial.Simulation(rig, engine=engine, **settings) as simulation:
+        rows = []
+        for _ in range(steps):
+            simulation.step()
+            rows.append([float(simulation.get(name)) for name in simulation.signals])
+        return rows
+
+
+@pytest.mark.interop
+@pytest.mark.parametrize("rig", ["landing", "thruster-ship", "mariner-pd"])
+def test_a_rig_runs_in_c_where_it_can(rig: str) -> None:
+    assert _values(rig, "native", 500) == _values(rig, "direct", 500)
+
+
+def test_an_engine_that_there_is_not() -> None:
+    with pytest.raises(InputError, match="engine"):
+        seatrial.Simulation("landing", engine="nativ")
 
 
 def test_built_in_are_texts_and_surroundings() -> None:

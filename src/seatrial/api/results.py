@@ -157,10 +157,11 @@ def run_trial(
     which must not hold anything yet, or else a new one, ``runs/NAME-DATE-TIME``, below the
     current folder. The report is written when `TrialResult.report` is called.
 
-    ``engine`` is ``"direct"``, components in process, or ``"fmu"``, each as an FMU: the same
-    numbers; rigs with ``.fmu`` files need the latter. ``progress`` is called some ten times a
-    second with the simulated time that has passed and that of the whole run, s. No device is
-    opened and no other host reached; ``seatrial run`` can.
+    ``engine`` is ``"direct"``, components in process, ``"fmu"``, each as an FMU, or ``"native"``,
+    as an FMU in C where there is one, else in process: the same numbers; rigs with ``.fmu`` files
+    need one of the latter two. ``progress`` is called some ten times a second with the simulated
+    time that has passed and that of the whole run, s. No device is opened and no other host
+    reached; ``seatrial run`` can.
 
     The trial runs in a process of its own: a component that crashes or exits ends that, and the
     run has failed. On Windows it runs in this one.

@@ -419,7 +419,9 @@ def _loaded_rig(name: str, step: Any, choices: Mapping[str, str] | None) -> Rig:
 
 def _started(system: System) -> Master:
     from ..cosim.master import Master
+    from ..cosim.native_carriers import carry_natively
 
+    carry_natively(system)
     master = Master(system)
     try:
         master.initialise()

@@ -38,8 +38,9 @@ def as_duration(written: Any) -> Any:
 
 def as_engine(name: str) -> Engine:
     """Return the engine ``name``. Raises InputError."""
-    if name == "direct":
-        return "direct"
-    if name == "fmu":
-        return "fmu"
-    raise InputError(unknown("engine", name, ("direct", "fmu")))
+    from ..cosim.system import ENGINES
+
+    for engine in ENGINES:
+        if name == engine:
+            return engine
+    raise InputError(unknown("engine", name, ENGINES))

@@ -43,7 +43,12 @@ Faults = Annotated[
     ),
 ]
 EngineName = Annotated[
-    str, typer.Option("--engine", help="'fmu': every component is an FMU; 'direct': in process.")
+    str,
+    typer.Option(
+        "--engine",
+        help="'fmu': every component is an FMU; 'direct': in process; 'native': an FMU in C where "
+        "there is one, else in process.",
+    ),
 ]
 Out = Annotated[
     Path | None, typer.Option("--out", help="Folder of the run (default: runs/NAME-DATE-TIME).")
@@ -59,9 +64,12 @@ Every = Annotated[
 
 def engine_named(name: str) -> Engine:
     """Return the engine that ``--engine`` names. Raises InputError."""
-    if name not in ("fmu", "direct"):
-        raise InputError(f"--engine: 'fmu' or 'direct' is needed, found {name!r}")
-    return "direct" if name == "direct" else "fmu"
+    from ..cosim.system import ENGINES
+
+    for engine in ENGINES:
+        if name == engine:
+            return engine
+    raise InputError(f"--engine: 'fmu', 'direct' or 'native' is needed, found {name!r}")
 
 
 def changes_of(

@@ -85,7 +85,7 @@ def _instance(
 ) -> tuple[Instance, str, str]:
     """Return an instance, the hash of its FMU file and the name of its code; see `Part`.
 
-    An isolated component is an FMU with either engine. ``once`` has, by their hashes, the names
+    An isolated component is an FMU with any engine. ``once`` has, by their hashes, the names
     of the components in this process whose FMU allows one instance only.
     """
     source = find_source(entry.fmu, folder)
@@ -95,12 +95,15 @@ def _instance(
                 raise InputError(
                     f"{entry.fmu} is a component in Python: the key {key!r} is for FMUs of others"
                 )
-    in_process = engine == "direct" and not entry.isolated
+    in_process = not entry.isolated and (
+        engine == "direct" or (engine == "native" and not isinstance(source, Path))
+    )
     code = "" if isinstance(source, Path) else bundle_name(source)
     if in_process:
         if isinstance(source, Path):
             raise InputError(
-                f"{source.name} can only run with the engine 'fmu', or with isolated = true"
+                f"{source.name} can only run with the engines 'fmu' and 'native', or with "
+                "isolated = true"
             )
         return DirectInstance(source.component_class()(name)), "", code
     # A run in process needs neither FMPy nor pythonfmu.

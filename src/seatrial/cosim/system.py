@@ -16,7 +16,10 @@ from .paths import split_path
 from .rig import Rig
 from .values import Given, from_written, placed, port_names, port_scalars
 
-Engine = Literal["fmu", "direct"]
+Engine = Literal["fmu", "direct", "native"]
+"""Every component an FMU; in process; or an FMU in C where there is one, else in process."""
+
+ENGINES: tuple[Engine, ...] = ("fmu", "direct", "native")
 
 
 @dataclass(frozen=True)

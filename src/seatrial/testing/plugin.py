@@ -32,7 +32,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     )
     group.addoption(
         "--seatrial-engine",
-        choices=("direct", "fmu"),
+        choices=("direct", "fmu", "native"),
         default="direct",
         help="engine of those: components in process, or each as an FMU (default: direct)",
     )

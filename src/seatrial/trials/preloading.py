@@ -19,7 +19,7 @@ def preload(trials: Sequence[Trial], engine: Engine) -> None:
 
     What others wrote is imported where it can do no harm, in the copy.
     """
-    modules = set(_OF_FMUS if engine == "fmu" else ())
+    modules = set(() if engine == "direct" else _OF_FMUS)
     for trial in trials:
         for placed in (p for p in trial.rig.components.values() if p.entry.fmu):
             with contextlib.suppress(InputError):  # it will be said when it is loaded

@@ -8,6 +8,7 @@ from typing import Any
 
 from ..cosim.assembly import assemble
 from ..cosim.master import Master
+from ..cosim.native_carriers import carry_natively
 from ..cosim.system import Engine, System
 from ..cosim.unread import leave_out_unread
 from ..errors import InputError, SimulationError, listed
@@ -94,6 +95,7 @@ def prepare(trial: Trial, engine: Engine, hooks: Hooks) -> Prepared:
         trial_faults(trial, system)
         check_real_time(trial, system)
         leave_out_unread(system, named_components(trial, system))
+        carry_natively(system, building)
         recorded = recorded_signals(trial, system, is_asked=is_asked)
     except BaseException:
         system.free()

@@ -11,14 +11,13 @@ from pathlib import Path
 from typing import Any
 
 from ...component import Component
-from ...errors import InputError
 from ...plant import Plant
 from ...ports import Parameter, Port
 from ..bundle_name import bundle_name
 from ..cache import cache_folder
 from ..source import ComponentSource
 from .carriers import checked
-from .compiler import FLAGS, HERE, library_here
+from .compiler import FLAGS, HERE, library_here, require_compiler
 from .export import build_native_fmu
 from .translation.unit import BUILT_IN_ROLES
 
@@ -33,8 +32,7 @@ def native_fmu(source: ComponentSource, values: Mapping[str, Any] | None = None)
     Raises InputError, with the reason, for a component that has no C, values that it cannot
     start with or that cannot be built in, and without a compiler.
     """
-    if not HERE:
-        raise InputError("native FMUs are for x86-64 and AArch64 only, which this machine is not")
+    require_compiler()
     cls = source.component_class()
     given = values or {}
     own = {n: v for n, v in given.items() if n in cls.ports and is_built_in(cls, cls.ports[n])}

@@ -35,6 +35,8 @@ _HERE = {
 HERE = _HERE.get((machine.system(), machine.machine()), "")
 """FMI's name of this machine's platform, empty for one that is not among `TARGETS`."""
 
+_NO_COMPILER = "native FMUs need a C compiler to build: pip install 'seatrial[native]'"
+
 FLAGS = (
     "-std=c99",
     "-O2",
@@ -57,6 +59,16 @@ def checked_platforms(text: str) -> list[str]:
     return names
 
 
+def require_compiler() -> None:
+    """Raise InputError if this machine cannot build native FMUs for itself."""
+    if not HERE:
+        raise InputError(
+            f"native FMUs are built for {', '.join(TARGETS)}, which this machine is none of"
+        )
+    if shutil.which("cc") is None and importlib.util.find_spec("ziglang") is None:
+        raise InputError(_NO_COMPILER)
+
+
 def library(
     sources: Mapping[str, bytes], platform: str, libraries: Sequence[str] = ("-lm",)
 ) -> bytes:
@@ -66,7 +78,7 @@ def library(
     an error.
     """
     if importlib.util.find_spec("ziglang") is None:
-        raise InputError("native FMUs need a C compiler to build: pip install 'seatrial[native]'")
+        raise InputError(_NO_COMPILER)
     target, suffix = TARGETS[platform]
     command = [sys.executable, "-m", "ziglang", "cc", "-target", target, "-fno-sanitize=undefined"]
     return _built(sources, command, suffix, platform, libraries)

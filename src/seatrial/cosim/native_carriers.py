@@ -1,0 +1,44 @@
+"""Components of a rig carried by FMUs in C, where there are any."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from ..errors import InputError
+from ..fmi.direct import DirectInstance
+from ..fmi.source import ComponentSource, find_source
+from .part import Part
+from .system import System
+
+
+def carry_natively(system: System, progress: Callable[[str], None] = lambda _: None) -> None:
+    """Let native FMUs carry the components of a system whose engine is "native".
+
+    To be called when all parameters are given: texts among them, and waves, current and wind, are
+    built in. They come from the user's cache, and are built if they are not there. What has no C
+    stays in process; there it is noted why. Raises InputError without a compiler.
+    """
+    if system.engine != "native":
+        return
+    for part in system.parts.values():
+        if isinstance(part.instance, DirectInstance):
+            progress(f"{part.name} ({part.fmu}, in C)")
+            _carry(system, part)
+
+
+def _carry(system: System, part: Part) -> None:
+    from ..fmi.load import load_fmu, open_instance
+    from ..fmi.native.cached import native_fmu
+    from ..fmi.native.compiler import require_compiler
+
+    source = find_source(part.fmu, system.rig.components[part.name].scope.folder)
+    assert isinstance(source, ComponentSource)
+    require_compiler()
+    values = {name: given.value for name, given in part.given.items()}
+    try:
+        fmu = load_fmu(native_fmu(source, values))
+    except InputError as error:
+        system.notes.append(f"{part.name} stays in Python: {error}")
+        return
+    part.instance.free()
+    part.instance, part.sha256 = open_instance(fmu, part.name), fmu.sha256
