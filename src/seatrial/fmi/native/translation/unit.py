@@ -179,6 +179,8 @@ class Unit:
                 return Known(OWN_NAME)
             case "now_ns" | "_now_ns":
                 return frame.num("i", "self->state.now_ns")
+            case "_stale":
+                return frame.num("b", "self->state.stale != 0")
             case "now":
                 return frame.num("d", "(double)self->state.now_ns / 1e9")
         known = (frame.names or {}).get(f"self.{name}")
