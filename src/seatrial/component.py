@@ -90,6 +90,8 @@ class Component:
     ``terminals`` are groups of ports that are connected together (`terminals`), by their names.
     ``views`` says what reports draw of it: by kind of view (`ports.VIEWS`), the ports that it
     takes.
+    ``structural`` names parameters, numbers too, that say what there is rather than how much of it
+    (how many waypoints, where thrusters are): native FMUs have them built in.
     ``exercised`` has values by port with which everything in it acts, where the start values do
     not do: tests run the component with them.
 
@@ -101,6 +103,7 @@ class Component:
     discrete: ClassVar[bool] = False
     terminals: ClassVar[Mapping[str, Terminal]] = {}
     views: ClassVar[Mapping[str, Mapping[str, str]]] = {}
+    structural: ClassVar[Sequence[str]] = ()
     exercised: ClassVar[Mapping[str, Any]] = {}
     transient: ClassVar[frozenset[str]] = frozenset({"name"})
 

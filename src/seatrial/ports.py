@@ -233,17 +233,25 @@ class Parameter(Port):
 class Input(Port):
     """A value that arrives over at most one connection; ``start`` holds while nothing is connected.
 
-    An ``optional`` input is normally not connected: a run does not mention it.
+    An ``optional`` input is normally not connected: a run does not mention it. ``choices`` are the
+    texts that one of text knows; what else comes is the component's to refuse.
     """
 
     kind: Kind = "input"
 
     def __init__(
-        self, unit: Units, description: str, *, optional: bool = False, **options: Any
+        self,
+        unit: Units,
+        description: str,
+        *,
+        optional: bool = False,
+        choices: Sequence[str] = (),
+        **options: Any,
     ) -> None:
         options.setdefault("start", "" if options.get("type") is str else 0)
         super().__init__(unit, description, **options)
         self.optional = optional
+        self.choices = tuple(choices)
         self.term_of = ""
         """Name of the `terms.Terms` that it is one of."""
 

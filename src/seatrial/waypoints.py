@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from .component import Component, Parameter
 from .errors import InputError
 
@@ -13,6 +15,8 @@ Place = tuple[float, float, float]
 
 class Waypoints(Component):
     """Mix-in for what has a list of waypoints. Positions in {n}, m, down positive."""
+
+    structural: ClassVar = ("count",)
 
     count = Parameter(1.0, "1", "number of waypoints", min=1.0, max=float(MOST))
     waypoint_1 = Parameter(0.0, "m", "first waypoint", axes=NED)

@@ -14,10 +14,10 @@ from seatrial.component import Component, Input, Output, Parameter
 from seatrial.errors import InputError, SimulationError
 from seatrial.faults.text import FAILURES, fault_text
 from seatrial.fmi.index import component_class, components
-from seatrial.fmi.native.cached import is_built_in
 from seatrial.fmi.native.compiler import HERE, library_here
 from seatrial.fmi.native.equations import why_python
 from seatrial.fmi.native.export import build_native_fmu
+from seatrial.fmi.native.tables import is_built_in
 from seatrial.fmi.source import find_source
 from seatrial.plant import Plant
 from seatrial.sampled import Sampled
@@ -92,22 +92,23 @@ class Pair:
         """Give both the same random inputs."""
         for scalar in self.python.scalars:
             port = scalar.port
-            if port.kind != "input" or (port.type is str and (port.role != "fault" or k % 13)):
+            if port.kind != "input" or (port.type is str and k % 13):
                 continue
-            value = self._value(port.type, k)
+            value = self._value(port, k)
             if port.type is float:
                 value += port.start[scalar.index]
             self.python.write([scalar.reference], [value], port.type)
             self.setters[port.type]([scalar.reference], [value])
 
-    def _value(self, kind: type, k: int) -> Any:
+    def _value(self, port: Any, k: int) -> Any:
+        kind = port.type
         if kind is float:
             return self.drawn.uniform(-0.2, 0.2)
         if kind is int:
             return self.drawn.randrange(3)
         if kind is bool:
             return k < 40 or self.drawn.random() < 0.7
-        return self.drawn.choice(self.faults)
+        return self.drawn.choice(self.faults if port.role == "fault" else port.choices)
 
     def step(self, h: float) -> None:
         self.python.advance(self.time, h)

@@ -86,7 +86,7 @@ class Course(Waypoints, Sampled):
         """Publish the leg."""
         self.leg, self.passed = self._leg, self._passed
         self.rounded = self._marks[self._passed]
-        self.leg_from, self.leg_to = self._places[self._leg - 1 : self._leg + 1]
+        self.leg_from, self.leg_to = self._places[self._leg - 1], self._places[self._leg]
         self.leg_speed, self.leg_radius, self.leg_wait = self.speed, self.radius, self.wait
 
     def update(self, t: float, k: int) -> None:

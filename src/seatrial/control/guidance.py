@@ -128,7 +128,7 @@ class Guidance(GuidanceOrders):
         0.3, "m", "depth error at which a position is reached", min=0.0, tunable=True
     )
 
-    mode = Input("1", f"one of {', '.join(MODES)}", type=str, start="hold")
+    mode = Input("1", f"one of {', '.join(MODES)}", type=str, start="hold", choices=MODES)
     depth = Input("m", "depth, positive down")
     depth_valid = Input("1", "whether the depth is valid", type=bool, start=True)
 

@@ -88,7 +88,12 @@ class GuidanceOrders(Sampled):
         optional=True,
     )
     target_kind = Input(
-        "1", f"guided: one of {', '.join(TARGETS)}", type=str, start="position", optional=True
+        "1",
+        f"guided: one of {', '.join(TARGETS)}",
+        type=str,
+        start="position",
+        choices=TARGETS,
+        optional=True,
     )
     target_valid = Input(
         "1", "guided: whether there is a set-point", type=bool, start=True, optional=True

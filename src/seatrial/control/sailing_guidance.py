@@ -182,7 +182,7 @@ class SailingGuidance(GuidanceOrders):
     confirmations = Parameter(3.0, "1", "sightings that make an obstacle", min=1.0, tunable=True)
     forget = Parameter(20.0, "s", "without a sighting, after which it is gone", min=0.0)
 
-    mode = Input("1", f"one of {', '.join(MODES)}", type=str, start="hold")
+    mode = Input("1", f"one of {', '.join(MODES)}", type=str, start="hold", choices=MODES)
     wind = Input("m/s", "true wind over ground: where it blows to, {n}", axes=("north", "east"))
     sight_bearing = Input(
         "rad", "bearing of each detection, to starboard", axes=SLOTS, optional=True

@@ -68,6 +68,10 @@ class ThrusterMatrixAllocation(FixedThrusters, ThrustCurve, ThrusterPulses):
         for name, value in zip(("position", "direction"), vectors, strict=True)
     }
 
+    structural: ClassVar = [
+        f"{name}_{number}" for name in ("position", "direction") for number in range(1, COUNT + 1)
+    ]
+
     moments = Parameter(
         "all",
         "1",

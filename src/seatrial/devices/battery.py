@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import ClassVar
 
 import numpy as np
@@ -69,7 +70,7 @@ class Battery(Component):
 
     def start(self, t: float) -> None:
         """Start with the charge given; raises InputError for a curve that falls."""
-        if any(np.diff(self.open_circuit) < 0.0):
+        if any(after < before for before, after in pairwise(self.open_circuit)):
             raise InputError(
                 f"{self.name}.open_circuit is {self.open_circuit} V: it must not fall as the "
                 "charge rises"

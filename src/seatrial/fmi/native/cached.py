@@ -10,24 +10,21 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from ...component import Component
-from ...plant import Plant
-from ...ports import Parameter, Port
 from ..bundle_name import bundle_name
 from ..cache import cache_folder
 from ..source import ComponentSource
 from .carriers import checked
 from .compiler import FLAGS, HERE, library_here, require_compiler
 from .export import build_native_fmu
-from .translation.unit import BUILT_IN_ROLES
+from .tables import is_built_in
 
 
 def native_fmu(source: ComponentSource, values: Mapping[str, Any] | None = None) -> Path:
     """Return the native FMU of ``source`` for this machine, built if it is not there yet.
 
-    ``values`` (by port or scalar, SI) are parameters as a rig gives them. Texts, waves, current and
-    wind are built in; numbers are not, and are to be set before the run as ever: one FMU serves
-    all of them. The machine's own C compiler builds it (``cc``), else Zig's.
+    ``values`` (by scalar, SI) are parameters as a rig gives them. Texts, waves, current, wind and
+    what is ``structural`` are built in; other numbers are to be set before the run as ever: one
+    FMU serves all of them. The machine's own C compiler builds it (``cc``), else Zig's.
 
     Raises InputError, with the reason, for a component that has no C, values that it cannot
     start with or that cannot be built in, and without a compiler.
@@ -35,7 +32,8 @@ def native_fmu(source: ComponentSource, values: Mapping[str, Any] | None = None)
     require_compiler()
     cls = source.component_class()
     given = values or {}
-    own = {n: v for n, v in given.items() if n in cls.ports and is_built_in(cls, cls.ports[n])}
+    scalars = cls.scalar_by_name
+    own = {n: v for n, v in given.items() if n in scalars and is_built_in(cls, scalars[n].port)}
     text = f"{_tool_tag()} {sorted(own.items())!r}"
     tag = hashlib.sha256(text.encode()).hexdigest()[:12]
     path = cache_folder("native") / f"{bundle_name(source)}-{tag}.fmu"
@@ -46,15 +44,6 @@ def native_fmu(source: ComponentSource, values: Mapping[str, Any] | None = None)
         checked(component, source.origin)
         build_native_fmu(source, path, (HERE,), own, library_here)
     return path
-
-
-def is_built_in(cls: type[Component], port: Port) -> bool:
-    """Return whether a native FMU has a value of this port built in."""
-    if not isinstance(port, Parameter):
-        return False
-    # A plant's equations know nothing of what has a role: seas, currents, winds.
-    by_role = bool(port.role) if issubclass(cls, Plant) else port.role in BUILT_IN_ROLES
-    return port.type is str or by_role
 
 
 @cache

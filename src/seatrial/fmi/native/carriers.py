@@ -6,6 +6,7 @@ from ...component import Component
 from ...errors import InputError, SimulationError
 from ...plant import Plant
 from . import equations
+from .tables import words_of
 from .translation.domain import TranslationError
 from .translation.unit import Unit
 
@@ -29,7 +30,7 @@ def why_refused(cls: type[Component]) -> str:
     if not cls.rolls_back:
         return "it reaches outside the simulation"
     texts = [p.name for p in cls.ports.values() if p.type is str and p.kind != "parameter"]
-    texts = [name for name in texts if cls.ports[name].role != "fault"]
+    texts = [name for name in texts if not words_of(cls.ports[name])]
     return f"its ports {', '.join(texts)} are texts" if texts else ""
 
 

@@ -35,6 +35,7 @@ typedef struct {
     Phase phase;
     int stale, restart, failed;
     char texts[TEXTS + 1][TEXT_SIZE]; /* inputs of text */
+    int words[TEXTS + 1];             /* which of the texts that it knows each is */
     Fault fault;
     Memory memory;
 } State;

@@ -111,8 +111,7 @@ def model(plant: Plant) -> str:
         table("int", "p", _references(plant.parameter_ports)),
         table("int", "y", _references(plant.output_ports)),
     ]
-    # What has a role the equations know nothing of: seas, currents, winds.
-    common = tables(plant, lambda port: bool(port.role))
+    common = tables(plant)
     return "\n".join([generator.dump(), '#include "model.h"', _CALLS.format(**sizes), *own, common])
 
 

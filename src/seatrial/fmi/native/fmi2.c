@@ -49,12 +49,21 @@ const char *shown(Instance *self, double value) {
 
 static double now(const Instance *self) { return (double)self->state.now_ns / NS; }
 
+/* Set an input of text, and which of its words that is: their number for one that it does not know. */
+static void take_text(Instance *self, int input, const char *text) {
+    const int first = model_first_words[input], count = model_first_words[input + 1] - first;
+    int word = 0;
+    while (word < count && strcmp(model_words[first + word], text) != 0) word++;
+    self->state.words[input] = word;
+    snprintf(self->state.texts[input], TEXT_SIZE, "%s", text);
+    model_text(self, input);
+}
+
 static void begin_anew(Instance *self) {
     State *state = &self->state;
     memset(state, 0, sizeof *state);
     memcpy(state->values, model_starts, SCALARS * sizeof *state->values);
-    for (int i = 0; i < TEXTS; i++)
-        snprintf(state->texts[i], TEXT_SIZE, "%s", model_texts[model_text_inputs[i]]);
+    for (int i = 0; i < TEXTS; i++) take_text(self, i, model_texts[model_text_inputs[i]]);
     state->stale = state->restart = 1;
 }
 
@@ -312,8 +321,7 @@ static int set_text(Instance *self, unsigned reference, const char *text) {
         return 0;
     }
     if (strcmp(text, self->state.texts[input]) == 0) return 1;
-    snprintf(self->state.texts[input], TEXT_SIZE, "%s", text);
-    model_text(self, input);
+    take_text(self, input, text);
     self->state.stale = 1;
     return 1;
 }

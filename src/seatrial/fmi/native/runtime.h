@@ -26,6 +26,16 @@ static inline double modulo(Instance *self, double a, double b, const char *wher
     return (b < 0.0) != (rest < 0.0) ? rest + b : rest;
 }
 
+/* The whole number of times that b goes into a, downwards; the rest is `modulo`. */
+static inline double quotient(Instance *self, double a, double b, const char *where) {
+    if (b == 0.0) fail(self, "%s: division by zero at %s", self->name, where);
+    const double rest = fmod(a, b);
+    const double times = (a - rest) / b - (rest != 0.0 && (b < 0.0) != (rest < 0.0) ? 1.0 : 0.0);
+    if (times == 0.0) return __builtin_copysign(0.0, a / b);
+    const double down = floor(times);
+    return times - down > 0.5 ? down + 1.0 : down;
+}
+
 static inline double checked(Instance *self, double result, double x, const char *where) {
     if (!isfinite(result) && isfinite(x))
         fail(self, "%s: there is no value for %s at %s", self->name, shown(self, x), where);

@@ -10,7 +10,7 @@ from ...faults.catalogue import KINDS
 from ...faults.text import MEASURED
 from .tables import quoted, table, tables
 from .translation.intrinsics import FAULTS, SETTINGS
-from .translation.unit import BUILT_IN_ROLES, Unit
+from .translation.unit import Unit
 
 _FAULTS = """\
 enum {{ FAULT_NAMES = {names}, FAULT_PLAIN = {plain}, FAULT_MEASURED = {measured} }};
@@ -42,7 +42,7 @@ class Translation:
     def model(self) -> str:
         """Return ``model.c``."""
         constants = "\n".join(self.unit.constants())
-        common = tables(self.example, lambda port: port.role in BUILT_IN_ROLES)
+        common = tables(self.example)
         if isinstance(self.example, Fallible):
             own = self._fault_tables()
         else:

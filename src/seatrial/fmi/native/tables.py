@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 from ...component import Component, Parameter
-from ...ports import Port, ScalarPort
+from ...faults.catalogue import FAILURES
+from ...plant import Plant
+from ...ports import Input, Port, ScalarPort
 
 _HEADER = """\
 /* Sizes and tables of a component: by value reference, and what is its own. */
@@ -19,12 +22,34 @@ enum {{ REAL, INTEGER, BOOLEAN, STRING }};
 
 extern const double model_starts[], model_lows[], model_highs[];
 extern const int model_kinds[], model_types[], model_checked[], model_text_inputs[];
+extern const int model_first_words[];
+extern const char *const model_words[];
 extern const char *const model_names[], *const model_units[], *const model_texts[];
 extern const char *const model_type_names[];
 
 {own}"""
 
 _TYPES = {float: "REAL", int: "INTEGER", bool: "BOOLEAN", str: "STRING"}
+
+
+BUILT_IN_ROLES = ("sea", "current", "wind", "file", "run-folder")
+"""Roles of parameters whose values are built in."""
+
+
+def is_built_in(cls: type[Component], port: Port) -> bool:
+    """Return whether a native FMU has a value of this port built in."""
+    if not isinstance(port, Parameter):
+        return False
+    # A plant's equations know nothing of what has a role: seas, currents, winds.
+    by_role = bool(port.role) if issubclass(cls, Plant) else port.role in BUILT_IN_ROLES
+    return port.type is str or by_role or port.name in cls.structural
+
+
+def words_of(port: Port) -> tuple[str, ...]:
+    """Return the texts that an input knows; what only begins with one of a fault is none."""
+    if not isinstance(port, Input):
+        return ()
+    return ("none", *FAILURES) if port.role == "fault" else port.choices
 
 
 def header(component: Component, guid: str, own: str) -> str:
@@ -38,7 +63,7 @@ def header(component: Component, guid: str, own: str) -> str:
     )
 
 
-def tables(component: Component, is_built_in: Callable[[Port], bool]) -> str:
+def tables(component: Component) -> str:
     """Return the tables of C of a component's variables, with its values as starts."""
     scalars, values = component.scalars, component.values
     texts = [s.port.type is str for s in scalars]
@@ -50,12 +75,17 @@ def tables(component: Component, is_built_in: Callable[[Port], bool]) -> str:
     own = [
         quoted(values[s.reference] if text else "") for s, text in zip(scalars, texts, strict=True)
     ]
+    inputs = [component.scalars[int(r)].port for r in _text_inputs(component)]
+    words = [words_of(port) for port in inputs]
+    firsts = [str(n) for n in itertools.accumulate((len(each) for each in words), initial=0)]
     return "\n".join(
         [
+            table("int", "first_words", firsts),
+            table("char *const", "words", [quoted(w) for each in words for w in each]),
             table("double", "starts", numbers),
             table("double", "lows", lows),
             table("double", "highs", highs),
-            table("int", "kinds", [_kind(s, is_built_in) for s in scalars]),
+            table("int", "kinds", [_kind(component, s) for s in scalars]),
             table("int", "types", [_TYPES[s.port.type] for s in scalars]),
             table("int", "checked", _checked(component)),
             table("int", "text_inputs", _text_inputs(component)),
@@ -74,11 +104,11 @@ def table(kind: str, name: str, cells: Sequence[str]) -> str:
     return f"const {kind} model_{name}[] = {{\n    {rows}\n}};"
 
 
-def _kind(scalar: ScalarPort, is_built_in: Callable[[Port], bool]) -> str:
+def _kind(component: Component, scalar: ScalarPort) -> str:
     port = scalar.port
     if not isinstance(port, Parameter):
         return port.kind.upper()
-    if port.type is str or is_built_in(port):
+    if is_built_in(type(component), port):
         return "BUILT_IN"
     return "TUNABLE" if port.tunable else "FIXED"
 

@@ -20,6 +20,14 @@ class TranslationError(InputError):
     """A construct that has no C, with the file and line where it stands."""
 
 
+class MismatchError(TranslationError):
+    """An operation on a value that Python would refuse too: of one alternative, the run's error."""
+
+
+class EndedError(Exception):
+    """Control does not come any further: the call has failed."""
+
+
 class UnshapedError(Exception):
     """An attribute is read of which nothing has been seen yet."""
 
@@ -276,7 +284,7 @@ def built(shape: Shape, texts: Iterator[str]) -> Any:
 
 def fits(value: Any, shape: Shape) -> bool:
     """Return whether a value can be one of this shape without loss."""
-    return joined(shape_of(value), shape) == shape
+    return joined(shape, shape_of(value)) == shape
 
 
 def flattened(value: Any, shape: Shape) -> list[str | None]:
@@ -309,7 +317,7 @@ def parts_of(value: Any) -> Sequence[Any]:
 
 
 def _alternative(own: Shape, shape: Shape) -> int:
-    return next(i for i, part in enumerate(shape.parts) if _one(own, part) == part)
+    return next(i for i, part in enumerate(shape.parts) if _one(part, own) == part)
 
 
 def _retagged(value: Choice, shape: Shape) -> list[str | None]:

@@ -5,9 +5,21 @@ from __future__ import annotations
 import ast
 import builtins
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
-from .domain import Choice, Closure, Known, Queue, Seq, Table, opened, parts_of
+from .domain import (
+    Choice,
+    Closure,
+    Component,
+    Known,
+    Queue,
+    Record,
+    Seq,
+    Table,
+    opened,
+    parts_of,
+)
 from .frame import Frame, Join, expression
 from .operations import (
     binary,
@@ -124,22 +136,23 @@ def narrowing(frame: Frame, test: ast.expr) -> Callable[..., Any]:
         return lambda yes, no: act(no, yes)
     if isinstance(test, ast.BoolOp) and any(_subject(frame, v)[0] for v in test.values):
         return _chained(frame, test)
-    name, value = _subject(frame, test)
+    name, value, whole = _subject(frame, test)
     if not name:
         return lambda yes, no: frame.branch(truth(frame, frame.evaluate(test)), yes, no)
 
     def narrowed(yes: Callable[[], Any], no: Callable[[], Any]) -> Any:
-        kept = []
+        before, kept = (frame.names or {}).get(name, value), []
 
         def one(alternative: Any) -> Any:
-            frame.names = {**(frame.names or {}), name: alternative}
+            own = whole(alternative)
+            frame.names = {**(frame.names or {}), name: own}
             result = frame.branch(truth(frame, frame.evaluate(test)), yes, no)
-            kept.append(frame.names is not None and frame.names.get(name) is alternative)
+            kept.append(frame.names is not None and frame.names.get(name) is own)
             return result
 
         result = frame.alternatives(value, one)
         if all(kept) and frame.names is not None:
-            frame.names[name] = value
+            frame.names[name] = before
         return result
 
     return narrowed
@@ -159,47 +172,94 @@ def _chained(frame: Frame, test: ast.BoolOp) -> Callable[..., Any]:
     return act
 
 
-def _subject(frame: Frame, test: ast.expr) -> tuple[str, Any]:
-    """Return the name under which a test's subject is known, and its value, if it is a choice."""
+def _subject(frame: Frame, test: ast.expr) -> tuple[str, Any, Callable[[Any], Any]]:
+    """Return what a test is about, if it is one of several things.
+
+    That is the name that knows it, its value, and what the name is if the value is an alternative.
+    """
     subject = test.operand if isinstance(test, ast.UnaryOp) else test
     subject = subject.left if isinstance(subject, ast.Compare) else subject
-    name = ""
+    names = frame.names or {}
+    name, value, whole = "", None, _itself
     if isinstance(subject, ast.Name):
-        name = subject.id
-        value = (frame.names or {}).get(name)
-    elif frame.unit.is_own(frame, subject) and frame.unit.remembers(subject.attr):  # type: ignore[attr-defined]
-        name = f"self.{subject.attr}"  # type: ignore[attr-defined]
-        value = frame.evaluate(subject)
-    return (name, value) if name and isinstance(value, Choice) else ("", None)
+        name, value = subject.id, names.get(subject.id)
+    elif isinstance(subject, ast.Attribute) and isinstance(subject.value, ast.Name):
+        owner, field = opened(names.get(subject.value.id)), subject.attr
+        if isinstance(owner, Record) and field in owner.fields:
+            name, value = subject.value.id, owner.fields[field]
+            whole = partial(_with_field, owner, field)
+        elif isinstance(owner, Component) and frame.unit.remembers(field):
+            name, value = f"self.{field}", frame.evaluate(subject)
+    return (name, value, whole) if name and isinstance(value, Choice) else ("", None, whole)
+
+
+def _itself(value: Any) -> Any:
+    return value
+
+
+def _with_field(record: Record, field: str, value: Any) -> Record:
+    return Record(record.cls, {**record.fields, field: value})
 
 
 @expression(ast.Tuple, ast.List)
 def _sequence(frame: Frame, node: ast.Tuple | ast.List) -> Any:
-    return Seq(tuple if isinstance(node, ast.Tuple) else list, _items(frame, node.elts))
+    kind = tuple if isinstance(node, ast.Tuple) else list
+    return _displayed(frame, node.elts, lambda items: Seq(kind, items))
 
 
-def _items(frame: Frame, nodes: list[ast.expr]) -> list[Any]:
-    found: list[Any] = []
-    for node in nodes:
-        if isinstance(node, ast.Starred):
-            found += unpacked(frame, frame.evaluate(node.value))
+def _displayed(frame: Frame, nodes: list[ast.expr], made: Callable[[list[Any]], Any]) -> Any:
+    """Return what is made of the items of a display or call; for each length that they may have."""
+    parts = [
+        (isinstance(n, ast.Starred), frame.evaluate(n.value if isinstance(n, ast.Starred) else n))
+        for n in nodes
+    ]
+    return _spread(frame, parts, [], made)
+
+
+def _spread(
+    frame: Frame,
+    parts: list[tuple[bool, Any]],
+    items: list[Any],
+    made: Callable[[list[Any]], Any],
+) -> Any:
+    for at, (is_starred, value) in enumerate(parts):
+        if not is_starred:
+            items = [*items, value]
+        elif isinstance(value, Choice) and len(_sizes(value)) > 1:
+            return frame.each(value, partial(_spread_one, frame, parts[at + 1 :], items, made))
         else:
-            found.append(frame.evaluate(node))
-    return found
+            items = [*items, *unpacked(frame, value)]
+    return made(items)
+
+
+def _spread_one(
+    frame: Frame,
+    rest: list[tuple[bool, Any]],
+    items: list[Any],
+    made: Callable[[list[Any]], Any],
+    one: Any,
+) -> Any:
+    return _spread(frame, [(True, one), *rest], items, made)
+
+
+def _sizes(choice: Choice) -> set[int]:
+    """Return the lengths that one of several lists may have; -1 stands for what is no list."""
+    opened_ = [opened(each) for each in choice.alternatives]
+    return {len(parts_of(each)) if _is_list(each) else -1 for each in opened_}
 
 
 def unpacked(frame: Frame, value: Any) -> list[Any]:
     """Return the items of what is iterated over."""
     if isinstance(value, Choice):
-        sizes = {len(parts_of(each)) for each in map(opened, value.alternatives) if _is_list(each)}
-        if len(sizes) == 1 and all(_is_list(opened(each)) for each in value.alternatives):
+        sizes = _sizes(value)
+        if len(sizes) == 1 and sizes != {-1}:
             places = range(sizes.pop())
             return [frame.each(value, lambda v, i=i: parts_of(v)[i]) for i in places]  # type: ignore[misc]
     value = opened(value)
     if isinstance(value, Table):
         return [Known(key) for key in value.items]
     if isinstance(value, Queue) or not _is_list(value):
-        raise frame.refused(f"iteration over {value!r:.80}")
+        raise frame.mismatched(f"iteration over {value!r:.80}")
     return list(parts_of(value))
 
 
@@ -306,7 +366,6 @@ def _call(frame: Frame, node: ast.Call) -> Any:
     lazy = isinstance(function, Known) and function.value in (any, all)
     if lazy and len(node.args) == 1 and isinstance(node.args[0], ast.GeneratorExp):
         return _first_true(frame, node.args[0], function.value is any)
-    arguments = _items(frame, node.args)
     named: dict[str, Any] = {}
     for keyword in node.keywords:
         value = frame.evaluate(keyword.value)
@@ -314,7 +373,9 @@ def _call(frame: Frame, node: ast.Call) -> Any:
             named |= opened(value).items
         else:
             named[keyword.arg] = value
-    return frame.unit.call(frame, function, arguments, named)
+    return _displayed(
+        frame, node.args, lambda arguments: frame.unit.call(frame, function, arguments, named)
+    )
 
 
 def _first_true(frame: Frame, node: ast.GeneratorExp, wanted: bool) -> Any:

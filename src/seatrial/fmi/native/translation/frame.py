@@ -6,14 +6,16 @@ import ast
 import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import partial
 from typing import Any
 
 from .domain import (
     C_TYPES,
     Choice,
+    EndedError,
     Known,
+    MismatchError,
     Num,
     Seq,
     Shape,
@@ -26,6 +28,8 @@ from .domain import (
     shape_of,
 )
 
+FAILED = "failed"
+"""Label at the end of a function that has failed."""
 _WORD = re.compile(r"[A-Za-z_]\w*")
 
 EXPRESSIONS: dict[type, Callable[[Any, Any], Any]] = {}
@@ -154,7 +158,10 @@ class Frame:
             handler = STATEMENTS.get(type(node))
             if handler is None:
                 raise self.refused(f"a statement {type(node).__name__}", node)
-            handler(self, node)
+            try:
+                handler(self, node)
+            except EndedError:
+                self.names = None
 
     def place(self) -> str:
         """Return the current line of Python as a C string."""
@@ -164,6 +171,20 @@ class Frame:
         """Return the error for a construct without C, at a node or the current line."""
         line = getattr(node, "lineno", self.line)
         return TranslationError(f"{self.file}:{line} ({self.title}): {what} has no C")
+
+    def mismatched(self, what: str) -> MismatchError:
+        """Return the error for an operation on what it cannot be done with."""
+        return MismatchError(f"{self.file}:{self.line} ({self.title}): {what} has no C")
+
+    def fail(self, arguments: str) -> None:
+        """Write what ends the call with an error. Raises EndedError, always."""
+        self.emit(f"fail(self, {arguments});")
+        self.end()
+
+    def end(self) -> None:
+        """Write that control does not come any further. Raises EndedError, always."""
+        self.emit(f"goto {FAILED};")
+        raise EndedError
 
     def stores(self, attributes: Iterable[str]) -> None:
         """Note that attributes of the component have changed: what was known of them is not."""
@@ -219,11 +240,11 @@ class Frame:
         for opening, act in ((f"if ({condition.text}) {{", yes), ("else {", no)):
             with self.block(opening):
                 self.names = dict(before or {})
-                value = act()
-                if self.names is not None:
-                    join.come({**self.names, "": value})
-        self.names = names = join.names()
-        return Known(None) if names is None else names.pop("", Known(None))
+                with suppress(EndedError):
+                    value = act()
+                    if self.names is not None:
+                        join.come({**self.names, "": value})
+        return self._arrived(join)
 
     def each(self, choice: Choice, act: Callable[[Any], Any]) -> Any:
         """Return what ``act`` returns for the alternative that a choice is."""
@@ -233,16 +254,30 @@ class Frame:
     def alternatives(self, choice: Choice, act: Callable[[Any], Any]) -> Any:
         """Return the same; ``act`` may change names."""
         join, before = Join(self), self.names
+        mistake: MismatchError | None = None
         for at, value in enumerate(choice.alternatives):
             last = at == len(choice.alternatives) - 1
             word = "else " if at else ""
             with self.block(f"{word}{{" if last else f"{word}if ({choice.tag} == {at}) {{"):
                 self.names = dict(before or {})
-                result = act(value)
-                if self.names is not None:
-                    join.come({**self.names, "": result})
+                with suppress(EndedError):
+                    try:
+                        result = act(value)
+                    except MismatchError as error:
+                        mistake = error
+                        self.fail(f'"%s: another kind of value at %s", self->name, {self.place()}')
+                    if self.names is not None:
+                        join.come({**self.names, "": result})
+        if mistake is not None and not join.sites:
+            raise mistake
+        return self._arrived(join)
+
+    def _arrived(self, join: Join) -> Any:
+        """Go on where a join is; return the value with which control comes there."""
         self.names = names = join.names()
-        return Known(None) if names is None else names.pop("", Known(None))
+        if names is None:
+            raise EndedError
+        return names.pop("", Known(None))
 
     def _flags(self, choice: Choice, act: Callable[[Any], Any]) -> Any:
         """Return the results if all are known truth values, which takes no branches."""
@@ -251,6 +286,8 @@ class Frame:
         try:
             results = [act(value) for value in choice.alternatives]
             silent = not self.code
+        except (MismatchError, EndedError):
+            return None
         finally:
             self.code, self.names = outer, before
             del self.variables[own:]
@@ -267,7 +304,7 @@ class Frame:
         """Return the C expression of a number. Raises TranslationError for anything else."""
         plain = isinstance(value, Known) and isinstance(value.value, (bool, int, float))
         if not plain and not isinstance(value, Num):
-            raise self.refused(f"{value!r:.80} where a number is needed")
+            raise self.mismatched(f"{value!r:.80} where a number is needed")
         return number(value, kind)
 
 

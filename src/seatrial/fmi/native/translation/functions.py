@@ -13,6 +13,7 @@ from typing import Any
 from .domain import (
     C_TYPES,
     Closure,
+    EndedError,
     Known,
     Record,
     Seq,
@@ -24,7 +25,7 @@ from .domain import (
     leaves,
     shape_of,
 )
-from .frame import Frame, lines, merged, pruned
+from .frame import FAILED, Frame, lines, merged, pruned
 
 
 @cache
@@ -90,12 +91,14 @@ def invoke(
             unit.written[key] = _written(frame, function, owner, shapes)
         finally:
             unit.open.discard(key)
-    name, kinds, result, stored = unit.written[key]
+    name, kinds, result, stored, returns = unit.written[key]
     frame.stores(stored)
     texts = [t for n, v in names.items() for t in flattened(v, shapes[n])]
     call = f"{name}({', '.join(['self', *(t or '0' for t in texts)])})"
     if name and not kinds:
         frame.emit(f"{call};")
+        if not returns:
+            frame.end()
     elif name and len(kinds) == 1:
         return built(result, iter([frame.num(kinds[0], call).text]))
     elif name:
@@ -108,10 +111,11 @@ def invoke(
 
 def _written(
     frame: Frame, function: Any, owner: type | None, shapes: dict[str, Shape]
-) -> tuple[str, list[str], Shape, set[str]]:
+) -> tuple[str, list[str], Shape, set[str], bool]:
     """Write the C of a function.
 
-    Return its name, the kinds of its results, their shape, and the attributes that it sets.
+    Return its name, the kinds of its results, their shape, the attributes that it sets, and
+    whether it ever returns.
 
     Without a name it does nothing and its result is known.
     """
@@ -139,13 +143,13 @@ def _written(
     kinds = leaves(result)
     silent = not any(line and not line.startswith("/*") for line in _flat_lines(own))
     if silent and not kinds:
-        return "", [], result, set()
+        return "", [], result, set(), True
     unit.counter += 1
     name = f"f{unit.counter}_{function.__name__.strip('_')}"
     for names, slot in own.returns.sites:
         slot += _return(name, kinds, flattened(names[""], result))
     unit.functions.append(_text(own, name, kinds, parameters, node.lineno))
-    return name, kinds, result, own.stored
+    return name, kinds, result, own.stored, bool(own.returns.sites)
 
 
 def _flat_lines(frame: Frame) -> list[str]:
@@ -173,7 +177,11 @@ def _text(frame: Frame, name: str, kinds: list[str], parameters: list[str], line
     words = " ".join(code)
     given = ["self", *(p.split()[-1] for p in parameters)]
     unused = [f"    (void){p};" for p in given if not re.search(rf"\b{p}\b", words)]
-    written = [*body, *unused, *lines(code)]
+    ending = []
+    if f"goto {FAILED};" in code:
+        zero = f"(struct {name}){{0}}" if len(kinds) > 1 else "0" if kinds else ""
+        ending = [f"{FAILED}:", f"    return {zero};" if kinds else "    return;"]
+    written = [*body, *unused, *lines(code), *ending]
     return f"{where}{head}static {returns} {name}({arguments}) {{\n" + "\n".join(written) + "\n}\n"
 
 
@@ -204,7 +212,9 @@ def inlined(frame: Frame, closure: Closure, arguments: list[Any], named: dict[st
     if inner.names is not None:
         inner.returns.come({"": Known(None)})
     found = inner.returns.names()
-    return Known(None) if found is None else found[""]
+    if found is None:
+        raise EndedError
+    return found[""]
 
 
 def found_method(cls: type, name: str, after: type | None = None) -> tuple[Any, type | None]:

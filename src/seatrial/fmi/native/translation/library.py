@@ -70,6 +70,23 @@ def _hypot(frame: Frame, *values: Any) -> Num:
     return frame.num("d", f"norm({len(values)}, {_array(frame, values)})")
 
 
+@library(math.dist)
+def _dist(frame: Frame, a: Any, b: Any) -> Num:
+    pairs = zip(unpacked(frame, a), unpacked(frame, b), strict=True)
+    return _hypot(frame, *(frame.num("d", _difference(frame, *pair)) for pair in pairs))
+
+
+def _difference(frame: Frame, a: Any, b: Any) -> str:
+    return f"{frame.text_of(a, 'd')} - {frame.text_of(b, 'd')}"
+
+
+@library(divmod)
+def _divmod(frame: Frame, a: Any, b: Any) -> Any:
+    x, y, where = frame.text_of(a, "d"), frame.text_of(b, "d"), frame.place()
+    quotient = frame.num("d", f"quotient(self, {x}, {y}, {where})")
+    return Seq(tuple, [quotient, frame.num("d", f"modulo(self, {x}, {y}, {where})")])
+
+
 @library(math.radians)
 def _radians(frame: Frame, x: Any) -> Num:
     return frame.num("d", f"{frame.text_of(x, 'd')} * {math.pi / 180.0!r}")

@@ -15,7 +15,7 @@ OWN_NAME = "\1"
 
 
 def failure(frame: Frame, node: ast.Raise) -> str:
-    """Return the call that ends the step with the message of a raised error."""
+    """Return the arguments of C with the message of a raised error."""
     call = node.exc
     told = call.args[0] if isinstance(call, ast.Call) and call.args else None
     parts: list[Any] = told.values if isinstance(told, ast.JoinedStr) else [told]
@@ -28,7 +28,7 @@ def failure(frame: Frame, node: ast.Raise) -> str:
         form, more = _shown(frame, part) if is_value else ("...", [])
         text += form
         arguments += more
-    return f"fail({', '.join(['self', quoted(text), *arguments])});"
+    return ", ".join([quoted(text), *arguments])
 
 
 def _shown(frame: Frame, part: ast.FormattedValue) -> tuple[str, list[str]]:

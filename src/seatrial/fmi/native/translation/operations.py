@@ -30,7 +30,7 @@ _PYTHON: dict[type, Callable[..., Any]] = {
 }
 _C = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*"}
 _ORDERS = {ast.Eq: "==", ast.NotEq: "!=", ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">="}
-_CHECKED = {ast.Div: "divided", ast.Mod: "modulo", ast.Pow: "power"}
+_CHECKED = {ast.Div: "divided", ast.FloorDiv: "quotient", ast.Mod: "modulo", ast.Pow: "power"}
 _WHOLE = {ast.FloorDiv: "floored", ast.Mod: "whole_modulo"}
 
 
@@ -99,7 +99,7 @@ def _binary(frame: Frame, op: ast.operator, left: Any, right: Any) -> Any:
         return Seq(a.kind, [*a.items, *b.items])
     if isinstance(a, Seq) and isinstance(op, ast.Mult) and isinstance(b, Known):
         return Seq(a.kind, a.items * b.value)
-    raise frame.refused(f"{type(op).__name__} of {left!r:.60} and {right!r:.60}")
+    raise frame.mismatched(f"{type(op).__name__} of {left!r:.60} and {right!r:.60}")
 
 
 def _arithmetic(frame: Frame, op: ast.operator, left: Any, right: Any) -> Num:
@@ -145,7 +145,7 @@ def _compared(frame: Frame, op: ast.cmpop, left: Any, right: Any) -> Any:
     if isinstance(op, (ast.Eq, ast.NotEq)):
         same = _equal(frame, left, right)
         return inverted(frame, same) if isinstance(op, ast.NotEq) else same
-    raise frame.refused(f"{type(op).__name__} of {left!r:.60} and {right!r:.60}")
+    raise frame.mismatched(f"{type(op).__name__} of {left!r:.60} and {right!r:.60}")
 
 
 def _equal(frame: Frame, left: Any, right: Any) -> Any:
@@ -228,6 +228,8 @@ def _item(frame: Frame, value: Any, index: Any) -> Any:
         return frame.unit.queue_entry(frame, value, index)
     if isinstance(value, FaultValues):
         return frame.unit.fault_value(frame, value, index)
+    if isinstance(opened(value), Known) and is_known(index):
+        return Known(value.value[python_of(index)])
     if isinstance(value, Known) and isinstance(index, Num):
         table = frame.unit.constant_table(value.value)
         if table:
@@ -243,13 +245,13 @@ def _item(frame: Frame, value: Any, index: Any) -> Any:
         if isinstance(at, slice):
             return Seq(value.kind if isinstance(value, Seq) else tuple, list(parts)[at])
         if not -len(parts) <= at < len(parts):
-            raise frame.refused(f"item {at} of {len(parts)}")
+            raise frame.mismatched(f"item {at} of {len(parts)}")
         return parts[at]
     if isinstance(value, Seq) and isinstance(index, Num):
         size = len(value.items)
         at = frame.num("i", f"checked_index(self, {frame.text_of(index, 'i')}, {size})")
         return frame.each(Choice(at.text, tuple(value.items)), lambda one: one)
-    raise frame.refused(f"an item of {value!r:.80}")
+    raise frame.mismatched(f"an item of {value!r:.80}")
 
 
 def with_item(frame: Frame, value: Any, index: Any, new: Any) -> Any:

@@ -20,6 +20,7 @@ from .domain import (
 )
 from .expressions import narrowing, unpacked
 from .frame import Frame, Join, statement
+from .messages import failure
 from .operations import binary, compared, either, truth, with_item
 
 
@@ -125,7 +126,7 @@ def _unpack(frame: Frame, targets: list[ast.expr], values: list[Any]) -> None:
         assert isinstance(starred, ast.Starred)
         targets = [*targets[:at], starred.value, *targets[at + 1 :]]
     if len(targets) != len(values):
-        raise frame.refused(f"unpacking {len(values)} values to {len(targets)} names")
+        raise frame.mismatched(f"unpacking {len(values)} values to {len(targets)} names")
     for target, value in zip(targets, values, strict=True):
         assign(frame, target, value)
 
@@ -145,8 +146,7 @@ def _return(frame: Frame, node: ast.Return) -> None:
 
 @statement(ast.Raise)
 def _raise(frame: Frame, node: ast.Raise) -> None:
-    frame.unit.fail(frame, node)
-    frame.names = None
+    frame.fail(failure(frame, node))
 
 
 @statement(ast.FunctionDef)

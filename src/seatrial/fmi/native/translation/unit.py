@@ -8,6 +8,7 @@ from typing import Any
 
 from ....component import Component as Base
 from ....ports import Parameter, Port
+from ..tables import is_built_in, words_of
 from .domain import (
     C_TYPES,
     Choice,
@@ -35,16 +36,14 @@ from .domain import (
 from .expressions import unpacked
 from .frame import Frame, lines
 from .functions import appended_attributes, found_method, inlined, invoke, record
-from .intrinsics import FAULTS, INTRINSICS, OTHER, drawn, fault_value
+from .intrinsics import INTRINSICS, OTHER, drawn, fault_value
 from .library import LIBRARY, method
-from .messages import OWN_NAME, failure
+from .messages import OWN_NAME
 from .operations import binary, is_known, python_of, truth
 from .statements import assign
 
 ROOTS = ("start", "step", "outputs")
 """Methods that the runtime calls: ``model_NAME`` in C."""
-BUILT_IN_ROLES = ("sea", "current", "wind", "file", "run-folder")
-"""Roles of parameters whose values are built in."""
 _PASSES = 12
 
 
@@ -167,7 +166,8 @@ class Unit:
             if name in owner.fields:
                 return owner.fields[name]
             found, where = found_method(owner.cls, name)
-            if callable(found) or isinstance(found, property):
+            is_own = callable(found) or isinstance(found, property)
+            if is_own and name not in ("_replace", "index", "count"):
                 return self._bound(frame, found, where, owner)
         return Method(name, None, owner)
 
@@ -214,14 +214,16 @@ class Unit:
         return Known(found)
 
     def _port(self, frame: Frame, port: Port) -> Any:
-        if port.kind == "parameter" and (port.type is str or port.role in BUILT_IN_ROLES):
+        if is_built_in(self.cls, port):
             return Known(getattr(self.example, port.name))
         references = range(port.offset, port.offset + port.size)
         if port.type is str:
-            if port.role != "fault":
+            words = (*words_of(port), OTHER)
+            texts = [s.port.name for s in self.cls.scalars if _is_text_input(s.port)]
+            if len(words) == 1 or port.name not in texts:
                 raise frame.refused(f"the text {port.name}")
-            code = frame.num("b", "self->state.fault.what")
-            return Choice(code.text, tuple(Known(name) for name in (*FAULTS, OTHER)))
+            word = frame.num("b", f"self->state.words[{texts.index(port.name)}]")
+            return Choice(word.text, tuple(Known(each) for each in words))
         reading = {float: "V[{}]", int: "(long long)V[{}]", bool: "V[{}] != 0"}[port.type]
         kind = {float: "d", int: "i", bool: "b"}[port.type]
         values = [frame.num(kind, reading.format(r)) for r in references]
@@ -392,10 +394,6 @@ class Unit:
         """Return a + b."""
         return binary(frame, ast.Add(), a, b)
 
-    def fail(self, frame: Frame, node: ast.Raise) -> None:
-        """Write what raises an error."""
-        frame.emit(failure(frame, node))
-
     def fault_value(self, frame: Frame, values: FaultValues, index: Any) -> Any:
         """Return one number of a fault's setting."""
         return fault_value(frame, values, index)
@@ -403,6 +401,10 @@ class Unit:
     def fault_values(self, frame: Frame, values: FaultValues, kind: type) -> Any:
         """Return the five coefficients of a fault."""
         return Seq(kind, [fault_value(frame, values, Known(i)) for i in range(5)])
+
+
+def _is_text_input(port: Port) -> bool:
+    return port.kind == "input" and port.type is str
 
 
 def _class_of(unit: Unit, receiver: Any) -> type:
