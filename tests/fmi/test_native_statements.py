@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import random
 from pathlib import Path
 from typing import Any
@@ -176,6 +177,46 @@ def test_parameters_are_numbers_of_the_run(tmp_path: Path) -> None:
         pair.feed(k)
         pair.step(0.02)
         pair.outputs()
+
+
+class Figures(Component):
+    """What Python's library does in its own way."""
+
+    x = Input("1", "numbers", axes="abcd", start=1.0)
+    y = Output("1", "what is made of them", axes="abcdefgh")
+
+    def outputs(self, t: float) -> None:
+        a, b, c, d = self.x
+        whole, rest = divmod(a, b)
+        plane, space = math.hypot(a, b), math.hypot(a, b, c, d)
+        self.y = (
+            plane,
+            space,
+            sum(self.x),
+            a % b,
+            a // b + whole,
+            rest,
+            round(d),
+            math.dist((a, b), (c, d)),
+        )
+
+
+def test_norms_and_sums_are_those_of_this_python(tmp_path: Path) -> None:
+    """Numbers of all sizes, in which each rounding error shows."""
+    slave = Slave(built(f"{__file__}:Figures", tmp_path), tmp_path)
+    slave.begin()
+    inputs = [slave.reference[f"x.{axis}"] for axis in "abcd"]
+    outputs = [slave.reference[f"y.{axis}"] for axis in "abcdefgh"]
+    draw, python = random.Random(1), Figures("x")
+    python.setup(0.0)
+    python.set("x", [1.0, 1.0, 1.0, 1.0])
+    python.initialise()
+    for _ in range(5000):
+        x = [draw.uniform(-1.0, 1.0) * 10.0 ** draw.randrange(-3, 4) for _ in range(4)]
+        slave.fmu.setReal(inputs, x)
+        python.set("x", x)
+        found = slave.fmu.getReal(outputs)
+        assert [v.hex() for v in found] == [v.hex() for v in python.get("y")]
 
 
 class Doubler(Sampled):

@@ -50,6 +50,8 @@ class Ctd(Sensor):
     place = Parameter(0.0, "m", "sensor from the body origin, body axes", axes="xyz")
     density = Parameter(1025.0, "kg/m3", "density of the water", min=1e-6)
     gravity = Parameter(9.81, "m/s2", "acceleration of gravity", min=1e-6)
+    structural: ClassVar = ("profile_points",)
+
     profile_points = Parameter(1.0, "1", "depths of the profile in use", min=1.0, max=len(_LEVELS))
     profile_depth = Parameter(0.0, "m", "depths of the profile, rising", axes=_LEVELS)
     profile_temperature = Parameter(

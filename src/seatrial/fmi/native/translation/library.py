@@ -73,7 +73,8 @@ def _hypot(frame: Frame, *values: Any) -> Num:
 @library(math.dist)
 def _dist(frame: Frame, a: Any, b: Any) -> Num:
     pairs = zip(unpacked(frame, a), unpacked(frame, b), strict=True)
-    return _hypot(frame, *(frame.num("d", _difference(frame, *pair)) for pair in pairs))
+    parts = [frame.num("d", _difference(frame, *pair)) for pair in pairs]
+    return frame.num("d", f"norm({len(parts)}, {_array(frame, parts)})")
 
 
 def _difference(frame: Frame, a: Any, b: Any) -> str:
