@@ -14,7 +14,8 @@ from seatrial.component import seconds
 from seatrial.cosim.assembly import assemble
 from seatrial.cosim.flattening import load_rig
 from seatrial.cosim.master import Master
-from seatrial.cosim.system import System
+from seatrial.cosim.native_carriers import carry_natively
+from seatrial.cosim.system import Engine, System
 from seatrial.shipped import shipped_folder
 
 _KINDS = {float: "real", int: "integer", bool: "boolean", str: "string"}
@@ -83,16 +84,21 @@ def ours(system: System, steps: int) -> tuple[list[str], list[list[float]]]:
 
 
 @pytest.mark.parametrize(
-    ("rig", "drone", "hull"),
-    [("hydrone-open-loop", "downwash", "hull"), ("landing", "drone", "vehicle.hull")],
+    ("rig", "engine", "drone", "hull"),
+    [
+        ("hydrone-open-loop", "fmu", "downwash", "hull"),
+        ("landing", "fmu", "drone", "vehicle.hull"),
+        ("landing", "native", "drone", "vehicle.hull"),
+    ],
 )
 def test_libcosim_and_our_plain_jacobi_agree(
-    rig: str, drone: str, hull: str, tmp_path: Path
+    rig: str, engine: Engine, drone: str, hull: str, tmp_path: Path
 ) -> None:
     steps = 1200
-    system = assemble(load_rig(str(plain(rig, tmp_path))), "fmu")
+    system = assemble(load_rig(str(plain(rig, tmp_path))), engine)
     system.set(f"{drone}.pad", "diagonal-aft", "test")
     system.set(f"{drone}.phase", "takeoff", "test")
+    carry_natively(system)
     runner = Path(__file__).with_name("libcosim_run.py")
     done = subprocess.run(
         [sys.executable, str(runner)],
