@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
-
 from .component import NS, Component, Parameter, seconds
 
 
@@ -24,13 +22,6 @@ class Sampled(Component):
 
     period = Parameter(0.01, "s", "sample period", min=1e-6)
 
-    _holds: ClassVar[bool] = False
-    """Whether it has outputs of its own between instants, which stand in the way of the others."""
-
-    def __init_subclass__(cls, **options: Any) -> None:
-        super().__init_subclass__(**options)
-        cls._holds = cls.hold is not Sampled.hold
-
     def reset(self, t: float) -> None:
         """Set the memory for the start of the run."""
 
@@ -48,14 +39,12 @@ class Sampled(Component):
         self._start_ns = self.now_ns
         self._period_ns = max(1, round(self.period * NS))
         self._next = 0
-        self._sampled = -1
         self.reset(t)
 
     def outputs(self, t: float) -> None:
         """Sample at an instant; hold otherwise."""
         if self._instant_ns() == round(t * NS):
             self.sample(t, self._next)
-            self._sampled = self._next
         self.hold(t)
 
     def step(self, t: float, h: float) -> None:
@@ -63,8 +52,7 @@ class Sampled(Component):
         end_ns = round(t * NS) + round(h * NS)
         while self._instant_ns() < end_ns:
             instant = seconds(self._instant_ns())
-            if self._stale or self._sampled != self._next or self._holds:
-                self.sample(instant, self._next)
+            self.sample(instant, self._next)
             self.update(instant, self._next)
             self._next += 1
 
