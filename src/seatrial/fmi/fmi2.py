@@ -54,7 +54,7 @@ class Fmi2Slave(Fmi2Access):
 
     def __init__(self, fmu: LoadedFmu, name: str) -> None:
         super().__init__(fmu, name)
-        self._do_step = self._functions["DoStep"]
+        self._do_step, self._said_so_far = self._functions["DoStep"], self._messages.kept
         self.restarts = True
         self.never_back = int(not self.rolls_back)
         self.is_native = not fmu.simulation.needsExecutionTool
@@ -76,7 +76,7 @@ class Fmi2Slave(Fmi2Access):
         if self.ended_at is not None:
             return
         status = self._do_step(self._c, t, h, self.never_back)
-        if status not in ACCEPTED or self._messages:
+        if status not in ACCEPTED or self._said_so_far:
             self.stepped(t, h, status)
 
     def stepped(self, t: float, h: float, status: int) -> None:

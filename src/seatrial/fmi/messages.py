@@ -36,17 +36,18 @@ class Messages:
     def __init__(self, name: str) -> None:
         self.name = name
         self._logger = logging.getLogger(f"seatrial.fmu.{name}")
-        self._kept: list[tuple[int, str]] = []
+        self.kept: list[tuple[int, str]] = []
+        """Status and text; the same list for ever, so that callers see at once if it is empty."""
         self._lost = 0
 
     def __bool__(self) -> bool:
-        return bool(self._kept)
+        return bool(self.kept)
 
     def keep(self, status: int, message: bytes | None) -> None:
         """Keep a message with its fmi2Status or fmi3Status; only count them after many."""
         said.value = 1
-        if len(self._kept) < _MOST_KEPT:
-            self._kept.append((status, (message or b"").decode("utf-8", "replace")))
+        if len(self.kept) < _MOST_KEPT:
+            self.kept.append((status, (message or b"").decode("utf-8", "replace")))
         else:
             self._lost += 1
 
@@ -56,26 +57,30 @@ class Messages:
 
     def has_error(self) -> bool:
         """Say if one of them has the status of an error."""
-        return any(status >= ERROR for status, _ in self._kept)
+        return any(status >= ERROR for status, _ in self.kept)
 
     def said(self) -> str:
         """Return all of them as the end of an error message, and forget them."""
-        texts = [text.strip() for _, text in self._kept]
+        texts = [text.strip() for _, text in self.kept]
         if self._lost:
             texts.append(f"({self._lost} more messages)")
-        self._kept, self._lost = [], 0
+        self._forget()
         return ": " + "\n".join(texts) if texts else ", without a message"
+
+    def _forget(self) -> None:
+        self.kept.clear()
+        self._lost = 0
 
     def forward(self) -> None:
         """Pass all of them to the logger ``seatrial.fmu.NAME``, and forget them."""
-        for status, text in self._kept:
+        for status, text in self.kept:
             level = (
                 logging.ERROR if status >= ERROR else logging.WARNING if status else logging.INFO
             )
             self._logger.log(level, "%s", text)
         if self._lost:
             self._logger.warning("%d more messages", self._lost)
-        self._kept, self._lost = [], 0
+        self._forget()
 
 
 _numbers = itertools.count(1)

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 from .fmuinstance import FmuInstance
 from .instance import Reader, Variable, Writer
-from .messages import ACCEPTED
+from .messages import ACCEPTED, OK, WARNING
 
 _NAMES = {float: "Real", int: "Integer", bool: "Boolean", str: "String"}
 
@@ -43,14 +43,15 @@ class TypedAccess(FmuInstance):
         vr = (ctypes.c_uint * count)(*(v.reference for v in variables))
         values = self._array(kind, count)
         function = f"Get{_NAMES[kind]}"
-        get, c, messages = self._functions[function], self._c, self._messages
+        get, c, said = self._functions[function], self._c, self._messages.kept
         argument = self._argument(values, kind)
+        number = kind is float or kind is int
 
         def read() -> list[Any]:
             status = get(c, vr, count, argument)
-            if status not in ACCEPTED or messages:
+            if status > WARNING or status < OK or said:
                 self.answered(function, status)
-            if kind is float or kind is int:
+            if number:
                 plain: list[Any] = values[:]
                 return plain
             if kind is bool:
@@ -64,14 +65,16 @@ class TypedAccess(FmuInstance):
         vr = (ctypes.c_uint * count)(*(v.reference for v in variables))
         own = self._array(kind, count)
         function = f"Set{_NAMES[kind]}"
-        put, c, messages = self._functions[function], self._c, self._messages
+        put, c, said = self._functions[function], self._c, self._messages.kept
         argument = self._argument(own, kind)
+        may_unfit = kind is int or kind is str
 
         def write(values: Sequence[Any]) -> None:
-            self._refuse_unfit(variables, kind, values)
+            if may_unfit:
+                self._refuse_unfit(variables, kind, values)
             own[:] = [v.encode() for v in values] if kind is str else values
             status = put(c, vr, count, argument)
-            if status not in ACCEPTED or messages:
+            if status > WARNING or status < OK or said:
                 self.answered(function, status)
 
         return write
