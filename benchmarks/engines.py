@@ -1,8 +1,7 @@
 """One co-simulation of an SSP package in one engine, in a process of its own.
 
-Run as ``python -m benchmarks.engines '[engine, ssp, steps, step, [outputs]]'``; prints JSON: wall
-time of the steps in s, of that in the components' own steps where the engine
-separates it, and the final values of the outputs. `compare` runs it.
+Run as ``python -m benchmarks.engines '[engine, ssp, steps, step, [outputs]]'``; prints JSON:
+processor time of the steps in s, peak memory in MB, and the final values of the outputs. `compare` runs it.
 """
 
 from __future__ import annotations
@@ -10,15 +9,16 @@ from __future__ import annotations
 import ctypes
 import json
 import os
+import resource
 import sys
 import sysconfig
 from collections.abc import Callable
 from pathlib import Path
-from time import perf_counter
+from time import process_time
 from typing import Any
 
-Result = tuple[float, float | None, dict[str, float]]
-"""Wall time, time in the components' steps, final values."""
+Result = tuple[float, dict[str, float]]
+"""Processor time of the steps, final values."""
 
 
 def _plain(name: str) -> str:
@@ -33,22 +33,97 @@ def _parted(name: str) -> tuple[str, str]:
     return ".".join(parts[:at]), ".".join(parts[at:])
 
 
-def ours(ssp: Path, steps: int, algorithm: str, watch: list[str]) -> Result:
+def ours(ssp: Path, steps: int, algorithm: str, watch: list[str], *, python: bool) -> Result:
+    from seatrial.cosim import master as module
     from seatrial.cosim.assembly import assemble
-    from seatrial.cosim.master import Master
     from seatrial.cosim.ssp.reading import read_ssp
 
+    if python:
+        module.is_compiled = lambda _system: False
     rig = read_ssp(ssp).rig.changed({"algorithm": algorithm})
     system = assemble(rig)
-    master = Master(system)
+    master = module.Master(system)
     master.initialise()
-    begun = perf_counter()
-    for _ in range(steps):
-        master.step()
-    wall = perf_counter() - begun
-    own = sum(times.total_ns for times in master.step_times.values()) * 1e-9
+    begun, left = process_time(), steps
+    while left:
+        left -= master.advance(left)
+    taken = process_time() - begun
     names = {_plain(".".join(name)): i for i, name in enumerate(master.names)}
-    return wall, own, {name: master.signals[names[_plain(name)]] for name in watch}
+    return taken, {name: master.signals[names[_plain(name)]] for name in watch}
+
+
+def fmpy_arrays(ssp: Path, steps: int, step: float, watch: list[str]) -> Result:
+    """A loop written by hand for real numbers: FMI's functions, in arrays allocated once."""
+    from seatrial.cosim.assembly import assemble
+    from seatrial.cosim.ssp.reading import read_ssp
+
+    system = assemble(read_ssp(ssp).rig)
+    places: dict[tuple[str, str], int] = {}
+    gets: list[Any] = []
+    sets: list[Any] = []
+    slaves: list[Any] = []
+    for name, part in system.parts.items():
+        instance = part.instance
+        instance.set_start({n: given.value for n, given in part.given.items()})
+        instance.initialise(0.0, float("inf"))
+        instance.begin()
+        slave = instance._slave
+        slaves.append((slave.fmi2DoStep, slave.component))
+        outputs = [v for v in instance.variables.values() if v.causality == "output"]
+        first, count = len(places), len(outputs)
+        places |= {(name, v.name): first + i for i, v in enumerate(outputs)}
+        references = (ctypes.c_uint * count)(*(v.reference for v in outputs))
+        values = (ctypes.c_double * count)()
+        gets.append((slave.fmi2GetReal, slave.component, references, count, values, first))
+    for name, part in system.parts.items():
+        fed = [w for w in system.connections if w.target[0] == name]
+        inputs = [part.instance.variables[w.target[1]].reference for w in fed]
+        references, count = (ctypes.c_uint * len(fed))(*inputs), len(fed)
+        sources = [places[w.source] for w in fed]
+        slave, values = part.instance._slave, (ctypes.c_double * count)()
+        sets.append((slave.fmi2SetReal, slave.component, references, count, values, sources))
+    signals = [0.0] * len(places)
+
+    def read() -> None:
+        for get, component, references, count, values, first in gets:
+            get(component, references, count, values)
+            signals[first : first + count] = values[:]
+
+    begun = process_time()
+    read()
+    for k in range(steps):
+        for put, component, references, count, values, sources in sets:
+            values[:] = [signals[place] for place in sources]
+            put(component, references, count, values)
+        for do_step, component in slaves:
+            do_step(component, k * step, step, 1)
+        read()
+    taken = process_time() - begun
+    named = {_plain(".".join(name)): signals[place] for name, place in places.items()}
+    return taken, {name: named[_plain(name)] for name in watch}
+
+
+def container(ssp: Path, steps: int, step: float, watch: list[str]) -> Result:
+    """The container FMU that FMUContainer has made of the package, in blocks of 100 steps."""
+    from fmpy import extract, read_model_description
+    from fmpy.fmi2 import FMU2Slave
+
+    path = str(ssp.with_suffix(".fmu"))
+    description = read_model_description(path, validate=False)
+    slave = FMU2Slave(
+        guid=description.guid, unzipDirectory=extract(path), instanceName="container",
+        modelIdentifier=description.coSimulation.modelIdentifier,
+    )  # fmt: skip
+    slave.instantiate()
+    slave.setupExperiment()
+    slave.enterInitializationMode()
+    slave.exitInitializationMode()
+    begun = process_time()
+    for k in range(0, steps, 100):
+        slave.doStep(k * step, 100 * step)
+    taken = process_time() - begun
+    references = {v.name: v.valueReference for v in description.modelVariables}
+    return taken, {name: slave.getReal([references[name]])[0] for name in watch}
 
 
 def fmpy_lists(ssp: Path, steps: int, step: float, watch: list[str]) -> Result:
@@ -98,36 +173,29 @@ def fmpy_lists(ssp: Path, steps: int, step: float, watch: list[str]) -> Result:
                 inputs = [variables[w.target[1]].reference for w in connections]
                 sets.append((setters[kind], inputs, [".".join(w.source) for w in connections]))
     values: dict[str, Any] = {}
-    own = 0.0
-    begun = perf_counter()
+    begun = process_time()
     for getter, references, names in gets:
         values.update(zip(names, getter(references), strict=True))
     for k in range(steps):
         for setter, references, names in sets:
             setter(references, [values[name] for name in names])
         for slave in slaves:
-            before = perf_counter()
             slave.doStep(k * step, step)
-            own += perf_counter() - before
         for getter, references, names in gets:
             values.update(zip(names, getter(references), strict=True))
-    wall = perf_counter() - begun
+    taken = process_time() - begun
     plain = {_plain(name): value for name, value in values.items()}
-    return wall, own, {name: plain[_plain(name)] for name in watch}
+    return taken, {name: plain[_plain(name)] for name in watch}
 
 
 def fmpy_ssp(ssp: Path, steps: int, step: float, watch: list[str]) -> Result:
     """FMPy's own; its set-up cannot be separated here: see `compare`."""
     from fmpy.ssp.simulation import simulate_ssp
 
-    begun = perf_counter()
+    begun = process_time()
     result = simulate_ssp(str(ssp), stop_time=(steps - 0.5) * step, step_size=step)
-    wall = perf_counter() - begun
-    return (
-        wall,
-        None,
-        {name: float(result[name][-1]) for name in watch if name in result.dtype.names},
-    )
+    taken = process_time() - begun
+    return taken, {name: float(result[name][-1]) for name in watch if name in result.dtype.names}
 
 
 def libcosim(ssp: Path, steps: int, watch: list[str]) -> Result:
@@ -140,10 +208,10 @@ def libcosim(ssp: Path, steps: int, watch: list[str]) -> Result:
     observer = CosimObserver.create_last_value()
     execution.add_observer(observer=observer)
     execution.step()  # initialises
-    begun = perf_counter()
+    begun = process_time()
     for _ in range(steps - 1):
         execution.step()
-    wall = (perf_counter() - begun) * steps / (steps - 1)
+    taken = (process_time() - begun) * steps / (steps - 1)
     values = {}
     for name in watch:
         slave, variable = _parted(name)
@@ -152,7 +220,7 @@ def libcosim(ssp: Path, steps: int, watch: list[str]) -> Result:
             v.reference for v in execution.slave_variables(index) if v.name.decode() == variable
         )
         values[name] = observer.last_real_values(index, [reference])[0]
-    return wall, None, values
+    return taken, values
 
 
 def ecos(ssp: Path, steps: int, step: float, watch: list[str]) -> Result:
@@ -163,26 +231,32 @@ def ecos(ssp: Path, steps: int, step: float, watch: list[str]) -> Result:
 
     simulation = EcosSimulation(step_size=step, ssp_path=str(ssp))
     simulation.init()
-    begun = perf_counter()
+    begun = process_time()
     for _ in range(steps):
         simulation.step()
-    wall = perf_counter() - begun
-    return wall, None, {name: simulation.get_real("::".join(_parted(name))) for name in watch}
+    taken = process_time() - begun
+    return taken, {name: simulation.get_real("::".join(_parted(name))) for name in watch}
 
 
 def main() -> None:
     engine, ssp, steps, step, watch = json.loads(sys.argv[1])
     path = Path(ssp)
     run: dict[str, Callable[[], Result]] = {
-        "seatrial": lambda: ours(path, steps, "plain-jacobi", watch),
-        "seatrial, feed-through read again": lambda: ours(path, steps, "jacobi", watch),
+        "seatrial": lambda: ours(path, steps, "plain-jacobi", watch, python=False),
+        "seatrial, feed-through read again": lambda: ours(
+            path, steps, "jacobi", watch, python=False
+        ),
+        "seatrial, master in Python": lambda: ours(path, steps, "plain-jacobi", watch, python=True),
+        "FMUContainer": lambda: container(path, steps, step, watch),
+        "FMPy, a loop with arrays": lambda: fmpy_arrays(path, steps, step, watch),
         "FMPy, a loop of list calls": lambda: fmpy_lists(path, steps, step, watch),
         "FMPy simulate_ssp": lambda: fmpy_ssp(path, steps, step, watch),
         "libcosimpy": lambda: libcosim(path, steps, watch),
         "ecospy": lambda: ecos(path, steps, step, watch),
     }
-    wall, own, values = run[engine]()
-    answer: dict[str, Any] = {"wall": wall, "own": own, "values": values}
+    taken, values = run[engine]()
+    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    answer: dict[str, Any] = {"taken": taken, "memory": memory, "values": values}
     sys.stdout.write("\n" + json.dumps(answer) + "\n")
     sys.stdout.flush()
     os._exit(0)  # pythonfmu's library may crash in its exit handlers, after all work is done
