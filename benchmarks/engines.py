@@ -9,13 +9,14 @@ from __future__ import annotations
 import ctypes
 import json
 import os
-import resource
 import sys
 import sysconfig
 from collections.abc import Callable
 from pathlib import Path
 from time import process_time
 from typing import Any
+
+from .pages import peak_memory
 
 Result = tuple[float, dict[str, float]]
 """Processor time of the steps, final values."""
@@ -255,7 +256,7 @@ def main() -> None:
         "ecospy": lambda: ecos(path, steps, step, watch),
     }
     taken, values = run[engine]()
-    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    memory = peak_memory()
     answer: dict[str, Any] = {"taken": taken, "memory": memory, "values": values}
     sys.stdout.write("\n" + json.dumps(answer) + "\n")
     sys.stdout.flush()

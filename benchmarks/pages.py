@@ -1,4 +1,4 @@
-"""Shared by benchmarks: the yardstick of a loop, and a place in a page."""
+"""Shared by benchmarks: the yardstick of a loop, peak memory, and a place in a page."""
 
 from __future__ import annotations
 
@@ -15,6 +15,12 @@ def addition() -> float:
     for k in range(_ADDITIONS):
         total += k
     return (time.process_time() - begin) / _ADDITIONS
+
+
+def peak_memory() -> float:
+    """Return the peak of this process's own memory, MB: none of who started it."""
+    status = Path("/proc/self/status").read_text("ascii")
+    return next(int(line.split()[1]) for line in status.splitlines() if "VmHWM" in line) / 1024
 
 
 def write_measured(page: str, text: str, what: str = "measured") -> None:

@@ -1,0 +1,155 @@
+"""The Hydrone's closed loop as a multiple of real time, by carrier: ``python -m benchmarks.carriers``.
+
+Nine components of the rig `landing` at 10 ms, without recording: in process, as Python FMUs, as
+native FMUs under the master in Python and under the compiled one. Each runs in a process of its
+own, in turn, for some rounds; processor time of the steps without set-up. The start, with
+assembly and initialisation, and peak memory are told too. At last a campaign: the processor time of
+whole trials with their pages. ``--write`` puts the table into docs/performance.md.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import platform
+import resource
+import statistics
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from time import process_time
+from typing import Any
+
+from seatrial.cosim import master as master_module
+from seatrial.cosim.assembly import assemble
+from seatrial.cosim.flattening import load_rig
+from seatrial.cosim.master import Master
+from seatrial.cosim.system import System
+
+from .history import noted
+from .pages import peak_memory, write_measured
+
+DIRECT, FMUS = "Python, in process", "Python FMUs"
+NATIVE, COMPILED = "native FMUs, master in Python", "native FMUs, compiled master"
+CARRIERS = {DIRECT: 1500, FMUS: 1500, NATIVE: 6000, COMPILED: 60_000}
+"""Steps that are measured."""
+WARM = 200
+HERE = Path(__file__).parent
+CAMPAIGN = "hydrone-open-pads"
+
+
+def assembled(carrier: str) -> System:
+    """Return the rig with all components on one carrier."""
+    system = assemble(load_rig("landing"), "fmu" if carrier == FMUS else "direct")
+    if carrier in (NATIVE, COMPILED):
+        from seatrial.fmi.load import load_fmu, open_instance
+        from seatrial.fmi.native.cached import native_fmu
+        from seatrial.fmi.source import find_source
+
+        for name, part in system.parts.items():
+            source = find_source(part.fmu, Path())
+            assert not isinstance(source, Path)
+            given = {variable: given.value for variable, given in part.given.items()}
+            part.instance = open_instance(load_fmu(native_fmu(source, given)), name)
+    return system
+
+
+def one(carrier: str) -> dict[str, Any]:
+    """Return what the steps of one carrier take, us; the start, s; memory, MB."""
+    if carrier == NATIVE:
+        master_module.is_compiled = lambda _system: False
+    begun, system = process_time(), assembled(carrier)
+    master = Master(system)
+    master.initialise()
+    started = process_time() - begun
+    for steps in (WARM, CARRIERS[carrier]):
+        begun, left = process_time(), steps
+        while left:
+            left -= master.advance(left)
+    taken = (process_time() - begun) / CARRIERS[carrier] * 1e6
+    return {"us": taken, "start": started, "memory": peak_memory()}
+
+
+def run(carrier: str) -> dict[str, Any]:
+    """Run one carrier in a process of its own."""
+    done = subprocess.run(
+        [sys.executable, "-m", "benchmarks.carriers", "--one", carrier],
+        capture_output=True, text=True, check=True, cwd=HERE.parent,
+    )  # fmt: skip
+    answer: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
+    return answer
+
+
+def campaign() -> tuple[float, int]:
+    """Return the processor time of a case of a campaign, with its page, s; and how many ran."""
+    with tempfile.TemporaryDirectory(prefix="seatrial-") as folder:
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        command = "from seatrial.cli import main; main()"
+        subprocess.run(
+            [sys.executable, "-c", command, "run", CAMPAIGN, "--engine", "direct", "--jobs", "1",
+             "--out", f"{folder}/out"],
+            capture_output=True, check=False, cwd=folder,
+        )  # fmt: skip
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        cases = len(list(Path(folder, "out").glob("*/manifest.json")))
+    taken = after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
+    return taken / max(1, cases), cases
+
+
+def table(found: dict[str, list[dict[str, Any]]]) -> str:
+    """Return the table in Markdown."""
+    rows = [
+        "| carrier | µs per step | times real time | ratio to in process | start, s | memory, MB |",
+        "| --- | --- | --- | --- | --- | --- |",
+    ]
+    for carrier, rounds in found.items():
+        us = statistics.median(each["us"] for each in rounds)
+        ratios = [a["us"] / b["us"] for a, b in zip(rounds, found[DIRECT], strict=True)]
+        ratio = f"{statistics.median(ratios):.3g} ({min(ratios):.3g} to {max(ratios):.3g})"
+        times = sorted(1e4 / each["us"] for each in rounds)
+        real = f"{statistics.median(times):.0f} ({times[0]:.0f} to {times[-1]:.0f})"
+        start = statistics.median(each["start"] for each in rounds)
+        memory = rounds[0]["memory"]
+        rows.append(f"| {carrier} | {us:.3g} | {real} | {ratio} | {start:.2f} | {memory:.0f} |")
+    return "\n".join(rows)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawTextHelpFormatter
+    )
+    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--one", choices=CARRIERS, help=argparse.SUPPRESS)
+    parser.add_argument(
+        "--write", action="store_true", help="put the table into docs/performance.md"
+    )
+    options = parser.parse_args()
+    if options.one:
+        print(json.dumps(one(options.one)), flush=True)
+        os._exit(0)  # pythonfmu's library may crash in its exit handlers
+    found: dict[str, list[dict[str, Any]]] = {carrier: [] for carrier in CARRIERS}
+    for number in range(-1, options.rounds):  # the first fills the caches
+        for carrier, rounds in found.items():
+            answer = run(carrier)
+            if number >= 0:
+                rounds.append(answer)
+    per_case, cases = campaign()
+    text = (
+        f"Python {platform.python_version()}, {options.rounds} rounds.\n\n{table(found)}\n\n"
+        f"The campaign `{CAMPAIGN}`, in process: {per_case:.2f} s of processor time for each of its "
+        f"{cases} cases of 20 s, with start, record of every step, criteria and page: "
+        f"{60 / per_case:.0f} cases a minute on one core."
+    )
+    print(text)
+    if options.write:
+        middle = {c: statistics.median(each["us"] for each in r) for c, r in found.items()}
+        ratios = {f"{c} to in process": us / middle[DIRECT] for c, us in middle.items()}
+        write_measured(
+            "performance.md", f"{text}\n\n{noted('carriers', ratios)}", "measured of the carriers"
+        )
+
+
+if __name__ == "__main__":
+    main()
