@@ -61,6 +61,7 @@ class Right(NamedTuple):
 BY_RIGHT = (
     Right("wire, wires, wired, wiring", "*arduino*", "", "electrical, and Arduino's library Wire"),
     Right("pin, pins", "*arduino*", "", "of a board"),
+    Right("pins", "docs/vehicles/gloria.md", "", "of a board"),
     Right("pin", "*gprs*", "", "of a SIM card"),
     Right("pin", "docs/reference/link-keys.md", "SIM card", "of a SIM card"),
     Right("room", "src/seatrial/links/arduino/*", "", "free space of a buffer"),

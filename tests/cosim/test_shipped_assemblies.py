@@ -43,6 +43,7 @@ LATER = {
     },
     "gloria": {
         "imu.valid mavlink.imu_valid",
+        "servos.sail.speed boat.sail_rate",
         *(f"{a} {n}.angle" for a, n in [("helm.rudder", "rudder"), ("trimmer.sail", "sail"), ("trimmer.flap", "flap")]),
         *(f"{n}.pulse mavlink.pulse.ch{i}" for i, n in enumerate(("rudder", "flap", "sail"), 1)),
     },
