@@ -7,8 +7,6 @@ import subprocess
 from collections.abc import Iterable
 from pathlib import Path
 
-from ...errors import InputError
-
 _C_LIBRARY = re.compile(
     r"(ld-linux.*|linux-vdso|linux-gate|lib(c|m|dl|pthread|rt|util|resolv|nsl|anl))\.so.*"
 )
@@ -20,8 +18,8 @@ _VERSION = re.compile(rb"GLIBC_(2\.\d+)")
 def needed(libraries: Iterable[Path], carried: Iterable[str]) -> dict[str, Path]:
     """Return the libraries that others need, by name: those that others of them need come first.
 
-    Without those of glibc and those ``carried``, which lie beside what needs them. Raises
-    InputError for one that this machine lacks.
+    Without those of glibc, those ``carried``, which lie beside what needs them, and those that
+    this machine lacks: what needs them, a plug-in of a solver say, does not load here either.
     """
     own = set(carried)
     found: dict[str, Path] = {}
@@ -48,7 +46,4 @@ def _of(library: Path) -> dict[str, Path]:
     run = subprocess.run(["ldd", str(library)], capture_output=True, text=True)
     if run.returncode:  # not a dynamic one
         return {}
-    missing = [line.split()[0] for line in run.stdout.splitlines() if "=> not found" in line]
-    if missing:
-        raise InputError(f"{library} needs {', '.join(missing)}, which this machine lacks")
     return {m["name"]: Path(m["path"]) for m in map(_LINE.match, run.stdout.splitlines()) if m}
