@@ -121,6 +121,15 @@ def test_the_command_says_what_it_needs(gnss: Path, tmp_path: Path) -> None:
     )
 
 
+@pytest.mark.long
+@needs_bwrap
+def test_packages_with_libraries_of_their_own_travel(tmp_path: Path) -> None:
+    """CasADi's: libraries beside it, of the system, and plug-ins of solvers that are not here."""
+    host, guid = image_of(built("marine-craft", tmp_path), tmp_path)
+    run = subprocess.run([*host, guid, RESOURCES, "0.2"], capture_output=True, text=True)
+    assert (run.returncode, run.stderr) == (0, "")
+
+
 def test_it_is_native_or_standalone(tmp_path: Path) -> None:
     run = seatrial("fmu", "build", "gnss", "--standalone", "--native", cwd=tmp_path)
     assert run.returncode == 2

@@ -88,11 +88,11 @@ def _libraries(files: Mapping[str, bytes]) -> dict[str, bytes]:
         placed = []
         for name, data in files.items():
             if ".so" in name:
-                path = Path(folder, name)
+                path = Path(folder).resolve() / name
                 path.parent.mkdir(parents=True, exist_ok=True)
                 path.write_bytes(data)
                 placed.append(path)
-        found = needed(placed, (path.name for path in placed))
+        found = needed(placed, Path(folder).resolve())
         listed = {f"lib/{name}": path.read_bytes() for name, path in found.items()}
     return {**listed, "lib/libraries.txt": "".join(f"{name}\n" for name in found).encode()}
 

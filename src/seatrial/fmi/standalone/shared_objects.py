@@ -15,18 +15,18 @@ _LINE = re.compile(r"\s*(?P<name>\S+) => (?P<path>/\S+)")
 _VERSION = re.compile(rb"GLIBC_(2\.\d+)")
 
 
-def needed(libraries: Iterable[Path], carried: Iterable[str]) -> dict[str, Path]:
+def needed(libraries: Iterable[Path], folder: Path) -> dict[str, Path]:
     """Return the libraries that others need, by name: those that others of them need come first.
 
-    Without those of glibc, those ``carried``, which lie beside what needs them, and those that
-    this machine lacks: what needs them, a plug-in of a solver say, does not load here either.
+    Without those of glibc, those that are found in ``folder``, where ``libraries`` lie as they will
+    in the FMU, and those that this machine lacks: what needs them, a plug-in of a solver say,
+    does not load here either.
     """
-    own = set(carried)
     found: dict[str, Path] = {}
 
     def add(library: Path) -> None:
         for name, path in _of(library).items():
-            if name not in own and name not in found and not _C_LIBRARY.fullmatch(name):
+            if name not in found and not _C_LIBRARY.fullmatch(name) and folder not in path.parents:
                 add(path)
                 found[name] = path
 
