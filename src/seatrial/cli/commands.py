@@ -68,6 +68,9 @@ COMMANDS = {
         "Plan a vessel's motion from wanted speeds; status 1 if its thrusters cannot do it.",
     ),
     "play": Command("play:play", "Play a run back in three dimensions, in a browser."),
+    "live": Command(
+        "live:live", "Run a rig in real time and show it in three dimensions, in a browser."
+    ),
     "fmu": Command("fmu:fmu_app", "List, build, check and describe FMUs."),
     "profile": Command("profile:profile_app", "Check and describe profiles of electronics."),
     "decode": Command("decode:decode_app", "Show recorded streams as text."),

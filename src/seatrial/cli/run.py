@@ -23,6 +23,7 @@ from ..trials.supervision import run_supervised
 from ..trials.trial import Trial, load_trial
 from .answer import answer
 from .junit import write_junit
+from .live import LiveControl, page_of, run_watched
 from .named import refuse_rig, runnable
 from .options import (
     Autopilot,
@@ -36,6 +37,7 @@ from .options import (
     engine_named,
     is_campaign,
 )
+from .play import Open, Port
 from .show import (
     console,
     print_case,
@@ -98,6 +100,13 @@ def run(
         bool,
         typer.Option("--resume", help="Go on with a campaign that was stopped, in --out's folder."),
     ] = False,
+    live: Annotated[
+        bool,
+        typer.Option("--live", help="Show the run in three dimensions, in a browser, as it goes."),
+    ] = False,
+    port: Port = 0,
+    open_: Open = False,
+    live_control: LiveControl = False,
     no_report: Annotated[
         bool, typer.Option("--no-report", help="Write no report: seatrial report makes it.")
     ] = False,
@@ -111,7 +120,12 @@ def run(
     changes = changes_of(settings, choices, vehicle, autopilot)
     pace = {"factor": real_time, "overrun": overrun}
     pace = {key: value for key, value in pace.items() if value is not None}
+    page = page_of(port, open_, hardware, live_control) if live else None
+    if page is None and (port or open_ or live_control):
+        raise InputError("--port, --open and --live-control go with --live")
     if is_campaign(trial):
+        if live:
+            raise InputError("--live works with a trial, not with a campaign")
         campaign = load_campaign(trial)
         if settings:
             raise InputError("--set works with a trial; a campaign sets its own parameters")
@@ -145,7 +159,10 @@ def run(
                 interruptible=stop.interruptible,
                 reachable=print_reachable,
             )
-            result = run_supervised(loaded, out, engine=chosen, hooks=hooks)
+            if page is None:
+                result = run_supervised(loaded, out, engine=chosen, hooks=hooks)
+            else:
+                result = run_watched(loaded, out, chosen, hooks, page)
         print_verdicts(result)
         answer.result = {"trial": loaded.name, "runs": [run_entry(result)]}
         leaves.write_junit([(loaded.name, result)])

@@ -67,7 +67,7 @@ def html_of(states: Sequence[tuple[str, str, str]]) -> str:
     rows = "".join(
         f'<div style="display:flex;gap:.5em;margin:.25em 0;font-size:.85em;line-height:1.25">'
         f'<span style="flex:none;width:.85em;height:.85em;margin-top:.15em;border-radius:50%;'
-        f'background:{_COLOURS[state]}"></span><span data-state="{state}">{escape(name)}'
+        f'background:{_COLOURS[state]}"></span><span data-verdict="{state}">{escape(name)}'
         f'<br><span style="opacity:.65">{_WORDS[state]}{": " if said else ""}{escape(said)}'
         f"</span></span></div>"
         for name, state, said in states

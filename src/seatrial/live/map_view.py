@@ -32,6 +32,7 @@ class Map:
         if tracks is None:
             tracks = [c.position[: frame.row + 1, :2] for c in self._motion.crafts]
         else:
+            tracks = [track[:, :2] for track in tracks]
             self._fit(tracks)
         parts = [self._grid()]
         for route in self._routes:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -81,6 +82,23 @@ class Motion:
     def at(self, time: float) -> Frame:
         """Return the run at a time, s; before its start and after its end, what was there."""
         return Frame(self, time)
+
+    def tracks(self, columns: Mapping[str, FloatArray]) -> list[FloatArray]:
+        """Return (east, north, up) of each craft for columns of its position in its own {n}.
+
+        A craft with a home of its own is moved by as much as it is here.
+        """
+        found = []
+        for craft in self.crafts:
+            own = [columns.get(f"{craft.component}.position.{axis}") for axis in "xyz"]
+            if any(column is None for column in own):
+                found.append(craft.position)
+                continue
+            north, east, down = (np.asarray(column) for column in own)
+            here = [self.run.signals[f"{craft.component}.position.{axis}"][-1] for axis in "yxz"]
+            moved = craft.position[-1] - np.array(here) * [1.0, 1.0, -1.0]
+            found.append(np.stack([east, north, -down], 1) + moved)
+        return found
 
     @property
     def span(self) -> tuple[float, float]:

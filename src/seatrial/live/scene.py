@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -84,10 +85,10 @@ class Scene:
         self._compass.position = (east, north, self._crest)
         self._show_arrows(frame, east, north)
 
-    def draw_tracks(self) -> None:
-        """Draw the whole track of each craft, as far as it is recorded."""
-        for number, craft in enumerate(self.motion.crafts):
-            points = craft.position[:: -(-len(craft.position) // _LONGEST_TRACK)]
+    def draw_tracks(self, tracks: Sequence[FloatArray] | None = None) -> None:
+        """Draw the track of each craft, (east, north, up): by default as it is recorded."""
+        for number, track in enumerate(tracks or [c.position for c in self.motion.crafts]):
+            points = track[:: -(-len(track) // _LONGEST_TRACK) or 1]
             if len(points) < 2:
                 continue
             colour = (150, 150, 150) if self._is_ghost else TRACKS[number % len(TRACKS)]

@@ -59,6 +59,7 @@ def look(gui: Any, *, dark: bool = False) -> None:
     gui.configure_theme(
         show_logo=False, show_share_button=False, control_width="large", dark_mode=dark
     )
+    gui.main_panel.dock_right()
 
 
 def _serve(serve: Callable[..., Any], token: str, handler: Any, *places: Any, **how: Any) -> Any:

@@ -6,12 +6,15 @@ from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from ..errors import SimulationError
 
 if TYPE_CHECKING:
+    from ..cosim.master import Master
     from ..cosim.system import System
+    from .pacing import Pace
+    from .preparation import Prepared
 
 Progress = Callable[[float, float], None]
 """Called now and then with the simulated time that has passed, and that of the whole run, s."""
@@ -19,6 +22,23 @@ Progress = Callable[[float, float], None]
 
 class StoppedError(SimulationError):
     """A run was stopped before it began: it left nothing."""
+
+
+class Observer(Protocol):
+    """Looks at a run between its steps, where the run is: in the process of its own."""
+
+    stops: bool
+    """Whether it wants the run to stop."""
+
+    def begin(self, prepared: Prepared, master: Master, pace: Pace | None, folder: Path) -> None:
+        """Called once, at the start time."""
+
+    def at_point(self, stop_requested: Callable[[], int]) -> None:
+        """Called at each communication point, before its row is recorded.
+
+        What it sets or injects is as if events and faults of the trial had done it. It may stay,
+        as long as no stop is requested.
+        """
 
 
 @dataclass(frozen=True)
@@ -37,6 +57,8 @@ class Hooks:
     """Around what a component may never return from: elsewhere no signal raises anything."""
     reachable: Callable[[str, str], None] = lambda _name, _where: None
     """In real time: a component that programs outside connect to, and where."""
+
+    observer: Observer | None = None
 
     def refuse_if_stopped(self) -> None:
         """Raise StoppedError if a stop was requested before anything was written."""

@@ -152,8 +152,10 @@ class Run:
     def _loop(self) -> str:
         """Step to the end; return the status."""
         master, recorder, termination = self._master, self._recorder, self._termination
-        events, steps = self._events, self.prepared.trial.steps
+        events, steps, observer = self._events, self.prepared.trial.steps, self._hooks.observer
         stop_requested, pace = self._hooks.stop_requested, self._pace
+        if observer is not None:
+            observer.begin(self.prepared, master, pace, self.folder)
         if pace is not None:
             pace.start()
         while True:
@@ -161,7 +163,10 @@ class Run:
                 event = events.pop(0)
                 where = f"event {event.key}"
                 action(master.system, "set", event.key, event.written, where).apply(master)
-            stopping, decided, over = stop_requested(), termination.status(), master.steps >= steps
+            if observer is not None:
+                observer.at_point(stop_requested)
+            stopping = stop_requested() or (observer is not None and observer.stops)
+            decided, over = termination.status(), master.steps >= steps
             enders = master.ended()
             recorder.record(last=bool(stopping or decided or over or enders))
             if decided or over or enders:

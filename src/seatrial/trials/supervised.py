@@ -12,7 +12,7 @@ from typing import Any
 from ..cosim.system import Engine, System
 from ..errors import SeatrialError, SimulationError
 from .forked_child import Child, forward_output
-from .hooks import Hooks
+from .hooks import Hooks, Observer
 from .link import Frame
 from .run import Result, check_trial, run_trial
 from .trial import Trial
@@ -25,10 +25,12 @@ def no_page(_folder: Path) -> None:
     """Write no report."""
 
 
-def serve(trials: Sequence[Trial], engine: Engine, page: Page, child: Child) -> None:
+def serve(
+    trials: Sequence[Trial], engine: Engine, page: Page, observer: Observer | None, child: Child
+) -> None:
     """Carry out orders until there are no more: ``check``, ``run`` and ``report``, by number.
 
-    ``page`` writes the report of a run's folder.
+    ``page`` writes the report of a run's folder, ``observer`` looks at the runs.
 
     Each ends with one frame: ``done`` or ``error``.
     """
@@ -37,22 +39,22 @@ def serve(trials: Sequence[Trial], engine: Engine, page: Page, child: Child) -> 
     while (orders := child.link.receive()) is not None:
         for order in orders:
             os.chdir(here)  # a component may have left it
-            child.link.send(*_carried_out(order, trials, engine, page, child))
+            child.link.send(*_carried_out(order, trials, engine, page, _hooks(child, observer)))
 
 
 def _carried_out(
-    order: Frame, trials: Sequence[Trial], engine: Engine, page: Page, child: Child
+    order: Frame, trials: Sequence[Trial], engine: Engine, page: Page, hooks: Hooks
 ) -> Frame:
     what, number, folder = order
     try:
         out = None if folder is None else Path(folder)
         if what == "check":
-            alone = check_trial(trials[number], engine, _hooks(child))
+            alone = check_trial(trials[number], engine, hooks)
             return ["done", {"alone": alone}]
         if what == "report" and out is not None:
             page(out)
             return ["done", {}]
-        result = run_trial(trials[number], out, engine=engine, hooks=_hooks(child))
+        result = run_trial(trials[number], out, engine=engine, hooks=hooks)
         return ["done", _written(result)]
     except SeatrialError as error:
         return ["error", type(error).__name__, str(error)]
@@ -66,7 +68,7 @@ def _carried_out(
         return ["error", SimulationError.__name__, f"an error of seatrial itself:\n{text}"]
 
 
-def _hooks(child: Child) -> Hooks:
+def _hooks(child: Child, observer: Observer | None) -> Hooks:
     link, trace = child.link, child.call_trace
 
     def assembled(system: System, manifest: dict[str, Any]) -> None:
@@ -82,6 +84,7 @@ def _hooks(child: Child) -> Hooks:
         claimed=lambda folder: link.send("claimed", str(folder)),
         stop_requested=child.asked,
         interruptible=child.interruptible,
+        observer=observer,
     )
 
 

@@ -89,7 +89,8 @@ class Supervisor:
             return
         if self._forked is None:
             preload(self._trials, self._engine)
-            self._forked = Forked(partial(serve, self._trials, self._engine, self._page))
+            observer = self._hooks.observer
+            self._forked = Forked(partial(serve, self._trials, self._engine, self._page, observer))
         self._busy = True
         self._forked.link.send(what, number, None if folder is None else str(folder))
 
