@@ -117,9 +117,10 @@ class TrialResult:
 
     def report(self) -> Path:
         """Write ``report.html`` into the folder and return its path."""
+        from ..live.stage import played
         from ..trials.report import write_report
 
-        return write_report(self.folder)
+        return write_report(self.folder, play=played)
 
     @cached_property
     def _run(self) -> Run:

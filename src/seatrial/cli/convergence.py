@@ -19,6 +19,7 @@ from ..trials.report import write_report
 from ..trials.run import Result
 from ..trials.trial import load_trial
 from .answer import answer
+from .looked_at import play
 from .options import (
     Autopilot,
     Choices,
@@ -58,7 +59,7 @@ def convergence(
 
             def done(result: Result) -> None:
                 watch.log(lambda: None)
-                write_report(result.folder)
+                write_report(result.folder, play=play)
 
             hooks = Hooks(
                 building=watch.building,
@@ -70,7 +71,7 @@ def convergence(
             folder, found = run_convergence(
                 loaded, out, halvings=halvings, engine=chosen, hooks=hooks, done=done
             )
-        page = write_report(folder)
+        page = write_report(folder, play=play)
     answer.result = {
         "folder": str(folder),
         "steps_s": found.steps,

@@ -10,6 +10,7 @@ import typer
 from ..trials.campaign_report import CAMPAIGN, write_campaign_report
 from ..trials.report import write_report
 from .answer import answer
+from .looked_at import play
 from .show import console
 
 
@@ -18,6 +19,6 @@ def report(
 ) -> None:
     """Write the report of a run again."""
     is_campaign = (folder / CAMPAIGN).is_file()
-    page = write_campaign_report(folder) if is_campaign else write_report(folder)
+    page = write_campaign_report(folder) if is_campaign else write_report(folder, play=play)
     answer.result = {"report": str(page)}
     console.print(f"report: {page}", soft_wrap=True)

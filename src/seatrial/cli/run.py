@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -24,6 +25,7 @@ from ..trials.trial import Trial, load_trial
 from .answer import answer
 from .junit import write_junit
 from .live import LiveControl, page_of, run_watched
+from .looked_at import play
 from .named import refuse_rig, runnable
 from .options import (
     Autopilot,
@@ -166,7 +168,7 @@ def run(
         print_verdicts(result)
         answer.result = {"trial": loaded.name, "runs": [run_entry(result)]}
         leaves.write_junit([(loaded.name, result)])
-        _print_page(leaves.page(lambda: write_report(result.folder), [result]))
+        _print_page(leaves.page(lambda: write_report(result.folder, play=play), [result]))
     _exit_with([result])
 
 
@@ -199,7 +201,7 @@ def _run_campaign(campaign: Campaign, out: Path | None, how: How, leaves: Leaves
                 campaign,
                 out,
                 **vars(how),
-                page=write_case_report if leaves.report else None,
+                page=partial(write_case_report, play=play) if leaves.report else None,
                 hooks=hooks,
                 done=done,
             )

@@ -32,29 +32,48 @@ def mesh_of(part: Mapping[str, Any]) -> Mesh | None:
 
     A part that stretches reaches from its origin along x, any other is about its origin.
     """
-    import trimesh.creation as made  # half of the time of a start
-
     if "box" in part:
-        found = made.box(extents=part["box"])
+        length, breadth, height = (0.5 * size for size in part["box"])
+        corners = [[-length, -height], [length, -height], [length, height], [-length, height]]
+        found = _plate(corners, 2.0 * breadth)
     elif "cylinder" in part:
-        found = made.cylinder(
-            radius=part["cylinder"]["radius"], height=part["cylinder"]["length"], sections=_AROUND
-        )
-        found.apply_transform(_Z_TO_X)
+        radius, half = part["cylinder"]["radius"], 0.5 * part["cylinder"]["length"]
+        found = _turned([[-half, 0.0], [-half, radius], [half, radius], [half, 0.0]])
     elif "capsule" in part:
-        size = part["capsule"]
-        found = made.capsule(radius=size["radius"], height=size["length"], count=(_AROUND, _AROUND))
-        found.apply_transform(_Z_TO_X)
+        found = _turned(_capsule(**part["capsule"]))
     elif "hull" in part:
-        return _lifted(_hull(**part["hull"]), part)
+        found = _hull(**part["hull"])
     elif "plate" in part:
-        return _lifted(_plate(**part["plate"]), part)
+        found = _plate(**part["plate"])
     else:
         return None
-    return _lifted(Mesh(np.asarray(found.vertices), np.asarray(found.faces)), part)
+    return _lifted(found, part)
 
 
-_Z_TO_X = np.array([[0.0, 0, 1, 0], [0, 1, 0, 0], [-1, 0, 0, 0], [0, 0, 0, 1]])
+def _capsule(radius: float, length: float) -> list[list[float]]:
+    """Return the outline of a capsule, (x, distance from the axis), from end to end."""
+    angle = np.linspace(0.0, 0.5 * np.pi, _AROUND // 4 + 1)
+    along, out = radius * np.cos(angle), radius * np.sin(angle)
+    back = np.stack([-0.5 * length - along, out], 1)
+    ahead = np.stack([0.5 * length + along, out], 1)[::-1]
+    outline: list[list[float]] = np.concatenate([back, ahead]).tolist()
+    return outline
+
+
+def _turned(outline: list[list[float]]) -> Mesh:
+    """Return a body of revolution about x; its outline begins and ends on the axis."""
+    angle = np.arange(_AROUND) * (2.0 * np.pi / _AROUND)
+    rings = [[x, r * np.cos(a), r * np.sin(a)] for x, r in outline[1:-1] for a in angle]
+    vertices = np.array([[outline[0][0], 0.0, 0.0], *rings, [outline[-1][0], 0.0, 0.0]])
+    i = np.arange(_AROUND)
+    j, last = (i + 1) % _AROUND, len(vertices) - 1
+    ends = last - _AROUND
+    faces = [np.stack([0 * i, 1 + j, 1 + i], 1), np.stack([0 * i + last, ends + i, ends + j], 1)]
+    for ring in range(len(outline) - 3):
+        a, b = 1 + ring * _AROUND + i, 1 + ring * _AROUND + j
+        c, d = a + _AROUND, b + _AROUND
+        faces += [np.stack([a, b, c], 1), np.stack([b, d, c], 1)]
+    return Mesh(vertices, np.concatenate(faces))
 
 
 def _lifted(mesh: Mesh, part: Mapping[str, Any]) -> Mesh:

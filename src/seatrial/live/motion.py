@@ -75,7 +75,7 @@ class Motion:
 
     def __init__(self, run: Run) -> None:
         self.run = run
-        self.crafts: list[Craft] = crafts(run)
+        self.crafts: list[Craft] = crafts(run, geodetic=False)
         self.turns = [_turns(craft) for craft in self.crafts]
         """Quaternions (w, x, y, z) of body axes with z down, row by row."""
 

@@ -85,6 +85,11 @@ class Scene:
         self._compass.position = (east, north, self._crest)
         self._show_arrows(frame, east, north)
 
+    @property
+    def has_waves(self) -> bool:
+        """Whether the water moves."""
+        return self._water is not None and self._water.waves is not None
+
     def draw_tracks(self, tracks: Sequence[FloatArray] | None = None) -> None:
         """Draw the track of each craft, (east, north, up): by default as it is recorded."""
         for number, track in enumerate(tracks or [c.position for c in self.motion.crafts]):

@@ -13,7 +13,7 @@ import json
 import math
 import time
 from array import array
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from multiprocessing.connection import Connection
 from pathlib import Path
@@ -28,8 +28,6 @@ from ..cosim.faults import resolved
 from ..cosim.files import validated
 from ..cosim.master import Master
 from ..errors import InputError, SimulationError
-from ..trials.pacing import Pace
-from ..trials.preparation import Prepared
 from .settables import orders_of, settables_of
 
 _FRAME_S = 1.0 / 30.0
@@ -57,20 +55,22 @@ class Tap:
     _next_frame: float = 0.0
     _faults: dict[int, Fault] = field(default_factory=dict)
 
-    def begin(self, prepared: Prepared, master: Master, pace: Pace | None, folder: Path) -> None:
+    def begin(
+        self, manifest: Mapping[str, Any], master: Master, pacer: Pacer | None, folder: Path
+    ) -> None:
         """Tell the page what there is."""
-        self._master, self._pace = master, pace
+        self._master, self._of_trial = master, pacer
         numbers = [i for i, value in enumerate(master.signals) if isinstance(value, int | float)]
         self._numbers = numbers
         self._own: Pacer | None = None
         self._changed_pace(self.factor)
         described = {
-            "manifest": json.loads(json.dumps(prepared.manifest)),
+            "manifest": json.loads(json.dumps(manifest)),
             "folder": str(folder),
             "signals": [".".join(master.names[i]) for i in numbers],
-            "settables": settables_of(prepared.system, master),
-            "orders": orders_of(prepared.system),
-            "paced": pace is not None,
+            "settables": settables_of(master.system, master),
+            "orders": orders_of(master.system),
+            "paced": pacer is not None,
             "step": seconds(master.step_ns),
         }
         self.pipe.send(("begin", described))
@@ -98,7 +98,7 @@ class Tap:
                 self.pipe.poll(_LOOK_S)
             self._look()
         self._steps = max(self._steps - 1, 0)
-        for pacer in (self._own, None if self._pace is None else self._pace.pacer):
+        for pacer in (self._own, self._of_trial):
             if pacer is not None:
                 pacer.pause(time.monotonic_ns() - begun)
 
@@ -187,7 +187,7 @@ class Tap:
 
     def _changed_pace(self, factor: float | None) -> None:
         """Keep to a pace of the page's own; a trial in real time has its own."""
-        if self._pace is not None:
+        if self._of_trial is not None:
             return
         if factor is None:
             self._own = None

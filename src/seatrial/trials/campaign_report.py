@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
@@ -15,15 +16,15 @@ from .decks import Pad, deck, pads
 from .plotly_js import plotly_js
 from .plots import deck_figure
 from .readable import quantity_text
-from .report import REPORT, render, write_report
-from .run_folder import load_run, read_manifest
+from .report import REPORT, Play, Played, render, write_report
+from .run_folder import Run, load_run, read_manifest
 from .run_schema import checked_json
 from .sailing import PolarPoint, polar_figure, polar_point
 
 CAMPAIGN = "campaign.json"
 
 
-LIBRARY = "plotly.js"
+LIBRARY, VIEWER = "plotly.js", "viewer.js"
 """Plotly's JavaScript, beside a campaign's page: once for all of its pages."""
 
 
@@ -45,13 +46,22 @@ class Case:
     note: str
 
 
-def write_case_report(folder: Path) -> Path:
+def write_case_report(folder: Path, play: Play | None = None) -> Path:
     """Write the report of a run in the folder of its campaign, and return its path.
 
     Raises InputError.
     """
     _share_library(folder.parent)
-    return write_report(folder, f"../{LIBRARY}")
+    shared = None if play is None else partial(_share_viewer, folder.parent, play)
+    return write_report(folder, f"../{LIBRARY}", shared, f"../{VIEWER}")
+
+
+def _share_viewer(folder: Path, play: Play, run: Run) -> Played | None:
+    """Return a run to be played, whose viewer stands beside all cases' folders."""
+    played = play(run)
+    if played is not None and not (folder / VIEWER).is_file():
+        write_whole(folder / VIEWER, played.viewer)
+    return played
 
 
 def _share_library(folder: Path) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,10 +11,9 @@ from typing import TYPE_CHECKING, Any, Protocol
 from ..errors import SimulationError
 
 if TYPE_CHECKING:
+    from ..cosim.clock import Pacer
     from ..cosim.master import Master
     from ..cosim.system import System
-    from .pacing import Pace
-    from .preparation import Prepared
 
 Progress = Callable[[float, float], None]
 """Called now and then with the simulated time that has passed, and that of the whole run, s."""
@@ -30,8 +29,10 @@ class Observer(Protocol):
     stops: bool
     """Whether it wants the run to stop."""
 
-    def begin(self, prepared: Prepared, master: Master, pace: Pace | None, folder: Path) -> None:
-        """Called once, at the start time."""
+    def begin(
+        self, manifest: Mapping[str, Any], master: Master, pacer: Pacer | None, folder: Path
+    ) -> None:
+        """Called once, at the start time; ``pacer`` is that of a run in real time."""
 
     def at_point(self, stop_requested: Callable[[], int]) -> None:
         """Called at each communication point, before its row is recorded.

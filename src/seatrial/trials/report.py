@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
@@ -41,6 +41,22 @@ _MOST_DRAWN = 500
 
 
 @dataclass(frozen=True)
+class Played:
+    """A run in three dimensions: what its viewer, a page of its own, is given."""
+
+    data: str
+    """The recording, in base64."""
+    speed: float
+    """Simulated seconds per second at which it is played."""
+    viewer: str
+    """JavaScript that has the viewer as the text ``seatrialViewer``."""
+
+
+Play = Callable[[Run], Played | None]
+"""Returns a run to be played in its report; None of one without anything to see."""
+
+
+@dataclass(frozen=True)
 class Section:
     """A heading with a figure, tables of text signals, or both."""
 
@@ -76,18 +92,26 @@ class Port:
         return signal.removeprefix(f"{self.component}.{self.name}").lstrip(".") or self.name
 
 
-def write_report(folder: Path | str, library: str | None = None) -> Path:
+def write_report(
+    folder: Path | str,
+    library: str | None = None,
+    play: Play | None = None,
+    viewer: str | None = None,
+) -> Path:
     """Write ``report.html`` into a run folder and return its path. Raises InputError.
 
     The page has Plotly's JavaScript in it, or takes it from the address ``library``, relative to
-    it: pages of a campaign share one.
+    it: pages of a campaign share one, and likewise the ``viewer`` of what ``play`` returns.
     """
     run = load_run(folder)
+    played = None if play is None else play(run)
     convergence = load_convergence(run.folder)
     page = render(
         "report.html.j2",
         library=library,
         run=run,
+        played=played,
+        viewer=viewer,
         manifest=run.manifest,
         title=run.manifest["trial"].get("title") or run.name,
         verdicts=run.verdicts,

@@ -155,7 +155,8 @@ class Run:
         events, steps, observer = self._events, self.prepared.trial.steps, self._hooks.observer
         stop_requested, pace = self._hooks.stop_requested, self._pace
         if observer is not None:
-            observer.begin(self.prepared, master, pace, self.folder)
+            pacer = None if pace is None else pace.pacer
+            observer.begin(self.prepared.manifest, master, pacer, self.folder)
         if pace is not None:
             pace.start()
         while True:

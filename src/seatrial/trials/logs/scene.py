@@ -53,15 +53,24 @@ class Craft:
     """Path of the component whose motion it is."""
 
 
-def crafts(run: Run) -> list[Craft]:
-    """Return the craft whose position and attitude are recorded, in the order of the rig."""
+def crafts(run: Run, *, geodetic: bool = True) -> list[Craft]:
+    """Return the craft whose position and attitude are recorded, in the order of the rig.
+
+    Latitudes and longitudes take most of the time; without ``geodetic`` few craft have them.
+    """
     components = run.manifest["components"]
     names = [c for c in components if _columns(run, c, "position") is not None]
     names = [c for c in names if _columns(run, c, "attitude") is not None]
     homes = [Origin(*home) for c in names if (home := components[c].get("home"))]
     short = [name.rpartition(".")[0] or name for name in names]
     return [
-        _craft(run, name, brief if short.count(brief) == 1 else name, homes[0] if homes else None)
+        _craft(
+            run,
+            name,
+            brief if short.count(brief) == 1 else name,
+            homes[0] if homes else None,
+            geodetic=geodetic,
+        )
         for name, brief in zip(names, short, strict=True)
     ]
 
@@ -91,15 +100,15 @@ def _columns(run: Run, component: str, port: str) -> Array | None:
     return np.column_stack([np.asarray(run.signals[name], dtype=float) for name in names])
 
 
-def _craft(run: Run, component: str, name: str, world: Origin | None) -> Craft:
+def _craft(run: Run, component: str, name: str, world: Origin | None, *, geodetic: bool) -> Craft:
     described = run.manifest["components"][component]
     position, attitude = _needed(run, component, "position"), _needed(run, component, "attitude")
     home = Origin(*described["home"]) if described.get("home") else None
-    geodetic = None
-    if home is not None and world is not None:
-        geodetic = np.array([home.geodetic(tuple(row)) for row in position])
+    places = None
+    if home is not None and world is not None and (geodetic or home != world):
+        places = np.array([home.geodetic(tuple(row)) for row in position])
         if home != world:
-            position = np.array([world.position(*row) for row in geodetic])
+            position = np.array([world.position(*row) for row in places])
     turn = Rotation.from_euler("ZYX", attitude[:, ::-1]).as_matrix()
     velocity, rates = _columns(run, component, "velocity"), _columns(run, component, "rates")
     acceleration = _columns(run, component, "acceleration")
@@ -115,7 +124,7 @@ def _craft(run: Run, component: str, name: str, world: Origin | None) -> Craft:
         None if velocity is None else velocity @ _FLU,
         None if rates is None else rates @ _FLU,
         force,
-        geodetic,
+        places,
         None if outline is None else (float(outline["length"]), float(outline["beam"])),
         component,
     )
