@@ -31,7 +31,9 @@ demo: $(INSTALLED)
 	@$(BIN)/seatrial run hydrone-landing
 	@echo "== all five landing points, landing and take-off"
 	@$(BIN)/seatrial run hydrone-pads || test $$? -eq 1
-	@echo "Open the two reports in a browser."
+	@echo "Open the two reports in a browser: each plays its run. The landing with time line, map and charts:"
+	@run=$$(ls -td runs/hydrone-landing-* | head -n 1); echo "$$run/report.html"; \
+		if [ -t 1 ]; then $(BIN)/seatrial play "$$run"; else echo "$(BIN)/seatrial play $$run"; fi
 
 # canboat, a reference for the NMEA 2000 nodes; where it cannot be installed its tests are skipped.
 $(NODE_TOOLS): tests/interop/node/package-lock.json

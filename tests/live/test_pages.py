@@ -107,10 +107,12 @@ def test_hands_change_what_happens_and_are_kept_as_a_trial(browser, tmp_path: Pa
         field = page.get_by_label(f"{key}, m", exact=True)
         field.fill("5")
         field.press("Enter")
-        page.get_by_role("button", name="Faults").click()
+        page.get_by_text("Faults", exact=True).click()
         _choose(page, "what", "bias")
         _choose(page, "where", "vehicle.compass.heading")
-        page.get_by_label("settings").fill("value = 20 deg")
+        written = page.get_by_text("settings", exact=True).locator("xpath=following::input[1]")
+        written.fill("value = 20 deg")
+        written.press("Enter")
         page.get_by_role("button", name="Inject").click()
         page.get_by_role("button", name="End: bias on vehicle.compass.heading").wait_for()
         changed = _later(page, _time(page) + 30.0)
@@ -141,9 +143,9 @@ def test_a_restart_takes_another_seed_at_the_same_address(browser, tmp_path: Pat
     with served(tmp_path, *LANDING, "--set", "stop=600 s") as command:
         page = opened(browser, command.address)
         before = _later(page, 3.0)
-        page.get_by_role("button", name="Begin anew").click()
-        page.get_by_label("seed").fill("7")
-        page.get_by_label("seed").press("Enter")
+        page.get_by_text("Begin anew", exact=True).click()
+        page.get_by_label("seed", exact=True).fill("7")
+        page.get_by_label("seed", exact=True).press("Enter")
         page.get_by_role("button", name="Restart").click()
         until = time.monotonic() + 60.0
         while _time(page) >= before:
@@ -171,7 +173,7 @@ def test_hostile_names_are_text(browser, hydrone: Path, tmp_path: Path) -> None:
         page.get_by_text("title <img src=x").wait_for()
         page.get_by_text("criterion <img src=x").wait_for()
         _choose(page, "signal", f"vehicle.hull.{HOSTILE}")
-        page.get_by_role("button", name="Events").click()
+        page.get_by_text("Events", exact=True).click()
         page.get_by_text(re.compile("x.<img")).first.wait_for()
         page.wait_for_timeout(1000)
         assert page.evaluate("window.hacked") is None

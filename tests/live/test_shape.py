@@ -177,3 +177,20 @@ def test_water_is_where_the_waves_are() -> None:
     places = corners[:, [1, 0]]  # north, east
     assert corners[:, 2] == pytest.approx(waves.elevation(7.3, places), abs=1e-9)
     assert abs(corners[:, :2].mean(axis=0) - [105.0, -42.0]).max() < 3.0
+
+
+def test_quaternions_are_those_of_scipy() -> None:
+    from scipy.spatial.transform import Rotation
+
+    from seatrial.trials.logs import quaternions
+
+    angles = np.random.default_rng(3).uniform(-1.5, 1.5, (50, 3))
+    ours = quaternions.of_euler(angles)
+    theirs = Rotation.from_euler("ZYX", angles[:, ::-1])
+    both = [Rotation.from_quat(np.roll(ours, -1, axis=1)), theirs]
+    assert (both[0] * both[1].inv()).magnitude() == pytest.approx(0.0, abs=1e-12)
+    axis, angle = np.array([1.0, -2.0, 0.5]), 0.7
+    turned = quaternions.product(ours, quaternions.about(axis, angle))
+    wanted = theirs * Rotation.from_rotvec(angle * axis / np.linalg.norm(axis))
+    error = Rotation.from_quat(np.roll(turned, -1, axis=1)) * wanted.inv()
+    assert error.magnitude() == pytest.approx(0.0, abs=1e-12)

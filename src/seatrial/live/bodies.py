@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from ..cosim.shape_ports import MESHES, mesh_name
 from ..trials.expressions import FloatArray
+from ..trials.logs import quaternions
 from ..trials.run_folder import Run, viewed
 from .meshes import mesh_of
 from .motion import Frame, Motion
@@ -19,7 +19,6 @@ from .motion import Frame, Motion
 _DEFAULT_SIZE = (1.0, 0.5)
 _HEIGHT = 0.25
 _MOST_STRETCHED = 3.0
-_NONE = np.array([1.0, 0.0, 0.0, 0.0])
 
 
 def shape_of(component: Mapping[str, Any]) -> list[dict[str, Any]]:
@@ -136,13 +135,12 @@ class _Moving:
 
     def __init__(self, part: dict[str, Any], frame: Any, shown: Any, at: FloatArray, turn: Any):
         self._part, self._frame, self._shown = part, frame, shown
-        self._at, self._turn = at, Rotation.from_quat(np.roll(turn, -1))
+        self._at, self._turn = at, turn
 
     def show(self, frame: Frame) -> None:
         if (turn := self._part.get("turn")) and (value := _value(turn, frame)) is not None:
-            about = np.array(turn["about"]) / np.linalg.norm(turn["about"])
-            by = Rotation.from_rotvec(about * value * turn.get("factor", 1.0))
-            self._frame.wxyz = np.roll((self._turn * by).as_quat(), 1)
+            by = quaternions.about(turn["about"], value * turn.get("factor", 1.0))
+            self._frame.wxyz = quaternions.product(self._turn, by)
         if (slide := self._part.get("slide")) and (value := _value(slide, frame)) is not None:
             self._frame.position = self._at + value * np.array(slide["along"])
         if (stretch := self._part.get("stretch")) and (value := _value(stretch, frame)) is not None:
@@ -157,11 +155,7 @@ def _value(moved: Mapping[str, Any], frame: Frame) -> float | None:
 
 
 def _turned(part: Mapping[str, Any]) -> FloatArray:
-    roll, pitch, yaw = part.get("turned", (0.0, 0.0, 0.0))
-    if not (roll or pitch or yaw):
-        return _NONE
-    quaternion = Rotation.from_euler("ZYX", [yaw, pitch, roll], degrees=True).as_quat()
-    return np.asarray(np.roll(quaternion, 1))
+    return quaternions.of_euler(np.radians(part.get("turned", (0.0, 0.0, 0.0))))
 
 
 def _on_decks(motion: Motion) -> list[tuple[FloatArray, dict[str, Any], int]]:

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from ..trials.expressions import FloatArray
+from ..trials.logs import quaternions
 from ..trials.logs.scene import Craft, crafts
 from ..trials.run_folder import Run
 
-_FRD = np.array([1.0, 0.0, 0.0, 0.0])
-"""Quaternion (x, y, z, w) that takes ahead, starboard, down to ahead, left, up."""
+_FRD = np.array([0.0, 1.0, 0.0, 0.0])
+"""Quaternion (w, x, y, z) that takes ahead, starboard, down to ahead, left, up."""
 
 
 @dataclass(frozen=True)
@@ -107,7 +107,5 @@ class Motion:
 
 
 def _turns(craft: Craft) -> FloatArray:
-    down = (Rotation.from_quat(craft.orientation) * Rotation.from_quat(_FRD)).as_quat()
-    jumps = np.sum(down[1:] * down[:-1], axis=1) < 0.0
-    signs = np.where(np.concatenate([[0], np.cumsum(jumps)]) % 2 == 1, -1.0, 1.0)
-    return np.asarray((signs[:, None] * down)[:, [3, 0, 1, 2]])
+    down = quaternions.product(np.roll(craft.orientation, 1, axis=1), _FRD)
+    return quaternions.continuous(down)

@@ -58,6 +58,7 @@ class Scene:
         self._lines = list(self._tethers())
         self._water: Water | None = None
         if not ghost:
+            self._far: Any = None
             self._met: Surroundings = surroundings_of(run)
             self._surface(cells)
             self._bottom()
@@ -80,6 +81,8 @@ class Scene:
             self._world.position = (-east, -north, -up)
             cells = 10.0 * self.cell
             self._grid.position = (-(east % cells), -(north % cells), self._floor - up)
+            if self._far is not None:
+                self._far.position = (0.0, 0.0, 1.5 * self._floor - up)
         if self._water is not None:
             self._sea.vertices = self._water.vertices(frame.time, east, north).astype(np.float32)
         self._compass.position = (east, north, self._crest)
@@ -126,6 +129,19 @@ class Scene:
             flat_shading=waves is not None,
             side="double",
         )
+        if waves is not None:  # beyond the waves that are drawn
+            half = 100.0 * self.size
+            corners = np.array(
+                [[-half, -half, 0], [half, -half, 0], [half, half, 0], [-half, half, 0]]
+            )
+            self._far = self._scene.add_mesh_simple(
+                "/far",
+                corners,
+                np.array([[0, 1, 2], [0, 2, 3]]),
+                color=_WATER,
+                opacity=0.72,
+                side="double",
+            )
         height = 2.0 * float(np.sqrt(0.5 * np.sum(waves.amplitude**2))) if waves else 0.0
         self._crest = height + 0.01 * self.size
         cell = _round(0.5 * self.size)

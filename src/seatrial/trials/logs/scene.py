@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from ...craft.kinematics import specific_force
 from ...links.geodesy import Origin
 from ..run_folder import Run, viewed
+from . import quaternions
 
 WORLD = "map"
 """The frame of the world: the origin of {n} of the first craft, x east, y north, z up."""
@@ -20,6 +20,8 @@ GRAVITY = 9.80665
 
 _ENU = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
 _FLU = np.diag([1.0, -1.0, -1.0])
+_NED_IN_ENU = np.array([0.0, math.sqrt(0.5), math.sqrt(0.5), 0.0])
+_FRD_IN_FLU = np.array([0.0, 1.0, 0.0, 0.0])
 _MOTION = {
     "position": "xyz",
     "attitude": ("phi", "theta", "psi"),
@@ -109,7 +111,6 @@ def _craft(run: Run, component: str, name: str, world: Origin | None, *, geodeti
         places = np.array([home.geodetic(tuple(row)) for row in position])
         if home != world:
             position = np.array([world.position(*row) for row in places])
-    turn = Rotation.from_euler("ZYX", attitude[:, ::-1]).as_matrix()
     velocity, rates = _columns(run, component, "velocity"), _columns(run, component, "rates")
     acceleration = _columns(run, component, "acceleration")
     force = None
@@ -120,7 +121,7 @@ def _craft(run: Run, component: str, name: str, world: Origin | None, *, geodeti
     return Craft(
         name,
         position @ _ENU.T,
-        _continuous(Rotation.from_matrix(_ENU @ turn @ _FLU).as_quat()),
+        _orientation(attitude),
         None if velocity is None else velocity @ _FLU,
         None if rates is None else rates @ _FLU,
         force,
@@ -136,13 +137,15 @@ def _needed(run: Run, component: str, port: str) -> Array:
     return found
 
 
-def _continuous(quaternions: Array) -> Array:
-    """Return the same rotations, each with the sign that is nearer to the one before."""
-    jumps = np.sum(quaternions[1:] * quaternions[:-1], axis=1) < 0.0
-    signs = np.where(np.cumsum(jumps) % 2 == 1, -1.0, 1.0)
-    first = math.copysign(1.0, quaternions[0, 3]) if len(quaternions) else 1.0
-    signs = first * np.concatenate([[1.0], signs])[: len(quaternions), None]
-    return np.asarray(signs * quaternions, dtype=float)
+def _orientation(attitude: Array) -> Array:
+    """Return quaternions (x, y, z, w) of Euler angles, the first one with w not below 0."""
+    turned = quaternions.product(
+        quaternions.product(_NED_IN_ENU, quaternions.of_euler(attitude)), _FRD_IN_FLU
+    )
+    signed = quaternions.continuous(turned)
+    if len(signed):
+        signed = signed * math.copysign(1.0, signed[0, 0])
+    return np.roll(signed, -1, axis=1)
 
 
 def rows(columns: Array | None) -> Sequence[Sequence[float]]:
