@@ -193,7 +193,7 @@ class Run:
         if self._events:
             ahead_ns = self._events[0].at_ns - master.time_ns
             most = min(most, -(-ahead_ns // master.step_ns))
-        if rows is None or self._termination.has_any:
+        if rows is None or self._termination.has_any or self._hooks.observer is not None:
             master.step()
             return
         try:
