@@ -30,7 +30,7 @@ class Cameras:
         server.on_client_disconnect(lambda client: self._chosen.pop(client.client_id, None))
 
     def _came(self, client: Any) -> None:
-        menu = client.gui.add_dropdown("Camera", _CHOICES, FREE, order=-10.0)
+        menu = client.gui.add_dropdown("Camera", _CHOICES, order=-10.0)
 
         def chosen(_: Any) -> None:
             self._chosen[client.client_id] = menu.value

@@ -34,7 +34,7 @@ class Charts:
         self._folder = gui.add_folder("Charts")
         with self._folder:
             self._choice = gui.add_dropdown(
-                "signal", (CHOOSE, *sorted(self._signals)), CHOOSE, hint="type to search"
+                "signal", (CHOOSE, *sorted(self._signals)), hint="type to search"
             )
             self._clear = gui.add_button("remove all charts", visible=False)
         self._choice.on_update(lambda _: self._chosen())

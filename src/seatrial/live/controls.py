@@ -46,7 +46,9 @@ class Controls:
         self._pause.on_click(self._on_pause)
         step.on_click(self._on_step)
         if not described["paced"]:  # else the trial says how it keeps to wall time
-            speed = gui.add_dropdown("times real time", _SPEEDS, "1")
+            pace = described["pace"]
+            now = _FASTEST if pace is None else f"{pace:g}"
+            speed = gui.add_dropdown("times real time", _SPEEDS, initial_value=now)
             speed.on_update(lambda event: self._on_speed(event, speed.value))
         with gui.add_folder("Begin anew", expand_by_default=False):
             seed = gui.add_number("seed", int(described["manifest"]["seed"]), min=0, step=1)
@@ -87,9 +89,8 @@ class Controls:
         self._folder = self._gui.add_folder("Set-points and tunables")
         with self._folder:
             choice = self._gui.add_dropdown(
-                "port", (CHOOSE_SETTING, *sorted(self._settables)), CHOOSE_SETTING,
-                hint="type to search",
-            )  # fmt: skip
+                "port", (CHOOSE_SETTING, *sorted(self._settables)), hint="type to search"
+            )
 
         def chosen(_: Any) -> None:
             key = choice.value
@@ -143,8 +144,8 @@ class Controls:
         manifest = described["manifest"]
         places = [*manifest["components"], *sorted(manifest["signals"])]
         with self._gui.add_folder("Faults", expand_by_default=False):
-            what = self._gui.add_dropdown("what", tuple(KINDS), next(iter(KINDS)))
-            where = self._gui.add_dropdown("where", tuple(places), places[0])
+            what = self._gui.add_dropdown("what", tuple(KINDS))
+            where = self._gui.add_dropdown("where", tuple(places))
             settings = self._gui.add_text("settings", "", hint="as in a trial: value = 0.5")
             meaning = self._gui.add_html("")
             inject = self._gui.add_button("Inject")

@@ -90,7 +90,7 @@ class Playback:
         )
         self._button = gui.add_button("Pause")
         step = gui.add_button_group("step", ("-1 row", "+1 row", "to start"))
-        self._speeds = gui.add_dropdown("times real time", _SPEEDS, "1")
+        self._speeds = gui.add_dropdown("times real time", _SPEEDS, initial_value="1")
         stays = gui.add_checkbox("keep the craft in the middle", True)
         dark = gui.add_checkbox("dark", False)
         with gui.add_folder("Criteria"):

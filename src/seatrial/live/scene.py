@@ -272,7 +272,7 @@ class Scene:
             handle.position = (east, north, self._crest + height * self.size)
             length = 1.8 * self.size
             way = np.array([to_east, to_north, 0.0])
-            begin = -2.6 * self.size * way
+            begin = -2.6 * self.size * way if height > 1.0 else 0.6 * self.size * way
             handle.points = np.array([[begin, begin + length * way]], dtype=np.float32)
             label.position = tuple(begin)
             text = f"{label_of(height)} {speed:.2g} m/s"

@@ -71,6 +71,7 @@ class Tap:
             "settables": settables_of(master.system, master),
             "orders": orders_of(master.system),
             "paced": pacer is not None,
+            "pace": self.factor,
             "step": seconds(master.step_ns),
         }
         self.pipe.send(("begin", described))
