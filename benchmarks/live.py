@@ -1,4 +1,4 @@
-"""What a live page costs the simulation: ``python -m benchmarks.live``.
+"""Cost of a live page for the simulation: ``python -m benchmarks.live``.
 
 The same trial runs as fast as it can, supervised: without a page, with a page that nobody looks at,
 and with two viewers, in turn. A viewer is a websocket that takes all that the page sends, as a

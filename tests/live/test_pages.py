@@ -15,9 +15,11 @@ from urllib.parse import urlsplit
 
 import pytest
 
+from seatrial.live.stage import played
+from seatrial.trials.report import write_report
 from seatrial.trials.run_folder import load_run
 
-from .browser import chromium, opened, served
+from .browser import WAIT_MS, chromium, opened, served
 
 pytestmark = pytest.mark.interop
 
@@ -57,11 +59,12 @@ def test_a_record_is_played_back(browser, hydrone: Path, tmp_path: Path) -> None
         page = opened(browser, command.address)
         page.get_by_text("A drone lands off centre").wait_for()
         page.get_by_role("button", name="Play").wait_for()  # it has come to the end of the record
-        before = page.locator("canvas").first.screenshot()
+        sight = {"x": 0, "y": 200, "width": 480, "height": 400}  # left of the panel
+        before = page.screenshot(clip=sight)
         page.get_by_text("to start").click()
         page.get_by_text("north -0.0 m").or_(page.get_by_text("north 0.0 m")).first.wait_for()
         page.wait_for_timeout(1500)
-        assert page.locator("canvas").first.screenshot() != before  # the drone is up again
+        assert page.screenshot(clip=sight) != before  # the drone is up again
         assert page.locator("svg.map polyline").count() >= 1
         assert page.locator("[data-verdict]").count() == 5
         assert not page.problems
@@ -178,3 +181,54 @@ def test_hostile_names_are_text(browser, hydrone: Path, tmp_path: Path) -> None:
         page.wait_for_timeout(1000)
         assert page.evaluate("window.hacked") is None
         page.close()
+
+
+def test_a_pilot_is_steered_by_hand(browser, tmp_path: Path) -> None:
+    """Its mode is manual as long as the box is set."""
+    course = ("run", "hydrone-course-square", *LANDING[2:], "--set", "stop=600 s")
+    with served(tmp_path, *course) as command:
+        page = opened(browser, command.address)
+        _later(page, 0.0)
+        page.get_by_text("Steer autopilot.pilot.guidance", exact=True).click()
+        page.get_by_label("by hand").check()
+        page.mouse.click(60, 400)  # the scene has the focus
+        for _ in range(5):
+            page.keyboard.press("w")
+            page.wait_for_timeout(300)
+        begun = _time(page)
+        _later(page, begun + 4.0)
+        page.get_by_label("by hand").uncheck()
+        _later(page, _time(page) + 0.5)
+        assert not page.problems
+        page.close()
+        command.end()
+    made = tomllib.loads((tmp_path / "run" / "by-hand.toml").read_text("utf-8"))
+    events = [row["set"] for row in made["events"]]
+    modes = [row[key] for row in events for key in row if key.endswith("guidance.mode")]
+    assert modes == ["manual", "auto"]
+    surge = [row[key][0] for row in events for key in row if key.endswith("guidance.manual")]
+    assert max(surge) == pytest.approx(1.0)
+    assert surge[-1] == 0.0
+    run = load_run(tmp_path / "run")
+    direct = run.signals["autopilot.pilot.guidance.direct.surge"]
+    assert direct.max() == pytest.approx(1.0)
+    assert direct[-1] == 0.0
+
+
+def test_a_report_plays_its_run_offline(browser, hydrone: Path, tmp_path: Path) -> None:
+    """From the file alone: no network, no other file."""
+    report = shutil.copy(write_report(hydrone, play=played), tmp_path / "report.html")
+    context = browser.new_context(offline=True)
+    page = context.new_page()
+    problems: list[str] = []
+    page.on("pageerror", lambda error: problems.append(str(error)))
+    page.goto(Path(report).as_uri())
+    page.get_by_role("button", name="Play the run").click()
+    inside = page.frame_locator(".stage iframe")
+    inside.locator("canvas").first.wait_for(timeout=WAIT_MS)
+    page.wait_for_timeout(2000)
+    before = page.locator(".stage iframe").screenshot()
+    page.wait_for_timeout(1500)
+    assert page.locator(".stage iframe").screenshot() != before
+    assert not problems
+    context.close()

@@ -1,4 +1,4 @@
-"""What a vehicle looks like: parts of its body in its file, some of which move with a port."""
+"""Shapes of vehicles: parts of their bodies in their files, some of which move with a port."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What moves the parts of a rig's vehicles: outputs, found through the connections."""
+"""Signals that move the parts of a rig's vehicles, found through the connections."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What was done by hand, as events and faults of a trial file."""
+"""Sets and faults of a live page as events and faults of a trial file."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Who of several viewers has the helm: he alone commands."""
+"""The helm: one of several viewers has it, and he alone commands."""
 
 from __future__ import annotations
 

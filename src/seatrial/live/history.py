@@ -1,4 +1,4 @@
-"""What a live page has seen of a run: rows, thinned out as they become many."""
+"""Rows of a run that a live page has seen, thinned out as they become many."""
 
 from __future__ import annotations
 

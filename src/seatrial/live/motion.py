@@ -1,4 +1,4 @@
-"""Where everything in a run is, at any time: poses and signals between the recorded rows."""
+"""Poses and signals of a run at any time, between the recorded rows."""
 
 from __future__ import annotations
 

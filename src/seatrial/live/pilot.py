@@ -83,9 +83,20 @@ class _Hands:
             self._write("armed", True)
             self._send_manual()
         else:
-            for number in self._acting:
-                self._command("clear", number)
-            self._acting.clear()
+            self._let_go()
+
+    def _let_go(self) -> None:
+        """Give back what somebody else orders; mode and arming are again as the rig began."""
+        for slider in self._sliders.values():
+            slider.value = 0.0
+        if "manual" not in self._one["fed"]:
+            self._send_manual()
+        for member, value in self._one["before"].items():
+            if member not in self._one["fed"]:
+                self._write(member, value)
+        for number in self._acting:
+            self._command("clear", number)
+        self._acting.clear()
 
     def _moved(self, event: Any) -> None:
         if event.client is not None:

@@ -1,4 +1,4 @@
-"""What a page can set while a run goes on: set-points and tunables, and the helm."""
+"""Set-points, tunables and helms: all that a page can set while a run goes on."""
 
 from __future__ import annotations
 
@@ -46,11 +46,11 @@ def _entry(component: str, variable: Variable, value: Any) -> dict[str, Any]:
     }
 
 
-def orders_of(system: System) -> list[dict[str, Any]]:
+def orders_of(system: System, master: Master) -> list[dict[str, Any]]:
     """Return the pilots whose helm a person can take: what their orders are written to.
 
     ``fed`` has the members that something else orders, which a fault of the kind fixed replaces
-    as long as somebody has the helm.
+    as long as somebody has the helm; ``before`` has mode and arming as the rig starts.
     """
     found = []
     for name, part in system.parts.items():
@@ -64,6 +64,7 @@ def orders_of(system: System) -> list[dict[str, Any]]:
         if len(scalars) < 2 or mode is None or mode.causality != "input":
             continue
         fed = system.feeders(name)
+        own = [ports["mode"], ports["armed"]]
         first = {**ports, "manual": scalars[0].name}
         found.append(
             {
@@ -71,6 +72,7 @@ def orders_of(system: System) -> list[dict[str, Any]]:
                 "ports": ports,
                 "axes": [scalar.name.rpartition(".")[2] for scalar in scalars],
                 "fed": [member for member in _HELM if first[member] in fed],
+                "before": dict(zip(("mode", "armed"), master.values(name, own), strict=True)),
             }
         )
     return found

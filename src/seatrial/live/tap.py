@@ -69,7 +69,7 @@ class Tap:
             "folder": str(folder),
             "signals": [".".join(master.names[i]) for i in numbers],
             "settables": settables_of(master.system, master),
-            "orders": orders_of(master.system),
+            "orders": orders_of(master.system, master),
             "paced": pacer is not None,
             "pace": self.factor,
             "step": seconds(master.step_ns),
