@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import threading
 from collections.abc import Callable
 from multiprocessing import Pipe
@@ -18,6 +19,8 @@ from .server import PageServer
 from .tap import Tap
 
 _POLL_S = 0.02
+_NICE = 10
+"""Of the page's threads: where processors are short, the simulation comes first."""
 
 
 class Session:
@@ -69,6 +72,8 @@ class Session:
 
     def _serve(self) -> None:
         """Wait for the run's first step, serve its page, and end with it."""
+        if hasattr(os, "setpriority"):  # threads that this one starts have its priority, on Linux
+            os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), _NICE)
         while not self._over.is_set():
             if self._pipe.poll(_POLL_S):
                 what, described = self._pipe.recv()
