@@ -232,6 +232,13 @@ class Doubler(Sampled):
         self.y = 2.0 * self.u
 
 
+class Ahead(Doubler):
+    """Has a clock of its own."""
+
+    def advance(self, t: float, h: float, *, publish: bool = True) -> None:
+        super().advance(t + h, h, publish=publish)
+
+
 class Opener(Sampled):
     """Does what no C can."""
 
@@ -257,6 +264,32 @@ def test_a_component_of_ones_own(tmp_path: Path) -> None:
     python.setup(0.0)
     with pytest.raises((InputError, SimulationError), match=r"x\.u is 1\.25 V, allowed 1\.0 V"):
         python.initialise()
+
+
+def test_another_way_to_run_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="cannot be native: it overrides advance"):
+        built(f"{__file__}:Ahead", tmp_path)
+
+
+class Shared(Sampled):
+    """Changes a list that has two names."""
+
+    y = Output("V", "first of a list")
+
+    def reset(self, t: float) -> None:
+        self._one = [0.0, 1.0]
+        self._other = self._one
+
+    def sample(self, t: float, k: int) -> None:
+        self.y = self._other[0]
+
+    def update(self, t: float, k: int) -> None:
+        self._one[0] += 1.0
+
+
+def test_a_list_with_two_names_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"Shared\._one changes in place and may be known"):
+        built(f"{__file__}:Shared", tmp_path)
 
 
 def test_what_has_no_c_is_named_with_its_line(tmp_path: Path) -> None:

@@ -10,6 +10,12 @@ from .tables import words_of
 from .translation.domain import TranslationError
 from .translation.unit import Unit
 
+_RUNNER = (
+    *("set", "get", "write", "read", "refresh", "setup", "initialise", "check_parameters"),
+    *("begin", "advance", "begin_anew"),
+)
+"""Methods of `Component` that the runtime has in C."""
+
 
 def why_python(cls: type[Component]) -> str:
     """Return why a component cannot be native, empty if it can with the values it starts with."""
@@ -29,6 +35,9 @@ def why_refused(cls: type[Component]) -> str:
         return equations.why_python(cls)
     if not cls.rolls_back:
         return "it reaches outside the simulation"
+    for name in _RUNNER:
+        if getattr(cls, name) is not getattr(Component, name):
+            return f"it overrides {name}"
     texts = [p.name for p in cls.ports.values() if p.type is str and p.kind != "parameter"]
     texts = [name for name in texts if not words_of(cls.ports[name])]
     return f"its ports {', '.join(texts)} are texts" if texts else ""

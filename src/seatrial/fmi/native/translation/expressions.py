@@ -339,6 +339,13 @@ def _turns(frame: Frame, generators: list[ast.comprehension], act: Callable[[], 
             _turns(frame, others, act)
 
 
+@expression(ast.NamedExpr)
+def _named(frame: Frame, node: ast.NamedExpr) -> Any:
+    value = frame.evaluate(node.value)
+    frame.unit.assign(frame, node.target, value)
+    return value
+
+
 @expression(ast.Lambda)
 def _lambda(frame: Frame, node: ast.Lambda) -> Any:
     return Closure(node, frame)

@@ -98,6 +98,9 @@ def _binary(frame: Frame, op: ast.operator, left: Any, right: Any) -> Any:
     if isinstance(a, Seq) and isinstance(b, Seq) and isinstance(op, ast.Add):
         return Seq(a.kind, [*a.items, *b.items])
     if isinstance(a, Seq) and isinstance(op, ast.Mult) and isinstance(b, Known):
+        for each in a.items:
+            if isinstance(each, Seq):
+                each.fresh = False  # it is the same list in several places
         return Seq(a.kind, a.items * b.value)
     raise frame.mismatched(f"{type(op).__name__} of {left!r:.60} and {right!r:.60}")
 

@@ -73,6 +73,8 @@ def _annotated(frame: Frame, node: ast.AnnAssign) -> None:
 def _augmented(frame: Frame, node: ast.AugAssign) -> None:
     target = node.target
     before = frame.evaluate(_read(target))
+    if isinstance(before, Seq) and before.kind is list and not before.fresh:
+        raise frame.refused("a change of a list that may have another name too", node)
     value = binary(frame, node.op, before, frame.evaluate(node.value))
     _note(frame, node)
     assign(frame, target, value)
@@ -142,6 +144,14 @@ def _return(frame: Frame, node: ast.Return) -> None:
     value = frame.evaluate(node.value) if node.value else Known(None)
     frame.returns.come({"": value})
     frame.names = None
+
+
+@statement(ast.Assert)
+def _assert(frame: Frame, node: ast.Assert) -> None:
+    def wrong() -> None:
+        frame.fail(f'"%s: not as it must be at %s", self->name, {frame.place()}')
+
+    narrowing(frame, node.test)(lambda: None, wrong)
 
 
 @statement(ast.Raise)

@@ -86,14 +86,19 @@ class Unit:
             if not self.changed:
                 if missing:
                     raise TranslationError(missing)
-                both = self.changed_in_place & self.aliased
-                if both:
-                    raise TranslationError(
-                        f"{self.cls.__name__}.{sorted(both)[0]} changes in place and is known by "
-                        "another name too: that has no C"
-                    )
+                self._refuse_shared()
                 return "\n".join([*self.functions, *roots])
         raise TranslationError(f"{self.cls.__name__}: the types of its attributes do not settle")
+
+    def _refuse_shared(self) -> None:
+        """Raise TranslationError for a list that changes in place, and may be another's too."""
+        for name in sorted(self.changed_in_place):
+            for other in self.aliased:
+                if self.attributes[name] == self.attributes[other]:
+                    raise TranslationError(
+                        f"{self.cls.__name__}.{name} changes in place and may be known by another "
+                        f"name too, as what {other} gets: that has no C"
+                    )
 
     def _root(self, name: str) -> str:
         function, owner = found_method(self.cls, name)
