@@ -137,6 +137,12 @@ static const char *refusal(const State *state, unsigned reference, double value)
 
 static int set_one(Instance *self, unsigned reference, int type, double value) {
     State *state = &self->state;
+    if (reference < SCALARS && model_types[reference] == type && model_kinds[reference] == INPUT &&
+        isfinite(value)) {
+        state->stale |= __builtin_memcmp(&state->values[reference], &value, sizeof value) != 0;
+        state->values[reference] = value;
+        return 1;
+    }
     if (reference >= SCALARS || model_types[reference] != type) {
         say(self, "%s: there is no %s with value reference %u", self->name, model_type_names[type],
             reference);
@@ -151,7 +157,7 @@ static int set_one(Instance *self, unsigned reference, int type, double value) {
         say(self, "%s.%s: %g is not a finite number", self->name, model_names[reference], value);
         return 0;
     }
-    if (memcmp(&state->values[reference], &value, sizeof value) == 0) return 1;
+    if (__builtin_memcmp(&state->values[reference], &value, sizeof value) == 0) return 1;
     if (state->phase == RUNNING && !is_allowed(self, reference, value)) return 0;
     if (state->phase == INITIALISING && model_kinds[reference] != INPUT) state->restart = 1;
     state->values[reference] = value;
@@ -207,7 +213,7 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean has_tolerance, fmi2R
             self->name, start, LATEST);
         return fmi2Error;
     }
-    self->state.now_ns = llrint(start * NS);
+    self->state.now_ns = __builtin_llrint(start * NS);
     return fmi2OK;
 }
 
@@ -247,7 +253,7 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real t, fmi2Real h, fmi2Boolean no_ea
         say(self, "%s: step refused after an earlier error", self->name);
         return fmi2Discard;
     }
-    const long long h_ns = llrint(h * NS), given = llrint(t * NS), grain = h_ns / 100;
+    const long long h_ns = __builtin_llrint(h * NS), given = __builtin_llrint(t * NS), grain = h_ns / 100;
     if (llabs(given - state->now_ns) > (grain > 1 ? grain : 1)) state->now_ns = given;
     model_step(self, now(self), (double)h_ns / NS);
     state->now_ns += h_ns;

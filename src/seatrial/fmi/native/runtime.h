@@ -18,6 +18,13 @@ static inline double divided(Instance *self, double a, double b, const char *whe
     return a / b;
 }
 
+/* The nearest whole number, to even between two: what rint does, without a call. */
+static inline double nearest(double x) {
+    const double large = __builtin_copysign(4503599627370496.0, x); /* 2^52: no digits behind it */
+    if (!(__builtin_fabs(x) < 4503599627370496.0)) return x;
+    return __builtin_copysign((x + large) - large, x);
+}
+
 /* The result has the sign of the divisor. */
 static inline double modulo(Instance *self, double a, double b, const char *where) {
     if (b == 0.0) fail(self, "%s: modulo by zero at %s", self->name, where);

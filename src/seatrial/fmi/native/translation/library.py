@@ -41,7 +41,8 @@ def _registered(functions: Any, own: Any) -> Any:
 def _math(name: str) -> Callable[..., Any]:
     def call(frame: Frame, x: Any) -> Num:
         text = frame.text_of(x, "d")
-        return frame.num("d", f"checked(self, {name}({text}), {text}, {frame.place()})")
+        own = "__builtin_sqrt" if name == "sqrt" else name  # an instruction, not a call
+        return frame.num("d", f"checked(self, {own}({text}), {text}, {frame.place()})")
 
     return call
 
@@ -139,7 +140,7 @@ def _abs(frame: Frame, x: Any) -> Num:
 def _round(frame: Frame, x: Any) -> Num:
     if kind_of(x) != "d":
         return frame.num("i", frame.text_of(x, "i"))
-    return frame.num("i", f"whole(self, rint({frame.text_of(x, 'd')}), {frame.place()})")
+    return frame.num("i", f"whole(self, nearest({frame.text_of(x, 'd')}), {frame.place()})")
 
 
 @library(int)
