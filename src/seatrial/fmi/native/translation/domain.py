@@ -131,6 +131,32 @@ class Super:
     receiver: Any
 
 
+def called(own: Any) -> str:
+    """Return an object of Python as messages call it."""
+    name = getattr(own, "__qualname__", "")
+    if name:
+        return f"{getattr(own, '__module__', '') or 'builtins'}.{name}".removeprefix("builtins.")
+    return repr(own) if isinstance(own, (int, float, str, type(None))) else type(own).__qualname__
+
+
+def told(value: Any) -> str:
+    """Return a value as messages call it."""
+    match value:
+        case Known(value=own):
+            return called(own)
+        case Num():
+            return "a number"
+        case Seq(kind=kind, items=items):
+            return f"a {kind.__name__} of {len(items)}"
+        case Record(cls=cls):
+            return f"a {cls.__name__}"
+        case Choice(alternatives=alternatives):
+            return " or ".join(dict.fromkeys(told(each) for each in alternatives))
+        case Method(function=function):
+            return function if isinstance(function, str) else called(function)
+    return {Table: "a dict", Queue: "a queue"}.get(type(value), "self")
+
+
 # ------------------------------------------------------------------ shapes
 
 

@@ -26,6 +26,7 @@ from .domain import (
     leaves,
     number,
     shape_of,
+    told,
 )
 
 FAILED = "failed"
@@ -304,7 +305,7 @@ class Frame:
         """Return the C expression of a number. Raises TranslationError for anything else."""
         plain = isinstance(value, Known) and isinstance(value.value, (bool, int, float))
         if not plain and not isinstance(value, Num):
-            raise self.mismatched(f"{value!r:.80} where a number is needed")
+            raise self.mismatched(f"{told(value)} where a number is needed")
         return number(value, kind)
 
 

@@ -20,6 +20,7 @@ from .domain import (
     Shape,
     Table,
     built,
+    called,
     field_names,
     flattened,
     leaves,
@@ -51,7 +52,7 @@ def bound(
         signature = inspect.signature(function)
         found = signature.bind(*arguments, **named)
     except (TypeError, ValueError) as error:
-        raise frame.refused(f"a call of {function!r:.60}: {error}") from None
+        raise frame.refused(f"a call of {called(function)}: {error}") from None
     names: dict[str, Any] = {}
     for name, parameter in signature.parameters.items():
         if parameter.kind is parameter.VAR_POSITIONAL:
@@ -123,7 +124,7 @@ def _written(
     try:
         node, file = syntax(function)
     except (OSError, TypeError, SyntaxError):
-        raise frame.refused(f"{function!r}, which has no text of Python,") from None
+        raise frame.refused(f"{called(function)}, which has no text of Python,") from None
     title = function.__qualname__
     own = Frame(unit, title, (file, node.lineno), function.__globals__, owner)
     parameters: list[str] = []

@@ -18,9 +18,10 @@ from .domain import (
     leaves,
     shape_of,
 )
-from .expressions import narrowing, unpacked
+from .expressions import unpacked
 from .frame import Frame, Join, statement
 from .messages import failure
+from .narrowing import narrowing
 from .operations import binary, compared, either, truth, with_item
 
 

@@ -26,12 +26,14 @@ from .domain import (
     Super,
     TranslationError,
     UnshapedError,
+    called,
     flattened,
     is_record_class,
     joined,
     leaves,
     opened,
     shape_of,
+    told,
 )
 from .expressions import unpacked
 from .frame import Frame, lines
@@ -165,7 +167,7 @@ class Unit:
             try:
                 return Known(getattr(owner.value, name))
             except AttributeError:
-                raise frame.refused(f"{name} of {owner.value!r:.60}") from None
+                raise frame.refused(f"{name} of {told(owner)}") from None
         owner = opened(owner)
         if isinstance(owner, Record):
             if name in owner.fields:
@@ -249,7 +251,7 @@ class Unit:
     def store(self, frame: Frame, owner: Any, name: str, value: Any) -> None:
         """Give an attribute its value."""
         if not isinstance(owner, Component):
-            raise frame.refused(f"an assignment to {name} of {owner!r:.60}")
+            raise frame.refused(f"an assignment to {name} of {told(owner)}")
         if name in self.cls.ports:
             self._publish(frame, self.cls.ports[name], value)
         elif name in self.appended:
@@ -345,7 +347,7 @@ class Unit:
         if isinstance(function, Method):
             return self._method(frame, function, arguments, named)
         if not isinstance(function, Known):
-            raise frame.refused(f"a call of {function!r:.60}")
+            raise frame.refused(f"a call of {told(function)}")
         own = function.value
         if own is super:
             return Super(frame.owner or self.cls, self._receiver(frame))
@@ -387,7 +389,7 @@ class Unit:
         except TranslationError:
             raise
         except Exception as error:
-            raise frame.refused(f"{function!r:.60} ({error})") from None
+            raise frame.refused(f"{called(function)} ({error})") from None
 
     # ------------------------------------------------------------------ for the other modules
 
