@@ -69,7 +69,8 @@ class ThrusterMatrixAllocation(FixedThrusters, ThrustCurve, ThrusterPulses):
     }
 
     structural: ClassVar = [
-        f"{name}_{number}" for name in ("position", "direction") for number in range(1, COUNT + 1)
+        "thrust_curve",
+        *(f"{n}_{number}" for n in ("position", "direction") for number in range(1, COUNT + 1)),
     ]
 
     moments = Parameter(

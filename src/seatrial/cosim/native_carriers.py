@@ -20,13 +20,18 @@ def carry_natively(system: System, progress: Callable[[str], None] = lambda _: N
     """
     if system.engine != "native":
         return
+    stay: dict[str, list[str]] = {}
     for part in system.parts.values():
         if isinstance(part.instance, DirectInstance):
             progress(f"{part.name} ({part.fmu}, in C)")
-            _carry(system, part)
+            why = _carry(system, part)
+            if why:
+                stay.setdefault(why, []).append(part.name)
+    system.notes += [f"in Python: {', '.join(names)}: {why}" for why, names in stay.items()]
 
 
-def _carry(system: System, part: Part) -> None:
+def _carry(system: System, part: Part) -> str:
+    """Let a native FMU carry a component; return why if there is none."""
     from ..fmi.load import load_fmu, open_instance
     from ..fmi.native.cached import native_fmu
     from ..fmi.native.compiler import require_compiler
@@ -38,7 +43,7 @@ def _carry(system: System, part: Part) -> None:
     try:
         fmu = load_fmu(native_fmu(source, values))
     except InputError as error:
-        system.notes.append(f"{part.name} stays in Python: {error}")
-        return
+        return str(error)
     part.instance.free()
     part.instance, part.sha256 = open_instance(fmu, part.name), fmu.sha256
+    return ""

@@ -303,9 +303,17 @@ LIBRARY[bisect.bisect_left] = lambda frame, table, x: _bisect(frame, table, x, "
 
 @library(np.interp)
 def _interp(frame: Frame, x: Any, xs: Any, ys: Any) -> Num:
-    places, values = unpacked(frame, xs), unpacked(frame, ys)
-    arrays = f"{len(places)}, {_array(frame, places)}, {_array(frame, values)}"
+    size = len(python_of(xs)) if is_known(xs) else len(unpacked(frame, xs))
+    arrays = f"{size}, {_points(frame, xs)}, {_points(frame, ys)}"
     return frame.num("d", f"interpolated({frame.text_of(x, 'd')}, {arrays})")
+
+
+def _points(frame: Frame, values: Any) -> str:
+    """Return an array of C: a table if it is known."""
+    if not is_known(values):
+        return _array(frame, unpacked(frame, values))
+    name: str = frame.unit.constant_table([float(v) for v in python_of(values)])[0]
+    return name
 
 
 # ------------------------------------------------------------------ objects
