@@ -139,7 +139,7 @@ def called(own: Any) -> str:
     return repr(own) if isinstance(own, (int, float, str, type(None))) else type(own).__qualname__
 
 
-def told(value: Any) -> str:
+def described(value: Any) -> str:
     """Return a value as messages call it."""
     match value:
         case Known(value=own):
@@ -151,7 +151,7 @@ def told(value: Any) -> str:
         case Record(cls=cls):
             return f"a {cls.__name__}"
         case Choice(alternatives=alternatives):
-            return " or ".join(dict.fromkeys(told(each) for each in alternatives))
+            return " or ".join(dict.fromkeys(described(each) for each in alternatives))
         case Method(function=function):
             return function if isinstance(function, str) else called(function)
     return {Table: "a dict", Queue: "a queue"}.get(type(value), "self")

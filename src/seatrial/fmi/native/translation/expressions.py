@@ -15,9 +15,9 @@ from .domain import (
     Queue,
     Seq,
     Table,
+    described,
     opened,
     parts_of,
-    told,
 )
 from .frame import Frame, Join, expression
 from .narrowing import narrowing
@@ -183,7 +183,7 @@ def unpacked(frame: Frame, value: Any) -> list[Any]:
     if isinstance(value, Table):
         return [Known(key) for key in value.items]
     if isinstance(value, Queue) or not _is_list(value):
-        raise frame.mismatched(f"iteration over {told(value)}")
+        raise frame.mismatched(f"iteration over {described(value)}")
     return list(parts_of(value))
 
 

@@ -21,12 +21,12 @@ from .domain import (
     Shape,
     TranslationError,
     built,
+    described,
     flattened,
     joined,
     leaves,
     number,
     shape_of,
-    told,
 )
 
 FAILED = "failed"
@@ -305,7 +305,7 @@ class Frame:
         """Return the C expression of a number. Raises TranslationError for anything else."""
         plain = isinstance(value, Known) and isinstance(value.value, (bool, int, float))
         if not plain and not isinstance(value, Num):
-            raise self.mismatched(f"{told(value)} where a number is needed")
+            raise self.mismatched(f"{described(value)} where a number is needed")
         return number(value, kind)
 
 
@@ -313,9 +313,9 @@ def pruned(variables: Sequence[tuple[str, str]], code: Sequence[Any]) -> tuple[l
     """Return code without what nothing reads, and the names of the variables that are left."""
     rows, names = list(_flat(code)), {name for _, name in variables}
     while True:
-        told = [row for row in rows if not row.startswith("/*")]
-        counts = Counter(word for row in told for word in _WORD.findall(row))
-        writes = Counter(row.partition(" = ")[0] for row in told)
+        code_rows = [row for row in rows if not row.startswith("/*")]
+        counts = Counter(word for row in code_rows for word in _WORD.findall(row))
+        writes = Counter(row.partition(" = ")[0] for row in code_rows)
         kept: list[Any] = []
         for row in rows:
             name, is_set, value = row.partition(" = ")

@@ -17,8 +17,8 @@ OWN_NAME = "\1"
 def failure(frame: Frame, node: ast.Raise) -> str:
     """Return the arguments of C with the message of a raised error."""
     call = node.exc
-    told = call.args[0] if isinstance(call, ast.Call) and call.args else None
-    parts: list[Any] = told.values if isinstance(told, ast.JoinedStr) else [told]
+    message = call.args[0] if isinstance(call, ast.Call) and call.args else None
+    parts: list[Any] = message.values if isinstance(message, ast.JoinedStr) else [message]
     text, arguments = "", []
     for part in parts:
         if isinstance(part, ast.Constant):
@@ -41,8 +41,8 @@ def _shown(frame: Frame, part: ast.FormattedValue) -> tuple[str, list[str]]:
         return "...", []
     if is_known(value):
         own = python_of(value)
-        told = repr(own) if part.conversion == ord("r") else str(own)
-        return told.replace("%", "%%").replace(OWN_NAME, "%s"), ["self->name"] * told.count(
+        message = repr(own) if part.conversion == ord("r") else str(own)
+        return message.replace("%", "%%").replace(OWN_NAME, "%s"), ["self->name"] * message.count(
             OWN_NAME
         )
     if isinstance(value, Seq):

@@ -17,9 +17,9 @@ from .domain import (
     Record,
     Seq,
     Table,
+    described,
     opened,
     parts_of,
-    told,
 )
 from .frame import Frame
 
@@ -114,7 +114,7 @@ def _binary(frame: Frame, op: ast.operator, left: Any, right: Any) -> Any:
             if isinstance(each, Seq):
                 each.fresh = False  # it is the same list in several places
         return Seq(a.kind, a.items * b.value)
-    raise frame.mismatched(f"{type(op).__name__} of {told(left)} and {told(right)}")
+    raise frame.mismatched(f"{type(op).__name__} of {described(left)} and {described(right)}")
 
 
 def _arithmetic(frame: Frame, op: ast.operator, left: Any, right: Any) -> Num:
@@ -160,7 +160,7 @@ def _compared(frame: Frame, op: ast.cmpop, left: Any, right: Any) -> Any:
     if isinstance(op, (ast.Eq, ast.NotEq)):
         same = _equal(frame, left, right)
         return inverted(frame, same) if isinstance(op, ast.NotEq) else same
-    raise frame.mismatched(f"{type(op).__name__} of {told(left)} and {told(right)}")
+    raise frame.mismatched(f"{type(op).__name__} of {described(left)} and {described(right)}")
 
 
 def _equal(frame: Frame, left: Any, right: Any) -> Any:
@@ -266,7 +266,7 @@ def _item(frame: Frame, value: Any, index: Any) -> Any:
         size = len(value.items)
         at = frame.num("i", f"checked_index(self, {frame.text_of(index, 'i')}, {size})")
         return frame.each(Choice(at.text, tuple(value.items)), lambda one: one)
-    raise frame.mismatched(f"an item of {told(value)}")
+    raise frame.mismatched(f"an item of {described(value)}")
 
 
 def with_item(frame: Frame, value: Any, index: Any, new: Any) -> Any:
@@ -275,7 +275,7 @@ def with_item(frame: Frame, value: Any, index: Any, new: Any) -> Any:
     if isinstance(value, Table) and isinstance(index, Known):
         return Table({**value.items, index.value: new})
     if not isinstance(value, Seq) or value.kind is not list:
-        raise frame.refused(f"a new item in {told(value)}")
+        raise frame.refused(f"a new item in {described(value)}")
     items = list(value.items)
     if isinstance(index, Known):
         items[index.value] = new

@@ -27,13 +27,13 @@ from .domain import (
     TranslationError,
     UnshapedError,
     called,
+    described,
     flattened,
     is_record_class,
     joined,
     leaves,
     opened,
     shape_of,
-    told,
 )
 from .expressions import unpacked
 from .frame import Frame, lines
@@ -167,7 +167,7 @@ class Unit:
             try:
                 return Known(getattr(owner.value, name))
             except AttributeError:
-                raise frame.refused(f"{name} of {told(owner)}") from None
+                raise frame.refused(f"{name} of {described(owner)}") from None
         owner = opened(owner)
         if isinstance(owner, Record):
             if name in owner.fields:
@@ -251,7 +251,7 @@ class Unit:
     def store(self, frame: Frame, owner: Any, name: str, value: Any) -> None:
         """Give an attribute its value."""
         if not isinstance(owner, Component):
-            raise frame.refused(f"an assignment to {name} of {told(owner)}")
+            raise frame.refused(f"an assignment to {name} of {described(owner)}")
         if name in self.cls.ports:
             self._publish(frame, self.cls.ports[name], value)
         elif name in self.appended:
@@ -347,7 +347,7 @@ class Unit:
         if isinstance(function, Method):
             return self._method(frame, function, arguments, named)
         if not isinstance(function, Known):
-            raise frame.refused(f"a call of {told(function)}")
+            raise frame.refused(f"a call of {described(function)}")
         own = function.value
         if own is super:
             return Super(frame.owner or self.cls, self._receiver(frame))
