@@ -1,4 +1,4 @@
-"""Which components have a native carrier, and why the others have none."""
+"""Components that have a native carrier, and the reasons of the others."""
 
 from __future__ import annotations
 

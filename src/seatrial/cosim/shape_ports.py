@@ -26,6 +26,9 @@ def resolve_shapes(system: System) -> None:
     for part in system.parts.values():
         if part.shape is None:
             continue
+        if "motion" not in part.instance.terminals:
+            part.shape = None  # a law that has the same parameters is no body
+            continue
         content = written(part.shape.parts)
         for number, entry in enumerate(content):
             where = f"{part.shape.path}: shape.{part.shape.table}.{number}"

@@ -1,4 +1,4 @@
-"""What is under way: lists of entries that begin with the time, ns, at which they fall due."""
+"""Values under way: lists of entries that begin with the time, ns, at which they fall due."""
 
 from __future__ import annotations
 

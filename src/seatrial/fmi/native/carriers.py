@@ -1,4 +1,4 @@
-"""Which components have a native carrier."""
+"""Components that have a native carrier."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the runtime in C does for components: random numbers, faults, the sea that is built in."""
+"""Functions of the runtime in C: random numbers, faults, the sea that is built in."""
 
 from __future__ import annotations
 

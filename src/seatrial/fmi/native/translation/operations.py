@@ -1,4 +1,4 @@
-"""What operators do with values: arithmetic, comparisons, truth, items."""
+"""Operators on values: arithmetic, comparisons, truth, items."""
 
 from __future__ import annotations
 
