@@ -76,6 +76,8 @@ $(DOCS): $(INSTALLED)
 benchmark: $(INSTALLED)
 	$(BIN)/python -m benchmarks.compare --write
 	$(BIN)/python -m benchmarks.components --write
+	$(BIN)/python -m benchmarks.carriers --write
+	$(BIN)/python -m benchmarks.integrators --write
 	$(BIN)/python -m benchmarks.tether --write
 	$(BIN)/python -m benchmarks.can --write
 	$(BIN)/python -m benchmarks.can_latency --write

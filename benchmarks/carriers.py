@@ -1,4 +1,4 @@
-"""The Hydrone's closed loop as a multiple of real time, by carrier: ``python -m benchmarks.carriers``.
+"""The Hydrone's closed loop beside real time, by carrier: ``python -m benchmarks.carriers``.
 
 Nine components of the rig `landing` at 10 ms, without recording: in process, as Python FMUs, as
 native FMUs under the master in Python and under the compiled one. Each runs in a process of its
@@ -138,8 +138,8 @@ def main() -> None:
     per_case, cases = campaign()
     text = (
         f"Python {platform.python_version()}, {options.rounds} rounds.\n\n{table(found)}\n\n"
-        f"The campaign `{CAMPAIGN}`, in process: {per_case:.2f} s of processor time for each of its "
-        f"{cases} cases of 20 s, with start, record of every step, criteria and page: "
+        f"The campaign `{CAMPAIGN}`, in process: {per_case:.2f} s of processor time for each of "
+        f"its {cases} cases of 20 s, with start, record of every step, criteria and page: "
         f"{60 / per_case:.0f} cases a minute on one core."
     )
     print(text)

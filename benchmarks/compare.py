@@ -1,9 +1,9 @@
 """Our master beside other people's, on one rig, in one run: ``python -m benchmarks.compare``.
 
 Each engine runs in a process of its own, in turn, for some rounds; what is compared is the
-processor time of the steps without set-up. FMPy's simulate_ssp does not separate them: for it a run of one
-step is taken off. Ratios are those of one round; the median over the rounds and their range are
-shown. ``--write`` puts the tables and the plot into docs/performance.md.
+processor time of the steps without set-up. FMPy's simulate_ssp does not separate them: for it a
+run of one step is taken off. Ratios are those of one round; the median over the rounds and their
+range are shown. ``--write`` puts the tables and the plot into docs/performance.md.
 """
 
 from __future__ import annotations

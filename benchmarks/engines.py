@@ -1,7 +1,8 @@
 """One co-simulation of an SSP package in one engine, in a process of its own.
 
 Run as ``python -m benchmarks.engines '[engine, ssp, steps, step, [outputs]]'``; prints JSON:
-processor time of the steps in s, peak memory in MB, and the final values of the outputs. `compare` runs it.
+processor time of the steps in s, peak memory in MB, and the final values of the outputs. `compare`
+runs it.
 """
 
 from __future__ import annotations

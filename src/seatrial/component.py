@@ -23,6 +23,7 @@ from __future__ import annotations
 import math
 import zlib
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from operator import itemgetter
 from typing import Any, ClassVar
 
 import numpy as np
@@ -115,6 +116,7 @@ class Component:
     _always_settable: ClassVar[dict[type, frozenset[int]]] = {}
     _of_type: ClassVar[dict[type, frozenset[int]]] = {}
     _real_outputs: ClassVar[tuple[int, ...]] = ()
+    _of_real_outputs: ClassVar[Callable[[list[Any]], Sequence[float]]] = staticmethod(lambda _: ())
     _other_outputs: ClassVar[tuple[int, ...]] = ()
     _inputs: ClassVar[frozenset[int]] = frozenset()
 
@@ -146,6 +148,7 @@ class Component:
         cls._real_outputs = tuple(
             s.reference for s in cls.scalars if s.port.kind == "output" and s.port.type is float
         )
+        cls._of_real_outputs = staticmethod(_getter(cls._real_outputs))
         cls._other_outputs = tuple(
             s.reference
             for s in cls.scalars
@@ -230,15 +233,12 @@ class Component:
     def reader(self, references: Sequence[int], kind: type) -> Callable[[], list[Any]]:
         """Return what does the same as `read` of these references, again and again."""
         self._refuse_misfit(references, kind)
-        places = _places(references)
+        of = _getter(references)
 
         def read() -> list[Any]:
             if self._stale:
                 self.refresh()
-            if places is not None:
-                return self.values[places]
-            values = self.values
-            return [values[r] for r in references]
+            return of(self.values)
 
         return read
 
@@ -247,12 +247,17 @@ class Component:
         if kind is str or not self._inputs.issuperset(references):
             return lambda values: self._write(references, values, kind)
 
+        places = _places(references)
+
         def write(values: Sequence[Any]) -> None:
             if not math.isfinite(sum(values)):
                 self._write(references, values, kind)
             own = self.values
-            for reference, value in zip(references, values, strict=True):
-                own[reference] = value
+            if places is not None:
+                own[places] = values
+            else:
+                for reference, value in zip(references, values, strict=True):
+                    own[reference] = value
             self._stale = True
 
         return write
@@ -312,7 +317,7 @@ class Component:
         given = round(t * NS)
         if abs(given - self._now_ns) > max(1, h_ns // 100):
             self._now_ns = given
-        self.step(self.now, seconds(h_ns))
+        self.step(self._now_ns / NS, h_ns / NS)
         self._now_ns += h_ns
         self._stale = not publish
         if publish:
@@ -405,7 +410,7 @@ class Component:
 
     def _check_outputs(self) -> None:
         values = self.values
-        if not math.isfinite(sum([values[r] for r in self._real_outputs])):
+        if not math.isfinite(sum(self._of_real_outputs(values))):
             for reference in self._real_outputs:
                 if not math.isfinite(values[reference]):
                     self._refuse_output(reference)
@@ -484,8 +489,16 @@ def _is_fixed(port: Port) -> bool:
 
 def _places(references: Sequence[int]) -> slice | None:
     """Return the slice that references are, if they stand side by side in their order."""
-    first, after = references[0], references[0] + len(references)
+    first = references[0] if references else 0
+    after = first + len(references)
     return slice(first, after) if [*references] == [*range(first, after)] else None
+
+
+def _getter(references: Sequence[int]) -> Callable[[list[Any]], list[Any]]:
+    places = _places(references)
+    if places is not None:
+        return itemgetter(places)
+    return lambda values: [values[r] for r in references]
 
 
 def _range_text(low: float | None, high: float | None) -> str:

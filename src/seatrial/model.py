@@ -123,42 +123,46 @@ def _stepped(rhs: ca.Function, x: Any, u: tuple[Any, Any, Any], p: Any, h: Any) 
     return ca.cse(x + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4))
 
 
-def integrated(
-    model: Model,
-    start: Vector,
-    u: Callable[[Any, Any], Any],
-    p: Vector,
-    times: Sequence[float],
-    *,
-    rtol: float,
-    atol: float,
-) -> Vector:
-    """Return the states, one row per time, from ``start`` at the first of them on.
+class Sundials:
+    """Integrates the states of a model by SUNDIALS' CVODES, compiled, with the exact Jacobian.
 
-    By SUNDIALS' CVODES (variable order and step, backward differentiation), compiled, with the
-    exact Jacobian. ``u`` returns the stacked inputs as an expression of time and stacked state.
-    Raises ArithmeticError if the integration fails.
+    Backward differentiation, of variable order and step. ``u`` returns the stacked inputs as an
+    expression of time, s, and stacked state, asked for times before the end of a piece alone.
     """
-    t, x = ca.SX.sym("t"), ca.SX.sym("x", len(start))
-    ode = model.rhs(x, u(t, x), ca.DM(p))
-    try:
-        solve = ca.integrator(
-            "reference",
-            "cvodes",
-            {"x": x, "t": t, "ode": ode},
-            times[0],
-            list(times[1:]),
-            {
-                "reltol": rtol,
-                "abstol": atol,
-                "max_num_steps": 1_000_000,
-                "show_eval_warnings": False,
-            },
-        )
-        return np.asarray(solve(x0=start)["xf"]).T
-    except RuntimeError as error:
-        reason = str(error).strip().splitlines()[-1]
-        raise ArithmeticError(f"integration stopped after t = {times[0]}: {reason}") from None
+
+    def __init__(
+        self, model: Model, u: Callable[[Any, Any], Any], p: Vector, *, rtol: float, atol: float
+    ) -> None:
+        share, piece = ca.SX.sym("share"), ca.SX.sym("piece", 3)  # of a piece: begin, length, last
+        x = ca.SX.sym("x", model.rhs.size1_in(0))
+        t = ca.fmin(piece[0] + share * piece[1], piece[2])
+        ode = piece[1] * model.rhs(x, u(t, x), ca.DM(p))
+        self._problem = {"x": x, "t": share, "p": piece, "ode": ode}
+        self._options = {
+            "reltol": rtol,
+            "abstol": atol,
+            "max_num_steps": 1_000_000,
+            "show_eval_warnings": False,
+        }
+        self._solvers: dict[tuple[float, ...], ca.Function] = {}
+
+    def piece(self, start: Vector, times: Sequence[float]) -> Vector:
+        """Return the states, one row for each time behind the first, where they are ``start``.
+
+        Raises ArithmeticError if the integration fails.
+        """
+        begin, length = times[0], times[-1] - times[0]
+        shares = tuple((time - begin) / length for time in times[1:])
+        try:
+            if shares not in self._solvers:
+                self._solvers[shares] = ca.integrator(
+                    "reference", "cvodes", self._problem, 0.0, list(shares), self._options
+                )
+            piece = [begin, length, np.nextafter(times[-1], begin)]
+            return np.asarray(self._solvers[shares](x0=start, p=piece)["xf"]).T
+        except RuntimeError as error:
+            reason = str(error).strip().splitlines()[-1]
+            raise ArithmeticError(f"integration stopped after t = {begin}: {reason}") from None
 
 
 def undeclared_feedthrough(

@@ -20,10 +20,10 @@ from .component import Component, Output, Parameter
 from .errors import InputError, unknown
 from .model import (
     Model,
+    Sundials,
     Vector,
     bind,
     compile_model,
-    integrated,
     undeclared_feedthrough,
 )
 from .ports import Port
@@ -243,7 +243,7 @@ class Plant(Component):
         ends a step of the integrator too: between its steps it could only interpolate, with
         an error that nobody controls. ``method`` is one of SciPy's RK23, RK45, DOP853, Radau
         and BDF, or SUNDIALS' CVODES, which is compiled and many times faster: there ``u`` is
-        called once per piece, with CasADi's symbols, and returns expressions; values between its
+        called once, with CasADi's symbols, and returns expressions; values between its
         steps are those of its own polynomials. Raises ArithmeticError if the
         integration fails, InputError if ``u`` names something that is no input.
         """
@@ -292,24 +292,24 @@ class Plant(Component):
         rtol: float,
         atol: float,
     ) -> Reference:
-        model, x = self._compiled(), self._start_state()
-
         def inputs(t: Any, x: Any) -> Any:
             if u is None:
                 return self._stacked_u(None)
             try:
-                given = u(ca.fmin(t, np.nextafter(b, a)), self._named(x))
+                given = u(t, self._named(x))
             except (TypeError, RuntimeError) as error:
                 raise InputError(
                     f"{self.name}: CVODES takes inputs that are expressions of CasADi: {error}"
                 ) from error
             return self._inputs_of(given)
 
+        model, x = self._compiled(), self._start_state()
+        sundials = Sundials(model, inputs, self._stacked_p(), rtol=rtol, atol=atol)
         solved = {times[0]: x}
         edges = [times[0], *sorted({b for b in breaks if times[0] < b < times[-1]}), times[-1]]
         for a, b in itertools.pairwise(edges):
             at = [a, *(time for time in times.tolist() if a < time < b), b]
-            rows = integrated(model, x, inputs, self._stacked_p(), at, rtol=rtol, atol=atol)
+            rows = sundials.piece(x, at)
             solved.update(zip(at[1:], rows, strict=True))
             x = rows[-1]
         return Reference(times, np.array([solved[time] for time in times.tolist()]), model.x_names)

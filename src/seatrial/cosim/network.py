@@ -176,6 +176,7 @@ class Network:
             node, variables = self.nodes[name], self.system.parts[name].instance.variables
             for kind in dict.fromkeys(variables[w.target[1]].type for w in connections):
                 of_kind = [w for w in connections if variables[w.target[1]].type is kind]
+                of_kind.sort(key=lambda w: variables[w.target[1]].reference)
                 writer = node.part.instance.writer([w.target[1] for w in of_kind])
                 places = [self.places[w.source] for w in of_kind]
                 writes = Writes(of_kind, places, writer, [], tuple, [], lambda: self._time_ns)

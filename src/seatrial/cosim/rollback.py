@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from .compiled.steps import CompiledSteps
 
 _STEPS_BETWEEN = 250
+_COMPILED_BETWEEN = 2000
+"""The same of compiled steps: to save a state takes as long as hundreds of them."""
 _HALVINGS = 6
 
 
@@ -64,10 +66,10 @@ class Rollback:
         self, compiled: CompiledSteps, steps: int, t_ns: int, count: int, rows: Rows | None
     ) -> int:
         """Advance by up to ``count`` compiled steps; return by how many. Raises SimulationError."""
-        self._save_if_due(steps)
+        self._save_if_due(steps, _COMPILED_BETWEEN)
         h_ns = compiled.step_ns
         if self._checkpoint is not None:
-            count = min(count, self._checkpoint.steps + _STEPS_BETWEEN - steps)
+            count = min(count, self._checkpoint.steps + _COMPILED_BETWEEN - steps)
         try:
             return compiled.take(steps, t_ns, count, rows)
         except DiscardError as refused:
@@ -114,9 +116,9 @@ class Rollback:
 
     # ------------------------------------------------------------------ inside
 
-    def _save_if_due(self, steps: int) -> None:
+    def _save_if_due(self, steps: int, between: int = _STEPS_BETWEEN) -> None:
         if not self._obstacle and (
-            self._checkpoint is None or steps - self._checkpoint.steps >= _STEPS_BETWEEN
+            self._checkpoint is None or steps - self._checkpoint.steps >= between
         ):
             self._save(steps)
 
