@@ -3,8 +3,8 @@
 Nine components of the rig `landing` at 10 ms, without recording: in process, as Python FMUs, as
 native FMUs under the master in Python and under the compiled one. Each runs in a process of its
 own, in turn, for some rounds; processor time of the steps without set-up. The start, with
-assembly and initialisation, and peak memory are told too. At last a campaign: the processor time of
-whole trials with their pages. ``--write`` puts the table into docs/performance.md.
+assembly and initialisation, and peak memory are shown too. At last a campaign: the processor time
+of whole trials with their pages. ``--write`` puts the table into docs/performance.md.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """History of what benchmarks measured, one line of JSON per run in ``benchmarks/history.jsonl``.
 
 A line has the commit, when it was, and ratios of one run by name, each the larger the worse. A
-ratio that is 1.5 times that of the line before is told, and is no failure: machines differ.
+ratio that is 1.5 times that of the line before is reported, and is no failure: machines differ.
 """
 
 from __future__ import annotations

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from .compiled.steps import CompiledSteps
 
 _MOST_STEPS = 256
-"""Longest block of compiled steps: progress is shown and signals are taken between two."""
+"""Longest block of compiled steps."""
 
 
 @dataclass(frozen=True)

@@ -24,6 +24,7 @@
 enum { OK, WARNING };
 enum { WRITE, STEP, GET, STORE, ARRIVE, LOOP, CALL };
 enum { REAL, INTEGER, BOOLEAN };
+#define PATIENCE_NS 50000000
 enum { DONE, ANSWERED, EXCESS, UNSETTLED, CALLED, DIVERGED, ASKED };
 
 typedef int (*GetOrSet)(void *component, const uint32_t *references, size_t count, void *values);
@@ -353,9 +354,11 @@ static int finish_step(Master *m) {
     return DONE;
 }
 
-/* Take steps until `until` of them were taken since the start, or Python must look. */
+/* Take steps until `until` of them were taken since the start, or Python must look: also after
+   a while, for signals and progress. */
 EXPORT int master_run(Master *m, int64_t until) {
     calibrate();
+    const int64_t begun = ticks();
     for (;;) {
         const int why = finish_step(m);
         if (why != DONE) return why;
@@ -368,7 +371,7 @@ EXPORT int master_run(Master *m, int64_t until) {
                 return DIVERGED;
             }
         if (m->steps >= until) return DONE;
-        if (m->cells && m->cells[0]) return ASKED;
+        if ((m->cells && m->cells[0]) || in_ns(ticks() - begun) > PATIENCE_NS) return ASKED;
         if (m->row_every && m->steps % m->row_every == 0) {
             double *row = m->rows + m->rows_kept++ * m->row_count;
             for (int64_t i = 0; i < m->row_count; i++) row[i] = m->signals[m->row_places[i]];
