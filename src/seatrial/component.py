@@ -116,7 +116,7 @@ class Component:
     _always_settable: ClassVar[dict[type, frozenset[int]]] = {}
     _of_type: ClassVar[dict[type, frozenset[int]]] = {}
     _real_outputs: ClassVar[tuple[int, ...]] = ()
-    _of_real_outputs: ClassVar[Callable[[list[Any]], Sequence[float]]] = staticmethod(lambda _: ())
+    _of_real_outputs: ClassVar[Any] = staticmethod(lambda _: ())
     _other_outputs: ClassVar[tuple[int, ...]] = ()
     _inputs: ClassVar[frozenset[int]] = frozenset()
 
