@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 from array import array
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -41,6 +41,63 @@ def matching(names: Sequence[str], patterns: Sequence[str]) -> list[str]:
         if pattern != "*" and not any(fnmatchcase(name, pattern) for name in names):
             raise InputError(f"no signal matches {pattern!r}")
     return [name for name in names if any(fnmatchcase(name, p) for p in patterns)]
+
+
+class Watched:
+    """Keeps signals of a master in memory, at every communication step; it writes nothing."""
+
+    def __init__(self, master: Master, names: Sequence[str]) -> None:
+        self._master = master
+        all_places = {".".join(name): i for i, name in enumerate(master.names)}
+        self.places = [all_places[name] for name in names]
+        self._times = array("d")
+        self._columns: dict[str, array[float] | list[str]] = {
+            name: list[str]() if isinstance(master.signals[place], str) else array("d")
+            for name, place in zip(names, self.places, strict=True)
+        }
+        self.rows = None if _has_text(master, self.places) else Rows(self.places, 1)
+        """For `Master.advance`, which leaves there what `take` keeps; None where texts are."""
+
+    def __len__(self) -> int:
+        return len(self.places)
+
+    def record(self, *, last: bool = False) -> None:
+        """Keep the values of now, whether or not they are the ``last``."""
+        signals = self._master.signals
+        self.keep(self._master.time, [signals[place] for place in self.places])
+
+    def keep(self, time: float, values: Sequence[Any]) -> None:
+        """Keep the values at a time, s."""
+        if self._columns:
+            self._times.append(time)
+            for column, value in zip(self._columns.values(), values, strict=True):
+                column.append(value)
+
+    def take(self) -> None:
+        """Keep the points that the last block of steps left in ``rows``."""
+        assert self.rows is not None
+        for _steps, time, values in _points(self._master, self.rows):
+            self.keep(time, values)
+
+    def watched(self) -> tuple[NDArray[np.float64], dict[str, NDArray[np.float64] | list[str]]]:
+        """Return time and the signals, texts as lists, at every communication step so far."""
+        columns: dict[str, NDArray[np.float64] | list[str]] = {
+            name: column if isinstance(column, list) else np.array(column)
+            for name, column in self._columns.items()
+        }
+        return np.array(self._times), columns
+
+
+def _has_text(master: Master, places: Sequence[int]) -> bool:
+    return any(isinstance(master.signals[place], (str, bytes)) for place in places)
+
+
+def _points(master: Master, rows: Rows) -> Iterator[tuple[int, float, list[float]]]:
+    """Yield steps, time, s, and values of each point that a block of steps left in ``rows``."""
+    first, table = rows.taken()
+    for number, values in enumerate(table.tolist()):
+        steps = first + number * rows.every
+        yield steps, (master.start_ns + steps * master.step_ns) / NS, values
 
 
 class Recorder:
@@ -80,12 +137,7 @@ class Recorder:
         self._write()
         # Text is always quoted: a lone carriage return in it would end the row otherwise.
         self._writer = csv.writer(self._row, lineterminator="\n", quoting=csv.QUOTE_NONNUMERIC)
-        self._watched_places = [places[name] for name in watch]
-        self._watched: dict[str, array[float] | list[str]] = {
-            name: list[str]() if isinstance(master.signals[places[name]], str) else array("d")
-            for name in watch
-        }
-        self._times = array("d")
+        self._watched = Watched(master, watch)
         self.rows = self._block()
         """For `Master.advance`, which leaves there what `take` records; None where texts are."""
 
@@ -93,7 +145,7 @@ class Recorder:
         """Write a row if one is due at the master's time, or if it is the ``last``."""
         master = self._master
         signals = master.signals
-        self._watch(master.time, [signals[place] for place in self._watched_places])
+        self._watched.record()
         if master.steps % self.every and not last:
             return
         row: list[Any] = [signals[i] for i in self._places]
@@ -107,12 +159,9 @@ class Recorder:
     def take(self) -> None:
         """Record the points that the last block of steps left in ``rows``."""
         assert self.rows is not None
-        master, count = self._master, len(self._watched)
-        first, table = self.rows.taken()
-        for row_number, values in enumerate(table.tolist()):
-            steps = first + row_number * self.rows.every
-            time = (master.start_ns + steps * master.step_ns) / NS
-            self._watch(time, values[:count])
+        count = len(self._watched)
+        for steps, time, values in _points(self._master, self.rows):
+            self._watched.keep(time, values[:count])
             if steps % self.every == 0:
                 row = values[count:]
                 for column in self._whole_numbers:
@@ -122,11 +171,7 @@ class Recorder:
 
     def watched(self) -> tuple[NDArray[np.float64], dict[str, NDArray[np.float64] | list[str]]]:
         """Return time and watched signals, texts as lists, at every communication step so far."""
-        columns: dict[str, NDArray[np.float64] | list[str]] = {
-            name: column if isinstance(column, list) else np.array(column)
-            for name, column in self._watched.items()
-        }
-        return np.array(self._times), columns
+        return self._watched.watched()
 
     def close(self) -> None:
         """Close the file."""
@@ -136,19 +181,13 @@ class Recorder:
             raise self._named(error) from None
 
     def _block(self) -> Rows | None:
-        signals, places = self._master.signals, [*self._watched_places, *self._places]
-        if any(isinstance(signals[place], (str, bytes)) for place in places):
+        signals, places = self._master.signals, [*self._watched.places, *self._places]
+        if _has_text(self._master, places):
             return None
         self._whole_numbers = [
             column for column, i in enumerate(self._places) if isinstance(signals[i], int)
         ]
         return Rows(places, 1 if self._watched else self.every)
-
-    def _watch(self, time: float, values: Sequence[Any]) -> None:
-        if self._watched:
-            self._times.append(time)
-            for column, value in zip(self._watched.values(), values, strict=True):
-                column.append(value)
 
     def _write(self) -> None:
         """Write the row that was made, or nothing."""

@@ -81,6 +81,16 @@ def check_plots(trial: Trial, system: System) -> None:
             raise InputError(f"{where}: signals of one unit are needed, not {listed}")
 
 
+def check_figures(trial: Trial, system: System) -> None:
+    """Raise InputError for a figure of a signal that is no number."""
+    outputs = _outputs(system)
+    for signal in trial.figures:
+        try:
+            _require_number(signal, outputs)
+        except InputError as error:
+            raise InputError(f"figures: {error}") from None
+
+
 def check_real_time(trial: Trial, system: System) -> None:
     """Raise InputError for a signal of ``real_time`` that is no number of its unit."""
     entry = trial.file.real_time

@@ -24,8 +24,9 @@ def by_path(trial: Trial, system: System) -> Trial:
     naming, file = _Naming(system), trial.file
     where = str(trial.read_from.path)
     criteria = tuple((name, naming.criterion(c, f"{where}: {name}")) for name, c in trial.criteria)
+    figures = tuple(naming.one(figure, where) for figure in trial.figures)
     if not trial.rig.top.inner:
-        return replace(trial, criteria=criteria)
+        return replace(trial, criteria=criteria, figures=figures)
     plots = [
         entry.model_copy(update={"signals": [naming.one(s, where) for s in entry.signals]})
         for entry in file.plots
@@ -38,7 +39,8 @@ def by_path(trial: Trial, system: System) -> Trial:
         found = {k: naming.one(s, where) for k, s in signals.items() if isinstance(s, str)}
         real_time = real_time.model_copy(update=found)
     changes = {"plots": plots, "record": record, "real_time": real_time}
-    return replace(trial, file=file.model_copy(update=changes), criteria=criteria)
+    changed = file.model_copy(update=changes)
+    return replace(trial, file=changed, criteria=criteria, figures=figures)
 
 
 def named_components(trial: Trial, system: System) -> set[str]:
@@ -48,7 +50,7 @@ def named_components(trial: Trial, system: System) -> set[str]:
     """
     file, where = trial.file, str(trial.read_from.path)
     signals = {signal for _, criterion in trial.criteria for signal in criterion.signals}
-    signals |= {signal for plot in file.plots for signal in plot.signals}
+    signals |= {signal for plot in file.plots for signal in plot.signals} | {*trial.figures}
     patterns = [pattern for pattern in file.record.signals if pattern != "*"]
     signals |= set(matching(output_names(system), patterns))
     if file.real_time is not None:

@@ -18,7 +18,7 @@ from .forked import SLICE_MS
 from .hooks import Hooks, StoppedError
 from .run import Result
 from .supervised import Page, no_page
-from .supervision import Order, Supervisor
+from .supervision import Order, Outcome, Supervisor
 from .trial import Trial
 
 
@@ -130,7 +130,7 @@ class Pool:
         self._busy[number] = supervisor
         supervisor.begin(what, number, folder)
 
-    def _outcomes(self) -> Iterator[tuple[int, Result | bool | Exception]]:
+    def _outcomes(self) -> Iterator[tuple[int, Outcome | Exception]]:
         """Wait a moment, and yield what has come of orders."""
         descriptors = [d for supervisor in self._busy.values() for d in supervisor.descriptors()]
         if descriptors:
@@ -140,7 +140,7 @@ class Pool:
             waiting.poll(SLICE_MS)
         for number, supervisor in list(self._busy.items()):
             try:
-                outcome: Result | bool | Exception | None = supervisor.poll(wait=False)
+                outcome: Outcome | Exception | None = supervisor.poll(wait=False)
             except Exception as error:
                 outcome = error
             if outcome is not None:

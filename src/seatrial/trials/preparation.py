@@ -12,7 +12,14 @@ from ..cosim.native_carriers import carry_natively
 from ..cosim.system import Engine, System
 from ..cosim.unread import leave_out_unread
 from ..errors import InputError, SimulationError, listed
-from .checks import check_criteria, check_events, check_plots, check_real_time, trial_faults
+from .checks import (
+    check_criteria,
+    check_events,
+    check_figures,
+    check_plots,
+    check_real_time,
+    trial_faults,
+)
 from .hooks import Hooks
 from .manifest import manifest
 from .naming import by_path, named_components
@@ -91,6 +98,7 @@ def prepare(trial: Trial, engine: Engine, hooks: Hooks) -> Prepared:
         trial = by_path(trial.scheduled(system), system)
         units = check_criteria(trial, system)
         check_plots(trial, system)
+        check_figures(trial, system)
         check_events(trial, system)
         trial_faults(trial, system)
         check_real_time(trial, system)

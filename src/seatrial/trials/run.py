@@ -37,6 +37,9 @@ class Result:
     notes: list[str]
     """What the user should know: of the rig, of the steps, of the pace."""
     wall: dict[str, float] = field(default_factory=dict)
+    seed: int = 0
+    figures: list[list[float]] = field(default_factory=list)
+    """Least, greatest and last value of each of the trial's figures, as `verdicts`."""
 
     @property
     def passed(self) -> bool:
@@ -79,7 +82,9 @@ def run_trial(
         with contextlib.suppress(KeyboardInterrupt), hooks.interruptible():
             prepared.system.free()  # nothing of the run depends on it any more
     verdicts = [] if run.status in ("failed", "stopped") else run.evaluate()
-    return Result(folder, run.status, run.error, verdicts, run.notes(), wall)
+    figures = [] if run.status in ("failed", "stopped") else run.stepping.figures()
+    seed = prepared.system.seed
+    return Result(folder, run.status, run.error, verdicts, run.notes(), wall, seed, figures)
 
 
 def check_trial(trial: Trial, engine: Engine = "fmu", hooks: Hooks | None = None) -> bool:

@@ -14,6 +14,7 @@ from ..errors import SeatrialError, SimulationError
 from .forked_child import Child, forward_output
 from .hooks import Hooks, Observer
 from .link import Frame
+from .measuring import measure_trial
 from .run import Result, check_trial, run_trial
 from .trial import Trial
 
@@ -28,7 +29,7 @@ def no_page(_folder: Path) -> None:
 def serve(
     trials: Sequence[Trial], engine: Engine, page: Page, observer: Observer | None, child: Child
 ) -> None:
-    """Carry out orders until there are no more: ``check``, ``run`` and ``report``, by number.
+    """Carry out orders until there are no more: ``check``, ``measure``, ``run``, ``report``.
 
     ``page`` writes the report of a run's folder, ``observer`` looks at the runs.
 
@@ -39,7 +40,8 @@ def serve(
     while (orders := child.link.receive()) is not None:
         for order in orders:
             os.chdir(here)  # a component may have left it
-            child.link.send(*_carried_out(order, trials, engine, page, _hooks(child, observer)))
+            hooks = _unnoted(child) if order[0] == "measure" else _hooks(child, observer)
+            child.link.send(*_carried_out(order, trials, engine, page, hooks))
 
 
 def _carried_out(
@@ -54,6 +56,9 @@ def _carried_out(
         if what == "report" and out is not None:
             page(out)
             return ["done", {}]
+        if what == "measure":
+            measured = measure_trial(trials[number], engine=engine, hooks=hooks)
+            return ["done", asdict(measured)]
         result = run_trial(trials[number], out, engine=engine, hooks=hooks)
         return ["done", _written(result)]
     except SeatrialError as error:
@@ -66,6 +71,11 @@ def _carried_out(
     except BaseException as error:  # SystemExit too: nothing that a component does is an end
         text = "".join(traceback.format_exception(error)).strip()
         return ["error", SimulationError.__name__, f"an error of seatrial itself:\n{text}"]
+
+
+def _unnoted(child: Child) -> Hooks:
+    """Return hooks without a note of each call: who dies is run again, with them."""
+    return Hooks(stop_requested=child.asked, interruptible=child.interruptible)
 
 
 def _hooks(child: Child, observer: Observer | None) -> Hooks:
@@ -96,4 +106,6 @@ def _written(result: Result) -> dict[str, object]:
         "verdicts": verdicts,
         "notes": result.notes,
         "wall": result.wall,
+        "seed": result.seed,
+        "figures": result.figures,
     }

@@ -19,6 +19,7 @@ from .ending import is_whole
 from .forked import Forked
 from .hooks import Hooks, StoppedError
 from .link import Frame
+from .measuring import Measured, measure_trial
 from .output import claim_folder, write_json
 from .predicates import Limit
 from .preloading import preload
@@ -29,7 +30,8 @@ from .trial import Trial
 from .verdict import Verdict
 
 _ERRORS = {kind.__name__: kind for kind in (InputError, SimulationError, StoppedError)}
-Order = Literal["check", "run", "report"]
+Order = Literal["check", "measure", "run", "report"]
+Outcome = Result | Measured | bool
 _IN_PROCESS = not hasattr(os, "fork")
 """Windows cannot copy a process: trials run in this one there."""
 
@@ -38,7 +40,8 @@ class Supervisor:
     """Runs trials one after the other in a child, and in another one once that has died.
 
     This process loads no component and opens no device. ``page`` writes the report of a run's
-    folder, if one is ordered. Use it as a context manager.
+    folder, if one is ordered. ``alike`` are some with the components of all (None: all), for
+    ``trials`` that are made as they are asked for. Use it as a context manager.
     """
 
     def __init__(
@@ -47,9 +50,10 @@ class Supervisor:
         engine: Engine,
         hooks: Hooks | None = None,
         page: Page = no_page,
+        alike: Sequence[Trial] | None = None,
     ) -> None:
         self._trials, self._engine, self._hooks = trials, engine, hooks or Hooks()
-        self._page = page
+        self._page, self._alike = page, trials if alike is None else alike
         self._forked: Forked | None = None
         self._busy = False
         self._order: tuple[Order, int, Path | None] = ("check", 0, None)
@@ -81,14 +85,23 @@ class Supervisor:
         assert isinstance(result, Result)
         return result
 
+    def measure(self, number: int) -> Measured:
+        """Run a trial as `measure_trial` does.
+
+        Raises what that raises; SimulationError if its process ends: `run` says why.
+        """
+        measured = self._whole("measure", number)
+        assert isinstance(measured, Measured)
+        return measured
+
     def begin(self, what: Order, number: int, folder: Path | None = None) -> None:
-        """Begin to check or run a trial, or to write the report of its folder."""
+        """Begin to check, measure or run a trial, or to write the report of its folder."""
         self._forget()
         self._order = what, number, folder
         if _IN_PROCESS:
             return
         if self._forked is None:
-            preload(self._trials, self._engine)
+            preload(self._alike, self._engine)
             observer = self._hooks.observer
             self._forked = Forked(partial(serve, self._trials, self._engine, self._page, observer))
         self._busy = True
@@ -98,11 +111,11 @@ class Supervisor:
         """Return what can be waited at until `poll` may find something."""
         return self._forked.descriptors() if self._forked is not None else ()
 
-    def poll(self, *, wait: bool = True) -> Result | bool | None:
+    def poll(self, *, wait: bool = True) -> Outcome | None:
         """Return what came of the order, within a moment; None while it is carried out.
 
-        It is the result of a run; of a check, whether the trial must run alone. Raises what
-        `check` and `run` raise.
+        It is the result of a run, what was measured; of a check, whether the trial must run alone.
+        Raises what `check` and `run` raise.
         """
         what, number, folder = self._order
         if self._forked is None:
@@ -125,25 +138,29 @@ class Supervisor:
 
     # ------------------------------------------------------------------ inside
 
-    def _whole(self, what: Order, number: int, folder: Path | None = None) -> Result | bool:
+    def _whole(self, what: Order, number: int, folder: Path | None = None) -> Outcome:
         """Carry out an order to its end."""
         self.begin(what, number, folder)
         while (outcome := self.poll()) is None:
             pass
         return outcome
 
-    def _in_process(self) -> Result | bool:
+    def _in_process(self) -> Outcome:
         what, number, folder = self._order
         trial = self._trials[number]
         if what == "check":
             return check_trial(trial, self._engine, self._hooks)
+        if what == "measure":
+            return measure_trial(trial, engine=self._engine, hooks=self._hooks)
         if what == "report" and folder is not None:
             self._page(folder)
             return True
         return run_trial(trial, folder, engine=self._engine, hooks=self._hooks)
 
-    def _outcome(self, content: dict[str, Any]) -> Result | bool:
+    def _outcome(self, content: dict[str, Any]) -> Outcome:
         what, _, out = self._order
+        if what == "measure":
+            return Measured(**content)
         if what != "run":
             return bool(content.get("alone", True))
         folder = self._shown(out)

@@ -58,6 +58,8 @@ class Trial:
     scenario: Scenario | None = None
     called: Mapping[str, str] = field(default_factory=dict)
     """Components by the names that a package of another tool gives them."""
+    figures: tuple[str, ...] = ()
+    """Signals of which a table of runs has the least, the greatest and the last value."""
 
     @property
     def name(self) -> str:
