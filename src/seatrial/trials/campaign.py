@@ -2,25 +2,26 @@
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import Field
 
 from ..cosim.fault_entry import FaultEntry
 from ..cosim.files import FileModel, Source, find_file, read_toml, validated
 from ..cosim.system import Engine
-from ..errors import InputError
-from .cases import Case, case_folders, case_name, run_cases
+from ..errors import InputError, unknown
+from .case_list import FAULTS, Block, Cases
+from .cases import Case, case_folders, run_cases
 from .designs import Design, drawn
 from .hooks import Hooks
 from .output import claim_folder, write_json
 from .resuming import kept_results
 from .run import Result
+from .stopping_rule import StoppingRule
 from .supervised import Page
 from .trial import Trial, load_trial
 
@@ -57,6 +58,13 @@ class CampaignFile(FileModel):
     """Faults by the names of cases: each is one more value of every combination."""
     scale: dict[str, list[float]] = Field(default_factory=dict)
     design: Design | None = None
+    figures: list[str] = Field(default_factory=list)
+    """Signals of which the table has the least, the greatest and the last value."""
+    keep: Literal["all", "failed", "none"] | None = None
+    """Whose run folders stay beside a table of all cases; None: all, without a table."""
+    samples: int = Field(default=0, ge=0)
+    """With ``keep``: one case in so many keeps its folder whatever becomes of it."""
+    until: StoppingRule | None = None
 
 
 @dataclass(frozen=True)
@@ -68,53 +76,36 @@ class Campaign:
     trials: tuple[Trial, ...]
     """Those of ``file.trials``, in that order."""
 
-    def cases(self) -> list[Case]:
-        """Return all cases, in the order of the file."""
-        pairs = zip(self.trials, self.file.trials, strict=True)
-        return [case for trial, entry in pairs for case in self._cases(trial, entry)]
-
-    def _cases(self, trial: Trial, entry: str | TrialEntry) -> Iterator[Case]:
-        origin = str(self.read_from.path)
-        own = TrialEntry(trial=entry) if isinstance(entry, str) else entry
-        common, grid = {**self.file.set, **own.set}, {**self.file.grid, **own.grid}
-        base = trial.changed(common, f"{origin}: set")
-        for chosen, where in self._chosen(grid, origin):
-            varied = base.changed(chosen, where)
-            for named, failing in self._failing(varied):
-                found = {**chosen, **named}
-                yield Case(case_name(trial, found), failing, {**common, **found})
-                yield from self._scaled(failing, common, found)
-
-    def _chosen(
-        self, grid: Mapping[str, list[Any]], origin: str
-    ) -> Iterator[tuple[dict[str, Any], str]]:
-        """Yield the settings of each case of grid and design, and where they are written."""
-        design, where = self.file.design, f"{origin}: grid"
+    def cases(self) -> Cases:
+        """Return all cases, in the order of the file. Raises InputError."""
         rows: list[dict[str, Any]] = [{}]
-        if design is not None:
-            where = f"{origin}: grid and design"
-            if twice := design.vary.keys() & grid.keys():
-                raise InputError(f"{origin}: design: vary: {min(twice)} is a key of grid too")
-            rows = drawn(design, f"{origin}: design")
-        for values in itertools.product(*grid.values()):
-            for row in rows:
-                yield {**dict(zip(grid, values, strict=True)), **row}, where
+        if self.file.design is not None:
+            rows = drawn(self.file.design, f"{self.read_from.path}: design")
+        pairs = zip(self.trials, self.file.trials, strict=True)
+        return Cases(self._block(trial, entry, rows) for trial, entry in pairs)
 
-    def _failing(self, trial: Trial) -> Iterator[tuple[dict[str, str], Trial]]:
-        """Yield the trial with the faults of each name; without any, as it is."""
-        if not self.file.faults:
-            yield {}, trial
-        for name, entries in self.file.faults.items():
-            yield {"faults": name}, trial.with_faults(entries)
-
-    def _scaled(
-        self, trial: Trial, common: Mapping[str, Any], chosen: dict[str, Any]
-    ) -> Iterator[Case]:
-        for key, factors in self.file.scale.items():
-            for factor in factors:
-                scaled = trial.scaled(key, factor, f"{self.read_from.path}: scale")
-                shown = {**chosen, f"{key} times": factor}
-                yield Case(case_name(trial, shown), scaled, {**common, **shown})
+    def _block(self, trial: Trial, entry: str | TrialEntry, rows: list[dict[str, Any]]) -> Block:
+        file, origin = self.file, str(self.read_from.path)
+        own = TrialEntry(trial=entry) if isinstance(entry, str) else entry
+        common, grid = {**file.set, **own.set}, {**file.grid, **own.grid}
+        keys = rows[0].keys()
+        if twice := keys & grid.keys():
+            raise InputError(f"{origin}: design: vary: {min(twice)} is a key of grid too")
+        if FAULTS in keys and (lost := {row[FAULTS] for row in rows} - file.faults.keys()):
+            said = unknown("name of faults", min(lost), file.faults)
+            raise InputError(f"{origin}: design: {FAULTS}: {said}")
+        base = trial.changed(common, f"{origin}: set")
+        return Block(
+            replace(base, figures=tuple(file.figures)),
+            common,
+            grid,
+            rows,
+            file.faults,
+            [None] if FAULTS in keys or not file.faults else list(file.faults),
+            [None, *((key, factor) for key, each in file.scale.items() for factor in each)],
+            f"{origin}: grid" + (" and design" if file.design is not None else ""),
+            f"{origin}: scale",
+        )
 
 
 def load_campaign(name: str) -> Campaign:
@@ -205,7 +196,7 @@ def _write_index(
         {
             "name": cases[number].name,
             "folder": result.folder.name,
-            "trial": cases[number].trial.name,
+            "trial": cases[number].trial_name,
             "set": cases[number].set,
             "passed": result.passed,
             "status": result.status,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -22,17 +23,25 @@ class Case:
     """One run of a campaign."""
 
     name: str
-    trial: Trial
+    made: Callable[[], Trial]
+    """Makes its trial. Raises what `Trial.changed` raises."""
     set: dict[str, Any]
+    trial_name: str
+
+    @property
+    def trial(self) -> Trial:
+        """Its trial, made anew. Raises what `Trial.changed` raises."""
+        return self.made()
 
 
 def changed_cases(trial: Trial, settings: Sequence[Mapping[str, Any]], origin: str) -> list[Case]:
     """Return a case of ``trial`` for each of ``settings``: values by the keys they change.
 
-    Raises what `Trial.changed` raises; ports and their values are checked by `run_cases`, with
-    errors that name ``origin`` too.
+    Keys and values are checked by `run_cases`, with errors that name ``origin``.
     """
-    return [Case(case_name(trial, s), trial.changed(s, origin), dict(s)) for s in settings]
+    made = (partial(trial.changed, each, origin) for each in settings)
+    pairs = zip(settings, made, strict=True)
+    return [Case(case_name(trial, s), each, {**s}, trial.name) for s, each in pairs]
 
 
 def case_name(trial: Trial, chosen: Mapping[str, Any]) -> str:
@@ -47,7 +56,12 @@ def case_name(trial: Trial, chosen: Mapping[str, Any]) -> str:
 
 def case_folders(cases: Sequence[Case]) -> list[str]:
     """Return the name of each case's folder: its number, from 1, and its name."""
-    return [f"{number:02d}-{_slug(case.name)}" for number, case in enumerate(cases, 1)]
+    return [case_folder(number, case) for number, case in enumerate(cases, 1)]
+
+
+def case_folder(number: int, case: Case) -> str:
+    """Return the name of the folder of a case, by its number from 1."""
+    return f"{number:02d}-{_slug(case.name)}"
 
 
 def run_cases(

@@ -66,6 +66,12 @@ def read_distribution(entry: Distribution, origin: str) -> Inverse:
     return inverse
 
 
+def number_and_unit(text: str) -> tuple[float, str | None]:
+    """Return number and unit, perhaps empty, of a quantity; the unit None for other text."""
+    part = _PARTS.match(text)
+    return (math.nan, None) if part is None else (float(part[1]), part[2] or "")
+
+
 def _integers(written: list[int], entry: Distribution, here: str) -> Inverse:
     first, last = written
     if last < first or entry.between:

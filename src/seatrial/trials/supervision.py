@@ -114,8 +114,8 @@ class Supervisor:
     def poll(self, *, wait: bool = True) -> Outcome | None:
         """Return what came of the order, within a moment; None while it is carried out.
 
-        It is the result of a run, what was measured; of a check, whether the trial must run alone.
-        Raises what `check` and `run` raise.
+        It is the result of a run, or what was measured; of a check, whether the trial must run
+        alone. Raises what `check` and `run` raise.
         """
         what, number, folder = self._order
         if self._forked is None:

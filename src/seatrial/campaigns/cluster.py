@@ -1,0 +1,124 @@
+"""Workers of a Dask cluster: the same desks, in the processes that Dask has started."""
+
+from __future__ import annotations
+
+import hashlib
+import tempfile
+from collections import defaultdict
+from collections.abc import Sequence
+from concurrent.futures import Future
+from pathlib import Path
+from importlib import import_module
+from queue import Empty, SimpleQueue
+from typing import Any
+
+from ..errors import InputError
+from ..trials.campaign import Campaign
+from .desk import Desk, Plan, still
+from .ended import Ended
+from .shipment import pack_folder, packed, unpacked
+from .workers import Task
+
+_WAIT_S = 30
+"""For the first worker."""
+_TASK_S = 2.0
+"""Wall time of a task of short cases: a scheduler does some thousand tasks a second."""
+_MOST_CASES = 1000
+_PER_THREAD = 4
+"""Tasks that wait for each thread of a worker."""
+
+
+class Cluster:
+    """Runs tasks on the workers of the scheduler at ``address``.
+
+    The campaign goes to each worker once, by its hash. Dask gives what a lost worker had to others;
+    what it has lost with several of them comes back as an error (`lost`). Raises InputError if
+    Dask is not installed, or there is no scheduler or worker.
+    """
+
+    def __init__(self, address: str, campaign: Campaign, plan: Plan) -> None:
+        try:
+            distributed: Any = import_module("distributed")
+        except ImportError:
+            raise InputError(
+                "--cluster needs Dask: python -m pip install 'seatrial[cluster]'"
+            ) from None
+        if plan.recorded:
+            raise InputError(
+                "--cluster: a case of this campaign keeps to wall time, or programs outside "
+                "connect to it; it runs on this machine"
+            )
+        self._killed = distributed.KilledWorker
+        try:
+            self._client: Any = distributed.Client(address, timeout=_WAIT_S, set_as_default=False)
+        except (OSError, ValueError) as error:
+            raise InputError(f"--cluster: there is no scheduler at {address}: {error}") from None
+        try:
+            self._client.wait_for_workers(1, timeout=_WAIT_S)
+        except TimeoutError:
+            self._client.close()
+            raise InputError(f"--cluster: the scheduler at {address} has no worker") from None
+        data = packed(campaign)
+        key = f"seatrial-{hashlib.sha256(data).hexdigest()}"
+        self._data = self._client.submit(_itself, data, key=key)
+        self._plan = plan
+        self._executor = self._client.get_executor(pure=False)
+
+    @property
+    def places(self) -> int:
+        """How many tasks are worth having under way; workers come and go."""
+        threads = sum(self._client.nthreads().values())
+        return _PER_THREAD * max(1, int(threads))
+
+    def size(self, wall: float) -> int:
+        """Return how many cases make a task of `_TASK_S`."""
+        return min(max(1, int(_TASK_S / max(wall, 1e-6))), _MOST_CASES)
+
+    def submit(self, task: Task, below: Path) -> Future[list[Ended | None]]:
+        """Begin a task; the folders come packed, with what they are of."""
+        future: Future[list[Ended | None]] = self._executor.submit(
+            run_task, self._data, self._plan, list(task)
+        )
+        return future
+
+    def lost(self, error: BaseException) -> bool:
+        """Say if an error of a task is that several workers in turn died of it."""
+        return isinstance(error, self._killed)
+
+    def close(self) -> None:
+        """Cancel what has not begun."""
+        self._executor.shutdown(wait=False)
+        self._client.cancel([self._data])
+        self._client.close()
+
+
+def run_task(data: bytes, plan: Plan, task: Sequence[int]) -> list[Ended]:
+    """Run the cases of a task in a worker, and return what they leave, with the folders kept."""
+    with still():
+        campaign, top = unpacked(data)
+    desks = _desks[hashlib.sha256(data).hexdigest(), plan]
+    try:
+        desk = desks.get_nowait()
+    except Empty:
+        desk = Desk(campaign.cases(), plan, home=top)
+    try:
+        with tempfile.TemporaryDirectory(prefix="seatrial-cases-") as below:
+            return [_ended(desk, number, Path(below)) for number in task]
+    finally:
+        desks.put(desk)
+
+
+def _ended(desk: Desk, number: int, below: Path) -> Ended:
+    ended = desk.ended(number, below)
+    assert ended is not None  # nobody stops it
+    if ended.folder:
+        ended.files = pack_folder(below / ended.folder)
+    return ended
+
+
+def _itself(data: bytes) -> bytes:
+    return data
+
+
+_desks: dict[tuple[str, Plan], SimpleQueue[Desk]] = defaultdict(SimpleQueue)
+"""Of this process, by campaign and plan: those that are idle."""

@@ -1,0 +1,64 @@
+"""The journal of a campaign under way: a line per case that has ended, in whatever order."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ..errors import InputError
+from .ended import Ended
+
+JOURNAL = "ended.jsonl"
+
+
+class Journal:
+    """Appends lines; a campaign that was killed has all but the one that was being written.
+
+    Use it as a context manager.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.path = folder / JOURNAL
+        self._cut()
+        self._file = self.path.open("a", encoding="utf-8", newline="\n")
+
+    def __enter__(self) -> Journal:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._file.close()
+
+    def add(self, ended: Ended) -> None:
+        """Append a case; it is with the system when this returns."""
+        self._file.write(ended.line() + "\n")
+        self._file.flush()
+
+    def _cut(self) -> None:
+        """Take back a last line that was not written whole."""
+        data = self.path.read_bytes() if self.path.is_file() else b""
+        whole = data.rfind(b"\n") + 1
+        if whole < len(data):
+            with self.path.open("r+b") as file:
+                file.truncate(whole)
+
+
+def ended_cases(folder: Path, count: int) -> dict[int, Ended]:
+    """Return the cases in a folder's journal, by number; none without a journal.
+
+    Raises InputError for a journal that cannot be read.
+    """
+    path = folder / JOURNAL
+    if not path.is_file():
+        return {}
+    found: dict[int, Ended] = {}
+    lines = path.read_text("utf-8", errors="replace").splitlines(keepends=True)
+    for place, line in enumerate(lines, 1):
+        if not line.endswith("\n"):
+            break
+        try:
+            ended = Ended.of_line(line)
+        except (ValueError, KeyError, TypeError):
+            raise InputError(f"{path}, line {place}: this is no case that has ended") from None
+        if not 0 <= ended.number < count:
+            raise InputError(f"{path}, line {place}: there is no case {ended.number + 1}")
+        found[ended.number] = ended
+    return found

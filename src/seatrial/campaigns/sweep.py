@@ -1,0 +1,267 @@
+"""A campaign run into its tables: cases to workers, what they leave in case order."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import shutil
+from collections import deque
+from collections.abc import Callable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from contextlib import closing
+from dataclasses import dataclass, field, replace
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+from .. import __version__
+from ..cosim.system import Engine
+from ..errors import InputError
+from ..trials.campaign import INDEX, Campaign
+from ..trials.cases import Case
+from ..trials.hooks import Hooks
+from ..trials.measuring import Measured
+from ..trials.output import claim_folder, write_json
+from ..trials.run_schema import CAMPAIGN, checked_json
+from .cluster import Cluster
+from .columns import columns_of
+from .desk import Keep, Plan
+from .ended import Ended
+from .journal import JOURNAL, Journal, ended_cases
+from .sampled_checks import check
+from .shipment import unpack_folder
+from .table import RESULTS, Tables, arrow, read_rows
+from .workers import Here, Task, Workers
+
+Done = Callable[[Case, Ended], None]
+_SLICE_S = 0.1
+"""A stop is noticed within this time."""
+
+
+@dataclass(frozen=True)
+class How:
+    """How a campaign is run: on this machine, ``jobs`` side by side, or on a cluster."""
+
+    engine: Engine = "fmu"
+    jobs: int | None = None
+    cluster: str | None = None
+    keep: Keep | None = None
+    """In place of what the campaign says."""
+    resume: bool = False
+
+
+@dataclass
+class Summary:
+    """What a campaign has come to."""
+
+    folder: Path
+    planned: int
+    ended: int = 0
+    failed: int = 0
+    """Cases that did not pass."""
+    broken: int = 0
+    """Of them those whose run could not go on."""
+    enough: bool = False
+    """The campaign's stopping rule was met before all cases had run."""
+    kept: list[dict[str, Any]] = field(default_factory=list)
+    """Entries of the cases whose folders stay, for the index."""
+
+    @property
+    def whole(self) -> bool:
+        """True if there is nothing left to run."""
+        return self.enough or self.ended == self.planned
+
+    def count(self, case: Case, ended: Ended) -> None:
+        """Count a case."""
+        measured = ended.measured
+        self.ended += 1
+        self.failed += not measured.passed
+        self.broken += measured.status == "failed"
+        if ended.folder:
+            self.kept.append(_entry(case, ended))
+
+
+def run_sweep(
+    campaign: Campaign,
+    out: Path | None,
+    how: How,
+    hooks: Hooks | None = None,
+    done: Done = lambda _case, _ended: None,
+) -> Summary:
+    """Run a campaign into ``results.parquet`` and ``timing.parquet`` below ``out``.
+
+    ``out`` must not hold anything yet; None makes a new folder ``runs/NAME-DATE-TIME``. With
+    ``how.resume`` it may be what this campaign has left. ``done`` is called for each case, in case
+    order. Stops, keeping what is there, once ``hooks.stop_requested``. The table of results
+    depends on the campaign's files alone, not on who runs it.
+
+    Raises InputError for bad input before the first case runs (see `sampled_checks`), StoppedError.
+    """
+    hooks = hooks or Hooks()
+    arrow()
+    cases, file = campaign.cases(), campaign.file
+    plan = Plan(how.engine, how.keep or file.keep or "all", file.samples)
+    index = _index(campaign, how.engine, len(cases))
+    left = out if how.resume and out is not None and (out / INDEX).is_file() else None
+    kept: dict[int, Ended] = {}
+    if left is not None:
+        _refuse_other(left / INDEX, index)
+        if (left / RESULTS).is_file() and not (left / JOURNAL).is_file():
+            return _summary(left, len(cases))
+        kept = ended_cases(left, len(cases))
+    plan = replace(plan, recorded=check(cases, plan, hooks))
+    columns = columns_of(campaign)
+    workers: Workers
+    if how.cluster is None:
+        workers = Here(cases, plan, how.jobs, hooks)
+    else:
+        workers = Cluster(how.cluster, campaign, plan)
+    with closing(workers):
+        folder = left or claim_folder(out, campaign.read_from.name, INDEX)
+        write_json(folder / INDEX, {**index, "cases": []})
+        sweep = _Sweep(campaign, workers, folder, hooks)
+        with Journal(folder) as journal, Tables(folder, columns) as tables:
+            sweep.run(journal, tables, kept, done)
+    summary = sweep.summary
+    write_json(folder / INDEX, {**index, "cases": summary.kept})
+    if summary.whole:
+        journal.path.unlink()
+    return summary
+
+
+class _Sweep:
+    """Cases under way: some wait, some run, some have ended before others that come first."""
+
+    def __init__(self, campaign: Campaign, workers: Workers, folder: Path, hooks: Hooks) -> None:
+        self._cases, self._rule = campaign.cases(), campaign.file.until
+        self._workers, self._folder, self._hooks = workers, folder, hooks
+        self._running: dict[Future[list[Ended | None]], Task] = {}
+        self._again: deque[Task] = deque()
+        self._early: dict[int, Ended] = {}
+        self._stopping = False
+        self._wall = math.inf
+        """Of a case, on average so far, s."""
+        self.summary = Summary(folder, len(self._cases))
+
+    def run(self, journal: Journal, tables: Tables, kept: dict[int, Ended], done: Done) -> None:
+        """Run all cases but those ``kept``, and write each."""
+        self._early = dict(kept)
+        numbers = (n for n in range(len(self._cases)) if n not in kept)
+
+        def hand_on(number: int) -> None:
+            ended = self._early.pop(number)
+            tables.add(self._cases[number], ended)
+            self.summary.count(self._cases[number], ended)
+            done(self._cases[number], ended)
+
+        while True:
+            while not self.summary.enough and self.summary.ended in self._early:
+                hand_on(self.summary.ended)
+                self.summary.enough = self._is_enough()
+            self._stopping |= self.summary.enough or self._hooks.stop_requested() > 0
+            self._submit(numbers)
+            if not self._running:
+                break
+            for ended in self._ready():
+                journal.add(ended)
+                self._early[ended.number] = ended
+        for number in sorted(self._early):  # of a stop: behind a case that has not ended
+            if self.summary.enough:
+                self._drop(self._early[number])
+            else:
+                hand_on(number)
+
+    # ------------------------------------------------------------------ inside
+
+    def _is_enough(self) -> bool:
+        summary = self.summary
+        return self._rule is not None and self._rule.met(summary.failed, summary.ended)
+
+    def _submit(self, numbers: Iterator[int]) -> None:
+        """Begin tasks for all places; once it is to stop, cancel what has not begun."""
+        if self._stopping:
+            for future in list(self._running):
+                if future.cancel() or self.summary.enough or self._hooks.stop_requested() > 1:
+                    del self._running[future]
+            return
+        places = self._workers.places - len(self._running)
+        for _ in range(places):
+            size = self._workers.size(self._wall)
+            task = self._again.popleft() if self._again else tuple(islice(numbers, size))
+            if not task:
+                return
+            self._running[self._workers.submit(task, self._folder)] = task
+
+    def _ready(self) -> Iterator[Ended]:
+        """Wait a moment, and yield what has ended."""
+        ready, _ = wait(self._running, _SLICE_S, FIRST_COMPLETED)
+        for future in ready:
+            task = self._running.pop(future)
+            if (error := future.exception()) is not None:
+                if not self._workers.lost(error):
+                    raise error
+                if len(task) == 1:
+                    yield Ended(task[0], Measured("failed", "each worker that ran it has died"))
+                self._again += [(number,) for number in task if len(task) > 1]
+                continue
+            for ended in filter(None, future.result()):
+                if ended.files is not None:
+                    unpack_folder(ended.files, self._folder)
+                known = math.isfinite(self._wall)
+                wall = ended.measured.wall
+                self._wall = 0.9 * self._wall + 0.1 * wall if known else wall
+                yield ended
+
+    def _drop(self, ended: Ended) -> None:
+        """Remove what a case has left that ran though those before it were enough."""
+        if ended.folder:
+            shutil.rmtree(self._folder / ended.folder, ignore_errors=True)
+
+
+def _index(campaign: Campaign, engine: Engine, count: int) -> dict[str, Any]:
+    """Return the index of a campaign's folder, without its cases."""
+    file = campaign.file.model_dump(exclude={"title", "keep", "samples"})
+    sources = [s.sha256 for t in campaign.trials for s in (t.read_from, t.rig.read_from)]
+    said = json.dumps([__version__, engine, file, sources], default=str)
+    return {
+        "name": campaign.read_from.name,
+        "title": campaign.file.title,
+        "table": RESULTS,
+        "count": count,
+        "of": hashlib.sha256(said.encode()).hexdigest(),
+    }
+
+
+def _refuse_other(path: Path, index: dict[str, Any]) -> None:
+    """Raise InputError for the index of another campaign."""
+    if checked_json(path, CAMPAIGN).get("of") != index["of"]:
+        raise InputError(
+            f"{path}: it is of another campaign, or of this one before its files changed: name "
+            "the folder that this campaign has left, or another one without --resume"
+        )
+
+
+def _summary(folder: Path, planned: int) -> Summary:
+    """Return the summary of a folder whose campaign has come to its end."""
+    summary = Summary(folder, planned)
+    for row in read_rows(folder / RESULTS, ["passed", "status"]):
+        summary.ended += 1
+        summary.failed += not row["passed"]
+        summary.broken += row["status"] == "failed"
+    summary.enough = summary.ended < planned
+    return summary
+
+
+def _entry(case: Case, ended: Ended) -> dict[str, Any]:
+    measured = ended.measured
+    keys = ("name", "check", "passed", "detail", "worst", "unit", "robustness", "expected")
+    return {
+        "name": case.name,
+        "folder": ended.folder,
+        "trial": case.trial_name,
+        "set": case.set,
+        "passed": measured.passed,
+        "status": measured.status,
+        "verdicts": [{key: v[key] for key in keys} for v in measured.verdicts],
+    }

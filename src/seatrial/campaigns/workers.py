@@ -1,0 +1,85 @@
+"""Who runs the cases of a campaign: processes of this machine, or what `cluster` has."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+from queue import SimpleQueue
+from typing import Protocol
+
+from ..trials.case_list import Cases
+from ..trials.hooks import Hooks
+from ..trials.pool import cores
+from .desk import Desk, Plan
+from .ended import Ended
+
+Task = Sequence[int]
+"""Numbers of cases that are run one after the other; one, unless they are short."""
+
+
+class Workers(Protocol):
+    """Runs tasks side by side."""
+
+    @property
+    def places(self) -> int:
+        """How many tasks are worth having under way."""
+
+    def size(self, wall: float) -> int:
+        """Return how many cases a task has whose cases take ``wall`` s each."""
+
+    def submit(self, task: Task, below: Path) -> Future[list[Ended | None]]:
+        """Begin a task with folders ``below``. None in the place of a case that was stopped."""
+
+    def lost(self, error: BaseException) -> bool:
+        """Say if an error of a task is that its worker died, and others that took it over."""
+
+    def close(self) -> None:
+        """End what runs."""
+
+
+class Here:
+    """Processes of this machine, each at its `Desk`; ``jobs`` None: as many as there are cores."""
+
+    def __init__(self, cases: Cases, plan: Plan, jobs: int | None, hooks: Hooks) -> None:
+        self._closing = False
+        count = min(jobs or cores(), len(cases)) if hasattr(os, "fork") and not plan.recorded else 1
+
+        def asked() -> int:
+            return 2 if self._closing else hooks.stop_requested()
+
+        own = replace(Hooks(), stop_requested=asked)
+        self._desks = [Desk(cases, plan, own) for _ in range(count)]
+        self._idle: SimpleQueue[Desk] = SimpleQueue()
+        for desk in self._desks:
+            self._idle.put(desk)
+        self._threads = ThreadPoolExecutor(count)
+        self.places = 2 * count
+
+    def size(self, wall: float) -> int:
+        """Return 1: a task costs nothing here."""
+        return 1
+
+    def submit(self, task: Task, below: Path) -> Future[list[Ended | None]]:
+        """Begin a task."""
+        return self._threads.submit(self._ended, task, below)
+
+    def lost(self, error: BaseException) -> bool:
+        """Return False: what dies is no worker, but the process at its desk."""
+        return False
+
+    def close(self) -> None:
+        """End what runs."""
+        self._closing = True
+        self._threads.shutdown(cancel_futures=True)
+        for desk in self._desks:
+            desk.__exit__()
+
+    def _ended(self, task: Task, below: Path) -> list[Ended | None]:
+        desk = self._idle.get()
+        try:
+            return [desk.ended(number, below) for number in task]
+        finally:
+            self._idle.put(desk)
