@@ -7,8 +7,8 @@ import tempfile
 from collections import defaultdict
 from collections.abc import Sequence
 from concurrent.futures import Future
-from pathlib import Path
 from importlib import import_module
+from pathlib import Path
 from queue import Empty, SimpleQueue
 from typing import Any
 

@@ -30,11 +30,13 @@ def packed(campaign: Campaign) -> bytes:
     """
     own = campaign.read_from.path.resolve()
     top = _top(campaign)
-    name = campaign.read_from.name if top is None else own.relative_to(top).as_posix()
+    is_ours = top is None or not own.is_relative_to(top)
+    name = campaign.read_from.name if top is None or is_ours else own.relative_to(top).as_posix()
     stream, total = io.BytesIO(), 0
     with tarfile.open(fileobj=stream, mode="w", format=tarfile.PAX_FORMAT) as archive:
         _add(archive, "campaign", f"{__version__}\n{name}".encode())
         for path in _files(top) if top is not None else ():
+            assert top is not None
             data = path.read_bytes()
             total += len(data)
             if total > MOST_BYTES:

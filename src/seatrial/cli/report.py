@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from ..campaigns.page import has_table, write_table_page
 from ..trials.campaign_report import CAMPAIGN, write_campaign_report
 from ..trials.report import write_report
 from .answer import answer
@@ -19,6 +20,9 @@ def report(
 ) -> None:
     """Write the report of a run again."""
     is_campaign = (folder / CAMPAIGN).is_file()
-    page = write_campaign_report(folder) if is_campaign else write_report(folder, play=play)
+    if has_table(folder):
+        page = write_table_page(folder)
+    else:
+        page = write_campaign_report(folder) if is_campaign else write_report(folder, play=play)
     answer.result = {"report": str(page)}
     console.print(f"report: {page}", soft_wrap=True)

@@ -10,6 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
+from ..campaigns.sweep import How as SweepHow
 from ..cosim.fault_entry import read_fault
 from ..cosim.system import Engine
 from ..errors import InputError, SimulationError
@@ -50,6 +51,7 @@ from .show import (
 )
 from .statuses import FAILED
 from .stopping import stoppable
+from .table_run import has_keep, kept_named, run_table
 from .watch import Watch
 
 
@@ -109,6 +111,19 @@ def run(
     port: Port = 0,
     open_: Open = False,
     live_control: LiveControl = False,
+    cluster: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ADDRESS", help="Run a campaign on the workers of a Dask scheduler, HOST:PORT."
+        ),
+    ] = None,
+    keep: Annotated[
+        str | None,
+        typer.Option(
+            metavar="WHICH",
+            help="Leave a table of a campaign, with the run folders of 'all', 'failed' or 'none'.",
+        ),
+    ] = None,
     no_report: Annotated[
         bool, typer.Option("--no-report", help="Write no report: seatrial report makes it.")
     ] = False,
@@ -141,11 +156,16 @@ def run(
             raise InputError("--record works with a trial, not with a campaign")
         if resume and out is None:
             raise InputError("--resume needs the campaign's folder, --out FOLDER")
+        if keep is not None or cluster is not None or has_keep(campaign):
+            sweep = SweepHow(chosen, jobs, cluster, kept_named(keep), resume)
+            run_table(campaign, out, sweep, junit=junit, report=not no_report)
+            return
         how = How(chosen, jobs, resume)
         _run_campaign(campaign, out, how, Leaves(junit, not no_report))
         return
-    if jobs is not None or resume:
-        raise InputError("--jobs and --resume work with a campaign; a trial is one run")
+    if jobs is not None or resume or keep or cluster:
+        said = "--jobs, --resume, --keep and --cluster"
+        raise InputError(f"{said} work with a campaign; a trial is one run")
     refuse_rig(trial)
     leaves = Leaves(junit, not no_report)
     loaded = load_trial(trial, changes=changes, origin="--set")

@@ -69,6 +69,16 @@ class Watch:
         state = f"{self._case} of {self._cases} cases{failed}, {factor:.1f} x real time{left}"
         self._display.show(passed / whole, state)
 
+    def cases(self, ended: int, failed: int) -> None:
+        """Show how many cases of a campaign have ended, and of them failed."""
+        if self._begun is None:
+            self._begun = self._clock()
+        elapsed = self._clock() - self._begun
+        rate = (ended - 1) / elapsed if elapsed > 0 else 0.0
+        left = f", {_duration((self._cases - ended) / rate)} left" if rate > 0 else ""
+        state = f"{ended} of {self._cases} cases, {failed} failed, {rate:.3g} cases/s{left}"
+        self._display.show(ended / self._cases, state)
+
     def count(self, *, failed: bool) -> None:
         """Count a case that has failed."""
         self._failed += failed

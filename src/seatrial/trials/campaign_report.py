@@ -51,7 +51,7 @@ def write_case_report(folder: Path, play: Play | None = None) -> Path:
 
     Raises InputError.
     """
-    _share_library(folder.parent)
+    share_library(folder.parent)
     shared = None if play is None else partial(_share_viewer, folder.parent, play)
     return write_report(folder, f"../{LIBRARY}", shared, f"../{VIEWER}")
 
@@ -64,7 +64,8 @@ def _share_viewer(folder: Path, play: Play, run: Run) -> Played | None:
     return played
 
 
-def _share_library(folder: Path) -> None:
+def share_library(folder: Path) -> None:
+    """Put Plotly's JavaScript beside a campaign's page, once."""
     if not (folder / LIBRARY).is_file():
         write_whole(folder / LIBRARY, f'window.packedPlotly = "{plotly_js()}";\n')
 
@@ -80,7 +81,7 @@ def write_campaign_report(folder: Path | str) -> Path:
     campaign = checked_json(folder / CAMPAIGN, run_schema.CAMPAIGN)
     cases = [_case(folder, entry) for entry in campaign["cases"]]
     title = campaign.get("title") or campaign["name"]
-    _share_library(folder)
+    share_library(folder)
     page = render(
         "campaign.html.j2",
         library=LIBRARY,

@@ -258,6 +258,8 @@ class _Campaign(_Entry):
     name: str
     title: str = ""
     cases: list[_Case]
+    table: str | None = None
+    count: Count | None = None
 
 
 class _Closed(BaseModel):

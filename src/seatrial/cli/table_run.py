@@ -1,0 +1,104 @@
+"""``seatrial run`` of a campaign that leaves a table."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import get_args
+
+import typer
+from rich.markup import escape
+
+from ..campaigns.desk import Keep
+from ..campaigns.ended import Ended
+from ..campaigns.page import write_table_page
+from ..campaigns.sweep import How, Summary, run_sweep
+from ..errors import InputError, SimulationError, unknown
+from ..trials.campaign import Campaign
+from ..trials.cases import Case
+from ..trials.hooks import Hooks
+from .answer import answer
+from .show import console
+from .statuses import FAILED
+from .stopping import stoppable
+from .watch import Watch
+
+_SAID = 20
+"""Failed cases that have a line; the table has all."""
+
+
+def has_keep(campaign: Campaign) -> bool:
+    """Say if a campaign leaves a table by what its file says."""
+    return campaign.file.keep is not None or campaign.file.until is not None
+
+
+def kept_named(keep: str | None) -> Keep | None:
+    """Return what ``--keep`` names. Raises InputError."""
+    for known in get_args(Keep):
+        if keep == known:
+            return keep  # type: ignore[return-value]
+    if keep is None:
+        return None
+    raise InputError(f"--keep: {unknown('choice', keep, get_args(Keep))}")
+
+
+def run_table(
+    campaign: Campaign, out: Path | None, how: How, *, junit: Path | None, report: bool
+) -> None:
+    """Run a campaign into its table, and say what came of it."""
+    if junit is not None:
+        raise InputError("--junit works with a campaign whose every case leaves a folder")
+    planned = len(campaign.cases())
+    with stoppable() as stop, Watch(campaign.read_from.name) as watch:
+        watch.expect(planned)
+        ended_count = failed = 0
+
+        def done(case: Case, ended: Ended) -> None:
+            nonlocal ended_count, failed
+            ended_count += 1
+            if not ended.measured.passed:
+                failed += 1
+                if failed <= _SAID:
+                    watch.log(lambda: _print_failed(case, ended))
+            watch.cases(ended_count, failed)
+
+        hooks = Hooks(stop_requested=stop.requested, interruptible=stop.interruptible)
+        summary = run_sweep(campaign, out, how, hooks, done)
+    page = write_table_page(summary.folder) if report else None
+    if failed > _SAID:
+        console.print(f"... and {failed - _SAID} more that failed")
+    _say(campaign, summary, page)
+
+
+def _print_failed(case: Case, ended: Ended) -> None:
+    measured = ended.measured
+    said = [v["name"] for v in measured.verdicts if v["passed"] != (v["expected"] == "pass")]
+    mark = "FAILED" if measured.status == "failed" else "FAIL"
+    why = measured.error or ", ".join(said) or measured.status
+    line = f"{escape(case.name)}  ({escape(why)})"
+    console.print(f"[red]{mark}[/red]  case {ended.number + 1}: {line}", soft_wrap=True)
+
+
+def _say(campaign: Campaign, summary: Summary, page: Path | None) -> None:
+    passed, folder = summary.ended - summary.failed, summary.folder
+    console.print(f"{passed} of {summary.ended} cases pass")
+    if summary.enough:
+        console.print(
+            f"enough: the interval is as narrow as wanted; {summary.planned} were planned"
+        )
+    answer.result = {
+        "campaign": campaign.read_from.name,
+        "folder": str(folder),
+        "cases": summary.ended,
+        "failed": summary.failed,
+    }
+    if page is not None:
+        console.print(f"report: {page}", soft_wrap=True)
+    if not summary.whole:
+        raise SimulationError(
+            f"stopped; {summary.ended} of {summary.planned} cases came to an end: "
+            f"--out {folder} --resume goes on"
+        )
+    if summary.broken:
+        raise SimulationError(f"{summary.broken} cases could not go on: results.parquet says why")
+    if summary.failed:
+        raise typer.Exit(FAILED)

@@ -1,0 +1,133 @@
+"""A Dask cluster of this machine: the same table, and nothing lost or twice when a worker dies."""
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from seatrial.campaigns.shipment import packed, unpacked
+from seatrial.campaigns.sweep import How, run_sweep
+from seatrial.errors import InputError
+from seatrial.trials.campaign import load_campaign
+
+pytestmark = [
+    pytest.mark.interop,
+    pytest.mark.skipif(not hasattr(os, "fork"), reason="workers copy themselves"),
+]
+CAMPAIGN = """
+trials = ["hydrone-open-landing"]
+keep = "failed"
+[set]
+"downwash.pad" = "diagonal-aft"
+stop = "10 s"
+[design]
+kind = "monte-carlo"
+count = 24
+[design.vary]
+"downwash.mass" = { uniform = ["1 kg", "12 kg"] }
+"""
+
+
+def free_port() -> int:
+    with socket.socket() as found:
+        found.bind(("127.0.0.1", 0))
+        return int(found.getsockname()[1])
+
+
+@pytest.fixture
+def cluster(tmp_path_factory):
+    """Return the address of a scheduler, and its two workers' processes; without a nanny."""
+    folder, port = tmp_path_factory.mktemp("dask"), free_port()
+    address = f"tcp://127.0.0.1:{port}"
+    dask = [sys.executable, "-m", "dask"]
+    scheduler = [*dask, "scheduler", "--host", "127.0.0.1", "--port", str(port), "--no-dashboard"]
+    worker = [*dask, "worker", address, "--host", "127.0.0.1", "--nthreads", "1", "--no-nanny"]
+    worker += ["--no-dashboard", "--local-directory", str(folder)]
+
+    def started(command):
+        return subprocess.Popen(
+            command, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        )
+
+    first = started(scheduler)
+    workers = [started(worker), started(worker)]
+    import distributed
+
+    with distributed.Client(address, timeout=60, set_as_default=False) as client:
+        client.wait_for_workers(2, timeout=60)
+    yield address, workers
+    for process in (*workers, first):
+        process.terminate()
+        process.wait(timeout=30)
+
+
+@pytest.fixture
+def campaign(tmp_path):
+    (tmp_path / "landings.toml").write_text(CAMPAIGN, "utf-8")
+    return load_campaign(str(tmp_path / "landings.toml"))
+
+
+def content(folder: Path) -> dict[str, bytes]:
+    """Return what does not depend on who ran the cases, or when."""
+    files = [path for path in folder.rglob("*") if path.is_file()]
+    return {
+        str(path.relative_to(folder)): path.read_bytes()
+        for path in files
+        if path.name not in ("timing.parquet", "timing.json")
+    }
+
+
+def test_it_leaves_what_one_machine_leaves(cluster, campaign, tmp_path):
+    address, _ = cluster
+    run_sweep(campaign, tmp_path / "here", How("direct", jobs=2))
+    summary = run_sweep(campaign, tmp_path / "there", How("direct", cluster=address))
+    assert 0 < summary.failed < summary.ended == 24
+    assert content(tmp_path / "here") == content(tmp_path / "there")
+
+
+def test_a_worker_that_is_killed_loses_no_case(cluster, campaign, tmp_path):
+    address, workers = cluster
+    ended = []
+
+    def done(_case, case):
+        ended.append(case.number)
+        if len(ended) == 6:
+            workers[0].send_signal(signal.SIGKILL)
+
+    run_sweep(campaign, tmp_path / "there", How("direct", cluster=address), done=done)
+    assert ended == [*range(24)]
+    run_sweep(campaign, tmp_path / "here", How("direct", jobs=2))
+    assert content(tmp_path / "here") == content(tmp_path / "there")
+    assert list(pd.read_parquet(tmp_path / "there/results.parquet")["case"]) == [*range(1, 25)]
+
+
+def test_files_of_a_user_s_own_travel(cluster, campaign, tmp_path):
+    address, _ = cluster
+    rig = Path(campaign.trials[0].rig.read_from.path).read_text("utf-8")
+    trial = Path(campaign.trials[0].read_from.path).read_text("utf-8")
+    (tmp_path / "own.toml").write_text(rig, "utf-8")
+    (tmp_path / "t.toml").write_text(trial.replace("hydrone-open-loop", "own.toml"), "utf-8")
+    text = CAMPAIGN.replace("hydrone-open-landing", "t.toml")
+    (tmp_path / "mine.toml").write_text(text, "utf-8")
+    archive, name = packed(load_campaign(str(tmp_path / "mine.toml"))), tmp_path.name
+    tmp_path.rename(tmp_path.with_name("moved"))  # whoever looks here finds nothing
+    shipped, top = unpacked(archive)
+    tmp_path.with_name("moved").rename(tmp_path)
+    assert shipped.read_from.path.parent == top
+    assert name not in str(top)
+    assert shipped.trials[0].rig.read_from.path == top / "own.toml"
+    run_sweep(shipped, tmp_path / "out", How("direct", cluster=address))
+    assert len(pd.read_parquet(tmp_path / "out/results.parquet")) == 24
+
+
+def test_an_address_without_a_scheduler_is_said(campaign, tmp_path, monkeypatch):
+    monkeypatch.setattr("seatrial.campaigns.cluster._WAIT_S", 1)
+    how = How("direct", cluster=f"tcp://127.0.0.1:{free_port()}")
+    with pytest.raises(InputError, match="there is no scheduler"):
+        run_sweep(campaign, tmp_path / "out", how)
+    assert not (tmp_path / "out").exists()
