@@ -103,8 +103,8 @@ def test_a_stopped_campaign_goes_on_to_the_same_table(written, tmp_path):
     command = [SEATRIAL, "run", "campaign.toml", "--engine", "direct", "--jobs", "2", "--no-report"]
     command += ["--out", "out"]
     process = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
-    journal, seen = tmp_path / "out/ended.jsonl", tmp_path / "seen"
-    wait_for(lambda: journal.is_file() and len(journal.read_text().splitlines()) == 4)
+    log, seen = tmp_path / "out/ended.jsonl", tmp_path / "seen"
+    wait_for(lambda: log.is_file() and len(log.read_text().splitlines()) == 4)
     wait_for(lambda: len(list(seen.glob("*-wait-*"))) == 2)
     process.send_signal(signal.SIGINT)
     time.sleep(0.3)
@@ -113,7 +113,7 @@ def test_a_stopped_campaign_goes_on_to_the_same_table(written, tmp_path):
     assert process.returncode == 3
     assert "4 of 8 cases came to an end: --out out --resume goes on" in err
     assert len(pd.read_parquet(tmp_path / "out/results.parquet")) == 4
-    with journal.open("a") as file:
+    with log.open("a") as file:
         file.write('{"number": 5, "meas')  # as a kill leaves it
     before = len(list(seen.glob("*-run-*")))
     summary = run_sweep(campaign, tmp_path / "out", direct(resume=True))
@@ -122,7 +122,7 @@ def test_a_stopped_campaign_goes_on_to_the_same_table(written, tmp_path):
     run_sweep(campaign, tmp_path / "once", direct(1))
     for name in ("results.parquet", "campaign.json"):
         assert (tmp_path / "out" / name).read_bytes() == (tmp_path / "once" / name).read_bytes()
-    assert not journal.exists()
+    assert not log.exists()
     again = run_sweep(campaign, tmp_path / "out", direct(resume=True))
     assert (again.ended, again.failed) == (8, 2)
 

@@ -1,4 +1,4 @@
-"""Workers of a Dask cluster: the same desks, in the processes that Dask has started."""
+"""Workers of a Dask cluster: the same evaluators, in the processes that Dask has started."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from typing import Any
 
 from ..errors import InputError
 from ..trials.campaign import Campaign
-from .desk import Desk, Plan, still
 from .ended import Ended
+from .evaluator import Evaluator, Plan, still
 from .shipment import pack_folder, packed, unpacked
 from .workers import Task
 
@@ -96,20 +96,20 @@ def run_task(data: bytes, plan: Plan, task: Sequence[int]) -> list[Ended]:
     """Run the cases of a task in a worker, and return what they leave, with the folders kept."""
     with still():
         campaign, top = unpacked(data)
-    desks = _desks[hashlib.sha256(data).hexdigest(), plan]
+    evaluators = _evaluators[hashlib.sha256(data).hexdigest(), plan]
     try:
-        desk = desks.get_nowait()
+        evaluator = evaluators.get_nowait()
     except Empty:
-        desk = Desk(campaign.cases(), plan, home=top)
+        evaluator = Evaluator(campaign.cases(), plan, home=top)
     try:
         with tempfile.TemporaryDirectory(prefix="seatrial-cases-") as below:
-            return [_ended(desk, number, Path(below)) for number in task]
+            return [_ended(evaluator, number, Path(below)) for number in task]
     finally:
-        desks.put(desk)
+        evaluators.put(evaluator)
 
 
-def _ended(desk: Desk, number: int, below: Path) -> Ended:
-    ended = desk.ended(number, below)
+def _ended(evaluator: Evaluator, number: int, below: Path) -> Ended:
+    ended = evaluator.ended(number, below)
     assert ended is not None  # nobody stops it
     if ended.folder:
         ended.files = pack_folder(below / ended.folder)
@@ -120,5 +120,5 @@ def _itself(data: bytes) -> bytes:
     return data
 
 
-_desks: dict[tuple[str, Plan], SimpleQueue[Desk]] = defaultdict(SimpleQueue)
+_evaluators: dict[tuple[str, Plan], SimpleQueue[Evaluator]] = defaultdict(SimpleQueue)
 """Of this process, by campaign and plan: those that are idle."""

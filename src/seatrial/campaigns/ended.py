@@ -1,4 +1,4 @@
-"""What a case that has come to its end leaves: a row of the tables, and perhaps a folder."""
+"""Cases that have come to an end: a row of the tables for each, and perhaps a folder."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ from typing import Any
 from ..trials.case_list import Block, Cases
 from ..trials.distributions import number_and_unit
 from ..trials.hooks import Hooks
-from .desk import Desk, Plan
+from .evaluator import Evaluator, Plan
 
 MOST = 200
 """Cases that are all checked: a check takes as long as a start."""
@@ -22,8 +22,8 @@ def check(cases: Cases, plan: Plan, hooks: Hooks) -> bool:
     `Supervisor.check` raises.
     """
     numbers = range(len(cases)) if len(cases) <= MOST else sorted(set(_edges(cases)))
-    with Desk(cases, plan, hooks) as desk:
-        alone = [desk.check(number) for number in numbers]
+    with Evaluator(cases, plan, hooks) as evaluator:
+        alone = [evaluator.check(number) for number in numbers]
     return any(alone)
 
 

@@ -26,9 +26,9 @@ from ..trials.output import claim_folder, write_json
 from ..trials.run_schema import CAMPAIGN, checked_json
 from .cluster import Cluster
 from .columns import columns_of
-from .desk import Keep, Plan
 from .ended import Ended
-from .journal import JOURNAL, Journal, ended_cases
+from .ended_log import ENDED_LOG, EndedLog, ended_cases
+from .evaluator import Keep, Plan
 from .sampled_checks import check
 from .shipment import unpack_folder
 from .table import RESULTS, Tables, arrow, read_rows
@@ -107,7 +107,7 @@ def run_sweep(
     kept: dict[int, Ended] = {}
     if left is not None:
         _refuse_other(left / INDEX, index)
-        if (left / RESULTS).is_file() and not (left / JOURNAL).is_file():
+        if (left / RESULTS).is_file() and not (left / ENDED_LOG).is_file():
             return _summary(left, len(cases))
         kept = ended_cases(left, len(cases))
     plan = replace(plan, recorded=check(cases, plan, hooks))
@@ -121,12 +121,12 @@ def run_sweep(
         folder = left or claim_folder(out, campaign.read_from.name, INDEX)
         write_json(folder / INDEX, {**index, "cases": []})
         sweep = _Sweep(campaign, workers, folder, hooks)
-        with Journal(folder) as journal, Tables(folder, columns) as tables:
-            sweep.run(journal, tables, kept, done)
+        with EndedLog(folder) as log, Tables(folder, columns) as tables:
+            sweep.run(log, tables, kept, done)
     summary = sweep.summary
     write_json(folder / INDEX, {**index, "cases": summary.kept})
     if summary.whole:
-        journal.path.unlink()
+        log.path.unlink()
     return summary
 
 
@@ -144,7 +144,7 @@ class _Sweep:
         """Of a case, on average so far, s."""
         self.summary = Summary(folder, len(self._cases))
 
-    def run(self, journal: Journal, tables: Tables, kept: dict[int, Ended], done: Done) -> None:
+    def run(self, log: EndedLog, tables: Tables, kept: dict[int, Ended], done: Done) -> None:
         """Run all cases but those ``kept``, and write each."""
         self._early = dict(kept)
         numbers = (n for n in range(len(self._cases)) if n not in kept)
@@ -164,7 +164,7 @@ class _Sweep:
             if not self._running:
                 break
             for ended in self._ready():
-                journal.add(ended)
+                log.add(ended)
                 self._early[ended.number] = ended
         for number in sorted(self._early):  # of a stop: behind a case that has not ended
             if self.summary.enough:

@@ -1,4 +1,4 @@
-"""Who runs the cases of a campaign: processes of this machine, or what `cluster` has."""
+"""Processes that run the cases of a campaign: of this machine, or those that `cluster` has."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from typing import Protocol
 from ..trials.case_list import Cases
 from ..trials.hooks import Hooks
 from ..trials.pool import cores
-from .desk import Desk, Plan
 from .ended import Ended
+from .evaluator import Evaluator, Plan
 
 Task = Sequence[int]
 """Numbers of cases that are run one after the other; one, unless they are short."""
@@ -41,7 +41,7 @@ class Workers(Protocol):
 
 
 class Here:
-    """Processes of this machine, each at its `Desk`; ``jobs`` None: as many as there are cores."""
+    """Processes of this machine, an `Evaluator` each; ``jobs`` None: as many as there are cores."""
 
     def __init__(self, cases: Cases, plan: Plan, jobs: int | None, hooks: Hooks) -> None:
         self._closing = False
@@ -51,10 +51,10 @@ class Here:
             return 2 if self._closing else hooks.stop_requested()
 
         own = replace(Hooks(), stop_requested=asked)
-        self._desks = [Desk(cases, plan, own) for _ in range(count)]
-        self._idle: SimpleQueue[Desk] = SimpleQueue()
-        for desk in self._desks:
-            self._idle.put(desk)
+        self._evaluators = [Evaluator(cases, plan, own) for _ in range(count)]
+        self._idle: SimpleQueue[Evaluator] = SimpleQueue()
+        for evaluator in self._evaluators:
+            self._idle.put(evaluator)
         self._threads = ThreadPoolExecutor(count)
         self.places = 2 * count
 
@@ -67,19 +67,19 @@ class Here:
         return self._threads.submit(self._ended, task, below)
 
     def lost(self, error: BaseException) -> bool:
-        """Return False: what dies is no worker, but the process at its desk."""
+        """Return False: what dies is no worker, but the process of its evaluator."""
         return False
 
     def close(self) -> None:
         """End what runs."""
         self._closing = True
         self._threads.shutdown(cancel_futures=True)
-        for desk in self._desks:
-            desk.__exit__()
+        for evaluator in self._evaluators:
+            evaluator.__exit__()
 
     def _ended(self, task: Task, below: Path) -> list[Ended | None]:
-        desk = self._idle.get()
+        evaluator = self._idle.get()
         try:
-            return [desk.ended(number, below) for number in task]
+            return [evaluator.ended(number, below) for number in task]
         finally:
-            self._idle.put(desk)
+            self._idle.put(evaluator)

@@ -8,8 +8,8 @@ from typing import get_args
 import typer
 from rich.markup import escape
 
-from ..campaigns.desk import Keep
 from ..campaigns.ended import Ended
+from ..campaigns.evaluator import Keep
 from ..campaigns.page import write_table_page
 from ..campaigns.sweep import How, Summary, run_sweep
 from ..errors import InputError, SimulationError, unknown

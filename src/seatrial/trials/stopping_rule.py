@@ -1,4 +1,4 @@
-"""When a campaign has run enough cases: an interval of the probability of failure is narrow."""
+"""End of a campaign: once an interval of the probability of failure is narrow enough."""
 
 from __future__ import annotations
 

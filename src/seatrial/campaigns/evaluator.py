@@ -1,4 +1,4 @@
-"""Where cases are run one after the other: a process of their own, and another once that dies."""
+"""Evaluation of cases one after the other: a process of their own, and another once that dies."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ class _Trials(Sequence[Trial]):
         return self._cases[number].trial
 
 
-class Desk:
+class Evaluator:
     """Runs cases one after the other, in one process for as long as that lives.
 
     A case is measured (`measure_trial`), and run again into a folder if that is kept: the same
@@ -83,7 +83,7 @@ class Desk:
         alike = [block.case(0).trial for block in cases.blocks]
         self._supervisor = Supervisor(_Trials(cases), plan.engine, hooks, alike=alike)
 
-    def __enter__(self) -> Desk:
+    def __enter__(self) -> Evaluator:
         return self
 
     def __exit__(self, *_: object) -> None:

@@ -1,4 +1,4 @@
-"""The journal of a campaign under way: a line per case that has ended, in whatever order."""
+"""The log of a campaign under way: a line per case that has ended, in whatever order."""
 
 from __future__ import annotations
 
@@ -7,21 +7,21 @@ from pathlib import Path
 from ..errors import InputError
 from .ended import Ended
 
-JOURNAL = "ended.jsonl"
+ENDED_LOG = "ended.jsonl"
 
 
-class Journal:
+class EndedLog:
     """Appends lines; a campaign that was killed has all but the one that was being written.
 
     Use it as a context manager.
     """
 
     def __init__(self, folder: Path) -> None:
-        self.path = folder / JOURNAL
+        self.path = folder / ENDED_LOG
         self._cut()
         self._file = self.path.open("a", encoding="utf-8", newline="\n")
 
-    def __enter__(self) -> Journal:
+    def __enter__(self) -> EndedLog:
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -42,11 +42,11 @@ class Journal:
 
 
 def ended_cases(folder: Path, count: int) -> dict[int, Ended]:
-    """Return the cases in a folder's journal, by number; none without a journal.
+    """Return the cases in a folder's log, by number; none without a log.
 
-    Raises InputError for a journal that cannot be read.
+    Raises InputError for a log that cannot be read.
     """
-    path = folder / JOURNAL
+    path = folder / ENDED_LOG
     if not path.is_file():
         return {}
     found: dict[int, Ended] = {}
