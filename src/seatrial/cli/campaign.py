@@ -17,27 +17,24 @@ from .show import console, print_verdicts, run_entry
 from .statuses import FAILED
 from .stopping import stoppable
 
+campaign_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
 
-def campaign(
-    words: Annotated[
-        list[str], typer.Argument(metavar="[rerun] CAMPAIGN", help="A campaign: a name or a file.")
-    ],
-    case: Annotated[
-        int | None, typer.Option("--case", metavar="N", help="rerun: number of the case, from 1.")
-    ] = None,
+
+@campaign_app.callback()
+def campaign() -> None:
+    """Run a case of a campaign again."""
+
+
+@campaign_app.command()
+def rerun(
+    name: Annotated[str, typer.Argument(metavar="CAMPAIGN", help="A campaign: a name or a file.")],
+    number: Annotated[int, typer.Option("--case", metavar="N", help="Number of the case, from 1.")],
     engine: EngineName = "fmu",
     out: Out = None,
 ) -> None:
-    """Ask a question of a campaign, or run one of its cases again."""
-    if len(words) == 2 and words[0] == "rerun":
-        _rerun(words[1], case, engine, out)
-        return
-    raise InputError("campaign: 'rerun CAMPAIGN --case N' is needed")
-
-
-def _rerun(name: str, number: int | None, engine: str, out: Out) -> None:
+    """Run one case of a campaign again, with its record and its report."""
     cases = load_campaign(name).cases()
-    if number is None or not 1 <= number <= len(cases):
+    if not 1 <= number <= len(cases):
         raise InputError(f"--case: a number from 1 to {len(cases)} is needed, found {number}")
     case = cases[number - 1]
     with stoppable() as stop:
