@@ -296,7 +296,7 @@ def test_an_fmu_of_somebody_else_is_stepped_without_a_stop_time(
     FmuBuilder.build_FMU(tmp_path / "clockwork.py", dest=tmp_path)
     path = rig(more=f'slave = {{ fmu = "Clockwork.fmu"{isolated} }}')
     if engine == "direct" and not isolated:
-        with pytest.raises(InputError, match="can only run with the engine 'fmu'"):
+        with pytest.raises(InputError, match="can only run with the engines 'fmu' and 'native'"):
             Simulation(path)
         return
     with Simulation(path, engine=engine) as sim:

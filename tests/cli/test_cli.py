@@ -91,7 +91,7 @@ def test_a_criterion_that_fails_is_status_one(tmp_path: Path) -> None:
             ["run", "hydrone-landing", "--set", "vehicle.hull.velocity=3"],
             "output and cannot be set",
         ),
-        (["run", "hydrone-landing", "--engine", "warp"], "'fmu' or 'direct'"),
+        (["run", "hydrone-landing", "--engine", "warp"], "'fmu', 'direct' or 'native'"),
         (["run", "hydrone-pads", "--set", "seed=3"], "--set works with a trial"),
         (
             ["run", "hydrone-landing", "--real-time", "0"],
