@@ -26,6 +26,7 @@ from seatrial.cosim import master as master_module
 from seatrial.cosim.assembly import assemble
 from seatrial.cosim.flattening import load_rig
 from seatrial.cosim.master import Master
+from seatrial.cosim.rig import Rig
 from seatrial.cosim.system import System
 
 from .history import noted
@@ -40,9 +41,9 @@ HERE = Path(__file__).parent
 CAMPAIGN = "hydrone-open-pads"
 
 
-def assembled(carrier: str) -> System:
-    """Return the rig with all components on one carrier."""
-    system = assemble(load_rig("landing"), "fmu" if carrier == FMUS else "direct")
+def assembled(carrier: str, rig: Rig) -> System:
+    """Return a rig with all components on one carrier."""
+    system = assemble(rig, "fmu" if carrier == FMUS else "direct")
     if carrier in (NATIVE, COMPILED):
         from seatrial.fmi.load import load_fmu, open_instance
         from seatrial.fmi.native.cached import native_fmu
@@ -60,7 +61,7 @@ def one(carrier: str) -> dict[str, Any]:
     """Return what the steps of one carrier take, us; the start, s; memory, MB."""
     if carrier == NATIVE:
         master_module.is_compiled = lambda _system: False
-    begun, system = process_time(), assembled(carrier)
+    begun, system = process_time(), assembled(carrier, load_rig("landing"))
     master = Master(system)
     master.initialise()
     started = process_time() - begun

@@ -1,10 +1,10 @@
 """Reference integrations of the Hydrone's open landing: ``python -m benchmarks.integrators``.
 
 20 s of the trial `hydrone-open-landing` at tolerances of 1e-6, in two pieces about the contact:
-methods of SciPy with the right-hand side called through CasADi with NumPy's arrays, and bound to
-them once, as `Plant.reference` does; and SUNDIALS' CVODES, `Plant.reference(method="CVODES")`. In
-turn, for some rounds, processor time; errors against DOP853 at 1e-12. ``--write`` puts the table
-into docs/performance.md.
+methods of SciPy with the right-hand side called through CasADi with NumPy's arrays, bound to them
+once, as `Plant.reference` does, and bound as machine code; and SUNDIALS' CVODES,
+`Plant.reference(method="CVODES")`. In turn, for some rounds, processor time; errors against DOP853
+at 1e-12. ``--write`` puts the table into docs/performance.md.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from scipy.integrate import solve_ivp
 
 from seatrial.cosim.assembly import assemble
 from seatrial.cosim.flattening import load_rig
+from seatrial.fmi.compiled_functions import compiled_function
 from seatrial.model import bind
 
 from .history import noted
@@ -29,7 +30,7 @@ from .pages import write_measured
 
 TOLERANCE = 1e-6
 END = 20.0
-NUMPY, BOUND = "arrays of NumPy", "bound once"
+NUMPY, BOUND, COMPILED = "arrays of NumPy", "bound once", "compiled, bound once"
 CVODES = "CVODES"
 YARDSTICK = f"LSODA, {NUMPY}"
 
@@ -52,8 +53,6 @@ class Landing:
         self.rhs, self.p = model.rhs, self.hull._stacked_p()
         self.start, self.u = self.hull._start_state(), self.hull._stacked_u(None)
         self.places = [self.hull._place_of(name) for name in ("force_1", "moment_1")]
-        self._bound = [self.start.copy(), self.u.copy(), self.p], np.zeros(len(self.start))
-        self._buffer, self._evaluate = bind(model.rhs, *self._bound)
 
     def wrench(self, t: float, x: Any, u: Any) -> None:
         for place, value in zip(self.places, self.load.wrench(t, x[3:6].tolist()), strict=True):
@@ -64,12 +63,18 @@ class Landing:
         self.wrench(t, x, u)
         return np.asarray(self.rhs(x, u, self.p)).ravel()
 
-    def bound(self, t: float, x: Any) -> Any:
-        (state, u, _), dx = self._bound
-        state[:] = x
-        self.wrench(t, x, u)
-        self._evaluate()
-        return dx.copy()
+    def bound(self, rhs: Any) -> Callable[[float, Any], Any]:
+        """Return the slope by a function of CasADi that finds its arguments where they are."""
+        state, u, dx = self.start.copy(), self.u.copy(), np.zeros(len(self.start))
+        buffer, evaluate = bind(rhs, [state, u, self.p], dx)
+
+        def slope(t: float, x: Any, _kept: Any = buffer) -> Any:
+            state[:] = x
+            self.wrench(t, x, u)
+            evaluate()
+            return dx.copy()
+
+        return slope
 
     def scipy(self, slope: Callable[[float, Any], Any], method: str, tolerance: float) -> Any:
         x = self.start
@@ -102,10 +107,12 @@ class Landing:
 def measure(rounds: int) -> dict[str, tuple[list[float], float]]:
     """Return, of each way, the processor times, s, and its error."""
     landing = Landing()
-    exact = landing.scipy(landing.bound, "DOP853", 1e-12)
+    bound, compiled = landing.bound(landing.rhs), landing.bound(compiled_function(landing.rhs))
+    exact = landing.scipy(bound, "DOP853", 1e-12)
     ways: dict[str, Callable[[], Any]] = {}
     for method in ("RK45", "DOP853", "LSODA"):
-        for name, slope in ((NUMPY, landing.through_numpy), (BOUND, landing.bound)):
+        slopes = {NUMPY: landing.through_numpy, BOUND: bound, COMPILED: compiled}
+        for name, slope in slopes.items():
             ways[f"{method}, {name}"] = lambda m=method, s=slope: landing.scipy(s, m, TOLERANCE)
     ways[CVODES] = landing.sundials
     found: dict[str, tuple[list[float], float]] = {}
