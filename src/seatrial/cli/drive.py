@@ -25,6 +25,7 @@ from ..trials.link import Frame
 from .drive_keys import Gamepad, pressed_keys, raw_terminal, restored_terminal
 from .drive_pilot import Pilot
 from .drive_screen import picture
+from .options import Hardware, Network
 from .show import console
 from .stopping import stoppable
 
@@ -44,12 +45,8 @@ def drive(
     record: Annotated[
         Path | None, typer.Option(help="An existing folder for topside.stream.")
     ] = None,
-    hardware: Annotated[
-        bool, typer.Option("--hardware", help="Allow devices; what is behind them may move.")
-    ] = False,
-    network: Annotated[
-        bool, typer.Option("--network", help="Allow other hosts, and connections from them.")
-    ] = False,
+    hardware: Hardware = False,
+    network: Network = False,
 ) -> None:
     """Drive a VideoRay Pro 4 with keys or a gamepad, and see its heading, depth and attitude."""
     if hardware:

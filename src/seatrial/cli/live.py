@@ -25,6 +25,8 @@ from .options import (
     Autopilot,
     Choices,
     EngineName,
+    Hardware,
+    Network,
     Out,
     Settings,
     Vehicle,
@@ -106,12 +108,8 @@ def live(
     ] = "3600 s",
     port: Port = 0,
     open_: Open = False,
-    hardware: Annotated[
-        bool, typer.Option("--hardware", help="Allow devices; what is behind them may move.")
-    ] = False,
-    network: Annotated[
-        bool, typer.Option("--network", help="Allow other hosts, and connections from them.")
-    ] = False,
+    hardware: Hardware = False,
+    network: Network = False,
     live_control: LiveControl = False,
 ) -> None:
     """Run a rig in real time and show it in three dimensions, in a browser."""

@@ -53,6 +53,12 @@ EngineName = Annotated[
 Out = Annotated[
     Path | None, typer.Option("--out", help="Folder of the run (default: runs/NAME-DATE-TIME).")
 ]
+Hardware = Annotated[
+    bool, typer.Option("--hardware", help="Allow devices; what is behind them may move.")
+]
+Network = Annotated[
+    bool, typer.Option("--network", help="Allow other hosts, and connections from them.")
+]
 Variant = Annotated[
     str | None, typer.Option("--variant", help="Variant of the vehicle's parameters.")
 ]

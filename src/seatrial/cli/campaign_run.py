@@ -1,0 +1,90 @@
+"""``seatrial run`` of a campaign."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+from ..campaigns.sweep import How as SweepHow
+from ..cosim.system import Engine
+from ..errors import SimulationError
+from ..trials.campaign import Campaign, load_campaign, run_campaign
+from ..trials.campaign_report import write_campaign_report, write_case_report
+from ..trials.cases import Case
+from ..trials.hooks import Hooks
+from ..trials.run import Result
+from .answer import answer
+from .leaves import Leaves, exit_with
+from .looked_at import play
+from .show import console, print_case, run_entry
+from .stopping import stoppable
+from .table_run import has_keep, kept_named, run_table
+from .watch import Watch
+
+
+@dataclass(frozen=True)
+class How:
+    """How the cases of a campaign are run, as the command line says it."""
+
+    engine: Engine
+    jobs: int | None
+    resume: bool
+    cluster: str | None
+    keep: str | None
+
+
+def run_cases(name: str, out: Path | None, how: How, leaves: Leaves) -> None:
+    """Run a campaign into its table, or each case into a folder. Raises InputError."""
+    campaign = load_campaign(name)
+    if how.keep is not None or how.cluster is not None or has_keep(campaign):
+        sweep = SweepHow(how.engine, how.jobs, how.cluster, kept_named(how.keep), how.resume)
+        run_table(campaign, out, sweep, junit=leaves.junit, report=leaves.report)
+    else:
+        _run_folders(campaign, out, how, leaves)
+
+
+def _run_folders(campaign: Campaign, out: Path | None, how: How, leaves: Leaves) -> None:
+    cases = campaign.cases()
+    with stoppable() as stop:
+        with Watch(campaign.read_from.name) as watch:
+
+            def done(case: Case, result: Result) -> None:
+                watch.log(lambda: print_case(case, result))
+                watch.count(failed=not result.passed)
+
+            hooks = Hooks(
+                building=watch.building,
+                progress=watch.campaign,
+                stop_requested=stop.requested,
+                interruptible=stop.interruptible,
+            )
+            watch.expect(len(cases))
+            folder, finished = run_campaign(
+                campaign,
+                out,
+                engine=how.engine,
+                jobs=how.jobs,
+                resume=how.resume,
+                page=partial(write_case_report, play=play) if leaves.report else None,
+                hooks=hooks,
+                done=done,
+            )
+        results = [result for _, result in finished]
+        leaves.write_junit([(case.name, result) for case, result in finished])
+        passed = sum(result.passed for result in results)
+        console.print(f"{passed} of {len(cases)} cases pass")
+        entries = [{"case": case.name, "set": case.set, **run_entry(r)} for case, r in finished]
+        answer.result = {
+            "campaign": campaign.read_from.name,
+            "folder": str(folder),
+            "runs": entries,
+        }
+        leaves.write_page(lambda: write_campaign_report(folder), results)
+    whole = sum(result.status != "stopped" for result in results)
+    if whole < len(cases):
+        raise SimulationError(
+            f"stopped; {whole} of {len(cases)} cases came to an end: "
+            f"--out {folder} --resume goes on"
+        )
+    exit_with(results)
