@@ -200,7 +200,9 @@ def run_commands(block: Block) -> None:
             done = subprocess.run(program, capture_output=True, text=True, check=False)
         got = done.stdout + re.sub(r"(?m)^.*: \d+ %, .* x real time\b.*\n", "", done.stderr)
         matches = doctest.OutputChecker().check_output(shown, got, doctest.ELLIPSIS)
-        assert matches or (not shown and done.returncode == 0), f"{line}\n{got}"
+        assert matches or not shown, f"{line}\n{got}"
+        shows_failure = re.search(r"FAIL|seatrial: |Error|of \d+ cases pass", shown)
+        assert done.returncode == 0 or shows_failure, f"{line}: status {done.returncode}\n{got}"
 
 
 def pages_with_examples() -> list[Any]:
