@@ -21,12 +21,9 @@ happen inside.
 from __future__ import annotations
 
 import math
-import zlib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from operator import itemgetter
 from typing import Any, ClassVar
-
-import numpy as np
 
 from .declarations import (
     check_feedthrough,
@@ -37,6 +34,7 @@ from .declarations import (
     with_terms,
 )
 from .errors import InputError, SimulationError, unknown
+from .mixins import Logging, Noise, Reachable
 from .ports import Input, Output, Parameter, Port, Scalar, ScalarPort, lay_out
 from .serialisation import copied, is_c_text
 from .terminals import Terminal, terminal
@@ -50,6 +48,7 @@ __all__ = [
     "Noise",
     "Output",
     "Parameter",
+    "Reachable",
     "Terminal",
     "Terms",
     "seconds",
@@ -426,61 +425,6 @@ class Component:
             f"{self.name}: output {scalar.name} is {value!r}{why.get(scalar.port.type, '')} "
             f"at t = {self.now!r} s"
         )
-
-
-class Noise:
-    """Mix-in for a component with randomness: numbers keyed by (seed, sample index).
-
-    Never keyed by how often it was asked, so that a rerun, a half step or a rollback draws
-    the same noise. Philox 4x64 with the seed and the kind of component as its key, so that
-    different sensors of one seed differ, and the index as its counter.
-    """
-
-    seed = Parameter(
-        1.0,
-        "1",
-        "seed of this instance's noise (a whole number)",
-        min=0.0,
-        max=2.0**53,
-        role="seed",
-    )
-
-    def generator(self, index: int, stream: int = 0) -> np.random.Generator:
-        """Return the generator of sample ``index``; draw all that the sample needs from it.
-
-        Other streams of a sample are for what is drawn only sometimes.
-        """
-        if self.seed % 1.0:
-            raise InputError(f"seed is {self.seed!r}, a whole number is needed")
-        kind = zlib.crc32(type(self).__name__.encode())
-        bits = np.random.Philox(key=[int(self.seed), kind], counter=[0, 0, stream, index])
-        return np.random.Generator(bits)
-
-
-class Logging:
-    """Mix-in for a component that keeps a log of its own, in a format of its own.
-
-    The master sets where, once there is a folder: that is after the start.
-    """
-
-    run_folder = Parameter(
-        "",
-        "1",
-        "folder of the run, for logs of its own; empty: it keeps none",
-        tunable=True,
-        role="run-folder",
-    )
-
-
-class Reachable:
-    """Mix-in for a component that programs outside connect to."""
-
-    reached_at = Output(
-        "1", "what others connect to, separated by spaces", type=str, role="address"
-    )
-    exceeded = Output(
-        "1", "steps in which a peer brought more than one takes in", type=int, role="exceeded"
-    )
 
 
 def _is_fixed(port: Port) -> bool:
