@@ -28,6 +28,7 @@ ROLES = {
     "fault": "what goes wrong with it, in words: written by a trial's faults",
     "file": "name of a file: relative to the file that gives it, or to where the run begins",
     "tunables": "parameters of others that a link sets: a table in its profile",
+    "bytes": "bytes with their times, as text (`links.text`): a Binary in FMI 3.0",
     "tunable": "values of a link's tunables, in their order: connected to what they set",
 }
 """What whoever runs a component does with a port that declares a role."""

@@ -16,11 +16,12 @@ from rich.table import Table
 from ..cosim.parameters import load_vehicle, split_reference
 from ..cosim.system import settable
 from ..cosim.values import from_entry
-from ..errors import InputError
+from ..errors import InputError, unknown
 from ..fmi.cache import write_named
 from ..fmi.description import summary
 from ..fmi.direct import DirectInstance
 from ..fmi.export import build_fmu
+from ..fmi.export3 import build_fmu3
 from ..fmi.instance import Value, Variable
 from ..fmi.load import load_fmu, open_instance
 from ..fmi.loaded import LoadedFmu
@@ -77,8 +78,10 @@ def build(
         str | None,
         typer.Option(help=f"With --native, separated by commas: {', '.join(TARGETS)}."),
     ] = None,
+    fmi: Annotated[str, typer.Option(help="Version of FMI: 2 or 3.")] = "2",
 ) -> None:
-    """Build .fmu files that any FMI 2.0 tool loads."""
+    """Build .fmu files that any tool loads which knows FMI 2.0, or 3.0."""
+    version = _version(fmi)
     if platforms and not native:
         raise InputError("--platforms is of --native: other FMUs carry all platforms they run on")
     if native and standalone:
@@ -89,16 +92,27 @@ def build(
         values = _start_values(source, parameters, variant) if parameters else None
         path = out / f"{source.name}.fmu"
         if native:
-            build_native_fmu(source, path, targets, values)
+            build_native_fmu(source, path, targets, values, version=version)
         elif standalone:
-            glibc = build_standalone_fmu(source, path, values)
+            glibc = build_standalone_fmu(source, path, values, version)
             print_notes([f"{path} runs on Linux on x86-64 with glibc {glibc} or newer"])
+        elif version == 3:
+            platforms_ = build_fmu3(source, path, values)
+            print_notes([f"{path} is for {', '.join(platforms_)}"])
         else:
             build_fmu(source, path, values)
         answer.result.setdefault("files", []).append(str(path))
         console.print(f"{path}  ({path.stat().st_size / 1000:.0f} kB)", soft_wrap=True)
         if osp:
             _write_osp(source, out)
+
+
+def _version(text: str) -> int:
+    """Return the version of FMI that a text names. Raises InputError."""
+    versions = {"2": 2, "2.0": 2, "3": 3, "3.0": 3}
+    if text not in versions:
+        raise InputError(unknown("version of FMI", text, ["2", "3"]))
+    return versions[text]
 
 
 def _default_names(native: bool) -> list[str]:

@@ -8,6 +8,7 @@ from typing import Any
 
 from fmpy.fmi3 import fmi3Binary, fmi3Byte
 
+from ..links.text import packed, unpacked
 from .instance import Variable
 from .variables import Array
 
@@ -58,6 +59,8 @@ class ArrayCall:
             self.fill, self._all = self._fill_texts, self._texts
         elif fmi_type == "Binary":
             self.fill, self._all = self._fill_bytes, self._bytes
+        self._are_texts = [v.type is str for r in references for v in arrays[r].elements]
+        """Of a Binary: those that are ports of bytes, which are text here."""
 
     def values(self) -> list[Any]:
         """Return what was read, in the order of the variables."""
@@ -74,14 +77,17 @@ class ArrayCall:
     def _texts(self) -> list[str]:
         return [(text or b"").decode("utf-8", "replace") for text in self._own]
 
-    def _fill_bytes(self, values: Sequence[bytes]) -> None:
-        for i, value in enumerate(values):
+    def _fill_bytes(self, values: Sequence[Any]) -> None:
+        for i, given in enumerate(values):
+            value = packed(given) if self._are_texts[i] else given
             buffer = (fmi3Byte * max(1, len(value))).from_buffer_copy(value or b"\0")
             self._own[i] = buffer  # ctypes keeps the buffer as long as the pointer to it
             self._sizes[i] = len(value)
 
-    def _bytes(self) -> list[bytes]:
-        return [
+    def _bytes(self) -> list[Any]:
+        found = [
             ctypes.string_at(pointer, size) if pointer and size else b""
             for pointer, size in zip(self._own, self._sizes, strict=True)
         ]
+        pairs = zip(found, self._are_texts, strict=True)
+        return [unpacked(value) if is_text else value for value, is_text in pairs]

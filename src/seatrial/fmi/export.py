@@ -9,18 +9,20 @@ import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
-from xml.etree.ElementTree import indent, tostring
+from xml.etree.ElementTree import Element, indent, tostring
 
 import pythonfmu
 
 from .. import __version__
-from .bundle import Bundle, bundled
+from ..component import Component
+from .bundle import bundled
 from .cache import cache_folder, write_named
 from .description import describe
 from .direct import DirectInstance
 from .slave import START_VALUES
 from .source import ComponentSource
 from .terminals import PLACE, terminals_xml
+from .version3.description import arrays, version3
 
 _TIMESTAMP = (1980, 1, 1, 0, 0, 0)
 _BINARIES = Path(pythonfmu.__file__).parent / "resources" / "binaries"
@@ -53,21 +55,27 @@ def cached_fmu(source: ComponentSource, code: str) -> Path:
 def fmu_bytes(source: ComponentSource, start_values: Mapping[str, Any] | None = None) -> bytes:
     """Return the content of the FMU file; see `build_fmu`."""
     binaries = {
-        f"binaries/{library.parent.name}/{source.stem}{library.suffix}": library.read_bytes()
-        for library in sorted(_BINARIES.rglob("*pythonfmu-export.*"))
+        f"binaries/{platform}/{source.stem}{library.suffix}": library.read_bytes()
+        for platform, library in pythonfmu_libraries().items()
     }
     return zipped(fmu_files(source, start_values, binaries))
 
 
 def pythonfmu_library(platform: str) -> Path:
     """Return pythonfmu's library for one of FMI's platforms."""
-    return next((_BINARIES / platform).glob("*pythonfmu-export.*"))
+    return pythonfmu_libraries()[platform]
+
+
+def pythonfmu_libraries() -> dict[str, Path]:
+    """Return pythonfmu's libraries by FMI's platforms."""
+    return {one.parent.name: one for one in sorted(_BINARIES.rglob("*pythonfmu-export.*"))}
 
 
 def fmu_files(
     source: ComponentSource,
     start_values: Mapping[str, Any] | None,
     carried: Mapping[str, bytes],
+    version: int = 2,
 ) -> dict[str, bytes]:
     """Return the files of a component's FMU by path, with those ``carried`` besides its own."""
     bundle = bundled(source)
@@ -75,20 +83,30 @@ def fmu_files(
     if start_values:
         text = json.dumps(dict(sorted(start_values.items())), indent=1)
         files[f"resources/{START_VALUES}"] = text.encode()
-    instance = DirectInstance(source.component_class()(source.name))
-    if instance.terminals:
-        files[PLACE] = terminals_xml(instance.terminals, instance.variables)
     files |= carried
-    description = _model_description(source, bundle, files, start_values or {})
-    return {"modelDescription.xml": description, **files}
+    root = _model_description(source, files, start_values or {})
+    return described_files(root, source.component_class()(source.name), version) | files
+
+
+def described_files(root: Element, component: Component, version: int) -> dict[str, bytes]:
+    """Return model description and terminals, as the version of FMI has them, by path.
+
+    ``root`` is the model description of FMI 2.0.
+    """
+    instance = DirectInstance(component)
+    whole = arrays(component, root) if version == 3 else ()
+    files = {}
+    if instance.terminals:
+        files[PLACE] = terminals_xml(instance.terminals, instance.variables, whole)
+    described = version3(root, component) if version == 3 else root
+    indent(described)
+    text: bytes = tostring(described, encoding="UTF-8", xml_declaration=True)
+    return {"modelDescription.xml": text, **files}
 
 
 def _model_description(
-    source: ComponentSource,
-    carried: Bundle,
-    files: Mapping[str, bytes],
-    start_values: Mapping[str, Any],
-) -> bytes:
+    source: ComponentSource, files: Mapping[str, bytes], start_values: Mapping[str, Any]
+) -> Element:
     root = describe(source.component_class(), source.name, start_values)
     root.set("generationTool", f"seatrial {__version__}, pythonfmu {pythonfmu.__version__}")
     simulation = root.find("CoSimulation")
@@ -99,9 +117,7 @@ def _model_description(
     for name, data in sorted(files.items()):
         digest.update(name.encode() + b"\0" + hashlib.sha256(data).digest())
     root.set("guid", f"{{{digest.hexdigest()[:32]}}}")
-    indent(root)
-    text: bytes = tostring(root, encoding="UTF-8", xml_declaration=True)
-    return text
+    return root
 
 
 def zipped(files: Mapping[str, bytes]) -> bytes:

@@ -24,7 +24,7 @@ from .xmlfile import read_xml
 
 _NAMESPACE = "https://open-simulation-platform.com/OspModelDescription/1.0.1"
 
-_TYPES = {
+QUANTITIES = {
     "N": "Force",
     "N.m": "Torque",
     "V": "Voltage",
@@ -40,8 +40,8 @@ _TYPES = {
     "m/s2": "LinearAcceleration",
     "rad/s2": "AngularAcceleration",
 }
-"""Types of groups by unit, in the order that the schema wants."""
-_ORDER = ["Generic", *_TYPES.values()]
+"""Types of groups by unit, in the order that the schema wants: quantities by OSP's names."""
+_ORDER = ["Generic", *QUANTITIES.values()]
 _MOST_IN_A_TYPE = 3
 _AXES = (".x", ".y", ".z")
 
@@ -67,7 +67,7 @@ def _group(name: str, scalars: Scalars) -> Element:
     kind = "Generic"
     if len(alike) == 1 and len(scalars) <= _MOST_IN_A_TYPE:
         ((unit, _),) = alike
-        kind = _TYPES.get(unit, kind)
+        kind = QUANTITIES.get(unit, kind)
     group = Element(kind, {"name": name})
     for ending, variable in scalars.items():
         attributes = {"ref": variable.name}

@@ -12,9 +12,11 @@ from typing import Any
 from fmpy.model_description import ModelDescription
 
 from ..errors import InputError, unknown
+from ..links.text import unpacked
 from ..units import Unit, defined_unit
 from .clocks import Clock, clock_types, read_clock
 from .instance import Value, Variable
+from .terminals import TOOL
 
 INTEGERS = {
     f"{sign}Int{bits}": (0, 2**bits - 1) if sign else (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1)
@@ -62,6 +64,8 @@ class Entry:
     """A size each, or the value reference of the structural parameter that has it."""
     texts: Sequence[str]
     """Start values as written."""
+    axes: tuple[str, ...]
+    """Names of the elements of an array of ours: then it is ``x.north``, not ``x[1]``."""
     line: int
     elements: list[Variable] = field(default_factory=list)
 
@@ -130,9 +134,12 @@ class ScalarReader:
         if declared is not None and declared not in types:
             raise InputError(f"its declared type {declared!r} is not defined")
         said = self._inherited(value, self._types.get(declared), kind)
-        port = None if annotations is None else annotations.find("Tool[@name='seatrial']/port")
-        ours = {} if port is None else port.attrib
+        ours = _ours(annotations)
+        if fmi_type == "Binary" and ours.get("role") == "bytes":
+            kind = str  # as our components have it
         texts = _starts(element, value, kind, bool(dimensions))
+        if fmi_type == "Binary" and kind is str:
+            texts = [unpacked(bytes.fromhex(start)) for start in texts]
         clocks = tuple(int(one) for one in element.get("clocks", "").split())
         variable = Variable(
             name=name,
@@ -162,7 +169,8 @@ class ScalarReader:
         elif not (dimensions or clocks):
             return variable, fmi_type
         sizes = [(_whole(d, "start"), _whole(d, "valueReference")) for d in dimensions]
-        entry = Entry(variable, fmi_type, clock, clocks, sizes, texts, element.sourceline)
+        axes = tuple(ours.get("axes", "").split())
+        entry = Entry(variable, fmi_type, clock, clocks, sizes, texts, axes, element.sourceline)
         return entry, fmi_type
 
     def _varying(self, element: Any, name: str, fmi_type: str) -> tuple[str, str]:
@@ -209,6 +217,7 @@ class ScalarReader:
 
 
 _NO_ITEMS: dict[str, int] = {}
+_NOTHING: dict[str, str] = {}
 
 
 def ticking(entry: Entry) -> Clock | None:
@@ -261,16 +270,27 @@ def _elements(
         raise InputError(f"{len(starts)} start values for {count} elements")
     if len(starts) != count:
         starts = (starts or [None]) * count
-    indices = product(*(range(1, size + 1) for size in shape))
     return [
-        replace(
-            entry.like,
-            name=f"{entry.name}[{','.join(map(str, index))}]",
-            start=starts[place],
-            element=place,
-        )
-        for place, index in enumerate(indices)
+        replace(entry.like, name=name, start=start, element=place)
+        for place, (name, start) in enumerate(zip(_names(entry, shape), starts, strict=True))
     ]
+
+
+def _names(entry: Entry, shape: Sequence[int]) -> list[str]:
+    if shape == [len(entry.axes)]:
+        return [f"{entry.name}.{axis}" for axis in entry.axes]
+    indices = product(*(range(1, size + 1) for size in shape))
+    return [f"{entry.name}[{','.join(map(str, index))}]" for index in indices]
+
+
+def _ours(annotations: Any) -> Mapping[str, str]:
+    """Return what an FMU of ours says of a variable; FMI 3.0 calls the element otherwise."""
+    if annotations is None:
+        return _NOTHING
+    port = annotations.find(f"Tool[@name='{TOOL}']/port")
+    if port is None:
+        port = annotations.find(f"Annotation[@type='{TOOL}']/port")
+    return _NOTHING if port is None else port.attrib
 
 
 def _named(name: str, line: int, error: Exception) -> InputError:

@@ -198,7 +198,9 @@ def _drop_interpreter_handle(resources: str | None) -> None:
     launched = list(Path(resources, "python", "lib").glob("libpythonfmu-export.so"))
     if not launched and not sys.orig_argv:
         return
-    for path in launched or (Path(resources).parent / "binaries" / "linux64").glob("*.so"):
+    beneath = list(Path(resources, "pythonfmu").glob("*.so"))  # of FMI 3.0
+    binaries = Path(resources).parent / "binaries" / "linux64"
+    for path in launched or beneath or binaries.glob("*.so"):
         library = ctypes.CDLL(str(path), mode=os.RTLD_NOLOAD | os.RTLD_LAZY)
         library.finalizePythonInterpreter()
         _ctypes.dlclose(library._handle)

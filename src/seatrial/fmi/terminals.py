@@ -24,7 +24,8 @@ from .xmlfile import read_xml
 PLACE = "terminalsAndIcons/terminalsAndIcons.xml"
 """Of the file, in an FMU."""
 
-_TOOL = "seatrial"
+TOOL = "seatrial"
+"""Name of ours, in annotations."""
 
 
 Scalars = dict[str, Variable]
@@ -59,21 +60,34 @@ def by_term(
             yield name, whole, members
 
 
-def terminals_xml(terminals: Mapping[str, Terminal], variables: Variables) -> bytes:
-    """Return the content of the file. Raises InputError as `by_term`."""
+def terminals_xml(
+    terminals: Mapping[str, Terminal], variables: Variables, arrays: Collection[str] = ()
+) -> bytes:
+    """Return the content of the file; ``arrays`` are ports that are one variable each.
+
+    Raises InputError as `by_term`.
+    """
     root = Element("fmiTerminalsAndIcons", {"fmiVersion": "3.0"})
     listed = SubElement(root, "Terminals")
     for name, whole, members in by_term(terminals, variables):
         rule = terminals[whole].rule
         element = SubElement(listed, "Terminal", {"name": name, "matchingRule": rule})
         for member, scalars in members.items():
-            for ending, variable in scalars.items():
-                names = {"variableName": variable.name, "memberName": member + ending}
+            for shown, name_ in _members_of(member, scalars, arrays).items():
+                names = {"variableName": name_, "memberName": shown}
                 SubElement(element, "TerminalMemberVariable", {**names, "variableKind": "signal"})
         if name != whole:
-            note = SubElement(SubElement(element, "Annotations"), "Annotation", {"type": _TOOL})
+            note = SubElement(SubElement(element, "Annotations"), "Annotation", {"type": TOOL})
             SubElement(note, "term", {"of": whole})
     return xml_text(root)
+
+
+def _members_of(member: str, scalars: Scalars, arrays: Collection[str]) -> dict[str, str]:
+    """Return the variables that a member has in the file, by its names there."""
+    ports = {variable.name.removesuffix(ending) for ending, variable in scalars.items()}
+    if "" not in scalars and len(ports) == 1 and ports <= set(arrays):
+        return {member: ports.pop()}
+    return {member + ending: variable.name for ending, variable in scalars.items()}
 
 
 def xml_text(root: Element) -> bytes:
@@ -106,7 +120,7 @@ def read_terminals(
     try:
         for element in root.iterfind("Terminals/Terminal"):
             name = attribute(element, "name")
-            if element.find(f"Annotations/Annotation[@type='{_TOOL}']/term") is not None:
+            if element.find(f"Annotations/Annotation[@type='{TOOL}']/term") is not None:
                 continue
             if name in found:
                 raise InputError(f"{_place(element)}: two terminals are called {name!r}")

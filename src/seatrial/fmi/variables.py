@@ -299,7 +299,11 @@ def _shown(names: list[str]) -> str:
 def views_of(root: Any) -> dict[str, dict[str, str]]:
     """Return the views that a model description declares, without those unknown here."""
     found = {}
-    for element in root.iterfind("VendorAnnotations/Tool[@name='seatrial']/view"):
+    places = (
+        "VendorAnnotations/Tool[@name='seatrial']",
+        "Annotations/Annotation[@type='seatrial']",
+    )
+    for element in (view for place in places for view in root.iterfind(f"{place}/view")):
         ports = {str(key): str(value) for key, value in element.attrib.items()}
         kind = ports.pop("kind", "")
         if set(ports) == set(VIEWS.get(kind, ())):

@@ -43,9 +43,9 @@ class SerialGateway(Logging, Reachable, Component):
         UNSET, "1", "bytes sent at the end, hexadecimal; empty for none", check=check_safe_state
     )
 
-    rx = Input("1", "bytes for the other end", type=str, optional=True)
+    rx = Input("1", "bytes for the other end", type=str, role="bytes", optional=True)
 
-    tx = Output("1", "bytes from the other end", type=str)
+    tx = Output("1", "bytes from the other end", type=str, role="bytes")
     sent = Output("1", "bytes sent", type=int)
     received = Output("1", "bytes received", type=int)
 

@@ -23,19 +23,37 @@ TARGETS = {
     "aarch64-linux": ("aarch64-linux-gnu.2.17", ".so"),
     "win64": ("x86_64-windows-gnu", ".dll"),
     "darwin64": ("x86_64-macos", ".dylib"),
+    "aarch64-darwin": ("aarch64-macos", ".dylib"),
 }
 """Zig's name of each platform, by FMI's, and the suffix of a library."""
+
+TUPLES = {
+    "linux64": "x86_64-linux",
+    "aarch64-linux": "aarch64-linux",
+    "win64": "x86_64-windows",
+    "darwin64": "x86_64-darwin",
+    "aarch64-darwin": "aarch64-darwin",
+}
+"""FMI 3.0's name of each platform, by FMI 2.0's."""
 
 _HERE = {
     ("Linux", "x86_64"): "linux64",
     ("Linux", "aarch64"): "aarch64-linux",
     ("Windows", "AMD64"): "win64",
     ("Darwin", "x86_64"): "darwin64",
+    ("Darwin", "arm64"): "aarch64-darwin",
 }
 HERE = _HERE.get((machine.system(), machine.machine()), "")
 """FMI's name of this machine's platform, empty for one that is not among `TARGETS`."""
 
 _NO_COMPILER = "native FMUs need a C compiler to build: pip install 'seatrial[native]'"
+
+SEMANTICS = (
+    "-ffp-contract=off",  # a fused multiplication and addition is another number
+    "-fno-builtin",  # and so is x * x for pow(x, 2)
+    "-fno-math-errno",
+)
+"""Options that whoever compiles the sources needs for the same numbers."""
 
 FLAGS = (
     "-std=c99",
@@ -44,15 +62,17 @@ FLAGS = (
     "-fPIC",
     "-fvisibility=hidden",  # FMUs of one process do not see each other's tables
     "-Wall",
-    "-ffp-contract=off",  # a fused multiplication and addition is another number
-    "-fno-builtin",  # and so is x * x for pow(x, 2)
-    "-fno-math-errno",
+    *SEMANTICS,
 )
 
 
 def checked_platforms(text: str) -> list[str]:
-    """Return the platforms that a text names, separated by commas. Raises InputError."""
-    names = [name.strip() for name in text.split(",")]
+    """Return the platforms that a text names, separated by commas, by FMI 2.0's names.
+
+    Those of FMI 3.0 are known too. Raises InputError.
+    """
+    by_tuple = {name: platform for platform, name in TUPLES.items()}
+    names = [by_tuple.get(name.strip(), name.strip()) for name in text.split(",")]
     for name in names:
         if name not in TARGETS:
             raise InputError(unknown("platform", name, list(TARGETS)))

@@ -55,6 +55,10 @@ void model_start(Instance *self, double t);
 void model_step(Instance *self, double t, double h);
 void model_outputs(Instance *self, double t);
 
+/* Along a direction of inputs and parameters: what outputs do at this instant. Both are by value
+   reference; return 0 for a component without derivatives. */
+int model_derivative(Instance *self, const double *seeds, double *along);
+
 /* A text was set: what it means. */
 void model_text(Instance *self, int text);
 

@@ -24,6 +24,8 @@ typedef struct {{
 
 void model_rk4(const double *x, const double *u, const double *p, double h, double *next);
 void model_out(const double *x, const double *u, const double *p, double *y);
+void model_along(const double *x, const double *u, const double *p, const double *dx,
+                 const double *du, const double *dp, double *dy);
 """
 
 _CALLS = """
@@ -39,6 +41,14 @@ void model_out(const double *x, const double *u, const double *p, double *y) {{
     double *results[{out_res}] = {{y}}, work[{out_w}];
     casadi_int places[{out_iw}];
     out(arguments, results, places, work, 0);
+}}
+
+void model_along(const double *x, const double *u, const double *p, const double *dx,
+                 const double *du, const double *dp, double *dy) {{
+    const double *arguments[{along_arg}] = {{x, u, p, dx, du, dp}};
+    double *results[{along_res}] = {{dy}}, work[{along_w}];
+    casadi_int places[{along_iw}];
+    along(arguments, results, places, work, 0);
 }}
 """
 
@@ -98,7 +108,7 @@ def model(plant: Plant) -> str:
     compiled = plant._compiled()
     generator = ca.CodeGenerator("model.c", {"with_header": False, "main": False})
     sizes = {}
-    for function in (compiled.rk4, compiled.out):
+    for function in (compiled.rk4, compiled.out, _along(compiled.out)):
         generator.add(function)
         for what in ("arg", "res", "iw", "w"):
             size = getattr(function, f"sz_{what}")()
@@ -113,6 +123,14 @@ def model(plant: Plant) -> str:
     ]
     common = tables(plant)
     return "\n".join([generator.dump(), '#include "model.h"', _CALLS.format(**sizes), *own, common])
+
+
+def _along(out: ca.Function) -> ca.Function:
+    """Return the derivative of outputs along a direction of state, inputs and parameters."""
+    at = [ca.SX.sym(name, out.size1_in(i)) for i, name in enumerate("xup")]
+    direction = [ca.SX.sym(f"d{name}", out.size1_in(i)) for i, name in enumerate("xup")]
+    result = ca.jtimes(out(*at), ca.vertcat(*at), ca.vertcat(*direction))
+    return ca.Function("along", [*at, *direction], [result])
 
 
 def _references(ports: Sequence[Port]) -> list[str]:

@@ -1,4 +1,4 @@
-"""Components to native FMUs: FMI 2.0 co-simulation in C, with its sources."""
+"""Components to native FMUs: co-simulation of FMI 2.0 or 3.0 in C, with its sources."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
-from xml.etree.ElementTree import Element, SubElement, indent, tostring
+from xml.etree.ElementTree import Element, SubElement, tostring
 
 import fmpy
 
@@ -17,12 +17,12 @@ from ...errors import InputError
 from ...plant import Plant
 from ..cache import write_named
 from ..description import describe
-from ..direct import DirectInstance
-from ..export import zipped
+from ..export import described_files, zipped
 from ..source import ComponentSource
-from ..terminals import PLACE, terminals_xml
+from ..version3.description import build_description
+from ..version3.sources import front_sources
 from .carriers import checked, why_refused
-from .compiler import TARGETS, library
+from .compiler import SEMANTICS, TARGETS, TUPLES, library
 from .equations import header as plant_header
 from .equations import model, started
 from .statements import Translation
@@ -39,31 +39,34 @@ def build_native_fmu(
     platforms: Sequence[str],
     start_values: Mapping[str, Any] | None = None,
     compiled: Callable[[Mapping[str, bytes], str], bytes] = library,
+    version: int = 2,
 ) -> Path:
     """Build the native FMU of ``source`` at ``destination`` (a file) and return its path.
 
     ``start_values`` (by port name, SI) are baked in; text parameters, waves, current and wind
-    cannot change afterwards. The same input gives the same bytes. Raises InputError for a
-    component that has no C, naming the line, values it cannot start with, and without a
-    compiler; nothing is written then.
+    cannot change afterwards. ``version`` of FMI is 2 or 3. The same input gives the same bytes.
+    Raises InputError for a component that has no C, naming the line, values it cannot start
+    with, and without a compiler; nothing is written then.
     """
     cls = source.component_class()
     why = why_refused(cls)
     if why:
         raise InputError(f"{source.origin} cannot be native: {why}")
     sources, own = _sources(partial(_made, source, start_values or {}), source.origin)
+    if version == 3:
+        sources |= front_sources()
     root = _described(source, sources, start_values or {})
     example = cls(source.name)
     sources["model.h"] = header(example, str(root.get("guid")), own).encode()
     files = {f"sources/{name}": content for name, content in sources.items()}
+    if version == 3:
+        names = [name for name in sorted(sources) if name.endswith(".c")]
+        files["sources/buildDescription.xml"] = build_description(source.stem, names, SEMANTICS)
     for platform in platforms:
+        folder = TUPLES[platform] if version == 3 else platform
         name = f"{source.stem}{TARGETS[platform][1]}"
-        files[f"binaries/{platform}/{name}"] = compiled(sources, platform)
-    instance = DirectInstance(example)
-    if instance.terminals:
-        files[PLACE] = terminals_xml(instance.terminals, instance.variables)
-    indent(root)
-    files["modelDescription.xml"] = tostring(root, encoding="UTF-8", xml_declaration=True)
+        files[f"binaries/{folder}/{name}"] = compiled(sources, platform)
+    files |= described_files(root, example, version)
     destination.parent.mkdir(parents=True, exist_ok=True)
     write_named(destination, zipped(files))
     return destination
@@ -105,6 +108,8 @@ def _described(
     simulation.set("modelIdentifier", source.stem)
     simulation.set("needsExecutionTool", "false")
     simulation.set("canBeInstantiatedOnlyOncePerProcess", "false")
+    if issubclass(source.component_class(), Plant):
+        simulation.set("providesDirectionalDerivative", "true")
     listed = SubElement(simulation, "SourceFiles")
     for name in sorted(sources):
         if name.endswith(".c"):

@@ -357,11 +357,33 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
     return none_of(c, count, "output derivative");
 }
 
+/* Whether the numbers of variables have derivatives with respect to each other. */
+static int have_derivatives(Instance *self, const fmi2ValueReference references[], size_t count,
+                            int are_outputs) {
+    for (size_t i = 0; i < count; i++) {
+        const unsigned r = references[i];
+        const int fits = r < SCALARS && model_types[r] == REAL && model_kinds[r] != BUILT_IN &&
+                         (model_kinds[r] == OUTPUT) == are_outputs;
+        if (fits) continue;
+        say(self, "%s: there is no derivative %s %s", self->name, are_outputs ? "of" : "by",
+            r < SCALARS ? model_names[r] : "a variable that there is not");
+        return 0;
+    }
+    return 1;
+}
+
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknown[],
                                         size_t unknowns, const fmi2ValueReference known[],
                                         size_t knowns, const fmi2Real seed[], fmi2Real value[]) {
-    (void)unknown, (void)known, (void)knowns, (void)seed, (void)value;
-    return none_of(c, unknowns, "directional derivative");
+    Instance *self = c;
+    double seeds[SCALARS + 1] = {0.0}, along[SCALARS + 1];
+    if (!have_derivatives(self, unknown, unknowns, 1) || !have_derivatives(self, known, knowns, 0) ||
+        !refresh(self))
+        return fmi2Error;
+    for (size_t i = 0; i < knowns; i++) seeds[known[i]] = seed[i];
+    if (!model_derivative(self, seeds, along)) return none_of(self, unknowns, "directional derivative");
+    for (size_t i = 0; i < unknowns; i++) value[i] = along[unknown[i]];
+    return fmi2OK;
 }
 
 /* ------------------------------------------------------------------ FMI: state */

@@ -45,4 +45,21 @@ void model_outputs(Instance *self, double t) {
     publish(state->values, model_y, OUTPUTS, y);
 }
 
+/* States are held over an instant; before the run they are the start values. */
+int model_derivative(Instance *self, const double *seeds, double *along) {
+    State *state = &self->state;
+    double u[INPUTS + 1], p[PARAMETERS + 1];
+    double dx[STATES + 1] = {0.0}, du[INPUTS + 1], dp[PARAMETERS + 1], dy[OUTPUTS + 1];
+    if (state->phase != RUNNING) gather(seeds, model_x_start, STATES, dx);
+    publish(along, model_x, STATES, dx);
+    if (OUTPUTS == 0) return 1;
+    gather(state->values, model_u, INPUTS, u);
+    gather(state->values, model_p, PARAMETERS, p);
+    gather(seeds, model_u, INPUTS, du);
+    gather(seeds, model_p, PARAMETERS, dp);
+    model_along(state->memory.x, u, p, dx, du, dp, dy);
+    publish(along, model_y, OUTPUTS, dy);
+    return 1;
+}
+
 void model_text(Instance *self, int text) { (void)self, (void)text; }

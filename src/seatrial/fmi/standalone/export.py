@@ -16,8 +16,9 @@ from ..bundle import bundled
 from ..cache import write_named
 from ..export import fmu_files, pythonfmu_library, zipped
 from ..libpython import find_libpython
-from ..native.compiler import library_here
+from ..native.compiler import TUPLES, library_here
 from ..source import ComponentSource
+from ..version3.sources import FORWARDED, front_sources
 from .distribution import compiled, distributions, files_of, standard_library
 from .shared_objects import least_glibc, needed
 
@@ -29,7 +30,10 @@ _HEADERS = ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h")
 
 
 def build_standalone_fmu(
-    source: ComponentSource, destination: Path, start_values: Mapping[str, Any] | None = None
+    source: ComponentSource,
+    destination: Path,
+    start_values: Mapping[str, Any] | None = None,
+    version: int = 2,
 ) -> str:
     """Build the standalone FMU of ``source`` at ``destination``; return the glibc that it needs.
 
@@ -48,8 +52,9 @@ def build_standalone_fmu(
     carried = {**_python(), **_packages(source)}
     carried |= _libraries(carried)
     inside = {f"{_HOME}/{name}": data for name, data in carried.items()}
-    inside[f"binaries/{_PLATFORM}/{source.stem}.so"] = _launcher()
-    files = fmu_files(source, start_values, inside)
+    folder = TUPLES[_PLATFORM] if version == 3 else _PLATFORM
+    inside[f"binaries/{folder}/{source.stem}.so"] = _launcher(version)
+    files = fmu_files(source, start_values, inside, version)
     destination.parent.mkdir(parents=True, exist_ok=True)
     write_named(destination, zipped(files))
     return least_glibc(data for name, data in files.items() if ".so" in name)
@@ -97,7 +102,7 @@ def _libraries(files: Mapping[str, bytes]) -> dict[str, bytes]:
     return {**listed, "lib/libraries.txt": "".join(f"{name}\n" for name in found).encode()}
 
 
-def _launcher() -> bytes:
+def _launcher(version: int) -> bytes:
     libpython = find_libpython()
     assert libpython is not None
     headers = Path(fmpy.__file__).parent / "c-code"
@@ -110,6 +115,9 @@ def _launcher() -> bytes:
     sources = {
         "launcher.c": Path(__file__).with_name("launcher.c").read_bytes(),
         "python.h": lines.encode(),
+        FORWARDED.name: FORWARDED.read_bytes(),
         **{name: (headers / name).read_bytes() for name in _HEADERS},
     }
+    if version == 3:
+        sources |= front_sources()
     return library_here(sources, _PLATFORM, ("-ldl", "-lpthread"))

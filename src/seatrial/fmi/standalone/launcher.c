@@ -5,7 +5,6 @@
    instance, and pythonfmu's library, when it is the one to start Python, ends it in an exit handler after
    the C library has freed what it needs. Here it finds Python started, and leaves it alone. */
 #define _GNU_SOURCE
-#include <ctype.h>
 #include <dlfcn.h>
 #include <pthread.h>
 #include <stdio.h>
@@ -13,120 +12,13 @@
 #include <string.h>
 #include <wchar.h>
 
-#include "fmi2Functions.h"
+#include "forwarded.h"
 #include "python.h" /* PYTHON_VERSION, PYTHON_LIBRARY, FMU_LIBRARY */
-
-#define LONGEST 4096
 
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static void *library;
-static char problem[LONGEST + 512];
-
-/* ---- every function but the first is passed on ---- */
-
-#define FORWARDED(F)                                                                              \
-    F(fmi2SetDebugLogging, (fmi2Component c, fmi2Boolean on, size_t n, const fmi2String k[]),      \
-      (c, on, n, k))                                                                              \
-    F(fmi2SetupExperiment,                                                                        \
-      (fmi2Component c, fmi2Boolean d, fmi2Real t, fmi2Real s, fmi2Boolean e, fmi2Real x),         \
-      (c, d, t, s, e, x))                                                                         \
-    F(fmi2EnterInitializationMode, (fmi2Component c), (c))                                        \
-    F(fmi2ExitInitializationMode, (fmi2Component c), (c))                                         \
-    F(fmi2Terminate, (fmi2Component c), (c))                                                      \
-    F(fmi2Reset, (fmi2Component c), (c))                                                          \
-    F(fmi2GetReal, (fmi2Component c, const fmi2ValueReference r[], size_t n, fmi2Real v[]),        \
-      (c, r, n, v))                                                                               \
-    F(fmi2GetInteger, (fmi2Component c, const fmi2ValueReference r[], size_t n, fmi2Integer v[]),  \
-      (c, r, n, v))                                                                               \
-    F(fmi2GetBoolean, (fmi2Component c, const fmi2ValueReference r[], size_t n, fmi2Boolean v[]),  \
-      (c, r, n, v))                                                                               \
-    F(fmi2GetString, (fmi2Component c, const fmi2ValueReference r[], size_t n, fmi2String v[]),    \
-      (c, r, n, v))                                                                               \
-    F(fmi2SetReal, (fmi2Component c, const fmi2ValueReference r[], size_t n, const fmi2Real v[]),  \
-      (c, r, n, v))                                                                               \
-    F(fmi2SetInteger,                                                                             \
-      (fmi2Component c, const fmi2ValueReference r[], size_t n, const fmi2Integer v[]),            \
-      (c, r, n, v))                                                                               \
-    F(fmi2SetBoolean,                                                                             \
-      (fmi2Component c, const fmi2ValueReference r[], size_t n, const fmi2Boolean v[]),            \
-      (c, r, n, v))                                                                               \
-    F(fmi2SetString,                                                                              \
-      (fmi2Component c, const fmi2ValueReference r[], size_t n, const fmi2String v[]),             \
-      (c, r, n, v))                                                                               \
-    F(fmi2GetFMUstate, (fmi2Component c, fmi2FMUstate *s), (c, s))                                \
-    F(fmi2SetFMUstate, (fmi2Component c, fmi2FMUstate s), (c, s))                                 \
-    F(fmi2FreeFMUstate, (fmi2Component c, fmi2FMUstate *s), (c, s))                               \
-    F(fmi2SerializedFMUstateSize, (fmi2Component c, fmi2FMUstate s, size_t *n), (c, s, n))         \
-    F(fmi2SerializeFMUstate, (fmi2Component c, fmi2FMUstate s, fmi2Byte b[], size_t n),            \
-      (c, s, b, n))                                                                               \
-    F(fmi2DeSerializeFMUstate,                                                                    \
-      (fmi2Component c, const fmi2Byte b[], size_t n, fmi2FMUstate *s), (c, b, n, s))              \
-    F(fmi2GetDirectionalDerivative,                                                               \
-      (fmi2Component c, const fmi2ValueReference z[], size_t nz, const fmi2ValueReference v[],     \
-       size_t nv, const fmi2Real dv[], fmi2Real dz[]),                                            \
-      (c, z, nz, v, nv, dv, dz))                                                                  \
-    F(fmi2SetRealInputDerivatives,                                                                \
-      (fmi2Component c, const fmi2ValueReference r[], size_t n, const fmi2Integer o[],             \
-       const fmi2Real v[]),                                                                       \
-      (c, r, n, o, v))                                                                            \
-    F(fmi2GetRealOutputDerivatives,                                                               \
-      (fmi2Component c, const fmi2ValueReference r[], size_t n, const fmi2Integer o[],             \
-       fmi2Real v[]),                                                                             \
-      (c, r, n, o, v))                                                                            \
-    F(fmi2DoStep, (fmi2Component c, fmi2Real t, fmi2Real h, fmi2Boolean b), (c, t, h, b))          \
-    F(fmi2CancelStep, (fmi2Component c), (c))                                                     \
-    F(fmi2GetStatus, (fmi2Component c, const fmi2StatusKind k, fmi2Status *v), (c, k, v))          \
-    F(fmi2GetRealStatus, (fmi2Component c, const fmi2StatusKind k, fmi2Real *v), (c, k, v))        \
-    F(fmi2GetIntegerStatus, (fmi2Component c, const fmi2StatusKind k, fmi2Integer *v), (c, k, v))  \
-    F(fmi2GetBooleanStatus, (fmi2Component c, const fmi2StatusKind k, fmi2Boolean *v), (c, k, v))  \
-    F(fmi2GetStringStatus, (fmi2Component c, const fmi2StatusKind k, fmi2String *v), (c, k, v))
-
-#define DEFINE(name, parameters, arguments)                                                       \
-    static fmi2Status(*its_##name) parameters;                                                    \
-    FMI2_Export fmi2Status name parameters { return its_##name arguments; }
-FORWARDED(DEFINE)
-
-static fmi2Component (*its_fmi2Instantiate)(fmi2String, fmi2Type, fmi2String, fmi2String,
-                                            const fmi2CallbackFunctions *, fmi2Boolean, fmi2Boolean);
-static void (*its_fmi2FreeInstance)(fmi2Component);
-
-FMI2_Export void fmi2FreeInstance(fmi2Component c) {
-    if (c) its_fmi2FreeInstance(c);
-}
-
-FMI2_Export const char *fmi2GetTypesPlatform(void) { return fmi2TypesPlatform; }
-
-FMI2_Export const char *fmi2GetVersion(void) { return "2.0"; }
 
 /* ---- Python ---- */
-
-/* Write the folder of the FMU's own Python; 0 if the URI of the resources is no file's. */
-static int home_of(const char *uri, char *home, size_t size) {
-    const char *path = uri ? uri : "";
-    if (!strncmp(path, "file://", 7)) {
-        path += 7;
-        if (*path != '/') path = strchr(path, '/'); /* file://localhost/... */
-    } else if (!strncmp(path, "file:/", 6)) {
-        path += 5;
-    } else {
-        return 0;
-    }
-    size_t n = 0;
-    for (; path && *path; path++, n++) {
-        if (n + sizeof("/python/site-packages") >= size) return 0;
-        unsigned code;
-        if (*path == '%' && isxdigit((unsigned char)path[1]) && isxdigit((unsigned char)path[2]) &&
-            sscanf(path + 1, "%2x", &code) == 1) {
-            home[n] = (char)code;
-            path += 2;
-        } else {
-            home[n] = *path;
-        }
-    }
-    while (n && home[n - 1] == '/') n--;
-    strcpy(home + n, "/python");
-    return n > 0;
-}
 
 static void *open_in(const char *home, const char *name, int scope) {
     char path[LONGEST];
@@ -199,7 +91,7 @@ static int with_python(const char *home) {
 static int loaded(const char *uri) {
     char home[LONGEST];
     if (library) return 1;
-    if (!home_of(uri, home, sizeof home)) {
+    if (!path_of(uri, "/python", home, sizeof home)) {
         snprintf(problem, sizeof problem, "the location of the resources is no file: %s",
                  uri ? uri : "(none)");
         return 0;
@@ -209,9 +101,7 @@ static int loaded(const char *uri) {
     void *opened = open_in(home, FMU_LIBRARY, RTLD_LOCAL);
     if (!opened) return 0;
 #define FIND(name, parameters, arguments) *(void **)&its_##name = dlsym(opened, #name);
-    FORWARDED(FIND)
-    FIND(fmi2Instantiate, , )
-    FIND(fmi2FreeInstance, , )
+    EVERY(FIND)
     library = opened;
     return 1;
 }

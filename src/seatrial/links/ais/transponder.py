@@ -89,7 +89,7 @@ class AisTransponder(Noise, Component):
         role="start-time",
     )
 
-    rx = Input("1", "messages received, as text", type=str, optional=True)
+    rx = Input("1", "messages received, as text", type=str, role="bytes", optional=True)
     position_n = Input("m", "position, north-east-down", axes=_NED)
     velocity_n = Input("m/s", "velocity over ground, north-east-down", axes=_NED)
     position_valid = Input("1", "whether position and velocity are valid", type=bool)
@@ -105,8 +105,8 @@ class AisTransponder(Noise, Component):
     )
     silent = Input("1", "whether the transmitter is off", type=bool, optional=True)
 
-    tx = Output("1", "messages sent, as text", type=str)
-    sentences = Output("1", "VDM and VDO, as text", type=str)
+    tx = Output("1", "messages sent, as text", type=str, role="bytes")
+    sentences = Output("1", "VDM and VDO, as text", type=str, role="bytes")
     targets = Output("1", "stations received lately", type=int)
     nearest_mmsi = Output("1", "the nearest one's number, -1 without one", type=int, start=-1)
     nearest_distance = Output("m", "distance to it, -1 without one", start=-1.0)

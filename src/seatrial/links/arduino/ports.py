@@ -98,7 +98,14 @@ class ArduinoPorts(Reachable, Component):
     water_density = Parameter(1000.0, "kg/m3", "of the water over the pressure sensor", min=0.0)
     gravity = Parameter(STANDARD_GRAVITY, "m/s2", "acceleration of gravity", min=0.0)
 
-    rx = Input("1", "bytes that arrive at each UART, as text", type=str, axes=_UARTS, optional=True)
+    rx = Input(
+        "1",
+        "bytes that arrive at each UART, as text",
+        type=str,
+        role="bytes",
+        axes=_UARTS,
+        optional=True,
+    )
     cut = Input(
         "1",
         "whether each UART's line is cut, both ways",
@@ -144,7 +151,7 @@ class ArduinoPorts(Reachable, Component):
     voltage = Input("V", "at analogue inputs", axes=_axes("v"), optional=True)
     level = Input("1", "at digital inputs", type=bool, axes=_axes("i"), optional=True)
 
-    tx = Output("1", "bytes that left each UART, as text", type=str, axes=_UARTS)
+    tx = Output("1", "bytes that left each UART, as text", type=str, role="bytes", axes=_UARTS)
     pulse = Output("s", "width of the last servo pulse, 0 for none", axes=_axes("s", SERVOS))
     duty = Output("1", "share of time that PWM outputs are high", axes=_axes("p"))
     output = Output("1", "levels of digital outputs", type=bool, axes=_axes("o"))

@@ -44,7 +44,7 @@ class BaseStation(Waypoints):
     resend = Parameter(5.0, "s", "time between two attempts to send what is lacking", min=0.1)
     silence = Parameter(180.0, "s", "without a byte, after which a connection is closed", min=1.0)
 
-    rx = Input("1", "segments from the modem, as text", type=str, optional=True)
+    rx = Input("1", "segments from the modem, as text", type=str, role="bytes", optional=True)
     first = Input(
         "1",
         "number of the first waypoint that is sent; 0 for none",
@@ -53,7 +53,7 @@ class BaseStation(Waypoints):
         optional=True,
     )
 
-    tx = Output("1", "segments to the modem, as text", type=str)
+    tx = Output("1", "segments to the modem, as text", type=str, role="bytes")
     connected = Output("1", "whether a boat is connected", type=bool)
     connections = Output("1", "connections accepted", type=int)
     list_number = Output("1", "number of the list of marks", type=int)

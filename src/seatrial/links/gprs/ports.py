@@ -36,8 +36,10 @@ class GprsPorts(Component):
     idle_current = Parameter(0.02, "A", "drawn when it does not send", min=0.0)
     sending_current = Parameter(0.3, "A", "drawn on average while it sends or searches", min=0.0)
 
-    rx = Input("1", "bytes from the board, as text", type=str, optional=True)
-    downlink = Input("1", "segments from the base station, as text", type=str, optional=True)
+    rx = Input("1", "bytes from the board, as text", type=str, role="bytes", optional=True)
+    downlink = Input(
+        "1", "segments from the base station, as text", type=str, role="bytes", optional=True
+    )
     signal_quality = Input(
         "1",
         f"as AT+CSQ counts it, 0 to {BEST}; below 1 there is no network",
@@ -46,8 +48,8 @@ class GprsPorts(Component):
     )
     supply = Input("V", "voltage of its supply", start=7.4, optional=True)
 
-    tx = Output("1", "bytes to the board, as text", type=str)
-    uplink = Output("1", "segments to the base station, as text", type=str)
+    tx = Output("1", "bytes to the board, as text", type=str, role="bytes")
+    uplink = Output("1", "segments to the base station, as text", type=str, role="bytes")
     registered = Output("1", "whether it is registered in a network", type=bool)
     attached = Output("1", "whether it is attached to GPRS", type=bool)
     linked = Output("1", "whether its TCP connection is established", type=bool)

@@ -51,8 +51,10 @@ class Nmea0183Ports(Reachable, Sampled):
     cruise_speed = Parameter(1.0, "m/s", "speed that goes with orders: they name none", min=0.0)
     order_timeout = Parameter(5.0, "s", "time for which an order is valid", min=0.0)
 
-    rx = Input("1", "bytes that arrive, as text", type=str, optional=True)
-    ais = Input("1", "sentences of an AIS transponder, as text", type=str, optional=True)
+    rx = Input("1", "bytes that arrive, as text", type=str, role="bytes", optional=True)
+    ais = Input(
+        "1", "sentences of an AIS transponder, as text", type=str, role="bytes", optional=True
+    )
     position_n = Input("m", "position, north-east-down", axes=_NED)
     velocity_n = Input("m/s", "velocity over ground, north-east-down", axes=_NED)
     position_valid = Input("1", "whether position and velocity are valid", type=bool)
@@ -90,7 +92,7 @@ class Nmea0183Ports(Reachable, Sampled):
     leg_to = Input("m", "waypoint at its end, north-east-down", axes=_NED, optional=True)
     leg_radius = Input("m", "distance at which the waypoint is reached", optional=True)
 
-    tx = Output("1", "bytes that are sent, as text", type=str)
+    tx = Output("1", "bytes that are sent, as text", type=str, role="bytes")
     target_kind = Output("1", "heading or position", type=str, start="heading")
     target_valid = Output("1", "whether there is an order", type=bool)
     target_heading = Output("rad", "heading ordered, clockwise from north")

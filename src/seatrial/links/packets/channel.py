@@ -69,9 +69,11 @@ class PacketChannel(Noise, Component):
     mount = Parameter(0.0, "m", "antenna or transducer below the body origin", axes=_NODES)
 
     position = _Positions()
-    tx = Input("1", "bytes from the nodes, as text", type=str, axes=_NODES, optional=True)
+    tx = Input(
+        "1", "bytes from the nodes, as text", type=str, role="bytes", axes=_NODES, optional=True
+    )
 
-    rx = Output("1", "bytes to the nodes, as text", type=str, axes=_NODES)
+    rx = Output("1", "bytes to the nodes, as text", type=str, role="bytes", axes=_NODES)
     queued = Output("1", "packets that wait", type=int, axes=_NODES)
     sent = Output("1", "packets sent", type=int, axes=_NODES)
     received = Output("1", "packets received", type=int, axes=_NODES)

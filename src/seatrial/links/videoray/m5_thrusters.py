@@ -59,11 +59,11 @@ class M5Thrusters(Logging, Component):
     thermal_resistance = Parameter(0.05, "K/W", "of a thruster to the water", min=0.0)
     greatest_temperature = Parameter(358.15, "K", "temperature at which it stops", min=0.0)
 
-    rx = Input("1", "bytes received", type=str, optional=True)
+    rx = Input("1", "bytes received", type=str, role="bytes", optional=True)
     fault = Input("1", "fault bits from outside", type=int, axes=_AXES, optional=True)
     water_temperature = Input("K", "temperature of the water", start=288.15, optional=True)
 
-    tx = Output("1", "bytes sent", type=str)
+    tx = Output("1", "bytes sent", type=str, role="bytes")
     thrust = Output("1", "share of full thrust, -1 to 1", axes=_AXES)
     speed = Output("rpm", "speed of the shaft", axes=_AXES)
     voltage = Output("V", "voltage of the supply at the thrusters")

@@ -30,7 +30,7 @@ class StreamPlayer(Component):
         "to-device", "1", "which way is played", choices=("to-device", "from-device")
     )
 
-    tx = Output("1", "bytes sent", type=str)
+    tx = Output("1", "bytes sent", type=str, role="bytes")
     played = Output("1", "pieces played", type=int)
 
     terminals: ClassVar = {"serial": terminal(down="tx")}

@@ -67,7 +67,7 @@ class Pro4RovPorts(Logging, Component):
     gravity = Parameter(STANDARD_GRAVITY, "m/s2", "acceleration of gravity", min=0.0)
     depth_offset = Parameter(0.0, "m", "depth that its pressure sensor reads too much")
 
-    rx = Input("1", "bytes received", type=str, optional=True)
+    rx = Input("1", "bytes received", type=str, role="bytes", optional=True)
     cut = Input("1", "whether the line is cut", type=bool, optional=True)
     attitude = Input("rad", "Euler angles, ZYX", axes=("phi", "theta", "psi"))
     depth = Input("m", "depth, positive down")
@@ -88,8 +88,8 @@ class Pro4RovPorts(Logging, Component):
     bus_voltage = Input("V", "voltage of the 12 V supply", start=12.19, optional=True)
     bus_current = Input("A", "current of the 12 V supply", start=0.385, optional=True)
 
-    tx = Output("1", "bytes sent", type=str)
-    accessory_tx = Output("1", "requests that it passes on", type=str)
+    tx = Output("1", "bytes sent", type=str, role="bytes")
+    accessory_tx = Output("1", "requests that it passes on", type=str, role="bytes")
     command = Output(
         "1", "shares of full thrust, -1 to 1: ahead, vertical downwards", axes=THRUSTERS
     )

@@ -31,7 +31,7 @@ class Pro4TopsidePorts(Logging, Component):
     gravity = Parameter(STANDARD_GRAVITY, "m/s2", "acceleration of gravity", min=1e-3)
     nmea = Parameter("off", "1", "whether it sends NMEA sentences", choices=("off", "on"))
 
-    rx = Input("1", "bytes received", type=str, optional=True)
+    rx = Input("1", "bytes received", type=str, role="bytes", optional=True)
     armed = Input("1", "whether manual control and holds apply", type=bool, optional=True)
     manual = Input(
         "1",
@@ -54,8 +54,8 @@ class Pro4TopsidePorts(Logging, Component):
     )
     heading_wanted = Input("rad", "heading to hold, clockwise from north", optional=True)
 
-    tx = Output("1", "bytes sent", type=str)
-    nmea_tx = Output("1", "NMEA sentences", type=str)
+    tx = Output("1", "bytes sent", type=str, role="bytes")
+    nmea_tx = Output("1", "NMEA sentences", type=str, role="bytes")
     connected = Output("1", "whether a vehicle answers, and is driven", type=bool)
     phase = Output("1", "detect, configure, read or drive", type=str, start="detect")
     serial_number = Output("1", "of the vehicle", type=str)

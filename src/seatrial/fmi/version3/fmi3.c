@@ -1,0 +1,293 @@
+/* FMI 3.0 co-simulation: life, steps, states and derivatives, by the functions of FMI 2.0.
+
+   Values are in values.c, what these FMUs do not have in absent.c. */
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "front.h"
+
+static const char *const categories[] = {"", "logStatusWarning", "logStatusDiscard",
+                                         "logStatusError", "logStatusFatal"};
+
+static void logged(Front *self, int status, const char *message) {
+    if (fmi3Warning <= status && status <= fmi3Fatal) {
+        self->complained |= status >= fmi3Error;
+        if (self->log)
+            self->log(self->environment, (fmi3Status)status, categories[status], message);
+    }
+}
+
+static void take_message(fmi2ComponentEnvironment environment, fmi2String name, fmi2Status status,
+                         fmi2String category, fmi2String format, ...) {
+    char message[4096];
+    va_list arguments;
+    (void)name, (void)category;
+    va_start(arguments, format);
+    vsnprintf(message, sizeof message, format, arguments);
+    va_end(arguments);
+    logged(environment, (int)status, message);
+}
+
+fmi3Status front_refuses(Front *self, const char *format, ...) {
+    char message[1024];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(message, sizeof message, format, arguments);
+    va_end(arguments);
+    logged(self, fmi3Error, message);
+    return fmi3Error;
+}
+
+fmi3Status front_status(Front *self, fmi2Status status) {
+    if (status > fmi2Fatal) return fmi3Error;
+    return status <= fmi2Warning && self->complained ? fmi3Error : (fmi3Status)status;
+}
+
+/* ------------------------------------------------------------------ life */
+
+/* Return a folder's path as a URI, without a separator at its end, as FMI 2.0 has it. */
+static char *uri_of(const char *path) {
+    const char *const given = path ? path : "";
+    const int is_uri = strncmp(given, "file:", 5) == 0;
+    const size_t size = strlen(given) + sizeof "file:///";
+    char *const uri = malloc(size);
+    if (!uri) return NULL;
+    const char *const start = is_uri ? "" : *given == '/' ? "file://" : "file:///";
+    snprintf(uri, size, "%s%s", *given ? start : "", given);
+#ifdef _WIN32
+    for (char *c = uri; *c; c++)
+        if (*c == '\\') *c = '/';
+#endif
+    for (size_t n = strlen(uri); n && uri[n - 1] == '/'; n--) uri[n - 1] = '\0';
+    return uri;
+}
+
+static void released(Front *self) {
+    free(self->room);
+    free(self);
+}
+
+fmi3Instance fmi3InstantiateCoSimulation(
+    fmi3String name, fmi3String token, fmi3String resources, fmi3Boolean visible,
+    fmi3Boolean logging, fmi3Boolean events, fmi3Boolean early, const fmi3ValueReference required[],
+    size_t count, fmi3InstanceEnvironment environment, fmi3LogMessageCallback log,
+    fmi3IntermediateUpdateCallback update) {
+    (void)early, (void)required, (void)count, (void)update; /* nothing happens within a step */
+    Front *self = calloc(1, sizeof *self);
+    char *const uri = uri_of(resources);
+    if (!self || !uri) {
+        free(self);
+        free(uri);
+        return NULL;
+    }
+    self->log = log, self->environment = environment;
+    snprintf(self->name, sizeof self->name, "%s", name ? name : "");
+    self->functions = (fmi2CallbackFunctions){take_message, calloc, free, NULL, self};
+    if (events)
+        front_refuses(self, "%s: this FMU has no event mode", self->name);
+    else
+        self->inner = fmi2Instantiate(self->name, fmi2CoSimulation, token ? token : "", uri,
+                                      &self->functions, visible, logging);
+    free(uri);
+    if (self->inner && !self->complained) return self;
+    if (self->inner) fmi2FreeInstance(self->inner);
+    released(self);
+    return NULL;
+}
+
+void fmi3FreeInstance(fmi3Instance instance) {
+    Front *self = instance;
+    if (!self) return;
+    fmi2FreeInstance(self->inner);
+    released(self);
+}
+
+const char *fmi3GetVersion(void) { return fmi3Version; }
+
+fmi3Status fmi3SetDebugLogging(fmi3Instance instance, fmi3Boolean on, size_t count,
+                               const fmi3String names[]) {
+    Front *self = instance;
+    return PASSED(self, fmi2SetDebugLogging(self->inner, on, count, names));
+}
+
+fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean has_tolerance,
+                                       fmi3Float64 tolerance, fmi3Float64 start,
+                                       fmi3Boolean has_stop, fmi3Float64 stop) {
+    Front *self = instance;
+    const fmi3Status status = PASSED(
+        self, fmi2SetupExperiment(self->inner, has_tolerance, tolerance, start, has_stop, stop));
+    if (status > fmi3Warning) return status;
+    self->time = start;
+    return PASSED(self, fmi2EnterInitializationMode(self->inner));
+}
+
+fmi3Status fmi3ExitInitializationMode(fmi3Instance instance) {
+    Front *self = instance;
+    return PASSED(self, fmi2ExitInitializationMode(self->inner));
+}
+
+fmi3Status fmi3Terminate(fmi3Instance instance) {
+    Front *self = instance;
+    return PASSED(self, fmi2Terminate(self->inner));
+}
+
+fmi3Status fmi3Reset(fmi3Instance instance) {
+    Front *self = instance;
+    self->time = 0.0;
+    return PASSED(self, fmi2Reset(self->inner));
+}
+
+fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 t, fmi3Float64 h,
+                      fmi3Boolean no_earlier, fmi3Boolean *event, fmi3Boolean *ends,
+                      fmi3Boolean *early, fmi3Float64 *last) {
+    Front *self = instance;
+    const fmi3Status status = PASSED(self, fmi2DoStep(self->inner, t, h, no_earlier));
+    if (status <= fmi3Warning) self->time = t + h;
+    *event = *ends = *early = fmi3False;
+    *last = self->time;
+    return status;
+}
+
+/* ------------------------------------------------------------------ states */
+
+typedef struct {
+    fmi2FMUstate inner;
+    double time;
+} Kept;
+
+/* Return the state at `place`, made if there is none; NULL without memory. */
+static Kept *kept_at(fmi3FMUState *place) {
+    if (!*place) *place = calloc(1, sizeof(Kept));
+    return *place;
+}
+
+fmi3Status fmi3GetFMUState(fmi3Instance instance, fmi3FMUState *state) {
+    Front *self = instance;
+    Kept *const kept = kept_at(state);
+    if (!kept) return fmi3Error;
+    kept->time = self->time;
+    return PASSED(self, fmi2GetFMUstate(self->inner, &kept->inner));
+}
+
+fmi3Status fmi3SetFMUState(fmi3Instance instance, fmi3FMUState state) {
+    Front *self = instance;
+    const Kept *const kept = state;
+    if (!kept) return front_refuses(self, "%s: there is no state to restore", self->name);
+    const fmi3Status status = PASSED(self, fmi2SetFMUstate(self->inner, kept->inner));
+    if (status <= fmi3Warning) self->time = kept->time;
+    return status;
+}
+
+fmi3Status fmi3FreeFMUState(fmi3Instance instance, fmi3FMUState *state) {
+    Front *self = instance;
+    if (!state || !*state) return fmi3OK;
+    Kept *const kept = *state;
+    const fmi3Status status =
+        kept->inner ? PASSED(self, fmi2FreeFMUstate(self->inner, &kept->inner)) : fmi3OK;
+    free(kept);
+    *state = NULL;
+    return status;
+}
+
+fmi3Status fmi3SerializedFMUStateSize(fmi3Instance instance, fmi3FMUState state, size_t *size) {
+    Front *self = instance;
+    const Kept *const kept = state;
+    if (!kept) return front_refuses(self, "%s: there is no state to serialise", self->name);
+    const fmi3Status status =
+        PASSED(self, fmi2SerializedFMUstateSize(self->inner, kept->inner, size));
+    *size += sizeof kept->time;
+    return status;
+}
+
+fmi3Status fmi3SerializeFMUState(fmi3Instance instance, fmi3FMUState state, fmi3Byte bytes[],
+                                 size_t size) {
+    Front *self = instance;
+    const Kept *const kept = state;
+    const size_t own = sizeof kept->time;
+    if (!kept || size < own)
+        return front_refuses(self, "%s: no state, or no room for it", self->name);
+    memcpy(bytes, &kept->time, own);
+    return PASSED(self, fmi2SerializeFMUstate(self->inner, kept->inner, (fmi2Byte *)bytes + own,
+                                              size - own));
+}
+
+fmi3Status fmi3DeserializeFMUState(fmi3Instance instance, const fmi3Byte bytes[], size_t size,
+                                   fmi3FMUState *state) {
+    Front *self = instance;
+    const size_t own = sizeof(double);
+    if (size < own) return front_refuses(self, "%s: %zu bytes are no state", self->name, size);
+    Kept *const kept = kept_at(state);
+    if (!kept) return fmi3Error;
+    memcpy(&kept->time, bytes, own);
+    return PASSED(self, fmi2DeSerializeFMUstate(self->inner, (const fmi2Byte *)bytes + own,
+                                                size - own, &kept->inner));
+}
+
+/* ------------------------------------------------------------------ derivatives */
+
+/* Return the scalars of variables, NULL without memory; `count` is how many they are. */
+static fmi2ValueReference *scalars_of(const fmi3ValueReference variables[], size_t some,
+                                      size_t *count) {
+    *count = 0;
+    for (size_t i = 0; i < some; i++) *count += (variables[i] >> MORE_THAN_ONE) + 1;
+    fmi2ValueReference *const scalars = malloc((*count + 1) * sizeof *scalars), *next = scalars;
+    for (size_t i = 0; scalars && i < some; i++)
+        for (unsigned k = 0; k <= variables[i] >> MORE_THAN_ONE; k++)
+            *next++ = (variables[i] & TIME) + k;
+    return scalars;
+}
+
+/* The product of the derivatives, `unknowns` by `knowns`, with a seed: of each of these alone. */
+static fmi3Status adjoint(Front *self, const fmi2ValueReference *unknowns, size_t rows,
+                          const fmi2ValueReference *knowns, size_t columns, const double *seed,
+                          double *product) {
+    double *const column = malloc((rows + 1) * sizeof *column);
+    const double one = 1.0;
+    fmi3Status status = column ? fmi3OK : fmi3Error;
+    for (size_t k = 0; k < columns && status <= fmi3Warning; k++) {
+        status = PASSED(self, fmi2GetDirectionalDerivative(self->inner, unknowns, rows, &knowns[k],
+                                                           1, &one, column));
+        product[k] = 0.0;
+        for (size_t i = 0; i < rows && status <= fmi3Warning; i++)
+            product[k] += column[i] * seed[i];
+    }
+    free(column);
+    return status;
+}
+
+static fmi3Status derivative(Front *self, const fmi3ValueReference unknowns[], size_t some_unknowns,
+                             const fmi3ValueReference knowns[], size_t some_knowns, int is_adjoint,
+                             const double seed[], size_t seeds, double product[], size_t products) {
+    size_t rows, columns;
+    fmi2ValueReference *const of = scalars_of(unknowns, some_unknowns, &rows);
+    fmi2ValueReference *const by = scalars_of(knowns, some_knowns, &columns);
+    fmi3Status status = fmi3Error;
+    if (seeds != (is_adjoint ? rows : columns) || products != (is_adjoint ? columns : rows))
+        front_refuses(self, "%s: derivatives of %zu by %zu with %zu seeds and %zu results",
+                      self->name, rows, columns, seeds, products);
+    else if (of && by && is_adjoint)
+        status = adjoint(self, of, rows, by, columns, seed, product);
+    else if (of && by)
+        status = PASSED(self, fmi2GetDirectionalDerivative(self->inner, of, rows, by, columns, seed,
+                                                           product));
+    free(of);
+    free(by);
+    return status;
+}
+
+fmi3Status fmi3GetDirectionalDerivative(fmi3Instance instance, const fmi3ValueReference unknowns[],
+                                        size_t rows, const fmi3ValueReference knowns[],
+                                        size_t columns, const fmi3Float64 seed[], size_t seeds,
+                                        fmi3Float64 product[], size_t products) {
+    return derivative(instance, unknowns, rows, knowns, columns, 0, seed, seeds, product, products);
+}
+
+fmi3Status fmi3GetAdjointDerivative(fmi3Instance instance, const fmi3ValueReference unknowns[],
+                                    size_t rows, const fmi3ValueReference knowns[], size_t columns,
+                                    const fmi3Float64 seed[], size_t seeds, fmi3Float64 product[],
+                                    size_t products) {
+    return derivative(instance, unknowns, rows, knowns, columns, 1, seed, seeds, product, products);
+}
