@@ -66,7 +66,7 @@ static char *uri_of(const char *path) {
 }
 
 static void released(Front *self) {
-    free(self->room);
+    free(self->buffer);
     free(self);
 }
 
@@ -208,7 +208,7 @@ fmi3Status fmi3SerializeFMUState(fmi3Instance instance, fmi3FMUState state, fmi3
     const Kept *const kept = state;
     const size_t own = sizeof kept->time;
     if (!kept || size < own)
-        return front_refuses(self, "%s: no state, or no room for it", self->name);
+        return front_refuses(self, "%s: no state, or too few bytes for it", self->name);
     memcpy(bytes, &kept->time, own);
     return PASSED(self, fmi2SerializeFMUstate(self->inner, kept->inner, (fmi2Byte *)bytes + own,
                                               size - own));

@@ -20,8 +20,8 @@ typedef struct {
     double time;
     int complained; /* in the call that runs */
     char name[256];
-    char *room; /* for values of Binary until the next call */
-    size_t room_size;
+    char *buffer; /* for values of Binary until the next call */
+    size_t buffer_size;
 } Front;
 
 /* What a call returns that was passed on: an error that was logged is one, whatever its status. */
@@ -35,8 +35,8 @@ __attribute__((format(printf, 2, 3)))
 fmi3Status front_refuses(Front *self, const char *format, ...);
 
 /* Bytes with their times, as links of seatrial have them: from the text of a String to the
-   content of a Binary and back. They return the size, or -1 for what is none of these; `to` has
-   room for MOST_BYTES or MOST_TEXT of it. */
+   content of a Binary and back. They return the size, or -1 for what is none of these; `to` is
+   a buffer of MOST_BYTES or MOST_TEXT of it. */
 #define MOST_BYTES(length) (8 + 4 * (length))
 #define MOST_TEXT(size) (32 + 3 * (size))
 long long chunks_from_text(const char *text, unsigned char *to);

@@ -121,11 +121,11 @@ fmi3Status fmi3SetBoolean(fmi3Instance instance, const fmi3ValueReference refere
 
 /* ------------------------------------------------------------------ bytes */
 
-static int has_room(Front *self, size_t size) {
-    if (size <= self->room_size) return 1;
-    char *const room = realloc(self->room, size);
-    if (!room) return 0;
-    self->room = room, self->room_size = size;
+static int fits(Front *self, size_t size) {
+    if (size <= self->buffer_size) return 1;
+    char *const buffer = realloc(self->buffer, size);
+    if (!buffer) return 0;
+    self->buffer = buffer, self->buffer_size = size;
     return 1;
 }
 
@@ -140,9 +140,9 @@ fmi3Status fmi3GetBinary(fmi3Instance instance, const fmi3ValueReference referen
     const fmi3Status status = get_String(self, references, count, texts, n);
     if (status > fmi3Warning) return status;
     for (size_t i = 0; i < n; i++) needed += MOST_BYTES(strlen(texts[i]));
-    if (!has_room(self, needed)) return fmi3Error;
+    if (!fits(self, needed)) return fmi3Error;
     for (size_t i = 0; i < n; i++) {
-        unsigned char *const to = (unsigned char *)self->room + place;
+        unsigned char *const to = (unsigned char *)self->buffer + place;
         const long long size = chunks_from_text(texts[i], to);
         if (size < 0)
             return front_refuses(self, "%s: this text is no bytes: '%.60s'", self->name, texts[i]);
@@ -161,10 +161,10 @@ fmi3Status fmi3SetBinary(fmi3Instance instance, const fmi3ValueReference referen
     for (size_t done = 0, some; (some = taken(&walk, scalars)) > 0; done += some)
         for (size_t i = 0; i < some; i++) {
             const size_t size = sizes[done + i];
-            if (!has_room(self, MOST_TEXT(size))) return fmi3Error;
-            if (chunks_to_text(values[done + i], size, self->room) < 0)
+            if (!fits(self, MOST_TEXT(size))) return fmi3Error;
+            if (chunks_to_text(values[done + i], size, self->buffer) < 0)
                 return front_refuses(self, "%s: %zu bytes are no chunks", self->name, size);
-            const fmi2String text = self->room;
+            const fmi2String text = self->buffer;
             const fmi3Status status =
                 PASSED(self, fmi2SetString(self->inner, &scalars[i], 1, &text));
             if (status > fmi3Warning) return status;
