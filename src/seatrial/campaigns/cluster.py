@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import tempfile
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Future
 from importlib import import_module
 from pathlib import Path
@@ -14,6 +14,7 @@ from typing import Any
 
 from ..errors import InputError
 from ..trials.campaign import Campaign
+from .asked import Asked, asked_of
 from .ended import Ended
 from .evaluator import Evaluator, Plan, still
 from .shipment import pack_folder, packed, unpacked
@@ -24,6 +25,8 @@ _WAIT_S = 30
 _TASK_S = 2.0
 """Wall time of a task of short cases: a scheduler does some thousand tasks a second."""
 _MOST_CASES = 1000
+Question = tuple[str, Mapping[int, Mapping[str, Any]]]
+"""A question's name, and what its cases set, by their numbers."""
 _PER_THREAD = 4
 """Tasks that wait for each thread of a worker."""
 
@@ -36,7 +39,9 @@ class Cluster:
     Dask is not installed, or there is no scheduler or worker.
     """
 
-    def __init__(self, address: str, campaign: Campaign, plan: Plan) -> None:
+    def __init__(
+        self, address: str, campaign: Campaign, plan: Plan, asked: Asked | None = None
+    ) -> None:
         try:
             distributed: Any = import_module("distributed")
         except ImportError:
@@ -61,7 +66,7 @@ class Cluster:
         data = packed(campaign)
         key = f"seatrial-{hashlib.sha256(data).hexdigest()}"
         self._data = self._client.submit(_itself, data, key=key)
-        self._plan = plan
+        self._plan, self._asked = plan, asked
         self._executor = self._client.get_executor(pure=False)
 
     @property
@@ -77,9 +82,13 @@ class Cluster:
     def submit(self, task: Task, below: Path) -> Future[list[Ended | None]]:
         """Begin a task; the folders come packed, with what they are of."""
         future: Future[list[Ended | None]] = self._executor.submit(
-            run_task, self._data, self._plan, list(task)
+            run_task, self._data, self._plan, list(task), self._question(task)
         )
         return future
+
+    def _question(self, task: Task) -> Question | None:
+        asked = self._asked
+        return None if asked is None else (asked.question, {n: asked.rows[n] for n in task})
 
     def lost(self, error: BaseException) -> bool:
         """Say if an error of a task is that several workers in turn died of it."""
@@ -92,15 +101,24 @@ class Cluster:
         self._client.close()
 
 
-def run_task(data: bytes, plan: Plan, task: Sequence[int]) -> list[Ended]:
-    """Run the cases of a task in a worker, and return what they leave, with the folders kept."""
+def run_task(
+    data: bytes, plan: Plan, task: Sequence[int], question: Question | None = None
+) -> list[Ended]:
+    """Run the cases of a task in a worker, and return what they leave, with the folders kept.
+
+    They are those of the campaign, or what a question of it asks for.
+    """
     with still():
         campaign, top = unpacked(data)
-    evaluators = _evaluators[hashlib.sha256(data).hexdigest(), plan]
+    name = "" if question is None else question[0]
+    evaluators = _evaluators[hashlib.sha256(data).hexdigest(), plan, name]
     try:
         evaluator = evaluators.get_nowait()
     except Empty:
-        evaluator = Evaluator(campaign.cases(), plan, home=top)
+        cases = campaign.cases() if question is None else asked_of(campaign, name)
+        evaluator = Evaluator(cases, plan, home=top)
+    if question is not None:
+        evaluator.expect(question[1])
     try:
         with tempfile.TemporaryDirectory(prefix="seatrial-cases-") as below:
             return [_ended(evaluator, number, Path(below)) for number in task]
@@ -120,5 +138,5 @@ def _itself(data: bytes) -> bytes:
     return data
 
 
-_evaluators: dict[tuple[str, Plan], SimpleQueue[Evaluator]] = defaultdict(SimpleQueue)
-"""Of this process, by campaign and plan: those that are idle."""
+_evaluators: dict[tuple[str, Plan, str], SimpleQueue[Evaluator]] = defaultdict(SimpleQueue)
+"""Of this process, by campaign, plan and question: those that are idle."""

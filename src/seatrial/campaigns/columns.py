@@ -11,6 +11,7 @@ from ..trials.campaign import Campaign
 from ..trials.case_list import FAULTS, Block
 from ..trials.cases import Case
 from ..trials.distributions import number_and_unit
+from ..trials.trial import Trial
 from .ended import Ended
 
 Kind = Literal["integer", "number", "truth", "text"]
@@ -28,16 +29,23 @@ class Column:
 
 def columns_of(campaign: Campaign) -> list[Column]:
     """Return the columns of a campaign's table; they depend on its files alone."""
+    return table_columns(campaign, campaign.trials, _settings(campaign.cases().blocks))
+
+
+def table_columns(
+    campaign: Campaign, trials: Iterable[Trial], settings: Mapping[str, list[Any]]
+) -> list[Column]:
+    """Return the columns of a table of some trials whose cases set keys to some of the values."""
     columns = [
         Column("case", "integer", lambda _, ended: ended.number + 1),
         Column("trial", "text", lambda case, _: case.trial_name),
-        *(_setting(key, values) for key, values in _settings(campaign.cases().blocks).items()),
+        *(_setting(key, values) for key, values in settings.items()),
         Column("seed", "integer", lambda _, ended: ended.measured.seed),
         Column("status", "text", lambda _, ended: ended.measured.status),
         Column("passed", "truth", lambda _, ended: ended.measured.passed),
         Column("error", "text", lambda _, ended: ended.measured.error),
     ]
-    names = dict.fromkeys(name for trial in campaign.trials for name, _ in trial.criteria)
+    names = dict.fromkeys(name for trial in trials for name, _ in trial.criteria)
     columns += [column for name in names for column in _criterion(name)]
     columns += [
         Column(f"{which} {signal}", "number", _figure(place, index))

@@ -6,11 +6,11 @@ import platform
 import shutil
 import threading
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import chdir, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal, overload
+from typing import Any, Literal, overload
 
 from ..cosim.system import Engine
 from ..errors import InputError, SimulationError
@@ -21,6 +21,7 @@ from ..trials.measuring import Measured, measured_of
 from ..trials.run import Result
 from ..trials.supervision import Order, Outcome, Supervisor
 from ..trials.trial import Trial
+from .asked import Asked
 from .ended import Ended
 
 Keep = Literal["all", "failed", "none"]
@@ -77,17 +78,26 @@ class Evaluator:
     """
 
     def __init__(
-        self, cases: Cases, plan: Plan, hooks: Hooks | None = None, home: Path | None = None
+        self, cases: Cases | Asked, plan: Plan, hooks: Hooks | None = None, home: Path | None = None
     ) -> None:
         self._cases, self._plan, self._home = cases, plan, home or Path.cwd()
-        alike = [block.case(0).trial for block in cases.blocks]
-        self._supervisor = Supervisor(_Trials(cases), plan.engine, hooks, alike=alike)
+        trials: Sequence[Trial]
+        if isinstance(cases, Asked):
+            trials = alike = [cases.base]
+        else:
+            trials, alike = _Trials(cases), [block.case(0).trial for block in cases.blocks]
+        self._supervisor = Supervisor(trials, plan.engine, hooks, alike=alike)
 
     def __enter__(self) -> Evaluator:
         return self
 
     def __exit__(self, *_: object) -> None:
         self._supervisor.__exit__(None, None, None)
+
+    def expect(self, rows: Mapping[int, Mapping[str, Any]]) -> None:
+        """Take what cases set that a question asks for, by number."""
+        assert isinstance(self._cases, Asked)
+        self._cases.rows.update(rows)
 
     def check(self, number: int) -> bool:
         """Return whether a case must run alone. Raises what `Supervisor.check` raises."""
@@ -146,8 +156,11 @@ class Evaluator:
         return measured_of(result)
 
     def _carried_out(self, what: Order, number: int, folder: Path | None = None) -> Outcome:
+        changes = None
+        if isinstance(self._cases, Asked):
+            number, changes = 0, self._cases.changes(number)
         with _FORKING, chdir(self._home):
-            self._supervisor.begin(what, number, folder)
+            self._supervisor.begin(what, number, folder, changes)
         while (outcome := self._supervisor.poll()) is None:
             pass
         return outcome

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from markupsafe import Markup
 
 from ..errors import InputError
 from ..trials import run_schema
@@ -19,6 +20,7 @@ from ..trials.report import REPORT, render
 from ..trials.run_schema import checked_json
 from ..trials.stopping_rule import failure_interval
 from ..whole_file import write_whole
+from .finding import ANSWER, Finding, read_answer
 from .table import RESULTS, read_rows, units_of
 
 SHOWN = 500
@@ -84,6 +86,7 @@ def write_table_page(folder: Path) -> Path:
             values.append(float(value) if isinstance(value, (int, float)) else np.nan)
         if not row["passed"] and len(found.shown) < SHOWN:
             found.shown.append(row)
+    answer = read_answer(folder) if (folder / ANSWER).is_file() else None
     share_library(folder)
     failed = sum(found.failed)
     page = render(
@@ -100,11 +103,26 @@ def write_table_page(folder: Path) -> Path:
         units=units,
         shown=found.shown,
         folders={int(c["folder"].partition("-")[0]): c["folder"] for c in index["cases"]},
-        figures=_figures(found, units),
+        figures=[] if answer else _figures(found, units),
+        answer=answer,
+        drawings=_drawings(folder, answer) if answer else [],
     )
     target = folder / REPORT
     write_whole(target, page)
     return target
+
+
+def _drawings(folder: Path, answer: Finding) -> list[Markup]:
+    """Return the drawings of an answer as elements of the page. Raises InputError."""
+    drawings = []
+    for name in answer.figures:
+        path = folder / Path(name).name
+        try:
+            text = path.read_text("utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            raise InputError(f"{path} cannot be read: {error}") from None
+        drawings.append(Markup(text[max(text.find("<svg"), 0) :]))
+    return drawings
 
 
 def _figures(found: _Found, units: dict[str, str]) -> list[str]:

@@ -2,26 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 from ..trials.case_list import Block, Cases
 from ..trials.distributions import number_and_unit
 from ..trials.hooks import Hooks
+from .asked import Asked
 from .evaluator import Evaluator, Plan
 
 MOST = 200
 """Cases that are all checked: a check takes as long as a start."""
 
 
-def check(cases: Cases, plan: Plan, hooks: Hooks) -> bool:
+def check(cases: Cases | Asked, plan: Plan, hooks: Hooks) -> bool:
     """Return whether a case must run alone: it keeps to wall time, or has links.
 
     Of more than `MOST` cases those are checked that have the least or the greatest number of a
     key, or one of its texts; a limit that only others break makes them failed cases. Raises what
     `Supervisor.check` raises.
     """
-    numbers = range(len(cases)) if len(cases) <= MOST else sorted(set(_edges(cases)))
+    numbers: Iterable[int] = range(len(cases))
+    if isinstance(cases, Cases) and len(cases) > MOST:
+        numbers = sorted(set(_edges(cases)))
     with Evaluator(cases, plan, hooks) as evaluator:
         alone = [evaluator.check(number) for number in numbers]
     return any(alone)

@@ -19,11 +19,14 @@ from .. import __version__
 from ..cosim.system import Engine
 from ..errors import InputError
 from ..trials.campaign import INDEX, Campaign
+from ..trials.case_list import Cases
 from ..trials.cases import Case
 from ..trials.hooks import Hooks
 from ..trials.measuring import Measured
 from ..trials.output import claim_folder, write_json
 from ..trials.run_schema import CAMPAIGN, checked_json
+from ..trials.stopping_rule import StoppingRule
+from .asked import Asked
 from .cluster import Cluster
 from .columns import columns_of
 from .ended import Ended
@@ -102,25 +105,20 @@ def run_sweep(
     arrow()
     cases, file = campaign.cases(), campaign.file
     plan = Plan(how.engine, how.keep or file.keep or "all", file.samples)
-    index = _index(campaign, how.engine, len(cases))
+    index = index_of(campaign, how.engine, len(cases))
     left = out if how.resume and out is not None and (out / INDEX).is_file() else None
     kept: dict[int, Ended] = {}
     if left is not None:
-        _refuse_other(left / INDEX, index)
+        refuse_other(left / INDEX, index)
         if (left / RESULTS).is_file() and not (left / ENDED_LOG).is_file():
             return _summary(left, len(cases))
         kept = ended_cases(left, len(cases))
     plan = replace(plan, recorded=check(cases, plan, hooks))
     columns = columns_of(campaign)
-    workers: Workers
-    if how.cluster is None:
-        workers = Here(cases, plan, how.jobs, hooks)
-    else:
-        workers = Cluster(how.cluster, campaign, plan)
-    with closing(workers):
+    with closing(workers_of(campaign, cases, plan, how, hooks)) as workers:
         folder = left or claim_folder(out, campaign.read_from.name, INDEX)
         write_json(folder / INDEX, {**index, "cases": []})
-        sweep = _Sweep(campaign, workers, folder, hooks)
+        sweep = Sweep(cases, workers, folder, hooks, file.until)
         with EndedLog(folder) as log, Tables(folder, columns) as tables:
             sweep.run(log, tables, kept, done)
     summary = sweep.summary
@@ -130,11 +128,31 @@ def run_sweep(
     return summary
 
 
-class _Sweep:
-    """Cases under way: some wait, some run, some have ended before others that come first."""
+def workers_of(
+    campaign: Campaign, cases: Cases | Asked, plan: Plan, how: How, hooks: Hooks
+) -> Workers:
+    """Return who runs the cases. Raises what `Cluster` raises."""
+    if how.cluster is None:
+        return Here(cases, plan, how.jobs, hooks)
+    asked = cases if isinstance(cases, Asked) else None
+    return Cluster(how.cluster, campaign, plan, asked)
 
-    def __init__(self, campaign: Campaign, workers: Workers, folder: Path, hooks: Hooks) -> None:
-        self._cases, self._rule = campaign.cases(), campaign.file.until
+
+class Sweep:
+    """Cases under way: some wait, some run, some have ended before others that come first.
+
+    There may be more of them after a run: the next one begins there.
+    """
+
+    def __init__(
+        self,
+        cases: Cases | Asked,
+        workers: Workers,
+        folder: Path,
+        hooks: Hooks,
+        rule: StoppingRule | None = None,
+    ) -> None:
+        self._cases, self._rule = cases, rule
         self._workers, self._folder, self._hooks = workers, folder, hooks
         self._running: dict[Future[list[Ended | None]], Task] = {}
         self._again: deque[Task] = deque()
@@ -146,8 +164,10 @@ class _Sweep:
 
     def run(self, log: EndedLog, tables: Tables, kept: dict[int, Ended], done: Done) -> None:
         """Run all cases but those ``kept``, and write each."""
-        self._early = dict(kept)
-        numbers = (n for n in range(len(self._cases)) if n not in kept)
+        planned = range(self.summary.ended, len(self._cases))
+        self.summary.planned = len(self._cases)
+        self._early = {n: kept[n] for n in planned if n in kept}
+        numbers = (n for n in planned if n not in kept)
 
         def hand_on(number: int) -> None:
             ended = self._early.pop(number)
@@ -219,11 +239,14 @@ class _Sweep:
             shutil.rmtree(self._folder / ended.folder, ignore_errors=True)
 
 
-def _index(campaign: Campaign, engine: Engine, count: int) -> dict[str, Any]:
-    """Return the index of a campaign's folder, without its cases."""
-    file = campaign.file.model_dump(exclude={"title", "keep", "samples"})
+def index_of(
+    campaign: Campaign, engine: Engine, count: int, question: Any = None
+) -> dict[str, Any]:
+    """Return the index of a campaign's folder, or of a question's, without its cases."""
+    file = campaign.file.model_dump(exclude={"title", "keep", "samples", "ask"})
     sources = [s.sha256 for t in campaign.trials for s in (t.read_from, t.rig.read_from)]
-    said = json.dumps([__version__, engine, file, sources], default=str)
+    asked = [] if question is None else [question]
+    said = json.dumps([__version__, engine, file, sources, *asked], default=str)
     return {
         "name": campaign.read_from.name,
         "title": campaign.file.title,
@@ -233,7 +256,7 @@ def _index(campaign: Campaign, engine: Engine, count: int) -> dict[str, Any]:
     }
 
 
-def _refuse_other(path: Path, index: dict[str, Any]) -> None:
+def refuse_other(path: Path, index: dict[str, Any]) -> None:
     """Raise InputError for the index of another campaign."""
     if checked_json(path, CAMPAIGN).get("of") != index["of"]:
         raise InputError(

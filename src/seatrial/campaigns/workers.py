@@ -13,6 +13,7 @@ from typing import Protocol
 from ..trials.case_list import Cases
 from ..trials.hooks import Hooks
 from ..trials.pool import cores
+from .asked import Asked
 from .ended import Ended
 from .evaluator import Evaluator, Plan
 
@@ -43,9 +44,13 @@ class Workers(Protocol):
 class Here:
     """Processes of this machine, an `Evaluator` each; ``jobs`` None: as many as there are cores."""
 
-    def __init__(self, cases: Cases, plan: Plan, jobs: int | None, hooks: Hooks) -> None:
+    def __init__(self, cases: Cases | Asked, plan: Plan, jobs: int | None, hooks: Hooks) -> None:
         self._closing = False
-        count = min(jobs or cores(), len(cases)) if hasattr(os, "fork") and not plan.recorded else 1
+        count = 1
+        if hasattr(os, "fork") and not plan.recorded:
+            count = jobs or cores()
+            if isinstance(cases, Cases):
+                count = min(count, len(cases))
 
         def asked() -> int:
             return 2 if self._closing else hooks.stop_requested()

@@ -1,10 +1,11 @@
-"""``seatrial campaign``: one case of a campaign again."""
+"""``seatrial campaign``: a question to a campaign, or one of its cases again."""
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
+from typer.core import TyperCommand, TyperGroup
 
 from ..errors import InputError, SimulationError
 from ..trials.campaign import load_campaign
@@ -12,17 +13,41 @@ from ..trials.hooks import Hooks
 from ..trials.report import write_report
 from ..trials.supervision import run_supervised
 from .answer import answer
+from .ask import ask
 from .options import EngineName, Out, engine_named
 from .show import console, print_verdicts, run_entry
 from .statuses import FAILED
 from .stopping import stoppable
 
-campaign_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
+_NAME = "CAMPAIGN"
+"""Stands for a name in the list of commands."""
+
+
+class CampaignGroup(TyperGroup):
+    """A command of the group, or the name of a campaign: then it is asked."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Put the command first that takes names."""
+        if args and args[0] not in (*self.commands, *ctx.help_option_names):
+            args = [_NAME, *args]
+        return super().parse_args(ctx, args)
+
+
+class AskCommand(TyperCommand):
+    """The command that names stand for: its argument is its own name."""
+
+    def collect_usage_pieces(self, ctx: Any) -> list[str]:
+        """Return what follows the name."""
+        return [self.options_metavar or ""]
+
+
+campaign_app = typer.Typer(cls=CampaignGroup, no_args_is_help=True, pretty_exceptions_enable=False)
+campaign_app.command(_NAME, cls=AskCommand)(ask)
 
 
 @campaign_app.callback()
 def campaign() -> None:
-    """Run a case of a campaign again."""
+    """Ask a campaign a question, or run one of its cases again."""
 
 
 @campaign_app.command()

@@ -23,7 +23,9 @@ class Command(NamedTuple):
 
 COMMANDS = {
     "run": Command("run:run", "Run a trial, or a campaign of trials, and say what holds."),
-    "campaign": Command("campaign:campaign_app", "Run a case of a campaign again."),
+    "campaign": Command(
+        "campaign:campaign_app", "Ask a campaign a question, or run one of its cases again."
+    ),
     "convergence": Command(
         "convergence:convergence",
         "Halve a trial's communication step: order and error of each output; status 1 if erratic.",

@@ -19,6 +19,7 @@ from .cases import Case, case_folders, run_cases
 from .designs import Design, drawn
 from .hooks import Hooks
 from .output import claim_folder, write_json
+from .questions import Questions
 from .resuming import kept_results
 from .run import Result
 from .stopping_rule import StoppingRule
@@ -65,6 +66,8 @@ class CampaignFile(FileModel):
     samples: int = Field(default=0, ge=0)
     """With ``keep``: one case in so many keeps its folder whatever becomes of it."""
     until: StoppingRule | None = None
+    ask: Questions = Field(default_factory=Questions)
+    """Settings of the questions that can be asked."""
 
 
 @dataclass(frozen=True)

@@ -40,18 +40,18 @@ def drawn(design: Design, origin: str) -> list[dict[str, Any]]:
     distribution's cumulative one. Correlation is that of the normal scores (a Gaussian copula):
     between normal keys it is Pearson's. Raises InputError.
     """
-    inverses = {
+    laws = {
         key: read_distribution(entry, f"{origin}: vary: {key}")
         for key, entry in design.vary.items()
     }
-    lower = _lower(design, origin)
+    lower = lower_factor(design, origin)
     points = np.clip(_points(design, origin), _TINY, 1.0 - _TINY)
     if design.correlation:
         from scipy import special  # dear to import, and no other command needs it
 
         points = special.ndtr(special.ndtri(points) @ lower.T)
-    columns = [inverse(points[:, i]) for i, inverse in enumerate(inverses.values())]
-    return [dict(zip(inverses, row, strict=True)) for row in zip(*columns, strict=True)]
+    columns = [law.drawn(points[:, i]) for i, law in enumerate(laws.values())]
+    return [dict(zip(laws, row, strict=True)) for row in zip(*columns, strict=True)]
 
 
 def _points(design: Design, origin: str) -> np.ndarray:
@@ -72,7 +72,7 @@ def _points(design: Design, origin: str) -> np.ndarray:
     return np.asarray(qmc.Sobol(dimensions, seed=random).random(design.count))
 
 
-def _lower(design: Design, origin: str) -> np.ndarray:
+def lower_factor(design: Design, origin: str) -> np.ndarray:
     """Return Cholesky's factor of the correlation matrix."""
     keys, matrix = list(design.vary), np.eye(len(design.vary))
     if design.correlation and design.kind == "latin-hypercube":

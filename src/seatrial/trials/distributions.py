@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,6 @@ from ..errors import InputError
 from ..units import conversion
 
 Written = str | float | int
-Inverse = Callable[[np.ndarray], list[Any]]
 _FORMS = ("normal", "uniform", "lognormal", "triangular", "integers")
 _PARTS = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S.*?)?\s*$")
 
@@ -31,8 +31,30 @@ class Distribution(FileModel):
     between: list[Written] | None = Field(default=None, min_length=2, max_length=2)
 
 
-def read_distribution(entry: Distribution, origin: str) -> Inverse:
-    """Return the inverse of the cumulative distribution: probabilities in (0, 1) to settings.
+@dataclass(frozen=True)
+class Law:
+    """A distribution that has been read."""
+
+    quantiles: Callable[[np.ndarray], np.ndarray]
+    """Inverse of the cumulative distribution: probabilities in (0, 1) to numbers."""
+    unit: str = ""
+    """Of the numbers; empty if none was written."""
+    is_whole: bool = False
+    """Numbers are whole: seeds."""
+
+    def settings(self, numbers: np.ndarray) -> list[Any]:
+        """Return numbers as a campaign sets them: text with the unit, if there is one."""
+        if self.is_whole:
+            return [int(number) for number in numbers.tolist()]
+        return [f"{n!r} {self.unit}" if self.unit else n for n in numbers.tolist()]
+
+    def drawn(self, probabilities: np.ndarray) -> list[Any]:
+        """Return the settings at probabilities in (0, 1)."""
+        return self.settings(self.quantiles(probabilities))
+
+
+def read_distribution(entry: Distribution, origin: str) -> Law:
+    """Return the distribution that a file says.
 
     normal: mean, standard deviation; lognormal: those of the quantity itself, not of its logarithm;
     uniform: low, high; triangular: low, mode, high; integers: first, last, all alike. ``between``
@@ -57,13 +79,11 @@ def read_distribution(entry: Distribution, origin: str) -> Inverse:
         if not high > low:
             raise InputError(f"{origin}: between: nothing of it lies there, found {entry.between}")
 
-    def inverse(probability: np.ndarray) -> list[Any]:
-        values = law.ppf(low + (high - low) * probability)
-        if entry.between:
-            values = np.clip(values, first, last)
-        return [f"{value!r} {unit}" if unit else value for value in values.tolist()]
+    def quantiles(probability: np.ndarray) -> np.ndarray:
+        values = np.asarray(law.ppf(low + (high - low) * probability))
+        return np.clip(values, first, last) if entry.between else values
 
-    return inverse
+    return Law(quantiles, unit)
 
 
 def number_and_unit(text: str) -> tuple[float, str | None]:
@@ -72,11 +92,11 @@ def number_and_unit(text: str) -> tuple[float, str | None]:
     return (math.nan, None) if part is None else (float(part[1]), part[2] or "")
 
 
-def _integers(written: list[int], entry: Distribution, here: str) -> Inverse:
+def _integers(written: list[int], entry: Distribution, here: str) -> Law:
     first, last = written
     if last < first or entry.between:
         raise InputError(f"{here}: first and last, without between, are needed, found {written}")
-    return lambda p: [first + int(k) for k in np.floor(p * (last - first + 1)).tolist()]
+    return Law(lambda p: first + np.floor(p * (last - first + 1)), is_whole=True)
 
 
 def _numbers(written: list[Written], spread: bool, here: str) -> tuple[list[float], str]:

@@ -47,19 +47,18 @@ def serve(
 def _carried_out(
     order: Frame, trials: Sequence[Trial], engine: Engine, page: Page, hooks: Hooks
 ) -> Frame:
-    what, number, folder = order
+    what, number, folder, changes = order
     try:
         out = None if folder is None else Path(folder)
-        if what == "check":
-            alone = check_trial(trials[number], engine, hooks)
-            return ["done", {"alone": alone}]
         if what == "report" and out is not None:
             page(out)
             return ["done", {}]
+        trial = trials[number] if changes is None else trials[number].changed(*changes)
+        if what == "check":
+            return ["done", {"alone": check_trial(trial, engine, hooks)}]
         if what == "measure":
-            measured = measure_trial(trials[number], engine=engine, hooks=hooks)
-            return ["done", asdict(measured)]
-        result = run_trial(trials[number], out, engine=engine, hooks=hooks)
+            return ["done", asdict(measure_trial(trial, engine=engine, hooks=hooks))]
+        result = run_trial(trial, out, engine=engine, hooks=hooks)
         return ["done", _written(result)]
     except SeatrialError as error:
         return ["error", type(error).__name__, str(error)]

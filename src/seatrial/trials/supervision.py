@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
@@ -32,6 +32,8 @@ from .verdict import Verdict
 _ERRORS = {kind.__name__: kind for kind in (InputError, SimulationError, StoppedError)}
 Order = Literal["check", "measure", "run", "report"]
 Outcome = Result | Measured | bool
+Changes = tuple[Mapping[str, Any], str]
+"""Settings, and who says so."""
 _IN_PROCESS = not hasattr(os, "fork")
 """Windows cannot copy a process: trials run in this one there."""
 
@@ -56,7 +58,7 @@ class Supervisor:
         self._page, self._alike = page, trials if alike is None else alike
         self._forked: Forked | None = None
         self._busy = False
-        self._order: tuple[Order, int, Path | None] = ("check", 0, None)
+        self._order: tuple[Order, int, Path | None, Changes | None] = ("check", 0, None, None)
         self._forget()
 
     def __enter__(self) -> Supervisor:
@@ -94,10 +96,19 @@ class Supervisor:
         assert isinstance(measured, Measured)
         return measured
 
-    def begin(self, what: Order, number: int, folder: Path | None = None) -> None:
-        """Begin to check, measure or run a trial, or to write the report of its folder."""
+    def begin(
+        self,
+        what: Order,
+        number: int,
+        folder: Path | None = None,
+        changes: Changes | None = None,
+    ) -> None:
+        """Begin to check, measure or run a trial, or to write the report of its folder.
+
+        ``changes`` are settings on top of the trial's own.
+        """
         self._forget()
-        self._order = what, number, folder
+        self._order = what, number, folder, changes
         if _IN_PROCESS:
             return
         if self._forked is None:
@@ -105,7 +116,7 @@ class Supervisor:
             observer = self._hooks.observer
             self._forked = Forked(partial(serve, self._trials, self._engine, self._page, observer))
         self._busy = True
-        self._forked.link.send(what, number, None if folder is None else str(folder))
+        self._forked.link.send(what, number, None if folder is None else str(folder), changes)
 
     def descriptors(self) -> tuple[int, ...]:
         """Return what can be waited at until `poll` may find something."""
@@ -117,7 +128,7 @@ class Supervisor:
         It is the result of a run, or what was measured; of a check, whether the trial must run
         alone. Raises what `check` and `run` raise.
         """
-        what, number, folder = self._order
+        what, number, folder, _ = self._order
         if self._forked is None:
             return self._in_process()
         frames = self._forked.frames(self._hooks.stop_requested(), wait=wait)
@@ -146,8 +157,8 @@ class Supervisor:
         return outcome
 
     def _in_process(self) -> Outcome:
-        what, number, folder = self._order
-        trial = self._trials[number]
+        what, number, folder, changes = self._order
+        trial = self._trials[number] if changes is None else self._trials[number].changed(*changes)
         if what == "check":
             return check_trial(trial, self._engine, self._hooks)
         if what == "measure":
@@ -158,7 +169,7 @@ class Supervisor:
         return run_trial(trial, folder, engine=self._engine, hooks=self._hooks)
 
     def _outcome(self, content: dict[str, Any]) -> Outcome:
-        what, _, out = self._order
+        what, _, out, _ = self._order
         if what == "measure":
             return Measured(**content)
         if what != "run":

@@ -1,0 +1,123 @@
+"""Questions to a campaign: runs where the answer needs them, and the answer in a folder."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import closing
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..trials.campaign import INDEX, Campaign
+from ..trials.hooks import Hooks
+from ..trials.measuring import Measured
+from ..trials.output import claim_folder, write_json
+from .asked import Asked, asked_of, entry_of
+from .asking import Asking, stopped
+from .columns import table_columns
+from .ended import Ended
+from .ended_log import EndedLog, ended_cases
+from .evaluator import Plan
+from .finding import ANSWER, Finding, read_answer
+from .limits_answer import limits_question
+from .sampled_checks import check
+from .space import Space, space_of
+from .sweep import Done, How, Sweep, index_of, refuse_other, workers_of
+from .table import Tables, arrow
+
+_ANSWERS: dict[str, Callable[[Any, Asking], Callable[[], Finding]]] = {
+    "limits": limits_question,
+}
+"""Each checks the settings of a question, and returns what answers it."""
+_MOST = 10_000_000
+"""Runs of a question: no number in a log is greater."""
+
+
+def ask(
+    campaign: Campaign,
+    question: str,
+    out: Path | None,
+    how: How,
+    hooks: Hooks | None = None,
+    done: Done = lambda _case, _ended: None,
+    expect: Callable[[int], None] = lambda _runs: None,
+) -> tuple[Finding, Path]:
+    """Ask a campaign a question, and return the answer and the folder that has it.
+
+    The folder is as for `run_sweep`, with ``results.parquet`` of all runs in the order in which
+    they were asked for, and ``answer.json`` with its tables and drawings. The answer depends on
+    the campaign's files alone. ``expect`` is given the number of runs, if that is known before.
+
+    Raises InputError for bad input before the first run, and for a library that is not installed;
+    SimulationError for a stop.
+    """
+    hooks = hooks or Hooks()
+    arrow()
+    entry, cases = entry_of(campaign, question), asked_of(campaign, question)
+    space = space_of(campaign, entry, cases.where.removesuffix(": vary"))
+    asking = Asking(campaign, cases, space, expect)
+    answer = _ANSWERS[question](entry, asking)
+    plan = Plan(how.engine, how.keep or campaign.file.keep or "none", campaign.file.samples)
+    index = index_of(campaign, how.engine, 0, [question, entry.model_dump()])
+    left = out if how.resume and out is not None and (out / INDEX).is_file() else None
+    kept: dict[int, Ended] = {}
+    if left is not None:
+        refuse_other(left / INDEX, index)
+        if (left / ANSWER).is_file():
+            return read_answer(left), left
+        kept = ended_cases(left, _MOST)
+    plan = replace(plan, recorded=check(_edges(cases, space), plan, hooks))
+    rows = space.settings(space.numbers(np.array([[0.25], [0.75]]) * np.ones(len(space.keys))))
+    settings = {key: [row[key] for row in rows] for key in space.keys}
+    columns = table_columns(
+        campaign, [cases.base], {**{k: [v] for k, v in cases.common.items()}, **settings}
+    )
+    with closing(workers_of(campaign, cases, plan, how, hooks)) as workers:
+        folder = left or claim_folder(out, f"{campaign.read_from.name}-{question}", INDEX)
+        write_json(folder / INDEX, {**index, "cases": []})
+        sweep = Sweep(cases, workers, folder, hooks)
+        with EndedLog(folder) as log, Tables(folder, columns) as tables:
+            runs = _Runs(sweep, log, tables, kept, done)
+            asking.folder, asking.measured = folder, runs.measured
+            finding = answer()
+    finding.runs = len(cases)
+    write_json(folder / ANSWER, finding.content())
+    write_json(folder / INDEX, {**index, "count": len(cases), "cases": sweep.summary.kept})
+    log.path.unlink()
+    return finding, folder
+
+
+@dataclass
+class _Runs:
+    """Runs of a question, one batch after the other."""
+
+    sweep: Sweep
+    log: EndedLog
+    tables: Tables
+    kept: dict[int, Ended]
+    done: Done
+
+    def measured(self, numbers: range) -> list[Measured]:
+        """Run the cases that were added last. Raises SimulationError if they were stopped."""
+        found: dict[int, Measured] = {}
+
+        def done(case: Any, ended: Ended) -> None:
+            found[ended.number] = ended.measured
+            self.done(case, ended)
+
+        self.sweep.run(self.log, self.tables, self.kept, done)
+        if len(found) < len(numbers):
+            raise stopped(self.sweep.summary.ended, self.sweep.summary.folder)
+        return [found[number] for number in numbers]
+
+
+def _edges(cases: Asked, space: Space) -> Asked:
+    """Return the middle of the space, and the ends of each key."""
+    shares = np.full((1 + 2 * len(space.keys), len(space.keys)), 0.5)
+    for i in range(len(space.keys)):
+        shares[1 + 2 * i, i], shares[2 + 2 * i, i] = 0.0, 1.0
+    edges = replace(cases, rows={})
+    edges.add(space.settings(space.numbers(shares)))
+    return edges

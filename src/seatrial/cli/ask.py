@@ -1,0 +1,107 @@
+"""``seatrial campaign NAME --ask QUESTION``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.box import SIMPLE
+from rich.markup import escape
+from rich.table import Table
+
+from ..campaigns.ask import ask as ask_campaign
+from ..campaigns.ended import Ended
+from ..campaigns.finding import Finding, Shown
+from ..campaigns.page import write_table_page
+from ..campaigns.sweep import How
+from ..trials.campaign import load_campaign
+from ..trials.cases import Case
+from ..trials.hooks import Hooks
+from .answer import answer
+from .options import EngineName, Out, engine_named
+from .show import console, print_table
+from .stopping import stoppable
+from .table_run import kept_named
+from .watch import Watch
+
+
+def ask(
+    name: Annotated[str, typer.Argument(metavar="CAMPAIGN", hidden=True)],
+    question: Annotated[
+        str,
+        typer.Option(
+            "--ask",
+            metavar="QUESTION",
+            help="'limits': where is the boundary of the region that passes?",
+        ),
+    ],
+    engine: EngineName = "fmu",
+    out: Out = None,
+    jobs: Annotated[
+        int | None,
+        typer.Option("--jobs", metavar="N", min=1, help="Runs side by side (default: every core)."),
+    ] = None,
+    cluster: Annotated[
+        str | None,
+        typer.Option(
+            "--cluster",
+            metavar="ADDRESS",
+            help="Run on the workers of a Dask scheduler, HOST:PORT.",
+        ),
+    ] = None,
+    keep: Annotated[
+        str | None,
+        typer.Option(
+            "--keep",
+            metavar="WHICH",
+            help="Keep the run folders of 'all', 'failed' or 'none' (default).",
+        ),
+    ] = None,
+    resume: Annotated[
+        bool,
+        typer.Option("--resume", help="Go on with a question that was stopped, in --out's folder."),
+    ] = False,
+    no_report: Annotated[bool, typer.Option("--no-report", help="Write no page.")] = False,
+) -> None:
+    """Ask a campaign a question: it runs the trials that the answer needs."""
+    campaign = load_campaign(name)
+    how = How(engine_named(engine), jobs, cluster, kept_named(keep), resume)
+    with stoppable() as stop, Watch(campaign.read_from.name) as watch:
+        ended_count = failed = 0
+
+        def done(_case: Case, ended: Ended) -> None:
+            nonlocal ended_count, failed
+            ended_count += 1
+            failed += not ended.measured.passed
+            watch.cases(ended_count, failed)
+
+        hooks = Hooks(stop_requested=stop.requested, interruptible=stop.interruptible)
+        finding, folder = ask_campaign(campaign, question, out, how, hooks, done, watch.expect)
+    _say(finding, folder, None if no_report else write_table_page(folder))
+
+
+def _say(finding: Finding, folder: Path, page: Path | None) -> None:
+    console.print(f"{finding.question}: {finding.runs} runs")
+    for line in finding.lines:
+        console.print(f"  {escape(line)}", soft_wrap=True)
+    for shown in finding.tables:
+        print_table(_table(shown))
+    answer.result = {**finding.content(), "folder": str(folder)}
+    console.print(f"answer: {folder}", soft_wrap=True)
+    if page is not None:
+        console.print(f"report: {page}", soft_wrap=True)
+
+
+def _table(shown: Shown) -> Table:
+    table = Table(title=escape(shown.title), title_justify="left", box=SIMPLE, padding=(0, 1, 0, 0))
+    for place, column in enumerate(shown.columns):
+        is_number = all(isinstance(row[place], (int, float)) for row in shown.rows)
+        table.add_column(escape(column), justify="right" if is_number else "left")
+    for row in shown.rows:
+        table.add_row(*(escape(_written(each)) for each in row))
+    return table
+
+
+def _written(value: object) -> str:
+    return f"{value:.4g}" if isinstance(value, float) else str(value)

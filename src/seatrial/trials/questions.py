@@ -1,0 +1,36 @@
+"""Questions to a campaign, as its file has them: ``[ask.limits]`` and the others."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import Field
+
+from ..cosim.files import FileModel
+from .distributions import Distribution
+
+
+class Question(FileModel):
+    """Which trial is asked about, and what may vary."""
+
+    trial: str = ""
+    """Of the campaign's; needed if it has several."""
+    set: dict[str, Any] = Field(default_factory=dict)
+    """In place of what the campaign's ``set`` and ``grid`` say."""
+    vary: dict[str, Distribution] = Field(default_factory=dict)
+    """Empty: what the campaign's design varies."""
+    seed: int = Field(default=0, ge=0)
+
+
+class LimitsQuestion(Question):
+    """Where is the boundary of the region that passes?"""
+
+    criterion: str = ""
+    """Empty: all criteria, by the least robustness."""
+    runs: int = Field(default=100, ge=20, le=2000)
+
+
+class Questions(FileModel):
+    """Settings of the questions; each can be asked without any."""
+
+    limits: LimitsQuestion = Field(default_factory=LimitsQuestion)
