@@ -198,7 +198,9 @@ def run_commands(block: Block) -> None:
         else:
             program = [sys.executable, *words[1:]]
             done = subprocess.run(program, capture_output=True, text=True, check=False)
-        got = done.stdout + re.sub(r"(?m)^.*: \d+ %, .* x real time\b.*\n", "", done.stderr)
+        got = done.stdout + re.sub(
+            r"(?m)^.*: \d+ %, .* (x real time|cases/s)\b.*\n", "", done.stderr
+        )
         matches = doctest.OutputChecker().check_output(shown, got, doctest.ELLIPSIS)
         assert matches or not shown, f"{line}\n{got}"
         shows_failure = re.search(r"FAIL|seatrial: |Error|of \d+ cases pass", shown)

@@ -11,7 +11,12 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .api.campaigns import CampaignResult, load_campaign_result, run_campaign
+    from .api.campaigns import (
+        CampaignResult,
+        ask_campaign,
+        load_campaign_result,
+        run_campaign,
+    )
     from .api.results import TrialResult, Verdict, load_result, run_trial
     from .api.simulation import Simulation
     from .errors import InputError, SeatrialError, SimulationError
@@ -27,6 +32,7 @@ __all__ = [
     "TrialResult",
     "Verdict",
     "__version__",
+    "ask_campaign",
     "load_campaign_result",
     "load_result",
     "run_campaign",
@@ -34,7 +40,7 @@ __all__ = [
 ]
 
 _MODULES = {
-    "api.campaigns": ("CampaignResult", "load_campaign_result", "run_campaign"),
+    "api.campaigns": ("CampaignResult", "ask_campaign", "load_campaign_result", "run_campaign"),
     "api.results": ("TrialResult", "Verdict", "load_result", "run_trial"),
     "api.simulation": ("Simulation",),
     "errors": ("InputError", "SeatrialError", "SimulationError"),

@@ -144,6 +144,44 @@ def run_campaign(
     return CampaignResult(folder)
 
 
+def ask_campaign(
+    campaign: str | Path,
+    question: str,
+    *,
+    out: str | Path | None = None,
+    engine: str = "direct",
+    jobs: int | None = None,
+    progress: Callable[[int], None] | None = None,
+) -> dict[str, Any]:
+    """Ask a campaign a question, as ``seatrial campaign NAME --ask`` does, and return the answer.
+
+    It is what ``answer.json`` has (``values`` by name, ``lines`` in words, ``tables``,
+    ``figures``), and ``folder``, a path. ``campaign``, ``out``, ``engine`` and ``jobs`` are as for
+    `run_campaign`; ``progress`` is called after each run with how many are done. Raises InputError
+    for bad input before the first run, and for a library that is not installed.
+    """
+    from ..campaigns.ask import ask
+    from ..campaigns.ended import Ended
+    from ..campaigns.sweep import How
+    from ..links.hardware import confined
+    from ..trials.campaign import load_campaign
+    from ..trials.cases import Case
+
+    finished = 0
+
+    def done(_case: Case, _ended: Ended) -> None:
+        nonlocal finished
+        finished += 1
+        if progress is not None:
+            progress(finished)
+
+    with confined():
+        target = None if out is None else Path(out)
+        how = How(as_engine(engine), jobs)
+        finding, folder = ask(load_campaign(str(campaign)), question, target, how, done=done)
+    return {**finding.content(), "folder": folder}
+
+
 def load_campaign_result(folder: str | Path) -> CampaignResult:
     """Read the folder that a campaign left. Raises InputError for another folder."""
     return CampaignResult(folder)

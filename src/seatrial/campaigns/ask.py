@@ -10,11 +10,14 @@ from typing import Any
 
 import numpy as np
 
+from ..cosim.files import FileModel
+from ..errors import InputError, unknown
 from ..trials.campaign import INDEX, Campaign
 from ..trials.hooks import Hooks
 from ..trials.measuring import Measured
 from ..trials.output import claim_folder, write_json
-from .asked import Asked, asked_of, entry_of
+from ..trials.questions import LimitsQuestion, Questions
+from .asked import Asked, asked_of
 from .asking import Asking, stopped
 from .columns import table_columns
 from .ended import Ended
@@ -27,10 +30,10 @@ from .space import Space, space_of
 from .sweep import Done, How, Sweep, index_of, refuse_other, workers_of
 from .table import Tables, arrow
 
-_ANSWERS: dict[str, Callable[[Any, Asking], Callable[[], Finding]]] = {
-    "limits": limits_question,
+_ANSWERS: dict[str, tuple[type[FileModel], Callable[[Any, Asking], Callable[[], Finding]]]] = {
+    "limits": (LimitsQuestion, limits_question),
 }
-"""Each checks the settings of a question, and returns what answers it."""
+"""Settings of each question, and what checks them and returns what answers it."""
 _MOST = 10_000_000
 """Runs of a question: no number in a log is greater."""
 
@@ -55,12 +58,17 @@ def ask(
     """
     hooks = hooks or Hooks()
     arrow()
-    entry, cases = entry_of(campaign, question), asked_of(campaign, question)
-    space = space_of(campaign, entry, cases.where.removesuffix(": vary"))
-    asking = Asking(campaign, cases, space, expect)
-    answer = _ANSWERS[question](entry, asking)
+    if question not in _ANSWERS:
+        raise InputError(f"--ask: {unknown('question', question, _ANSWERS)}")
+    cases = asked_of(campaign, question)
+    settings = campaign.file.ask or Questions()
+    asking = Asking(campaign, cases, space_of(campaign, f"{campaign.read_from.path}: ask"), expect)
+    asking.seed = settings.seed
+    kind, prepared = _ANSWERS[question]
+    entry = getattr(settings, question.replace("-", "_")) or kind()
+    answer, space = prepared(entry, asking), asking.space
     plan = Plan(how.engine, how.keep or campaign.file.keep or "none", campaign.file.samples)
-    index = index_of(campaign, how.engine, 0, [question, entry.model_dump()])
+    index = index_of(campaign, how.engine, 0, [question, settings.model_dump()])
     left = out if how.resume and out is not None and (out / INDEX).is_file() else None
     kept: dict[int, Ended] = {}
     if left is not None:
@@ -69,11 +77,7 @@ def ask(
             return read_answer(left), left
         kept = ended_cases(left, _MOST)
     plan = replace(plan, recorded=check(_edges(cases, space), plan, hooks))
-    rows = space.settings(space.numbers(np.array([[0.25], [0.75]]) * np.ones(len(space.keys))))
-    settings = {key: [row[key] for row in rows] for key in space.keys}
-    columns = table_columns(
-        campaign, [cases.base], {**{k: [v] for k, v in cases.common.items()}, **settings}
-    )
+    columns = table_columns(campaign, [cases.base], _values(cases, space))
     with closing(workers_of(campaign, cases, plan, how, hooks)) as workers:
         folder = left or claim_folder(out, f"{campaign.read_from.name}-{question}", INDEX)
         write_json(folder / INDEX, {**index, "cases": []})
@@ -121,3 +125,9 @@ def _edges(cases: Asked, space: Space) -> Asked:
     edges = replace(cases, rows={})
     edges.add(space.settings(space.numbers(shares)))
     return edges
+
+
+def _values(cases: Asked, space: Space) -> dict[str, list[Any]]:
+    """Return what all cases set, and of each key that varies values of the kind that it has."""
+    rows = space.settings(space.numbers(np.full((1, len(space.keys)), 0.3)))
+    return {key: [value] for key, value in {**cases.common, **rows[0]}.items()}

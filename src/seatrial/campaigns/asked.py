@@ -9,7 +9,7 @@ from typing import Any
 from ..errors import InputError, unknown
 from ..trials.campaign import Campaign, TrialEntry
 from ..trials.cases import Case, case_name
-from ..trials.questions import Question, Questions
+from ..trials.questions import Questions
 from ..trials.trial import Trial
 
 
@@ -45,41 +45,32 @@ class Asked:
         return range(first, len(self.rows))
 
 
-def entry_of(campaign: Campaign, question: str) -> Question:
-    """Return the settings of a question. Raises InputError for one that does not exist."""
-    names = {field.alias or name: name for name, field in Questions.model_fields.items()}
-    if question not in names:
-        raise InputError(f"--ask: {unknown('question', question, names)}")
-    entry: Question = getattr(campaign.file.ask, names[question])
-    return entry
-
-
 def asked_of(campaign: Campaign, question: str) -> Asked:
     """Return the cases of a question, of which there are none yet. Raises InputError."""
-    entry, path = entry_of(campaign, question), campaign.read_from.path
-    origin = f"{path}: ask.{question}"
-    trial, own = _trial(campaign, entry, origin)
-    varied = entry.vary or (campaign.file.design.vary if campaign.file.design else {})
-    common: dict[str, Any] = {**campaign.file.set, **own.set}
-    for key, values in {**campaign.file.grid, **own.grid}.items():
-        if key in entry.set or key in varied:
+    file, origin = campaign.file, f"{campaign.read_from.path}: ask"
+    ask = file.ask or Questions()
+    trial, own = _trial(campaign, ask.trial, origin)
+    varied = ask.vary or (file.design.vary if file.design else {})
+    common: dict[str, Any] = {**file.set, **own.set}
+    for key, values in {**file.grid, **own.grid}.items():
+        if key in ask.set or key in varied:
             continue
         if len(values) > 1:
             raise InputError(
                 f"{origin}: it is about one trial, and grid has {len(values)} values of {key}: "
-                f"say which in [ask.{question}.set], or vary it"
+                "say which in [ask.set], or vary it"
             )
         common[key] = values[0]
-    common = {key: v for key, v in {**common, **entry.set}.items() if key not in varied}
-    base = replace(trial.changed(common, f"{origin}: set"), figures=tuple(campaign.file.figures))
+    common = {key: v for key, v in {**common, **ask.set}.items() if key not in varied}
+    base = replace(trial.changed(common, f"{origin}: set"), figures=tuple(file.figures))
     return Asked(question, base, common, f"{origin}: vary")
 
 
-def _trial(campaign: Campaign, entry: Question, origin: str) -> tuple[Trial, TrialEntry]:
+def _trial(campaign: Campaign, name: str, origin: str) -> tuple[Trial, TrialEntry]:
     """Return the trial that a question is about, with its entry in the campaign."""
     entries = [TrialEntry(trial=e) if isinstance(e, str) else e for e in campaign.file.trials]
     pairs = list(zip(campaign.trials, entries, strict=True))
-    if not entry.trial:
+    if not name:
         if len(pairs) > 1:
             names = ", ".join(trial.name for trial in campaign.trials)
             raise InputError(
@@ -88,7 +79,7 @@ def _trial(campaign: Campaign, entry: Question, origin: str) -> tuple[Trial, Tri
             )
         return pairs[0]
     for trial, own in pairs:
-        if entry.trial in (trial.name, own.trial):
+        if name in (trial.name, own.trial):
             return trial, own
     known = [trial.name for trial in campaign.trials]
-    raise InputError(f"{origin}: trial: {unknown('trial', entry.trial, known)}")
+    raise InputError(f"{origin}: trial: {unknown('trial', name, known)}")

@@ -31,6 +31,7 @@ class Asking:
     space: Space
     expect: Callable[[int], None]
     """Is given how many runs there will be, if that is known."""
+    seed: int = 0
     folder: Path = Path()
     measured: Callable[[range], list[Measured]] = lambda _numbers: []
     """Runs cases, and returns what they come to; these two are there once the question is put."""
@@ -38,7 +39,7 @@ class Asking:
     @property
     def origin(self) -> str:
         """Where the question is written, for messages."""
-        return self.asked.where.removesuffix(": vary")
+        return f"{self.campaign.read_from.path}: ask.{self.asked.question}"
 
     def run(self, numbers: np.ndarray) -> list[Measured]:
         """Run the trial at points. Raises SimulationError once it is to stop."""

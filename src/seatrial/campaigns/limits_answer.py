@@ -32,21 +32,21 @@ def limits_question(entry: LimitsQuestion, asking: Asking) -> Callable[[], Findi
 
     Raises InputError for another number of keys, and for a criterion that does not exist.
     """
-    space, origin = asking.space, asking.origin
+    space = asking.space = asking.space.only(entry.keys, asking.origin)
     for library in ("sklearn", "contourpy", "matplotlib"):
         needed(library)
     if len(space.keys) not in (2, 3):
         raise InputError(
-            f"{origin}: a map has two or three keys, and {len(space.keys)} vary "
-            f"({', '.join(space.keys)}): say which in [ask.limits.vary]"
+            f"{asking.origin}: a map has two or three keys, and {len(space.keys)} vary "
+            f"({', '.join(space.keys)}): say which in keys"
         )
-    refuse_whole(space, origin, "a boundary is one of quantities")
+    refuse_whole(space, asking.origin, "a boundary is one of quantities")
     value = asking.robustness(entry.criterion)
 
     def answer() -> Finding:
         asking.expect(entry.runs)
         boundary = find_boundary(
-            lambda shares: value(space.numbers(shares)), len(space.keys), entry.runs, entry.seed
+            lambda shares: value(space.numbers(shares)), len(space.keys), entry.runs, asking.seed
         )
         return _finding(asking, boundary)
 

@@ -8,11 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import InputError
+from ..errors import InputError, unknown
 from ..trials.campaign import Campaign
 from ..trials.designs import lower_factor
 from ..trials.distributions import Law, read_distribution
-from ..trials.questions import Question
 
 _TAILS = np.array([0.00135, 0.99865])
 """Probabilities at which a distribution without an end is cut: three standard deviations."""
@@ -59,28 +58,36 @@ class Space:
         inside = np.clip(probabilities, _TINY, 1.0 - _TINY)
         return np.stack([law.quantiles(inside[:, i]) for i, law in enumerate(self.laws)], axis=1)
 
+    def only(self, keys: Sequence[str], origin: str) -> Space:
+        """Return the space of some keys; of all, if there are none. Raises InputError."""
+        for key in keys:
+            if key not in self.keys:
+                raise InputError(f"{origin}: keys: {unknown('key', key, self.keys)}")
+        if not keys:
+            return self
+        places = sorted({self.keys.index(key) for key in keys})
+        laws = tuple(self.laws[i] for i in places)
+        return Space(tuple(self.keys[i] for i in places), laws, np.eye(len(places)))
+
     def titles(self) -> list[str]:
         """Return the keys with their units."""
         pairs = zip(self.keys, self.units, strict=True)
         return [f"{key}, {unit}" if unit else key for key, unit in pairs]
 
 
-def space_of(campaign: Campaign, entry: Question, origin: str) -> Space:
-    """Return the space of a question: of its own ``vary``, or the campaign's design's.
+def space_of(campaign: Campaign, origin: str) -> Space:
+    """Return the space of questions: of their own ``vary``, or that of the campaign's design.
 
     Raises InputError if neither has a key.
     """
-    design = campaign.file.design
-    if entry.vary:
-        laws = {k: read_distribution(e, f"{origin}: vary: {k}") for k, e in entry.vary.items()}
+    ask, design = campaign.file.ask, campaign.file.design
+    if ask is not None and ask.vary:
+        laws = {k: read_distribution(e, f"{origin}: vary: {k}") for k, e in ask.vary.items()}
         return Space(tuple(laws), tuple(laws.values()), np.eye(len(laws)))
     if design is None:
-        table = origin.rpartition(": ")[2]
         raise InputError(
-            f"{origin}: nothing varies: [design.vary] of the campaign or [{table}.vary] is "
-            'needed, such as "boat.mass" = {{ uniform = ["20 kg", "24 kg"] }}'.replace(
-                "{{", "{"
-            ).replace("}}", "}")
+            f"{origin}: nothing varies: [ask.vary], or [design.vary] of the campaign, needs a key "
+            'such as "hull.mass" = { uniform = ["20 kg", "24 kg"] }'
         )
     here = f"{campaign.read_from.path}: design"
     laws = {k: read_distribution(e, f"{here}: vary: {k}") for k, e in design.vary.items()}

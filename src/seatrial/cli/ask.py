@@ -15,11 +15,13 @@ from ..campaigns.ended import Ended
 from ..campaigns.finding import Finding, Shown
 from ..campaigns.page import write_table_page
 from ..campaigns.sweep import How
+from ..errors import InputError
 from ..trials.campaign import load_campaign
 from ..trials.cases import Case
 from ..trials.hooks import Hooks
 from .answer import answer
 from .options import EngineName, Out, engine_named
+from .run_options import Cluster, Jobs, KeepName, NoReport, Resume
 from .show import console, print_table
 from .stopping import stoppable
 from .table_run import kept_named
@@ -38,33 +40,15 @@ def ask(
     ],
     engine: EngineName = "fmu",
     out: Out = None,
-    jobs: Annotated[
-        int | None,
-        typer.Option("--jobs", metavar="N", min=1, help="Runs side by side (default: every core)."),
-    ] = None,
-    cluster: Annotated[
-        str | None,
-        typer.Option(
-            "--cluster",
-            metavar="ADDRESS",
-            help="Run on the workers of a Dask scheduler, HOST:PORT.",
-        ),
-    ] = None,
-    keep: Annotated[
-        str | None,
-        typer.Option(
-            "--keep",
-            metavar="WHICH",
-            help="Keep the run folders of 'all', 'failed' or 'none' (default).",
-        ),
-    ] = None,
-    resume: Annotated[
-        bool,
-        typer.Option("--resume", help="Go on with a question that was stopped, in --out's folder."),
-    ] = False,
-    no_report: Annotated[bool, typer.Option("--no-report", help="Write no page.")] = False,
+    jobs: Jobs = None,
+    cluster: Cluster = None,
+    keep: KeepName = None,
+    resume: Resume = False,
+    no_report: NoReport = False,
 ) -> None:
     """Ask a campaign a question: it runs the trials that the answer needs."""
+    if resume and out is None:
+        raise InputError("--resume needs the question's folder, --out FOLDER")
     campaign = load_campaign(name)
     how = How(engine_named(engine), jobs, cluster, kept_named(keep), resume)
     with stoppable() as stop, Watch(campaign.read_from.name) as watch:

@@ -66,7 +66,7 @@ class CampaignFile(FileModel):
     samples: int = Field(default=0, ge=0)
     """With ``keep``: one case in so many keeps its folder whatever becomes of it."""
     until: StoppingRule | None = None
-    ask: Questions = Field(default_factory=Questions)
+    ask: Questions | None = None
     """Settings of the questions that can be asked."""
 
 

@@ -1,4 +1,4 @@
-"""Questions to a campaign, as its file has them: ``[ask.limits]`` and the others."""
+"""Questions to a campaign, as its file has them: ``[ask]``, ``[ask.limits]`` and the others."""
 
 from __future__ import annotations
 
@@ -10,8 +10,18 @@ from ..cosim.files import FileModel
 from .distributions import Distribution
 
 
-class Question(FileModel):
-    """Which trial is asked about, and what may vary."""
+class LimitsQuestion(FileModel):
+    """Where is the boundary of the region that passes?"""
+
+    criterion: str = ""
+    """Empty: all criteria, by the least robustness."""
+    keys: list[str] = Field(default_factory=list, max_length=3)
+    """Two or three of those that vary; the others stay as the trial has them. Empty: all."""
+    runs: int = Field(default=100, ge=20, le=2000)
+
+
+class Questions(FileModel):
+    """Which trial is asked about, what varies, and settings of each question."""
 
     trial: str = ""
     """Of the campaign's; needed if it has several."""
@@ -20,17 +30,4 @@ class Question(FileModel):
     vary: dict[str, Distribution] = Field(default_factory=dict)
     """Empty: what the campaign's design varies."""
     seed: int = Field(default=0, ge=0)
-
-
-class LimitsQuestion(Question):
-    """Where is the boundary of the region that passes?"""
-
-    criterion: str = ""
-    """Empty: all criteria, by the least robustness."""
-    runs: int = Field(default=100, ge=20, le=2000)
-
-
-class Questions(FileModel):
-    """Settings of the questions; each can be asked without any."""
-
-    limits: LimitsQuestion = Field(default_factory=LimitsQuestion)
+    limits: LimitsQuestion | None = None
