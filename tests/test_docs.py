@@ -93,6 +93,7 @@ def _script(path: Path) -> Any:
 
 
 TABLES = _script(DOCS / "tables.py")
+DIAGRAMS = _script(DOCS / "diagrams.py")
 
 
 # ---------------------------------------------------------------------- a page taken apart
@@ -488,6 +489,18 @@ def made_parts(*, verdicts: bool | None = None) -> list[Any]:
 @pytest.mark.parametrize(("page", "name"), made_parts())
 def test_a_table_is_up_to_date(page: Path, name: str) -> None:
     assert TABLES.written(page, name) == TABLES.made(name), "run: python docs/tables.py"
+
+
+@pytest.mark.interop
+@pytest.mark.parametrize("vehicle", DIAGRAMS.DRAWN)
+def test_a_block_diagram_is_up_to_date(vehicle: str, tmp_path: Path) -> None:
+    """In all that it says; other versions of Graphviz have other places."""
+    said = [
+        re.findall(r"<title>.*?</title>|<text[^>]*>.*?</text>", path.read_text("utf-8"), re.DOTALL)
+        for path in (DIAGRAMS.draw(vehicle, tmp_path), DIAGRAMS.IMAGES / f"rig-{vehicle}.svg")
+    ]
+    made, kept = (sorted(re.sub(r' [xy]="[^"]*"', "", text) for text in texts) for texts in said)
+    assert made == kept, "run: python docs/diagrams.py"
 
 
 @pytest.mark.parametrize(("page", "name"), made_parts(verdicts=True))

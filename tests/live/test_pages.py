@@ -16,6 +16,7 @@ from urllib.parse import urlsplit
 import pytest
 
 from seatrial.live.stage import played
+from seatrial.trials.dark import DARK
 from seatrial.trials.report import write_report
 from seatrial.trials.run_folder import load_run
 
@@ -218,11 +219,15 @@ def test_a_pilot_is_steered_by_hand(browser, tmp_path: Path) -> None:
 def test_a_report_plays_its_run_offline(browser, hydrone: Path, tmp_path: Path) -> None:
     """From the file alone: no network, no other file."""
     report = shutil.copy(write_report(hydrone, play=played), tmp_path / "report.html")
-    context = browser.new_context(offline=True)
+    context = browser.new_context(offline=True, color_scheme="dark")
     page = context.new_page()
     problems: list[str] = []
     page.on("pageerror", lambda error: problems.append(str(error)))
     page.goto(Path(report).as_uri())
+    page.locator(".figure .main-svg").first.wait_for(timeout=WAIT_MS)
+    colour = "document.querySelector('.figure').layout.font.color"
+    assert page.evaluate(colour) == DARK["#1d2730"]
+    assert page.locator("svg.rig .box").count() == 9
     page.get_by_role("button", name="Play the run").click()
     inside = page.frame_locator(".stage iframe")
     inside.locator("canvas").first.wait_for(timeout=WAIT_MS)
@@ -230,5 +235,7 @@ def test_a_report_plays_its_run_offline(browser, hydrone: Path, tmp_path: Path) 
     before = page.locator(".stage iframe").screenshot()
     page.wait_for_timeout(1500)
     assert page.locator(".stage iframe").screenshot() != before
+    page.evaluate("dispatchEvent(new Event('beforeprint'))")  # paper is white
+    assert page.evaluate(colour) == "#1d2730"
     assert not problems
     context.close()

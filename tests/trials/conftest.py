@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import base64
 import csv
 import json
+import re
+import zlib
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -169,3 +172,14 @@ def write_run(tmp_path: Path) -> WriteRun:
         return write_run_folder(tmp_path / name, **options)
 
     return write
+
+
+def unpacked(text: str) -> bytes:
+    """Return what a page carries packed, by Python's own decoder."""
+    return zlib.decompress(base64.b85decode(text.strip().replace(",", "<")))
+
+
+def figures_of(page: str) -> list[dict[str, Any]]:
+    """Return the figures in a part of a page."""
+    carried = re.findall(r'text/x-figure">(.*?)</script>', page, re.DOTALL)
+    return [json.loads(unpacked(text)) for text in carried]

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -19,14 +17,13 @@ from seatrial.trials.run_folder import load_run
 from seatrial.trials.sailing import PolarPoint, polar_figure, polar_point
 from seatrial.trials.trial import load_trial
 
+from .conftest import figures_of
+
 Write = Callable[[str, str], Path]
 
 
 def figure_below(page: str, heading: str) -> Any:
-    section = page[page.index(heading) :]
-    match = re.search(r'application/json">(.*?)</script>', section, re.DOTALL)
-    assert match
-    return json.loads(match[1])
+    return figures_of(page[page.index(heading) :])[0]
 
 
 def test_track_has_the_wind_and_the_marks(tmp_path: Path) -> None:

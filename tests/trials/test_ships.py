@@ -3,8 +3,6 @@
 Figures are those of tests/reference, which an independent implementation computed.
 """
 
-import json
-import re
 from functools import cache
 from pathlib import Path
 
@@ -17,6 +15,7 @@ from seatrial.trials.run import run_trial
 from seatrial.trials.run_folder import load_run
 from seatrial.trials.trial import load_trial
 
+from .conftest import figures_of
 from .test_shipped_trials import TRIALS
 
 pytestmark = pytest.mark.interop
@@ -99,7 +98,7 @@ def test_both_models_share_the_panels_of_the_report(tmp_path):
     assert "<h2>Motion of nonlinear and linear</h2>" in page
     assert "<h2>Velocities of nonlinear and linear</h2>" in page
     motion = page[page.index("Motion of nonlinear and linear") : page.index("Velocities of nonl")]
-    figure = json.loads(re.search(r"application/json\">(.*?)</script>", motion, re.DOTALL)[1])
+    (figure,) = figures_of(motion)
     # x, y and psi: in the plane there is nothing else.
     assert [trace["name"] for trace in figure["data"]] == ["nonlinear", "linear"] * 3
 

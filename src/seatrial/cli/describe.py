@@ -16,8 +16,11 @@ from ..cosim.paths import joined
 from ..cosim.rig import Rig, Scope
 from ..cosim.system import Joint, System
 from ..cosim.unread import leave_out_unread
+from ..errors import InputError
+from ..trials.diagram import MOST_DRAWN, diagram
 from ..trials.naming import by_path, named_components
 from ..trials.trial import choices_in, is_trial, load_trial
+from ..whole_file import write_whole
 from .answer import answer
 from .options import Autopilot, Choices, Every, Match, Vehicle, changes_of
 from .show import MOST_SHOWN, console, print_more, print_notes
@@ -30,8 +33,14 @@ def describe(
     autopilot: Autopilot = None,
     pattern: Match = "",
     every: Every = False,
+    drawn: Annotated[
+        Path | None,
+        typer.Option("--diagram", metavar="FILE", help="Draw it into a file, as SVG."),
+    ] = None,
 ) -> None:
     """Show a rig's components, rigs inside it, every connection, and what is left open."""
+    if drawn is not None and drawn.suffix.lower() != ".svg":
+        raise InputError(f"--diagram: {drawn}: the drawing is SVG: a name that ends in .svg")
     changes = changes_of(None, choices, vehicle, autopilot)
     if is_package(rig) and not changes:  # no trial: it may name no stop time
         package = read_package(Path(rig).resolve(), {})
@@ -47,6 +56,8 @@ def describe(
         )
         leave_out_unread(system, named)
         _print_rig(system, pattern, every)
+        if drawn is not None:
+            _draw(system, drawn)
     finally:
         system.free()
 
@@ -57,6 +68,21 @@ def _in_process(rig: Rig) -> bool:
         placed.entry.fmu.endswith(".fmu") or placed.entry.isolated
         for placed in rig.components.values()
     )
+
+
+def _draw(system: System, path: Path) -> None:
+    """Write the block diagram of a rig. Raises InputError if it has too many parts to be read."""
+    components = {
+        name: placed.entry.what
+        for name, placed in system.rig.components.items()
+        if name not in system.left_out
+    }
+    found = diagram(components, [(joint.source, joint.target) for joint in system.joints])
+    if found is None:
+        raise InputError(f"--diagram: {len(components)} components: at most {MOST_DRAWN} are drawn")
+    write_whole(path, found)
+    answer.result["diagram"] = str(path)
+    console.print(f"\ndiagram: {escape(str(path))}", soft_wrap=True)
 
 
 def _print_rig(system: System, pattern: str, every: bool) -> None:

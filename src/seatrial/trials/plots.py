@@ -366,7 +366,11 @@ def layout(hovermode: str = "x") -> dict[str, Any]:
     return {
         "template": {"layout": {"xaxis": axis, "yaxis": axis}},
         "hovermode": hovermode,
-        "font": {"family": "system-ui, -apple-system, 'Segoe UI', sans-serif", "size": 12},
+        "font": {
+            "family": "system-ui, -apple-system, 'Segoe UI', sans-serif",
+            "size": 12,
+            "color": "#1d2730",
+        },
         "paper_bgcolor": "rgba(0,0,0,0)",
         "plot_bgcolor": "#ffffff",
         "modebar": {"bgcolor": "rgba(0,0,0,0)", "color": "#b4bdc5", "activecolor": "#4a5a68"},

@@ -4,19 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from jinja2 import Environment, FileSystemBytecodeCache, FileSystemLoader, StrictUndefined
 
 from ..cosim.paths import split_axis, split_path
-from ..fmi.cache import cache_folder
 from ..whole_file import write_whole
 from .accuracy_section import accuracy_section
 from .convergence import load_convergence
+from .dark import DARK
 from .decks import deck, pads
+from .diagram import diagram
 from .event_marks import events_of, happenings
 from .expressions import FloatArray
 from .parameter_tables import parameter_tables, value_text
@@ -26,6 +25,7 @@ from .readable import from_si, number, person_scale
 from .run_folder import Run, load_run
 from .sailing import add_wind_and_marks
 from .sea_section import sea_figures
+from .templates import environment
 from .tethers import tether_figures
 from .timing_section import pacing, step_times
 
@@ -33,8 +33,8 @@ REPORT = "report.html"
 _MOTION = ("position", "attitude")
 _FORCE_UNITS = ("N", "N.m")
 _TEXT_ROWS = 20
-_POINTS = 100_000
-"""Points of all signals in a page, of 11 bytes each; those of the trial's plots come again."""
+_POINTS = 55_000
+"""Points of all signals in a page, of 10 bytes each; those of the trial's plots come again."""
 _FEWEST_POINTS = 500
 _MOST_DRAWN = 500
 """Signals of one component that are drawn below "Other signals"."""
@@ -122,10 +122,16 @@ def write_report(
         pacing=pacing(run.timing),
         accuracy=None if convergence is None else accuracy_section(convergence),
         happenings=happenings(run),
+        diagram=_diagram(run.manifest),
     )
     path = run.folder / REPORT
     write_whole(path, page)
     return path
+
+
+def _diagram(manifest: Mapping[str, Any]) -> str | None:
+    components = {name: entry["fmu"] for name, entry in manifest["components"].items()}
+    return diagram(components, [(row[0], row[1]) for row in manifest["connections"]])
 
 
 def render(template: str, library: str | None = None, **content: Any) -> str:
@@ -134,21 +140,7 @@ def render(template: str, library: str | None = None, **content: Any) -> str:
     It has Plotly's JavaScript in it, unless ``library`` is its address.
     """
     content["plotly_js"] = "" if library else plotly_js()
-    return _environment().get_template(template).render(library=library, **content)
-
-
-@cache
-def _environment() -> Environment:
-    loader = FileSystemLoader(Path(__file__).parent / "templates")
-    environment = Environment(
-        loader=loader,
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        bytecode_cache=FileSystemBytecodeCache(str(cache_folder("pages"))),
-    )
-    environment.filters["number"] = number
-    return environment
+    return environment().get_template(template).render(library=library, dark=DARK, **content)
 
 
 # ---------------------------------------------------------------------- sections
