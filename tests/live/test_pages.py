@@ -232,9 +232,10 @@ def test_a_report_plays_its_run_offline(browser, hydrone: Path, tmp_path: Path) 
     inside = page.frame_locator(".stage iframe")
     inside.locator("canvas").first.wait_for(timeout=WAIT_MS)
     page.wait_for_timeout(2000)
-    before = page.locator(".stage iframe").screenshot()
+    place = page.locator(".stage iframe").bounding_box()
+    before = page.screenshot(clip=place)
     page.wait_for_timeout(1500)
-    assert page.locator(".stage iframe").screenshot() != before
+    assert page.screenshot(clip=place) != before
     page.evaluate("dispatchEvent(new Event('beforeprint'))")  # paper is white
     assert page.evaluate(colour) == "#1d2730"
     assert not problems
