@@ -23,10 +23,12 @@ from seatrial.fmi.source import find_source
 from seatrial.plant import Plant
 from seatrial.sampled import Sampled
 from tests.fmi.native_slave import Slave
+from tests.fmi.native_slave3 import Slave3
 
 pytestmark = pytest.mark.skipif(HERE != "linux64", reason="loads libraries of Linux")
 
 QUICK = ("gnss", "station-keeping", "thruster")
+IN_FMI_3 = (*QUICK, "guidance", "imu", "wind")
 CANDIDATES = [
     name
     for name in components().names()
@@ -37,10 +39,10 @@ MORE = {"wind": {"intensity": 0.2, "direction_deviation": 0.3, "gust_size": 0.5,
 STEPS = (0.01, 0.025, 0.004, 0.1)
 
 
-def built(name: str, folder: Path, values: Any = None) -> Path:
+def built(name: str, folder: Path, values: Any = None, version: int = 2) -> Path:
     source = find_source(name, Path.cwd())
     path = folder / f"{source.stem}.fmu"
-    return build_native_fmu(source, path, (HERE,), values, library_here)
+    return build_native_fmu(source, path, (HERE,), values, library_here, version)
 
 
 def exercised(name: str) -> dict[str, Any]:
@@ -68,11 +70,13 @@ def faults_of(cls: type[Component]) -> list[str]:
 class Pair:
     """A component in Python and its native FMU, which get the same."""
 
-    def __init__(self, name: str, folder: Path, values: dict[str, Any]) -> None:
+    def __init__(self, name: str, folder: Path, values: dict[str, Any], version: int = 2) -> None:
         self.python = component_class(name)("x")
         for port, value in values.items():
             self.python.set(port, value)
-        self.slave = Slave(built(name, folder, values), folder)
+        self.slave = (Slave3 if version == 3 else Slave)(
+            built(name, folder, values, version), folder
+        )
         self.faults = faults_of(type(self.python))
         fmu = self.slave.fmu
         self.setters = {
@@ -135,14 +139,24 @@ class Pair:
 
 
 @pytest.mark.parametrize(
-    "name", [n if n in QUICK else pytest.param(n, marks=pytest.mark.interop) for n in CANDIDATES]
+    ("name", "version"),
+    [
+        *(
+            (n, 2) if n in QUICK else pytest.param(n, 2, marks=pytest.mark.interop)
+            for n in CANDIDATES
+        ),
+        *(
+            pytest.param(n, 3, marks=pytest.mark.interop if n in IN_FMI_3 else pytest.mark.long)
+            for n in CANDIDATES
+        ),
+    ],
 )
-def test_same_numbers_to_the_bit(name: str, tmp_path: Path) -> None:
+def test_same_numbers_to_the_bit(name: str, version: int, tmp_path: Path) -> None:
     """Random inputs, faults and steps; saved and restored states; a run anew."""
     why = why_python(component_class(name))
     if why and name not in QUICK:
         pytest.skip(why)
-    pair = Pair(name, tmp_path, exercised(name))
+    pair = Pair(name, tmp_path, exercised(name), version)
     assert validate_fmu(str(next(tmp_path.glob("*.fmu")))) == []
     pair.begin()
     seen, kept = set(), None

@@ -76,17 +76,20 @@ def build(
     ] = False,
     platforms: Annotated[
         str | None,
-        typer.Option(help=f"With --native, separated by commas: {', '.join(TARGETS)}."),
+        typer.Option(help=f"With --native or --fmi 3, separated by commas: {', '.join(TARGETS)}."),
     ] = None,
     fmi: Annotated[str, typer.Option(help="Version of FMI: 2 or 3.")] = "2",
 ) -> None:
     """Build .fmu files that any tool loads which knows FMI 2.0, or 3.0."""
     version = _version(fmi)
-    if platforms and not native:
-        raise InputError("--platforms is of --native: other FMUs carry all platforms they run on")
+    is_compiled = native or (version == 3 and not standalone)
+    if platforms and not is_compiled:
+        raise InputError(
+            "--platforms is of --native and --fmi 3: other FMUs carry all platforms they run on"
+        )
     if native and standalone:
         raise InputError("--native FMUs need no Python, --standalone ones carry it: name one")
-    targets = checked_platforms(platforms or "linux64") if native else []
+    targets = checked_platforms(platforms or "linux64") if is_compiled else []
     for name in names or _default_names(native):
         source = _buildable(name)
         values = _start_values(source, parameters, variant) if parameters else None
@@ -97,8 +100,7 @@ def build(
             glibc = build_standalone_fmu(source, path, values, version)
             print_notes([f"{path} runs on Linux on x86-64 with glibc {glibc} or newer"])
         elif version == 3:
-            platforms_ = build_fmu3(source, path, values)
-            print_notes([f"{path} is for {', '.join(platforms_)}"])
+            build_fmu3(source, path, targets, values)
         else:
             build_fmu(source, path, values)
         answer.result.setdefault("files", []).append(str(path))

@@ -3,54 +3,54 @@
 from __future__ import annotations
 
 import hashlib
-import importlib.util
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from ..errors import InputError, unknown
 from .cache import cache_folder, write_named
 from .export import fmu_files, pythonfmu_libraries, zipped
-from .native.compiler import FLAGS, HERE, TARGETS, TUPLES, library, library_here, require_compiler
+from .native.compiler import FLAGS, TARGETS, TUPLES, library
 from .source import ComponentSource
 from .version3.sources import forwarding_sources
 
+Compiler = Callable[[Mapping[str, bytes], str, Sequence[str]], bytes]
+
 
 def build_fmu3(
-    source: ComponentSource, destination: Path, start_values: Mapping[str, Any] | None = None
-) -> list[str]:
-    """Build the FMU of ``source`` at ``destination``; return the platforms it is for.
+    source: ComponentSource,
+    destination: Path,
+    platforms: Sequence[str],
+    start_values: Mapping[str, Any] | None = None,
+    compiled: Compiler = library,
+) -> Path:
+    """Build the FMU of ``source`` at ``destination`` and return its path.
 
-    As `export.build_fmu`, but of FMI 3.0. With Zig's compiler it is for all platforms that
-    pythonfmu has, else for this machine's. Raises InputError without any compiler.
+    As `export.build_fmu`, but of FMI 3.0, for the ``platforms`` named. Raises InputError without
+    a compiler, and for a platform that pythonfmu has no library for.
     """
     beneath = pythonfmu_libraries()
-    fronts = _fronts([*beneath])
     carried = {}
-    for platform, front in fronts.items():
+    for platform in platforms:
+        if platform not in beneath:
+            raise InputError(f"{source.origin}: {unknown('platform', platform, [*beneath])}")
         own = beneath[platform]
-        carried[f"binaries/{TUPLES[platform]}/{source.stem}{own.suffix}"] = front
+        carried[f"binaries/{TUPLES[platform]}/{source.stem}{own.suffix}"] = _front(
+            platform, compiled
+        )
         carried[f"resources/pythonfmu/{own.name}"] = own.read_bytes()
     content = zipped(fmu_files(source, start_values, carried, 3))
     destination.parent.mkdir(parents=True, exist_ok=True)
     write_named(destination, content)
-    return [TUPLES[platform] for platform in fronts]
+    return destination
 
 
-def _fronts(platforms: list[str]) -> dict[str, bytes]:
-    """Return the libraries by those of ``platforms`` that this machine's compiler builds for.
-
-    They are kept in the user's cache.
-    """
-    require_compiler()
-    any_platform = importlib.util.find_spec("ziglang") is not None
+def _front(platform: str, compiled: Compiler) -> bytes:
+    """Return the library, which is the same for all components: it is kept in the user's cache."""
     sources = forwarding_sources()
-    compiled = library if any_platform else library_here
-    digest = hashlib.sha256(repr((sorted(sources.items()), FLAGS, any_platform)).encode())
-    found = {}
-    for platform in platforms if any_platform else [p for p in platforms if p == HERE]:
-        name = f"{platform}-{digest.hexdigest()[:16]}{TARGETS[platform][1]}"
-        path = cache_folder("fronts") / name
-        if not path.is_file():
-            write_named(path, compiled(sources, platform, ("-ldl",)))
-        found[platform] = path.read_bytes()
-    return found
+    what = repr((sorted(sources.items()), FLAGS, compiled.__name__))
+    name = f"{platform}-{hashlib.sha256(what.encode()).hexdigest()[:16]}{TARGETS[platform][1]}"
+    path = cache_folder("fronts") / name
+    if not path.is_file():
+        write_named(path, compiled(sources, platform, ("-ldl",)))
+    return path.read_bytes()

@@ -46,7 +46,7 @@ _HERE = {
 HERE = _HERE.get((machine.system(), machine.machine()), "")
 """FMI's name of this machine's platform, empty for one that is not among `TARGETS`."""
 
-_NO_COMPILER = "native FMUs need a C compiler to build: pip install 'seatrial[native]'"
+_NO_COMPILER = "FMUs in C need a compiler to build: pip install 'seatrial[native]'"
 
 SEMANTICS = (
     "-ffp-contract=off",  # a fused multiplication and addition is another number
