@@ -16,7 +16,7 @@ from ..trials.campaign import INDEX, Campaign
 from ..trials.hooks import Hooks
 from ..trials.measuring import Measured
 from ..trials.output import claim_folder, write_json
-from ..trials.questions import LimitsQuestion, Questions
+from ..trials.questions import LimitsQuestion, Questions, SensitivityQuestion, WorstCaseQuestion
 from .asked import Asked, asked_of
 from .asking import Asking, stopped
 from .columns import table_columns
@@ -26,12 +26,16 @@ from .evaluator import Plan
 from .finding import ANSWER, Finding, read_answer
 from .limits_answer import limits_question
 from .sampled_checks import check
+from .sensitivity import sensitivity_question
 from .space import Space, space_of
 from .sweep import Done, How, Sweep, index_of, refuse_other, workers_of
 from .table import Tables, arrow
+from .worst_case import worst_case_question
 
 _ANSWERS: dict[str, tuple[type[FileModel], Callable[[Any, Asking], Callable[[], Finding]]]] = {
     "limits": (LimitsQuestion, limits_question),
+    "sensitivity": (SensitivityQuestion, sensitivity_question),
+    "worst-case": (WorstCaseQuestion, worst_case_question),
 }
 """Settings of each question, and what checks them and returns what answers it."""
 _MOST = 10_000_000
@@ -62,8 +66,8 @@ def ask(
         raise InputError(f"--ask: {unknown('question', question, _ANSWERS)}")
     cases = asked_of(campaign, question)
     settings = campaign.file.ask or Questions()
-    asking = Asking(campaign, cases, space_of(campaign, f"{campaign.read_from.path}: ask"), expect)
-    asking.seed = settings.seed
+    space = space_of(campaign, f"{campaign.read_from.path}: ask")
+    asking = Asking(campaign, cases, space, expect, how.engine, hooks, settings.seed)
     kind, prepared = _ANSWERS[question]
     entry = getattr(settings, question.replace("-", "_")) or kind()
     answer, space = prepared(entry, asking), asking.space

@@ -9,8 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
+from ..cosim.system import Engine
 from ..errors import InputError, SimulationError, unknown
 from ..trials.campaign import Campaign
+from ..trials.hooks import Hooks
 from ..trials.measuring import Measured
 from .asked import Asked
 from .finding import Finding
@@ -31,6 +33,8 @@ class Asking:
     space: Space
     expect: Callable[[int], None]
     """Is given how many runs there will be, if that is known."""
+    engine: Engine
+    hooks: Hooks
     seed: int = 0
     folder: Path = Path()
     measured: Callable[[range], list[Measured]] = lambda _numbers: []

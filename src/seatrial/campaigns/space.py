@@ -45,8 +45,17 @@ class Space:
     def numbers(self, shares: np.ndarray) -> np.ndarray:
         """Return the values of the keys, in their units, at shares of their ranges."""
         low, high = self.ends.T
-        numbers: np.ndarray = low + (high - low) * np.asarray(shares)
-        return numbers
+        whole = np.array([law.is_whole for law in self.laws])
+        numbers = low + (high - low + whole) * np.asarray(shares)
+        result: np.ndarray = np.where(whole, np.minimum(np.floor(numbers), high), numbers)
+        return result
+
+    def shares(self, numbers: np.ndarray) -> np.ndarray:
+        """Return the shares of the ranges at values of the keys; of whole ones the middle."""
+        low, high = self.ends.T
+        whole = np.array([law.is_whole for law in self.laws])
+        shares: np.ndarray = (numbers - low + 0.5 * whole) / (high - low + whole)
+        return shares
 
     def settings(self, numbers: np.ndarray) -> list[dict[str, Any]]:
         """Return what each row of values sets."""

@@ -53,15 +53,21 @@ def ask(
     how = How(engine_named(engine), jobs, cluster, kept_named(keep), resume)
     with stoppable() as stop, Watch(campaign.read_from.name) as watch:
         ended_count = failed = 0
+        expected = 1
+
+        def expect(runs: int) -> None:
+            nonlocal expected
+            expected = runs
 
         def done(_case: Case, ended: Ended) -> None:
             nonlocal ended_count, failed
             ended_count += 1
             failed += not ended.measured.passed
+            watch.expect(max(expected, ended_count))
             watch.cases(ended_count, failed)
 
         hooks = Hooks(stop_requested=stop.requested, interruptible=stop.interruptible)
-        finding, folder = ask_campaign(campaign, question, out, how, hooks, done, watch.expect)
+        finding, folder = ask_campaign(campaign, question, out, how, hooks, done, expect)
     _say(finding, folder, None if no_report else write_table_page(folder))
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import Field
 
@@ -20,6 +20,31 @@ class LimitsQuestion(FileModel):
     runs: int = Field(default=100, ge=20, le=2000)
 
 
+class SensitivityQuestion(FileModel):
+    """How much does each key matter?"""
+
+    of: list[str] = Field(default_factory=list)
+    """Criteria by name, and figures such as "last hull.position.x". Empty: all."""
+    samples: int = Field(default=128, ge=0, le=2**20)
+    """Of Sobol's indices, each with as many runs as keys and two more; a power of 2, or 0."""
+    trajectories: int = Field(default=10, ge=0, le=10_000)
+    """Of Morris's effects, each with as many runs as keys and one more."""
+
+
+class WorstCaseQuestion(FileModel):
+    """Which case is the worst, and how small a change from nominal fails?"""
+
+    criterion: str = ""
+    """Empty: all criteria, by the least robustness."""
+    method: Literal["cma-es", "bayesian"] = "cma-es"
+    runs: int = Field(default=200, ge=20, le=100_000)
+    """Of the search; making it small takes some more."""
+    nominal: dict[str, Any] = Field(default_factory=dict)
+    """Values of keys; of others the median."""
+    first: Literal["keys", "distance"] = "keys"
+    """What is made small first: the number of keys that change, or the distance."""
+
+
 class Questions(FileModel):
     """Which trial is asked about, what varies, and settings of each question."""
 
@@ -31,3 +56,5 @@ class Questions(FileModel):
     """Empty: what the campaign's design varies."""
     seed: int = Field(default=0, ge=0)
     limits: LimitsQuestion | None = None
+    sensitivity: SensitivityQuestion | None = None
+    worst_case: WorstCaseQuestion | None = Field(default=None, alias="worst-case")
