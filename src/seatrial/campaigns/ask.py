@@ -16,7 +16,13 @@ from ..trials.campaign import INDEX, Campaign
 from ..trials.hooks import Hooks
 from ..trials.measuring import Measured
 from ..trials.output import claim_folder, write_json
-from ..trials.questions import LimitsQuestion, Questions, SensitivityQuestion, WorstCaseQuestion
+from ..trials.questions import (
+    LimitsQuestion,
+    Questions,
+    RareQuestion,
+    SensitivityQuestion,
+    WorstCaseQuestion,
+)
 from .asked import Asked, asked_of
 from .asking import Asking, stopped
 from .columns import table_columns
@@ -25,6 +31,7 @@ from .ended_log import EndedLog, ended_cases
 from .evaluator import Plan
 from .finding import ANSWER, Finding, read_answer
 from .limits_answer import limits_question
+from .rare import rare_question
 from .sampled_checks import check
 from .sensitivity import sensitivity_question
 from .space import Space, space_of
@@ -34,6 +41,7 @@ from .worst_case import worst_case_question
 
 _ANSWERS: dict[str, tuple[type[FileModel], Callable[[Any, Asking], Callable[[], Finding]]]] = {
     "limits": (LimitsQuestion, limits_question),
+    "rare": (RareQuestion, rare_question),
     "sensitivity": (SensitivityQuestion, sensitivity_question),
     "worst-case": (WorstCaseQuestion, worst_case_question),
 }

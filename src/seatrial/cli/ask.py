@@ -35,7 +35,9 @@ def ask(
         typer.Option(
             "--ask",
             metavar="QUESTION",
-            help="'limits': where is the boundary of the region that passes?",
+            help="'limits': the boundary of what passes; 'worst-case': the least robustness, and "
+            "the smallest change that fails; 'sensitivity': how much each key matters; 'rare': how "
+            "likely a failure is.",
         ),
     ],
     engine: EngineName = "fmu",

@@ -20,6 +20,17 @@ class LimitsQuestion(FileModel):
     runs: int = Field(default=100, ge=20, le=2000)
 
 
+class RareQuestion(FileModel):
+    """How likely is it that a criterion fails, if that is rare?"""
+
+    criterion: str = ""
+    """Empty: that any fails."""
+    per_level: int = Field(default=2000, ge=100, le=1_000_000)
+    """Runs of each tenth of probability."""
+    least: float = Field(default=1e-9, ge=1e-12, lt=1.0)
+    """A probability below which the search ends."""
+
+
 class SensitivityQuestion(FileModel):
     """How much does each key matter?"""
 
@@ -56,5 +67,6 @@ class Questions(FileModel):
     """Empty: what the campaign's design varies."""
     seed: int = Field(default=0, ge=0)
     limits: LimitsQuestion | None = None
+    rare: RareQuestion | None = None
     sensitivity: SensitivityQuestion | None = None
     worst_case: WorstCaseQuestion | None = Field(default=None, alias="worst-case")
