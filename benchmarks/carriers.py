@@ -1,7 +1,8 @@
 """The Hydrone's closed loop beside real time, by carrier: ``python -m benchmarks.carriers``.
 
 Nine components of the rig `landing` at 10 ms, without recording: in process, as Python FMUs, as
-native FMUs under the master in Python and under the compiled one. Each runs in a process of its
+native FMUs under the master in Python and under the compiled one, and as one FMU in FMPy, which
+takes steps of 10 ms or of 1 s. Each runs in a process of its
 own, in turn, for some rounds; processor time of the steps without set-up. The start, with
 assembly and initialisation, and peak memory are shown too. At last a campaign: the processor time
 of whole trials with their pages. ``--write`` puts the table into docs/performance.md.
@@ -34,7 +35,8 @@ from .pages import peak_memory, write_measured
 
 DIRECT, FMUS = "Python, in process", "Python FMUs"
 NATIVE, COMPILED = "native FMUs, master in Python", "native FMUs, compiled master"
-CARRIERS = {DIRECT: 1500, FMUS: 1500, NATIVE: 6000, COMPILED: 60_000}
+BOX, LONG = "one FMU in FMPy, steps of 10 ms", "one FMU in FMPy, steps of 1 s"
+CARRIERS = {DIRECT: 1500, FMUS: 1500, NATIVE: 6000, COMPILED: 60_000, BOX: 60_000, LONG: 60_000}
 """Steps that are measured."""
 WARM = 200
 HERE = Path(__file__).parent
@@ -57,8 +59,51 @@ def assembled(carrier: str, rig: Rig) -> System:
     return system
 
 
-def one(carrier: str) -> dict[str, Any]:
+def built(folder: Path) -> Path:
+    """Return the rig as one FMU."""
+    from seatrial.cosim.native_carriers import carry_natively
+    from seatrial.cosim.rig_fmu.native import build_native_rig
+    from seatrial.fmi.native.compiler import HERE as PLATFORM
+    from seatrial.fmi.native.compiler import library_here
+
+    system = assemble(load_rig("landing"), "native")
+    carry_natively(system)
+    return build_native_rig(system, folder / "landing.fmu", (PLATFORM,), library_here)
+
+
+def boxed(path: Path, each: int, steps: int) -> dict[str, Any]:
+    """Return the same as `one` of an FMU of the rig, by ``each`` steps of 10 ms at once."""
+    from fmpy import extract, read_model_description
+    from fmpy.fmi2 import FMU2Slave
+
+    begun = process_time()
+    description = read_model_description(str(path), validate=False)
+    with tempfile.TemporaryDirectory(prefix="seatrial-") as folder:
+        fmu = FMU2Slave(
+            guid=description.guid, unzipDirectory=extract(str(path), folder),
+            modelIdentifier=description.coSimulation.modelIdentifier, instanceName="box",
+        )  # fmt: skip
+        fmu.instantiate()
+    fmu.setupExperiment(startTime=0.0)
+    fmu.enterInitializationMode()
+    fmu.exitInitializationMode()
+    started, h = process_time() - begun, 0.01 * each
+    for k in range(WARM):
+        fmu.doStep(k * h, h)
+    begun = process_time()
+    for k in range(WARM, WARM + steps // each):
+        fmu.doStep(k * h, h)
+    return {
+        "us": (process_time() - begun) / steps * 1e6,
+        "start": started,
+        "memory": peak_memory(),
+    }
+
+
+def one(carrier: str, box: Path) -> dict[str, Any]:
     """Return what the steps of one carrier take, us; the start, s; memory, MB."""
+    if carrier in (BOX, LONG):
+        return boxed(box, 1 if carrier == BOX else 100, CARRIERS[carrier])
     if carrier == NATIVE:
         master_module.is_compiled = lambda _system: False
     begun, system = process_time(), assembled(carrier, load_rig("landing"))
@@ -73,10 +118,10 @@ def one(carrier: str) -> dict[str, Any]:
     return {"us": taken, "start": started, "memory": peak_memory()}
 
 
-def run(carrier: str) -> dict[str, Any]:
+def run(carrier: str, box: Path) -> dict[str, Any]:
     """Run one carrier in a process of its own."""
     done = subprocess.run(
-        [sys.executable, "-m", "benchmarks.carriers", "--one", carrier],
+        [sys.executable, "-m", "benchmarks.carriers", "--one", carrier, "--box", str(box)],
         capture_output=True, text=True, check=True, cwd=HERE.parent,
     )  # fmt: skip
     answer: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
@@ -123,22 +168,27 @@ def main() -> None:
     )
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--one", choices=CARRIERS, help=argparse.SUPPRESS)
+    parser.add_argument("--box", type=Path, help=argparse.SUPPRESS)
     parser.add_argument(
         "--write", action="store_true", help="put the table into docs/performance.md"
     )
     options = parser.parse_args()
     if options.one:
-        print(json.dumps(one(options.one)), flush=True)
+        print(json.dumps(one(options.one, options.box)), flush=True)
         os._exit(0)  # pythonfmu's library may crash in its exit handlers
     found: dict[str, list[dict[str, Any]]] = {carrier: [] for carrier in CARRIERS}
-    for number in range(-1, options.rounds):  # the first fills the caches
-        for carrier, rounds in found.items():
-            answer = run(carrier)
-            if number >= 0:
-                rounds.append(answer)
+    with tempfile.TemporaryDirectory(prefix="seatrial-") as folder:
+        box = built(Path(folder))
+        size = box.stat().st_size / 1000
+        for number in range(-1, options.rounds):  # the first fills the caches
+            for carrier, rounds in found.items():
+                answer = run(carrier, box)
+                if number >= 0:
+                    rounds.append(answer)
     per_case, cases = campaign()
     text = (
         f"Python {platform.python_version()}, {options.rounds} rounds.\n\n{table(found)}\n\n"
+        f"The one FMU of the rig has {size:.0f} kB.\n\n"
         f"The campaign `{CAMPAIGN}`, in process: {per_case:.2f} s of processor time for each of "
         f"its {cases} cases of 20 s, with start, record of every step, criteria and page: "
         f"{60 / per_case:.0f} cases a minute on one core."

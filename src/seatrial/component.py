@@ -84,7 +84,8 @@ class Component:
     None), so that it can be copied, restored and serialised. ``transient`` names attributes
     that are not state. A component with an outside world (a socket, firmware) sets
     ``rolls_back = False``; one whose numbers jump at instants and are constant between them,
-    ``discrete = True``. ``feedthrough`` declares, per output port, the input ports that act
+    ``discrete = True``; one that takes whole multiples of a step only says it in ``fixed_step``, s.
+    ``feedthrough`` declares, per output port, the input ports that act
     on it at the same instant.
 
     ``terminals`` are groups of ports that are connected together (`terminals`), by their names.
@@ -101,6 +102,7 @@ class Component:
     feedthrough: ClassVar[Mapping[str, Sequence[str]]] = {}
     rolls_back: ClassVar[bool] = True
     discrete: ClassVar[bool] = False
+    fixed_step: ClassVar[float] = 0.0
     terminals: ClassVar[Mapping[str, Terminal]] = {}
     views: ClassVar[Mapping[str, Mapping[str, str]]] = {}
     structural: ClassVar[Sequence[str]] = ()

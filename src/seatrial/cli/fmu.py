@@ -32,7 +32,8 @@ from ..fmi.osp import osp_file, osp_xml
 from ..fmi.source import ComponentSource, find_source, named_sources, shipped_sources
 from ..fmi.standalone.export import build_standalone_fmu
 from .answer import answer
-from .options import Every, Match, Variant
+from .options import Autopilot, Choices, Every, Match, Settings, Variant, Vehicle, changes_of
+from .rig_fmu import RigBuild
 from .show import MOST_SHOWN, console, print_more, print_notes, print_table
 from .terminals import print_proposals, print_terminals
 
@@ -76,26 +77,50 @@ def build(
     ] = False,
     platforms: Annotated[
         str | None,
-        typer.Option(help=f"With --native or --fmi 3, separated by commas: {', '.join(TARGETS)}."),
+        typer.Option(help=f"Of FMUs in C and of FMI 3, with commas: {', '.join(TARGETS)}."),
     ] = None,
     fmi: Annotated[str, typer.Option(help="Version of FMI: 2 or 3.")] = "2",
+    rig: Annotated[
+        str | None,
+        typer.Option(
+            "--rig", metavar="NAME", help="A rig as one FMU: its name, a vehicle's, a file."
+        ),
+    ] = None,
+    settings: Settings = None,
+    choices: Choices = None,
+    vehicle: Vehicle = None,
+    autopilot: Autopilot = None,
+    seed: Annotated[int, typer.Option(help="Of a rig: what all noise derives from.")] = 1,
 ) -> None:
     """Build .fmu files that any tool loads which knows FMI 2.0, or 3.0."""
     version = _version(fmi)
     is_compiled = native or (version == 3 and not standalone)
-    if platforms and not is_compiled:
+    if platforms and not (is_compiled or rig):
         raise InputError(
-            "--platforms is of --native and --fmi 3: other FMUs carry all platforms they run on"
+            "--platforms is of --native, --fmi 3 and --rig: other FMUs carry all platforms they "
+            "run on"
         )
     if native and standalone:
         raise InputError("--native FMUs need no Python, --standalone ones carry it: name one")
+    changes = changes_of(settings, choices, vehicle, autopilot)
+    if rig is not None:
+        for option, given in {"FMU": names, "--parameters": parameters, "--osp": osp}.items():
+            if given:
+                raise InputError(f"--rig: a rig has no {option} of its own")
+        carrier = "native" if native else "standalone" if standalone else ""
+        wanted = checked_platforms(platforms) if platforms else []
+        path = RigBuild(rig, changes, variant, seed, version).build(out, carrier, wanted)
+        answer.result["files"] = [str(path)]
+        return
+    if changes:
+        raise InputError("--set, --choose, --vehicle and --autopilot are of --rig")
     targets = checked_platforms(platforms or "linux64") if is_compiled else []
     for name in names or _default_names(native):
         source = _buildable(name)
         values = _start_values(source, parameters, variant) if parameters else None
         path = out / f"{source.name}.fmu"
         if native:
-            build_native_fmu(source, path, targets, values, version=version)
+            build_native_fmu(source, path, targets or ["linux64"], values, version=version)
         elif standalone:
             glibc = build_standalone_fmu(source, path, values, version)
             print_notes([f"{path} runs on Linux on x86-64 with glibc {glibc} or newer"])
@@ -284,13 +309,16 @@ def _run_once(fmu: LoadedFmu) -> list[str]:
     """Step an instance twice; its errors are the problems."""
     from ..errors import SimulationError
 
-    instance = None
+    instance, step = None, 0.01
+    experiment = fmu.description.defaultExperiment
+    if experiment is not None and experiment.stepSize and not fmu.any_step:
+        step = float(experiment.stepSize)
     try:
         instance = open_instance(fmu, "check")
         instance.initialise(0.0, 1.0)
         instance.begin()
-        instance.step(0.0, 0.01)
-        instance.step(0.01, 0.01)
+        instance.step(0.0, step)
+        instance.step(step, step)
         instance.reader([v.name for v in fmu.variables.values() if v.causality == "output"])()
         instance.terminate()
     except SimulationError as error:

@@ -9,6 +9,7 @@ from ..errors import InputError
 from ..units import quantity
 from .parameters import ParameterSet, load_vehicle, split_reference
 from .part import Part
+from .paths import joined
 from .profile import Profile, Profiles
 from .rig import Placed, Scope
 from .system import System, settable
@@ -53,7 +54,9 @@ def variants_of(placed: Placed) -> list[str]:
 def _give_seed(part: Part, seed: int) -> None:
     """Give each instance noise of its own, yet the same in every tool and run."""
     for name in part.instance.variables.of_role("seed"):
-        own = zlib.crc32(f"{seed}/{part.name}".encode())
+        inside = name.rpartition(".")[0]  # of a rig as one FMU: the component's path there
+        owner = joined(part.name, inside) if inside else part.name
+        own = zlib.crc32(f"{seed}/{owner}".encode())
         part.given[name] = Given(float(own), f"derived from seed {seed}")
 
 

@@ -98,10 +98,16 @@ class Resolver:
 
     def shown_outside(self) -> Iterator[End]:
         """Yield the ports that the rig at the top shows, of what it has with its choices."""
+        for _, group in self.shown():
+            yield from group.ends
+
+    def shown(self) -> Iterator[tuple[str, Group]]:
+        """Yield what the rig at the top shows, by name, of what it has with its choices."""
         for name, written in self._top.file.shows.items():
             where = f"{self._top.read_from.path}: shows.{name}"
             group = self._put_together(self._top, name, written, where)
-            yield from group.ends if group is not None else ()
+            if group is not None:
+                yield name, group
 
     def variables(self, end: End) -> list[Variable]:
         """Return the scalars of a end; of a sum, those of its first term."""

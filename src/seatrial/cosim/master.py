@@ -29,6 +29,7 @@ from .system import System
 from .timing import StepTimes
 
 if TYPE_CHECKING:
+    from .compiled.program import Program
     from .compiled.rows import Rows
     from .compiled.steps import CompiledSteps
 
@@ -51,11 +52,20 @@ class Master:
     """Runs an assembled system; without ``stop_ns`` the components are given no stop time.
 
     ``signals`` holds the current value of every output; ``names`` says which is which. A value
-    is valid at ``time``.
+    is valid at ``time``. ``algorithm`` is the class of the rig's, where its name cannot be looked
+    up.
     """
 
-    def __init__(self, system: System, start_ns: int = 0, stop_ns: int | None = None) -> None:
+    def __init__(
+        self,
+        system: System,
+        start_ns: int = 0,
+        stop_ns: int | None = None,
+        *,
+        algorithm: type[Algorithm] | None = None,
+    ) -> None:
         self.system = system
+        self._algorithm_class = algorithm
         self.step_ns = system.rig.step_ns
         self.start_ns, self.stop_ns = start_ns, stop_ns
         self.steps = 0
@@ -66,6 +76,11 @@ class Master:
         self._compiled: CompiledSteps | None = None
         self.faults = Schedule()
         """What goes wrong, and when; add to it before `initialise` or at any point."""
+
+    @property
+    def algorithm(self) -> Algorithm:
+        """How the components are coupled, once initialised."""
+        return self._algorithm
 
     @property
     def names(self) -> list[Name]:
@@ -116,7 +131,9 @@ class Master:
         for node in nodes:
             node.part.instance.begin()
         self._settle()
-        self._algorithm = self._chosen()
+        self._settling = list(self._feedthrough.groups)
+        chosen = self._algorithm_class or self._chosen()
+        self._algorithm = chosen(self._network, self._feedthrough)
         self._rollback = Rollback(self._network, self._feedthrough, self._algorithm)
         self._watch = DivergenceWatch(self._network)
         if is_compiled(self.system):
@@ -265,6 +282,32 @@ class Master:
 
     # ------------------------------------------------------------------ inside
 
+    def program(self) -> tuple[Network, Program, dict[str, int]]:
+        """Return the network, once initialised, and operations for C, with where some begin.
+
+        The readings of all outputs, component by component, come first. "settling" are the visits
+        of the initialisation, where a step has not the same; "exchange" are the readings again,
+        each after what is connected to it is written; "steps" is a step, whose feed-through
+        visits begin at "visits".
+        """
+        from .compiled.program import Program
+
+        program = Program(self._network, self._feedthrough, self.step_ns)
+        begins, nodes = {}, self._network.nodes
+        for name, node in nodes.items():
+            begins[f"read {name}"] = len(program.operations)
+            program.add_reading(node)
+        begins["settling"] = len(program.operations)
+        if not self._algorithm.follows_at_once:
+            program.add_visits(self._settling)
+        begins["exchange"] = len(program.operations)
+        for node in nodes.values():
+            program.add_writing(node)
+            program.add_reading(node)
+        begins["steps"] = len(program.operations)
+        begins["visits"] = program.add_step(self._algorithm)
+        return self._network, program, begins
+
     def _compiled_steps(self) -> CompiledSteps:
         from .compiled.steps import CompiledSteps
 
@@ -320,7 +363,7 @@ class Master:
             _give_again(node.part)
             waiting.remove(node.part.name)
 
-    def _chosen(self) -> Algorithm:
+    def _chosen(self) -> type[Algorithm]:
         rig = self.system.rig
         where = f"{rig.read_from.path}: algorithm"
         try:
@@ -332,7 +375,7 @@ class Master:
                 f"{where}: {rig.file.algorithm!r} is {made!r}, "
                 f"which is not derived from {Algorithm.__module__}.Algorithm"
             )
-        return made(self._network, self._feedthrough)
+        return made
 
     def _carry_initial(self) -> None:
         """Carry calculated parameters to what they feed, until one that follows another does."""

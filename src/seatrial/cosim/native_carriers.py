@@ -11,15 +11,18 @@ from .part import Part
 from .system import System
 
 
-def carry_natively(system: System, progress: Callable[[str], None] = lambda _: None) -> None:
+def carry_natively(
+    system: System, progress: Callable[[str], None] = lambda _: None
+) -> dict[str, list[str]]:
     """Let native FMUs carry the components of a system whose engine is "native".
 
     To be called when all parameters are given: texts among them, and waves, current and wind, are
     built in. They come from the user's cache, and are built if they are not there. What has no C
-    stays in process; there it is noted why. Raises InputError without a compiler.
+    stays in process; there it is noted why, and returned, components by reason. Raises InputError
+    without a compiler.
     """
     if system.engine != "native":
-        return
+        return {}
     stay: dict[str, list[str]] = {}
     for part in system.parts.values():
         if isinstance(part.instance, DirectInstance):
@@ -28,6 +31,7 @@ def carry_natively(system: System, progress: Callable[[str], None] = lambda _: N
             if why:
                 stay.setdefault(why, []).append(part.name)
     system.notes += [f"in Python: {', '.join(names)}: {why}" for why, names in stay.items()]
+    return stay
 
 
 def _carry(system: System, part: Part) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 from xml.etree.ElementTree import Element, SubElement
 
@@ -43,7 +43,14 @@ def describe(cls: type[Component], name: str, start_values: Mapping[str, Any]) -
     component.check_parameters()
     _register(slave)
     able = str(component.rolls_back).lower()
-    root: Element = slave.to_xml({"canGetAndSetFMUstate": able, "canSerializeFMUstate": able})
+    any_step = str(not component.fixed_step).lower()
+    root: Element = slave.to_xml(
+        {
+            "canGetAndSetFMUstate": able,
+            "canSerializeFMUstate": able,
+            "canHandleVariableCommunicationStepSize": any_step,
+        }
+    )
     root.set("modelName", name)
     root.attrib.pop("generationDateAndTime", None)
     variables = root.find("ModelVariables")
@@ -72,13 +79,17 @@ def _insert_views(root: Element, cls: type[Component]) -> None:
 
 
 def _annotate(element: Element, port: Port) -> None:
-    """Write what FMI has no attribute for, where `variables` reads it.
+    optional, term_of = (port.optional, port.term_of) if isinstance(port, Input) else (False, "")
+    annotate(element, role=port.role, frame=port.frame, optional=optional, term_of=term_of)
+
+
+def annotate(element: Element, *, role: str, frame: str, optional: bool, term_of: str) -> None:
+    """Write of a variable what FMI has no attribute for, where `variables` reads it.
 
     In one element: FMI 2.0's schema allows a tool one, and names a tool once.
     """
-    said = {"role": port.role, "frame": port.frame}
-    if isinstance(port, Input):
-        said |= {"optional": "true" if port.optional else "", "term_of": port.term_of}
+    said = {"role": role, "frame": frame, "term_of": term_of}
+    said["optional"] = "true" if optional else ""
     given = {name: text for name, text in said.items() if text}
     if given:
         tool = SubElement(SubElement(element, "Annotations"), "Tool", {"name": "seatrial"})
@@ -93,7 +104,8 @@ def summary(component: type[Component]) -> str:
 def _register(slave: Slave) -> None:
     component = slave.component
     slave.description = summary(type(component))
-    slave.default_experiment = DefaultExperiment(start_time=0.0, stop_time=10.0, step_size=0.01)
+    step = component.fixed_step or 0.01
+    slave.default_experiment = DefaultExperiment(start_time=0.0, stop_time=10.0, step_size=step)
     slave.vars.clear()
     for scalar in component.scalars:
         port, reference = scalar.port, scalar.reference
@@ -141,10 +153,16 @@ def _text(value: Any) -> str:
 
 
 def _insert_units(root: Element, component: Component) -> None:
-    real = [s for s in component.scalars if s.port.type is float and s.unit]
-    used = {unit(s.unit).text: unit(s.unit) for s in real}
+    definitions = unit_definitions(s.unit for s in component.scalars if s.port.type is float)
+    if definitions is not None:
+        root.insert(1, definitions)  # the schema wants it right after CoSimulation
+
+
+def unit_definitions(units: Iterable[str]) -> Element | None:
+    """Return the definitions of the units of variables, None if none of them has one."""
+    used = {unit(text).text: unit(text) for text in units if text}
     if not used:
-        return
+        return None
     definitions = Element("UnitDefinitions")
     for text, one in sorted(used.items()):
         definition = SubElement(definitions, "Unit", {"name": text})
@@ -154,7 +172,7 @@ def _insert_units(root: Element, component: Component) -> None:
         if one.offset != 0.0:
             attributes["offset"] = repr(one.offset)
         SubElement(definition, "BaseUnit", attributes)
-    root.insert(1, definitions)  # the schema wants it right after CoSimulation
+    return definitions
 
 
 def _add_unknowns(structure: Element, component: Component) -> None:

@@ -16,18 +16,22 @@ from .instance import ByType, Reader, Value, Variable, Variables, Writer
 
 
 class DirectInstance(ByType):
-    """A component as the master sees it; the same calls in the same order as for its FMU."""
+    """A component as the master sees it; the same calls in the same order as for its FMU.
 
-    def __init__(self, component: Component) -> None:
+    ``compiles``: the equations of a plant become machine code, where there is a compiler.
+    """
+
+    def __init__(self, component: Component, *, compiles: bool = True) -> None:
         self.component = component
         self.name = component.name
         self.variables = Variables({s.name: _variable(component, s) for s in component.scalars})
         self.feedthrough = scalar_feedthrough(component)
-        self.rolls_back, self.any_step, self.at_once = component.rolls_back, True, False
+        self.rolls_back, self.at_once = component.rolls_back, False
+        self.any_step = not component.fixed_step
         self.restarts = True
         self.ended_at: float | None = None
         self.terminals, self.views = component.terminals, component.views
-        if isinstance(component, Plant):
+        if compiles and isinstance(component, Plant):
             component.machine = compiled_function
         self._publishes = any(port.kind == "output" for port in component.ports.values())
         self._stepped = False

@@ -94,11 +94,11 @@ def described_files(root: Element, component: Component, version: int) -> dict[s
     ``root`` is the model description of FMI 2.0.
     """
     instance = DirectInstance(component)
-    whole = arrays(component, root) if version == 3 else ()
+    whole = arrays(component.scalars, root) if version == 3 else ()
     files = {}
     if instance.terminals:
         files[PLACE] = terminals_xml(instance.terminals, instance.variables, whole)
-    described = version3(root, component) if version == 3 else root
+    described = version3(root, component.scalars) if version == 3 else root
     indent(described)
     text: bytes = tostring(described, encoding="UTF-8", xml_declaration=True)
     return {"modelDescription.xml": text, **files}

@@ -10,12 +10,15 @@
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
+#if !defined(UNTIMED)
 #include <time.h>
 #if defined(__x86_64__)
 #include <x86intrin.h>
 #endif
+#endif
 
-#if defined(_WIN32)
+#if defined(EXPORT) /* by what includes this file */
+#elif defined(_WIN32)
 #define EXPORT __declspec(dllexport)
 #else
 #define EXPORT __attribute__((visibility("default")))
@@ -89,6 +92,11 @@ typedef struct {
 
 /* ------------------------------------------------------------------ durations */
 
+#if defined(UNTIMED)
+static int64_t ticks(void) { return 0; }
+static void calibrate(void) {}
+static int64_t in_ns(int64_t taken) { return taken; }
+#else
 static int64_t clock_ns(void) {
     struct timespec now;
     clock_gettime(CLOCK_MONOTONIC, &now);
@@ -115,6 +123,7 @@ static int64_t in_ns(int64_t taken) { return (int64_t)((double)taken * ns_per_ti
 static int64_t ticks(void) { return clock_ns(); }
 static void calibrate(void) {}
 static int64_t in_ns(int64_t taken) { return taken; }
+#endif
 #endif
 
 static void count_time(Times *times, int64_t taken, int64_t at_ns) {
@@ -192,11 +201,12 @@ static int acts(const Operation *o, int64_t steps) {
 
 /* ------------------------------------------------------------------ loops */
 
+/* Visit a loop once: DONE, EXCESS for a value that may be too large, ANSWERED if an FMU refuses. */
 static int sweep(Master *m, Operation *loop) {
     for (Operation *o = loop + 1; o <= loop + loop->length; o++) {
         if (!acts(o, m->steps)) continue;
         if (o->kind == STORE) {
-            if (!store(o, m->signals, m->any_quantity)) return 0;
+            if (!store(o, m->signals, m->any_quantity)) return EXCESS;
             continue;
         }
         if (m->cells) m->cells[1] = o->mark;
@@ -204,9 +214,9 @@ static int sweep(Master *m, Operation *loop) {
             o->kind == WRITE
                 ? write_inputs(o, m->signals)
                 : ((GetOrSet)o->function)(o->component, o->references, (size_t)o->count, o->values);
-        if (!is_accepted(status) || *m->said) return 0;
+        if (!is_accepted(status) || *m->said) return ANSWERED;
     }
-    return 1;
+    return DONE;
 }
 
 static double distance(double a, double b, int is_real) {
@@ -219,35 +229,56 @@ static int is_close(double a, double b, int is_real) {
     return fabs(a - b) <= 1e-12 * (size > 1.0 ? size : 1.0);
 }
 
-/* `Feedthrough._iterate`, with the relaxation that the loop last settled with. */
-static int settles(Master *m, Operation *loop) {
+/* `Feedthrough._iterate`: DONE, UNSETTLED, or why a sweep ended. */
+static int iterate(Master *m, Operation *loop, double relaxation) {
     const int64_t n = loop->count;
-    double *before = loop->numbers, *begun = before + n, change = 0.0;
+    double *before = loop->numbers, change = 0.0;
     int growing = 0;
-    if (loop->relaxation == 0.0) return 0; /* it needs acceleration */
-    for (int64_t i = 0; i < n; i++) begun[i] = m->signals[loop->places[i]];
-    for (int repetition = 0; repetition < 200 && growing < 5; repetition++) {
+    for (int repetition = 0; repetition < 200; repetition++) {
         int all_close = 1;
         double largest = 0.0;
         for (int64_t i = 0; i < n; i++) before[i] = m->signals[loop->places[i]];
-        if (!sweep(m, loop)) break;
+        const int why = sweep(m, loop);
+        if (why != DONE) return why;
         for (int64_t i = 0; i < n; i++) {
             const double after = m->signals[loop->places[i]];
             const double moved = distance(before[i], after, loop->reals[i]);
             if (moved > largest) largest = moved;
             all_close &= is_close(before[i], after, loop->reals[i]);
         }
-        if (all_close) return 1;
+        if (all_close) return DONE;
         growing = change != 0.0 && largest / change > 1.0 ? growing + 1 : 0;
         change = largest;
-        if (growing < 5 && loop->relaxation != 1.0)
+        if (growing == 5) break;
+        if (relaxation != 1.0)
             for (int64_t i = 0; i < n; i++)
                 if (loop->reals[i]) {
                     double *value = m->signals + loop->places[i];
-                    *value = before[i] + loop->relaxation * (*value - before[i]);
+                    *value = before[i] + relaxation * (*value - before[i]);
                 }
     }
-    for (int64_t i = 0; i < n; i++) m->signals[loop->places[i]] = begun[i];
+    return UNSETTLED;
+}
+
+/* `Feedthrough.solve` without its acceleration: as the loop last settled, then in other ways. */
+static int settles(Master *m, Operation *loop) {
+    static const double tried[] = {1.0, 0.5, 0.25, 0.125, 0.0625};
+    const int64_t n = loop->count;
+    const double own = loop->relaxation;
+    double *begun = loop->numbers + n;
+    if (own == 0.0) return 0; /* it needs acceleration */
+    for (int64_t i = 0; i < n; i++) begun[i] = m->signals[loop->places[i]];
+    for (int k = -1; k < 5; k++) {
+        const double relaxation = k < 0 ? own : tried[k];
+        if (k >= 0 && relaxation == own) continue;
+        const int why = iterate(m, loop, relaxation);
+        if (why == DONE) {
+            loop->relaxation = relaxation;
+            return 1;
+        }
+        for (int64_t i = 0; i < n; i++) m->signals[loop->places[i]] = begun[i];
+        if (why == ANSWERED) break;
+    }
     return 0;
 }
 
@@ -313,8 +344,8 @@ static int finish_step(Master *m) {
     while (m->at < m->count) {
         Operation *o = m->operations + m->at++;
         if (o->kind == LOOP) {
-            m->at += o->length;
             if (!settles(m, o)) return UNSETTLED;
+            m->at += o->length;
             continue;
         }
         if (o->kind == CALL) return CALLED;

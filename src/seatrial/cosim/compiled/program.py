@@ -1,4 +1,4 @@
-"""The program of a communication step: operations for `master.c`, and calls for Python.
+"""Programs of communication steps: operations for `master.c`, and calls for Python.
 
 An operation acts where (steps + phase) is a multiple of ``every``: a component with a longer step
 of its own is written and stepped at the beginning of it (phase 0) and read at its end (phase 1).
@@ -48,11 +48,9 @@ _TYPES: dict[type, tuple[int, str, Any]] = {
 
 
 class Program:
-    """The operations of a communication step of ``step_ns``, by one of `choice.ALGORITHMS`."""
+    """Operations on a network whose communication step is ``step_ns``, in the order they came."""
 
-    def __init__(
-        self, network: Network, feedthrough: Feedthrough, algorithm: Algorithm, step_ns: int
-    ) -> None:
+    def __init__(self, network: Network, feedthrough: Feedthrough, step_ns: int) -> None:
         self.operations: list[Operation] = []
         self.calls: list[list[Callable[[int, int], None]]] = []
         """Of each operation CALL: what Python does, by the steps taken and its time, ns."""
@@ -72,14 +70,33 @@ class Program:
         self.kept: list[Any] = []
         """Arrays that operations point to."""
         self._network, self._feedthrough, self._step_ns = network, feedthrough, step_ns
-        nodes = list(network.nodes.values())
+
+    def add_step(self, algorithm: Algorithm) -> int:
+        """Add a communication step, by one of `choice.ALGORITHMS`.
+
+        Return where its feed-through visits begin.
+        """
         if isinstance(algorithm, GaussSeidel):
-            self._in_turn([network.nodes[name] for name in algorithm.order])
+            self._in_turn([self._network.nodes[name] for name in algorithm.order])
         else:
             past = algorithm.past if isinstance(algorithm, Extrapolated) else None
-            self._together(nodes, past)
-        for group in feedthrough.groups:
+            self._together(list(self._network.nodes.values()), past)
+        visits = len(self.operations)
+        self.add_visits(self._feedthrough.groups)
+        return visits
+
+    def add_visits(self, groups: Sequence[Group]) -> None:
+        """Add visits of feed-through outputs."""
+        for group in groups:
             self._visit(group)
+
+    def add_reading(self, node: Node) -> None:
+        """Add a reading of all outputs of a component, whenever it is carried out."""
+        self._read(node, node.chunks, always=True)
+
+    def add_writing(self, node: Node) -> None:
+        """Add a writing of all connected inputs of a component, whenever it is carried out."""
+        self._write_all(node, 0, always=True)
 
     # ------------------------------------------------------------------ algorithms
 
@@ -138,12 +155,18 @@ class Program:
 
     # ------------------------------------------------------------------ operations
 
-    def _write_all(self, node: Node, phase: int) -> None:
+    def _write_all(self, node: Node, phase: int, *, always: bool = False) -> None:
         for writes in node.writes:
-            self._write(node, writes, phase)
+            self._write(node, writes, phase, always=always)
 
     def _write(
-        self, node: Node, writes: Writes, phase: int, past: PastInputs | None = None
+        self,
+        node: Node,
+        writes: Writes,
+        phase: int,
+        past: PastInputs | None = None,
+        *,
+        always: bool = False,
     ) -> None:
         slave = self._setting(node, writes)
         if slave is None:
@@ -152,7 +175,8 @@ class Program:
         variables = [node.part.instance.variables[one.target[1]] for one in writes.connections]
         kind, name, of_fmu = _TYPES[variables[0].type]
         count = len(variables)
-        operation = Operation(kind=WRITE, type=kind, every=node.every, phase=phase, count=count)
+        every = 1 if always else node.every
+        operation = Operation(kind=WRITE, type=kind, every=every, phase=phase, count=count)
         operation.places = self._array(ctypes.c_int64, writes.places)
         operation.numbers = self._array(ctypes.c_double, [0.0] * count)
         operation.values = ctypes.cast(
@@ -170,7 +194,8 @@ class Program:
             self.past[len(self.operations)] = past
         self._ask(operation, node, slave, f"Set{name}", variables)
 
-    def _read(self, node: Node, chunks: Sequence[Chunk]) -> None:
+    def _read(self, node: Node, chunks: Sequence[Chunk], *, always: bool = False) -> None:
+        every = 1 if always else node.every
         for chunk in chunks:
             slave = self._getting(node, chunk)
             if slave is None:
@@ -180,7 +205,7 @@ class Program:
             variables = [node.part.instance.variables[name] for name in names]
             number, name, of_fmu = _TYPES[variables[0].type]
             values = ctypes.cast(self._array(of_fmu, [0] * len(names)), ctypes.c_void_p)
-            common = {"type": number, "every": node.every, "phase": 1, "count": len(names)}
+            common = {"type": number, "every": every, "phase": 1, "count": len(names)}
             get = Operation(kind=GET, values=values, **common)
             self._ask(get, node, slave, f"Get{name}", variables)
             store = Operation(kind=STORE, values=values, start=chunk.start, **common)

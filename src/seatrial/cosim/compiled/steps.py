@@ -44,7 +44,8 @@ class CompiledSteps:
         self._network, self._feedthrough = network, feedthrough
         self._watch, self.step_ns = watch, step_ns
         self._library = library()
-        self._program = Program(network, feedthrough, algorithm, step_ns)
+        self._program = Program(network, feedthrough, step_ns)
+        self._program.add_step(algorithm)
         self.is_current = False
         """Whether C has what Python has: not after a step or a change that was Python's."""
         self.taken = 0
@@ -191,6 +192,8 @@ class CompiledSteps:
                 signals[start:stop] = own[start:stop]
             elif kind is not None:
                 signals[start:stop] = map(kind, own[start:stop])
+        for at, group in self._program.loops.items():
+            group.relaxation = self._operations[at].relaxation
         for at, past in self._program.past.items():
             operation = self._operations[at]
             if operation.has_previous:

@@ -25,7 +25,10 @@ typedef struct {
     double settings[FAULT_SETTINGS][FAULT_VALUES];
 } Fault;
 
-#include "model.h"
+#if !defined(MODEL_H) /* of a rig as one FMU, each component has one of another name */
+#define MODEL_H "model.h"
+#endif
+#include MODEL_H
 
 typedef enum { INSTANTIATED, INITIALISING, RUNNING, TERMINATED } Phase;
 

@@ -122,7 +122,8 @@ def model(plant: Plant) -> str:
         table("int", "y", _references(plant.output_ports)),
     ]
     common = tables(plant)
-    return "\n".join([generator.dump(), '#include "model.h"', _CALLS.format(**sizes), *own, common])
+    text = f'{generator.dump()}\n#include "component.h"'
+    return "\n".join([text, _CALLS.format(**sizes), *own, common])
 
 
 def _along(out: ca.Function) -> ca.Function:

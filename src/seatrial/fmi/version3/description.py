@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from itertools import groupby
 from xml.etree.ElementTree import Element, SubElement
 
-from ...component import Component
 from ...links.text import packed
 from ...ports import Port, ScalarPort
 from ..osp import QUANTITIES
@@ -29,11 +28,14 @@ _SHARED = ("unit", "min", "max", "nominal")
 _CATEGORIES = ("logStatusWarning", "logStatusDiscard", "logStatusError", "logStatusFatal")
 
 
-def version3(root: Element, component: Component) -> Element:
-    """Return the model description of FMI 3.0 that says what ``root`` does in FMI 2.0."""
+def version3(root: Element, scalars: Sequence[ScalarPort]) -> Element:
+    """Return the model description of FMI 3.0 that says what ``root`` does in FMI 2.0.
+
+    ``scalars`` are its variables, in their order.
+    """
     variables = root.find("ModelVariables")
     assert variables is not None
-    groups = _groups(component, list(variables))
+    groups = _groups(scalars, list(variables))
     simulation = root.find("CoSimulation")
     assert simulation is not None
     result = Element("fmiModelDescription", {"fmiVersion": "3.0", **_of_model(root)})
@@ -60,11 +62,11 @@ def version3(root: Element, component: Component) -> Element:
     return result
 
 
-def arrays(component: Component, root: Element) -> set[str]:
+def arrays(scalars: Sequence[ScalarPort], root: Element) -> set[str]:
     """Return the ports that are one variable each, of the model description of FMI 2.0."""
     variables = root.find("ModelVariables")
     assert variables is not None
-    groups = _groups(component, list(variables))
+    groups = _groups(scalars, list(variables))
     return {group.port.name for group in groups if group.is_array}
 
 
@@ -84,17 +86,17 @@ class _Group:
         return self.port.name if self.is_array else self.scalars[0].name
 
 
-def _groups(component: Component, elements: Sequence[Element]) -> list[_Group]:
-    pairs = zip(component.scalars, elements, strict=True)
+def _groups(scalars: Sequence[ScalarPort], elements: Sequence[Element]) -> list[_Group]:
+    pairs = zip(scalars, elements, strict=True)
     groups = []
-    for _, members in groupby(pairs, lambda pair: pair[0].port.name):
-        scalars = list(members)
-        shared = {tuple(map(element[0].get, _SHARED)) for _, element in scalars}
-        has_axes = scalars[0][0].port.axes is not None
-        if has_axes and len(shared) == 1 and len(scalars) <= _MOST_ELEMENTS:
-            groups.append(_Group(scalars, True))
+    for _, grouped in groupby(pairs, lambda pair: pair[0].port.name):
+        members = list(grouped)
+        shared = {tuple(map(element[0].get, _SHARED)) for _, element in members}
+        has_axes = members[0][0].port.axes is not None
+        if has_axes and len(shared) == 1 and len(members) <= _MOST_ELEMENTS:
+            groups.append(_Group(members, True))
         else:
-            groups += [_Group([one], False) for one in scalars]
+            groups += [_Group([one], False) for one in members]
     return groups
 
 
@@ -109,7 +111,7 @@ def _co_simulation(simulation: Element) -> Element:
     old = simulation.attrib
     said = {
         "modelIdentifier": old["modelIdentifier"],
-        "canHandleVariableCommunicationStepSize": "true",
+        "canHandleVariableCommunicationStepSize": old["canHandleVariableCommunicationStepSize"],
     }
     said |= {
         name: old[name]

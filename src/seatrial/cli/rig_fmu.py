@@ -1,0 +1,109 @@
+"""``seatrial fmu build --rig``: a whole rig as one FMU."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ..cosim.assembly import assemble
+from ..cosim.flattening import load_rig
+from ..cosim.native_carriers import carry_natively
+from ..cosim.paths import split_path
+from ..cosim.rig import Rig
+from ..cosim.rig_fmu.native import build_native_rig, why_not_native
+from ..cosim.rig_fmu.python import build_python_rig
+from ..cosim.system import Engine, System
+from ..cosim.unread import leave_out_unread
+from ..errors import InputError, unknown
+from ..shipped import available
+from ..trials.trial import choices_in
+from .show import console, print_notes
+
+_OF_RIG = ("step", "algorithm")
+
+
+@dataclass(frozen=True)
+class RigBuild:
+    """A rig to build, with what the command line changes in it."""
+
+    name: str
+    changes: Mapping[str, Any]
+    variant: str | None = None
+    seed: int = 1
+    version: int = 2
+    """Of FMI."""
+
+    def build(self, out: Path, carrier: str, platforms: Sequence[str]) -> Path:
+        """Build its FMU in the folder ``out``.
+
+        ``carrier`` is "native", "standalone" or empty: in C if all components have C, else in
+        Python. Empty ``platforms`` are those of that carrier. Raises InputError for what cannot be.
+        """
+        path = out / f"{Path(self.name).stem}.fmu"
+        whys = [] if carrier == "standalone" else self._in_c(path, platforms or ("linux64",))
+        if whys and (carrier == "native" or platforms):
+            raise InputError(f"{self.name} cannot be one FMU in C; {'; '.join(whys)}")
+        if whys or carrier == "standalone":
+            self._in_python(path, carrier == "standalone")
+        size = path.stat().st_size / 1000
+        print_notes([f"in Python, as it has what cannot be in C: {why}" for why in whys])
+        console.print(f"{path}  ({size:.0f} kB)", soft_wrap=True)
+        return path
+
+    def _in_c(self, path: Path, platforms: Sequence[str]) -> list[str]:
+        """Build the FMU in C; return why not if that cannot be."""
+        system = self._assembled("native")
+        try:
+            whys = why_not_native(system, carry_natively(system))
+            if not whys:
+                build_native_rig(system, path, platforms, version=self.version)
+                print_notes(system.notes)
+                console.print(f"in C: {len(system.parts)} components", soft_wrap=True)
+            return whys
+        finally:
+            system.free()
+
+    def _in_python(self, path: Path, standalone: bool) -> None:
+        system = self._assembled("direct")
+        try:
+            glibc = build_python_rig(system, path, standalone=standalone, version=self.version)
+            print_notes(system.notes)
+        finally:
+            system.free()
+        if glibc:
+            print_notes([f"{path} runs on Linux on x86-64 with glibc {glibc} or newer"])
+
+    def _assembled(self, engine: Engine) -> System:
+        rig = _loaded(self.name, self.changes)
+        system = assemble(rig, engine, variant=self.variant, seed=self.seed)
+        try:
+            leave_out_unread(system, self._set(system))
+        except BaseException:
+            system.free()
+            raise
+        return system
+
+    def _set(self, system: System) -> set[str]:
+        """Give components what the command line sets; return their names."""
+        named = set()
+        for key, written in self.changes.items():
+            if "." in key and not key.startswith("choices."):
+                system.set(key, written, "--set", Path.cwd())
+                named.add(split_path(system.parts, key)[0])
+        return named
+
+
+def _loaded(name: str, changes: Mapping[str, Any]) -> Rig:
+    """Return the rig of a name, which may be that of a vehicle's rig, or of a file."""
+    if not name.endswith(".toml") and name not in available("harness/rigs"):
+        vehicles = available("harness/rigs/vehicles")
+        if name in vehicles:
+            name = str(vehicles[name])
+    rig = load_rig(name, None, choices_in(changes, "--choose"))
+    own = {key: value for key, value in changes.items() if "." not in key}
+    for key in own:
+        if key not in _OF_RIG:
+            raise InputError(f"--set: {unknown('key', key, _OF_RIG)}, or component.port")
+    return rig.changed(own) if own else rig

@@ -1,0 +1,1 @@
+"""A whole rig as one FMU."""

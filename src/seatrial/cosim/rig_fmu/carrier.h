@@ -1,0 +1,60 @@
+/* What a component in C does for the rig around it: its FMI functions, under a name of its own.
+
+   With CARRIER defined, behind a component's own sources, this defines them. */
+
+#ifndef CARRIER_H
+#define CARRIER_H
+
+#include <stddef.h>
+
+#include "fmi2FunctionTypes.h"
+
+typedef struct {
+    const char *guid;
+    size_t state_size;
+    fmi2InstantiateTYPE *instantiate;
+    fmi2FreeInstanceTYPE *free_instance;
+    fmi2SetupExperimentTYPE *set_up;
+    fmi2EnterInitializationModeTYPE *enter;
+    fmi2ExitInitializationModeTYPE *exit;
+    fmi2TerminateTYPE *terminate;
+    fmi2ResetTYPE *reset;
+    fmi2DoStepTYPE *do_step;
+    fmi2GetRealTYPE *get_real;
+    fmi2SetRealTYPE *set_real;
+    fmi2GetIntegerTYPE *get_integer;
+    fmi2SetIntegerTYPE *set_integer;
+    fmi2GetBooleanTYPE *get_boolean;
+    fmi2SetBooleanTYPE *set_boolean;
+    fmi2GetStringTYPE *get_string;
+    fmi2SetStringTYPE *set_string;
+    fmi2GetFMUstateTYPE *get_state;
+    fmi2SetFMUstateTYPE *set_state;
+} Carrier;
+
+#endif
+
+#if defined(CARRIER)
+const Carrier CARRIER = {
+    MODEL_GUID,
+    sizeof(State),
+    fmi2Instantiate,
+    fmi2FreeInstance,
+    fmi2SetupExperiment,
+    fmi2EnterInitializationMode,
+    fmi2ExitInitializationMode,
+    fmi2Terminate,
+    fmi2Reset,
+    fmi2DoStep,
+    fmi2GetReal,
+    fmi2SetReal,
+    fmi2GetInteger,
+    fmi2SetInteger,
+    fmi2GetBoolean,
+    fmi2SetBoolean,
+    fmi2GetString,
+    fmi2SetString,
+    fmi2GetFMUstate,
+    fmi2SetFMUstate,
+};
+#endif

@@ -1,0 +1,56 @@
+/* A rig as one FMU: its tables, which `tables.py` writes. */
+
+#ifndef RIG_H
+#define RIG_H
+
+#include <stdint.h>
+
+#include "carrier.h"
+#include "sizes.h"
+
+enum { REAL_TYPE, INTEGER_TYPE, BOOLEAN_TYPE, STRING_TYPE };
+enum { CONTINUOUS_INPUT, OTHER_INPUT, PARAMETER_VALUE, OUTPUT_VALUE };
+
+typedef struct {
+    const Carrier *carrier;
+    const char *name;
+    int every;       /* it steps once in so many steps of the rig */
+    int first, last; /* operations that read all its outputs: from first, before last */
+} Node;
+
+typedef struct { /* an operation of `master.c`; pointers are places in the tables, -1: none */
+    int kind, type, node, every, phase, count;
+    int64_t start, length;
+    int references, places, numbers, values, previous;
+    int scaled, scales, continuous, moving, limited, bounds, reals, loop;
+} Row;
+
+typedef struct {
+    int type, kind;
+    int place;           /* of an output among the signals */
+    int target, targets; /* of the others: where the components' variables are in rig_targets */
+} Variable;
+
+typedef struct {
+    int node;
+    fmi2ValueReference reference;
+} Target;
+
+typedef struct {
+    int variable;
+    double value;
+    const char *text;
+} Given;
+
+extern const Node rig_nodes[];
+extern const Row rig_rows[];
+extern const Variable rig_variables[];
+extern const char *const rig_names[], *const rig_signals[];
+extern const Target rig_targets[];
+extern const Given rig_given[];
+extern const uint32_t rig_references[];
+extern const int64_t rig_places[];
+extern const double rig_numbers[];
+extern const uint8_t rig_reals[];
+
+#endif
