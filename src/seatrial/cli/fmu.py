@@ -109,8 +109,8 @@ def build(
                 raise InputError(f"--rig: a rig has no {option} of its own")
         carrier = "native" if native else "standalone" if standalone else ""
         wanted = checked_platforms(platforms) if platforms else []
-        path = RigBuild(rig, changes, variant, seed, version).build(out, carrier, wanted)
-        answer.result["files"] = [str(path)]
+        built = RigBuild(rig, changes, variant, seed, version).build(out, carrier, wanted)
+        answer.result["files"] = [str(built)]
         return
     if changes:
         raise InputError("--set, --choose, --vehicle and --autopilot are of --rig")
@@ -120,7 +120,7 @@ def build(
         values = _start_values(source, parameters, variant) if parameters else None
         path = out / f"{source.name}.fmu"
         if native:
-            build_native_fmu(source, path, targets or ["linux64"], values, version=version)
+            build_native_fmu(source, path, targets, values, version=version)
         elif standalone:
             glibc = build_standalone_fmu(source, path, values, version)
             print_notes([f"{path} runs on Linux on x86-64 with glibc {glibc} or newer"])
