@@ -33,7 +33,7 @@ def build_python_rig(
     if standalone:
         return build_standalone_fmu(source, destination, version=version)
     if version == 3:
-        build_fmu3(source, destination)
+        build_fmu3(source, destination, ["linux64"])
     else:
         build_fmu(source, destination)
     return ""
