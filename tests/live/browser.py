@@ -79,12 +79,12 @@ def served(folder: Path, *arguments: str) -> Iterator[Served]:
         of_it.end()
 
 
-def opened(browser: Any, address: str) -> Any:
-    """Return a page that has shown its panel; errors of its scripts are kept in ``problems``."""
+def opened(browser: Any, address: str, awaited: str = "canvas") -> Any:
+    """Return a page that has shown what it is opened for; errors of its scripts are kept in ``problems``."""
     page = browser.new_page(viewport={"width": 900, "height": 640})
     page.set_default_timeout(WAIT_MS)
     page.problems = []
     page.on("pageerror", lambda error: page.problems.append(str(error)))
     page.goto(address)
-    page.locator("canvas").first.wait_for()
+    page.locator(awaited).first.wait_for()
     return page

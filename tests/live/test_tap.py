@@ -14,9 +14,11 @@ import numpy as np
 import pytest
 
 from seatrial.live.by_hand import ByHand
+from seatrial.live.history import History
 from seatrial.live.tap import Tap
 from seatrial.trials.hooks import Hooks
 from seatrial.trials.run import Result, run_trial
+from seatrial.trials.run_folder import load_run
 from seatrial.trials.trial import Trial, load_trial
 
 KEEPER = "autopilot.keeper.station"
@@ -40,6 +42,7 @@ class Page:
 
     def __enter__(self) -> Page:
         self._thread.start()
+        self.send("viewers", 1)
         self.described = self.next("begin")[0]
         return self
 
@@ -56,7 +59,7 @@ class Page:
         while self.pipe.poll(10):
             what, *content = self.pipe.recv()
             if what == "frame":
-                self.send("taken", 1)
+                self.send("taken")
             if what == "done":
                 self.done.add(*content)
             if what == wanted:
@@ -139,6 +142,7 @@ def test_a_run_that_is_watched_has_the_same_bytes(tmp_path: Path) -> None:
 
 def test_frames_wait_for_the_page_and_the_simulation_does_not(tmp_path: Path) -> None:
     page = Page(landing("3 s"), tmp_path / "run")
+    page.send("viewers", 1)
     page._thread.start()  # nobody takes a frame
     page._thread.join(60)
     frames = 0
@@ -148,13 +152,38 @@ def test_frames_wait_for_the_page_and_the_simulation_does_not(tmp_path: Path) ->
     assert page.results[0].status == "complete"
 
 
+def test_nothing_is_sent_while_nobody_looks(tmp_path: Path) -> None:
+    page = Page(landing("3 s"), tmp_path / "run")
+    page._thread.start()
+    page._thread.join(60)
+    sent = []
+    while page.pipe.poll(0):
+        sent.append(page.pipe.recv()[0])
+    assert sent == ["begin"]
+
+
+def test_who_comes_late_sees_what_was_before(tmp_path: Path) -> None:
+    folder = run_trial(landing("3 s"), tmp_path / "run", engine="direct").folder
+    run = load_run(folder)
+    position, heading = "vehicle.hull.position.x", "vehicle.hull.attitude.psi"
+    history = History(run.manifest, folder, [position, heading])
+    history.add(1.0, np.array([7.0, 8.0]))
+    del run.signals[heading]
+    history.fill(run)
+    times, columns = history.columns([position, heading])
+    after = run.time > 1.0
+    assert times.tolist() == [1.0, *run.time[after]]
+    assert columns[position].tolist() == [7.0, *run.signals[position][after]]
+    assert np.isnan(columns[heading][1:]).all()
+
+
 def test_at_most_thirty_frames_a_second(tmp_path: Path) -> None:
     with Page(landing("1 s"), tmp_path / "run", factor=1.0) as page:
         begun, frames = time.monotonic(), 0
         while page._thread.is_alive():
             if page.pipe.poll(0.01) and page.pipe.recv()[0] == "frame":
                 frames += 1
-                page.send("taken", 1)
+                page.send("taken")
         wall = time.monotonic() - begun
     assert frames <= 30.0 * wall + 3
 

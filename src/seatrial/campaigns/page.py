@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import shlex
 from dataclasses import dataclass, field
 from html import escape
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 import numpy as np
 from markupsafe import Markup
@@ -54,6 +56,7 @@ class _Found:
     """What the page needs of all rows."""
 
     count: int = 0
+    cases: list[int] = field(default_factory=list)
     failed: list[bool] = field(default_factory=list)
     shown: list[dict[str, Any]] = field(default_factory=list)
     values: dict[str, list[float]] = field(default_factory=dict)
@@ -78,6 +81,7 @@ def write_table_page(folder: Path) -> Path:
     found = _Found(values={key: [] for key in settings})
     for row in read_rows(path):
         found.count += 1
+        found.cases.append(row["case"])
         found.failed.append(not row["passed"])
         for criterion in criteria:
             criterion.add(row)
@@ -102,7 +106,8 @@ def write_table_page(folder: Path) -> Path:
         settings=settings,
         units=units,
         shown=found.shown,
-        folders={int(c["folder"].partition("-")[0]): c["folder"] for c in index["cases"]},
+        links=_links(folder, index),
+        rerun="" if answer else f"seatrial campaign rerun {shlex.quote(index['name'])} --case ",
         figures=[] if answer else _figures(found, units),
         answer=answer,
         drawings=_drawings(folder, answer) if answer else [],
@@ -110,6 +115,16 @@ def write_table_page(folder: Path) -> Path:
     target = folder / REPORT
     write_whole(target, page)
     return target
+
+
+def _links(folder: Path, index: dict[str, Any]) -> dict[str, str]:
+    """Return the addresses of the cases that have a folder, by number: their reports."""
+    links = {}
+    for entry in index["cases"]:
+        name = str(entry["folder"])
+        page = f"{name}/{REPORT}" if (folder / name / REPORT).is_file() else f"{name}/"
+        links[str(int(name.partition("-")[0]))] = quote(page)
+    return links
 
 
 def _drawings(folder: Path, answer: Finding) -> list[Markup]:
@@ -128,18 +143,18 @@ def _drawings(folder: Path, answer: Finding) -> list[Markup]:
 def _figures(found: _Found, units: dict[str, str]) -> list[str]:
     """Return the share of failed cases over each setting that has numbers enough."""
     figures: list[str] = []
-    failed = np.array(found.failed, float)
+    failed, cases = np.array(found.failed, float), np.array(found.cases)
     for key, column in found.values.items():
         values = np.array(column)
         known = np.isfinite(values)
         if len(np.unique(values[known])) >= _FEWEST and len(figures) < _MOST_FIGURES:
             unit = units[key]
             title = f"{key}, {unit}" if unit else key
-            figures.append(_share(title, values[known], failed[known]).json())
+            figures.append(_share(title, values[known], failed[known], cases[known]).json())
     return figures
 
 
-def _share(title: str, values: np.ndarray, failed: np.ndarray) -> Figure:
+def _share(title: str, values: np.ndarray, failed: np.ndarray, cases: np.ndarray) -> Figure:
     distinct = np.unique(values)
     if len(distinct) <= _BINS:
         places, of = distinct, np.searchsorted(distinct, values)
@@ -151,6 +166,9 @@ def _share(title: str, values: np.ndarray, failed: np.ndarray) -> Figure:
         width = float(edges[1] - edges[0])
     counts = np.bincount(of, minlength=len(places))
     shares = np.bincount(of, failed, minlength=len(places)) / np.maximum(counts, 1)
+    led_to = [0] * len(places)
+    for at in np.lexsort((-cases, failed)):  # the last one stays: the first that failed
+        led_to[of[at]] = int(cases[at])
     figure = Figure()
     figure.trace(
         "bar",
@@ -159,6 +177,7 @@ def _share(title: str, values: np.ndarray, failed: np.ndarray) -> Figure:
         width=width,
         marker={"color": COLOURS[1]},
         customdata=counts,
+        meta={"cases": led_to},
         hovertemplate="%{y:.3g} % of %{customdata} cases failed at %{x:.4g}",
     )
     figure.lay_out(height=240, showlegend=False, **layout(hovermode="closest"))

@@ -14,6 +14,7 @@ from ..trials.report import write_report
 from ..trials.supervision import run_supervised
 from .answer import answer
 from .ask import ask
+from .looked_at import play
 from .options import EngineName, Out, engine_named
 from .show import console, print_verdicts, run_entry
 from .statuses import FAILED
@@ -68,7 +69,7 @@ def rerun(
         console.print(f"case {number}: {case.name}", soft_wrap=True)
         print_verdicts(result)
         answer.result = {"case": case.name, "set": case.set, "runs": [run_entry(result)]}
-        console.print(f"report: {write_report(result.folder)}", soft_wrap=True)
+        console.print(f"report: {write_report(result.folder, play=play)}", soft_wrap=True)
     if result.status in ("failed", "stopped"):
         raise SimulationError(result.error or "stopped; the signals recorded so far are on disk")
     if not result.passed:

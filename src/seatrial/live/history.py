@@ -36,6 +36,19 @@ class History:
         signals = {name: row[place : place + 1] for name, place in self._names.items()}
         return self._run(np.array([time]), signals)
 
+    def fill(self, record: Run) -> None:
+        """Take the rows of a record that are later than those here; what it lacks is NaN."""
+        since = self._times[-1] if self._times else -np.inf
+        later = np.flatnonzero(record.time > since)
+        chosen = later[:: max(1, len(later) // (_MOST_ROWS // 2))]
+        rows = np.full((len(chosen), len(self._names)), np.nan)
+        for name, place in self._names.items():
+            column = record.signals.get(name)
+            if isinstance(column, np.ndarray):
+                rows[:, place] = column[chosen]
+        self._times += record.time[chosen].tolist()
+        self._rows += list(rows)
+
     def columns(self, names: Iterable[str]) -> tuple[FloatArray, dict[str, Any]]:
         """Return the times, and those of the signals that there are."""
         wanted = [name for name in names if name in self._names]

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
 from collections.abc import Callable
 from html import escape
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from ..errors import InputError
 from ..trials.expressions import FloatArray
 from ..trials.readable import number
+from ..trials.run_folder import load_run
 from .by_hand import ByHand
 from .cameras import Cameras
 from .charts import Charts
@@ -44,6 +49,7 @@ class LivePage:
         self._lights = Lights(self._manifest)
         self._scene: Scene | None = None
         self._lines: list[str] = []
+        self._has_missed = True
         self._panel_at, self._rate_at = 0.0, (time.monotonic(), 0.0)
         gui = server.gui
         look(gui)
@@ -82,6 +88,15 @@ class LivePage:
         if time.monotonic() - self._panel_at > _PANEL_S or self._charts.changed:
             self._panel_at = time.monotonic()
             self._show_panel(now, frame)
+
+    def watched_by(self, viewers: int) -> None:
+        """Note how many look. What nobody saw is read from the record, for who comes now."""
+        if not viewers:
+            self._has_missed = True
+        elif self._has_missed:
+            self._has_missed = False
+            with contextlib.suppress(InputError):  # nothing is recorded yet
+                self._history.fill(load_run(self._folder))
 
     def log(self, now: float, what: str, key: Any, written: Any) -> None:
         """Note what the run has done."""
@@ -133,4 +148,5 @@ class LivePage:
     def _tracks(self, columns: dict[str, Any]) -> list[FloatArray]:
         """Return the tracks in the world, (east, north, up)."""
         assert self._scene is not None
-        return self._scene.motion.tracks(columns)
+        tracks = self._scene.motion.tracks(columns)
+        return [track[np.isfinite(track).all(axis=1)] for track in tracks]  # a record may lack it

@@ -86,6 +86,7 @@ class Session:
         if not self._token:
             self._announce(server.address)
         self._port, self._token = server.get_port(), server.token
+        self._viewers = 0
         page = LivePage(server, described, self._command, self._done, self._may_command)
         try:
             while not self._over.is_set():
@@ -94,7 +95,12 @@ class Session:
             server.stop()
 
     def _poll(self, server: PageServer, page: LivePage) -> None:
-        """Show what has come, and say that it was taken."""
+        """Show what has come, and say that it was taken; say how many look."""
+        viewers = len(server.get_clients())
+        if viewers != self._viewers:
+            self._viewers = viewers
+            page.watched_by(viewers)
+            self._command("viewers", viewers)
         if not self._pipe.poll(_POLL_S):
             return
         try:
@@ -105,7 +111,7 @@ class Session:
         if what == "frame":
             time, values = content
             page.show(time, np.frombuffer(values))
-            self._command("taken", len(server.get_clients()))
+            self._command("taken")
         elif what == "done":
             self._done.add(*content)
             page.log(*content)

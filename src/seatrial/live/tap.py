@@ -2,8 +2,8 @@
 
 It stands in the process of the run. A frame goes out when the page has taken the one before, at
 most 30 times a second of wall time; what the page is too slow for is never sent, and the simulation
-waits for nothing but its own pace. Without a viewer a frame goes out twice a second, for the charts
-of who comes later.
+waits for nothing but its own pace. Without a viewer nothing goes out: who comes later sees what was
+before from the record.
 """
 
 from __future__ import annotations
@@ -31,8 +31,7 @@ from ..errors import InputError, SimulationError
 from .settables import orders_of, settables_of
 
 _FRAME_S = 1.0 / 30.0
-_ALONE_S = 0.5
-"""Least wall time between two frames, with a viewer and without."""
+"""Least wall time between two frames."""
 _LOOK_S = 1.0 / 60.0
 _ORIGIN = "the page"
 
@@ -117,11 +116,11 @@ class Tap:
         except (EOFError, OSError):
             self._gone()
             return
-        if self._taken and now >= self._next_frame:
+        if self._viewers and self._taken and now >= self._next_frame:
             self._send_frame()
 
     def _send_frame(self) -> None:
-        self._next_frame = time.perf_counter() + (_FRAME_S if self._viewers else _ALONE_S)
+        self._next_frame = time.perf_counter() + _FRAME_S
         self._taken = False
         signals = self._master.signals
         values = array("d", [signals[i] for i in self._numbers]).tobytes()
@@ -141,7 +140,9 @@ class Tap:
     def _heed(self, what: str, *content: Any) -> None:
         if what == "taken":
             self._taken = True
-            self._viewers = content[0]
+            return
+        if what == "viewers":
+            (self._viewers,) = content
             return
         if not self.may_command:
             self._send("refused", "this page only watches")

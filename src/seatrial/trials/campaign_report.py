@@ -87,6 +87,7 @@ def write_campaign_report(folder: Path | str) -> Path:
         library=LIBRARY,
         title=title,
         cases=cases,
+        links={case.name: case.link for case in cases if case.link},
         settings=list(dict.fromkeys(key for case in cases for key in case.settings)),
         criteria=_criteria(cases),
         deck=_deck(cases),

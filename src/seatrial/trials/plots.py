@@ -327,6 +327,7 @@ def _draw_pad(figure: Figure, point: PadPoint, col: int) -> None:
         y=[point.forward],
         mode="markers+text",
         name=label,
+        meta={"cases": list(point.labels[:1])},
         text=[verdict],
         textposition="bottom center",
         textfont={"color": colour, "size": 12},

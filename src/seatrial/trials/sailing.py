@@ -92,6 +92,7 @@ def polar_figure(points: Sequence[PolarPoint]) -> Figure | None:
             name=escape(series),
             line={"width": 1.8, "color": COLOURS[index % len(COLOURS)]},
             text=[escape(p.label) for p in own],
+            meta={"cases": [p.label for p in own]},
             hovertemplate="%{text}<br>%{theta:.1f}° off the wind, %{r:.3g} m/s",
         )
     figure.lay_out(height=560, **layout(hovermode="closest"))
