@@ -196,8 +196,15 @@ def test_a_pilot_is_steered_by_hand(browser, tmp_path: Path) -> None:
         for _ in range(5):
             page.keyboard.press("w")
             page.wait_for_timeout(300)
-        begun = _time(page)
-        _later(page, begun + 4.0)
+        _later(page, _time(page) + 4.0)
+        below = "xpath=following::*[@role='slider'][1]"
+        thumb = page.get_by_text("surge", exact=True).locator(below).bounding_box()
+        middle = thumb["x"] + thumb["width"] / 2, thumb["y"] + thumb["height"] / 2
+        page.mouse.move(*middle)
+        page.mouse.down()
+        page.mouse.move(middle[0] - 400, middle[1], steps=8)  # over its end: full astern
+        page.mouse.up()
+        _later(page, _time(page) + 8.0)
         page.get_by_label("by hand").uncheck()
         _later(page, _time(page) + 0.5)
         assert not page.problems
@@ -212,7 +219,10 @@ def test_a_pilot_is_steered_by_hand(browser, tmp_path: Path) -> None:
     assert surge[-1] == 0.0
     run = load_run(tmp_path / "run")
     direct = run.signals["autopilot.pilot.guidance.direct.surge"]
-    assert direct.max() == pytest.approx(1.0)
+    assert (direct.min(), direct.max()) == pytest.approx((-1.0, 1.0))
+    ahead = run.signals["vehicle.hull.velocity.u"]
+    assert ahead[direct == 1.0].max() > 0.1
+    assert ahead[direct == -1.0].min() < -0.1
     assert direct[-1] == 0.0
 
 

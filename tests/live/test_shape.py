@@ -179,6 +179,13 @@ def test_water_is_where_the_waves_are() -> None:
     assert abs(corners[:, :2].mean(axis=0) - [105.0, -42.0]).max() < 3.0
 
 
+def test_still_water_lies_about_the_craft() -> None:
+    from seatrial.live.water import Water
+
+    corners = Water(None, 60.0, cells=1).vertices(0.0, 29.0, -42.0)
+    assert corners.tolist() == [[-1, -72, 0], [-1, -12, 0], [59, -72, 0], [59, -12, 0]]
+
+
 def test_quaternions_are_those_of_scipy() -> None:
     from scipy.spatial.transform import Rotation
 

@@ -78,6 +78,7 @@ class LivePage:
         frame = motion.at(now)
         if self._scene is None and motion.crafts:
             self._scene = Scene(self._server.scene, motion, self._folder)
+            self._scene.forces.add_switch(self._server.gui)
             self._cameras = Cameras(self._server, self._scene)
             self._map = Map(motion, self._scene.size)
         if self._scene is not None:

@@ -93,6 +93,7 @@ class Playback:
         self._speeds = gui.add_dropdown("times real time", _SPEEDS, initial_value="1")
         stays = gui.add_checkbox("keep the craft in the middle", True)
         dark = gui.add_checkbox("dark", False)
+        self._scene.forces.add_switch(gui)
         with gui.add_folder("Criteria"):
             self._lights_html = gui.add_html("")
         with gui.add_folder("Map"):

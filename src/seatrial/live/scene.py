@@ -15,6 +15,7 @@ from ..trials.run_folder import viewed
 from ..trials.sea_section import Surroundings, surroundings_of
 from .bodies import Bodies, extent
 from .bottom import bottom, obstacles
+from .forces import Forces
 from .meshes import mesh_of
 from .motion import Frame, Motion
 from .water import CELLS, Water
@@ -65,6 +66,7 @@ class Scene:
             self._marks()
             self._rose()
             self._arrows()
+            self.forces = Forces(scene, motion, self._root, WORLD, self.size)
 
     def show(self, frame: Frame) -> None:
         """Move everything to where it is in a frame."""
@@ -87,6 +89,7 @@ class Scene:
             self._sea.vertices = self._water.vertices(frame.time, east, north).astype(np.float32)
         self._compass.position = (east, north, self._crest)
         self._show_arrows(frame, east, north)
+        self.forces.show(frame)
 
     @property
     def has_waves(self) -> bool:
@@ -113,7 +116,7 @@ class Scene:
     def _surface(self, cells: int) -> None:
         sea = self._met.sea
         waves = sea.waves() if sea is not None else None
-        reach = 40.0 * self.size
+        reach = (200.0 if waves is None else 40.0) * self.size
         self._scene.set_background_image(_sky(self._is_under_water()), format="png")
         self._scene.configure_default_lights(cast_shadow=False)
         self._scene.configure_fog(

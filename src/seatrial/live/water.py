@@ -17,7 +17,7 @@ _PER_WAVE = 12
 
 
 class Water:
-    """A square of the surface that goes with a place, cell by cell, so that it stands still.
+    """A square of the surface that goes with a place; waves, cell by cell, so that it stands still.
 
     Heights are those of `Waves.elevation`: sums of exp(i (w t + e)) exp(-i k north) exp(-i k east),
     so that one product of matrices has all of them.
@@ -45,8 +45,10 @@ class Water:
 
     def vertices(self, time: float, east: float, north: float) -> FloatArray:
         """Return the corners (east, north, up), m, about a place at a time."""
-        x: FloatArray = round(east / self.size) * self.size + self._steps
-        y: FloatArray = round(north / self.size) * self.size + self._steps
+        if self.waves is not None:
+            east, north = (round(place / self.size) * self.size for place in (east, north))
+        x: FloatArray = east + self._steps
+        y: FloatArray = north + self._steps
         up = self.heights(time, x, y)
         return np.stack([*np.meshgrid(x, y, indexing="ij"), up], -1).reshape(-1, 3)
 
