@@ -18,6 +18,7 @@ import pytest
 from fmpy.fmi3 import FMU3Slave
 from fmpy.validation import validate_fmu
 from lxml import etree
+from pymavlink import mavutil
 
 from seatrial.component import Component, Input, Output
 from seatrial.errors import InputError, SimulationError
@@ -27,10 +28,12 @@ from seatrial.fmi.load import load_fmu, open_instance
 from seatrial.fmi.native.compiler import HERE, checked_platforms, library_here
 from seatrial.fmi.native.export import build_native_fmu
 from seatrial.fmi.source import ComponentSource, find_source
+from seatrial.fmi.standalone.export import build_standalone_fmu
 from seatrial.fmi.version3.sources import front_sources
 from seatrial.links.text import encode, packed, unpacked
 from tests.command import seatrial
 from tests.fmi.native_slave3 import Slave3
+from tests.interop.running import free_port
 
 pytestmark = pytest.mark.skipif(HERE != "linux64", reason="loads libraries of Linux")
 
@@ -230,7 +233,9 @@ class Echo(Component):
         self.tx, self.y, self.n, self.flags = self.rx, self.u, (1, -2), (True, False)
 
 
-def _opened(path: Path, folder: Path) -> tuple[FMU3Slave, dict[str, int], list[str]]:
+def _opened(
+    path: Path, folder: Path, initialised: bool = True
+) -> tuple[FMU3Slave, dict[str, int], list[str]]:
     model, messages = fmpy.read_model_description(str(path)), []
     fmpy.extract(str(path), str(folder / "unpacked"))
     slave = FMU3Slave(
@@ -240,7 +245,8 @@ def _opened(path: Path, folder: Path) -> tuple[FMU3Slave, dict[str, int], list[s
         instanceName="x",
     )
     slave.instantiate(logMessage=lambda _e, _s, _c, text: messages.append(text.decode()))
-    slave.enterInitializationMode(startTime=0.0)
+    if initialised:
+        slave.enterInitializationMode(startTime=0.0)
     return slave, {v.name: v.valueReference for v in model.modelVariables}, messages
 
 
@@ -293,6 +299,66 @@ def test_our_importer_has_bytes_as_text(tmp_path: Path) -> None:
     instance.free_state(state)
     instance.terminate()
     instance.free()
+
+
+@pytest.mark.interop
+def test_a_ground_station_sees_a_vehicle(tmp_path: Path) -> None:
+    """The link of `mavlink`, stepped at the pace of the wall clock by FMPy."""
+    station = mavutil.mavlink_connection(f"udpin:127.0.0.1:{(port := free_port())}")
+    slave, reference, messages = _opened(python("mavlink", tmp_path), tmp_path, initialised=False)
+    slave.setString([reference["links"]], [f"udpout:127.0.0.1:{port}"])
+    slave.enterInitializationMode(startTime=0.0)
+    slave.exitInitializationMode()
+    heartbeat, step = None, 0.05
+    for k in range(200):
+        slave.doStep(k * step, step)
+        heartbeat = station.recv_match(type="HEARTBEAT", blocking=True, timeout=step)
+        if heartbeat is not None:
+            break
+    slave.terminate()
+    slave.freeInstance()
+    station.close()
+    assert messages == []
+    assert heartbeat is not None
+    assert heartbeat.type == mavutil.mavlink.MAV_TYPE_SURFACE_BOAT
+
+
+@pytest.mark.long
+def test_binaries_for_others(tmp_path: Path) -> None:
+    """Where FMI 3.0 has them, with its functions, and those of FMI 2.0 not exported."""
+    names = {"x86_64-linux": ".so", "aarch64-linux": ".so", "x86_64-windows": ".dll"}
+    names |= {"x86_64-darwin": ".dylib", "aarch64-darwin": ".dylib"}
+    source = find_source("thruster", Path.cwd())
+    path = tmp_path / "thruster.fmu"
+    build_native_fmu(source, path, checked_platforms(",".join(names)), version=3)
+    build_fmu3(source, tmp_path / "python.fmu", checked_platforms("x86_64-linux,x86_64-windows"))
+    with zipfile.ZipFile(path) as archive:
+        for name, suffix in names.items():
+            library = archive.read(f"binaries/{name}/thruster{suffix}")
+            assert b"fmi3SetFloat64" in library
+        mac = archive.read("binaries/aarch64-darwin/thruster.dylib")
+        assert struct.unpack_from("<II", mac) == (0xFEEDFACF, 0x0100000C)
+    with zipfile.ZipFile(tmp_path / "python.fmu") as archive:
+        windows = archive.read("binaries/x86_64-windows/thruster.dll")
+        assert b"fmi3SetFloat64" in windows
+        assert archive.getinfo("resources/pythonfmu/pythonfmu-export.dll").file_size > 10_000
+    with pytest.raises(InputError, match="unknown platform 'darwin64'"):
+        build_fmu3(source, tmp_path / "mac.fmu", ["darwin64"])
+
+
+@pytest.mark.long
+def test_a_standalone_one(tmp_path: Path) -> None:
+    """In this process its Python is used: the same results as the FMU that needs one."""
+    source = find_source("gnss", Path.cwd())
+    assert isinstance(source, ComponentSource)
+    carrying = tmp_path / "carrying.fmu"
+    build_standalone_fmu(source, carrying, version=3)
+    assert validate_fmu(str(carrying)) == []
+    found, expected = (
+        fmpy.simulate_fmu(str(each), stop_time=2.0, output_interval=0.05)
+        for each in (carrying, python("gnss", tmp_path))
+    )
+    assert found.tobytes() == expected.tobytes()
 
 
 @pytest.mark.interop
