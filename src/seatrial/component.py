@@ -93,6 +93,8 @@ class Component:
     takes.
     ``structural`` names parameters, numbers too, that say what there is rather than how much of it
     (how many waypoints, where thrusters are): native FMUs have them built in.
+    ``tabulated`` names methods that make tables of those alone at the start, with the attributes
+    that hold them: native FMUs have the tables.
     ``exercised`` has values by port with which everything in it acts, where the start values do
     not do: tests run the component with them.
 
@@ -106,6 +108,7 @@ class Component:
     terminals: ClassVar[Mapping[str, Terminal]] = {}
     views: ClassVar[Mapping[str, Mapping[str, str]]] = {}
     structural: ClassVar[Sequence[str]] = ()
+    tabulated: ClassVar[Mapping[str, Sequence[str]]] = {}
     exercised: ClassVar[Mapping[str, Any]] = {}
     transient: ClassVar[frozenset[str]] = frozenset({"name"})
 

@@ -172,7 +172,7 @@ def coupled(craft, gear, x, command, h):
     """One Runge-Kutta step of ship and rudder machine together, the command held."""
 
     def slope(z):
-        return np.append(slope_at(craft, z[:6], z[6]), gear.derivatives(z[6:], [command]))
+        return np.append(slope_at(craft, z[:6], z[6]), gear.slope(z[6], command))
 
     k1 = slope(x)
     k2 = slope(x + h / 2 * k1)

@@ -10,7 +10,7 @@ from seatrial.fmi.direct import DirectInstance
 from seatrial.fmi.index import component_class, components
 from seatrial.plant import Plant
 
-QUICK = ("surface-vessel", "manoeuvring-ship", "rudder-machine")
+QUICK = ("surface-vessel", "manoeuvring-ship")
 PLANTS = [
     pytest.param(name, marks=[] if name in QUICK else pytest.mark.interop)
     for name in components().shipped
@@ -33,7 +33,7 @@ def test_the_bits_are_those_of_casadi(name: str) -> None:
 
 
 def test_an_instance_in_process_uses_them() -> None:
-    instance = DirectInstance(component_class("rudder-machine")("machine"))
+    instance = DirectInstance(component_class("surface-vessel")("vessel"))
     instance.set_start({})
     instance.initialise(0.0, 1.0)
     assert instance.component.machine is compiled_function

@@ -11,7 +11,7 @@ import pytest
 from fmpy.validation import validate_fmu
 
 import seatrial
-from seatrial.component import Component, Input, Output, Parameter
+from seatrial.component import Component, Input, Noise, Output, Parameter
 from seatrial.errors import InputError, SimulationError
 from seatrial.faults.text import FAILURES, fault_text
 from seatrial.fmi.index import component_class, components
@@ -24,6 +24,7 @@ from seatrial.plant import Plant
 from seatrial.sampled import Sampled
 from tests.fmi.native_slave import Slave
 from tests.fmi.native_slave3 import Slave3
+from tests.interop.native_fmus import moved, start_values
 
 pytestmark = pytest.mark.skipif(HERE != "linux64", reason="loads libraries of Linux")
 
@@ -35,7 +36,6 @@ CANDIDATES = [
     if not issubclass(component_class(name), Plant)
     and not component_class(name).__module__.startswith("seatrial.links")
 ]
-MORE = {"wind": {"intensity": 0.2, "direction_deviation": 0.3, "gust_size": 0.5, "gust_start": 1.0}}
 STEPS = (0.01, 0.025, 0.004, 0.1)
 
 
@@ -43,13 +43,6 @@ def built(name: str, folder: Path, values: Any = None, version: int = 2) -> Path
     source = find_source(name, Path.cwd())
     path = folder / f"{source.stem}.fmu"
     return build_native_fmu(source, path, (HERE,), values, library_here, version)
-
-
-def exercised(name: str) -> dict[str, Any]:
-    """Values with which everything in a component acts, but for its surroundings."""
-    cls = component_class(name)
-    own = {n: v for n, v in cls.exercised.items() if n in cls.ports and cls.ports[n].role != "sea"}
-    return {**own, **MORE.get(name, {})}
 
 
 def faults_of(cls: type[Component]) -> list[str]:
@@ -101,16 +94,14 @@ class Pair:
             port = scalar.port
             if port.kind != "input" or (port.type is str and k % 13):
                 continue
-            value = self._value(port, k)
-            if port.type is float:
-                value += port.start[scalar.index]
+            value = self._value(port, k, scalar.index)
             self.python.write([scalar.reference], [value], port.type)
             self.setters[port.type]([scalar.reference], [value])
 
-    def _value(self, port: Any, k: int) -> Any:
+    def _value(self, port: Any, k: int, index: int) -> Any:
         kind = port.type
         if kind is float:
-            return self.drawn.uniform(-0.2, 0.2)
+            return moved(self.drawn, port.start[index])
         if kind is int:
             return self.drawn.randrange(3)
         if kind is bool:
@@ -156,7 +147,7 @@ def test_same_numbers_to_the_bit(name: str, version: int, tmp_path: Path) -> Non
     why = why_python(component_class(name))
     if why and name not in QUICK:
         pytest.skip(why)
-    pair = Pair(name, tmp_path, exercised(name), version)
+    pair = Pair(name, tmp_path, start_values(name), version)
     assert validate_fmu(str(next(tmp_path.glob("*.fmu")))) == []
     pair.begin()
     seen, kept = set(), None
@@ -232,6 +223,41 @@ def test_norms_and_sums_are_those_of_this_python(tmp_path: Path) -> None:
         python.set("x", x)
         found = slave.fmu.getReal(outputs)
         assert [v.hex() for v in found] == [v.hex() for v in python.get("y")]
+
+
+class Dice(Noise, Sampled):
+    """Draws from one generator in several places, also where it is passed on."""
+
+    x = Output("1", "what was drawn", axes="abcdef")
+
+    def sample(self, t: float, k: int) -> None:
+        generator = self.generator(k)
+        first = generator.random() if k % 3 else 0.0
+        second = float(self._thrown(generator))
+        third = float(self._thrown(generator))
+        fourth, fifth = generator.standard_normal(2).tolist()
+        self.x = first, second, third, fourth, fifth, float(generator.integers(0, 7_000_000))
+
+    def _thrown(self, generator: Any) -> int:
+        return int(generator.integers(-3, 4))
+
+
+def test_one_generator_is_drawn_from_in_several_places(tmp_path: Path) -> None:
+    slave = Slave(built(f"{__file__}:Dice", tmp_path), tmp_path)
+    slave.begin()
+    outputs = [slave.reference[f"x.{axis}"] for axis in "abcdef"]
+    python = Dice("x")
+    python.setup(0.0)
+    python.initialise()
+    python.begin()
+    seen = set()
+    for k in range(2000):
+        found = slave.fmu.getReal(outputs)
+        assert found == list(python.get("x"))
+        seen.add(found[1])
+        slave.fmu.doStep(python.now, 0.1)
+        python.advance(0.1 * k, 0.1)
+    assert seen == {-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0}
 
 
 class Doubler(Sampled):

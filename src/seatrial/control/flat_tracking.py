@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cache
 from types import SimpleNamespace
 from typing import Any, ClassVar
@@ -50,6 +51,8 @@ class FlatTracking(VesselTracking):
     exercised: ClassVar = {"surge_profile": "polynomial", "duration": 1.0, "command_limit": 1e9}
 
     transient = VesselTracking.transient | {"_gains"}
+    structural: ClassVar[Sequence[str]] = (*VesselTracking.structural, "gain")
+    tabulated: ClassVar = {"_prepare": ("_rows", "_gains")}
 
     gain = Parameter((2.0, 4.0, 4.0), ("1/s", "1/s2", "1/s"), "gains", axes=("K01", "K02", "K12"))
     design = Parameter("LTV", "1", "whether A is taken as varying or constant", choices=_DESIGNS)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar
 
 from ..component import Output, Parameter
@@ -43,6 +43,11 @@ class NominalTrajectory(Sampled):
     exercised: ClassVar = {"surge_profile": "polynomial", "duration": 1.0}
 
     transient = Sampled.transient | {"_rows"}
+    structural: ClassVar[Sequence[str]] = (
+        *("period", "mass", "damping", "thrust", "lever_arm", "yaw_coupling_sign"),
+        *("surge", "yaw_rate", "duration"),
+    )
+    tabulated: ClassVar = {"_prepare": ("_rows",)}
 
     period = Parameter(0.1, "s", "sample period", min=1e-6)
     mass = Parameter(

@@ -189,14 +189,16 @@ class SailControl(Sampled):
         beta = side * self.apparent_wind[1]
         allowed = self._side_force_allowed(side)
         upwind = abs(self._downwind_angle()) > self.upwind_threshold
-        if not upwind and self.optimum == "smooth":
+        if self.optimum == "smooth" and not upwind:
             return smooth_setting(table, beta, 0.0, self.sail_limit)
-        if not upwind:
-            return best_setting(table, beta, 0.0, self.sail_limit, allowed)
-        fixed = setting(table, beta, self.upwind_sail, 0.0)
-        if allowed is None or abs(fixed.side) <= allowed:
-            return fixed
-        return best_setting(table, beta, self.upwind_sail, self.sail_limit, allowed)
+        if upwind:
+            fixed = setting(table, beta, self.upwind_sail, 0.0)
+            if allowed is None or abs(fixed.side) <= allowed:
+                return fixed
+        least = self.upwind_sail if upwind else 0.0
+        if allowed is None:
+            return best_setting(table, beta, least, self.sail_limit)
+        return best_setting(table, beta, least, self.sail_limit, allowed)
 
     def _sheeted(self, side: int) -> Setting:
         """Return the setting of a sail that streams as far as its sheet lets it."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from itertools import pairwise
 from typing import NamedTuple
 
 from ..foils import STEP, FoilTable
@@ -63,48 +62,62 @@ def best_setting(
     way to settings beyond, the sail would pass those with the greatest drag.
     """
     s, c = math.sin(beta), math.cos(beta)
-    count = len(table.lift[0]) if most_side is None else _BROADSIDE + 1
-    columns = _columns(count, beta, least, most)
+    rows = list(zip(table.lift, table.drag, strict=True))
+    ends = [
+        _forces(most, *table.coefficients(beta - most + math.pi, row * STEP), s, c)
+        for row in range(len(rows))
+    ]
     ends_between_rows = math.remainder(beta - most + math.pi, math.tau) >= 0.0
-    highest, chosen = -math.inf, (0, 0.0, 0.0, 0.0)
-    for row, (lift, drag) in enumerate(zip(table.lift, table.drag, strict=True)):
-        offered = [(angle, lift[column], drag[column]) for column, angle in columns]
-        offered.append((most, *table.coefficients(beta - most + math.pi, row * STEP)))
-        forces = [(angle, d * c - lft * s, lft * c + d * s) for angle, lft, d in offered]
-        if most_side is not None:
-            neighbours = forces[-1:] + forces[:-1] if ends_between_rows else forces[:-1]
-            forces += _just_reached(neighbours, most_side)
-        for angle, drive, side in forces:
-            keeps = most_side is None or abs(side) <= most_side
-            rank = drive if keeps else -_BEYOND - abs(side)
-            if rank > highest:
-                highest, chosen = rank, (row, angle, drive, side)
-    row, angle, drive, side = chosen
-    return Setting(angle, row * STEP, drive, side)
+    before = ends if ends_between_rows else None
+    best = _Best(-math.inf, 0, (0.0, 0.0, 0.0))
+    for column in range(len(table.lift[0]) if most_side is None else _BROADSIDE + 1):
+        alone = math.remainder(beta - column * STEP + math.pi, math.tau)
+        if not least - _ROUNDING <= alone <= most + _ROUNDING:
+            continue
+        angle = min(max(alone, least), most)
+        here = [_forces(angle, lift[column], drag[column], s, c) for lift, drag in rows]
+        for row, forces in enumerate(here):
+            best = _better(best, row, forces, most_side)
+        if most_side is not None and before is not None:
+            for row, (one, other) in enumerate(zip(before, here, strict=True)):
+                best = _just_reached(best, row, one, other, most_side)
+        before = here
+    for row, forces in enumerate(ends):
+        best = _better(best, row, forces, most_side)
+    angle, drive, side = best.forces
+    return Setting(angle, best.row * STEP, drive, side)
 
 
-def _just_reached(forces: list[_Forces], side: float) -> list[_Forces]:
-    """Return where the side force is ``side``, to port or starboard, between neighbours.
+class _Best(NamedTuple):
+    """The best forces so far, with their rank and the table's row."""
+
+    rank: float
+    row: int
+    forces: _Forces
+
+
+def _forces(angle: float, c_l: float, c_d: float, s: float, c: float) -> _Forces:
+    return angle, c_d * c - c_l * s, c_l * c + c_d * s
+
+
+def _better(best: _Best, row: int, forces: _Forces, most_side: float | None) -> _Best:
+    """Return the better of two; of equals that of the smaller flap, else the former."""
+    _angle, drive, side = forces
+    keeps = most_side is None or abs(side) <= most_side
+    rank = drive if keeps else -_BEYOND - abs(side)
+    if rank > best.rank or (rank == best.rank and row < best.row):
+        return _Best(rank, row, forces)
+    return best
+
+
+def _just_reached(best: _Best, row: int, before: _Forces, after: _Forces, side: float) -> _Best:
+    """Return the best, settings between neighbours with just that side force included.
 
     Coefficients are linear in alpha between the table's rows, so forces are too.
     """
-    found = []
-    for before, after in pairwise(forces):
-        for target in (side, -side):
-            if (before[2] - target) * (after[2] - target) < 0.0:
-                share = (target - before[2]) / (after[2] - before[2])
-                angle, drive = (
-                    b + share * (a - b) for b, a in zip(before[:2], after[:2], strict=True)
-                )
-                found.append((angle, drive, target))
-    return found
-
-
-def _columns(count: int, beta: float, least: float, most: float) -> list[tuple[int, float]]:
-    """Return which of the first columns (alpha) give an angle in the range, and the angle."""
-    found = []
-    for column in range(count):
-        angle = math.remainder(beta - column * STEP + math.pi, math.tau)
-        if least - _ROUNDING <= angle <= most + _ROUNDING:
-            found.append((column, min(max(angle, least), most)))
-    return found
+    for target in (side, -side):
+        if (before[2] - target) * (after[2] - target) < 0.0:
+            share = (target - before[2]) / (after[2] - before[2])
+            angle, drive = (b + share * (a - b) for b, a in zip(before[:2], after[:2], strict=True))
+            best = _better(best, row, (angle, drive, target), side)
+    return best

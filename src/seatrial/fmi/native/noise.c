@@ -29,7 +29,7 @@ void begin_draws(Instance *self, Philox *draws, double seed, uint64_t kind, long
                  long long index) {
     if (fmod(seed, 1.0) != 0.0)
         fail(self, "seed is %s, a whole number is needed", shown(self, seed));
-    *draws = (Philox){{0, 0, (uint64_t)stream, (uint64_t)index}, {(uint64_t)seed, kind}, {0}, 4};
+    *draws = (Philox){{0, 0, (uint64_t)stream, (uint64_t)index}, {(uint64_t)seed, kind}, {0}, 4, 0, 0};
 }
 
 static uint64_t next(Philox *draws) {
@@ -39,6 +39,21 @@ static uint64_t next(Philox *draws) {
         draws->used = 0;
     }
     return draws->drawn[draws->used++];
+}
+
+/* A whole number below `count`, all equally likely: Lemire's method on halves of 64 bits. */
+static uint32_t below(Philox *draws, uint32_t count) {
+    for (;;) {
+        const uint32_t bits = draws->has_half ? draws->half : (uint32_t)(draws->half = next(draws));
+        draws->half >>= 32;
+        draws->has_half = !draws->has_half;
+        const uint64_t product = (uint64_t)bits * count;
+        if ((uint32_t)product >= (0u - count) % count) return (uint32_t)(product >> 32);
+    }
+}
+
+long long drawn_integer(Philox *draws, long long low, long long high) {
+    return low + (high - low > 1 ? below(draws, (uint32_t)(high - low)) : 0);
 }
 
 double drawn_random(Philox *draws) { return (double)(next(draws) >> 11) * 0x1p-53; }

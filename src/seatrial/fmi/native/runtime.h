@@ -102,7 +102,8 @@ static inline int entry_at(Instance *self, const Queue *queue, long long index) 
 
 typedef struct {
     uint64_t counter[4], key[2], drawn[4];
-    int used;
+    int used, has_half;
+    uint64_t half; /* of a number, for the next 32 bits */
 } Philox;
 
 /* The generator of a sample, as seatrial's `Noise.generator`: NumPy's Philox by seed and kind. */
@@ -110,6 +111,7 @@ void begin_draws(Instance *self, Philox *draws, double seed, uint64_t kind, long
                  long long index);
 double drawn_random(Philox *draws);
 double drawn_standard_normal(Philox *draws);
+long long drawn_integer(Philox *draws, long long low, long long high); /* below high, less than 2^32 */
 
 /* ------------------------------------------------------------------ faults */
 

@@ -11,8 +11,8 @@ from typing import Any
 
 from ....errors import InputError
 
-C_TYPES = {"d": "double", "i": "long long", "b": "int"}
-"""Kinds of numbers of the run: floats, whole numbers, truth values."""
+C_TYPES = {"d": "double", "i": "long long", "b": "int", "g": "Philox *"}
+"""Kinds of values of the run: floats, whole numbers, truth values; generators that have begun."""
 _ORDER = "bid"
 
 
@@ -92,6 +92,15 @@ class Queue:
 
 
 @dataclass(frozen=True)
+class Range:
+    """A range whose ends the run knows: C expressions of them, and the step."""
+
+    start: str
+    stop: str
+    step: int
+
+
+@dataclass(frozen=True)
 class FaultValues:
     """The numbers that the present fault of a sensor has for a setting, by its number."""
 
@@ -100,7 +109,7 @@ class FaultValues:
 
 @dataclass(eq=False)
 class Draws:
-    """A generator of random numbers, by stream and index; ``text``: its C variable, once begun."""
+    """A generator of random numbers, by stream and index; ``text``: where it is, once begun."""
 
     items: list[Any]
     text: str = ""
@@ -154,7 +163,8 @@ def described(value: Any) -> str:
             return " or ".join(dict.fromkeys(described(each) for each in alternatives))
         case Method(function=function):
             return function if isinstance(function, str) else called(function)
-    return {Table: "a dict", Queue: "a queue"}.get(type(value), "self")
+    names = {Table: "a dict", Queue: "a queue", Range: "a range whose length the run decides"}
+    return names.get(type(value), "self")
 
 
 # ------------------------------------------------------------------ shapes
@@ -230,6 +240,8 @@ def shape_of(value: Any) -> Shape:
             return Shape(Record, cls, tuple(shape_of(v) for v in fields.values()))
         case Table(items=items):
             return Shape(Table, tuple(items), tuple(shape_of(v) for v in items.values()))
+        case Draws(text=text) if text:
+            return Shape(Draws, "begun")
         case Draws(items=items):
             return Shape(Draws, None, tuple(shape_of(i) for i in items))
         case Choice(alternatives=alternatives):
@@ -283,6 +295,8 @@ def leaves(shape: Shape) -> list[str]:
     """Return the kinds of the numbers that a value of this shape consists of."""
     if shape.form is Num:
         return [shape.detail]
+    if shape == Shape(Draws, "begun"):
+        return ["g"]
     tag = ["b"] if shape.form is Choice else []
     return tag + [kind for part in shape.parts for kind in leaves(part)]
 
@@ -293,6 +307,8 @@ def built(shape: Shape, texts: Iterator[str]) -> Any:
         return Known(shape.detail.value)
     if shape.form is Num:
         return Num(shape.detail, next(texts))
+    if shape.form is Draws and shape.detail:
+        return Draws([], next(texts))
     tag = next(texts) if shape.form is Choice else ""
     parts = [built(part, texts) for part in shape.parts]
     if shape.form is Seq:
@@ -326,6 +342,8 @@ def flattened(value: Any, shape: Shape) -> list[str | None]:
         return _retagged(value, shape)
     if shape.form is Num:
         return [number(value, shape.detail)]
+    if shape.form is Draws and shape.detail:
+        return [value.text]
     if shape.form in (Seq, Record, Table, Draws):
         pairs = zip(parts_of(value), shape.parts, strict=True)
         return [text for part, own in pairs for text in flattened(part, own)]

@@ -31,7 +31,7 @@ from .domain import (
 
 FAILED = "failed"
 """Label at the end of a function that has failed."""
-_WORD = re.compile(r"[A-Za-z_]\w*")
+WORD = re.compile(r"[A-Za-z_]\w*")
 
 EXPRESSIONS: dict[type, Callable[[Any, Any], Any]] = {}
 STATEMENTS: dict[type, Callable[[Any, Any], None]] = {}
@@ -314,7 +314,7 @@ def pruned(variables: Sequence[tuple[str, str]], code: Sequence[Any]) -> tuple[l
     rows, names = list(_flat(code)), {name for _, name in variables}
     while True:
         code_rows = [row for row in rows if not row.startswith("/*")]
-        counts = Counter(word for row in code_rows for word in _WORD.findall(row))
+        counts = Counter(word for row in code_rows for word in WORD.findall(row))
         writes = Counter(row.partition(" = ")[0] for row in code_rows)
         kept: list[Any] = []
         for row in rows:

@@ -142,6 +142,8 @@ def _written(
     values = [names[""] for names, _ in own.returns.sites] or [Known(None)]
     result = merged(values)
     kinds = leaves(result)
+    if "g" in kinds:
+        raise frame.refused(f"a generator that {title} has drawn from and returns")
     silent = not any(line and not line.startswith("/*") for line in _flat_lines(own))
     if silent and not kinds:
         return "", [], result, set(), True
@@ -149,7 +151,7 @@ def _written(
     name = f"f{unit.counter}_{function.__name__.strip('_')}"
     for names, slot in own.returns.sites:
         slot += _return(name, kinds, flattened(names[""], result))
-    unit.functions.append(_text(own, name, kinds, parameters, node.lineno))
+    unit.functions.append((name, _text(own, name, kinds, parameters, node.lineno)))
     return name, kinds, result, own.stored, bool(own.returns.sites)
 
 

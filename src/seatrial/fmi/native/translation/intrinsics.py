@@ -14,6 +14,7 @@ from ....sea.parameters import MeetsCurrent, MeetsWaves, MeetsWind
 from .domain import Choice, Draws, FaultValues, Known, Num, Record, Seq, Table, opened
 from .expressions import unpacked
 from .frame import Frame
+from .operations import is_known, python_of
 
 SETTINGS = ("value", "rate", "factor", "coefficients")
 """Settings of the faults of measurements, in the order of the runtime."""
@@ -32,24 +33,25 @@ def _generator(_frame: Frame, index: Any, stream: Any = None) -> Draws:
 INTRINSICS[Noise.generator] = _generator
 
 
-def _begun(frame: Frame, draws: Draws) -> str:
-    """Return the C variable of a generator."""
+def begun(frame: Frame, draws: Draws) -> str:
+    """Return the C expression of where a generator is, which begins here if it has not."""
     if not draws.text:
         kind = zlib.crc32(frame.unit.cls.__name__.encode())
-        draws.text = frame.variable("d").replace("d", "g", 1)
-        frame.variables[-1] = ("Philox", draws.text)
+        name = frame.variable("g")
+        frame.variables[-1] = ("Philox", name)
+        draws.text = f"&{name}"
         stream, index = (frame.text_of(item, "i") for item in draws.items)
         seed = frame.text_of(frame.unit.attribute(frame, frame.unit.own, "seed"))
-        frame.emit(f"begin_draws(self, &{draws.text}, {seed}, {kind}u, {stream}, {index});")
+        frame.emit(f"begin_draws(self, {draws.text}, {seed}, {kind}u, {stream}, {index});")
     return draws.text
 
 
 def drawn(frame: Frame, name: str, draws: Draws, arguments: list[Any]) -> Any:
     """Return what a method of a generator draws."""
-    own = _begun(frame, draws)
+    own = begun(frame, draws)
 
     def one() -> Num:
-        return frame.num("d", f"drawn_{name}(&{own})")
+        return frame.num("d", f"drawn_{name}({own})")
 
     if name in ("random", "standard_normal"):
         if not arguments:
@@ -61,12 +63,16 @@ def drawn(frame: Frame, name: str, draws: Draws, arguments: list[Any]) -> Any:
             pairs = zip(unpacked(frame, low), unpacked(frame, high), strict=True)
             return Seq(list, [_between(frame, own, a, b) for a, b in pairs])
         return _between(frame, own, low, high)
+    if name == "integers" and len(arguments) == 2 and all(map(is_known, arguments)):
+        low, high = map(python_of, arguments)
+        if 0 < high - low < 2**32:
+            return frame.num("i", f"drawn_integer({own}, {low}LL, {high}LL)")
     raise frame.refused(f"the method {name} of a generator")
 
 
 def _between(frame: Frame, draws: str, low: Any, high: Any) -> Num:
     a, b = frame.text_of(low, "d"), frame.text_of(high, "d")
-    return frame.num("d", f"{a} + ({b} - {a}) * drawn_random(&{draws})")
+    return frame.num("d", f"{a} + ({b} - {a}) * drawn_random({draws})")
 
 
 def _written_fault(frame: Frame) -> Record:

@@ -13,7 +13,19 @@ from typing import Any
 import numpy as np
 
 from ....component import seconds
-from .domain import Choice, Component, FaultValues, Known, Num, Queue, Record, Seq, Table, opened
+from .domain import (
+    Choice,
+    Component,
+    FaultValues,
+    Known,
+    Num,
+    Queue,
+    Range,
+    Record,
+    Seq,
+    Table,
+    opened,
+)
 from .expressions import unpacked
 from .frame import Frame
 from .operations import is_known, is_number, kind_of, python_of, split, truth
@@ -23,7 +35,7 @@ LIBRARY: dict[Any, Callable[..., Any]] = {}
 
 _CHECKED = (
     *("sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh"),
-    *("exp", "expm1", "log", "log1p", "log10", "sqrt"),
+    *("exp", "expm1", "log", "log1p", "log2", "log10", "sqrt"),
 )
 _WHOLE = {math.floor: "floor", math.ceil: "ceil", math.trunc: "trunc"}
 
@@ -240,6 +252,15 @@ def _zip(frame: Frame, *values: Any, strict: Any = None) -> Any:
     if strict is not None and strict.value and len(sizes) > 1:
         raise frame.refused(f"zip of {sorted(sizes)} values")
     return Seq(list, [Seq(tuple, list(row)) for row in zip(*columns)])  # noqa: B905
+
+
+@library(range)
+def _range(frame: Frame, *ends: Any) -> Any:
+    start, stop = ends[:2] if len(ends) > 1 else (Known(0), ends[0])
+    step = ends[2] if len(ends) > 2 else Known(1)
+    if not isinstance(step, Known):
+        raise frame.refused("a range with a step of the run")
+    return Range(frame.text_of(start, "i"), frame.text_of(stop, "i"), step.value)
 
 
 @library(enumerate)

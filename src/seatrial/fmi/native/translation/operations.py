@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import operator
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
 
@@ -250,6 +250,10 @@ def _item(frame: Frame, value: Any, index: Any) -> Any:
         if table:
             name, kind, size = table
             return frame.num(kind, f"{name}[checked_index(self, {index.text}, {size})]")
+        if _is_table(value.value):
+            size = len(value.value)
+            at = frame.num("i", f"checked_index(self, {index.text}, {size})")
+            return _row(frame, value.value, at.text)
     value = opened(value)
     if isinstance(value, Table) and isinstance(index, Known):
         if index.value not in value.items:
@@ -267,6 +271,33 @@ def _item(frame: Frame, value: Any, index: Any) -> Any:
         at = frame.num("i", f"checked_index(self, {frame.text_of(index, 'i')}, {size})")
         return frame.each(Choice(at.text, tuple(value.items)), lambda one: one)
     raise frame.mismatched(f"an item of {described(value)}")
+
+
+def _is_table(rows: Any) -> bool:
+    """Return whether rows are many records or lists of numbers, all of one structure."""
+    if not isinstance(rows, (list, tuple)) or len(rows) < 2:
+        return False
+    shapes = {_structure(row) for row in rows}
+    return len(shapes) == 1 and not any(part is None for part in shapes)
+
+
+def _structure(row: Any) -> Any:
+    if isinstance(row, (list, tuple)):
+        parts = tuple(_structure(each) for each in row)
+        return None if None in parts else (type(row), parts)
+    return type(row) if type(row) in (int, float) else None
+
+
+def _row(frame: Frame, rows: Sequence[Any], at: str) -> Any:
+    """Return a row of a table, read column by column."""
+    first = rows[0]
+    if not isinstance(first, (list, tuple)):
+        name, kind, _ = frame.unit.constant_table(list(rows))
+        return frame.num(kind, f"{name}[{at}]")
+    columns = [_row(frame, column, at) for column in zip(*rows, strict=True)]
+    if hasattr(first, "_fields"):
+        return Record(type(first), dict(zip(first._fields, columns, strict=True)))
+    return Seq(type(first), columns)
 
 
 def with_item(frame: Frame, value: Any, index: Any, new: Any) -> Any:

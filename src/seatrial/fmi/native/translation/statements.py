@@ -7,8 +7,10 @@ from typing import Any
 
 from .domain import (
     Closure,
+    Draws,
     Known,
     Queue,
+    Range,
     Seq,
     Shape,
     built,
@@ -23,6 +25,9 @@ from .frame import Frame, Join, statement
 from .messages import failure
 from .narrowing import narrowing
 from .operations import binary, compared, either, truth, with_item
+
+_UNROLLED = 16
+"""Turns of a loop over a range that are written one by one; more become a loop of C."""
 
 
 @statement(ast.Pass, ast.Import, ast.ImportFrom)
@@ -96,6 +101,8 @@ def _note(frame: Frame, node: ast.stmt) -> None:
 def assign(frame: Frame, target: ast.expr, value: Any) -> None:
     """Give a target of an assignment its value."""
     if isinstance(target, ast.Name):
+        if isinstance(value, Draws):
+            frame.unit.begin(frame, value)
         if frame.names is not None:
             previous = [n for n, v in frame.names.items() if v is value and n != target.id]
             if previous and hasattr(value, "fresh"):
@@ -183,6 +190,9 @@ def _for(frame: Frame, node: ast.For) -> None:
     if isinstance(values, Queue):
         _over_queue(frame, node, values, backwards is not None)
         return
+    if backwards is None and not node.orelse and (span := _span(values)):
+        _over_range(frame, node, span)
+        return
     if backwards is not None:
         values = Seq(list, unpacked(frame, values)[::-1])
     breaks = Join(frame, frame.label())
@@ -199,6 +209,27 @@ def _for(frame: Frame, node: ast.For) -> None:
         if node.orelse:
             frame.execute(node.orelse)
     _arrive(frame, breaks)
+
+
+def _span(values: Any) -> Range | None:
+    """Return what a loop of C goes over; None for what is short, or no range."""
+    if isinstance(values, Range):
+        return values
+    if isinstance(values, Known) and isinstance(values.value, range):
+        own = values.value
+        return Range(str(own.start), str(own.stop), own.step) if len(own) > _UNROLLED else None
+    return None
+
+
+def _over_range(frame: Frame, node: ast.For, values: Range) -> None:
+    at, end = frame.num("i", values.start), frame.num("i", values.stop)
+    test = f"{at.text} {'<' if values.step > 0 else '>'} {end.text}"
+
+    def begin() -> None:
+        assign(frame, node.target, frame.num("i", at.text))
+
+    step = f"{at.text} += {values.step};"
+    _looped(frame, node.body, lambda: frame.num("b", test), step, begin)
 
 
 def _reversed(node: ast.expr) -> ast.expr | None:

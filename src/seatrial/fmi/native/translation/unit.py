@@ -36,9 +36,9 @@ from .domain import (
     shape_of,
 )
 from .expressions import unpacked
-from .frame import Frame, lines
+from .frame import WORD, Frame, lines
 from .functions import appended_attributes, found_method, inlined, invoke, record
-from .intrinsics import INTRINSICS, OTHER, drawn, fault_value
+from .intrinsics import INTRINSICS, OTHER, begun, drawn, fault_value
 from .library import LIBRARY, method
 from .messages import OWN_NAME
 from .operations import binary, is_known, python_of, truth
@@ -62,13 +62,16 @@ class Unit:
         self.aliased: set[str] = set()
         self.made: dict[str, Known] = {}
         """Objects that are built in, by the method that makes them."""
+        self.tabulated: dict[str, Known] = {}
+        """Attributes that are tables, made when C is written."""
         self.tables: dict[Any, tuple[str, str, int]] = {}
         self.changed = True
         self._begin()
 
     def _begin(self) -> None:
         self.counter = 0
-        self.functions: list[str] = []
+        self.functions: list[tuple[str, str]] = []
+        """By name, in the order in which they are written: after those that they call."""
         self.written: dict[Any, Any] = {}
         self.open: set[Any] = set()
         self.changed = False
@@ -89,8 +92,18 @@ class Unit:
                 if missing:
                     raise TranslationError(missing)
                 self._refuse_shared()
-                return "\n".join([*self.functions, *roots])
+                return "\n".join([*self._called(roots), *roots])
         raise TranslationError(f"{self.cls.__name__}: the types of its attributes do not settle")
+
+    def _called(self, roots: list[str]) -> list[str]:
+        """Return the functions that are called: not those of loops that were written again."""
+        found: list[str] = []
+        words = {word for root in roots for word in WORD.findall(root)}
+        for name, text in reversed(self.functions):
+            if name in words:
+                found.append(text)
+                words.update(WORD.findall(text))
+        return found[::-1]
 
     def _refuse_shared(self) -> None:
         """Raise TranslationError for a list that changes in place, and may be another's too."""
@@ -193,6 +206,8 @@ class Unit:
         known = (frame.names or {}).get(f"self.{name}")
         if known is not None:
             return known
+        if name in self.tabulated:
+            return self.tabulated[name]
         if name in self.appended:
             return Queue(name) if name in self.queues else Seq(list, [], fresh=False)
         if name in self.attributes:
@@ -340,6 +355,9 @@ class Unit:
 
     def call(self, frame: Frame, function: Any, arguments: list[Any], named: dict[str, Any]) -> Any:
         """Return what a function returns."""
+        for each in (*arguments, *named.values()):
+            if isinstance(each, Draws):
+                begun(frame, each)
         if isinstance(function, Choice):
             return frame.each(function, lambda one: self.call(frame, one, arguments, named))
         if isinstance(function, Closure):
@@ -378,7 +396,18 @@ class Unit:
             return method(frame, own, receiver, arguments, named)
         if own in INTRINSICS:
             return INTRINSICS[own](frame, *arguments, **named)
+        if isinstance(receiver, Component) and own.__name__ in self.cls.tabulated:
+            return self._tabulated(own.__name__)
         return invoke(frame, own, function.owner, [receiver, *arguments], named)
+
+    def _tabulated(self, name: str) -> Known:
+        """Call a method that makes tables of what is built in, here and now."""
+        if name not in self.made:
+            self.made[name] = Known(getattr(self.example, name)())
+            attributes = self.cls.tabulated[name]
+            self.tabulated |= {a: Known(getattr(self.example, a)) for a in attributes}
+            self.changed = True
+        return self.made[name]
 
     def _evaluated(
         self, frame: Frame, function: Any, arguments: list[Any], named: dict[str, Any]
@@ -396,6 +425,10 @@ class Unit:
     def assign(self, frame: Frame, target: ast.expr, value: Any) -> None:
         """Give a target of an assignment its value."""
         assign(frame, target, value)
+
+    def begin(self, frame: Frame, draws: Draws) -> None:
+        """Let a generator begin, which may be drawn from in several places."""
+        begun(frame, draws)
 
     def added(self, frame: Frame, a: Any, b: Any) -> Any:
         """Return a + b."""
