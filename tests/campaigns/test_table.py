@@ -16,6 +16,7 @@ from seatrial.campaigns.sweep import How, run_sweep
 from seatrial.errors import InputError
 from seatrial.trials.campaign import load_campaign
 from seatrial.trials.stopping_rule import StoppingRule, failure_interval
+from seatrial.trials.trial import load_trial
 from tests.cli.test_stop import SEATRIAL, wait_for
 
 GRID = (
@@ -191,3 +192,49 @@ def test_shipped_campaigns_have_as_many_cases_as_their_lists_say():
     assert len(load_campaign("hydrone-pads").cases()) == 10
     assert len(load_campaign("hydrone-sensitivity").cases()) == 14
     assert Path(load_campaign("hydrone-pads").read_from.path).is_file()
+
+
+FAULTS = """
+keep = "none"
+figures = ["case.y"]
+[set]
+"case.number" = "2 m"
+[faults]
+nothing = []
+high = [{ what = "bias", where = "case.y", value = "1 m", at = "100 ms" }]
+[design]
+kind = "full-factorial"
+[design.vary]
+"faults.high.value" = { levels = ["10 m", "20 m"] }
+"faults.high.at" = { levels = ["100 ms", "9 s"] }
+"""
+
+
+def test_keys_of_a_fault_are_drawn_for_the_cases_that_have_it(written, tmp_path):
+    campaign = written(FAULTS.replace('"9 s"', '"200 ms"'))
+    run_sweep(campaign, tmp_path / "out", direct())
+    table = pd.read_parquet(tmp_path / "out/results.parquet")
+    assert list(table["faults"]) == ["nothing", "high"] * 4
+    assert [v if v == v else None for v in table["faults.high.value"]] == [None, 10, None, 10, None, 20, None, 20]  # fmt: skip
+    assert list(table["greatest case.y"]) == [4, 14, 4, 14, 4, 24, 4, 24]
+    late = written(FAULTS)
+    with pytest.raises(InputError, match="'9 s' is outside the trial's time"):
+        run_sweep(late, tmp_path / "late", direct())
+
+
+def test_keys_of_a_trials_own_faults_are_settings(written, tmp_path):
+    written("")
+    trial = tmp_path / "t.toml"
+    with trial.open("a") as file:
+        file.write('[[faults]]\nwhat = "bias"\nwhere = "case.y"\nvalue = "1 m"\nat = "0 s"\n')
+    campaign = written(
+        'keep = "none"\nfigures = ["case.y"]\n[grid]\n"faults.0.value" = ["3 m", "5 m"]\n'
+    )
+    run_sweep(campaign, tmp_path / "out", direct())
+    assert list(pd.read_parquet(tmp_path / "out/results.parquet")["last case.y"]) == [3, 5]
+    for key, said in (
+        ("faults.1.at", "there is no fault 1: the trial has 1, from 0"),
+        ("faults.0.a", "unknown key of a fault 'a'"),
+    ):
+        with pytest.raises(InputError, match=said):
+            load_trial(str(trial), changes={key: "1 s"}, origin="--set")

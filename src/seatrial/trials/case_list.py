@@ -11,6 +11,7 @@ from typing import Any, overload
 
 from ..cosim.fault_entry import FaultEntry
 from .cases import Case, case_name
+from .fault_keys import changed_faults, named_keys
 from .trial import Trial
 
 FAULTS = "faults"
@@ -55,15 +56,18 @@ class Block:
         chosen.update(self.rows[row])
         failing = self.crossed[crossed]
         found = chosen if failing is None else {**chosen, FAULTS: failing}
+        named = found.get(FAULTS)
+        of_faults = named_keys(found, self.faults)
+        found = {k: v for k, v in found.items() if of_faults.get(k, named) == named}
         scale = self.scales[scaled]
         shown = found if scale is None else {**found, f"{scale[0]} times": scale[1]}
 
         def made() -> Trial:
-            named = found.get(FAULTS)
-            changes = {key: value for key, value in chosen.items() if key != FAULTS}
+            changes = {k: v for k, v in found.items() if k != FAULTS and k not in of_faults}
             trial = self.base.changed(changes, self.where)
             if named is not None:
-                trial = trial.with_faults(self.faults[named])
+                own = {key: value for key, value in found.items() if key in of_faults}
+                trial = trial.with_faults(changed_faults(self.faults[named], own, self.where))
             return trial if scale is None else trial.scaled(*scale, self.where_scaled)
 
         return Case(case_name(self.base, shown), made, {**self.common, **shown}, self.base.name)

@@ -1,7 +1,8 @@
-"""Designs of campaigns: cases drawn from distributions, the same for the same seed."""
+"""Designs of campaigns: cases drawn from distributions, repeatable by a seed, or factorial."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, Literal
 
 import numpy as np
@@ -10,7 +11,9 @@ from pydantic import Field
 from ..cosim.files import FileModel
 from ..errors import InputError
 from .distributions import Distribution, read_distribution
+from .factorial import factorial_rows
 
+MOST_CASES = 1_000_000
 _TINY = 2.0**-40
 """How near to 0 and 1 a probability comes: a normal distribution has no value there."""
 
@@ -25,11 +28,15 @@ class Correlation(FileModel):
 class Design(FileModel):
     """The cases that a campaign draws: each is one value of every key of ``vary``."""
 
-    kind: Literal["latin-hypercube", "sobol", "monte-carlo"]
-    count: int = Field(gt=0, le=1_000_000)
+    kind: Literal[
+        "latin-hypercube", "sobol", "monte-carlo", "full-factorial", "fractional-factorial"
+    ]
+    count: int | None = Field(default=None, gt=0, le=MOST_CASES)
     seed: int = Field(default=0, ge=0)
     vary: dict[str, Distribution] = Field(min_length=1)
     correlation: list[Correlation] = Field(default_factory=list)
+    resolution: int | None = Field(default=None, ge=3)
+    generators: str | None = None
 
 
 def drawn(design: Design, origin: str) -> list[dict[str, Any]]:
@@ -38,14 +45,25 @@ def drawn(design: Design, origin: str) -> list[dict[str, Any]]:
     Points are of the unit cube (independent; a Latin hypercube with one point in each of ``count``
     strata of every key; Sobol's sequence, scrambled after Owen), and go through the inverse of each
     distribution's cumulative one. Correlation is that of the normal scores (a Gaussian copula):
-    between normal keys it is Pearson's. Raises InputError.
+    between normal keys it is Pearson's. Factorial designs have every combination of the levels, or
+    a fraction of them (`factorial_rows`). Raises InputError.
     """
+    if design.kind.endswith("-factorial"):
+        _refuse(design, ("count", "seed", "correlation"), origin)
+        fraction = design.resolution, design.generators
+        if design.kind == "full-factorial":
+            _refuse(design, ("resolution", "generators"), origin)
+            return factorial_rows(design.vary, None, MOST_CASES, origin)
+        return factorial_rows(design.vary, fraction, MOST_CASES, origin)
+    _refuse(design, ("resolution", "generators"), origin)
+    if design.count is None:
+        raise InputError(f"{origin}: count: {design.kind} needs it")
     laws = {
         key: read_distribution(entry, f"{origin}: vary: {key}")
         for key, entry in design.vary.items()
     }
     lower = lower_factor(design, origin)
-    points = np.clip(_points(design, origin), _TINY, 1.0 - _TINY)
+    points = np.clip(_points(design, design.count, origin), _TINY, 1.0 - _TINY)
     if design.correlation:
         from scipy import special  # dear to import, and no other command needs it
 
@@ -54,22 +72,29 @@ def drawn(design: Design, origin: str) -> list[dict[str, Any]]:
     return [dict(zip(laws, row, strict=True)) for row in zip(*columns, strict=True)]
 
 
-def _points(design: Design, origin: str) -> np.ndarray:
+def _refuse(design: Design, keys: Sequence[str], origin: str) -> None:
+    """Raise InputError if one of ``keys`` is given, which this kind of design does not take."""
+    for key in keys:
+        if key in design.model_fields_set:
+            raise InputError(f"{origin}: {key}: not of {design.kind}")
+
+
+def _points(design: Design, count: int, origin: str) -> np.ndarray:
     """Return points of the unit cube, a row for each case."""
     dimensions, random = len(design.vary), np.random.default_rng(design.seed)
     if design.kind == "monte-carlo":
-        return random.random((design.count, dimensions))
+        return random.random((count, dimensions))
     from scipy.stats import qmc  # half a second, of every command if it stood above
 
     if design.kind == "latin-hypercube":
-        return np.asarray(qmc.LatinHypercube(dimensions, seed=random).random(design.count))
-    if design.count & (design.count - 1):
-        below = 1 << (design.count.bit_length() - 1)
+        return np.asarray(qmc.LatinHypercube(dimensions, seed=random).random(count))
+    if count & (count - 1):
+        below = 1 << (count.bit_length() - 1)
         raise InputError(
             f"{origin}: count: Sobol's sequence needs a power of 2, such as {below} or "
-            f"{2 * below}, found {design.count}"
+            f"{2 * below}, found {count}"
         )
-    return np.asarray(qmc.Sobol(dimensions, seed=random).random(design.count))
+    return np.asarray(qmc.Sobol(dimensions, seed=random).random(count))
 
 
 def lower_factor(design: Design, origin: str) -> np.ndarray:

@@ -19,6 +19,7 @@ from ..cosim.values import Setting
 from ..errors import InputError, unknown
 from ..shipped import available
 from .criteria import Criterion, parse
+from .fault_keys import PREFIX, with_fault_keys
 from .scenario import Acted, Scenario, events_of, read_scenario
 from .seabed_entry import set_seabed, water_depth
 from .surroundings import GROUPS, SeaEntry, set_surroundings
@@ -210,20 +211,23 @@ class Trial:
     def changed(self, changes: Mapping[str, Any], origin: str) -> Trial:
         """Return the trial with settings changed: ``component.port``, or a key of the trial.
 
-        Keys of the trial are variant, seed, start, stop, utc, scenario, ``choices.NAME``, and those
-        of its sea, current, wind and seabed such as ``sea.height``, unless a component has that
-        name; of its rig, step, algorithm and ``component.isolated``. Raises InputError.
+        Keys of the trial are variant, seed, start, stop, utc, scenario, ``choices.NAME``, those of
+        its faults such as ``faults.0.at``, and those of its sea, current, wind and seabed such as
+        ``sea.height``, unless a component has that name; of its rig, step, algorithm and
+        ``component.isolated``. Raises InputError.
         """
         keys = ("variant", "seed", "start", "stop", "utc", "scenario")
         rig_keys = ("step", "algorithm")
         own, of_rig, overrides = dict[str, Any](), dict(self.rig_changes), list(self.overrides)
         choices = {**self.file.choices, **choices_in(changes, origin)}
-        of_processes = dict[str, Any]()
+        of_processes, of_faults = dict[str, Any](), dict[str, Any]()
         for key, value in changes.items():
             if key.startswith(_CHOICES):
                 own["choices"] = choices
             elif key.endswith(KEY_END):
                 of_processes[key] = value
+            elif key.startswith(PREFIX) and not self._has_component(key):
+                of_faults[key] = value
             elif (group := self._group_in(key)) is not None:
                 before = own.get(group, self.file.model_dump(exclude_none=True).get(group, {}))
                 own[group] = {**before, key.partition(".")[2]: value}
@@ -235,9 +239,13 @@ class Trial:
             elif key in rig_keys:
                 of_rig[key] = value
             else:
-                known = (*keys, *rig_keys, f"{_CHOICES}NAME", *(f"{g}.KEY" for g in _TABLES))
+                known = (*keys, *rig_keys, *_PATTERNS)
                 raise InputError(f"{origin}: {unknown('key', key, known)}, or component.port")
         content = {**self.file.model_dump(exclude_unset=True), **own}
+        if of_faults:
+            content["faults"] = with_fault_keys(
+                [fault.written for fault in self.file.faults], of_faults, origin
+            )
         if changes:
             content["criteria"] = [_unexpected(entry) for entry in content.get("criteria", [])]
         file = validated(TrialFile, content, self.read_from.path)
@@ -259,10 +267,12 @@ class Trial:
     def _group_in(self, key: str) -> str | None:
         """Return the table of the trial that a key is of, if no component has its name."""
         group, dot, _ = key.partition(".")
-        if not dot or group not in _TABLES:
-            return None
-        of_rig = {path.partition(".")[0] for path in self.rig.components}
-        return None if group in of_rig else group
+        return group if dot and group in _TABLES and not self._has_component(key) else None
+
+    def _has_component(self, key: str) -> bool:
+        """Say if a component of the rig has the name that a key begins with."""
+        first = key.partition(".")[0]
+        return any(path.partition(".")[0] == first for path in self.rig.components)
 
 
 def is_trial(name: str) -> bool:
@@ -302,8 +312,9 @@ def load_trial(
 
 
 _CHOICES = "choices."
-_TABLES = (*GROUPS, "seabed")
 """What the key of a choice begins with, among settings."""
+_TABLES = (*GROUPS, "seabed")
+_PATTERNS = (f"{_CHOICES}NAME", f"{PREFIX}N.KEY", *(f"{group}.KEY" for group in _TABLES))
 
 
 def _unexpected(criterion: dict[str, Any]) -> dict[str, Any]:
