@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from ..errors import InputError, unknown
 from ..trials.campaign import Campaign
 from ..trials.case_list import FAULTS, Block
 from ..trials.cases import Case
@@ -28,8 +29,13 @@ class Column:
 
 
 def columns_of(campaign: Campaign) -> list[Column]:
-    """Return the columns of a campaign's table; they depend on its files alone."""
-    return table_columns(campaign, campaign.trials, _settings(campaign.cases().blocks))
+    """Return the columns of a campaign's table; they depend on its files alone.
+
+    Raises InputError for a map of keys that its cases do not set to numbers.
+    """
+    settings = _settings(campaign.cases().blocks)
+    _check_map(campaign, settings)
+    return table_columns(campaign, campaign.trials, settings)
 
 
 def table_columns(
@@ -53,6 +59,18 @@ def table_columns(
         for index, which in enumerate(("least", "greatest", "last"))
     ]
     return _unlike(columns)
+
+
+def _check_map(campaign: Campaign, settings: Mapping[str, list[Any]]) -> None:
+    entry, where = campaign.file.map, f"{campaign.read_from.path}: map"
+    if entry is None:
+        return
+    for key in entry.keys:
+        if key not in settings:
+            raise InputError(f"{where}: {unknown('key that cases set', key, settings)}")
+    for axis, key in (("x", entry.x), ("y", entry.y)):
+        if _setting(key, settings[key]).kind not in ("integer", "number"):
+            raise InputError(f"{where}.{axis}: {key} is no number, or of several units")
 
 
 def _settings(blocks: Iterable[Block]) -> dict[str, list[Any]]:

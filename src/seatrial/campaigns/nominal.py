@@ -51,9 +51,12 @@ def nominal_values(asking: Asking, written: Mapping[str, float]) -> np.ndarray:
     space, trial = asking.space, asking.asked.base
     found = space.quantiles(np.full((1, len(space.keys)), 0.5))[0]
     own = {} if set(written) == set(space.keys) else _own(asking)
-    for i, (key, unit) in enumerate(zip(space.keys, space.units, strict=True)):
+    for i, (key, law) in enumerate(zip(space.keys, space.laws, strict=True)):
         said = written.get(key, own.get(key, _of_trial(trial, key)))
-        number = _in(unit, said, f"{trial.name}: {key}")
+        if law.levels:
+            found[i] = law.levels.index(said) if said in law.levels else found[i]
+            continue
+        number = _in(law.unit, said, f"{trial.name}: {key}")
         if number is not None:
             found[i] = number
     clipped: np.ndarray = np.clip(found, *space.ends.T)

@@ -23,6 +23,7 @@ from ..trials.run_schema import checked_json
 from ..trials.stopping_rule import failure_interval
 from ..whole_file import write_whole
 from .finding import ANSWER, Finding, read_answer
+from .maps import campaign_map, map_figure, said_of
 from .table import RESULTS, read_rows, units_of
 
 SHOWN = 500
@@ -93,6 +94,7 @@ def write_table_page(folder: Path) -> Path:
     answer = read_answer(folder) if (folder / ANSWER).is_file() else None
     share_library(folder)
     failed = sum(found.failed)
+    shown_map = campaign_map(path, index.get("map"), units)
     page = render(
         "table.html.j2",
         library=LIBRARY,
@@ -108,6 +110,8 @@ def write_table_page(folder: Path) -> Path:
         shown=found.shown,
         links=_links(folder, index),
         rerun="" if answer else f"seatrial campaign rerun {shlex.quote(index['name'])} --case ",
+        map=None if shown_map is None else map_figure(shown_map).json(),
+        said_of_map=None if shown_map is None else said_of(shown_map),
         figures=[] if answer else _figures(found, units),
         answer=answer,
         drawings=_drawings(folder, answer) if answer else [],

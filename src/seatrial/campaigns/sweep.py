@@ -113,8 +113,8 @@ def run_sweep(
         if (left / RESULTS).is_file() and not (left / ENDED_LOG).is_file():
             return _summary(left, len(cases))
         kept = ended_cases(left, len(cases))
-    plan = replace(plan, recorded=check(cases, plan, hooks))
     columns = columns_of(campaign)
+    plan = replace(plan, recorded=check(cases, plan, hooks))
     with closing(workers_of(campaign, cases, plan, how, hooks)) as workers:
         folder = left or claim_folder(out, campaign.read_from.name, INDEX)
         write_json(folder / INDEX, {**index, "cases": []})
@@ -243,15 +243,17 @@ def index_of(
     campaign: Campaign, engine: Engine, count: int, question: Any = None
 ) -> dict[str, Any]:
     """Return the index of a campaign's folder, or of a question's, without its cases."""
-    file = campaign.file.model_dump(exclude={"title", "keep", "samples", "ask"})
+    file = campaign.file.model_dump(exclude={"title", "keep", "samples", "ask", "map"})
     sources = [s.sha256 for t in campaign.trials for s in (t.read_from, t.rig.read_from)]
     asked = [] if question is None else [question]
     said = json.dumps([__version__, engine, file, sources, *asked], default=str)
+    drawn = campaign.file.map
     return {
         "name": campaign.read_from.name,
         "title": campaign.file.title,
         "table": RESULTS,
         "count": count,
+        "map": None if drawn is None else drawn.model_dump(),
         "of": hashlib.sha256(said.encode()).hexdigest(),
     }
 

@@ -18,6 +18,7 @@ from .case_list import FAULTS, Block, Cases
 from .cases import Case, case_folders, run_cases
 from .designs import Design, drawn
 from .hooks import Hooks
+from .map_entry import MapEntry
 from .output import claim_folder, write_json
 from .questions import Questions
 from .resuming import kept_results
@@ -68,6 +69,8 @@ class CampaignFile(FileModel):
     until: StoppingRule | None = None
     ask: Questions | None = None
     """Settings of the questions that can be asked."""
+    map: MapEntry | None = None
+    """What the page draws; None: the keys of a grid by themselves."""
 
 
 @dataclass(frozen=True)

@@ -23,6 +23,7 @@ from ..cosim.shape import Drawn, carried
 from ..errors import InputError
 from ..ports import VIEWS
 from ..reading import json_content
+from .map_entry import MapEntry
 
 Number = Annotated[float, Strict(), Field(allow_inf_nan=False)]
 Count = Annotated[int, Field(ge=0, le=2**63)]
@@ -260,6 +261,7 @@ class _Campaign(_Entry):
     cases: list[_Case]
     table: str | None = None
     count: Count | None = None
+    map: MapEntry | None = None
 
 
 class _Closed(BaseModel):

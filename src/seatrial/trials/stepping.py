@@ -55,6 +55,7 @@ class Stepping:
         """Step to the end; return the status. Raises SimulationError, OSError of the record."""
         master, recorder, termination = self.master, self._recorder, self._termination
         events, steps, observer = self._events, self._prepared.trial.steps, self._hooks.observer
+        may_decide = termination.has_any
         stop_requested, pace = self._hooks.stop_requested, self.pace
         if observer is not None:
             assert self._folder is not None
@@ -70,7 +71,8 @@ class Stepping:
             if observer is not None:
                 observer.at_point(stop_requested)
             stopping = stop_requested() or (observer is not None and observer.stops)
-            decided, over = termination.status(), master.steps >= steps
+            decided = termination.status() if may_decide else None
+            over = master.steps >= steps
             enders = master.ended()
             recorder.record(last=bool(stopping or decided or over or enders))
             if decided or over or enders:
@@ -131,8 +133,11 @@ class Stepping:
             master.step()
             return
         try:
-            master.advance(most, rows)
-        finally:
+            taken = master.advance(most, rows)
+        except BaseException:
+            self._recorder.take()
+            raise
+        if taken > 1:  # else there is no point in between
             self._recorder.take()
 
     @property
