@@ -11,6 +11,7 @@ import pyarrow.parquet as pq
 import pytest
 from scipy.stats import beta
 
+import seatrial
 from seatrial.campaigns.page import write_table_page
 from seatrial.campaigns.sweep import How, run_sweep
 from seatrial.errors import InputError
@@ -192,6 +193,28 @@ def test_shipped_campaigns_have_as_many_cases_as_their_lists_say():
     assert len(load_campaign("hydrone-pads").cases()) == 10
     assert len(load_campaign("hydrone-sensitivity").cases()) == 14
     assert Path(load_campaign("hydrone-pads").read_from.path).is_file()
+
+
+def test_python_has_the_same_table(written, tmp_path):
+    campaign, seen = written(GRID), []
+    run_sweep(campaign, tmp_path / "once", direct())
+    path = tmp_path / "campaign.toml"
+    out = tmp_path / "out"
+    result = seatrial.run_campaign(
+        path, out=out, jobs=2, progress=lambda n, of: seen.append((n, of))
+    )
+    assert seen == [(1, 4), (2, 4), (3, 4), (4, 4)]
+    assert result.table.read_bytes() == (tmp_path / "once/results.parquet").read_bytes()
+    assert not result.passed
+    assert "3 of 4 cases pass" in repr(result)
+    assert [(case.name, case.result.passed) for case in result.cases] == [("t, number 4 m", False)]
+    assert list(result.to_pandas().loc[3:, "few"]) == [True, False]
+    assert result.report() == out / "report.html"
+    assert seatrial.run_campaign(path, out=out, resume=True).table == result.table
+    kept = seatrial.run_campaign(path, out=tmp_path / "all", keep="all")
+    assert len(kept.cases) == 4
+    with pytest.raises(InputError, match="keep: unknown choice 'some'"):
+        seatrial.run_campaign(path, keep="some")
 
 
 FAULTS = """

@@ -15,6 +15,11 @@ from .written import as_engine
 if TYPE_CHECKING:
     import pandas
 
+    from ..campaigns.sweep import How
+    from ..trials.campaign import Campaign
+
+Done = Callable[[object, object], None]
+
 _INDEX = "campaign.json"
 
 
@@ -49,18 +54,34 @@ class CampaignResult:
             raise InputError(f"{self.folder} is not a campaign folder: it has no {_INDEX}")
         index = run_schema.checked_json(self.folder / _INDEX, run_schema.CAMPAIGN)
         self.name = str(index["name"])
+        table = index.get("table")
+        self.table = None if table is None else self.folder / table
+        """The table of all cases, ``results.parquet``, if the campaign has one."""
         self.cases = [self._case(entry) for entry in index["cases"]]
-        """In the order of the campaign."""
+        """In the order of the campaign; beside a table those that have kept their folders."""
 
-    @property
+    @cached_property
     def passed(self) -> bool:
-        """True if every case is complete and every criterion holds."""
-        return all(case.passed for case in self.cases)
+        """True if every case is complete and every criterion holds. Raises InputError."""
+        return self._counted[0] == self._counted[1]
+
+    @cached_property
+    def _counted(self) -> tuple[int, int]:
+        """How many cases passed, and of how many."""
+        if self.table is None:
+            return sum(case.passed for case in self.cases), len(self.cases)
+        from ..campaigns.table import read_rows
+
+        found = [row["passed"] for row in read_rows(self.table, ["passed"])]
+        return sum(found), len(found)
 
     def report(self) -> Path:
         """Write the pages of all cases and of the campaign; return the path of the latter."""
+        from ..campaigns.page import write_table_page
         from ..trials.campaign_report import write_campaign_report
 
+        if self.table is not None:
+            return write_table_page(self.folder)
         for case in self.cases:
             case.result.report()
         return write_campaign_report(self.folder)
@@ -69,12 +90,15 @@ class CampaignResult:
         """Return a table with a row per case, indexed by its name.
 
         Columns: ``trial``, ``status``, ``passed``, what was set, and of each criterion by its
-        name whether it holds, and as ``NAME [UNIT]`` its worst value. Raises InputError if
-        pandas is not installed.
+        name whether it holds, and as ``NAME [UNIT]`` its worst value. Of a campaign with a table it
+        is that, indexed by the number of the case. Raises InputError if pandas is not installed.
         """
         from .signals import needed
 
         library = needed("pandas", "to_pandas")
+        if self.table is not None:
+            whole: pandas.DataFrame = library.read_parquet(self.table).set_index("case")
+            return whole
         rows = []
         for case in self.cases:
             row = {"trial": case.trial, "status": case.status, "passed": case.passed, **case.set}
@@ -87,8 +111,8 @@ class CampaignResult:
         return table
 
     def __repr__(self) -> str:
-        passed = sum(case.passed for case in self.cases)
-        return f"<{self.name}: {passed} of {len(self.cases)} cases pass; {self.folder}>"
+        passed, count = self._counted
+        return f"<{self.name}: {passed} of {count} cases pass; {self.folder}>"
 
     def _case(self, entry: dict[str, Any]) -> CaseResult:
         return CaseResult(
@@ -107,13 +131,19 @@ def run_campaign(
     out: str | Path | None = None,
     engine: str = "direct",
     jobs: int | None = None,
+    keep: str | None = None,
+    cluster: str | None = None,
+    resume: bool = False,
     progress: Callable[[int, int], None] | None = None,
 ) -> CampaignResult:
     """Run every case of a campaign, as ``seatrial run`` does, and return what they left.
 
     ``campaign`` is a name or the path of a ``.toml`` file; ``out`` and ``engine`` are as for
     `run_trial`. ``jobs`` cases run side by side, None: as many as there are cores; what they leave
-    does not depend on it. ``progress`` is called after each case with how many are done, and of how
+    does not depend on it. ``keep`` ("all", "failed" or "none"), or that of the campaign's file,
+    leaves a table of all cases, with the folders of those; ``cluster`` runs it on the workers of a
+    Dask scheduler, ``HOST:PORT``. With ``resume``, ``out`` may be what the campaign has left: it
+    goes on from there. ``progress`` is called after each case with how many are done, and of how
     many. A case that could not go on, or whose process died, has the status ``failed`` and does
     not end the campaign.
 
@@ -121,27 +151,47 @@ def run_campaign(
     a campaign that was interrupted: its folder holds the cases so far, for
     `load_campaign_result`.
     """
+    from ..campaigns.sweep import How, keep_named
     from ..links.hardware import confined
     from ..trials.campaign import load_campaign
-    from ..trials.campaign import run_campaign as run
-    from ..trials.cases import Case
-    from ..trials.run import Result
 
-    loaded = load_campaign(str(campaign))
+    loaded, kept = load_campaign(str(campaign)), keep_named(keep, "keep")
+    target = None if out is None else Path(out)
     count, finished = len(loaded.cases()), 0
 
-    def done(_case: Case, _result: Result) -> None:
+    def done(_case: object, _ended: object) -> None:
         nonlocal finished
         finished += 1
         if progress is not None:
             progress(finished, count)
 
     with confined():
-        target = None if out is None else Path(out)
-        folder, results = run(loaded, target, engine=as_engine(engine), jobs=jobs, done=done)
+        if loaded.has_table or kept is not None or cluster is not None:
+            how = How(as_engine(engine), jobs, cluster, kept, resume)
+            return CampaignResult(_swept(loaded, target, how, done))
+        return CampaignResult(_run(loaded, target, engine, jobs, resume, done))
+
+
+def _swept(campaign: Campaign, out: Path | None, how: How, done: Done) -> Path:
+    from ..campaigns.sweep import run_sweep
+
+    summary = run_sweep(campaign, out, how, done=done)
+    if not summary.whole:
+        raise KeyboardInterrupt
+    return summary.folder
+
+
+def _run(
+    campaign: Campaign, out: Path | None, engine: str, jobs: int | None, resume: bool, done: Done
+) -> Path:
+    from ..trials.campaign import run_campaign as run
+
+    folder, results = run(
+        campaign, out, engine=as_engine(engine), jobs=jobs, resume=resume, done=done
+    )
     if any(result.status == "stopped" for _, result in results):
         raise KeyboardInterrupt
-    return CampaignResult(folder)
+    return folder
 
 
 def ask_campaign(

@@ -13,11 +13,11 @@ from contextlib import closing
 from dataclasses import dataclass, field, replace
 from itertools import islice
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 from .. import __version__
 from ..cosim.system import Engine
-from ..errors import InputError
+from ..errors import InputError, unknown
 from ..trials.campaign import INDEX, Campaign
 from ..trials.case_list import Cases
 from ..trials.cases import Case
@@ -52,6 +52,16 @@ class How:
     keep: Keep | None = None
     """In place of what the campaign says."""
     resume: bool = False
+
+
+def keep_named(keep: str | None, origin: str) -> Keep | None:
+    """Return what ``keep`` names, None for None. Raises InputError, naming ``origin``."""
+    for known in get_args(Keep):
+        if keep == known:
+            return keep  # type: ignore[return-value]
+    if keep is None:
+        return None
+    raise InputError(f"{origin}: {unknown('choice', keep, get_args(Keep))}")
 
 
 @dataclass

@@ -7,6 +7,7 @@ from functools import partial
 from pathlib import Path
 
 from ..campaigns.sweep import How as SweepHow
+from ..campaigns.sweep import keep_named
 from ..cosim.system import Engine
 from ..errors import SimulationError
 from ..trials.campaign import Campaign, load_campaign, run_campaign
@@ -19,7 +20,7 @@ from .leaves import Leaves, exit_with
 from .looked_at import play
 from .show import console, print_case, run_entry
 from .stopping import stoppable
-from .table_run import has_keep, kept_named, run_table
+from .table_run import run_table
 from .watch import Watch
 
 
@@ -37,8 +38,10 @@ class How:
 def run_cases(name: str, out: Path | None, how: How, leaves: Leaves) -> None:
     """Run a campaign into its table, or each case into a folder. Raises InputError."""
     campaign = load_campaign(name)
-    if how.keep is not None or how.cluster is not None or has_keep(campaign):
-        sweep = SweepHow(how.engine, how.jobs, how.cluster, kept_named(how.keep), how.resume)
+    if how.keep is not None or how.cluster is not None or campaign.has_table:
+        sweep = SweepHow(
+            how.engine, how.jobs, how.cluster, keep_named(how.keep, "--keep"), how.resume
+        )
         run_table(campaign, out, sweep, junit=leaves.junit, report=leaves.report)
     else:
         _run_folders(campaign, out, how, leaves)

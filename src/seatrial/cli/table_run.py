@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import get_args
 
 import typer
 from rich.markup import escape
 
 from ..campaigns.ended import Ended
-from ..campaigns.evaluator import Keep
 from ..campaigns.page import write_table_page
 from ..campaigns.sweep import How, Summary, run_sweep
-from ..errors import InputError, SimulationError, unknown
+from ..errors import InputError, SimulationError
 from ..trials.campaign import Campaign
 from ..trials.cases import Case
 from ..trials.hooks import Hooks
@@ -24,21 +22,6 @@ from .watch import Watch
 
 _SAID = 20
 """Failed cases that have a line; the table has all."""
-
-
-def has_keep(campaign: Campaign) -> bool:
-    """Say if a campaign leaves a table by what its file says."""
-    return campaign.file.keep is not None or campaign.file.until is not None
-
-
-def kept_named(keep: str | None) -> Keep | None:
-    """Return what ``--keep`` names. Raises InputError."""
-    for known in get_args(Keep):
-        if keep == known:
-            return keep  # type: ignore[return-value]
-    if keep is None:
-        return None
-    raise InputError(f"--keep: {unknown('choice', keep, get_args(Keep))}")
 
 
 def run_table(

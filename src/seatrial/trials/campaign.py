@@ -82,6 +82,11 @@ class Campaign:
     trials: tuple[Trial, ...]
     """Those of ``file.trials``, in that order."""
 
+    @property
+    def has_table(self) -> bool:
+        """Whether it leaves a table by what its file says."""
+        return self.file.keep is not None or self.file.until is not None
+
     def cases(self) -> Cases:
         """Return all cases, in the order of the file. Raises InputError."""
         rows: list[dict[str, Any]] = [{}]
