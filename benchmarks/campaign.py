@@ -27,7 +27,7 @@ from pathlib import Path
 
 from .pages import write_measured
 
-_CAMPAIGN = """
+CAMPAIGN = """
 trials = ["hydrone-open-landing"]
 keep = "none"
 [design]
@@ -148,7 +148,7 @@ def watched(count: int, jobs: int, engine: str, turn: float) -> Seen:
     seen = Seen()
     with tempfile.TemporaryDirectory(prefix="seatrial-") as place:
         path, out = Path(place, "landings.toml"), Path(place, "out")
-        path.write_text(_CAMPAIGN.format(count=count), "utf-8")
+        path.write_text(CAMPAIGN.format(count=count), "utf-8")
         bare = [Bare(path, 7919 * k, engine) for k in range(jobs)]
         take_turn(bare, 0.1, Turns())  # imports, and the first case that fills caches
         options = ["--engine", engine, "--jobs", str(jobs), "--out", str(out), "--no-report"]

@@ -3,6 +3,7 @@
 import json
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import pandas as pd
 import pytest
@@ -15,6 +16,7 @@ from seatrial.errors import InputError
 from seatrial.trials.campaign import load_campaign
 from seatrial.trials.designs import Design
 
+REFERENCE = Path(__file__).parents[1] / "reference"
 DIRECT = How("direct", jobs=2)
 TWO = 'step = "100 ms"\n[components]\ncase = { fmu = "case.py:Case" }\nother = { fmu = "case.py:Case" }\n'
 GRID = """
@@ -130,3 +132,23 @@ def test_the_edge_of_the_landing_envelope_is_that_of_metacentric_stability(tmp_p
         heel = math.degrees(math.asin(sine))
         assert row["worst of roll stays below 10 degrees"] == pytest.approx(heel, rel=0.01)
         assert row["roll stays below 10 degrees"] == (heel < 10.0)
+
+
+@pytest.mark.interop
+def test_gloria_capsizes_in_more_wind_than_metacentric_stability_needs(tmp_path):
+    vary = {
+        "wind.mean_direction": {"levels": ["90 deg"]},
+        "wind.mean_speed": {"levels": ["2 m/s", "6 m/s"]},
+        "trimmer.roll_limit": {"levels": ["off", "on"]},
+    }
+    run_sweep(drawn("gloria-capsize-map", vary), tmp_path / "out", DIRECT)
+    table = pd.read_parquet(tmp_path / "out/results.parquet")
+    # 2 m/s: M phi < m g GM sin(phi)^2 / 2 for the greatest force of the sail, applied at once
+    sail = pd.read_csv(REFERENCE / "gloria_sail_naca0015.csv", comment="#")
+    greatest = (sail["cl"] ** 2 + sail["cd"] ** 2).max() ** 0.5
+    moment = 0.5 * 1.225 * 0.9 * greatest * 2.0**2 * 1.18
+    assert moment < 0.7246 * 27.2 * 9.81 * 0.2 / 2.0  # tan(phi) = 2 phi
+    assert list(table["passed"]) == [True, True, False, True]
+    heel = table["worst of it stays upright"]
+    assert heel[0] == heel[1] < 15.0  # too little for the limit to do anything
+    assert heel[3] < 25.0
