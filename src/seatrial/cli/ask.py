@@ -14,7 +14,7 @@ from ..campaigns.ask import ask as ask_campaign
 from ..campaigns.ended import Ended
 from ..campaigns.finding import Finding, Shown
 from ..campaigns.page import write_table_page
-from ..campaigns.sweep import How
+from ..campaigns.sweep import How, keep_named
 from ..errors import InputError
 from ..trials.campaign import load_campaign
 from ..trials.cases import Case
@@ -24,7 +24,6 @@ from .options import EngineName, Out, engine_named
 from .run_options import Cluster, Jobs, KeepName, NoReport, Resume
 from .show import console, print_table
 from .stopping import stoppable
-from .table_run import kept_named
 from .watch import Watch
 
 
@@ -52,7 +51,7 @@ def ask(
     if resume and out is None:
         raise InputError("--resume needs the question's folder, --out FOLDER")
     campaign = load_campaign(name)
-    how = How(engine_named(engine), jobs, cluster, kept_named(keep), resume)
+    how = How(engine_named(engine), jobs, cluster, keep_named(keep, "--keep"), resume)
     with stoppable() as stop, Watch(campaign.read_from.name) as watch:
         ended_count = failed = 0
         expected = 1
