@@ -1,4 +1,4 @@
-"""What bounds a campaign on many cores: ``python -m benchmarks.scheduler``.
+"""Bounds of a campaign on many cores, measured and modelled: ``python -m benchmarks.scheduler``.
 
 The campaign is the real one but for its cases, which sleep instead of being simulated: the process
 that hands them out, its log and its tables, and Dask's scheduler, with workers of this machine that
