@@ -137,7 +137,7 @@ def _types(units: Element) -> list[Element]:
 
 def _variable(group: _Group) -> Element:
     outer, inner = group.elements[0], group.elements[0][0]
-    is_binary = group.port.role == "bytes"
+    is_binary = group.port.role == "bytes" and group.port.type is str
     fmi_type = "Binary" if is_binary else _TYPES[inner.tag]
     said = {"name": group.name, "valueReference": str(group.reference)}
     for name in ("description", "causality", "variability", "initial"):
