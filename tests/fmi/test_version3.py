@@ -112,6 +112,17 @@ def test_a_rig_of_native_fmus_has_the_same_record(tmp_path: Path) -> None:
         build = ["fmu", "build", name, "--native", "--fmi", "3", "--parameters", "hydrone"]
         assert seatrial(*build, cwd=tmp_path).returncode == 0
     _same_record(tmp_path, "hydrone-open-loop", "hydrone-open-landing", 'parameters = "hydrone.{}"')
+    # Packages name elements as other tools know them, and are read back.
+    records = []
+    for rig, version in (("rig.toml", "1.0"), ("rig.toml", "2.0"), ("hydrone-open-loop", "1.0")):
+        export = ["ssp", "export", rig, "--version", version, "--out", "x.ssp"]
+        assert seatrial(*export, cwd=tmp_path).returncode == 0
+        with zipfile.ZipFile(tmp_path / "x.ssp") as archive:
+            described = archive.read("SystemStructure.ssd").decode()
+        assert ("hydrone" in rig) == ('name="attitude.psi"' in described)
+        assert seatrial("run", "x.ssp", "--out", f"{rig}-{version}", cwd=tmp_path).returncode == 0
+        records.append((tmp_path / f"{rig}-{version}" / "signals.csv").read_bytes())
+    assert records[0] == records[1] == records[2]
 
 
 @pytest.mark.interop

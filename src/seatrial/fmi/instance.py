@@ -47,6 +47,8 @@ class Variable:
     """Names and values of an enumeration."""
     element: int = 0
     """Place in its array, row by row."""
+    array: str = ""
+    """Name of its array, if its own has no indices: in our FMUs of FMI 3.0 axes have names."""
     negated: bool = False
     """In FMI 1.0: what its value reference has is the negative of it."""
     optional: bool = False
@@ -62,6 +64,11 @@ class Variable:
     def measure(self) -> Unit | str:
         """The unit to convert from and to."""
         return self.definition or self.unit or "1"
+
+    @property
+    def indexed(self) -> str:
+        """The name by which other tools know it."""
+        return f"{self.array}[{self.element + 1}]" if self.array else self.name
 
     @property
     def first(self) -> Value:

@@ -270,17 +270,15 @@ def _elements(
         raise InputError(f"{len(starts)} start values for {count} elements")
     if len(starts) != count:
         starts = (starts or [None]) * count
-    return [
-        replace(entry.like, name=name, start=start, element=place)
-        for place, (name, start) in enumerate(zip(_names(entry, shape), starts, strict=True))
-    ]
-
-
-def _names(entry: Entry, shape: Sequence[int]) -> list[str]:
-    if shape == [len(entry.axes)]:
-        return [f"{entry.name}.{axis}" for axis in entry.axes]
     indices = product(*(range(1, size + 1) for size in shape))
-    return [f"{entry.name}[{','.join(map(str, index))}]" for index in indices]
+    names = [f"{entry.name}[{','.join(map(str, index))}]" for index in indices]
+    array = ""
+    if shape == [len(entry.axes)]:
+        names, array = [f"{entry.name}.{axis}" for axis in entry.axes], entry.name
+    return [
+        replace(entry.like, name=name, start=start, element=place, array=array)
+        for place, (name, start) in enumerate(zip(names, starts, strict=True))
+    ]
 
 
 def _ours(annotations: Any) -> Mapping[str, str]:

@@ -48,11 +48,15 @@ class Leaf:
 
     def scalars(self, name: str) -> dict[Indices, str]:
         """Return the variables of a connector: one, or those of an array by their indices."""
-        if name in self.fmu.variables:
+        variables = self.fmu.variables
+        if name in variables:
             return {(): name}
+        for variable in variables.ports.get(name.partition("[")[0], ()):
+            if variable.indexed == name:
+                return {(): variable.name}
         found: dict[Indices, str] = {}
-        for variable in self.fmu.variables.ports.get(name, ()):
-            indices = _INDICES.fullmatch(variable.name, len(name))
+        for variable in variables.ports.get(name, ()):
+            indices = _INDICES.fullmatch(variable.indexed, len(name))
             if indices is None:
                 return {}
             found[tuple(map(int, indices[1].split(",")))] = variable.name

@@ -39,8 +39,8 @@ class Shapes:
     """Outputs in this rig that are local variables of the FMU."""
     unsaid: frozenset[str] = frozenset()
     """The same, in a version that knows none."""
-    arrays: Mapping[str, tuple[str, Indices]] = field(default_factory=dict)
-    """By element: its array, and its indices there."""
+    arrays: Mapping[str, tuple[str, Indices | None]] = field(default_factory=dict)
+    """By element: its array, and its indices there; in version 1 its name by indices alone."""
     sizes: Mapping[str, Indices] = field(default_factory=dict)
     """By array."""
 
@@ -85,7 +85,9 @@ def shapes_of(system: System, part: Part, version: Version) -> Shapes:
     source = find_source(part.fmu, system.rig.components[part.name].scope.folder)
     shown = local_outputs(system, part)
     if version == "1.0" or not isinstance(source, Path):
-        return Shapes(unsaid=shown)
+        variables = part.instance.variables.values()
+        named = {v.name: (v.indexed, None) for v in variables if v.array}
+        return Shapes(unsaid=shown, arrays=named)
     fmu = load_fmu(source)
     if fmu.description.fmiMajorVersion != 3:
         return Shapes(locals=shown)
@@ -95,7 +97,7 @@ def shapes_of(system: System, part: Part, version: Version) -> Shapes:
         tuple((item.name, int(item.value)) for item in one.items): one.name
         for one in fmu.description.typeDefinitions
     }
-    arrays: dict[str, tuple[str, Indices]] = {}
+    arrays: dict[str, tuple[str, Indices | None]] = {}
     sizes: dict[str, Indices] = {}
     for name, variable in part.instance.variables.items():
         if variable.is_made:
@@ -107,8 +109,9 @@ def shapes_of(system: System, part: Part, version: Version) -> Shapes:
                 enumerations[name] = Enumeration(called, variable.items)
             else:
                 types[name] = "Int64"
-        if "[" in name and name.endswith("]"):
-            base, _, indices = name[:-1].rpartition("[")
-            arrays[name] = (base, tuple(map(int, indices.split(","))))
-            sizes[base] = arrays[name][1]  # in the end, of the last element
+        indexed = variable.indexed
+        if "[" in indexed and indexed.endswith("]"):
+            base, _, indices = indexed[:-1].rpartition("[")
+            sizes[base] = tuple(map(int, indices.split(",")))  # in the end, of the last element
+            arrays[name] = (base, sizes[base])
     return Shapes(types, enumerations, shown, frozenset(), arrays, sizes)

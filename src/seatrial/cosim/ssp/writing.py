@@ -68,7 +68,7 @@ def _written(part: Part, values: Mapping[str, Value], shapes: Shapes) -> dict[st
     for name in values:
         whole, indices = shapes.connector(name)
         if indices is None:
-            found[name] = Written(*shapes.written(variables[name], [values[name]]))
+            found[whole] = Written(*shapes.written(variables[name], [values[name]]))
         elif whole not in found:
             elements = [variables[one] for one in variables if shapes.connector(one)[0] == whole]
             listed = [values.get(one.name, one.first) for one in elements]
