@@ -37,6 +37,7 @@ class Page(HTMLParser):
     def __init__(self, path):
         super().__init__(convert_charrefs=True)
         self.open, self.references, self.figures, self.tags = [], [], [], []
+        self.data = []
         self.text = self.style = ""
         self.feed(path.read_text(encoding="utf-8"))
         self.close()
@@ -56,6 +57,8 @@ class Page(HTMLParser):
         inside = self.open[-1] if self.open else ("", None)
         if inside == ("script", "text/x-figure"):
             self.figures.append(json.loads(unpacked(data)))
+        elif inside == ("script", "application/json"):
+            self.data.append(json.loads(data))
         elif inside[0] == "style":
             self.style += data
         elif inside[0] != "script":
@@ -86,8 +89,8 @@ def assert_self_contained(page):
     assert "url(" not in page.style
     assert "@import" not in page.style
     assert not {"link", "iframe", "img", "object", "embed"} & set(page.tags)
-    # Three scripts of code at most: Plotly and what draws the figures.
-    assert page.tags.count("script") == 2 + len(page.figures)
+    # Two scripts of code: Plotly and what draws the figures.
+    assert page.tags.count("script") == 2 + len(page.figures) + len(page.data)
 
 
 # ---------------------------------------------------------------------- a run
@@ -438,6 +441,10 @@ def test_a_campaign_has_every_case_and_pad(campaign):
     assert pads["x", 0.0, 0.319] == "passed"
     assert pads["x2", 0.0, 0.319] == "FAILED"
     assert {"landing", "takeoff"} <= set(page.titles())
+    first = cases[0]["name"]  # the one with a report: its point leads there
+    assert page.data == [{"links": {first: "landing-nominal/report.html"}, "rerun": ""}]
+    led_to = [t["meta"]["cases"][0] for t in deck["data"] if "text" in t]
+    assert sorted(led_to) == sorted(case["name"] for case in cases)
 
 
 def test_cases_at_one_pad_are_counted(campaign):
