@@ -141,6 +141,20 @@ def test_few_keys_change_by_default_from_what_the_trial_has(asked, tmp_path):
 
 
 @pytest.mark.interop
+def test_a_nominal_value_outside_its_range_is_said(asked, tmp_path):
+    varied = SUM.replace('["-10 m", "10 m"]', '["1 m", "10 m"]')
+    settings = "[ask.worst-case]\nruns = 20\n"
+    finding, _ = ask(
+        asked("sum", "form.y < 5 m", varied + settings),
+        "worst-case",
+        tmp_path / "out",
+        How("direct"),
+    )
+    assert "the trial has form.a at 0 m, outside its range: nominal is 1" in finding.lines
+    assert finding.values["nominal"]["set"]["form.a"] == "1.0 m"
+
+
+@pytest.mark.interop
 def test_what_never_fails_and_what_fails_already_is_said(asked, tmp_path):
     settings = "[ask.worst-case]\nruns = 20\n"
     for limit, said in (("50 m", "none fails"), ("-1 m", "nominal fails")):

@@ -41,8 +41,10 @@ def written_nominal(written: Mapping[str, Any], space: Space, origin: str) -> di
     return nominal
 
 
-def nominal_values(asking: Asking, written: Mapping[str, float]) -> np.ndarray:
-    """Return the nominal values of all keys, at most at the ends of their ranges.
+def nominal_values(asking: Asking, written: Mapping[str, float]) -> tuple[np.ndarray, list[str]]:
+    """Return the nominal values of all keys, and notes of those that are outside their ranges.
+
+    Of these it is the end of the range.
 
     What is not ``written`` is as the trial has it: it is run once into a folder, whose manifest
     says so. Where that has no such parameter, it is the median. Raises SimulationError if the
@@ -59,8 +61,14 @@ def nominal_values(asking: Asking, written: Mapping[str, float]) -> np.ndarray:
         number = _in(law.unit, said, f"{trial.name}: {key}")
         if number is not None:
             found[i] = number
-    clipped: np.ndarray = np.clip(found, *space.ends.T)
-    return clipped
+    clipped = np.clip(found, *space.ends.T)
+    notes = [
+        f"the trial has {key} at {number:.6g} {unit}".rstrip()
+        + f", outside its range: nominal is {end:.6g}"
+        for key, unit, number, end in zip(space.keys, space.units, found, clipped, strict=True)
+        if number != end
+    ]
+    return clipped, notes
 
 
 def _own(asking: Asking) -> dict[str, str]:

@@ -35,7 +35,10 @@ def worst_case_question(entry: WorstCaseQuestion, asking: Asking) -> Callable[[]
 
     def answer() -> Finding:
         asking.expect(entry.runs)
-        return _Search(entry, asking, value, nominal_values(asking, nominal)).finding()
+        numbers, notes = nominal_values(asking, nominal)
+        finding = _Search(entry, asking, value, numbers).finding()
+        finding.lines += notes
+        return finding
 
     return answer
 
