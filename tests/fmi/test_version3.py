@@ -155,6 +155,7 @@ def _same_record(folder: Path, rig: str, trial: str, parameters: str = "") -> No
     assert records[0] == records[1]
 
 
+@pytest.mark.interop
 def test_derivatives_are_those_of_differences(tmp_path: Path) -> None:
     """Along random directions of all inputs; and the adjoint ones are their transpose."""
     slave = Slave3(native("marine-craft", tmp_path), tmp_path)
