@@ -104,6 +104,7 @@ def test_a_trial_s_probability_is_that_of_its_closed_form(asked, tmp_path):
     assert len(table) == finding.runs == 500 + 450 * (len(found["thresholds"]) - 1)
 
 
+@pytest.mark.interop
 def test_a_few_levels_of_a_trial_do_not_depend_on_who_runs_them(asked, tmp_path):
     text = f"{SUM}[ask.rare]\nper_level = 100\nleast = 0.05\n"
     campaign = asked("sum", "form.y < 5 m", text)

@@ -103,10 +103,7 @@ def test_a_trial_of_the_smallest_change_fails_as_it_was_found(asked, tmp_path):
     """The sum of three, over the root of three, is 5 m on a plane."""
     settings = '[ask.worst-case]\nruns = 60\nfirst = "distance"\n'
     campaign = asked("sum", "form.y < 5 m", SUM + settings)
-    for jobs in (1, 2):
-        finding, folder = ask(campaign, "worst-case", tmp_path / f"j{jobs}", How("direct", jobs))
-    for name in ("results.parquet", "answer.json", "worst-case.toml", "worst-case.svg"):
-        assert (tmp_path / "j1" / name).read_bytes() == (tmp_path / "j2" / name).read_bytes()
+    finding, folder = ask(campaign, "worst-case", tmp_path / "out", How("direct", jobs=2))
     smallest = finding.values["smallest"]
     # The boundary 20 u + 40 v + 20 w = 5 sqrt(3), in shares of the ranges from the middle.
     nearest = 5.0 * math.sqrt(3.0) / math.sqrt(20.0**2 + 40.0**2 + 20.0**2)
