@@ -260,6 +260,23 @@ def test_one_generator_is_drawn_from_in_several_places(tmp_path: Path) -> None:
     assert seen == {-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0}
 
 
+class Giver(Dice):
+    """Hands out a generator that it has drawn from."""
+
+    def sample(self, t: float, k: int) -> None:
+        self.x = [self._begun(k).random()] * 6
+
+    def _begun(self, k: int) -> Any:
+        generator = self.generator(k)
+        generator.random()
+        return generator
+
+
+def test_a_generator_that_is_returned_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"a generator that Giver\._begun has drawn from"):
+        built(f"{__file__}:Giver", tmp_path)
+
+
 class Doubler(Sampled):
     """Doubles its input, and refuses what is too large."""
 

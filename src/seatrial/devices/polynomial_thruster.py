@@ -89,9 +89,10 @@ class PolynomialThruster(ThrustCurve, Actuator):
 def companion_exponential(poles: tuple[float, float, float], t: float) -> list[list[float]]:
     """Return exp(A t) of A = (0 1 0; 0 0 1; -a0 -a1 -a2), ``poles`` = (a0, a1, a2), a0 > 0.
 
-    In states z_i / w^i, w = a0^(1/3), A is w (0 1 0; 0 0 1; -1 -a1/w^2 -a2/w), moderate. Its
-    exponential is the Taylor polynomial of degree 16 after halving to a norm below 1/2, squared
-    as often (Higham, Functions of Matrices, 2008, section 10.3): what is left out is below 1e-19.
+    In states z_i / w^i, w = a0^(1/3), A is w (0 1 0; 0 0 1; -1 -a1/w^2 -a2/w), of moderate size.
+    Its exponential is the Taylor polynomial of degree 16 after halving to a norm of 1/2 or less,
+    squared as often (Higham, Functions of Matrices, 2008, section 10.3): what is left out is below
+    1e-19.
     """
     a0, a1, a2 = poles
     w = a0 ** (1.0 / 3.0)
