@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import subprocess
+import sys
 import zipfile
 from pathlib import Path
 
@@ -61,3 +63,39 @@ def test_valgrind_finds_nothing(tmp_path: Path) -> None:
     assert (run.returncode, run.stderr) == (0, "")
     assert len(expected) == len(native_names()) * STEPS
     assert rows_of(run.stdout) == expected
+
+
+MASTER = f"""\
+import sys
+import pytest
+import seatrial.cosim.compiled.library as own
+
+plain = own.shared_library
+own.shared_library = lambda kind, source, flags: plain(kind, source, (*flags, *{CHECKS!r}))
+assert own.library() is not None
+sys.exit(pytest.main(["-q", "tests/cosim/test_compiled.py"]))
+"""
+
+
+def test_sanitizers_find_nothing_in_the_master(tmp_path: Path) -> None:
+    """Its own tests, with its library compiled with the compiler's checks at run time."""
+    runtimes = [
+        subprocess.run(
+            ["cc", f"-print-file-name={name}"], capture_output=True, text=True, check=True
+        ).stdout.strip()
+        for name in ("libasan.so", "libubsan.so")
+    ]
+    # What Python itself keeps until its end is no leak of the master, which allocates nothing.
+    checks = {"LD_PRELOAD": " ".join(runtimes), "ASAN_OPTIONS": "detect_leaks=0"}
+    own = {"SEATRIAL_CACHE": str(tmp_path), "PYTEST_ADDOPTS": f"--basetemp={tmp_path / 'run'}"}
+    environment = {k: v for k, v in os.environ.items() if not k.startswith("PYTEST_")}
+    run = subprocess.run(
+        [sys.executable, "-c", MASTER],
+        capture_output=True,
+        text=True,
+        cwd=Path(__file__).parents[2],
+        env=environment | checks | own,
+    )
+    assert run.returncode == 0, run.stdout + run.stderr
+    assert "runtime error" not in run.stderr
+    assert "ERROR: AddressSanitizer" not in run.stderr
