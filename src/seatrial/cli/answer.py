@@ -117,9 +117,18 @@ def _options() -> list[Any]:
 
 
 def _begin(context: typer.Context, param: typer.CallbackParam, wanted: bool) -> None:
-    answer.command = answer.command or context.command_path.partition(" ")[2]
+    answer.command = answer.command or _named(context)
     if wanted:
         answer.begin(str(param.name))
+
+
+def _named(context: Any) -> str:
+    """Return a command as it is called; what stands for a name is in capitals, and left out."""
+    names: list[str] = []
+    while context.parent is not None:
+        names.insert(0, context.info_name)
+        context = context.parent
+    return " ".join(name for name in names if not name.isupper())
 
 
 def _flag(*names: str, said: str) -> Any:
