@@ -16,6 +16,7 @@ import fmpy
 import pytest
 from fmpy.validation import validate_fmu
 
+import seatrial.cosim.master
 from seatrial import Simulation
 from seatrial.cosim.assembly import assemble
 from seatrial.cosim.flattening import load_rig
@@ -23,7 +24,7 @@ from seatrial.cosim.native_carriers import carry_natively
 from seatrial.cosim.rig_fmu.native import build_native_rig, why_not_native
 from seatrial.fmi.load import load_fmu, open_instance
 from seatrial.fmi.native.compiler import HERE, library_here
-from tests.command import seatrial
+from tests.command import seatrial as command
 from tests.fmi.native_slave import Slave
 from tests.fmi.test_standalone import RESOURCES, image_of, needs_bwrap
 
@@ -294,7 +295,7 @@ def test_variables_and_terminals(jacobi: Path) -> None:
     assert through["other.y"] == {"mass.push", "other.w"}  # along mass.pull and first.y
     assert through["mass.x"] == set()
     assert description.defaultExperiment.stepSize == "0.01"
-    done = seatrial("fmu", "describe", str(jacobi), cwd=jacobi.parent)
+    done = command("fmu", "describe", str(jacobi), cwd=jacobi.parent)
     assert "wrench" in done.stdout
     assert "mass.push" in done.stdout
 
@@ -332,7 +333,7 @@ def hydrone(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The closed loop of the Hydrone, built as users build it."""
     pytest.importorskip("ziglang")
     folder = tmp_path_factory.mktemp("hydrone")
-    run = seatrial("fmu", "build", "--rig", "sil", cwd=folder)
+    run = command("fmu", "build", "--rig", "sil", cwd=folder)
     assert run.returncode == 0, run.stderr
     assert "in C: 12 components" in run.stdout
     return folder / "sil.fmu"
@@ -342,7 +343,7 @@ def hydrone(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_the_closed_loop_of_a_vehicle(hydrone: Path, tmp_path: Path) -> None:
     """GNSS with noise and delay, a fault by its text: the numbers of the rig in Python."""
     assert validate_fmu(str(hydrone)) == []
-    checked = seatrial("fmu", "check", str(hydrone), cwd=tmp_path)
+    checked = command("fmu", "check", str(hydrone), cwd=tmp_path)
     assert "no problem found" in checked.stdout
     box = Box(hydrone, tmp_path)
     box.begin()
@@ -448,7 +449,7 @@ def test_a_host_without_python(hydrone: Path, tmp_path: Path) -> None:
 )
 def test_shipped_rigs(rig: str, choices: dict[str, str], tmp_path: Path) -> None:
     chosen = [f"--choose={name}={value}" for name, value in choices.items()]
-    run = seatrial("fmu", "build", "--rig", rig, *chosen, cwd=tmp_path)
+    run = command("fmu", "build", "--rig", rig, *chosen, cwd=tmp_path)
     assert run.returncode == 0, run.stderr
     box = Box(next(tmp_path.glob("*.fmu")), tmp_path)
     box.begin()
@@ -461,13 +462,77 @@ def test_shipped_rigs(rig: str, choices: dict[str, str], tmp_path: Path) -> None
     box.fmu.freeInstance()
 
 
+@pytest.mark.long
+@pytest.mark.parametrize("rig", ["sil", *SHIPPED])
+def test_both_masters(rig: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Shipped rigs whose components all have C: the same bits under the master in C and in Python."""
+    with Simulation(rig, engine="native") as compiled:
+        monkeypatch.setattr(seatrial.cosim.master, "is_compiled", lambda _system: False)
+        with Simulation(rig, engine="native") as python:
+            names = [n for n, s in compiled.signals.items() if s.type is not str]
+            for _ in range(100):
+                compiled.step()
+                python.step()
+                found = [[one.get(name) for name in names] for one in (compiled, python)]
+                assert bits(found[0]) == bits(found[1])
+
+
+STIFFENING = '''
+"""A loop whose gain grows beyond one as time goes on."""
+
+from seatrial.component import Component, Input, Output
+
+
+class Stiffening(Component):
+    """Pulls back, more and more."""
+
+    u = Input("N", "signal")
+    y = Output("N", "what is left")
+    feedthrough = {"y": ("u",)}
+
+    def outputs(self, t):
+        self.y = 1.0 - (0.8 + t) * self.u
+'''
+
+
+@pytest.fixture(scope="module")
+def stiffening(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("loop")
+    (folder / "stiffening.py").write_text(STIFFENING, "utf-8")
+    rig = 'step = "10 ms"\n[components]\na = { fmu = "stiffening.py:Stiffening" }\n'
+    (folder / "loop.toml").write_text(f'{rig}[connections]\n"a.y" = "a.u"\n', "utf-8")
+    return folder / "loop.toml"
+
+
+def test_a_loop_that_needs_relaxation_on_the_way(stiffening: Path) -> None:
+    """y = 1 / (1.8 + t): plain iteration settles until 0.2 s; the compiled master goes on too."""
+    with Simulation(stiffening, engine="native") as one, Simulation(stiffening) as other:
+        for _ in range(100):
+            one.step()
+            other.step()
+            assert bits([one.get("a.y")]) == bits([other.get("a.y")])
+        assert one.get("a.y") == pytest.approx(1.0 / 2.8, abs=1e-10)
+
+
+@pytest.mark.interop
+def test_a_loop_in_one_fmu(stiffening: Path, tmp_path: Path) -> None:
+    box = Box(built(stiffening, tmp_path), tmp_path)
+    box.begin()
+    with Simulation(stiffening) as simulation:
+        for k in range(100):
+            agree(box, simulation)
+            box.fmu.doStep(k * 0.01, 0.01)
+            simulation.step()
+    box.fmu.freeInstance()
+
+
 def test_what_cannot_be_one(tmp_path: Path) -> None:
-    run = seatrial("fmu", "build", "--rig", "tether-towed", "--native", cwd=tmp_path)
+    run = command("fmu", "build", "--rig", "tether-towed", "--native", cwd=tmp_path)
     assert run.returncode == 2
     assert "tether-towed cannot be one FMU in C; tether: " in run.stderr
-    run = seatrial("fmu", "build", "--rig", "nothing-at-all", cwd=tmp_path)
+    run = command("fmu", "build", "--rig", "nothing-at-all", cwd=tmp_path)
     assert run.returncode == 2
     assert "nothing-at-all" in run.stderr
-    run = seatrial("fmu", "build", "gnss", "--vehicle", "gloria", cwd=tmp_path)
+    run = command("fmu", "build", "gnss", "--vehicle", "gloria", cwd=tmp_path)
     assert "are of --rig" in run.stderr
     assert list(tmp_path.iterdir()) == []
