@@ -40,11 +40,8 @@ _COMPONENT = """\
 #define CARRIER {name}
 #include "carrier.h"
 """
-_SHARED = (
-    *("fail", "shown", "norm", "compensated", "right_of", "left_of", "interpolated", "appended"),
-    *("begin_draws", "drawn_random", "drawn_standard_normal", "present_fault", "fault_index"),
-)
-"""Functions of the runtime that its files share."""
+_DECLARED = re.compile(r"^(?!static|typedef)[a-z][\w *]*?\b(\w+)\([^;{}]*\);", re.MULTILINE)
+"""A function that the files of the runtime share, in its headers."""
 
 
 def why_not_native(system: System, in_python: Mapping[str, Sequence[str]]) -> list[str]:
@@ -183,7 +180,9 @@ def _prefixed(own: Mapping[str, bytes], name: str) -> dict[str, bytes]:
     What components have in common keeps its name.
     """
     texts = b"\n".join(own.values()).decode()
-    renamed = sorted({*re.findall(r"\bmodel_\w+", texts), *_SHARED})
+    headers = [own[file].decode() for file in ("component.h", "runtime.h") if file in own]
+    shared = {name for text in headers for name in _DECLARED.findall(text)}
+    renamed = sorted({*re.findall(r"\bmodel_\w+", texts), *shared})
     parts = [f for f in sorted(own) if f.endswith(".c") and f not in ("fmi2.c", "model.c")]
     included = ["fmi2.inc", *(f.replace(".c", ".inc") for f in parts), f"{name}_model.inc"]
     functions = re.findall(r"#define (fmi2\w+) +fmi2FullName", own["fmi2Functions.h"].decode())
