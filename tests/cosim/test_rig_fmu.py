@@ -34,7 +34,8 @@ HOSTS = Path(__file__).parents[1] / "interop" / "native_host_run.py"
 SHIPPED = (
     *("landing", "deck-landing", "deck-limits", "collision", "hydrone-battery", "mariner-source"),
     *("hydrone-open-loop", "gloria-fixed", "thruster-ship", "thruster-ship-open-loop"),
-    "videoray-hold",
+    *("videoray-hold", "videoray-excitation", "videoray-surface", "videoray-surface-nominal"),
+    *("gloria", "gloria-heading", "mariner", "mariner-pd", "mariner-rudder"),
 )
 """Shipped rigs, beside `sil`, whose components all have C."""
 
@@ -444,7 +445,7 @@ def test_a_host_without_python(hydrone: Path, tmp_path: Path) -> None:
     ("rig", "choices"),
     [
         *((name, {}) for name in SHIPPED),
-        *(("sil", {"vehicle": name}) for name in ("otter", "videoray")),
+        *(("sil", {"vehicle": name}) for name in ("bluerov2", "mariner", "otter", "videoray")),
     ],
 )
 def test_shipped_rigs(rig: str, choices: dict[str, str], tmp_path: Path) -> None:
