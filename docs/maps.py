@@ -18,6 +18,7 @@ from seatrial.campaigns.page import write_table_page
 IMAGES = Path(__file__).resolve().parent / "images"
 _SEATRIAL = "from seatrial.cli import main; main()"
 _WIDTH = 960
+_PATIENCE_MS = 120_000
 
 
 def drawn(folder: Path, target: Path) -> None:
@@ -29,7 +30,7 @@ def drawn(folder: Path, target: Path) -> None:
         )
         tab = browser.new_page(viewport={"width": _WIDTH, "height": 1200}, device_scale_factor=1.5)
         tab.goto(page.as_uri())
-        tab.wait_for_selector(".map .main-svg")
+        tab.wait_for_selector(".map .main-svg", timeout=_PATIENCE_MS)
         tab.locator(".map .figure").screenshot(path=str(target))
         browser.close()
 

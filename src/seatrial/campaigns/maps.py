@@ -23,7 +23,9 @@ _FEWEST = 4
 _MOST = 200
 _MOST_PANELS = 8
 """Columns, or rows."""
-_SCALE = [[0.0, COLOURS[1]], [0.5, "#f7f7f7"], [1.0, COLOURS[0]]]
+_SHARES = [[0.0, COLOURS[1]], [0.5, "#f7f7f7"], [1.0, COLOURS[0]]]
+_MARGINS = [[0.0, COLOURS[1]], [0.5, "#f6d9bd"], [0.5, "#d3e5f0"], [1.0, COLOURS[0]]]
+"""What fails by a little is not to look like what passes by a little."""
 _GAP, _TITLE_GAP = 0.05, 0.1
 """Between panels, as shares of the width and of the height, where titles and ticks stand."""
 _PANEL_PX = 270
@@ -231,7 +233,7 @@ def _field(figure: Figure, found: Map, number: int, column: Any, row: Any) -> No
         z=z,
         zmin=low,
         zmax=1.0,
-        colorscale=_SCALE,
+        colorscale=_SHARES if repeated else _MARGINS,
         showscale=number == 1,
         colorbar={"title": {"text": scale}, "thickness": 14},
         customdata=[[cell.case for cell in cells] for cells in grid],
