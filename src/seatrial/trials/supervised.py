@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import traceback
 from collections.abc import Callable, Sequence
@@ -42,6 +43,7 @@ def serve(
             os.chdir(here)  # a component may have left it
             hooks = _unnoted(child) if order[0] == "measure" else _hooks(child, observer)
             child.link.send(*_carried_out(order, trials, engine, page, hooks))
+            gc.collect(0)  # a trial's objects refer to each other: thousands of them would pile up
 
 
 def _carried_out(
