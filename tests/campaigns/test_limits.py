@@ -79,7 +79,9 @@ def test_a_known_boundary_is_nearer_than_on_a_grid(value, dimensions, runs, most
 
 
 def test_a_trial_s_boundary_is_that_of_its_closed_form(asked, tmp_path):
-    campaign = asked("ellipse", "form.y < 1 m", f"{ELLIPSE}[ask.limits]\nruns = 30\n")
+    of_cases = '[map]\nx = "form.a"\ny = "form.c"\n'  # and not of a question's runs
+    text = f"{ELLIPSE}[ask.limits]\nruns = 30\n{of_cases}"
+    campaign = asked("ellipse", "form.y < 1 m", text)
     expected = []
     finding, folder = ask(
         campaign, "limits", tmp_path / "out", How("direct", jobs=2), expect=expected.append

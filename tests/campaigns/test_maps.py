@@ -90,6 +90,17 @@ def test_a_map_of_what_is_not_set_is_refused_before_anything_runs(written, tmp_p
     assert not (tmp_path / "out").exists()
 
 
+def test_a_map_of_values_at_random_is_refused(written, tmp_path):
+    design = 'keep = "none"\n[design]\nkind = "monte-carlo"\ncount = 300\n[design.vary]\n'
+    vary = "".join(
+        f'"{key}.number" = {{ uniform = ["1 m", "5 m"] }}\n' for key in ("case", "other")
+    )
+    entry = '[map]\nx = "case.number"\ny = "other.number"\n'
+    with pytest.raises(InputError, match=r"map\.x: case\.number has 300 values, and 200 at most"):
+        swept(written, design + vary + entry, tmp_path)
+    assert not (tmp_path / "out").exists()
+
+
 def drawn(name, vary):
     """A shipped campaign with other values of its keys."""
     campaign = load_campaign(name)

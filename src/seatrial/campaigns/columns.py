@@ -12,6 +12,7 @@ from ..trials.campaign import Campaign
 from ..trials.case_list import FAULTS, Block
 from ..trials.cases import Case
 from ..trials.distributions import number_and_unit
+from ..trials.map_entry import MOST_PANELS, MOST_VALUES
 from ..trials.trial import Trial
 from .ended import Ended
 
@@ -31,7 +32,7 @@ class Column:
 def columns_of(campaign: Campaign) -> list[Column]:
     """Return the columns of a campaign's table; they depend on its files alone.
 
-    Raises InputError for a map of keys that its cases do not set to numbers.
+    Raises InputError for a map of keys that its cases do not set to numbers, or to too many.
     """
     settings = _settings(campaign.cases().blocks)
     _check_map(campaign, settings)
@@ -71,6 +72,15 @@ def _check_map(campaign: Campaign, settings: Mapping[str, list[Any]]) -> None:
     for axis, key in (("x", entry.x), ("y", entry.y)):
         if _setting(key, settings[key]).kind not in ("integer", "number"):
             raise InputError(f"{where}.{axis}: {key} is no number, or of several units")
+    bounds = {"x": MOST_VALUES, "y": MOST_VALUES, "columns": MOST_PANELS, "rows": MOST_PANELS}
+    for place, most in bounds.items():
+        key = getattr(entry, place)
+        count = 0 if key is None else len({repr(value) for value in settings[key]})
+        if count > most:
+            raise InputError(
+                f"{where}.{place}: {key} has {count} values, and {most} at most are drawn: a "
+                "grid, or a design with levels, has few"
+            )
 
 
 def _settings(blocks: Iterable[Block]) -> dict[str, list[Any]]:

@@ -13,16 +13,13 @@ import numpy as np
 
 from ..trials.distributions import number_and_unit
 from ..trials.figure import Figure
-from ..trials.map_entry import MapEntry, MapPoint
+from ..trials.map_entry import MOST_PANELS, MOST_VALUES, MapEntry, MapPoint
 from ..trials.plots import COLOURS, layout
 from .table import read_rows
 
 ROBUSTNESS = "robustness of "
 _FEWEST = 4
 """Values of a key that make an axis."""
-_MOST = 200
-_MOST_PANELS = 8
-"""Columns, or rows."""
 _SHARES = [[0.0, COLOURS[1]], [0.5, "#f7f7f7"], [1.0, COLOURS[0]]]
 _MARGINS = [[0.0, COLOURS[1]], [0.5, "#f6d9bd"], [0.5, "#d3e5f0"], [1.0, COLOURS[0]]]
 """What fails by a little is not to look like what passes by a little."""
@@ -158,7 +155,7 @@ def _values(path: Path, keys: Sequence[str]) -> dict[str, list[Any]]:
     seen: dict[str, dict[Any, None]] = {key: {} for key in keys}
     for row in read_rows(path, list(keys)) if keys else ():
         for key, of in seen.items():
-            if len(of) <= _MOST:
+            if len(of) <= MOST_VALUES:
                 of[row[key]] = None
     return {key: sorted(of) if _are_numbers(list(of)) else list(of) for key, of in seen.items()}
 
@@ -171,10 +168,12 @@ def _are_numbers(values: Sequence[Any]) -> bool:
 def _entry(values: Mapping[str, list[Any]]) -> MapEntry | None:
     """Return the map of a grid, if its keys make one."""
     varied = {key: of for key, of in values.items() if len(of) > 1 and not _is_seed(key)}
-    axes = [key for key, of in varied.items() if _are_numbers(of) and _FEWEST <= len(of) <= _MOST]
+    axes = [
+        key for key, of in varied.items() if _are_numbers(of) and _FEWEST <= len(of) <= MOST_VALUES
+    ]
     axes = sorted(axes, key=lambda key: -len(varied[key]))[:2]
     others = [key for key in varied if key not in axes]
-    if len(axes) < 2 or len(others) > 2 or any(len(varied[key]) > _MOST_PANELS for key in others):
+    if len(axes) < 2 or len(others) > 2 or any(len(varied[key]) > MOST_PANELS for key in others):
         return None
     columns, rows = (*others, None, None)[:2]
     return MapEntry(x=axes[0], y=axes[1], columns=columns, rows=rows)

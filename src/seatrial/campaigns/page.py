@@ -94,7 +94,7 @@ def write_table_page(folder: Path) -> Path:
     answer = read_answer(folder) if (folder / ANSWER).is_file() else None
     share_library(folder)
     failed = sum(found.failed)
-    shown_map = campaign_map(path, index.get("map"), units)
+    shown_map = None if answer else campaign_map(path, index.get("map"), units)
     page = render(
         "table.html.j2",
         library=LIBRARY,

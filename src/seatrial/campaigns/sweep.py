@@ -257,7 +257,7 @@ def index_of(
     sources = [s.sha256 for t in campaign.trials for s in (t.read_from, t.rig.read_from)]
     asked = [] if question is None else [question]
     said = json.dumps([__version__, engine, file, sources, *asked], default=str)
-    drawn = campaign.file.map
+    drawn = campaign.file.map if question is None else None
     return {
         "name": campaign.read_from.name,
         "title": campaign.file.title,

@@ -8,6 +8,11 @@ from pydantic import Field
 
 from ..cosim.files import FileModel
 
+MOST_VALUES = 200
+"""Along an axis."""
+MOST_PANELS = 8
+"""Columns, or rows."""
+
 
 class MapPoint(FileModel):
     """A point that is drawn on a map, such as one that somebody has published."""
