@@ -43,9 +43,9 @@ def test_the_component_of_twenty_lines(tmp_path: Path) -> None:
     assert (tmp_path / "Boat.fmu").is_file()
 
 
-TRIALS = block("## Run trials", "console").splitlines()[1:7]
-LONG = ("seatrial run gloria-triangle", "seatrial run hydrone-pads")
-"""Minutes of sailing, and seven cases."""
+TRIALS = block("## Run trials", "console").splitlines()[1:8]
+LONG = ("seatrial run gloria-triangle", "seatrial run hydrone-pads", "seatrial campaign")
+"""Minutes of sailing, seven cases, a hundred."""
 
 
 @pytest.mark.parametrize(
