@@ -180,10 +180,10 @@ class Sweep:
         numbers = (n for n in planned if n not in kept)
 
         def hand_on(number: int) -> None:
-            ended = self._early.pop(number)
-            tables.add(self._cases[number], ended)
-            self.summary.count(self._cases[number], ended)
-            done(self._cases[number], ended)
+            case, ended = self._cases[number], self._early.pop(number)
+            tables.add(case, ended)
+            self.summary.count(case, ended)
+            done(case, ended)
 
         while True:
             while not self.summary.enough and self.summary.ended in self._early:

@@ -55,6 +55,8 @@ class Watched:
             name: list[str]() if isinstance(master.signals[place], str) else array("d")
             for name, place in zip(names, self.places, strict=True)
         }
+        columns = self._columns.values()
+        self._keeping = [(c.append, i) for c, i in zip(columns, self.places, strict=True)]
         self.rows = None if _has_text(master, self.places) else Rows(self.places, 1)
         """For `Master.advance`, which leaves there what `take` keeps; None where texts are."""
 
@@ -63,8 +65,11 @@ class Watched:
 
     def record(self, *, last: bool = False) -> None:
         """Keep the values of now, whether or not they are the ``last``."""
-        signals = self._master.signals
-        self.keep(self._master.time, [signals[place] for place in self.places])
+        if self._columns:
+            signals = self._master.signals
+            self._times.append(self._master.time)
+            for keep, place in self._keeping:
+                keep(signals[place])
 
     def keep(self, time: float, values: Sequence[Any]) -> None:
         """Keep the values at a time, s."""
