@@ -534,6 +534,10 @@ def test_what_cannot_be_one(tmp_path: Path) -> None:
     run = command("fmu", "build", "--rig", "nothing-at-all", cwd=tmp_path)
     assert run.returncode == 2
     assert "nothing-at-all" in run.stderr
-    run = command("fmu", "build", "gnss", "--vehicle", "gloria", cwd=tmp_path)
-    assert "are of --rig" in run.stderr
+    for of_rig in (("--vehicle", "gloria"), ("--seed", "1")):
+        run = command("fmu", "build", "gnss", *of_rig, cwd=tmp_path)
+        assert "are of --rig" in run.stderr
+    carried = ("--standalone", "--platforms", "win64")
+    run = command("fmu", "build", "--rig", "landing", *carried, cwd=tmp_path)
+    assert "--platforms is of --native" in run.stderr
     assert list(tmp_path.iterdir()) == []

@@ -90,18 +90,20 @@ def build(
     choices: Choices = None,
     vehicle: Vehicle = None,
     autopilot: Autopilot = None,
-    seed: Annotated[int, typer.Option(help="Of a rig: what all noise derives from.")] = 1,
+    seed: Annotated[
+        int | None, typer.Option(help="Of a rig: what all noise derives from (default: 1).")
+    ] = None,
 ) -> None:
     """Build .fmu files that any tool loads which knows FMI 2.0, or 3.0."""
     version = _version(fmi)
     is_compiled = native or (version == 3 and not standalone)
-    if platforms and not (is_compiled or rig):
+    if native and standalone:
+        raise InputError("--native FMUs need no Python, --standalone ones carry it: name one")
+    if platforms and not is_compiled and (standalone or not rig):
         raise InputError(
             "--platforms is of --native, --fmi 3 and --rig: other FMUs carry all platforms they "
             "run on"
         )
-    if native and standalone:
-        raise InputError("--native FMUs need no Python, --standalone ones carry it: name one")
     changes = changes_of(settings, choices, vehicle, autopilot)
     if rig is not None:
         for option, given in {"FMU": names, "--parameters": parameters, "--osp": osp}.items():
@@ -109,11 +111,11 @@ def build(
                 raise InputError(f"--rig: a rig has no {option} of its own")
         carrier = "native" if native else "standalone" if standalone else ""
         wanted = checked_platforms(platforms) if platforms else []
-        built = RigBuild(rig, changes, variant, seed, version).build(out, carrier, wanted)
-        answer.result["files"] = [str(built)]
+        whole = RigBuild(rig, changes, variant, 1 if seed is None else seed, version)
+        answer.result["files"] = [str(whole.build(out, carrier, wanted))]
         return
-    if changes:
-        raise InputError("--set, --choose, --vehicle and --autopilot are of --rig")
+    if changes or seed is not None:
+        raise InputError("--set, --choose, --vehicle, --autopilot and --seed are of --rig")
     targets = checked_platforms(platforms or "linux64") if is_compiled else []
     for name in names or _default_names(native):
         source = _buildable(name)
