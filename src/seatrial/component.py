@@ -21,7 +21,7 @@ happen inside.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from operator import itemgetter
 from typing import Any, ClassVar
 
@@ -35,6 +35,7 @@ from .declarations import (
 )
 from .errors import InputError, SimulationError, unknown
 from .mixins import Logging, Noise, Reachable
+from .port_checks import check_parameter, misfit
 from .ports import Input, Output, Parameter, Port, Scalar, ScalarPort, lay_out
 from .serialisation import copied, is_c_text
 from .terminals import Terminal, terminal
@@ -301,7 +302,7 @@ class Component:
     def check_parameters(self) -> None:
         """Raise InputError for a parameter outside its min, max or choices."""
         for scalar in self.scalars:
-            self._check_parameter(scalar, self.values[scalar.reference])
+            check_parameter(self.name, scalar, self.values[scalar.reference])
 
     def begin(self) -> None:
         """End the initialisation: from now on fixed parameters cannot be set."""
@@ -363,7 +364,7 @@ class Component:
         running = self._phase == _RUNNING
         allowed = (self._always_settable if running else self._settable)[kind]
         if not allowed.issuperset(references):
-            raise InputError(f"{self.name}: {self._misfit(references, allowed, kind)}")
+            raise InputError(f"{self.name}: {misfit(self.scalars, references, allowed, kind)}")
         if kind is float and not math.isfinite(sum(values)):  # type: ignore[arg-type]
             for reference, value in zip(references, values, strict=True):
                 if not math.isfinite(value):  # type: ignore[arg-type]
@@ -373,7 +374,7 @@ class Component:
             if running:  # a tunable parameter; before, all are checked at the start
                 for reference, value in zip(references, values, strict=True):
                     if value != self.values[reference]:  # written again and again, often the same
-                        self._check_parameter(self.scalars[reference], value)
+                        check_parameter(self.name, self.scalars[reference], value)
             elif self._phase == _INITIALISING:
                 self._restart = True
         own = self.values
@@ -381,36 +382,11 @@ class Component:
             own[reference] = value
         self._stale = True
 
-    def _check_parameter(self, scalar: ScalarPort, value: Any) -> None:
-        name, port, unit = scalar.name, scalar.port, scalar.unit
-        if not isinstance(port, Parameter):
-            return
-        if port.type is str:
-            try:
-                port.check_text(value)
-            except InputError as error:
-                raise InputError(f"{self.name}.{error}") from None
-            return
-        low, high = port.limit("min", scalar.index), port.limit("max", scalar.index)
-        if (low is not None and value < low) or (high is not None and value > high):
-            raise InputError(
-                f"{self.name}.{name} is {value!r} {unit}, allowed {_range_text(low, high)} {unit}"
-            )
-
     def _refuse_misfit(self, references: Sequence[int], kind: type) -> None:
         if not self._of_type[kind].issuperset(references):
-            raise InputError(f"{self.name}: {self._misfit(references, self._of_type[kind], kind)}")
-
-    def _misfit(self, references: Iterable[int], allowed: frozenset[int], kind: type) -> str:
-        reference = next(r for r in references if r not in allowed)
-        if not 0 <= reference < len(self.scalars):
-            return f"there is no variable with value reference {reference}"
-        scalar = self.scalars[reference]
-        if scalar.port.type is not kind:
-            return f"{scalar.name} is of type {scalar.port.type.__name__}, not {kind.__name__}"
-        if scalar.port.kind == "output":
-            return f"{scalar.name} is an output and cannot be set"
-        return f"{scalar.name} is a fixed parameter and cannot change once the run has started"
+            raise InputError(
+                f"{self.name}: {misfit(self.scalars, references, self._of_type[kind], kind)}"
+            )
 
     def _check_outputs(self) -> None:
         values = self.values
@@ -448,9 +424,3 @@ def _getter(references: Sequence[int]) -> Callable[[list[Any]], list[Any]]:
     if places is not None:
         return itemgetter(places)
     return lambda values: [values[r] for r in references]
-
-
-def _range_text(low: float | None, high: float | None) -> str:
-    if low is None:
-        return f"at most {high!r}"
-    return f"at least {low!r}" if high is None else f"{low!r} to {high!r}"

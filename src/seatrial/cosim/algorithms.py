@@ -12,7 +12,8 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from .feedthrough import Feedthrough
-from .network import Network, Writes, sources_by_target
+from .network import Network, sources_by_target
+from .node import Writes
 from .order import ordered_groups
 
 

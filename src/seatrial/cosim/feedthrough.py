@@ -15,7 +15,8 @@ from typing import Any
 
 from ..component import NS
 from ..errors import ExcessError, SimulationError
-from .network import Chunk, Name, Network, Node, sources_by_target
+from .network import Name, Network, sources_by_target
+from .node import Chunk, Node
 from .order import loops_on_itself, ordered_groups, unrolled
 
 _TOLERANCE = 1e-12

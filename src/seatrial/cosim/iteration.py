@@ -10,7 +10,8 @@ from ..component import NS
 from ..errors import InputError, SimulationError
 from .algorithms import Remembering, arrive
 from .feedthrough import Feedthrough
-from .network import Network, Writes
+from .network import Network
+from .node import Writes
 from .rig import IterationEntry
 
 _ROUND_OFF = 1e-14

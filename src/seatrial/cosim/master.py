@@ -21,7 +21,8 @@ from .divergence import DivergenceWatch
 from .fault_schedule import Schedule
 from .feedthrough import Feedthrough
 from .injected import Acting
-from .network import Name, Network, Node
+from .network import Name, Network
+from .node import Node
 from .part import Part
 from .registry import ALGORITHMS
 from .rollback import Checkpoint, Rollback

@@ -20,7 +20,8 @@ from ..algorithms import (
     ahead,
 )
 from ..feedthrough import Feedthrough, Group
-from ..network import Chunk, Network, Node, Writes
+from ..network import Network
+from ..node import Chunk, Node, Writes
 from .marks import Marks
 from .structures import (
     ARRIVE,

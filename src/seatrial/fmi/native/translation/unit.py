@@ -9,10 +9,10 @@ from typing import Any
 from ....component import Component as Base
 from ....ports import Parameter, Port
 from ..tables import is_built_in, words_of
+from .calls import call
 from .domain import (
     C_TYPES,
     Choice,
-    Closure,
     Component,
     Draws,
     FaultValues,
@@ -26,7 +26,6 @@ from .domain import (
     Super,
     TranslationError,
     UnshapedError,
-    called,
     described,
     flattened,
     is_record_class,
@@ -37,11 +36,10 @@ from .domain import (
 )
 from .expressions import unpacked
 from .frame import WORD, Frame, lines
-from .functions import appended_attributes, found_method, inlined, invoke, record
-from .intrinsics import INTRINSICS, OTHER, begun, drawn, fault_value
-from .library import LIBRARY, method
+from .functions import appended_attributes, found_method, invoke
+from .intrinsics import OTHER, begun, fault_value
 from .messages import OWN_NAME
-from .operations import binary, is_known, python_of, truth
+from .operations import binary, truth
 from .statements import assign
 
 ROOTS = ("start", "step", "outputs")
@@ -355,52 +353,9 @@ class Unit:
 
     def call(self, frame: Frame, function: Any, arguments: list[Any], named: dict[str, Any]) -> Any:
         """Return what a function returns."""
-        for each in (*arguments, *named.values()):
-            if isinstance(each, Draws):
-                begun(frame, each)
-        if isinstance(function, Choice):
-            return frame.each(function, lambda one: self.call(frame, one, arguments, named))
-        if isinstance(function, Closure):
-            return inlined(frame, function, arguments, named)
-        if isinstance(function, Method):
-            return self._method(frame, function, arguments, named)
-        if not isinstance(function, Known):
-            raise frame.refused(f"a call of {described(function)}")
-        own = function.value
-        if own is super:
-            return Super(frame.owner or self.cls, self._receiver(frame))
-        handler = LIBRARY.get(own) if callable(own) else None
-        known = all(map(is_known, [*arguments, *named.values()]))
-        if handler is not None and not (known and own in _PURE):
-            return handler(frame, *arguments, **named)
-        if known:
-            return self._evaluated(frame, own, arguments, named)
-        if is_record_class(own):
-            return record(frame, own, arguments, named)
-        if hasattr(own, "__self__") and hasattr(own, "__func__"):
-            receiver = Known(own.__self__)
-            return invoke(frame, own.__func__, type(own.__self__), [receiver, *arguments], named)
-        return invoke(frame, own, None, arguments, named)
+        return call(frame, function, arguments, named)
 
-    def _receiver(self, frame: Frame) -> Any:
-        names = frame.names or {}
-        return next(iter(names.values())) if names else self.own
-
-    def _method(
-        self, frame: Frame, function: Method, arguments: list[Any], named: dict[str, Any]
-    ) -> Any:
-        own, receiver = function.function, function.receiver
-        if isinstance(receiver, Draws):
-            return drawn(frame, own, receiver, arguments)
-        if isinstance(own, str):
-            return method(frame, own, receiver, arguments, named)
-        if own in INTRINSICS:
-            return INTRINSICS[own](frame, *arguments, **named)
-        if isinstance(receiver, Component) and own.__name__ in self.cls.tabulated:
-            return self._tabulated(own.__name__)
-        return invoke(frame, own, function.owner, [receiver, *arguments], named)
-
-    def _tabulated(self, name: str) -> Known:
+    def tabulate(self, name: str) -> Known:
         """Call a method that makes tables of what is built in, here and now."""
         if name not in self.made:
             self.made[name] = Known(getattr(self.example, name)())
@@ -408,17 +363,6 @@ class Unit:
             self.tabulated |= {a: Known(getattr(self.example, a)) for a in attributes}
             self.changed = True
         return self.made[name]
-
-    def _evaluated(
-        self, frame: Frame, function: Any, arguments: list[Any], named: dict[str, Any]
-    ) -> Known:
-        try:
-            values = [python_of(a) for a in arguments]
-            return Known(function(*values, **{n: python_of(v) for n, v in named.items()}))
-        except TranslationError:
-            raise
-        except Exception as error:
-            raise frame.refused(f"{called(function)} ({error})") from None
 
     # ------------------------------------------------------------------ for the other modules
 
@@ -449,9 +393,3 @@ def _is_text_input(port: Port) -> bool:
 
 def _class_of(unit: Unit, receiver: Any) -> type:
     return receiver.cls if isinstance(receiver, Record) else unit.cls
-
-
-_LISTS = (list, tuple, dict, zip, enumerate, reversed, iter, next, len, any, all, sum)
-_OBJECTS = (type, getattr, setattr, hasattr, isinstance)
-_PURE = set(LIBRARY) - {*_LISTS, *_OBJECTS}
-"""Functions that are evaluated when all their arguments are known."""
