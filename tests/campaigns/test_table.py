@@ -261,3 +261,21 @@ def test_keys_of_a_trials_own_faults_are_settings(written, tmp_path):
     ):
         with pytest.raises(InputError, match=said):
             load_trial(str(trial), changes={key: "1 s"}, origin="--set")
+
+
+@pytest.mark.interop
+def test_components_in_c_leave_the_same_table(write, tmp_path):
+    path = write(
+        "landings.toml",
+        'trials = ["hydrone-open-landing"]\nkeep = "none"\nfigures = ["hull.attitude.phi"]\n'
+        '[design]\nkind = "latin-hypercube"\ncount = 6\n[design.vary]\n'
+        '"downwash.mass" = { uniform = ["1 kg", "9 kg"] }\n'
+        '"hull.GM_T" = { uniform = ["0.3 m", "0.6 m"] }\n',
+    )
+    for engine in ("direct", "native"):
+        run_sweep(load_campaign(str(path)), tmp_path / engine, How(engine, jobs=1))
+    direct, native = (
+        (tmp_path / engine / "results.parquet").read_bytes() for engine in ("direct", "native")
+    )
+    assert direct == native
+    assert set(pd.read_parquet(tmp_path / "native/results.parquet")["passed"]) == {True, False}

@@ -71,10 +71,19 @@ def read_toml(path: Path) -> tuple[dict[str, Any], Source]:
 
     Raises InputError naming the file, and line and column if it is not TOML.
     """
+    return parsed_toml(path, file_bytes(path))
+
+
+def file_bytes(path: Path) -> bytes:
+    """Return what a file has. Raises InputError naming it if it cannot be read."""
     try:
-        data = path.read_bytes()
+        return path.read_bytes()
     except OSError as error:
         raise InputError(f"{path}: {error.strerror}") from None
+
+
+def parsed_toml(path: Path, data: bytes) -> tuple[dict[str, Any], Source]:
+    """Return what ``data`` of a file say in TOML; see `read_toml`."""
     content = toml_content(data, str(path))
     return content, Source(path.stem, path, hashlib.sha256(data).hexdigest())
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, Literal
 
 from pydantic import Field
 
 from ..errors import InputError, unknown
-from .files import FileModel, Source, find_file, read_toml, validated
+from .files import FileModel, Source, file_bytes, find_file, parsed_toml, validated
 from .shape import Shape, ShapePart
 
 Mark = Literal["stated", "corrected", "assumed", "identified"]
@@ -132,7 +133,12 @@ def split_reference(written: str, fmu: str) -> tuple[str, str]:
 def load_vehicle(name: str, relative_to: Path | None = None) -> Vehicle:
     """Read the vehicle file ``name`` (shipped, or a path). Raises InputError."""
     path = find_file("vehicles", name, relative_to)
-    content, read_from = read_toml(path)
+    return _vehicle(path, file_bytes(path))
+
+
+@lru_cache(maxsize=32)  # each component asks for it, in each of thousands of cases
+def _vehicle(path: Path, data: bytes) -> Vehicle:
+    content, read_from = parsed_toml(path, data)
     known = {"title", "source", "default", "outline", "shape", "variants", "presets"}
     components = {key: value for key, value in content.items() if key not in known}
     top: dict[str, Any] = {key: value for key, value in content.items() if key in known}
