@@ -14,8 +14,8 @@ from pathlib import Path, PurePosixPath
 
 from .. import __version__
 from ..errors import InputError
-from ..shipped import shipped_folder
 from ..trials.campaign import Campaign, load_campaign
+from .needed import needed_files
 
 MOST_BYTES = 200_000_000
 _LEFT_OUT = {"runs", "__pycache__", "node_modules", "site-packages"}
@@ -24,17 +24,18 @@ _LEFT_OUT = {"runs", "__pycache__", "node_modules", "site-packages"}
 def packed(campaign: Campaign) -> bytes:
     """Return a campaign as a tar archive: the user's files around it, and which one to load.
 
-    Of a user's campaign that is the folder that holds it, its trials and their rigs, or that of
-    their ``harness``, without ``runs`` and what is hidden; of a shipped one nothing but the name.
-    Raises InputError if that is more than `MOST_BYTES`.
+    Of a user's campaign that is the folder that holds it and all that it needs (`needed_files`),
+    or that of their ``harness``, without ``runs`` and what is hidden; of a shipped one nothing but
+    the name. Raises InputError if that is more than `MOST_BYTES`.
     """
-    own = campaign.read_from.path.resolve()
+    own, here = campaign.read_from.path.resolve(), Path.cwd().resolve()
     top = _top(campaign)
     is_ours = top is None or not own.is_relative_to(top)
     name = campaign.read_from.name if top is None or is_ours else own.relative_to(top).as_posix()
+    place = here.relative_to(top).as_posix() if top and here.is_relative_to(top) else "."
     stream, total = io.BytesIO(), 0
     with tarfile.open(fileobj=stream, mode="w", format=tarfile.PAX_FORMAT) as archive:
-        _add(archive, "campaign", f"{__version__}\n{name}".encode())
+        _add(archive, "campaign", f"{__version__}\n{name}\n{place}".encode())
         for path in _files(top) if top is not None else ():
             assert top is not None
             data = path.read_bytes()
@@ -66,13 +67,14 @@ def _unpacked(_sha256: str, data: bytes) -> tuple[Campaign, Path]:
     folder = Path(_folders[-1].name)
     with tarfile.open(fileobj=io.BytesIO(data)) as archive:
         archive.extractall(folder, filter="data")
-    version, name = (folder / "campaign").read_text("utf-8").split("\n")
+    version, name, place = (folder / "campaign").read_text("utf-8").split("\n")
     if version != __version__:
         raise InputError(f"the worker has seatrial {__version__}, the campaign is of {version}")
     top = folder / "files"
-    top.mkdir(exist_ok=True)
-    with chdir(top):
-        return load_campaign(str(top / name) if name.endswith(".toml") else name), top
+    home = top / place
+    home.mkdir(parents=True, exist_ok=True)
+    with chdir(home):
+        return load_campaign(str(top / name) if name.endswith(".toml") else name), home
 
 
 def pack_folder(folder: Path) -> bytes:
@@ -91,15 +93,10 @@ def unpack_folder(data: bytes, below: Path) -> None:
 
 def _top(campaign: Campaign) -> Path | None:
     """Return the folder that has all of a user's files; None if there are none."""
-    ours = [shipped_folder(name).resolve() for name in ("harness", "fmus", "hil_profiles")]
-    sources = [campaign.read_from]
-    for trial in campaign.trials:
-        sources += [trial.read_from, trial.rig.read_from, *trial.rig.sources]
-    paths = [source.path.resolve() for source in sources]
-    users = [p for p in paths if not any(p.is_relative_to(folder) for folder in ours)]
-    if not users:
+    files = needed_files(campaign)
+    if not files:
         return None
-    common = Path(os.path.commonpath([path.parent for path in users]))
+    common = Path(os.path.commonpath([p if p.is_dir() else p.parent for p in files]))
     within = [parent for parent in (common, *common.parents) if parent.name == "harness"]
     return within[-1].parent if within else common
 
