@@ -1,4 +1,4 @@
-"""What travels to a cluster's workers: all that a campaign needs, wherever its files say it is."""
+"""Travel of a campaign to a cluster's workers: all that it needs, wherever its files say it is."""
 
 import pytest
 
