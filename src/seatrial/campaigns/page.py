@@ -99,7 +99,6 @@ def write_table_page(folder: Path) -> Path:
         "table.html.j2",
         library=LIBRARY,
         title=index.get("title") or index["name"],
-        name=index["name"],
         count=found.count,
         planned=index.get("count", found.count),
         failed=failed,
@@ -109,7 +108,7 @@ def write_table_page(folder: Path) -> Path:
         units=units,
         shown=found.shown,
         links=_links(folder, index),
-        rerun="" if answer else f"seatrial campaign rerun {shlex.quote(index['name'])} --case ",
+        rerun=_rerun(folder, index, is_answer=answer is not None),
         map=None if shown_map is None else map_figure(shown_map).json(),
         said_of_map=None if shown_map is None else said_of(shown_map),
         figures=[] if answer else _figures(found, units),
@@ -119,6 +118,14 @@ def write_table_page(folder: Path) -> Path:
     target = folder / REPORT
     write_whole(target, page)
     return target
+
+
+def _rerun(folder: Path, index: dict[str, Any], *, is_answer: bool) -> str:
+    """Return the command that runs a case again, but for its number; empty if it is not known."""
+    if "file" not in index:
+        return ""
+    words = ["seatrial", "campaign", "rerun", index["file"], "--engine", index["engine"]]
+    return shlex.join([*words, *(["--asked", folder.name] if is_answer else []), "--case"]) + " "
 
 
 def _links(folder: Path, index: dict[str, Any]) -> dict[str, str]:

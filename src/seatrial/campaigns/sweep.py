@@ -260,12 +260,20 @@ def index_of(
     drawn = campaign.file.map if question is None else None
     return {
         "name": campaign.read_from.name,
+        "file": _called(campaign.read_from.path),
+        "engine": engine,
         "title": campaign.file.title,
         "table": RESULTS,
         "count": count,
         "map": None if drawn is None else drawn.model_dump(),
         "of": hashlib.sha256(said.encode()).hexdigest(),
     }
+
+
+def _called(path: Path) -> str:
+    """Return what a command calls a campaign by, in the folder of its file or of its harness."""
+    is_named = path.parent.name == "campaigns" and path.parent.parent.name == "harness"
+    return path.stem if is_named else path.name
 
 
 def refuse_other(path: Path, index: dict[str, Any]) -> None:

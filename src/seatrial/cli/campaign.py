@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 from typer.core import TyperCommand, TyperGroup
 
+from ..campaigns.asked_run import asked_run
 from ..errors import InputError, SimulationError
-from ..trials.campaign import load_campaign
+from ..trials.campaign import Campaign, load_campaign
+from ..trials.cases import Case
 from ..trials.hooks import Hooks
 from ..trials.report import write_report
 from ..trials.supervision import run_supervised
@@ -55,14 +58,15 @@ def campaign() -> None:
 def rerun(
     name: Annotated[str, typer.Argument(metavar="CAMPAIGN", help="A campaign: a name or a file.")],
     number: Annotated[int, typer.Option("--case", metavar="N", help="Number of the case, from 1.")],
+    asked: Annotated[
+        Path | None,
+        typer.Option("--asked", metavar="FOLDER", help="A question's folder: one of its runs."),
+    ] = None,
     engine: EngineName = "fmu",
     out: Out = None,
 ) -> None:
     """Run one case of a campaign again, with its record and its report."""
-    cases = load_campaign(name).cases()
-    if not 1 <= number <= len(cases):
-        raise InputError(f"--case: a number from 1 to {len(cases)} is needed, found {number}")
-    case = cases[number - 1]
+    case = _case(load_campaign(name), asked, number)
     with stoppable() as stop:
         hooks = Hooks(stop_requested=stop.requested, interruptible=stop.interruptible)
         result = run_supervised(case.trial, out, engine=engine_named(engine), hooks=hooks)
@@ -74,3 +78,12 @@ def rerun(
         raise SimulationError(result.error or "stopped; the signals recorded so far are on disk")
     if not result.passed:
         raise typer.Exit(FAILED)
+
+
+def _case(campaign: Campaign, asked: Path | None, number: int) -> Case:
+    if asked is not None:
+        return asked_run(campaign, asked, number)
+    cases = campaign.cases()
+    if not 1 <= number <= len(cases):
+        raise InputError(f"--case: a number from 1 to {len(cases)} is needed, found {number}")
+    return cases[number - 1]

@@ -257,6 +257,8 @@ class _Case(_Entry):
 
 class _Campaign(_Entry):
     name: str
+    file: str | None = None
+    engine: str | None = None
     title: str = ""
     cases: list[_Case]
     table: str | None = None
