@@ -96,9 +96,10 @@ def build(
 ) -> None:
     """Build .fmu files that any tool loads which knows FMI 2.0, or 3.0."""
     version = _version(fmi)
-    is_compiled = native or (version == 3 and not standalone)
     if native and standalone:
         raise InputError("--native FMUs need no Python, --standalone ones carry it: name one")
+    carrier = "native" if native else "standalone" if standalone else ""
+    is_compiled = native or (version == 3 and not standalone)
     if platforms and not is_compiled and (standalone or not rig):
         raise InputError(
             "--platforms is of --native, --fmi 3 and --rig: other FMUs carry all platforms they "
@@ -109,7 +110,6 @@ def build(
         for option, given in {"FMU": names, "--parameters": parameters, "--osp": osp}.items():
             if given:
                 raise InputError(f"--rig: a rig has no {option} of its own")
-        carrier = "native" if native else "standalone" if standalone else ""
         wanted = checked_platforms(platforms) if platforms else []
         whole = RigBuild(rig, changes, variant, 1 if seed is None else seed, version)
         answer.result["files"] = [str(whole.build(out, carrier, wanted))]
@@ -121,19 +121,30 @@ def build(
         source = _buildable(name)
         values = _start_values(source, parameters, variant) if parameters else None
         path = out / f"{source.name}.fmu"
-        if native:
-            build_native_fmu(source, path, targets, values, version=version)
-        elif standalone:
-            glibc = build_standalone_fmu(source, path, values, version)
-            print_notes([f"{path} runs on Linux on x86-64 with glibc {glibc} or newer"])
-        elif version == 3:
-            build_fmu3(source, path, targets, values)
-        else:
-            build_fmu(source, path, values)
+        _write_fmu(source, path, carrier, version, targets, values)
         answer.result.setdefault("files", []).append(str(path))
         console.print(f"{path}  ({path.stat().st_size / 1000:.0f} kB)", soft_wrap=True)
         if osp:
             _write_osp(source, out)
+
+
+def _write_fmu(
+    source: ComponentSource,
+    path: Path,
+    carrier: str,
+    version: int,
+    targets: Sequence[str],
+    values: dict[str, Value] | None,
+) -> None:
+    if carrier == "native":
+        build_native_fmu(source, path, targets, values, version=version)
+    elif carrier == "standalone":
+        glibc = build_standalone_fmu(source, path, values, version)
+        print_notes([f"{path} runs on Linux on x86-64 with glibc {glibc} or newer"])
+    elif version == 3:
+        build_fmu3(source, path, targets, values)
+    else:
+        build_fmu(source, path, values)
 
 
 def _version(text: str) -> int:
