@@ -7,7 +7,7 @@ nobody who survives a crash. The two take turns: the campaign is halted (SIGSTOP
 processes run, for a third of the time, so that both meet the same machine. Rates are of the turns
 from the first case that ended on; processor time counts all processes of the campaign. Memory is
 that of each of them, at every turn: RSS counts what they share in each.
-``--write`` puts the table into docs/scale.md.
+``--write`` puts the table into docs/scale.md, that of ``--engine native`` into its own place.
 """
 
 from __future__ import annotations
@@ -254,7 +254,8 @@ def main() -> None:
     )
     print(f"{said}\n\n{found}")
     if options.write:
-        write_measured("scale.md", f"{said}\n\n{found}", "measured: campaign")
+        mark = "" if options.engine == "direct" else f", {options.engine}"
+        write_measured("scale.md", f"{said}\n\n{found}", f"measured: campaign{mark}")
 
 
 if __name__ == "__main__":
