@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 from array import array
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -71,18 +71,19 @@ class Watched:
             for keep, place in self._keeping:
                 keep(signals[place])
 
-    def keep(self, time: float, values: Sequence[Any]) -> None:
-        """Keep the values at a time, s."""
+    def keep(self, times: NDArray[np.float64], table: NDArray[np.float64]) -> None:
+        """Keep numbers at several times, s: a row of ``table`` at each."""
         if self._columns:
-            self._times.append(time)
-            for column, value in zip(self._columns.values(), values, strict=True):
-                column.append(value)
+            self._times.frombytes(times.tobytes())
+            for column, values in zip(self._columns.values(), table.T, strict=True):
+                assert not isinstance(column, list)
+                column.frombytes(values.tobytes())
 
     def take(self) -> None:
         """Keep the points that the last block of steps left in ``rows``."""
         assert self.rows is not None
-        for _steps, time, values in _points(self._master, self.rows):
-            self.keep(time, values)
+        _steps, times, table = _taken(self._master, self.rows)
+        self.keep(times, table)
 
     def watched(self) -> tuple[NDArray[np.float64], dict[str, NDArray[np.float64] | list[str]]]:
         """Return time and the signals, texts as lists, at every communication step so far."""
@@ -97,12 +98,13 @@ def _has_text(master: Master, places: Sequence[int]) -> bool:
     return any(isinstance(master.signals[place], (str, bytes)) for place in places)
 
 
-def _points(master: Master, rows: Rows) -> Iterator[tuple[int, float, list[float]]]:
-    """Yield steps, time, s, and values of each point that a block of steps left in ``rows``."""
+def _taken(
+    master: Master, rows: Rows
+) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
+    """Return steps, times, s, and values of the points that a block of steps left in ``rows``."""
     first, table = rows.taken()
-    for number, values in enumerate(table.tolist()):
-        steps = first + number * rows.every
-        yield steps, (master.start_ns + steps * master.step_ns) / NS, values
+    steps = first + rows.every * np.arange(len(table), dtype=np.int64)
+    return steps, (master.start_ns + steps * master.step_ns) / NS, table
 
 
 class Recorder:
@@ -165,14 +167,14 @@ class Recorder:
         """Record the points that the last block of steps left in ``rows``."""
         assert self.rows is not None
         count = len(self._watched)
-        for steps, time, values in _points(self._master, self.rows):
-            self._watched.keep(time, values[:count])
-            if steps % self.every == 0:
-                row = values[count:]
-                for column in self._whole_numbers:
-                    row[column] = int(row[column])
-                self._writer.writerow([time, *row])
-                self._write()
+        steps, times, table = _taken(self._master, self.rows)
+        self._watched.keep(times, table[:, :count])
+        due = steps % self.every == 0
+        for time, row in zip(times[due].tolist(), table[due, count:].tolist(), strict=True):
+            for column in self._whole_numbers:
+                row[column] = int(row[column])
+            self._writer.writerow([time, *row])
+            self._write()
 
     def watched(self) -> tuple[NDArray[np.float64], dict[str, NDArray[np.float64] | list[str]]]:
         """Return time and watched signals, texts as lists, at every communication step so far."""
