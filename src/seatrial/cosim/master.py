@@ -72,6 +72,7 @@ class Master:
         self.steps = 0
         self._network = Network(system)
         self._network.time_ns = start_ns
+        self._instances = [(name, part.instance) for name, part in system.parts.items()]
         self._ends = False
         """Whether a component has asked for the end."""
         self._compiled: CompiledSteps | None = None
@@ -164,9 +165,7 @@ class Master:
 
     def ended(self) -> list[str]:
         """Return the components that have asked to end the simulation."""
-        return [
-            name for name, part in self.system.parts.items() if part.instance.ended_at is not None
-        ]
+        return [name for name, instance in self._instances if instance.ended_at is not None]
 
     def end_notes(self) -> list[str]:
         """Return a note on every component that has asked to end the simulation."""

@@ -50,7 +50,7 @@ class Watched:
         self._master = master
         all_places = {".".join(name): i for i, name in enumerate(master.names)}
         self.places = [all_places[name] for name in names]
-        self._times = array("d")
+        self._steps = array("q")
         self._columns: dict[str, array[float] | list[str]] = {
             name: list[str]() if isinstance(master.signals[place], str) else array("d")
             for name, place in zip(names, self.places, strict=True)
@@ -67,14 +67,14 @@ class Watched:
         """Keep the values of now, whether or not they are the ``last``."""
         if self._columns:
             signals = self._master.signals
-            self._times.append(self._master.time)
+            self._steps.append(self._master.steps)
             for keep, place in self._keeping:
                 keep(signals[place])
 
-    def keep(self, times: NDArray[np.float64], table: NDArray[np.float64]) -> None:
-        """Keep numbers at several times, s: a row of ``table`` at each."""
+    def keep(self, steps: NDArray[np.int64], table: NDArray[np.float64]) -> None:
+        """Keep numbers after several numbers of steps: a row of ``table`` after each."""
         if self._columns:
-            self._times.frombytes(times.tobytes())
+            self._steps.frombytes(steps.tobytes())
             for column, values in zip(self._columns.values(), table.T, strict=True):
                 assert not isinstance(column, list)
                 column.frombytes(values.tobytes())
@@ -82,8 +82,7 @@ class Watched:
     def take(self) -> None:
         """Keep the points that the last block of steps left in ``rows``."""
         assert self.rows is not None
-        _steps, times, table = _taken(self._master, self.rows)
-        self.keep(times, table)
+        self.keep(*_taken(self.rows))
 
     def watched(self) -> tuple[NDArray[np.float64], dict[str, NDArray[np.float64] | list[str]]]:
         """Return time and the signals, texts as lists, at every communication step so far."""
@@ -91,20 +90,23 @@ class Watched:
             name: column if isinstance(column, list) else np.array(column)
             for name, column in self._columns.items()
         }
-        return np.array(self._times), columns
+        return _times(self._master, np.array(self._steps)), columns
 
 
 def _has_text(master: Master, places: Sequence[int]) -> bool:
     return any(isinstance(master.signals[place], (str, bytes)) for place in places)
 
 
-def _taken(
-    master: Master, rows: Rows
-) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
-    """Return steps, times, s, and values of the points that a block of steps left in ``rows``."""
+def _taken(rows: Rows) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """Return the points that a block of steps left: numbers of steps, and values after each."""
     first, table = rows.taken()
-    steps = first + rows.every * np.arange(len(table), dtype=np.int64)
-    return steps, (master.start_ns + steps * master.step_ns) / NS, table
+    return first + rows.every * np.arange(len(table), dtype=np.int64), table
+
+
+def _times(master: Master, steps: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Return the times after numbers of steps, s, as `Master.time` has them."""
+    times: NDArray[np.float64] = (master.start_ns + steps * master.step_ns) / NS
+    return times
 
 
 class Recorder:
@@ -167,10 +169,11 @@ class Recorder:
         """Record the points that the last block of steps left in ``rows``."""
         assert self.rows is not None
         count = len(self._watched)
-        steps, times, table = _taken(self._master, self.rows)
-        self._watched.keep(times, table[:, :count])
+        steps, table = _taken(self.rows)
+        self._watched.keep(steps, table[:, :count])
         due = steps % self.every == 0
-        for time, row in zip(times[due].tolist(), table[due, count:].tolist(), strict=True):
+        times = _times(self._master, steps[due]).tolist()
+        for time, row in zip(times, table[due, count:].tolist(), strict=True):
             for column in self._whole_numbers:
                 row[column] = int(row[column])
             self._writer.writerow([time, *row])

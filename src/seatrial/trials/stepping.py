@@ -125,20 +125,34 @@ class Stepping:
 
     def _advance(self, most: int) -> None:
         """Step up to the next point at which something else than recording is done."""
-        master, rows = self.master, self._recorder.rows
+        master, asked = self.master, self._hooks.stop_requested
+        if self._termination.has_any or self._hooks.observer is not None:
+            master.step()
+            return
         if self._events:
             ahead_ns = self._events[0].at_ns - master.time_ns
             most = min(most, -(-ahead_ns // master.step_ns))
-        if rows is None or self._termination.has_any or self._hooks.observer is not None:
-            master.step()
-            return
+        left = min(most, _LOOKED_EVERY)
+        while True:
+            taken = self._taken(most)
+            left, most = left - taken, most - taken
+            if left <= 0 or master.ended() or asked():
+                return
+            self._recorder.record()
+
+    def _taken(self, most: int) -> int:
+        """Step, and return how often: up to ``most`` times, if the master is compiled."""
+        rows = self._recorder.rows
+        if rows is None:
+            return self.master.advance(1)
         try:
-            taken = master.advance(most, rows)
+            taken = self.master.advance(most, rows)
         except BaseException:
             self._recorder.take()
             raise
         if taken > 1:  # else there is no point in between
             self._recorder.take()
+        return taken
 
     @property
     def simulated_s(self) -> float:
