@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 from ..trials.measuring import Measured
@@ -26,7 +26,7 @@ class Ended:
 
     def line(self) -> str:
         """Return it as a line of JSON, without the files."""
-        measured = asdict(self.measured)
+        measured = dict(vars(self.measured))
         keys = ("name", "check", "passed", "detail", "robustness", "worst", "unit", "expected")
         measured["verdicts"] = [{k: v[k] for k in keys} for v in self.measured.verdicts]
         content = {"number": self.number, "measured": measured, "folder": self.folder}

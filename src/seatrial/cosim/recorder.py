@@ -50,7 +50,7 @@ class Watched:
         self._master = master
         all_places = {".".join(name): i for i, name in enumerate(master.names)}
         self.places = [all_places[name] for name in names]
-        self._steps = array("q")
+        self._steps, self._signals = array("q"), master.signals
         self._columns: dict[str, array[float] | list[str]] = {
             name: list[str]() if isinstance(master.signals[place], str) else array("d")
             for name, place in zip(names, self.places, strict=True)
@@ -66,7 +66,7 @@ class Watched:
     def record(self, *, last: bool = False) -> None:
         """Keep the values of now, whether or not they are the ``last``."""
         if self._columns:
-            signals = self._master.signals
+            signals = self._signals
             self._steps.append(self._master.steps)
             for keep, place in self._keeping:
                 keep(signals[place])

@@ -46,9 +46,11 @@ class CallTrace:
     def asked(self, level: int) -> None:
         self.cells[_ASKED] = level
 
-    def between_calls(self) -> None:
-        """Note that no component is in a call."""
-        self.cells[_CALL] = 0
+    def between_calls(self) -> int:
+        """Note that no component is in a call, and return how urgently a stop is requested."""
+        cells = self.cells
+        cells[_CALL] = 0
+        return cells[_ASKED]
 
     def entry(self, names: Sequence[str]) -> tuple[str, str]:
         """Return the component in a call and the call, with its time; two empty texts for none."""

@@ -56,8 +56,7 @@ class Child:
         """Return how urgently a stop is requested; called once a step, between all calls."""
         if os.getpid() != self._own:
             os._exit(0)  # a copy of this process that a component made by fork, and that returned
-        self.call_trace.between_calls()
-        return self.call_trace.asked
+        return self.call_trace.between_calls()
 
     @contextmanager
     def interruptible(self) -> Iterator[None]:

@@ -132,13 +132,12 @@ class Stepping:
         if self._events:
             ahead_ns = self._events[0].at_ns - master.time_ns
             most = min(most, -(-ahead_ns // master.step_ns))
-        left = min(most, _LOOKED_EVERY)
-        while True:
-            taken = self._taken(most)
-            left, most = left - taken, most - taken
-            if left <= 0 or master.ended() or asked():
+        advance, ended, record = master.advance, master.ended, self._recorder.record
+        for _ in range(min(most, _LOOKED_EVERY) - self._taken(most)):
+            if ended() or asked():
                 return
-            self._recorder.record()
+            record()
+            advance(1)
 
     def _taken(self, most: int) -> int:
         """Step, and return how often: up to ``most`` times, if the master is compiled."""

@@ -59,7 +59,7 @@ def _carried_out(
         if what == "check":
             return ["done", {"alone": check_trial(trial, engine, hooks)}]
         if what == "measure":
-            return ["done", asdict(measure_trial(trial, engine=engine, hooks=hooks))]
+            return ["done", vars(measure_trial(trial, engine=engine, hooks=hooks))]
         result = run_trial(trial, out, engine=engine, hooks=hooks)
         return ["done", _written(result)]
     except SeatrialError as error:
