@@ -24,7 +24,8 @@ def needed_files(campaign: Campaign) -> list[Path]:
     With them comes what they name by a relative path that leads out of their own folder: files and
     folders. What is beside them is found with them; an absolute path is the same wherever it is
     read. Shipped files are not among them. A vehicle or profile that is found by its name below
-    the current folder brings that with it.
+    the current folder brings that with it. Trials are looked at as they are, not with what cases
+    choose in them.
     """
     ours = [shipped_folder(each).resolve() for each in _SHIPPED]
     sources = [campaign.read_from]
