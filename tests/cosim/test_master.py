@@ -5,11 +5,14 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from seatrial.cosim.compiled.rows import Rows
+from seatrial.cosim.fault_schedule import Fault
 from seatrial.cosim.injected import Acting
 from seatrial.errors import InputError, SimulationError
-from seatrial.faults.operators import Bias
+from seatrial.faults.operators import Bias, Operator
 
 from .conftest import Bench, value
 
@@ -38,6 +41,46 @@ def test_plain_jacobi_delays_each_hop_by_one_step(bench: Bench) -> None:
     # Hop i shows the ramp of i + 1 steps ago.
     for i in range(LENGTH):
         assert value(master, f"a{i}.y") == pytest.approx((30 - i - 1) / 10 + i + 1, abs=1e-14)
+
+
+@pytest.mark.parametrize("every", [1, 4])
+@pytest.mark.parametrize("names", [["ramp.y"], ["a0.y", "ramp.y"]])
+def test_a_block_of_steps_leaves_the_points_in_between(
+    bench: Bench, names: list[str], every: int
+) -> None:
+    master = bench.master(ADDERS, CHAINED)
+    rows = Rows([master.names.index(tuple(name.split("."))) for name in names], every)
+    own = {"ramp.y": 0.0, "a0.y": 1.0}
+    # The bias of the ramp acts on its reader within the block, from 0.5 s to 1.2 s.
+    bias = [("ramp", "y", Bias(10.0))]
+    master.faults.add(Fault("bias", 500_000_000, 1_200_000_000, 0, lambda _: bias))
+    for begun, count in ((0, 20), (20, 1), (21, 9)):
+        assert master.advance(count, rows) == count
+        assert master.steps == begun + count
+        between = [k for k in range(begun + 1, begun + count) if k % every == 0]
+        first, table = rows.taken()
+        assert not between or first == between[0]
+        faulty = [10.0 * (5 <= k < 12) for k in between]
+        expected = [
+            [k / 10 + own[name] + on for name in names]
+            for k, on in zip(between, faulty, strict=True)
+        ]
+        np.testing.assert_allclose(table, np.reshape(expected, (-1, len(names))), atol=1e-12)
+        assert not len(rows.taken()[1])
+
+
+def test_a_block_ends_where_a_component_asks_for_the_end(bench: Bench) -> None:
+    master = bench.master('ramp = { fmu = "users.py:Ramp" }', "")
+    ramp = master.system.parts["ramp"].instance
+
+    def ends(_: object) -> list[tuple[str, str, Operator]]:
+        ramp.ended_at = 0.7
+        return []
+
+    master.faults.add(Fault("end", 700_000_000, None, 0, ends))
+    assert master.advance(20) == 7
+    assert master.ended() == ["ramp"]
+    assert master.advance(20) == 1
 
 
 def test_initial_loop_is_solved(bench: Bench) -> None:

@@ -149,19 +149,22 @@ class Master:
     def advance(self, most: int, rows: Rows | None = None) -> int:
         """Advance by up to ``most`` communication steps; return by how many, one at least.
 
-        Compiled steps go on until somebody must look: a fault begins or ends, a component asks for
-        the end. ``rows`` gets the points in between. Raises SimulationError.
+        It goes on until somebody must look: a component asks for the end, in compiled steps a fault
+        begins or ends. ``rows`` gets the points in between. Raises SimulationError.
         """
         compiled = self._compiled
-        if compiled is not None and not self._network.is_disturbed and not self._ends:
-            taken = self._advance_compiled(compiled, most, rows)
-        else:
-            self._in_python()
-            self._rollback.advance(self.steps, self.time_ns, self.step_ns)
-            self.steps, taken = self.steps + 1, 1
-            self._watch.look(self.steps)
+        if compiled is None:
+            return self._advance_in_python(most, rows)
+        if self._network.is_disturbed or self._ends:
+            return self._advance_in_python(1, rows)
+        taken = self._advance_compiled(compiled, most, rows)
         self.faults.act(self)
         return taken
+
+    @property
+    def is_compiled(self) -> bool:
+        """Whether steps are taken in C as long as nothing disturbs them."""
+        return self._compiled is not None
 
     def ended(self) -> list[str]:
         """Return the components that have asked to end the simulation."""
@@ -314,6 +317,25 @@ class Master:
         return CompiledSteps(
             self._network, self._feedthrough, self._algorithm, self._watch, self.step_ns
         )
+
+    def _advance_in_python(self, most: int, rows: Rows | None) -> int:
+        self._in_python()
+        begun, step_ns = self.steps, self.step_ns
+        until = begun + most
+        advance, look, act = self._rollback.advance, self._watch.look, self.faults.act
+        keep = None if rows is None else rows.keeping(begun, self.signals)
+        while True:
+            advance(self.steps, self.time_ns, step_ns)
+            self.steps = steps = self.steps + 1
+            look(steps)
+            act(self)
+            for _, instance in self._instances:
+                if instance.ended_at is not None:
+                    until = steps
+            if steps == until:
+                return steps - begun
+            if keep is not None:
+                keep(steps)
 
     def _advance_compiled(self, compiled: CompiledSteps, most: int, rows: Rows | None) -> int:
         next_ns = self.faults.next_ns()

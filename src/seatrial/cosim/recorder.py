@@ -46,6 +46,9 @@ def matching(names: Sequence[str], patterns: Sequence[str]) -> list[str]:
 class Watched:
     """Keeps signals of a master in memory, at every communication step; it writes nothing."""
 
+    at_once = False
+    """Whether a point that Python has stepped to is recorded before the next step."""
+
     def __init__(self, master: Master, names: Sequence[str]) -> None:
         self._master = master
         all_places = {".".join(name): i for i, name in enumerate(master.names)}
@@ -117,6 +120,8 @@ class Recorder:
     up to the last one if the process is killed, and a row of which a full disk takes a part is
     taken back. What cannot be written raises OSError with the file's name.
     """
+
+    at_once = True
 
     def __init__(
         self,

@@ -22,8 +22,8 @@ from .verdict import Verdict
 
 _SHOWN_EVERY_S = 0.1
 """Wall time between two calls of the progress hook."""
-_LOOKED_EVERY = 16
-"""Steps between two looks at the clock for it, in a run that no wall time paces."""
+_BLOCK_S = 0.1
+"""Wall time of a block of steps, between two looks at orders to stop."""
 
 
 def watched_signals(trial: Trial) -> list[str]:
@@ -50,6 +50,8 @@ class Stepping:
         self._termination = TerminationConditions(trial, master, prepared.units)
         self._events = trial.events()
         self._shown = time.perf_counter()
+        self._block = 1
+        """Most steps of the next block."""
 
     def loop(self) -> str:
         """Step to the end; return the status. Raises SimulationError, OSError of the record."""
@@ -79,13 +81,11 @@ class Stepping:
                 break
             if stopping:
                 return "stopped"
-            before = master.steps
             if pace is None:
-                self._advance(steps - before)
+                self._advance(steps - master.steps)
             else:
                 pace.step(stop_requested)
-            if pace is not None or master.steps // _LOOKED_EVERY > before // _LOOKED_EVERY:
-                self._show_progress()
+            self._show_progress()
         self._hooks.progress(self._whole_s, self._whole_s)
         master.terminate()
         if decided is not None:
@@ -125,33 +125,24 @@ class Stepping:
 
     def _advance(self, most: int) -> None:
         """Step up to the next point at which something else than recording is done."""
-        master, asked = self.master, self._hooks.stop_requested
-        if self._termination.has_any or self._hooks.observer is not None:
+        master, recorder = self.master, self._recorder
+        rows = recorder.rows if master.is_compiled or not recorder.at_once else None
+        if rows is None or self._termination.has_any or self._hooks.observer is not None:
             master.step()
             return
         if self._events:
             ahead_ns = self._events[0].at_ns - master.time_ns
             most = min(most, -(-ahead_ns // master.step_ns))
-        advance, ended, record = master.advance, master.ended, self._recorder.record
-        for _ in range(min(most, _LOOKED_EVERY) - self._taken(most)):
-            if ended() or asked():
-                return
-            record()
-            advance(1)
-
-    def _taken(self, most: int) -> int:
-        """Step, and return how often: up to ``most`` times, if the master is compiled."""
-        rows = self._recorder.rows
-        if rows is None:
-            return self.master.advance(1)
+        begun = time.perf_counter()
         try:
-            taken = self.master.advance(most, rows)
+            taken = master.advance(min(most, self._block), rows)
         except BaseException:
-            self._recorder.take()
+            recorder.take()
             raise
         if taken > 1:  # else there is no point in between
-            self._recorder.take()
-        return taken
+            recorder.take()
+        took = time.perf_counter() - begun
+        self._block = max(1, int(_BLOCK_S * taken / max(took, 1e-9)))
 
     @property
     def simulated_s(self) -> float:

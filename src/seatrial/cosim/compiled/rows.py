@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Sequence
+from array import array
+from collections.abc import Callable, Sequence
+from operator import itemgetter
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +22,7 @@ class Rows:
         self._places = (ctypes.c_int64 * max(1, len(places)))(*places)
         self._table = np.empty((0, len(places)))
         self._begun, self._master = 0, Master()
+        self._noted = array("d")
 
     def attach(self, master: Master, count: int) -> None:
         """Let the next ``count`` steps of a master leave their points here."""
@@ -29,8 +33,33 @@ class Rows:
         master.row_every, master.rows_kept = self.every, 0
         self._begun, self._master = master.steps, master
 
+    def keeping(self, begun: int, signals: Sequence[Any]) -> Callable[[int], None]:
+        """Return what leaves a point here after a step that Python took, of those from ``begun``.
+
+        It is called with the number of steps, after each.
+        """
+        self._begun, every, keep = begun, self.every, self._noted.extend
+        values = _values(self.places)
+
+        def noted(steps: int) -> None:
+            if steps % every == 0:
+                keep(values(signals))
+
+        return noted
+
     def taken(self) -> tuple[int, NDArray[np.float64]]:
         """Return the steps at the first row, and the rows; they are gone from here then."""
         kept, self._master.rows_kept = self._master.rows_kept, 0
         first = (self._begun // self.every + 1) * self.every
-        return first, self._table[:kept, : len(self.places)]
+        if not self._noted:
+            return first, self._table[:kept, : len(self.places)]
+        table = np.array(self._noted).reshape(-1, len(self.places))
+        del self._noted[:]
+        return first, table
+
+
+def _values(places: Sequence[int]) -> Callable[[Sequence[Any]], Sequence[Any]]:
+    """Return what returns the signals at places."""
+    if len(places) > 1:
+        return itemgetter(*places)
+    return lambda signals: [signals[place] for place in places]
