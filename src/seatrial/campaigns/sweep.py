@@ -38,7 +38,7 @@ from .table import RESULTS, Tables, arrow, read_rows
 from .workers import Here, Task, Workers
 
 Done = Callable[[Case, Ended], None]
-_SLICE_S = 0.1
+_SLICE_S = 0.2
 """A stop is noticed within this time."""
 
 

@@ -25,7 +25,7 @@ from .call_trace import CallTrace
 from .forked_child import ASKING, ORDER, Child, flush_c_streams
 from .link import Frame, Link
 
-SLICE_MS = 50
+SLICE_MS = 200
 """A stop is passed on within this time."""
 _EXIT_S = 10.0
 """Wall time for a child that is to end at once; one that takes longer is killed."""
