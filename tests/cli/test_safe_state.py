@@ -135,6 +135,8 @@ def test_a_signal_while_the_command_starts_is_one_message(number: int, write, tm
     process = subprocess.Popen(
         [SEATRIAL, "run", "landing"], cwd=tmp_path, env=environment,
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        # Where the tests run under nohup, a hang-up would stay ignored.
+        preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_DFL),
     )  # fmt: skip
     wait_for((tmp_path / "importing").is_file)
     process.send_signal(number)
