@@ -21,9 +21,9 @@ def panels(body):
 
 
 # A wave trapped between its two hulls makes sharp peaks of the catamaran's radiation. The least
-# squares stop before they rest, elsewhere with another MINPACK: 0.093 with SciPy 1.17, 0.109 with 1.18.
+# squares stop before they rest, elsewhere with another MINPACK: 0.054 with SciPy 1.17, 0.059 with 1.18.
 @pytest.mark.parametrize(
-    ("body", "error"), [("barge_T020", 0.06), ("wigley_160", 0.025), ("cat_13", 0.15)]
+    ("body", "error"), [("barge_T020", 0.06), ("wigley_160", 0.025), ("cat_13", 0.1)]
 )
 def test_it_is_near_the_panels(body, error):
     w, added, damping, infinite = panels(body)
