@@ -332,7 +332,7 @@ class Master:
             for _, instance in self._instances:
                 if instance.ended_at is not None:
                     until = steps
-            if steps == until:
+            if steps >= until:
                 return steps - begun
             if keep is not None:
                 keep(steps)
