@@ -50,20 +50,22 @@ class FixedThrusters(Component):
         Raises InputError for a direction that is neither zero nor of length 1 within 1e-6.
         """
         return [
-            effect(f"{self.name}.direction_{number}", *pair) if any(pair[1]) else None
-            for number, pair in enumerate(zip(self.position, self.direction, strict=True), 1)
+            effect(self.name, f"direction_{number}", r, d) if any(d) else None
+            for number, (r, d) in enumerate(zip(self.position, self.direction, strict=True), 1)
         ]
 
 
-def effect(name: str, position: tuple[float, ...], direction: tuple[float, ...]) -> list[float]:
+def effect(
+    owner: str, name: str, position: tuple[float, ...], direction: tuple[float, ...]
+) -> list[float]:
     """Return d and r x d of a thruster: force and moment per newton, body axes.
 
-    Raises InputError naming the direction, ``name``, unless its length is 1 within 1e-6.
+    Raises InputError naming the direction, ``owner.name``, unless its length is 1 within 1e-6.
     """
     length = math.hypot(*direction)
     if abs(length - 1.0) > 1e-6:
         raise InputError(
-            f"{name} is {direction}, of length {length:.6g}: give a unit vector, or (0, 0, 0) for "
+            f"{owner}.{name} is {direction}, of length {length:.6g}: give a unit vector, or (0, 0, 0) for "
             "no thruster"
         )
     (x, y, z), (a, b, c) = position, direction

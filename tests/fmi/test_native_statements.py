@@ -346,7 +346,7 @@ class Shared(Sampled):
 
 
 def test_a_list_with_two_names_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"Shared\._one changes in place and may be known"):
+    with pytest.raises(InputError, match=r"\(Shared\.update\): a change of an item where it is"):
         built(f"{__file__}:Shared", tmp_path)
 
 

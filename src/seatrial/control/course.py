@@ -76,7 +76,7 @@ class Course(Waypoints, Sampled):
             raise InputError(
                 f"{self.name}.sides has {len(sides)} words, there are {len(marks)} waypoints"
             )
-        sides += [0] * (len(marks) - len(sides))
+        sides = [*sides, *[0] * (len(marks) - len(sides))]
         points = rounded(self.start_point, marks, sides, self.clearance)
         self._places: list[Place] = [self.start_point, *(point for point, _ in points)]
         self._marks = [0, *(number for _, number in points)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from types import MappingProxyType
 from typing import ClassVar, NamedTuple
 
 from ..component import Input, Output, Parameter, Terminal, terminal
@@ -11,7 +12,9 @@ from .guidance_motion import MANUAL, NEUTRAL, STEER, Command, Goal, Law
 from .guidance_orders import MANUAL_AXES, ORDERS, SENSED, Decision, GuidanceOrders, Task
 from .guidance_path import Point
 
-PILOTED = {"manual": (False, False), "stabilize": (True, False), "depth-hold": (True, True)}
+PILOTED = MappingProxyType(
+    {"manual": (False, False), "stabilize": (True, False), "depth-hold": (True, True)}
+)
 """Modes under manual control, and whether heading and depth are held in them."""
 MODES = (*PILOTED, "hold", "guided", "auto", "return", "loiter", "surface")
 """Values of the input ``mode``."""

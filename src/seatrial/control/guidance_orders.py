@@ -201,10 +201,10 @@ class GuidanceOrders(Sampled):
         if mode == "return":
             return "return", *self.home
         if mode == "guided" and self.target_valid:
-            if self.target_kind not in TARGETS:
-                raise InputError(f"{self.name}: {unknown('target', self.target_kind, TARGETS)}")
-            position = self.target_position if self.target_kind == "position" else ()
-            return self.target_kind, *position
+            kind = self.target_kind
+            if kind not in TARGETS:
+                raise InputError(f"{self.name}: {unknown('target', kind, TARGETS)}")
+            return (kind, *self.target_position) if kind == "position" else (kind,)
         return (mode if mode in ("loiter", "surface") else "hold",)
 
     def _goal(self, task: Task, start: Point, depth: float) -> Goal:

@@ -238,8 +238,11 @@ class StationKeeping(Sampled, TwinThrusters):
                 decision.surge_error + (decision.surge - decision.wanted_surge) / self.surge_gain
             )
             north, east = math.cos(self.heading), math.sin(self.heading)
-            self._integral_ne[0] += self.period * rate * north
-            self._integral_ne[1] += self.period * rate * east
+            before_n, before_e = self._integral_ne
+            self._integral_ne = [
+                before_n + self.period * rate * north,
+                before_e + self.period * rate * east,
+            ]
 
     def _command(self, surge: float, moment: float) -> None:
         self.surge_force, self.yaw_moment = surge, moment

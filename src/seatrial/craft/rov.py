@@ -114,7 +114,7 @@ class Rov(Propellers, SixDofCraft):
         directions = zip(self.propeller_position, self.propeller_direction, strict=True)
         for number, (position, direction) in enumerate(directions, 1):
             if any(direction):
-                effect(f"{self.name}.propeller_direction_{number}", position, direction)
+                effect(self.name, f"propeller_direction_{number}", position, direction)
         super().start(t)
 
     def equations(

@@ -70,8 +70,8 @@ class PolynomialThruster(ThrustCurve, Actuator):
         steady = self.thrust_of(command) / self.lag_poles[0]
         away = self._lag[0] - steady, self._lag[1], self._lag[2]
         kept = self._transition(h / self.slowness)
-        self._lag = [sum(k * z for k, z in zip(row, away, strict=True)) for row in kept]
-        self._lag[0] += steady
+        first, *others = [sum(k * z for k, z in zip(row, away, strict=True)) for row in kept]
+        self._lag = [first + steady, *others]
 
     def outputs(self, t: float) -> None:
         """Publish the thrust."""

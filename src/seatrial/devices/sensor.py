@@ -297,10 +297,13 @@ class Sensor(Noise, Fallible, Sampled):
         for port in self.measured:
             if port.name == fault.of:
                 normal = self.generator(k, 2).standard_normal(port.size).tolist()
-                for i in range(port.size):
-                    x = values[first + i]
-                    if x is not None:
-                        values[first + i] = _faulty(fault, i, normal[i], x, moment)
+                own = range(first, first + port.size)
+                values = [
+                    x
+                    if x is None or i not in own
+                    else _faulty(fault, i - first, normal[i - first], x, moment)
+                    for i, x in enumerate(values)
+                ]
             first += port.size
         return values
 

@@ -65,7 +65,7 @@ class StepperDriver(Sampled):
         left = round(wanted * self._per_rad) - self._place
         T, a = self.period, self.acceleration * self._per_rad
         if abs(left) <= 0.5 and abs(self._speed) <= a * T:
-            self._place, self._speed = round(wanted * self._per_rad), 0.0
+            self._place, self._speed = float(round(wanted * self._per_rad)), 0.0
             return
         stops = 0.5 * (math.sqrt((a * T) ** 2 + 8.0 * a * abs(left)) - a * T)
         most = min(self.rate * self._per_rad, stops)

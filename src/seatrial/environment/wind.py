@@ -63,7 +63,7 @@ class Wind(MeetsWind, Noise, Sampled):
         """Start the gusts anywhere in their distribution."""
         self._of_trial = self.wind_state()
         self._kept = math.exp(-self.period / self.correlation_time)
-        self._gusts = self._drawn(0)
+        self._gusts = self._held = self._drawn(0)
 
     def sample(self, t: float, k: int) -> None:
         """Let the gusts of this instant blow."""

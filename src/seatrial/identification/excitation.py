@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import MappingProxyType
 from typing import ClassVar
 
 from numpy.random import Generator
@@ -10,7 +11,9 @@ from ..component import Noise, Output, Parameter
 from ..sampled import Sampled
 
 _LEVELS = 100
-_MOTORS = {"surge": (1.0, 1.0, 0.0), "yaw": (1.0, -1.0, 0.0), "heave": (0.0, 0.0, 1.0)}
+_MOTORS = MappingProxyType(
+    {"surge": (1.0, 1.0, 0.0), "yaw": (1.0, -1.0, 0.0), "heave": (0.0, 0.0, 1.0)}
+)
 """Port, starboard and vertical motor for a positive command along the axis."""
 _PLANAR = "planar"
 

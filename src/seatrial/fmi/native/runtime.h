@@ -50,7 +50,23 @@ static inline double checked(Instance *self, double result, double x, const char
 }
 
 static inline double power(Instance *self, double a, double b, const char *where) {
-    return checked(self, pow(a, b), a, where);
+    const double result = pow(a, b);
+    return isfinite(b) ? checked(self, result, a, where) : result;
+}
+
+/* What has no value for an infinite x or a y of zero, and none for either. */
+static inline double remaining(Instance *self, double rest, double x, double y, const char *where) {
+    if (isnan(rest) && !isnan(x) && !isnan(y))
+        fail(self, "%s: there is no remainder of %s and %s at %s", self->name, shown(self, x),
+             shown(self, y), where);
+    return rest;
+}
+
+/* Whether two floats are equal as items are: in Python a NaN is, if it is the same object. */
+static inline int same(Instance *self, double a, double b, const char *where) {
+    if (isnan(a) && isnan(b))
+        fail(self, "%s: whether one NaN is another is unknown at %s", self->name, where);
+    return a == b;
 }
 
 static inline long long whole(Instance *self, double x, const char *where) {
@@ -59,15 +75,55 @@ static inline long long whole(Instance *self, double x, const char *where) {
     return 0;
 }
 
+/* A whole number for a port: Python takes none with digits behind the point, FMI 32 bits. */
+static inline double integer(Instance *self, double x, const char *where) {
+    if (__builtin_fabs(x) < 2147483648.0 && nearest(x) == x) return x + 0.0;
+    fail(self, "%s: %s is no whole number of 32 bits at %s", self->name, shown(self, x), where);
+    return 0.0;
+}
+
+static inline long long large(Instance *self, const char *where) {
+    fail(self, "%s: a whole number of more than 64 bits at %s", self->name, where);
+    return 0;
+}
+
+static inline long long plus(Instance *self, long long a, long long b, const char *where) {
+    long long result;
+    return __builtin_add_overflow(a, b, &result) ? large(self, where) : result;
+}
+
+static inline long long minus(Instance *self, long long a, long long b, const char *where) {
+    long long result;
+    return __builtin_sub_overflow(a, b, &result) ? large(self, where) : result;
+}
+
+static inline long long times(Instance *self, long long a, long long b, const char *where) {
+    long long result;
+    return __builtin_mul_overflow(a, b, &result) ? large(self, where) : result;
+}
+
+static inline long long size_of(Instance *self, long long a, const char *where) {
+    return a < 0 ? minus(self, 0, a, where) : a;
+}
+
+/* A whole number as the double that it is: Python divides and compares those beyond 2^53 exactly. */
+static inline double exact(Instance *self, long long a, const char *where) {
+    if (-9007199254740992LL <= a && a <= 9007199254740992LL) return (double)a;
+    fail(self, "%s: %lld is beyond 2^53 at %s", self->name, a, where);
+    return 0.0;
+}
+
 static inline long long floored(Instance *self, long long a, long long b, const char *where) {
     if (b == 0) {
         fail(self, "%s: division by zero at %s", self->name, where);
         return 0;
     }
+    if (b == -1) return minus(self, 0, a, where);
     return a / b - (a % b != 0 && (a < 0) != (b < 0));
 }
 
 static inline long long whole_modulo(Instance *self, long long a, long long b, const char *where) {
+    if (b == -1) return 0;
     return a - floored(self, a, b, where) * b;
 }
 

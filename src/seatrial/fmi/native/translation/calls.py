@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
+import math
+from functools import partial
+from itertools import pairwise
+from types import BuiltinMethodType, MethodType
 from typing import Any
 
+import numpy as np
+
+from .constants import is_ours, why_no_record
 from .domain import (
     Choice,
     Closure,
@@ -12,8 +19,6 @@ from .domain import (
     Known,
     Method,
     Super,
-    TranslationError,
-    called,
     described,
     is_record_class,
 )
@@ -21,12 +26,17 @@ from .frame import Frame
 from .functions import inlined, invoke, record
 from .intrinsics import INTRINSICS, begun, drawn
 from .library import LIBRARY, method
-from .operations import is_known, python_of
+from .operations import is_known, python_of, split
 
-_LISTS = (list, tuple, dict, zip, enumerate, reversed, iter, next, len, any, all, sum)
-_OBJECTS = (type, getattr, setattr, hasattr, isinstance)
-_PURE = set(LIBRARY) - {*_LISTS, *_OBJECTS}
-"""Functions that are evaluated when all their arguments are known."""
+_OBJECTS = (getattr, setattr, hasattr, isinstance, type)
+_NUMBERS = set(LIBRARY) - {list, tuple, dict, zip, enumerate, reversed, pairwise, len, *_OBJECTS}
+"""Functions of the library of numbers, each of which may be one of several kinds."""
+_PURE = (_NUMBERS - {sum, any, all, min, max, range}) | {
+    own for own in vars(math).values() if callable(own)
+}
+_PURE |= {sorted, set, frozenset, str, repr, range, np.array, np.linalg.pinv}
+_IMMUTABLE = (str, bytes, int, float, np.ndarray)
+"""Whose own methods change nothing; an array is in no name, but between two calls."""
 
 
 def call(frame: Frame, function: Any, arguments: list[Any], named: dict[str, Any]) -> Any:
@@ -40,23 +50,39 @@ def call(frame: Frame, function: Any, arguments: list[Any], named: dict[str, Any
         return inlined(frame, function, arguments, named)
     if isinstance(function, Method):
         return _method(frame, function, arguments, named)
-    if not isinstance(function, Known):
+    if not isinstance(function, Known) or not callable(function.value):
         raise frame.refused(f"a call of {described(function)}")
     own = function.value
     if own is super:
+        if arguments or frame.closed:
+            raise frame.refused("super but of the method itself")
         return Super(frame.owner or frame.unit.cls, _receiver(frame))
-    handler = LIBRARY.get(own) if callable(own) else None
-    known = all(map(is_known, [*arguments, *named.values()]))
-    if handler is not None and not (known and own in _PURE):
-        return handler(frame, *arguments, **named)
-    if known:
+    if all(map(is_known, [*arguments, *named.values()])) and _is_pure(own):
         return _evaluated(frame, own, arguments, named)
+    if own in LIBRARY:
+        handler = partial(LIBRARY[own], frame)
+        if own in _NUMBERS and not named:
+            return split(frame, handler, *arguments)
+        return handler(*arguments, **named)
     if is_record_class(own):
         return record(frame, own, arguments, named)
-    if hasattr(own, "__self__") and hasattr(own, "__func__"):
+    if isinstance(own, MethodType):
         receiver = Known(own.__self__)
         return invoke(frame, own.__func__, type(own.__self__), [receiver, *arguments], named)
     return invoke(frame, own, None, arguments, named)
+
+
+def _is_pure(function: Any) -> bool:
+    """Return whether a function of what is known may be called when C is written."""
+    if isinstance(function, BuiltinMethodType) and isinstance(function.__self__, _IMMUTABLE):
+        return True
+    if function in _PURE:
+        return True
+    if is_record_class(function):
+        return not why_no_record(function)
+    if isinstance(function, (type, MethodType)):
+        return False
+    return is_ours(getattr(function, "__module__", "") or "")
 
 
 def _receiver(frame: Frame) -> Any:
@@ -79,10 +105,5 @@ def _method(frame: Frame, function: Method, arguments: list[Any], named: dict[st
 
 def _evaluated(frame: Frame, function: Any, arguments: list[Any], named: dict[str, Any]) -> Known:
     """Call a function of what is known, here and now."""
-    try:
-        values = [python_of(a) for a in arguments]
-        return Known(function(*values, **{n: python_of(v) for n, v in named.items()}))
-    except TranslationError:
-        raise
-    except Exception as error:
-        raise frame.refused(f"{called(function)} ({error})") from None
+    values = [python_of(a) for a in arguments]
+    return Known(function(*values, **{n: python_of(v) for n, v in named.items()}))

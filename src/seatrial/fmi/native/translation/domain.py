@@ -13,7 +13,6 @@ from ....errors import InputError
 
 C_TYPES = {"d": "double", "i": "long long", "b": "int", "g": "Philox *"}
 """Kinds of values of the run: floats, whole numbers, truth values; generators that have begun."""
-_ORDER = "bid"
 
 
 class TranslationError(InputError):
@@ -30,6 +29,14 @@ class EndedError(Exception):
 
 class UnshapedError(Exception):
     """An attribute is read of which nothing has been seen yet."""
+
+
+class Once:
+    """The kind of a `Seq` that is gone through once, where it stands: a generator."""
+
+
+class Zipped(Once):
+    """The same of what ``zip``, ``enumerate`` and so on return: it may have a name until then."""
 
 
 @dataclass(frozen=True)
@@ -49,11 +56,16 @@ class Num:
 
 @dataclass(eq=False)
 class Seq:
-    """A list or tuple of known length. ``fresh``: no other name has it, so that it may change."""
+    """A list or tuple of known length, or a `Once`.
+
+    ``fresh``: a list that one name has, or none, and nothing else, so that it may change.
+    """
 
     kind: type
     items: list[Any]
     fresh: bool = True
+    spent: bool = False
+    """Of one that is gone through once: it has been."""
 
 
 @dataclass(eq=False)
@@ -116,6 +128,13 @@ class Draws:
 
 
 @dataclass(frozen=True)
+class Unconverted:
+    """What NumPy draws, an array or a whole number: to be converted before anything else."""
+
+    value: Any
+
+
+@dataclass(frozen=True)
 class Method:
     """A function with its first argument, and the class that it was found in."""
 
@@ -125,8 +144,20 @@ class Method:
 
 
 @dataclass(frozen=True)
+class OtherText:
+    """A text that is none of those known."""
+
+    known: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class OwnName:
+    """The name of the instance, which the run gives: for messages alone."""
+
+
+@dataclass(frozen=True)
 class Closure:
-    """A function inside a function, or a lambda."""
+    """A function inside a function."""
 
     node: Any
     frame: Any
@@ -138,6 +169,11 @@ class Super:
 
     owner: type
     receiver: Any
+
+
+def is_once(value: Any) -> bool:
+    """Return whether a value can be gone through once only."""
+    return isinstance(value, Seq) and issubclass(value.kind, Once)
 
 
 def called(own: Any) -> str:
@@ -163,6 +199,12 @@ def described(value: Any) -> str:
             return " or ".join(dict.fromkeys(described(each) for each in alternatives))
         case Method(function=function):
             return function if isinstance(function, str) else called(function)
+        case OwnName():
+            return "the name of the component"
+        case OtherText():
+            return "another text"
+        case Unconverted():
+            return "what NumPy has drawn"
     names = {Table: "a dict", Queue: "a queue", Range: "a range whose length the run decides"}
     return names.get(type(value), "self")
 
@@ -218,8 +260,8 @@ def opened(value: Any) -> Any:
         return Record(type(own), fields)
     if type(own) in (list, tuple):
         return Seq(type(own), [Known(each) for each in own], fresh=False)
-    if isinstance(own, (range, zip, enumerate, reversed)):
-        return Seq(list, [Known(each) for each in own])
+    if isinstance(own, range):
+        return Seq(range, [Known(each) for each in own], fresh=False)
     if isinstance(own, Mapping):
         return Table({key: Known(each) for key, each in own.items()})
     return value
@@ -249,27 +291,31 @@ def shape_of(value: Any) -> Shape:
     return Shape(type(value), value)  # the component, queues, methods: equal to themselves only
 
 
+def number_kind(value: Any) -> str:
+    """Return the kind of a number of Python, empty for anything else."""
+    return {bool: "b", int: "i", float: "d"}.get(type(value), "")
+
+
 def _number_kind(shape: Shape) -> str:
     if shape.form is Num:
         return str(shape.detail)
-    if shape.form is Known and isinstance(shape.detail.value, (bool, int, float)):
-        return {bool: "b", int: "i", float: "d"}.get(type(shape.detail.value), "d")
-    return ""
+    return number_kind(shape.detail.value) if shape.form is Known else ""
 
 
 def _one(a: Shape, b: Shape) -> Shape | None:
-    """Return the shape of which both are, without a tag; None if there is none."""
+    """Return the shape of which both are, without a tag; None if there is none.
+
+    A float and a whole number have none, nor have a list and a tuple: Python tells them apart.
+    """
     if a == b:
         return a
-    kinds = _number_kind(a), _number_kind(b)
-    if all(kinds):
-        return Shape(Num, max(kinds, key=_ORDER.index))
-    same = a.form is b.form and len(a.parts) == len(b.parts)
-    if same and (a.form is Seq or (a.form in (Record, Table) and a.detail == b.detail)):
-        kind = a.detail if a.detail == b.detail else list
-        return Shape(
-            a.form, kind, tuple(joined(p, q) for p, q in zip(a.parts, b.parts, strict=True))
-        )
+    kind = _number_kind(a)
+    if kind and kind == _number_kind(b):
+        return Shape(Num, kind)
+    same = a.form is b.form and a.detail == b.detail and len(a.parts) == len(b.parts)
+    if same and a.form in (Seq, Record, Table):
+        parts = tuple(joined(p, q) for p, q in zip(a.parts, b.parts, strict=True))
+        return Shape(a.form, a.detail, parts)
     return None
 
 
@@ -395,13 +441,15 @@ def number(value: Any, kind: str = "") -> str:
         same = not kind or kind == value.kind
         return value.text if same else f"({C_TYPES[kind]}){value.text}"
     own = value.value
-    kind = kind or {bool: "b", int: "i"}.get(type(own), "d")
+    kind = kind or number_kind(own)
     return constant(float(own) if kind == "d" else int(own))
 
 
 def constant(value: float) -> str:
-    """Return a number as C."""
+    """Return a number as C. Raises OverflowError for a whole number of more than 64 bits."""
     if isinstance(value, int):
+        if abs(value) >= 2**63:
+            raise OverflowError(f"{value} has more than 64 bits")
         return f"{value}LL" if abs(value) > 2**31 - 1 else f"({value})" if value < 0 else str(value)
     if math.isnan(value):
         return "NAN"

@@ -5,17 +5,18 @@ from __future__ import annotations
 import ast
 import builtins
 from collections.abc import Callable
-from functools import partial
 from typing import Any
 
+from .constants import why_no_constant
 from .domain import (
     Choice,
-    Closure,
     Known,
+    Once,
     Queue,
     Seq,
     Table,
     described,
+    is_once,
     opened,
     parts_of,
 )
@@ -23,13 +24,12 @@ from .frame import Frame, Join, expression
 from .narrowing import narrowing
 from .operations import (
     binary,
-    both,
     compared,
+    held,
     inverted,
-    is_known,
+    is_plain,
     item,
     negative,
-    python_of,
     truth,
 )
 
@@ -44,8 +44,14 @@ def _name(frame: Frame, node: ast.Name) -> Any:
     names = frame.names or {}
     if node.id in names:
         return names[node.id]
+    if node.id in frame.locals:
+        raise frame.refused(f"{node.id}, which may have no value here,", node)
     if node.id in frame.scope:
-        return Known(frame.scope[node.id])
+        value = frame.scope[node.id]
+        why = why_no_constant(frame.scope, node.id, value)
+        if why:
+            raise frame.refused(f"{node.id}, {why},", node)
+        return Known(value)
     if hasattr(builtins, node.id):
         return Known(getattr(builtins, node.id))
     raise frame.refused(f"{node.id}, which may have no value here,", node)
@@ -74,14 +80,18 @@ def _unary(frame: Frame, node: ast.UnaryOp) -> Any:
 
 @expression(ast.Compare)
 def _compare(frame: Frame, node: ast.Compare) -> Any:
-    left, result = frame.evaluate(node.left), Known(True)
-    for op, right_node in zip(node.ops, node.comparators, strict=True):
-        right = frame.evaluate(right_node)
-        result = both(frame, result, compared(frame, op, left, right))
-        if isinstance(result, Known) and not result.value:
-            return result
-        left = right
-    return result
+    pairs = list(zip(node.ops, node.comparators, strict=True))
+    return _chain(frame, frame.evaluate(node.left), pairs)
+
+
+def _chain(frame: Frame, left: Any, pairs: list[tuple[ast.cmpop, ast.expr]]) -> Any:
+    """Return the truth of comparisons in a chain, of which one that fails is the last."""
+    (op, node), *others = pairs
+    right = frame.evaluate(node)
+    flag = compared(frame, op, left, right)
+    if not others:
+        return flag
+    return frame.branch(flag, lambda: _chain(frame, right, others), lambda: Known(False))
 
 
 @expression(ast.BoolOp)
@@ -128,42 +138,25 @@ def _either(frame: Frame, node: ast.IfExp) -> Any:
 @expression(ast.Tuple, ast.List)
 def _sequence(frame: Frame, node: ast.Tuple | ast.List) -> Any:
     kind = tuple if isinstance(node, ast.Tuple) else list
-    return _displayed(frame, node.elts, lambda items: Seq(kind, items))
+    return Seq(kind, held([storable(frame, each) for each in _arguments(frame, node.elts)]))
 
 
-def _displayed(frame: Frame, nodes: list[ast.expr], made: Callable[[list[Any]], Any]) -> Any:
-    """Return what is made of the items of a display or call; for each length that they may have."""
-    parts = [
-        (isinstance(n, ast.Starred), frame.evaluate(n.value if isinstance(n, ast.Starred) else n))
-        for n in nodes
-    ]
-    return _spread(frame, parts, [], made)
-
-
-def _spread(
-    frame: Frame,
-    parts: list[tuple[bool, Any]],
-    items: list[Any],
-    made: Callable[[list[Any]], Any],
-) -> Any:
-    for at, (is_starred, value) in enumerate(parts):
-        if not is_starred:
-            items = [*items, value]
-        elif isinstance(value, Choice) and len(_sizes(value)) > 1:
-            return frame.each(value, partial(_spread_one, frame, parts[at + 1 :], items, made))
+def _arguments(frame: Frame, nodes: list[ast.expr]) -> list[Any]:
+    """Return the values of the items of a display or call."""
+    found: list[Any] = []
+    for node in nodes:
+        if isinstance(node, ast.Starred):
+            found += unpacked(frame, frame.evaluate(node.value))
         else:
-            items = [*items, *unpacked(frame, value)]
-    return made(items)
+            found.append(frame.evaluate(node))
+    return found
 
 
-def _spread_one(
-    frame: Frame,
-    rest: list[tuple[bool, Any]],
-    items: list[Any],
-    made: Callable[[list[Any]], Any],
-    one: Any,
-) -> Any:
-    return _spread(frame, [(True, one), *rest], items, made)
+def storable(frame: Frame, value: Any) -> Any:
+    """Return a value that may stand in another, or go elsewhere: none that is gone through once."""
+    if is_once(value):
+        raise frame.refused("what can be gone through once, as an item or argument,")
+    return value
 
 
 def _sizes(choice: Choice) -> set[int]:
@@ -183,8 +176,12 @@ def unpacked(frame: Frame, value: Any) -> list[Any]:
     if isinstance(value, Table):
         return [Known(key) for key in value.items]
     if isinstance(value, Queue) or not _is_list(value):
-        raise frame.mismatched(f"iteration over {described(value)}")
-    return list(parts_of(value))
+        raise frame.mismatched(f"iteration over {described(value)}", value)
+    if is_once(value):
+        if value.spent:
+            raise frame.refused("going again through what can be gone through once")
+        value.spent = True
+    return held(list(parts_of(value)))
 
 
 def _is_list(value: Any) -> bool:
@@ -195,18 +192,18 @@ def _is_list(value: Any) -> bool:
 def _dict(frame: Frame, node: ast.Dict) -> Any:
     items: dict[Any, Any] = {}
     for key, each in zip(node.keys, node.values, strict=True):
-        own = frame.evaluate(each)
         if key is None:
-            items |= opened(own).items
-        else:
-            items[_key(frame, frame.evaluate(key))] = own
+            raise frame.refused("** in a dict", node)
+        own = _key(frame, frame.evaluate(key))
+        items[own] = storable(frame, frame.evaluate(each))
+    held(list(items.values()))
     return Table(items)
 
 
 def _key(frame: Frame, value: Any) -> Any:
-    if not is_known(value):
-        raise frame.refused("a dict with keys of the run")
-    return python_of(value)
+    if not is_plain(value):
+        raise frame.refused(f"a dict with {described(value)} as a key")
+    return value.value
 
 
 @expression(ast.Subscript)
@@ -222,11 +219,29 @@ def _slice(frame: Frame, node: ast.Slice) -> Any:
     return Known(slice(*(end.value for end in ends)))
 
 
-@expression(ast.ListComp, ast.GeneratorExp, ast.SetComp)
-def _comprehension(frame: Frame, node: ast.ListComp | ast.GeneratorExp) -> Any:
+@expression(ast.ListComp)
+def _comprehension(frame: Frame, node: ast.ListComp) -> Any:
+    return Seq(list, _turns_of(frame, node))
+
+
+def _turns_of(frame: Frame, node: ast.ListComp | ast.GeneratorExp) -> list[Any]:
+    """Return what a comprehension, or a generator that is used up at once, consists of."""
     found: list[Any] = []
-    comprehended(frame, node.generators, lambda: found.append(frame.evaluate(node.elt)))
-    return Seq(list, found)
+    comprehended(
+        frame, node.generators, lambda: found.append(storable(frame, frame.evaluate(node.elt)))
+    )
+    return held(found)
+
+
+@expression(ast.GeneratorExp)
+def _generator(frame: Frame, node: ast.GeneratorExp) -> Any:
+    """Return what a generator yields, now: whoever goes through it does so right away."""
+    before, frame.stored = frame.stored, set()
+    found = Seq(Once, _turns_of(frame, node))
+    if frame.stored:
+        raise frame.refused("a generator that changes something", node)
+    frame.stored = before
+    return found
 
 
 @expression(ast.DictComp)
@@ -234,9 +249,11 @@ def _table(frame: Frame, node: ast.DictComp) -> Any:
     found: dict[Any, Any] = {}
 
     def add() -> None:
-        found[_key(frame, frame.evaluate(node.key))] = frame.evaluate(node.value)
+        key = _key(frame, frame.evaluate(node.key))
+        found[key] = storable(frame, frame.evaluate(node.value))
 
     comprehended(frame, node.generators, add)
+    held(list(found.values()))
     return Table(found)
 
 
@@ -246,7 +263,9 @@ def comprehended(
     """Do something for each turn of a comprehension, with its names."""
     outer = dict(frame.names or {})
     _turns(frame, generators, act)
-    frame.names = outer
+    inner = frame.names or {}
+    # What was known of an attribute may have changed on the way.
+    frame.names = {n: v for n, v in outer.items() if not n.startswith("self.") or n in inner}
 
 
 def _turns(frame: Frame, generators: list[ast.comprehension], act: Callable[[], None]) -> None:
@@ -256,23 +275,15 @@ def _turns(frame: Frame, generators: list[ast.comprehension], act: Callable[[], 
     first, *others = generators
     for value in unpacked(frame, frame.evaluate(first.iter)):
         frame.unit.assign(frame, first.target, value)
-        flags = [truth(frame, frame.evaluate(test)) for test in first.ifs]
-        if not all(isinstance(flag, Known) for flag in flags):
-            raise frame.refused("a list whose length the run decides")
-        if all(flag.value for flag in flags):
+        if all(_holds(frame, test) for test in first.ifs):
             _turns(frame, others, act)
 
 
-@expression(ast.NamedExpr)
-def _named(frame: Frame, node: ast.NamedExpr) -> Any:
-    value = frame.evaluate(node.value)
-    frame.unit.assign(frame, node.target, value)
-    return value
-
-
-@expression(ast.Lambda)
-def _lambda(frame: Frame, node: ast.Lambda) -> Any:
-    return Closure(node, frame)
+def _holds(frame: Frame, test: ast.expr) -> bool:
+    flag = truth(frame, frame.evaluate(test))
+    if not isinstance(flag, Known):
+        raise frame.refused("a list whose length the run decides")
+    return bool(flag.value)
 
 
 @expression(ast.JoinedStr)
@@ -284,29 +295,29 @@ def _text(frame: Frame, node: ast.JoinedStr) -> Any:
             continue
         assert isinstance(part, ast.FormattedValue)
         value = frame.evaluate(part.value)
-        if not is_known(value) or part.format_spec:
-            raise frame.refused("a text made of numbers of the run", node)
-        own = python_of(value)
-        found += repr(own) if part.conversion == ord("r") else str(own)
+        if not is_plain(value) or part.format_spec or part.conversion == ord("a"):
+            raise frame.refused("a text made of what the run knows", node)
+        found += repr(value.value) if part.conversion == ord("r") else str(value.value)
     return Known(found)
 
 
 @expression(ast.Call)
 def _call(frame: Frame, node: ast.Call) -> Any:
     function = frame.evaluate(node.func)
-    lazy = isinstance(function, Known) and function.value in (any, all)
-    if lazy and len(node.args) == 1 and isinstance(node.args[0], ast.GeneratorExp):
-        return _first_true(frame, node.args[0], function.value is any)
+    own = function.value if isinstance(function, Known) else None
+    if len(node.args) == 1 and isinstance(node.args[0], ast.GeneratorExp) and not node.keywords:
+        if own is any or own is all:
+            return _first_true(frame, node.args[0], own is any)
+        if own in (sum, min, max, list, tuple):
+            items = Seq(Once, _turns_of(frame, node.args[0]))
+            return frame.unit.call(frame, function, [items], {})
+    arguments = _arguments(frame, node.args)
     named: dict[str, Any] = {}
     for keyword in node.keywords:
-        value = frame.evaluate(keyword.value)
         if keyword.arg is None:
-            named |= opened(value).items
-        else:
-            named[keyword.arg] = value
-    return _displayed(
-        frame, node.args, lambda arguments: frame.unit.call(frame, function, arguments, named)
-    )
+            raise frame.refused("** in a call", node)
+        named[keyword.arg] = frame.evaluate(keyword.value)
+    return frame.unit.call(frame, function, arguments, named)
 
 
 def _first_true(frame: Frame, node: ast.GeneratorExp, wanted: bool) -> Any:

@@ -26,12 +26,17 @@ from .domain import (
     joined,
     leaves,
     number,
+    number_kind,
     shape_of,
 )
 
 FAILED = "failed"
 """Label at the end of a function that has failed."""
 WORD = re.compile(r"[A-Za-z_]\w*")
+_ORDER = "bid"
+_WORDS = {"b": "truth value", "i": "whole number", "d": "float"}
+SET = Known(True)
+"""What ``=NAME`` among the names is where the attribute NAME of the component has a value."""
 
 EXPRESSIONS: dict[type, Callable[[Any, Any], Any]] = {}
 STATEMENTS: dict[type, Callable[[Any, Any], None]] = {}
@@ -110,7 +115,9 @@ class Join:
                     slot.append(f"{temp} = {column[place]};")
         value = built(shape, iter(texts))
         if isinstance(value, Seq):
-            value.fresh = all(isinstance(v, Seq) and v.fresh for v in values)
+            # What an expression has come to may be a list that has a name.
+            value.fresh = name != "" and all(isinstance(v, Seq) and v.fresh for v in values)
+            value.spent = any(isinstance(v, Seq) and v.spent for v in values)
         return value
 
 
@@ -132,12 +139,20 @@ class Frame:
         self.counter = [0]
         self.stored: set[str] = set()
         """Attributes of the component that it has set."""
+        self.needed: set[str] = set()
+        """Attributes that it reads, and that its caller has to have set."""
+        self.given: set[str] = set()
+        """Attributes that it has set wherever it returns."""
+        self.closed = False
+        """It is a function inside a function, in whose place it is written."""
+        self.locals: frozenset[str] = frozenset()
+        """Names that are its own wherever they stand: they have no value before they are set."""
 
     def inner(self, names: dict[str, Any]) -> Frame:
         """Return a frame for a function that is written in this one's place."""
         frame = Frame(self.unit, self.title, (self.file, self.line), self.scope, self.owner)
         frame.names, frame.code, frame.variables = names, self.code, self.variables
-        frame.counter, frame.stored = self.counter, self.stored
+        frame.counter, frame.stored, frame.needed = self.counter, self.stored, self.needed
         frame.returns = Join(frame, self.label())
         return frame
 
@@ -156,6 +171,7 @@ class Frame:
             if self.names is None:
                 return
             self.line = node.lineno
+            self.unit.here = f"{self.file}:{self.line} ({self.title})"
             handler = STATEMENTS.get(type(node))
             if handler is None:
                 raise self.refused(f"a statement {type(node).__name__}", node)
@@ -173,9 +189,18 @@ class Frame:
         line = getattr(node, "lineno", self.line)
         return TranslationError(f"{self.file}:{line} ({self.title}): {what} has no C")
 
-    def mismatched(self, what: str) -> MismatchError:
-        """Return the error for an operation on what it cannot be done with."""
-        return MismatchError(f"{self.file}:{self.line} ({self.title}): {what} has no C")
+    def mismatched(self, what: str, *operands: Any) -> TranslationError:
+        """Return the error for an operation on operands that it cannot be done with here.
+
+        With None among them Python cannot either: that may end the run where it happens.
+        """
+        if any(isinstance(own, Known) and own.value is None for own in operands):
+            return self.impossible(what)
+        return self.refused(what)
+
+    def impossible(self, what: str) -> MismatchError:
+        """Return the error for what Python refuses too, if it comes there."""
+        return MismatchError(str(self.refused(what)))
 
     def fail(self, arguments: str) -> None:
         """Write what ends the call with an error. Raises EndedError, always."""
@@ -192,6 +217,19 @@ class Frame:
         self.stored |= set(attributes)
         for name in attributes:
             (self.names or {}).pop(f"self.{name}", None)
+
+    def has_set(self, attributes: Iterable[str]) -> None:
+        """Note that attributes of the component have values from here on."""
+        if self.names is not None:
+            self.names = {**self.names, **{f"={name}": SET for name in attributes}}
+
+    def sets(self) -> dict[str, Any]:
+        """Return the names that say which attributes have values here."""
+        return {name: SET for name in self.names or {} if name.startswith("=")}
+
+    def needs(self, attributes: Iterable[str]) -> None:
+        """Note that attributes are read here: those that have no value yet are the caller's."""
+        self.needed |= {name for name in attributes if f"={name}" not in (self.names or {})}
 
     # ------------------------------------------------------------------ C
 
@@ -303,9 +341,12 @@ class Frame:
 
     def text_of(self, value: Any, kind: str = "") -> str:
         """Return the C expression of a number. Raises TranslationError for anything else."""
-        plain = isinstance(value, Known) and isinstance(value.value, (bool, int, float))
+        plain = isinstance(value, Known) and bool(number_kind(value.value))
         if not plain and not isinstance(value, Num):
-            raise self.mismatched(f"{described(value)} where a number is needed")
+            raise self.mismatched(f"{described(value)} where a number is needed", value)
+        own = value.kind if isinstance(value, Num) else number_kind(value.value)
+        if kind and _ORDER.index(own) > _ORDER.index(kind):
+            raise self.refused(f"a {_WORDS[own]} where a {_WORDS[kind]} is needed")
         return number(value, kind)
 
 

@@ -5,11 +5,13 @@ from __future__ import annotations
 import ast
 import contextlib
 import inspect
+import linecache
 import re
-import textwrap
 from functools import cache
+from types import CodeType, FunctionType
 from typing import Any
 
+from .constants import why_mutable, why_no_record
 from .domain import (
     C_TYPES,
     Closure,
@@ -23,25 +25,53 @@ from .domain import (
     called,
     field_names,
     flattened,
+    is_once,
     leaves,
     shape_of,
 )
+from .expressions import storable
 from .frame import FAILED, Frame, lines, merged, pruned
+from .operations import held
+
+
+def syntax(function: Any) -> ast.FunctionDef:
+    """Return the syntax of a function, with the lines of its file.
+
+    Its text is found by its code, whatever it is wrapped in or called. Raises OSError where there
+    is no text, or another one than what was loaded.
+    """
+    code = getattr(function, "__code__", None)
+    if not isinstance(code, CodeType):
+        raise OSError
+    nodes, codes = _file(code.co_filename)
+    place = code.co_firstlineno, code.co_name
+    node, own = nodes.get(place), codes.get(place)
+    if node is None or own is None or _told(own) != _told(code):
+        raise OSError
+    return node
 
 
 @cache
-def syntax(function: Any) -> tuple[ast.FunctionDef, str]:
-    """Return the syntax of a function, with the lines of its file, and the file.
+def _file(
+    name: str,
+) -> tuple[dict[tuple[int, str], ast.FunctionDef], dict[tuple[int, str], CodeType]]:
+    """Return the functions of a file by first line and name: their syntax and code."""
+    text = "".join(linecache.getlines(name))
+    nodes: dict[tuple[int, str], ast.FunctionDef] = {}
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.FunctionDef):
+            first = min([node.lineno, *(each.lineno for each in node.decorator_list)])
+            nodes[first, node.name] = node
+    codes = [compile(text, name, "exec", dont_inherit=True)]
+    for code in codes:
+        codes += [each for each in code.co_consts if isinstance(each, CodeType)]
+    return nodes, {(code.co_firstlineno, code.co_name): code for code in codes}
 
-    Raises OSError where there is no text.
-    """
-    source, first = inspect.getsourcelines(function)
-    tree = ast.parse(textwrap.dedent("".join(source)))
-    ast.increment_lineno(tree, first - 1)
-    node = tree.body[0]
-    if not isinstance(node, ast.FunctionDef):
-        raise OSError(f"{function.__qualname__} is no plain function")
-    return node, inspect.getsourcefile(function) or "?"
+
+def _told(code: CodeType) -> tuple[Any, ...]:
+    """Return what two functions with the same text have in common."""
+    plain = [c for c in code.co_consts if isinstance(c, (int, float, str))]
+    return code.co_code, code.co_names, code.co_varnames, repr(plain)
 
 
 def bound(
@@ -49,7 +79,7 @@ def bound(
 ) -> dict[str, Any]:
     """Return the arguments by parameter, defaults included."""
     try:
-        signature = inspect.signature(function)
+        signature = inspect.signature(function, follow_wrapped=False)
         found = signature.bind(*arguments, **named)
     except (TypeError, ValueError) as error:
         raise frame.refused(f"a call of {called(function)}: {error}") from None
@@ -60,12 +90,25 @@ def bound(
         elif parameter.kind is parameter.VAR_KEYWORD:
             names[name] = Table(dict(found.arguments.get(name, {})))
         else:
-            names[name] = found.arguments.get(name, Known(parameter.default))
+            own = found.arguments.get(name)
+            names[name] = _default(frame, function, parameter) if own is None else own
+    for value in found.arguments.values():
+        held([storable(frame, each) for each in (value if type(value) is tuple else [value])])
     return names
+
+
+def _default(frame: Frame, function: Any, parameter: inspect.Parameter) -> Known:
+    why = why_mutable(parameter.default)
+    if why:
+        raise frame.refused(f"{parameter.name} of {called(function)}, {why},")
+    return Known(parameter.default)
 
 
 def record(frame: Frame, cls: type, arguments: list[Any], named: dict[str, Any]) -> Any:
     """Return a new record of a class, as its constructor makes it."""
+    why = why_no_record(cls)
+    if why:
+        raise frame.refused(why)
     if hasattr(cls, "_fields"):
         function = cls.__new__
         names = bound(frame, function, [Known(cls), *arguments], named)
@@ -80,7 +123,8 @@ def invoke(
 ) -> Any:
     """Call a function of Python: write its C, unless it is there, and a call of it."""
     unit = frame.unit
-    function = inspect.unwrap(function)
+    if not isinstance(function, FunctionType):
+        raise frame.refused(called(function))
     names = bound(frame, function, arguments, named)
     shapes = {name: shape_of(value) for name, value in names.items()}
     key = (function, owner, tuple(shapes.items()))
@@ -92,13 +136,15 @@ def invoke(
             unit.written[key] = _written(frame, function, owner, shapes)
         finally:
             unit.open.discard(key)
-    name, kinds, result, stored, returns = unit.written[key]
-    frame.stores(stored)
+    name, kinds, result, own = unit.written[key]
+    frame.needs(own.needed)
+    frame.stores(own.stored)
+    frame.has_set(own.given)
     texts = [t for n, v in names.items() for t in flattened(v, shapes[n])]
     call = f"{name}({', '.join(['self', *(t or '0' for t in texts)])})"
     if name and not kinds:
         frame.emit(f"{call};")
-        if not returns:
+        if not own.returns.sites:
             frame.end()
     elif name and len(kinds) == 1:
         return built(result, iter([frame.num(kinds[0], call).text]))
@@ -112,21 +158,21 @@ def invoke(
 
 def _written(
     frame: Frame, function: Any, owner: type | None, shapes: dict[str, Shape]
-) -> tuple[str, list[str], Shape, set[str], bool]:
+) -> tuple[str, list[str], Shape, Frame]:
     """Write the C of a function.
 
-    Return its name, the kinds of its results, their shape, the attributes that it sets, and
-    whether it ever returns.
-
-    Without a name it does nothing and its result is known.
+    Return its name, the kinds of its results, their shape, and its frame. Without a name it does
+    nothing and its result is known.
     """
     unit = frame.unit
     try:
-        node, file = syntax(function)
-    except (OSError, TypeError, SyntaxError):
+        node = syntax(function)
+    except (OSError, SyntaxError, ValueError):
         raise frame.refused(f"{called(function)}, which has no text of Python,") from None
-    title = function.__qualname__
-    own = Frame(unit, title, (file, node.lineno), function.__globals__, owner)
+    title, code = function.__qualname__, function.__code__
+    place = code.co_filename, node.lineno
+    own = Frame(unit, title, place, function.__globals__, owner)
+    own.locals = frozenset(code.co_varnames + code.co_cellvars)
     parameters: list[str] = []
     own.names = {}
     for name, shape in shapes.items():
@@ -135,10 +181,14 @@ def _written(
         own.names[name] = built(shape, iter(texts))
     closure = inspect.getclosurevars(function).nonlocals if function.__closure__ else {}
     for name, value in closure.items():
+        if not callable(value):
+            raise frame.refused(f"{name} of the function around {title}")
         own.names.setdefault(name, Known(value))
     own.execute(node.body)
     if own.names is not None:
-        own.returns.come({"": Known(None)})
+        own.returns.come({"": Known(None), **own.sets()})
+    sites = [set(names) - {""} for names, _ in own.returns.sites]
+    own.given = {name[1:] for name in set.intersection(*sites)} if sites else set()
     values = [names[""] for names, _ in own.returns.sites] or [Known(None)]
     result = merged(values)
     kinds = leaves(result)
@@ -146,13 +196,13 @@ def _written(
         raise frame.refused(f"a generator that {title} has drawn from and returns")
     silent = not any(line and not line.startswith("/*") for line in _flat_lines(own))
     if silent and not kinds:
-        return "", [], result, set(), True
+        return "", [], result, own
     unit.counter += 1
     name = f"f{unit.counter}_{function.__name__.strip('_')}"
     for names, slot in own.returns.sites:
         slot += _return(name, kinds, flattened(names[""], result))
     unit.functions.append((name, _text(own, name, kinds, parameters, node.lineno)))
-    return name, kinds, result, own.stored, bool(own.returns.sites)
+    return name, kinds, result, own
 
 
 def _flat_lines(frame: Frame) -> list[str]:
@@ -195,29 +245,41 @@ def _zero(type_: str) -> str:
 def inlined(frame: Frame, closure: Closure, arguments: list[Any], named: dict[str, Any]) -> Any:
     """Write the body of a function inside a function in the place of a call."""
     node, outer = closure.node, closure.frame
-    names = dict(outer.names or {})
-    given = node.args.args
-    defaults = dict(
-        zip([a.arg for a in given][-len(node.args.defaults) :], node.args.defaults, strict=False)
-    )
-    for at, argument in enumerate(given):
-        if at < len(arguments):
-            names[argument.arg] = arguments[at]
-        elif argument.arg in named:
-            names[argument.arg] = named[argument.arg]
-        else:
-            names[argument.arg] = frame.evaluate(defaults[argument.arg])
-    inner = frame.inner(names)
-    inner.scope = outer.scope
-    if isinstance(node, ast.Lambda):
-        return inner.evaluate(node.body)
+    plain = node.args
+    if plain.vararg or plain.kwarg or plain.kwonlyargs or plain.posonlyargs or plain.defaults:
+        raise frame.refused(f"the parameters of {node.name}, inside a function,")
+    if named or len(arguments) != len(plain.args):
+        raise frame.refused(f"a call of {node.name} with other arguments than it has")
+    if frame.variables is not outer.variables or outer.names is None:
+        raise frame.refused(f"a call of {node.name} outside the function that it is in")
+    given = dict(zip([a.arg for a in plain.args], arguments, strict=True))
+    held([storable(frame, each) for each in arguments])
+    assigned = _assigned(node)
+    # A list of the function around changes there alone.
+    others = {n: value for n, value in outer.names.items() if n not in assigned}
+    around = {n: _others(value) for n, value in others.items() if not is_once(value)}
+    inner = frame.inner({**around, **given})
+    inner.scope, inner.closed, inner.locals = outer.scope, True, outer.locals | assigned
     inner.execute(node.body)
     if inner.names is not None:
         inner.returns.come({"": Known(None)})
     found = inner.returns.names()
+    for each in (frame, outer):
+        each.stores(inner.stored)
     if found is None:
         raise EndedError
     return found[""]
+
+
+def _others(value: Any) -> Any:
+    return Seq(value.kind, value.items, fresh=False) if isinstance(value, Seq) else value
+
+
+def _assigned(node: ast.FunctionDef) -> frozenset[str]:
+    """Return the names that a function gives values."""
+    inside = [own for each in node.body for own in ast.walk(each)]
+    found = {n.id for n in inside if isinstance(n, ast.Name) and not isinstance(n.ctx, ast.Load)}
+    return frozenset(found | {a.arg for a in node.args.args})
 
 
 def found_method(cls: type, name: str, after: type | None = None) -> tuple[Any, type | None]:
@@ -234,8 +296,8 @@ def appended_attributes(cls: type) -> frozenset[str]:
     found = set()
     functions = [f for base in cls.__mro__ for f in vars(base).values() if inspect.isfunction(f)]
     for function in functions:
-        with contextlib.suppress(OSError, SyntaxError):
-            for node in ast.walk(syntax(inspect.unwrap(function))[0]):
+        with contextlib.suppress(OSError, SyntaxError, ValueError):
+            for node in ast.walk(syntax(function)):
                 if isinstance(node, ast.Attribute) and node.attr == "append":
                     owner = node.value
                     if isinstance(owner, ast.Attribute) and isinstance(owner.value, ast.Name):

@@ -11,7 +11,19 @@ from ....devices.fault import Fallible
 from ....faults.catalogue import FAILURES
 from ....faults.text import MEASURED, Written
 from ....sea.parameters import MeetsCurrent, MeetsWaves, MeetsWind
-from .domain import Choice, Draws, FaultValues, Known, Num, Record, Seq, Table, opened
+from .domain import (
+    Choice,
+    Draws,
+    FaultValues,
+    Known,
+    Num,
+    OtherText,
+    Record,
+    Seq,
+    Table,
+    Unconverted,
+    opened,
+)
 from .expressions import unpacked
 from .frame import Frame
 from .operations import is_known, python_of
@@ -19,8 +31,6 @@ from .operations import is_known, python_of
 SETTINGS = ("value", "rate", "factor", "coefficients")
 """Settings of the faults of measurements, in the order of the runtime."""
 FAULTS = ("none", *FAILURES, *MEASURED)
-OTHER = "\0"
-"""Stands for every text that is none of those known."""
 
 INTRINSICS: dict[Any, Callable[..., Any]] = {}
 """What a method of a base class becomes, with the frame and its arguments."""
@@ -50,23 +60,25 @@ def drawn(frame: Frame, name: str, draws: Draws, arguments: list[Any]) -> Any:
     """Return what a method of a generator draws."""
     own = begun(frame, draws)
 
+    frame.stores([""])  # a draw changes something, if no attribute
+
     def one() -> Num:
         return frame.num("d", f"drawn_{name}({own})")
 
     if name in ("random", "standard_normal"):
         if not arguments:
             return one()
-        return Seq(list, [one() for _ in range(arguments[0].value)])
+        return Unconverted(Seq(list, [one() for _ in range(arguments[0].value)]))
     if name == "uniform":
         low, high = arguments
         if isinstance(opened(low), Seq):
             pairs = zip(unpacked(frame, low), unpacked(frame, high), strict=True)
-            return Seq(list, [_between(frame, own, a, b) for a, b in pairs])
+            return Unconverted(Seq(list, [_between(frame, own, a, b) for a, b in pairs]))
         return _between(frame, own, low, high)
     if name == "integers" and len(arguments) == 2 and all(map(is_known, arguments)):
         low, high = map(python_of, arguments)
         if 0 < high - low < 2**32:
-            return frame.num("i", f"drawn_integer({own}, {low}LL, {high}LL)")
+            return Unconverted(frame.num("i", f"drawn_integer({own}, {low}LL, {high}LL)"))
     raise frame.refused(f"the method {name} of a generator")
 
 
@@ -78,11 +90,11 @@ def _between(frame: Frame, draws: str, low: Any, high: Any) -> Num:
 def _written_fault(frame: Frame) -> Record:
     what = frame.num("b", "present_fault(self)")
     measured = tuple(port.name for port in getattr(frame.unit.cls, "measured", ()))
-    names = ("", *measured, OTHER)
+    names = ("", *measured)
     of = frame.num("b", "self->state.fault.of")
     fields = {
         "what": Choice(what.text, tuple(Known(name) for name in FAULTS)),
-        "of": Choice(of.text, tuple(Known(name) for name in names)),
+        "of": Choice(of.text, (*map(Known, names), OtherText(names))),
         "settings": Table({key: FaultValues(i) for i, key in enumerate(SETTINGS)}),
         "at": frame.num("d", "self->state.fault.at"),
         "grows_over": frame.num("d", "self->state.fault.grows_over"),

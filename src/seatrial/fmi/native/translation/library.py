@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import bisect
 import math
 import sys
@@ -13,22 +14,40 @@ from typing import Any
 import numpy as np
 
 from ....component import seconds
+from .constants import is_record
 from .domain import (
     Choice,
     Component,
     FaultValues,
     Known,
     Num,
+    Once,
+    OtherText,
     Queue,
     Range,
     Record,
     Seq,
     Table,
+    Unconverted,
+    Zipped,
+    described,
+    is_once,
     opened,
 )
-from .expressions import unpacked
+from .expressions import storable, unpacked
 from .frame import Frame
-from .operations import is_known, is_number, kind_of, python_of, split, truth
+from .operations import (
+    binary,
+    compared,
+    held,
+    is_known,
+    is_number,
+    is_plain,
+    kind_of,
+    python_of,
+    split,
+    truth,
+)
 
 LIBRARY: dict[Any, Callable[..., Any]] = {}
 """What a function becomes, called with the frame and its arguments."""
@@ -68,7 +87,15 @@ def _two(frame: Frame, a: Any, b: Any, name: str) -> Num:
     return frame.num("d", f"{name}({texts[0]}, {texts[1]})")
 
 
-for _name in ("atan2", "copysign", "remainder", "fmod"):
+@library(math.fmod, math.remainder)
+def _rest(frame: Frame, x: Any, y: Any, name: str = "fmod") -> Num:
+    a, b = frame.text_of(x, "d"), frame.text_of(y, "d")
+    return frame.num("d", f"remaining(self, {name}({a}, {b}), {a}, {b}, {frame.place()})")
+
+
+LIBRARY[math.remainder] = lambda frame, x, y: _rest(frame, x, y, "remainder")
+
+for _name in ("atan2", "copysign"):
     LIBRARY[getattr(math, _name)] = lambda frame, a, b, name=_name: _two(frame, a, b, name)
 
 
@@ -96,9 +123,8 @@ def _difference(frame: Frame, a: Any, b: Any) -> str:
 
 @library(divmod)
 def _divmod(frame: Frame, a: Any, b: Any) -> Any:
-    x, y, where = frame.text_of(a, "d"), frame.text_of(b, "d"), frame.place()
-    quotient = frame.num("d", f"quotient(self, {x}, {y}, {where})")
-    return Seq(tuple, [quotient, frame.num("d", f"modulo(self, {x}, {y}, {where})")])
+    parts = (binary(frame, op, a, b) for op in (ast.FloorDiv(), ast.Mod()))
+    return Seq(tuple, list(parts))
 
 
 @library(math.radians)
@@ -145,7 +171,7 @@ def _array(frame: Frame, values: Any) -> str:
 def _abs(frame: Frame, x: Any) -> Num:
     if kind_of(x) == "d":
         return frame.num("d", f"__builtin_fabs({frame.text_of(x)})")
-    return frame.num("i", f"llabs({frame.text_of(x, 'i')})")
+    return frame.num("i", f"size_of(self, {frame.text_of(x, 'i')}, {frame.place()})")
 
 
 @library(round)
@@ -157,6 +183,10 @@ def _round(frame: Frame, x: Any) -> Num:
 
 @library(int)
 def _int(frame: Frame, x: Any) -> Num:
+    if isinstance(x, Unconverted) and isinstance(x.value, Num):
+        return x.value
+    if not is_number(x):
+        raise frame.refused(f"int of {described(x)}")
     if kind_of(x) != "d":
         return frame.num("i", frame.text_of(x, "i"))
     return frame.num("i", f"whole(self, trunc({frame.text_of(x, 'd')}), {frame.place()})")
@@ -164,6 +194,8 @@ def _int(frame: Frame, x: Any) -> Num:
 
 @library(float)
 def _float(frame: Frame, x: Any) -> Num:
+    if isinstance(x, Unconverted) and isinstance(x.value, Num):
+        x = x.value
     return frame.num("d", frame.text_of(x, "d"))
 
 
@@ -177,37 +209,45 @@ def _seconds(frame: Frame, ns: Any) -> Num:
     return frame.num("d", f"{frame.text_of(ns, 'd')} / 1e9")
 
 
-def _extreme(sign: str) -> Callable[..., Any]:
-    def call(frame: Frame, *values: Any, default: Any = None) -> Any:
+def _extreme(op: ast.cmpop) -> Callable[..., Any]:
+    def call(frame: Frame, *values: Any) -> Any:
         items = list(values) if len(values) > 1 else unpacked(frame, values[0])
-        if not items and default is not None:
-            return default
+        if not items:
+            raise frame.refused("the extreme of nothing")
         best, *others = items
         for other in others:
             best = split(frame, lambda a, b: one(frame, a, b), best, other)
         return best
 
     def one(frame: Frame, a: Any, b: Any) -> Any:
-        if is_known(a) and is_known(b):
-            better = b.value < a.value if sign == "<" else b.value > a.value
-            return b if better else a
-        kind = max(kind_of(a), kind_of(b), key="bid".index)
+        if not (is_number(a) and is_number(b)):
+            raise frame.refused(f"the extreme of {described(a)} and {described(b)}")
+        flag = compared(frame, op, b, a)
+        if isinstance(flag, Known):
+            return b if flag.value else a
+        kind = kind_of(a)
+        if kind != kind_of(b):
+            return frame.branch(flag, lambda: b, lambda: a)
         x, y = frame.text_of(a, kind), frame.text_of(b, kind)
-        return frame.num(kind, f"{y} {sign} {x} ? {y} : {x}")
+        return frame.num(kind, f"{flag.text} ? {y} : {x}")
 
     return call
 
 
-LIBRARY[min], LIBRARY[max] = _extreme("<"), _extreme(">")
+LIBRARY[min], LIBRARY[max] = _extreme(ast.Lt()), _extreme(ast.Gt())
 
 
 @library(sum)
 def _sum(frame: Frame, values: Any, start: Any = None) -> Any:
     items = unpacked(frame, values)
-    floats = all(is_number(i) and kind_of(i) == "d" for i in items)
-    if sys.version_info >= (3, 12) and floats and items and start is None:
-        return frame.num("d", f"compensated({len(items)}, {_array(frame, items)})")
     total = Known(0) if start is None else start
+    if not all(map(is_number, [total, *items])):
+        raise frame.refused("the sum of other things than numbers, each of one kind,")
+    kinds = {kind_of(each) for each in items}
+    if sys.version_info >= (3, 12) and "d" in {*kinds, kind_of(total)}:
+        if kinds != {"d"} or start is not None:
+            raise frame.refused("the sum of floats and whole numbers")
+        return frame.num("d", f"compensated({len(items)}, {_array(frame, items)})")
     for each in items:
         total = frame.unit.added(frame, total, each)
     return total
@@ -225,7 +265,13 @@ def _len(frame: Frame, value: Any) -> Any:
     if isinstance(value, FaultValues):
         return frame.num("i", f"self->state.fault.counts[{value.key}]")
     value = opened(value)
-    return Known(len(value.items if isinstance(value, (Seq, Table)) else value.fields))
+    if isinstance(value, Known) and isinstance(value.value, str):
+        return Known(len(value.value))
+    if isinstance(value, Record) and issubclass(value.cls, tuple):
+        return Known(len(value.fields))
+    if not isinstance(value, (Seq, Table)) or is_once(value):
+        raise frame.refused(f"the length of {described(value)}")
+    return Known(len(value.items))
 
 
 @library(list, tuple)
@@ -234,6 +280,9 @@ def _list(frame: Frame, value: Any = None, kind: type = list) -> Any:
         return frame.each(value, lambda one: _list(frame, one, kind))
     if isinstance(value, FaultValues):
         return frame.unit.fault_values(frame, value, kind)
+    value = opened(value)
+    if kind is tuple and isinstance(value, Seq) and value.kind is tuple:
+        return value  # the same one
     return Seq(kind, unpacked(frame, value) if value is not None else [])
 
 
@@ -241,43 +290,52 @@ LIBRARY[tuple] = lambda frame, value=None: _list(frame, value, tuple)
 
 
 @library(dict)
-def _dict(frame: Frame, value: Any = None, **named: Any) -> Any:
-    return Table({**(opened(value).items if value is not None else {}), **named})
+def _dict(frame: Frame, **named: Any) -> Any:
+    held([storable(frame, each) for each in named.values()])
+    return Table(dict(named))
+
+
+def gone_through(frame: Frame, value: Any) -> list[Any]:
+    """Return the items of what is gone through later: a list must stay as it is until then."""
+    held([value])
+    return unpacked(frame, value)
 
 
 @library(zip)
 def _zip(frame: Frame, *values: Any, strict: Any = None) -> Any:
-    columns = [unpacked(frame, value) for value in values]
+    columns = [gone_through(frame, value) for value in values]
     sizes = {len(column) for column in columns}
-    if strict is not None and strict.value and len(sizes) > 1:
-        raise frame.refused(f"zip of {sorted(sizes)} values")
-    return Seq(list, [Seq(tuple, list(row)) for row in zip(*columns)])  # noqa: B905
+    if len(sizes) > 1 and not (isinstance(strict, Known) and strict.value is False):
+        raise frame.refused(f"zip of {sorted(sizes)} values without strict=False")
+    return Seq(Zipped, [Seq(tuple, list(row)) for row in zip(*columns)])  # noqa: B905
 
 
 @library(range)
 def _range(frame: Frame, *ends: Any) -> Any:
     start, stop = ends[:2] if len(ends) > 1 else (Known(0), ends[0])
     step = ends[2] if len(ends) > 2 else Known(1)
-    if not isinstance(step, Known):
+    if not (isinstance(step, Known) and type(step.value) is int and step.value):
         raise frame.refused("a range with a step of the run")
     return Range(frame.text_of(start, "i"), frame.text_of(stop, "i"), step.value)
 
 
 @library(enumerate)
 def _enumerate(frame: Frame, values: Any, start: Any = None) -> Any:
-    first = start.value if start is not None else 0
-    items = enumerate(unpacked(frame, values), first)
-    return Seq(list, [Seq(tuple, [Known(i), each]) for i, each in items])
+    first = start if start is not None else Known(0)
+    if not (isinstance(first, Known) and type(first.value) is int):
+        raise frame.refused("enumerate from a number of the run")
+    items = enumerate(gone_through(frame, values), first.value)
+    return Seq(Zipped, [Seq(tuple, [Known(i), each]) for i, each in items])
 
 
 @library(reversed)
 def _reversed(frame: Frame, values: Any) -> Any:
-    return Seq(list, unpacked(frame, values)[::-1])
+    return Seq(Zipped, gone_through(frame, values)[::-1])
 
 
 @library(pairwise)
 def _pairwise(frame: Frame, values: Any) -> Any:
-    return Seq(list, [Seq(tuple, list(pair)) for pair in pairwise(unpacked(frame, values))])
+    return Seq(Zipped, [Seq(tuple, list(pair)) for pair in pairwise(gone_through(frame, values))])
 
 
 @library(any, all)
@@ -298,24 +356,11 @@ def _any(frame: Frame, values: Any, wanted: bool = True) -> Any:
 LIBRARY[all] = lambda frame, values: _any(frame, values, False)
 
 
-@library(next)
-def _next(frame: Frame, values: Any, default: Any = None) -> Any:
-    items = unpacked(frame, values)
-    if not items and default is None:
-        raise frame.refused("next of nothing")
-    return items[0] if items else default
-
-
-@library(iter)
-def _iter(_frame: Frame, values: Any) -> Any:
-    return values
-
-
 @library(bisect.bisect_right, bisect.bisect_left)
 def _bisect(frame: Frame, table: Any, x: Any, name: str = "right_of") -> Num:
     found = frame.unit.constant_table(python_of(table)) if is_known(table) else None
-    if not found:
-        raise frame.refused("bisect but in a table of numbers")
+    if not found or found[1] != "d":
+        raise frame.refused("bisect but in a table of floats")
     return frame.num("i", f"{name}({found[0]}, {found[2]}, {frame.text_of(x, 'd')})")
 
 
@@ -324,7 +369,9 @@ LIBRARY[bisect.bisect_left] = lambda frame, table, x: _bisect(frame, table, x, "
 
 @library(np.interp)
 def _interp(frame: Frame, x: Any, xs: Any, ys: Any) -> Num:
-    size = len(python_of(xs)) if is_known(xs) else len(unpacked(frame, xs))
+    size = len(unpacked(frame, xs))
+    if not size or size != len(unpacked(frame, ys)):
+        raise frame.refused("numpy.interp of tables of other lengths")
     arrays = f"{size}, {_points(frame, xs)}, {_points(frame, ys)}"
     return frame.num("d", f"interpolated({frame.text_of(x, 'd')}, {arrays})")
 
@@ -342,35 +389,47 @@ def _points(frame: Frame, values: Any) -> str:
 
 @library(getattr)
 def _getattr(frame: Frame, owner: Any, name: Any) -> Any:
-    return frame.unit.attribute(frame, owner, name.value)
+    return frame.unit.attribute(frame, owner, _name_of(frame, name))
 
 
 @library(setattr)
 def _setattr(frame: Frame, owner: Any, name: Any, value: Any) -> Any:
-    frame.unit.store(frame, owner, name.value, value)
+    frame.unit.store(frame, owner, _name_of(frame, name), value)
     return Known(None)
 
 
 @library(hasattr)
 def _hasattr(frame: Frame, owner: Any, name: Any) -> Any:
-    if isinstance(owner, Component):
-        return Known(True)  # states are saved and restored whole
-    return Known(hasattr(python_of(owner), name.value))
+    if not isinstance(owner, Component):
+        raise frame.refused(f"hasattr of {described(owner)}")
+    return Known(frame.unit.has(frame, _name_of(frame, name)))
+
+
+def _name_of(frame: Frame, name: Any) -> str:
+    if not (isinstance(name, Known) and isinstance(name.value, str)):
+        raise frame.refused("the name of an attribute that the run decides")
+    return name.value
 
 
 @library(isinstance)
 def _isinstance(frame: Frame, value: Any, cls: Any) -> Any:
     if isinstance(value, Choice):
         return frame.each(value, lambda one: _isinstance(frame, one, cls))
-    if isinstance(value, Known):
-        return Known(isinstance(value.value, cls.value))
-    kinds = {Num: float, Seq: list, Table: dict}
-    own = value.cls if isinstance(value, Record) else kinds.get(type(value), object)
     if isinstance(value, Num):
         own = {"d": float, "i": int, "b": bool}[value.kind]
-    if isinstance(value, Seq):
+    elif isinstance(value, Seq) and not is_once(value):
         own = value.kind
-    classes = cls.value if isinstance(cls.value, tuple) else (cls.value,)
+    elif is_plain(value):
+        own = type(value.value)
+    elif isinstance(value, Record):
+        own = value.cls
+    else:
+        raise frame.refused(f"isinstance of {described(value)}")
+    given: Any = python_of(cls) if is_known(cls) else None
+    classes = given if isinstance(given, tuple) else (given,)
+    for each in classes:
+        if each not in (float, int, bool, str, list, tuple, type(None)) and not is_record(each):
+            raise frame.refused(f"isinstance of {described(cls)}")
     return Known(issubclass(own, classes))
 
 
@@ -385,36 +444,42 @@ def method(frame: Frame, name: str, receiver: Any, arguments: list[Any], named: 
     """Return what a method of a list, dict, record or text does."""
     if isinstance(receiver, Choice):
         return frame.each(receiver, lambda one: method(frame, name, one, arguments, named))
-    match name, receiver:
-        case "tolist", _:
-            return receiver
-        case "copy", Seq():
-            return Seq(receiver.kind, list(receiver.items))
-        case "keys", Table():
-            return Seq(list, [Known(key) for key in receiver.items])
-        case "values", Table():
-            return Seq(list, list(receiver.items.values()))
-        case "items", Table():
+    if named and name != "_replace":
+        raise frame.refused(f"the method {name} with names for what it is given")
+    match name, receiver, len(arguments):
+        case "tolist", Unconverted(value=Seq() as value), 0:
+            return value
+        case "copy", Seq(kind=kind), 0 if kind is list:
+            return Seq(list, unpacked(frame, receiver))
+        case "keys", Table(), 0:
+            return Seq(Once, [Known(key) for key in receiver.items])
+        case "values", Table(), 0:
+            return Seq(Once, list(receiver.items.values()))
+        case "items", Table(), 0:
             pairs = receiver.items.items()
-            return Seq(list, [Seq(tuple, [Known(key), each]) for key, each in pairs])
-        case "get", Table():
+            return Seq(Once, [Seq(tuple, [Known(key), each]) for key, each in pairs])
+        case "get", Table(), 1 | 2:
             return _got(frame, receiver, *arguments)
-        case "_replace", Record():
+        case "_replace", Record(), 0 if set(named) <= set(receiver.fields):
+            held([storable(frame, each) for each in named.values()])
             return Record(receiver.cls, {**receiver.fields, **named})
-        case "index", Seq() if is_known(receiver) and is_known(arguments[0]):
-            return Known(python_of(receiver).index(python_of(arguments[0])))
-        case "pop", Queue():
+        case "pop", Queue(), 0 | 1:
             last = not arguments
+            if not last and not (isinstance(arguments[0], Known) and arguments[0].value == 0):
+                raise frame.refused("pop but from an end")
             entry = frame.unit.queue_entry(frame, receiver, Known(-1 if last else 0))
             frame.emit(f"{'drop_last' if last else 'drop_first'}({frame.unit.queue(receiver)});")
+            frame.stores([receiver.name])
             return entry
-    raise frame.refused(f"the method {name}")
+    raise frame.refused(f"the method {name} of {described(receiver)}")
 
 
 def _got(frame: Frame, table: Table, key: Any, default: Any = None) -> Any:
     other = Known(None) if default is None else default
     if isinstance(key, Choice):
         return frame.each(key, lambda one: _got(frame, table, one, default))
-    if not isinstance(key, Known):
+    if isinstance(key, OtherText) and set(table.items) <= set(key.known):
+        return other
+    if not is_plain(key):
         raise frame.refused("a key of the run")
     return table.items.get(key.value, other)

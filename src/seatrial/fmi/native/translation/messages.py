@@ -6,12 +6,9 @@ import ast
 import re
 from typing import Any
 
-from .domain import Known, Num, Seq, TranslationError
+from .domain import Known, Num, OwnName, Seq, TranslationError
 from .frame import Frame
 from .operations import is_known, python_of
-
-OWN_NAME = "\1"
-"""Stands in texts for the name that an instance of the component has."""
 
 
 def failure(frame: Frame, node: ast.Raise) -> str:
@@ -39,12 +36,11 @@ def _shown(frame: Frame, part: ast.FormattedValue) -> tuple[str, list[str]]:
     except TranslationError:
         del frame.code[before:]
         return "...", []
+    if isinstance(value, OwnName):
+        return "%s", ["self->name"]
     if is_known(value):
         own = python_of(value)
-        message = repr(own) if part.conversion == ord("r") else str(own)
-        return message.replace("%", "%%").replace(OWN_NAME, "%s"), ["self->name"] * message.count(
-            OWN_NAME
-        )
+        return (repr(own) if part.conversion == ord("r") else str(own)).replace("%", "%%"), []
     if isinstance(value, Seq):
         parts = [_number(each, "") for each in value.items]
         form = ", ".join(form for form, _ in parts)

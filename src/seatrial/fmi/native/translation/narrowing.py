@@ -38,7 +38,8 @@ def narrowing(frame: Frame, test: ast.expr) -> Callable[..., Any]:
             return result
 
         result = frame.alternatives(value, one)
-        if all(kept) and frame.names is not None:
+        # Where control ends for some, the name is one of the others from here on.
+        if kept == [True] * len(value.alternatives) and frame.names is not None:
             frame.names[name] = before
         return result
 

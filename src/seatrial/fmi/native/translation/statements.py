@@ -6,6 +6,7 @@ import ast
 from typing import Any
 
 from .domain import (
+    Choice,
     Closure,
     Draws,
     Known,
@@ -13,27 +14,31 @@ from .domain import (
     Range,
     Seq,
     Shape,
+    Table,
+    Zipped,
     built,
+    described,
     fits,
     flattened,
+    is_once,
     joined,
     leaves,
+    opened,
     shape_of,
 )
-from .expressions import unpacked
-from .frame import Frame, Join, statement
+from .expressions import storable, unpacked
+from .frame import FAILED, Frame, Join, statement
 from .messages import failure
 from .narrowing import narrowing
-from .operations import binary, compared, either, truth, with_item
+from .operations import binary, compared, either, held, truth
 
 _UNROLLED = 16
 """Turns of a loop over a range that are written one by one; more become a loop of C."""
 
 
-@statement(ast.Pass, ast.Import, ast.ImportFrom)
-def _pass(frame: Frame, node: ast.stmt) -> None:
-    if not isinstance(node, ast.Pass):
-        raise frame.refused("an import inside a function", node)
+@statement(ast.Pass)
+def _pass(_frame: Frame, _node: ast.Pass) -> None:
+    """Do nothing."""
 
 
 @statement(ast.Expr)
@@ -41,22 +46,42 @@ def _expression(frame: Frame, node: ast.Expr) -> None:
     if isinstance(node.value, ast.Constant):  # a docstring
         return
     call = node.value
-    is_method = isinstance(call, ast.Call) and isinstance(call.func, ast.Attribute)
-    if is_method and call.func.attr == "append":  # type: ignore[attr-defined]
-        _append(frame, call.func.value, frame.evaluate(call.args[0]))  # type: ignore[attr-defined]
+    if (
+        isinstance(call, ast.Call)
+        and isinstance(call.func, ast.Attribute)
+        and call.func.attr == "append"
+        and len(call.args) == 1
+        and not call.keywords
+    ):
+        _append(frame, call.func.value, call.args[0])
         return
     frame.evaluate(call)
 
 
-def _append(frame: Frame, target: ast.expr, value: Any) -> None:
-    if frame.unit.is_own(frame, target):
-        frame.unit.enqueue(frame, target.attr, value)  # type: ignore[attr-defined]
+def _append(frame: Frame, target: ast.expr, node: ast.expr) -> None:
+    if isinstance(target, ast.Attribute) and frame.unit.is_own(frame, target):
+        frame.unit.enqueue(frame, target.attr, frame.evaluate(node))
         return
-    before = frame.evaluate(target)
-    if not getattr(before, "fresh", False):
-        raise frame.refused("append to a list that has another name too", target)
-    after = type(before)(list, [*before.items, value])
-    assign(frame, target, after)
+    before = _changeable(frame, target)
+    value = storable(frame, frame.evaluate(node))
+    _rename(frame, target, before, Seq(list, [*before.items, *held([value])]))
+
+
+def _changeable(frame: Frame, target: ast.expr) -> Seq:
+    """Return a list that may change in place: one name of this function has it, nothing else."""
+    before = frame.evaluate(target) if isinstance(target, ast.Name) else None
+    if not (isinstance(before, Seq) and before.kind is list and before.fresh):
+        raise frame.refused("a change of what may have another name too", target)
+    return before
+
+
+def _rename(frame: Frame, target: ast.expr, before: Seq, after: Seq) -> None:
+    """Give a list that has changed to its name, which still had it when the change was known."""
+    assert isinstance(target, ast.Name)
+    names = frame.names or {}
+    if names.get(target.id) is not before or not before.fresh:
+        raise frame.refused("a change of a list that changes meanwhile", target)
+    frame.names = {**names, target.id: after}
 
 
 @statement(ast.Assign)
@@ -78,9 +103,13 @@ def _annotated(frame: Frame, node: ast.AnnAssign) -> None:
 @statement(ast.AugAssign)
 def _augmented(frame: Frame, node: ast.AugAssign) -> None:
     target = node.target
+    if isinstance(target, ast.Subscript):
+        raise frame.refused("a change of an item where it is", node)
+    if isinstance(target, ast.Attribute) and not isinstance(target.value, ast.Name):
+        raise frame.refused("a change of what an expression finds", node)
     before = frame.evaluate(_read(target))
-    if isinstance(before, Seq) and before.kind is list and not before.fresh:
-        raise frame.refused("a change of a list that may have another name too", node)
+    if isinstance(opened(before), (Seq, Table, Queue, Choice)):
+        raise frame.refused(f"a change of {described(before)} where it is", node)
     value = binary(frame, node.op, before, frame.evaluate(node.value))
     _note(frame, node)
     assign(frame, target, value)
@@ -101,6 +130,10 @@ def _note(frame: Frame, node: ast.stmt) -> None:
 def assign(frame: Frame, target: ast.expr, value: Any) -> None:
     """Give a target of an assignment its value."""
     if isinstance(target, ast.Name):
+        if is_once(value) and value.kind is not Zipped:
+            raise frame.refused("a name for a generator", target)
+        if isinstance(value, Queue):
+            raise frame.refused("a name for what is appended to", target)
         if isinstance(value, Draws):
             frame.unit.begin(frame, value)
         if frame.names is not None:
@@ -113,15 +146,14 @@ def assign(frame: Frame, target: ast.expr, value: Any) -> None:
     elif isinstance(target, ast.Attribute):
         frame.unit.store(frame, frame.evaluate(target.value), target.attr, value)
     elif isinstance(target, ast.Subscript):
+        before = _changeable(frame, target.value)
         index = frame.evaluate(target.slice)
-        if frame.unit.is_own(frame, target.value):
-            frame.unit.changes_in_place(frame, target.value.attr)  # type: ignore[attr-defined]
-        elif not getattr(frame.evaluate(_read(target.value)), "fresh", True):
-            raise frame.refused("a change of a list that has another name too", target)
-        before = frame.evaluate(_read(target.value))
-        after = with_item(frame, before, index, value)
-        after.fresh = True  # it is the same list as before
-        assign(frame, target.value, after)
+        at = index.value if isinstance(index, Known) else None
+        if type(at) is not int or not -len(before.items) <= at < len(before.items):
+            raise frame.refused(f"a new item at {described(index)}", target)
+        items = list(before.items)
+        items[at] = held([value])[0]
+        _rename(frame, target.value, before, Seq(list, items))
     else:
         raise frame.refused(f"an assignment to {type(target).__name__}", target)
 
@@ -136,7 +168,7 @@ def _unpack(frame: Frame, targets: list[ast.expr], values: list[Any]) -> None:
         assert isinstance(starred, ast.Starred)
         targets = [*targets[:at], starred.value, *targets[at + 1 :]]
     if len(targets) != len(values):
-        raise frame.mismatched(f"unpacking {len(values)} values to {len(targets)} names")
+        raise frame.impossible(f"unpacking {len(values)} values to {len(targets)} names")
     for target, value in zip(targets, values, strict=True):
         assign(frame, target, value)
 
@@ -149,17 +181,10 @@ def _if(frame: Frame, node: ast.If) -> None:
 
 @statement(ast.Return)
 def _return(frame: Frame, node: ast.Return) -> None:
-    value = frame.evaluate(node.value) if node.value else Known(None)
-    frame.returns.come({"": value})
+    value = storable(frame, frame.evaluate(node.value)) if node.value else Known(None)
+    held([value])
+    frame.returns.come({"": value, **frame.sets()})
     frame.names = None
-
-
-@statement(ast.Assert)
-def _assert(frame: Frame, node: ast.Assert) -> None:
-    def wrong() -> None:
-        frame.fail(f'"%s: not as it must be at %s", self->name, {frame.place()}')
-
-    narrowing(frame, node.test)(lambda: None, wrong)
 
 
 @statement(ast.Raise)
@@ -169,8 +194,14 @@ def _raise(frame: Frame, node: ast.Raise) -> None:
 
 @statement(ast.FunctionDef)
 def _function(frame: Frame, node: ast.FunctionDef) -> None:
-    assert frame.names is not None
-    frame.names = {**frame.names, node.name: Closure(node, frame)}
+    if frame.closed or node.decorator_list or _has_yield(node):
+        raise frame.refused(f"the function {node.name} here", node)
+    frame.names = {**(frame.names or {}), node.name: Closure(node, frame)}
+
+
+def _has_yield(node: ast.FunctionDef) -> bool:
+    odd = (ast.Yield, ast.YieldFrom, ast.Await, ast.Nonlocal, ast.Global, ast.FunctionDef)
+    return any(isinstance(each, odd) for own in node.body for each in ast.walk(own))
 
 
 @statement(ast.Break, ast.Continue)
@@ -188,6 +219,8 @@ def _for(frame: Frame, node: ast.For) -> None:
     backwards = _reversed(node.iter)
     values = frame.evaluate(backwards or node.iter)
     if isinstance(values, Queue):
+        if node.orelse:
+            raise frame.refused("for ... else over what is appended to", node)
         _over_queue(frame, node, values, backwards is not None)
         return
     if backwards is None and not node.orelse and (span := _span(values)):
@@ -195,6 +228,8 @@ def _for(frame: Frame, node: ast.For) -> None:
         return
     if backwards is not None:
         values = Seq(list, unpacked(frame, values)[::-1])
+    if isinstance(values, Seq):
+        values.fresh = False  # a loop goes through the list itself
     breaks = Join(frame, frame.label())
     for value in unpacked(frame, values):
         continues = Join(frame, frame.label())
@@ -248,6 +283,7 @@ def _arrive(frame: Frame, join: Join) -> None:
 
 
 def _over_queue(frame: Frame, node: ast.For, queue: Queue, backwards: bool) -> None:
+    before, frame.stored = frame.stored, set()
     count = frame.num("i", f"{frame.unit.queue(queue)}.count")
     at = frame.num("i", f"{count.text} - 1" if backwards else "0")
     test = f"{at.text} >= 0" if backwards else f"{at.text} < {count.text}"
@@ -257,22 +293,26 @@ def _over_queue(frame: Frame, node: ast.For, queue: Queue, backwards: bool) -> N
         assign(frame, node.target, frame.unit.queue_entry(frame, queue, at))
 
     _looped(frame, node.body, lambda: frame.num("b", test), step, begin)
+    if queue.name in frame.stored:
+        raise frame.refused(f"a change of {queue.name} within a loop over it", node)
+    frame.stored |= before
 
 
 @statement(ast.While)
 def _while(frame: Frame, node: ast.While) -> None:
+    if node.orelse:
+        raise frame.refused("while ... else", node)
     _looped(frame, node.body, lambda: truth(frame, frame.evaluate(node.test)), "", lambda: None)
 
 
 def _looped(frame: Frame, body: list[ast.stmt], test: Any, step: str, begin: Any) -> None:
     """Write a loop of C. The shapes of names that change in it are found by trying."""
     assert frame.names is not None
-    changed = {
-        n.id
-        for each in body
-        for n in ast.walk(each)
-        if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store) and n.id in frame.names
+    # What is known of attributes may not hold in the next turn, and what is gone through is spent.
+    frame.names = {
+        n: v for n, v in frame.names.items() if not (n.startswith("self.") or is_once(v))
     }
+    changed = _changed(body) & set(frame.names)
     shapes = {name: shape_of(frame.names[name]) for name in sorted(changed)}
     before, code = dict(frame.names), frame.code
     while True:
@@ -283,6 +323,20 @@ def _looped(frame: Frame, body: list[ast.stmt], test: Any, step: str, begin: Any
             frame.code = code
             return
         shapes = found
+
+
+def _changed(body: list[ast.stmt]) -> set[str]:
+    """Return the names that statements may give other values, or whose lists they may change."""
+    found: set[str] = set()
+    for node in (own for each in body for own in ast.walk(each)):
+        if isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Load):
+            found.add(node.id)
+        elif isinstance(node, (ast.MatchAs, ast.MatchStar, ast.FunctionDef)) and node.name:
+            found.add(node.name)
+        elif isinstance(node, (ast.Subscript, ast.Attribute)) and isinstance(node.value, ast.Name):
+            changes = not isinstance(node.ctx, ast.Load) or getattr(node, "attr", "") == "append"
+            found |= {node.value.id} if changes else set()
+    return found - {"self"}
 
 
 def _attempt(
@@ -304,6 +358,8 @@ def _attempt(
             return None
         with frame.block(f"if (!{frame.text_of(flag, 'b')}) {{"):
             breaks.come(frame.names)
+        with frame.block("if (self->error[0]) {"):  # what the turn before computed is nothing
+            frame.emit(f"goto {FAILED};")
         begin()
         frame.loops.append((breaks, continues))
         frame.execute(body)

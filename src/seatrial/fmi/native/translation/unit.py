@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+import sys
+from collections.abc import Iterator, Mapping
+from types import FunctionType, ModuleType
 from typing import Any
 
 from ....component import Component as Base
 from ....ports import Parameter, Port
 from ..tables import is_built_in, words_of
 from .calls import call
+from .constants import is_ours, why_no_constant
 from .domain import (
     C_TYPES,
     Choice,
@@ -19,6 +22,8 @@ from .domain import (
     Known,
     Method,
     Num,
+    OtherText,
+    OwnName,
     Queue,
     Record,
     Seq,
@@ -34,17 +39,30 @@ from .domain import (
     opened,
     shape_of,
 )
-from .expressions import unpacked
+from .expressions import storable, unpacked
 from .frame import WORD, Frame, lines
 from .functions import appended_attributes, found_method, invoke
-from .intrinsics import OTHER, begun, fault_value
-from .messages import OWN_NAME
-from .operations import binary, truth
+from .intrinsics import begun, fault_value
+from .operations import binary, held, is_number, truth
 from .statements import assign
 
 ROOTS = ("start", "step", "outputs")
 """Methods that the runtime calls: ``model_NAME`` in C."""
 _PASSES = 12
+_ORDINARY = frozenset(
+    {"__module__", "__doc__", "__annotations__", "__dict__", "__weakref__", "__orig_bases__"}
+    | {"__parameters__", "__abstractmethods__", "__static_attributes__", "__firstlineno__"}
+    | {"__annotate__", "__annotate_func__", "__annotations_cache__"}
+)
+_WRITTEN = (
+    *("feedthrough", "discrete", "fixed_step", "terminals", "views", "structural", "tabulated"),
+    *("exercised", "ports", "scalars", "scalar_by_name", "_declared", "_settable"),
+    *("_always_settable", "_of_type", "_real_outputs", "_of_real_outputs", "_other_outputs"),
+    "_inputs",
+)
+"""What a class of a user may have of its own beside `ROOTS`, and what each class has."""
+_FRAMEWORK = frozenset(vars(Base())) | {n for n in dir(Base) if callable(getattr(Base, n))}
+"""Names that are not the component's to assign."""
 
 
 class Unit:
@@ -55,9 +73,9 @@ class Unit:
         self.own = Component()
         self.attributes: dict[str, Shape] = {}
         self.queues: dict[str, Shape] = {}
+        self.here = self.cls.__name__
+        """Where the translation is, for messages."""
         self.appended = appended_attributes(self.cls)
-        self.changed_in_place: set[str] = set()
-        self.aliased: set[str] = set()
         self.made: dict[str, Known] = {}
         """Objects that are built in, by the method that makes them."""
         self.tabulated: dict[str, Known] = {}
@@ -72,12 +90,38 @@ class Unit:
         """By name, in the order in which they are written: after those that they call."""
         self.written: dict[Any, Any] = {}
         self.open: set[Any] = set()
+        self.started: list[str] = []
+        """Attributes that have a value when `start` has run."""
         self.changed = False
 
     # ------------------------------------------------------------------ whole
 
     def translate(self) -> str:
-        """Return the functions of C. Raises TranslationError naming file, line and construct."""
+        """Return the functions of C.
+
+        Raises TranslationError, naming file, line and construct, for whatever has none.
+        """
+        try:
+            self._refuse_unusual()
+            return self._settled()
+        except TranslationError:
+            raise
+        except Exception as error:
+            # A mistake of the translator, or a value that Python would refuse when it comes there.
+            what = f"{type(error).__name__}: {error}"
+            raise TranslationError(f"{self.here}: {what}: that has no C") from error
+
+    def _refuse_unusual(self) -> None:
+        """Raise TranslationError for a class that does by itself what the runtime does in C."""
+        for base in self.cls.__mro__[:-1]:
+            for name in () if is_ours(base.__module__) else vars(base):
+                own = name.startswith("__") or hasattr(Base, name)
+                if own and name not in (*_ORDINARY, *_WRITTEN, *ROOTS):
+                    raise TranslationError(f"{base.__name__}.{name}, a way of its own, has no C")
+        if type(self.cls) is not type(Base):
+            raise TranslationError(f"{self.cls.__name__}, made its own way, has no C")
+
+    def _settled(self) -> str:
         for _ in range(_PASSES):
             self._begin()
             roots, missing = [], ""
@@ -89,7 +133,6 @@ class Unit:
             if not self.changed:
                 if missing:
                     raise TranslationError(missing)
-                self._refuse_shared()
                 return "\n".join([*self._called(roots), *roots])
         raise TranslationError(f"{self.cls.__name__}: the types of its attributes do not settle")
 
@@ -103,16 +146,6 @@ class Unit:
                 words.update(WORD.findall(text))
         return found[::-1]
 
-    def _refuse_shared(self) -> None:
-        """Raise TranslationError for a list that changes in place, and may be another's too."""
-        for name in sorted(self.changed_in_place):
-            for other in self.aliased:
-                if self.attributes[name] == self.attributes[other]:
-                    raise TranslationError(
-                        f"{self.cls.__name__}.{name} changes in place and may be known by another "
-                        f"name too, as what {other} gets: that has no C"
-                    )
-
     def _root(self, name: str) -> str:
         function, owner = found_method(self.cls, name)
         file = function.__code__.co_filename
@@ -121,7 +154,16 @@ class Unit:
         kinds = "dd" if name == "step" else "d"
         arguments = [Num("d", text) for text, _ in zip(("t", "h"), kinds, strict=False)]
         if function is not vars(Base).get(name):
+            frame.has_set(self.started)
             invoke(frame, function, owner, [self.own, *arguments], {})
+            if frame.needed and not self.changed:
+                names = ", ".join(sorted(frame.needed))
+                raise TranslationError(
+                    f"{self.cls.__name__}: {names} may be read before start() gives a value: "
+                    "that has no C"
+                )
+            if name == "start":
+                self.started = [each[1:] for each in frame.sets()]
         parameters = "".join(f", double {a.text}" for a in arguments)
         unused = "".join(f"    (void){a.text};\n" for a in arguments)
         declared = "".join(f"    {t} {n} = 0;\n" for t, n in frame.variables)
@@ -165,6 +207,8 @@ class Unit:
 
     def attribute(self, frame: Frame, owner: Any, name: str) -> Any:
         """Return an attribute of a value."""
+        if name.startswith("__"):
+            raise frame.refused(f"the attribute {name}")
         if isinstance(owner, Choice):
             return frame.each(owner, lambda one: self.attribute(frame, one, name))
         if isinstance(owner, Component):
@@ -173,12 +217,9 @@ class Unit:
             found, where = found_method(_class_of(self, owner.receiver), name, owner.owner)
             return Method(found, where, owner.receiver)
         if isinstance(owner, Known) and not is_record_class(type(owner.value)):
-            if isinstance(owner.value, (list, tuple, dict)):
+            if isinstance(owner.value, (list, tuple, Mapping)):
                 return Method(name, None, opened(owner))
-            try:
-                return Known(getattr(owner.value, name))
-            except AttributeError:
-                raise frame.refused(f"{name} of {described(owner)}") from None
+            return self._known(frame, owner.value, name)
         owner = opened(owner)
         if isinstance(owner, Record):
             if name in owner.fields:
@@ -186,15 +227,27 @@ class Unit:
             found, where = found_method(owner.cls, name)
             is_own = callable(found) or isinstance(found, property)
             if is_own and name not in ("_replace", "index", "count"):
-                return self._bound(frame, found, where, owner)
+                return self._bound(frame, name, found, where, owner)
         return Method(name, None, owner)
+
+    def _known(self, frame: Frame, owner: Any, name: str) -> Known:
+        """Return an attribute of a module, class or object that is as it is in every run."""
+        found = getattr(owner, name)
+        if isinstance(owner, (str, bytes, int, float)) or is_ours(type(owner).__module__):
+            return Known(found)
+        where = owner if isinstance(owner, (ModuleType, type)) else type(owner)
+        scope = vars(where if isinstance(where, ModuleType) else sys.modules[where.__module__])
+        why = why_no_constant(scope, name, found)
+        if why and type(owner).__module__ != "numpy":
+            raise frame.refused(f"{name} of {described(Known(owner))}, {why},")
+        return Known(found)
 
     def _own(self, frame: Frame, name: str) -> Any:
         if name in self.cls.ports:
             return self._port(frame, self.cls.ports[name])
         match name:
             case "name":
-                return Known(OWN_NAME)
+                return OwnName()
             case "now_ns" | "_now_ns":
                 return frame.num("i", "self->state.now_ns")
             case "_stale":
@@ -207,8 +260,10 @@ class Unit:
         if name in self.tabulated:
             return self.tabulated[name]
         if name in self.appended:
+            frame.needs([name])
             return Queue(name) if name in self.queues else Seq(list, [], fresh=False)
         if name in self.attributes:
+            frame.needs([name])
             shape = self.attributes[name]
             return frame.loaded(shape, iter(self._fields(name, shape)))
         found, where = found_method(self.cls, name)
@@ -216,21 +271,33 @@ class Unit:
             raise UnshapedError(
                 f"{frame.file}:{frame.line} ({frame.title}): {name} is read and nothing sets it"
             )
-        return self._bound(frame, found, where, self.own)
+        return self._bound(frame, name, found, where, self.own)
 
-    def _bound(self, frame: Frame, found: Any, where: Any, receiver: Any) -> Any:
+    def has(self, frame: Frame, name: str) -> bool:
+        """Return whether the component has an attribute; the caller must have set it then."""
+        if name in self.attributes or name in self.queues:
+            frame.needs([name])
+            return True
+        raise UnshapedError(f"{frame.file}:{frame.line} ({frame.title}): nothing sets {name}")
+
+    def _bound(self, frame: Frame, name: str, found: Any, where: Any, receiver: Any) -> Any:
         if isinstance(found, property):
             return invoke(frame, found.fget, where, [receiver], {})
         if isinstance(found, staticmethod):
             return Known(found.__func__)
         if isinstance(found, classmethod):
             return Method(found.__func__, where, Known(_class_of(self, receiver)))
-        if hasattr(found, "__code__") or hasattr(found, "__wrapped__"):
+        if isinstance(found, FunctionType):
             return Method(found, where, receiver)
         getter, base = found_method(type(found), "__get__")
         if base is not None and hasattr(getter, "__code__"):
             arguments = [Known(found), receiver, Known(_class_of(self, receiver))]
             return invoke(frame, getter, base, arguments, {})
+        why = why_no_constant(vars(sys.modules[where.__module__]), name, found)
+        if base is not None and not isinstance(found, type):
+            why = "whose value is found its own way"
+        if why:
+            raise frame.refused(f"{where.__name__}.{name}, {why},")
         return Known(found)
 
     def _port(self, frame: Frame, port: Port) -> Any:
@@ -238,12 +305,12 @@ class Unit:
             return Known(getattr(self.example, port.name))
         references = range(port.offset, port.offset + port.size)
         if port.type is str:
-            words = (*words_of(port), OTHER)
+            words = words_of(port)
             texts = [s.port.name for s in self.cls.scalars if _is_text_input(s.port)]
-            if len(words) == 1 or port.name not in texts:
+            if not words or port.name not in texts:
                 raise frame.refused(f"the text {port.name}")
             word = frame.num("b", f"self->state.words[{texts.index(port.name)}]")
-            return Choice(word.text, tuple(Known(each) for each in words))
+            return Choice(word.text, (*map(Known, words), OtherText(words)))
         reading = {float: "V[{}]", int: "(long long)V[{}]", bool: "V[{}] != 0"}[port.type]
         kind = {float: "d", int: "i", bool: "b"}[port.type]
         values = [frame.num(kind, reading.format(r)) for r in references]
@@ -273,8 +340,12 @@ class Unit:
             if name in self.queues:
                 frame.emit(f"M.{name}_q.count = 0;")
         else:
-            self._remember(frame, name, value)
-            frame.stores([name])
+            found = found_method(self.cls, name)[0]
+            if name.startswith("__") or name in _FRAMEWORK or hasattr(type(found), "__set__"):
+                raise frame.refused(f"an assignment to {name}")
+            self._remember(frame, name, storable(frame, value))
+        frame.stores([name])
+        frame.has_set([name])
 
     def _remember(self, frame: Frame, name: str, value: Any) -> None:
         before = self.attributes.get(name)
@@ -282,10 +353,7 @@ class Unit:
         wider = shape if before is None else joined(before, shape)
         if wider != before:
             self.attributes[name], self.changed = wider, True
-        if isinstance(value, Seq):
-            if not value.fresh:
-                self.aliased.add(name)
-            value.fresh = False
+        held([value])
         texts = flattened(value, wider)
         # All are read before one is written: they may be parts of each other.
         for field, text in zip(self._fields(name, wider), texts, strict=True):
@@ -297,7 +365,9 @@ class Unit:
             raise frame.refused(f"an assignment to {port.name}, which is no output,")
         if port.type is str:
             raise frame.refused(f"the text {port.name}")
-        values = [value] if port.axes is None else unpacked(frame, value)
+        if port.axes is not None and is_number(value):
+            value = Seq(tuple, [value] * port.size)
+        values = [value] if port.axes is None else unpacked(frame, storable(frame, value))
         if len(values) != port.size:
             raise frame.refused(f"{len(values)} values for the {port.size} of {port.name}")
         for at, each in enumerate(values):
@@ -305,12 +375,17 @@ class Unit:
             frame.emit(f"V[{port.offset + at}] = {text};")
 
     def _converted(self, frame: Frame, port: Port, value: Any) -> str:
+        """Return what a port holds, as Python converts it."""
         if isinstance(value, Choice):
-            value = frame.each(value, lambda one: one)
+            return frame.text_of(
+                frame.each(value, lambda one: frame.num("d", self._converted(frame, port, one)))
+            )
+        if not is_number(value):
+            raise frame.mismatched(f"{described(value)} as {port.name}", value)
         if port.type is bool:
             return frame.text_of(truth(frame, value), "d")
-        if port.type is int and not isinstance(value, Known) and value.kind == "d":
-            return f"(double)whole(self, {value.text}, {frame.place()})"
+        if port.type is int:
+            return f"integer(self, {frame.text_of(value, 'd')}, {frame.place()})"
         return frame.text_of(value, "d")
 
     # ------------------------------------------------------------------ queues
@@ -318,12 +393,6 @@ class Unit:
     def is_own(self, frame: Frame, node: ast.expr) -> bool:
         """Return whether a node is an attribute of the component itself."""
         return isinstance(node, ast.Attribute) and isinstance(frame.evaluate(node.value), Component)
-
-    def changes_in_place(self, frame: Frame, name: str) -> None:
-        """Note that an item of an attribute is assigned to."""
-        if name in self.queues:
-            raise frame.refused(f"a change within {name}")
-        self.changed_in_place.add(name)
 
     def queue(self, queue: Queue) -> str:
         """Return the C expression of a queue."""
@@ -335,10 +404,15 @@ class Unit:
         wider = shape if before is None else joined(before, shape)
         if wider != before:
             self.queues[name], self.changed = wider, True
+        frame.needs([name])
+        frame.stores([name])
         at = frame.num("i", f"appended(self, &M.{name}_q, {frame.place()})")
-        for place, text in enumerate(flattened(value, wider)):
+        texts = flattened(storable(frame, value), wider)
+        for place, (kind, text) in enumerate(zip(leaves(wider), texts, strict=True)):
             if text is not None:
-                frame.emit(f"M.{name}_e[{at.text}][{place}] = (double)({text});")
+                cell = f"M.{name}_e[{at.text}][{place}]"
+                whole = f"exact(self, {text}, {frame.place()})"
+                frame.emit(f"{cell} = {whole if kind == 'i' else f'(double)({text})'};")
 
     def queue_entry(self, frame: Frame, queue: Queue, index: Any) -> Any:
         """Return an entry of a queue."""
