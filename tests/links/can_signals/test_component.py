@@ -2,6 +2,7 @@
 
 import math
 import re
+import struct
 from pathlib import Path
 
 import canmatrix.formats
@@ -153,6 +154,15 @@ def test_frames_that_are_not_as_the_dbc_says_change_nothing():
     assert not node.get("valid.s1")
 
 
+def test_a_float_that_is_none_changes_nothing():
+    node = signals(ODD, receives="Mixed.Exact")
+    bench = Bench(node)
+    bench.run(0.05, [Frame(291, bytes(4) + struct.pack("<f", 2.5))])
+    bench.run(0.05, [Frame(291, bytes(4) + struct.pack("<f", v)) for v in (math.nan, -math.inf)])
+    assert node.get("received.s1") == 2.5
+    assert (node.get("frames_received"), node.get("frames_refused")) == (1, 2)
+
+
 def test_a_restored_node_goes_on_as_it_did():
     node = signals(ODD, sends="Mixed.Big; Long.Share", receives="Parts.Amps")
     Bench(node).run(0.1)
@@ -190,10 +200,14 @@ SENDS = "ThrusterCommand.PortPulse 1100 1900 us"
             ["carries 0 to 2500 us", "1.1 to 2.6 ms"],
         ),
         (("(0.1,0) [0|2500]", "(0.01,0) [0|0]"), SENDS, ["carries 0 to 655.35 us", "1100 to 1900"]),
-        (("[0|2500]", "[0|25000]"), SENDS, ["limits 0 to 25000 us", "hold 0 to 6553.5"]),
+        (("[0|2500]", "[7000|25000]"), SENDS, ["limits 7000 to 25000 us", "hold 0 to 6553.5"]),
+        (("(0.1,0) [0|2500]", "(0,0) [0|2500]"), SENDS, ["PortPulse", "scaling (0,0)"]),
+        (("(0.1,0) [0|2500]", "(1e300,0) [0|2500]"), SENDS, ["PortPulse", "scaling (1e+300,0)"]),
+        (("BO_ 256 ThrusterCommand: 4", "BO_ 256 ThrusterCommand: 9"), SENDS, ["9 bytes", "8 at"]),
+        (("BO_ 256 20;", "BO_ 256 -20;"), SENDS, ["GenMsgCycleTime is -20"]),
         (("BO_ 386 ", "BO_ 385 "), SENDS, ["PortStatus and StarboardStatus", "0x181"]),
         (("16|16@1+", "8|16@1+"), SENDS, ["overlapping", "ThrusterCommand"]),
-        (("2 StarboardThruster", "1 StarboardThruster"), SENDS, ["does not fit"]),
+        (("4 Autopilot", "3 Autopilot"), SENDS, ["does not fit"]),
         (("SG_ PortPulse", "SG PortPulse"), SENDS, ["not a usable DBC", "line 14"]),
         (('"us"', '"parsec2000"'), SENDS, ["PortPulse", "'parsec2000' is not a unit"]),
     ],

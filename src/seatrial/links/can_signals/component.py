@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -41,14 +42,16 @@ class CanSignals(Component):
 
     **Receiving.** A signal keeps its last value. Before the first, and when its message was not
     received for ``lost_after`` of its cycles, it is at its start value and not ``valid``. One
-    without a cycle time is never lost. A frame of the wrong length, or a remote one, changes
-    nothing; ``frames_refused`` counts them.
+    without a cycle time is never lost. A frame of the wrong length, a remote one, or one with a
+    float that is not finite changes nothing; ``frames_refused`` counts them.
 
     Identifiers of 11 and of 29 bits are taken as they are; CAN FD where the DBC says so. Not here:
     multiplexed messages to send, counters and checksums inside messages, J1939.
 
-    Raises InputError at the start, with the file, for a DBC that cannot be read or in which
-    messages overlap, signals that are not there, and ranges that do not fit.
+    Of a DBC the messages that are named must hold; limits beyond a signal's bits are those of its
+    bits. Raises InputError at the start, with the file, for a DBC that cannot be read or has
+    numbers beyond any bus (`bounds`), messages that are named whose signals overlap or do not fit,
+    signals that are not there, and ranges that do not fit.
     """
 
     feedthrough: ClassVar = {}
@@ -189,9 +192,9 @@ class CanSignals(Component):
         for mapped, value in zip(self._sends, send, strict=False):
             if mapped.message is message:
                 physical, beyond = mapped.to_physical(value)
-                values[mapped.signal.name] = mapped.signal.scaled_to_raw(physical)
+                values[mapped.signal.name] = mapped.to_raw(physical)
                 limited += beyond
-        data = message.encode(values, scaling=False)
+        data = message.encode(values, scaling=False, strict=False)  # they are within the bits
         frame = Frame(message.frame_id, data, message.is_extended_frame, fd=message.is_fd)
         return frame, limited
 
@@ -209,11 +212,18 @@ class CanSignals(Component):
         except (Error, ValueError):  # a multiplexer value that has no signals
             self._frames[2] += 1
             return
+        found = {
+            place: mapped.to_si(float(values[mapped.signal.name]))
+            for place, mapped in enumerate(self._receives)
+            if mapped.message is message and mapped.signal.name in values
+        }
+        if not all(map(math.isfinite, found.values())):
+            self._frames[2] += 1
+            return
         self._frames[1] += 1
         self._received[message.name] = when
-        for place, mapped in enumerate(self._receives):
-            if mapped.message is message and mapped.signal.name in values:
-                self._values[place] = mapped.to_si(float(values[mapped.signal.name]))
+        for place, value in found.items():
+            self._values[place] = value
 
     def _lose(self, now_ns: int) -> None:
         """Forget messages that have not come for too long."""

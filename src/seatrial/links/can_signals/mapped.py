@@ -10,13 +10,15 @@ from cantools.database.can import Database, Message, Signal
 
 from ...errors import InputError
 from ...units import conversion, unit
-from .database import find_signal
+from .database import find_signal, raw_range
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _ENTRY = re.compile(
     rf"(?P<name>\w+\.\w+)(?:\s+(?P<low>{_NUMBER})\s+(?P<high>{_NUMBER})(?:\s+(?P<unit>\S+))?)?"
 )
 _EXAMPLE = "'ThrusterCommand.PortPulse' or 'ThrusterCommand.PortPulse 1100 1900 us'"
+LONGEST_SIGNAL = 64
+"""Bits."""
 _MARGIN = 1e-9
 """Share of a step of the scaling by which decimal numbers may seem to be beyond a limit."""
 
@@ -50,6 +52,11 @@ class Mapped:
         limited = min(max(physical, self.low), self.high)
         return limited, abs(physical - limited) > _MARGIN * abs(self.signal.scale)
 
+    def to_raw(self, physical: float) -> float:
+        """Return the number that the signal's bits have for a physical value within the limits."""
+        least, most = raw_range(self.signal)  # the limits are rounded to doubles
+        return min(max(self.signal.scaled_to_raw(physical), least), most)
+
 
 def mapped_signals(path: Path, database: Database, written: str) -> list[Mapped]:
     """Return the signals that ``MESSAGE.SIGNAL [LOW HIGH UNIT]; ...`` names, one per port.
@@ -81,27 +88,27 @@ def _mapped(path: Path, message: Message, signal: Signal) -> Mapped:
         measure = unit(signal.unit or "1")
     except InputError as error:
         raise InputError(f"{name}: {error}") from None
-    lowest, highest = _representable(signal)
-    low = lowest if signal.minimum is None else float(signal.minimum)
-    high = highest if signal.maximum is None else float(signal.maximum)
-    margin = _MARGIN * abs(signal.scale)
-    if low < lowest - margin or high > highest + margin:
+    if signal.length > LONGEST_SIGNAL:
+        raise InputError(f"{name} has {signal.length} bits, at most {LONGEST_SIGNAL} make a number")
+    if not 1e-30 <= abs(signal.scale) <= 1e30 or not abs(signal.offset) <= 1e30:
         raise InputError(
-            f"{name} has limits {low:g} to {high:g} {signal.unit or ''}, but {signal.length} bits "
-            f"of {signal.scale:g} hold {lowest:g} to {highest:g}"
+            f"{name} has the scaling ({signal.scale:g},{signal.offset:g}); allowed are factors of "
+            "1e-30 to 1e30 and offsets up to 1e30"
+        )
+    lowest, highest = _representable(signal)
+    low = lowest if signal.minimum is None else max(lowest, float(signal.minimum))
+    high = highest if signal.maximum is None else min(highest, float(signal.maximum))
+    if low > high:
+        raise InputError(
+            f"{name} has limits {signal.minimum:g} to {signal.maximum:g} {signal.unit or ''}, but "
+            f"{signal.length} bits of {signal.scale:g} hold {lowest:g} to {highest:g}"
         )
     return Mapped(message, signal, measure.factor, measure.offset, low, high)
 
 
 def _representable(signal: Signal) -> tuple[float, float]:
     """Return the least and greatest physical value that the bits of a signal can have."""
-    if signal.is_float:
-        most = {16: 65504.0, 32: 3.4028234663852886e38}.get(signal.length, 1.7976931348623157e308)
-        raw = (-most, most)
-    elif signal.is_signed:
-        raw = (-(2.0 ** (signal.length - 1)), 2.0 ** (signal.length - 1) - 1.0)
-    else:
-        raw = (0.0, 2.0**signal.length - 1.0)
+    raw = raw_range(signal)
     # Rounded as decimals are written: 3 * 0.1 is no 0.30000000000000004 in a DBC.
     ends = sorted(float(f"{end * signal.scale + signal.offset:.12g}") for end in raw)
     return ends[0], ends[1]
