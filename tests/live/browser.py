@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import http.server
 import os
 import shutil
 import signal
@@ -71,12 +72,32 @@ class Served:
 
 @contextmanager
 def served(folder: Path, *arguments: str) -> Iterator[Served]:
-    """Yield a command that serves a page, and end it."""
+    """Yield a command that serves a page, and end it; all that its viewers sent must have fit."""
     of_it = Served(folder, *arguments)
     try:
         yield of_it
     finally:
         of_it.end()
+    assert not [line for line in of_it.lines if "refused" in line or "Traceback" in line]
+
+
+@contextmanager
+def other_site() -> Iterator[str]:
+    """Yield the address of an empty page of another server of this machine."""
+
+    class Empty(http.server.BaseHTTPRequestHandler):
+        def do_GET(self) -> None:
+            self.send_response(200)
+            self.send_header("Content-Type", "text/html")
+            self.end_headers()
+
+        def log_message(self, *_: object) -> None:
+            pass
+
+    with http.server.ThreadingHTTPServer(("127.0.0.1", 0), Empty) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        yield f"http://127.0.0.1:{server.server_port}/"
+        server.shutdown()
 
 
 def opened(browser: Any, address: str, awaited: str = "canvas") -> Any:

@@ -62,8 +62,9 @@ def test_a_rig_runs_without_a_trial() -> None:
 
 def test_a_page_is_there_while_the_run_is_and_no_longer(tmp_path: Path) -> None:
     """In processes of their own, as the command does it."""
-    from urllib.request import urlopen
+    from urllib.request import HTTPCookieProcessor, build_opener
 
+    urlopen = build_opener(HTTPCookieProcessor()).open
     seen: list[str] = []
     statuses: list[int] = []
 

@@ -20,7 +20,7 @@ from seatrial.trials.dark import DARK
 from seatrial.trials.report import write_report
 from seatrial.trials.run_folder import load_run
 
-from .browser import WAIT_MS, chromium, opened, served
+from .browser import WAIT_MS, chromium, opened, other_site, served
 
 pytestmark = pytest.mark.interop
 
@@ -70,6 +70,34 @@ def test_a_record_is_played_back(browser, hydrone: Path, tmp_path: Path) -> None
         assert page.locator("[data-verdict]").count() == 5
         assert not page.problems
         page.close()
+    assert command.process.returncode == 0
+
+
+def test_the_token_leaves_the_address_and_other_sites_stay_out(browser, hydrone, tmp_path) -> None:
+    with served(tmp_path, "play", str(hydrone)) as command, other_site() as other:
+        page = opened(browser, command.address)
+        bare = f"http://127.0.0.1:{urlsplit(command.address).port}/"
+        assert page.url == bare
+        assert page.evaluate("document.cookie") == ""  # no script sees it
+        page.reload()
+        page.locator("canvas").first.wait_for()
+        assert page.url == bare
+        stranger = page.context.new_page()  # same cookies
+        stranger.goto(other)
+        answer = stranger.evaluate(
+            """(url) => new Promise((done) => {
+                const socket = new WebSocket(url);
+                socket.onopen = () => done("open");
+                socket.onerror = () => done("refused");
+            })""",
+            bare.replace("http:", "ws:"),
+        )
+        assert answer == "refused"
+        page.close()
+        stranger.close()
+        command.end()
+        assert [line for line in command.lines if "page: refused 1 requests" in line]
+        command.lines.clear()
     assert command.process.returncode == 0
 
 

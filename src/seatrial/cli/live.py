@@ -33,7 +33,7 @@ from .options import (
     changes_of,
     engine_named,
 )
-from .play import Open, Port, show_address
+from .play import Open, Port, show_address, show_refused
 from .show import console, print_notes, print_reachable
 from .stopping import stoppable
 from .watch import Watch
@@ -81,6 +81,7 @@ def run_watched(trial: Trial, out: Path | None, engine: Engine, hooks: Hooks, pa
             result = run_supervised(trial, folder, engine=engine, hooks=watched)
         seed = session.restart_seed
         if seed is None or hooks.stop_requested():
+            show_refused(session.refused)
             return result
         console.print(f"begun anew with seed {seed}; so far: {result.folder}", soft_wrap=True)
         trial = trial.changed({"seed": seed}, "the page")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import webbrowser
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated
 
@@ -41,6 +42,7 @@ def play(
             playback.run(stop.requested)
     finally:
         server.stop()
+    show_refused(server.gate.refused)
 
 
 def show_address(address: str, open_: bool) -> None:
@@ -49,3 +51,10 @@ def show_address(address: str, open_: bool) -> None:
     console.print(f"page: {address}  (Ctrl-C ends it)", soft_wrap=True)
     if open_:
         webbrowser.open(address)
+
+
+def show_refused(counts: Mapping[str, int]) -> None:
+    """Say how much was sent to a page that is not of its viewers, or that no widget sends."""
+    if counts:
+        said = ", ".join(f"{count} {what}" for what, count in sorted(counts.items()))
+        console.print(f"page: refused {said}")

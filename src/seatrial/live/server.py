@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import http
 import secrets
 import threading
 from collections.abc import Callable
@@ -13,21 +12,19 @@ from unittest import mock
 import rich
 import viser
 import websockets.asyncio.server
-from websockets import Headers
-from websockets.http11 import Request, Response
 
 from ..errors import InputError
+from .gate import Gate
 
 LOOPBACK = "127.0.0.1"
 
 
 class PageServer(viser.ViserServer):
-    """viser's server at ``http://127.0.0.1:PORT/TOKEN/``; requests without the token are refused.
+    """viser's server at ``http://127.0.0.1:PORT/TOKEN/``, which gives a cookie and leads to ``/``.
 
     viser 1.1 knows no tokens. It serves its page and its websocket through one call of
-    ``websockets.asyncio.server.serve``, whose hook for requests is wrapped here while the server
-    starts; the client opens its socket below the path of its page, and so sends the token too. A
-    token keeps out other users of the machine and pages of other sites alike.
+    ``websockets.asyncio.server.serve``, whose hooks are wrapped here while the server starts: a
+    `Gate` lets in who has the token, and of what a viewer sends what fits.
     """
 
     _starting: ClassVar = threading.Lock()
@@ -36,8 +33,9 @@ class PageServer(viser.ViserServer):
         """Listen at a port, 0 for any that is free. Raises InputError if it is taken."""
         self.token = token or secrets.token_urlsafe(16)
         rich.get_console().quiet = True  # viser says where it is, without the token
+        self.gate = Gate(self.token, self._widget)
         serve = websockets.asyncio.server.serve
-        behind = functools.partial(_serve, serve, self.token)
+        behind = functools.partial(_serve, serve, self.gate)
         with self._starting, mock.patch.object(websockets.asyncio.server, "serve", behind):
             super().__init__(host=LOOPBACK, port=port, verbose=False)
         if port and self.get_port() != port:
@@ -48,6 +46,15 @@ class PageServer(viser.ViserServer):
     def address(self) -> str:
         """Address of the page, with the token."""
         return f"http://{LOOPBACK}:{self.get_port()}/{self.token}/"
+
+    def _widget(self, uuid: str) -> Any:
+        """Return a widget of all viewers or of one, None if there is none."""
+        pages: list[Any] = [self, *self.get_clients().values()]
+        for page in pages:
+            gui = getattr(page, "gui", None)  # a page that is starting has none
+            if gui is not None and (widget := gui._gui_input_handle_from_uuid.get(uuid)):
+                return widget
+        return None
 
     def request_share_url(self, verbose: bool = True) -> str | None:
         """Refuse to: viser would let others in by a server of its makers."""
@@ -62,23 +69,7 @@ def look(gui: Any, *, dark: bool = False) -> None:
     gui.main_panel.dock_right()
 
 
-def _serve(serve: Callable[..., Any], token: str, handler: Any, *places: Any, **how: Any) -> Any:
-    """Call websockets' ``serve`` with a hook that asks for the token first."""
-    then = how.pop("process_request")
-    prefix = f"/{token}"
-
-    def process_request(connection: Any, request: Request) -> Response | None:
-        path = request.path
-        if not secrets.compare_digest(path[: len(prefix)].encode(), prefix.encode()):
-            return Response(http.HTTPStatus.FORBIDDEN, "FORBIDDEN", Headers(), b"no token\n")
-        rest = path[len(prefix) :]
-        if rest and not rest.startswith(("/", "?")):
-            return Response(http.HTTPStatus.FORBIDDEN, "FORBIDDEN", Headers(), b"no token\n")
-        request.path = rest if rest.startswith("/") else f"/{rest}"
-        found: Response | None = then(connection, request)
-        if found is not None:
-            found.headers["Referrer-Policy"] = "no-referrer"
-            found.headers["Cache-Control"] = "no-store"
-        return found
-
-    return serve(handler, *places, process_request=process_request, **how)
+def _serve(serve: Callable[..., Any], gate: Gate, handler: Any, *places: Any, **how: Any) -> Any:
+    """Call websockets' ``serve`` with hooks that ask the gate first."""
+    then = gate.process_request(how.pop("process_request"))
+    return serve(gate.handler(handler), *places, process_request=then, logger=gate.logger, **how)

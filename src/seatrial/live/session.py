@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import threading
+from collections import Counter
 from collections.abc import Callable
 from multiprocessing import Pipe
 from pathlib import Path
@@ -38,6 +39,8 @@ class Session:
         self._may_command = may_command
         self._pace: float | None = 1.0
         self.restart_seed: int | None = None
+        self.refused: Counter[str] = Counter()
+        """What was sent to the pages and refused, by kind."""
 
     def of(self, trial: Trial) -> Session:
         """Prepare for a run of a trial: the page's, not the run's, side of it."""
@@ -93,6 +96,7 @@ class Session:
                 self._poll(server, page)
         finally:
             server.stop()
+            self.refused += server.gate.refused
 
     def _poll(self, server: PageServer, page: LivePage) -> None:
         """Show what has come, and say that it was taken; say how many look."""
