@@ -206,8 +206,8 @@ def test_an_index_costs_no_more_per_case_in_a_long_campaign(cases, tmp_path, mon
 
     write = campaigns.write_json
 
-    def counted(path, content):
-        write(path, content)
+    def counted(path, content, **how):
+        write(path, content, **how)
         sizes.append(len(content["cases"]))
 
     monkeypatch.setattr(campaigns, "run_cases", ended_at_once)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 
     from ..campaigns.sweep import How
     from ..trials.campaign import Campaign
+    from ..trials.hooks import Hooks
 
 Done = Callable[[object, object], None]
 
@@ -175,10 +177,16 @@ def run_campaign(
 def _swept(campaign: Campaign, out: Path | None, how: How, done: Done) -> Path:
     from ..campaigns.sweep import run_sweep
 
-    summary = run_sweep(campaign, out, how, done=done)
+    summary = run_sweep(campaign, out, how, _warning(), done)
     if not summary.whole:
         raise KeyboardInterrupt
     return summary.folder
+
+
+def _warning() -> Hooks:
+    from ..trials.hooks import Hooks
+
+    return Hooks(note=lambda text: warnings.warn(text, stacklevel=2))
 
 
 def _run(
@@ -187,7 +195,13 @@ def _run(
     from ..trials.campaign import run_campaign as run
 
     folder, results = run(
-        campaign, out, engine=as_engine(engine), jobs=jobs, resume=resume, done=done
+        campaign,
+        out,
+        engine=as_engine(engine),
+        jobs=jobs,
+        resume=resume,
+        hooks=_warning(),
+        done=done,
     )
     if any(result.status == "stopped" for _, result in results):
         raise KeyboardInterrupt

@@ -23,6 +23,7 @@ from ..trials.questions import (
     SensitivityQuestion,
     WorstCaseQuestion,
 )
+from ..trials.resuming import cut_aside, has_index
 from .asked import Asked, asked_of
 from .asking import Asking, stopped
 from .columns import table_columns
@@ -84,10 +85,14 @@ def ask(
     left = out if how.resume and out is not None and (out / INDEX).is_file() else None
     kept: dict[int, Ended] = {}
     if left is not None:
-        refuse_other(left / INDEX, index)
+        if has_index(left / INDEX, hooks.note):
+            refuse_other(left / INDEX, index)
         if (left / ANSWER).is_file():
-            return read_answer(left), left
-        kept = ended_cases(left, _MOST)
+            try:
+                return read_answer(left), left
+            except InputError as error:
+                cut_aside(left / ANSWER, error, hooks.note)
+        kept = ended_cases(left, _MOST, hooks.note)
     plan = replace(plan, recorded=check(_edges(cases, space), plan, hooks))
     columns = table_columns(campaign, [cases.base], _values(cases, space))
     with closing(workers_of(campaign, cases, plan, how, hooks)) as workers:
@@ -99,8 +104,9 @@ def ask(
             asking.folder, asking.measured = folder, runs.measured
             finding = answer()
     finding.runs = len(cases)
-    write_json(folder / ANSWER, finding.content())
-    write_json(folder / INDEX, {**index, "count": len(cases), "cases": sweep.summary.kept})
+    whole = {**index, "count": len(cases), "cases": sweep.summary.kept}
+    write_json(folder / ANSWER, finding.content(), synced=True)
+    write_json(folder / INDEX, whole, synced=True)
     log.path.unlink()
     return finding, folder
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from ..errors import InputError
+from ..trials.resuming import Note, cut_aside, is_whole
+from ..whole_file import write_whole
 from .ended import Ended
 
 ENDED_LOG = "ended.jsonl"
@@ -41,15 +43,18 @@ class EndedLog:
                 file.truncate(whole)
 
 
-def ended_cases(folder: Path, count: int) -> dict[int, Ended]:
+def ended_cases(folder: Path, count: int, note: Note) -> dict[int, Ended]:
     """Return the cases in a folder's log, by number; none without a log.
 
-    Raises InputError for a log that cannot be read.
+    A line that cannot be read is as if its case had not ended, and so is a case whose folder has
+    no manifest that can be read; the log as it was is set aside, which is noted. Raises InputError
+    for a case that is none of ``count``.
     """
     path = folder / ENDED_LOG
     if not path.is_file():
         return {}
     found: dict[int, Ended] = {}
+    cut = []
     lines = path.read_text("utf-8", errors="replace").splitlines(keepends=True)
     for place, line in enumerate(lines, 1):
         if not line.endswith("\n"):
@@ -57,8 +62,13 @@ def ended_cases(folder: Path, count: int) -> dict[int, Ended]:
         try:
             ended = Ended.of_line(line)
         except (ValueError, KeyError, TypeError):
-            raise InputError(f"{path}, line {place}: this is no case that has ended") from None
+            cut.append(place)
+            continue
         if not 0 <= ended.number < count:
             raise InputError(f"{path}, line {place}: there is no case {ended.number + 1}")
-        found[ended.number] = ended
+        if not ended.folder or is_whole(folder / ended.folder, note):
+            found[ended.number] = ended
+    if cut:
+        cut_aside(path, f"{path}, line {cut[0]}: this is no case that has ended", note)
+        write_whole(path, "".join(ended.line() + "\n" for ended in found.values()), synced=True)
     return found

@@ -24,6 +24,7 @@ from ..trials.cases import Case
 from ..trials.hooks import Hooks
 from ..trials.measuring import Measured
 from ..trials.output import claim_folder, write_json
+from ..trials.resuming import cut_aside, has_index
 from ..trials.run_schema import CAMPAIGN, checked_json
 from ..trials.stopping_rule import StoppingRule
 from .asked import Asked
@@ -119,20 +120,24 @@ def run_sweep(
     left = out if how.resume and out is not None and (out / INDEX).is_file() else None
     kept: dict[int, Ended] = {}
     if left is not None:
-        refuse_other(left / INDEX, index)
+        if has_index(left / INDEX, hooks.note):
+            refuse_other(left / INDEX, index)
         if (left / RESULTS).is_file() and not (left / ENDED_LOG).is_file():
-            return _summary(left, len(cases))
-        kept = ended_cases(left, len(cases))
+            try:
+                return _summary(left, len(cases))
+            except InputError as error:
+                cut_aside(left / RESULTS, error, hooks.note)
+        kept = ended_cases(left, len(cases), hooks.note)
     columns = columns_of(campaign)
     plan = replace(plan, recorded=check(cases, plan, hooks))
     with closing(workers_of(campaign, cases, plan, how, hooks)) as workers:
         folder = left or claim_folder(out, campaign.read_from.name, INDEX)
-        write_json(folder / INDEX, {**index, "cases": []})
+        write_json(folder / INDEX, {**index, "cases": []}, synced=True)
         sweep = Sweep(cases, workers, folder, hooks, file.until)
         with EndedLog(folder) as log, Tables(folder, columns) as tables:
             sweep.run(log, tables, kept, done)
     summary = sweep.summary
-    write_json(folder / INDEX, {**index, "cases": summary.kept})
+    write_json(folder / INDEX, {**index, "cases": summary.kept}, synced=True)
     if summary.whole:
         log.path.unlink()
     return summary

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -93,6 +94,8 @@ class _Writer:
         if self._rows:
             self._flush()
         self._writer.close()
+        with self._partial.open("rb+") as file:  # the log of what it holds goes after it
+            os.fsync(file.fileno())
         self._partial.replace(self._path)
 
     def _flush(self) -> None:
@@ -113,10 +116,12 @@ def read_rows(path: Path, names: Sequence[str] | None = None) -> Iterator[dict[s
     pyarrow, parquet = arrow()
     try:
         file = parquet.ParquetFile(path)
-    except (OSError, pyarrow.ArrowInvalid) as error:
+        if lacking := {*(names or ())} - {*file.schema_arrow.names}:
+            raise InputError(f"{path}: this is no table of a campaign: it has no {min(lacking)}")
+        for batch in file.iter_batches(columns=None if names is None else list(names)):
+            yield from batch.to_pylist()
+    except (OSError, pyarrow.ArrowException) as error:
         raise InputError(f"{path}: this is no table of a campaign: {error}") from None
-    for batch in file.iter_batches(columns=None if names is None else list(names)):
-        yield from batch.to_pylist()
 
 
 def units_of(path: Path) -> dict[str, str]:

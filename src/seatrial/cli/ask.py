@@ -22,7 +22,7 @@ from ..trials.hooks import Hooks
 from .answer import answer
 from .options import EngineName, Out, engine_named
 from .run_options import Cluster, Jobs, KeepName, NoReport, Resume
-from .show import console, print_table
+from .show import console, print_notes, print_table
 from .stopping import stoppable
 from .watch import Watch
 
@@ -67,7 +67,11 @@ def ask(
             watch.expect(max(expected, ended_count))
             watch.cases(ended_count, failed)
 
-        hooks = Hooks(stop_requested=stop.requested, interruptible=stop.interruptible)
+        hooks = Hooks(
+            stop_requested=stop.requested,
+            interruptible=stop.interruptible,
+            note=lambda text: print_notes([text]),
+        )
         finding, folder = ask_campaign(campaign, question, out, how, hooks, done, expect)
     _say(finding, folder, None if no_report else write_table_page(folder))
 

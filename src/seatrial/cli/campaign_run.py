@@ -18,7 +18,7 @@ from ..trials.run import Result
 from .answer import answer
 from .leaves import Leaves, exit_with
 from .looked_at import play
-from .show import console, print_case, run_entry
+from .show import console, print_case, print_notes, run_entry
 from .stopping import stoppable
 from .table_run import run_table
 from .watch import Watch
@@ -61,6 +61,7 @@ def _run_folders(campaign: Campaign, out: Path | None, how: How, leaves: Leaves)
                 progress=watch.campaign,
                 stop_requested=stop.requested,
                 interruptible=stop.interruptible,
+                note=lambda text: print_notes([text]),
             )
             watch.expect(len(cases))
             folder, finished = run_campaign(

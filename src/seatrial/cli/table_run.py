@@ -15,7 +15,7 @@ from ..trials.campaign import Campaign
 from ..trials.cases import Case
 from ..trials.hooks import Hooks
 from .answer import answer
-from .show import console
+from .show import console, print_notes
 from .statuses import FAILED
 from .stopping import stoppable
 from .watch import Watch
@@ -44,7 +44,11 @@ def run_table(
                     watch.log(lambda: _print_failed(case, ended))
             watch.cases(ended_count, failed)
 
-        hooks = Hooks(stop_requested=stop.requested, interruptible=stop.interruptible)
+        hooks = Hooks(
+            stop_requested=stop.requested,
+            interruptible=stop.interruptible,
+            note=lambda text: print_notes([text]),
+        )
         summary = run_sweep(campaign, out, how, hooks, done)
     page = write_table_page(summary.folder) if report else None
     if failed > _SAID:

@@ -21,7 +21,7 @@ from .hooks import Hooks
 from .map_entry import MapEntry
 from .output import claim_folder, write_json
 from .questions import Questions
-from .resuming import kept_results
+from .resuming import has_index, kept_results
 from .run import Result
 from .stopping_rule import StoppingRule
 from .supervised import Page
@@ -166,7 +166,10 @@ def run_campaign(
     if left is not None:
         folders = case_folders(cases)
         known = {f: (case.name, case.set) for f, case in zip(folders, cases, strict=True)}
-        kept = {folders.index(r.folder.name): r for r in kept_results(left / INDEX, known)}
+        note = (hooks or Hooks()).note
+        if has_index(left / INDEX, note):
+            found = kept_results(left / INDEX, known, note)
+            kept = {folders.index(r.folder.name): r for r in found}
     results = dict(kept)
     folder = Path()
     written = -1
@@ -219,4 +222,4 @@ def _write_index(
         for number, result in sorted(results.items())
     ]
     index = {"name": campaign.read_from.name, "title": campaign.file.title, "cases": rows}
-    write_json(out / INDEX, index)
+    write_json(out / INDEX, index, synced=True)

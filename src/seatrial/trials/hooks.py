@@ -59,6 +59,9 @@ class Hooks:
     reachable: Callable[[str, str], None] = lambda _name, _where: None
     """In real time: a component that programs outside connect to, and where."""
 
+    note: Callable[[str], None] = lambda _: None
+    """Called with what a person should know before anything runs."""
+
     observer: Observer | None = None
 
     def refuse_if_stopped(self) -> None:

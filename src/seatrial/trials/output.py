@@ -52,9 +52,9 @@ def _new_folder(base: Path, name: str) -> Path:
     raise AssertionError("unreachable")
 
 
-def write_json(path: Path, content: Any) -> None:
-    """Write a JSON file whole or not at all. Raises OSError with the file's name."""
-    write_whole(path, _text(content) + "\n")
+def write_json(path: Path, content: Any, *, synced: bool = False) -> None:
+    """Write a JSON file as `write_whole` does. Raises OSError with the file's name."""
+    write_whole(path, _text(content) + "\n", synced=synced)
 
 
 def write_json_with_reserve(path: Path, content: Any) -> None:
