@@ -1,10 +1,10 @@
-"""Files that are written whole or not at all."""
+"""Files that are written whole or not at all, with the permissions that the umask leaves."""
 
 from __future__ import annotations
 
 import contextlib
 import os
-import tempfile
+import secrets
 from pathlib import Path
 
 
@@ -14,23 +14,28 @@ def write_whole(path: Path, content: bytes | str, *, synced: bool = False) -> No
     ``synced`` waits until the disk has it: not in a loop that keeps to wall time. Raises OSError
     with the name of the file, as on a full disk: what was there before stays.
     """
-    temporary = None
+    temporary = unused(path.parent, f".{path.name[:40]}")
     try:
-        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name[:40]}-")
-        with os.fdopen(handle, "wb") as file:
+        with temporary.open("xb") as file:
             file.write(content.encode() if isinstance(content, str) else content)
             if synced:
                 file.flush()
                 os.fsync(file.fileno())
-        os.chmod(temporary, 0o644)  # mkstemp's files are private
         os.replace(temporary, path)
     except BaseException as error:
-        if temporary is not None:
-            with contextlib.suppress(OSError):
-                os.unlink(temporary)
+        with contextlib.suppress(OSError):
+            temporary.unlink()
         if isinstance(error, OSError):
             raise OSError(error.errno, error.strerror, str(path)) from None
         raise
+
+
+def unused(folder: Path, name: str) -> Path:
+    """Return a path in a folder that nobody has, for what is then renamed.
+
+    What tempfile makes there would be for its user alone, whatever the umask says.
+    """
+    return folder / f"{name}-{secrets.token_hex(8)}"
 
 
 def stamp(path: Path) -> tuple[int, int]:

@@ -75,14 +75,18 @@ def test_a_record_is_played_back(browser, hydrone: Path, tmp_path: Path) -> None
 
 def test_the_token_leaves_the_address_and_other_sites_stay_out(browser, hydrone, tmp_path) -> None:
     with served(tmp_path, "play", str(hydrone)) as command, other_site() as other:
-        page = opened(browser, command.address)
+        context = browser.new_context()
+        page = context.new_page()
+        page.set_default_timeout(WAIT_MS)
+        page.goto(command.address)
+        page.locator("canvas").first.wait_for()
         bare = f"http://127.0.0.1:{urlsplit(command.address).port}/"
         assert page.url == bare
         assert page.evaluate("document.cookie") == ""  # no script sees it
         page.reload()
         page.locator("canvas").first.wait_for()
         assert page.url == bare
-        stranger = page.context.new_page()  # same cookies
+        stranger = context.new_page()  # same cookies
         stranger.goto(other)
         answer = stranger.evaluate(
             """(url) => new Promise((done) => {
@@ -93,8 +97,7 @@ def test_the_token_leaves_the_address_and_other_sites_stay_out(browser, hydrone,
             bare.replace("http:", "ws:"),
         )
         assert answer == "refused"
-        page.close()
-        stranger.close()
+        context.close()
         command.end()
         assert [line for line in command.lines if "page: refused 1 requests" in line]
         command.lines.clear()

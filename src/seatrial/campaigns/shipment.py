@@ -86,9 +86,13 @@ def pack_folder(folder: Path) -> bytes:
 
 
 def unpack_folder(data: bytes, below: Path) -> None:
-    """Put a packed run folder ``below``."""
+    """Put a packed run folder ``below``, with the permissions of files made here."""
+
+    def member(one: tarfile.TarInfo, path: str) -> tarfile.TarInfo:
+        return tarfile.data_filter(one, path).replace(mode=None)  # type: ignore[arg-type]
+
     with tarfile.open(fileobj=io.BytesIO(data)) as archive:
-        archive.extractall(below, filter="data")
+        archive.extractall(below, filter=member)
 
 
 def _top(campaign: Campaign) -> Path | None:

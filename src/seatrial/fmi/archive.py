@@ -11,13 +11,13 @@ import os
 import re
 import shutil
 import stat
-import tempfile
 import zipfile
 import zlib
 from pathlib import Path, PurePosixPath, PureWindowsPath
 from typing import IO
 
 from ..errors import InputError
+from ..whole_file import unused
 from .cache import cache_folder
 
 Members = dict[PurePosixPath, zipfile.ZipInfo]
@@ -76,7 +76,8 @@ def unpacked(path: Path, kind: str) -> Path:
 
 
 def _unpack(archive: zipfile.ZipFile, members: Members, folder: Path) -> None:
-    temporary = Path(tempfile.mkdtemp(dir=folder.parent, prefix="unpacking-"))
+    temporary = unused(folder.parent, "unpacking")
+    temporary.mkdir()
     try:
         for place, info in members.items():
             target = temporary / place
@@ -101,14 +102,13 @@ def _unpack_again(archive: zipfile.ZipFile, info: zipfile.ZipInfo, target: Path)
         target.mkdir(parents=True, exist_ok=True)
         return
     target.parent.mkdir(parents=True, exist_ok=True)
-    handle, temporary = tempfile.mkstemp(dir=target.parent, prefix="unpacking-")
+    temporary = unused(target.parent, "unpacking")
     try:
-        with os.fdopen(handle, "wb") as file:
+        with temporary.open("xb") as file:
             _copy(archive, info, file)
-        os.chmod(temporary, 0o644)  # mkstemp's files are private
         os.replace(temporary, target)
     except BaseException:
-        os.unlink(temporary)
+        temporary.unlink(missing_ok=True)
         raise
 
 
