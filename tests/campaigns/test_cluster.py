@@ -5,6 +5,8 @@ import signal
 import socket
 import subprocess
 import sys
+import threading
+from contextlib import contextmanager
 from pathlib import Path
 
 import pandas as pd
@@ -40,14 +42,14 @@ def free_port() -> int:
         return int(found.getsockname()[1])
 
 
-@pytest.fixture
-def cluster(tmp_path_factory):
-    """Return the address of a scheduler, and its two workers' processes; without a nanny."""
-    folder, port = tmp_path_factory.mktemp("dask"), free_port()
-    address = f"tcp://127.0.0.1:{port}"
+@contextmanager
+def dask_of(folder: Path, scheme: str = "tcp", *options: str):
+    """Yield the address of a scheduler, and its two workers' processes; without a nanny."""
+    address = f"{scheme}://127.0.0.1:{(port := free_port())}"
     dask = [sys.executable, "-m", "dask"]
-    scheduler = [*dask, "scheduler", "--host", "127.0.0.1", "--port", str(port), "--no-dashboard"]
-    worker = [*dask, "worker", address, "--host", "127.0.0.1", "--nthreads", "1", "--no-nanny"]
+    at = ["--host", "127.0.0.1" if scheme == "tcp" else f"{scheme}://127.0.0.1"]
+    scheduler = [*dask, "scheduler", *at, "--port", str(port), "--no-dashboard", *options]
+    worker = [*dask, "worker", address, *at, "--nthreads", "1", "--no-nanny", *options]
     worker += ["--no-dashboard", "--local-directory", str(folder)]
 
     def started(command):
@@ -57,14 +59,22 @@ def cluster(tmp_path_factory):
 
     first = started(scheduler)
     workers = [started(worker), started(worker)]
-    import distributed
+    try:
+        yield address, workers
+    finally:
+        for process in (*workers, first):
+            process.terminate()
+            process.wait(timeout=30)
 
-    with distributed.Client(address, timeout=60, set_as_default=False) as client:
-        client.wait_for_workers(2, timeout=60)
-    yield address, workers
-    for process in (*workers, first):
-        process.terminate()
-        process.wait(timeout=30)
+
+@pytest.fixture
+def cluster(tmp_path_factory):
+    with dask_of(tmp_path_factory.mktemp("dask")) as (address, workers):
+        import distributed
+
+        with distributed.Client(address, timeout=60, set_as_default=False) as client:
+            client.wait_for_workers(2, timeout=60)
+        yield address, workers
 
 
 @pytest.fixture
@@ -147,4 +157,59 @@ def test_an_address_without_a_scheduler_is_said(campaign, tmp_path, monkeypatch)
     how = How("direct", cluster=f"tcp://127.0.0.1:{free_port()}")
     with pytest.raises(InputError, match="there is no scheduler"):
         run_sweep(campaign, tmp_path / "out", how)
+    assert not (tmp_path / "out").exists()
+
+
+def test_tls_with_certificates_of_one_authority(campaign, tmp_path):
+    """Made by OpenSSL; without the client's own, or of another authority, nobody is let in."""
+    import dask
+
+    run = lambda *command: subprocess.run(["openssl", *command], check=True, capture_output=True)  # noqa: E731
+    for name in ("one", "other"):
+        key, certificate = tmp_path / f"{name}.key", tmp_path / f"{name}.pem"
+        pair = ("-keyout", str(key), "-out", str(certificate))
+        run("req", "-x509", "-newkey", "rsa:2048", "-nodes", *pair, "-subj", f"/CN={name}")
+
+    def settings(name):
+        pem, key = str(tmp_path / f"{name}.pem"), str(tmp_path / f"{name}.key")
+        tls = "distributed.comm.tls."
+        return {f"{tls}ca-file": pem, f"{tls}client.cert": pem, f"{tls}client.key": key}
+
+    (tmp_path / "dask").mkdir()
+    options = ("--tls-ca-file", str(tmp_path / "one.pem"), "--tls-cert", str(tmp_path / "one.pem"))
+    options += ("--tls-key", str(tmp_path / "one.key"))
+    with dask_of(tmp_path / "dask", "tls", *options) as (address, _):
+        with dask.config.set(settings("one")):
+            summary = run_sweep(campaign, tmp_path / "out", How("direct", cluster=address))
+        assert summary.ended == 24
+        with pytest.raises(InputError, match=r"needs authority, certificate and key"):
+            run_sweep(campaign, tmp_path / "none", How("direct", cluster=address))
+        with dask.config.set(settings("other")), pytest.raises(InputError, match="no scheduler at"):
+            run_sweep(campaign, tmp_path / "other", How("direct", cluster=address))
+
+
+@pytest.mark.parametrize("answer", [b"", b"\xff" * 64, b"HTTP/1.1 400 Bad Request\r\n\r\n", None])
+def test_a_peer_that_is_no_scheduler_is_said(campaign, tmp_path, monkeypatch, answer):
+    """Closes at once, sends lengths that nobody has, text, or nothing at all."""
+    monkeypatch.setattr("seatrial.campaigns.cluster._WAIT_S", 2)
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        taken = []
+
+        def serve():
+            while True:
+                try:
+                    taken.append(server.accept()[0])
+                except OSError:
+                    return
+                if answer is not None:
+                    taken[-1].sendall(answer)
+                    taken[-1].close()
+
+        threading.Thread(target=serve, daemon=True).start()
+        how = How("direct", cluster=f"tcp://127.0.0.1:{server.getsockname()[1]}")
+        with pytest.raises(InputError, match="there is no scheduler"):
+            run_sweep(campaign, tmp_path / "out", how)
+        server.shutdown(socket.SHUT_RDWR)
+    for one in taken:
+        one.close()
     assert not (tmp_path / "out").exists()

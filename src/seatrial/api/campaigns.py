@@ -144,7 +144,8 @@ def run_campaign(
     `run_trial`. ``jobs`` cases run side by side, None: as many as there are cores; what they leave
     does not depend on it. ``keep`` ("all", "failed" or "none"), or that of the campaign's file,
     leaves a table of all cases, with the folders of those; ``cluster`` runs it on the workers of a
-    Dask scheduler, ``HOST:PORT``. With ``resume``, ``out`` may be what the campaign has left: it
+    Dask scheduler, ``HOST:PORT`` or ``tls://HOST:PORT``, on another host only if the environment
+    has SEATRIAL_NETWORK=1. With ``resume``, ``out`` may be what the campaign has left: it
     goes on from there. ``progress`` is called after each case with how many are done, and of how
     many. A case that could not go on, or whose process died, has the status ``failed`` and does
     not end the campaign.
@@ -167,9 +168,9 @@ def run_campaign(
         if progress is not None:
             progress(finished, count)
 
+    how = How(as_engine(engine), jobs, cluster, kept, resume)
     with confined():
         if loaded.has_table or kept is not None or cluster is not None:
-            how = How(as_engine(engine), jobs, cluster, kept, resume)
             return CampaignResult(_swept(loaded, target, how, done))
         return CampaignResult(_run(loaded, target, engine, jobs, resume, done))
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import hashlib
+import ipaddress
+import re
 import tempfile
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
@@ -13,6 +15,7 @@ from queue import Empty, SimpleQueue
 from typing import Any
 
 from ..errors import InputError
+from ..links.hardware import check_host, resolved
 from ..trials.campaign import Campaign
 from .asked import Asked, asked_of
 from .ended import Ended
@@ -25,14 +28,36 @@ _WAIT_S = 30
 _TASK_S = 2.0
 """Wall time of a task of short cases: a scheduler does some thousand tasks a second."""
 _MOST_CASES = 1000
+_ADDRESS = re.compile(
+    r"(?:(?P<scheme>tcp|tls)://)?(?P<host>\[[^\]]+\]|[^:/\[\]]+):(?P<port>\d{1,5})"
+)
 Question = tuple[str, Mapping[int, Mapping[str, Any]]]
 """A question's name, and what its cases set, by their numbers."""
 _PER_THREAD = 4
 """Tasks that wait for each thread of a worker."""
 
 
+def check_address(address: str) -> None:
+    """Raise InputError for what is no scheduler's address, or one of another host unless allowed.
+
+    A scheduler and its workers send pickles: whoever is there runs code as the user here.
+    """
+    match = _ADDRESS.fullmatch(address)
+    if match is None:
+        raise InputError(
+            f"--cluster: HOST:PORT, tcp://HOST:PORT or tls://HOST:PORT is needed, found {address!r}"
+        )
+    host = match["host"].strip("[]")
+    try:
+        check_host("--cluster", str(ipaddress.ip_address(host)))
+    except ValueError:
+        check_host("--cluster", resolved("--cluster", host))
+
+
 class Cluster:
-    """Runs tasks on the workers of the scheduler at ``address``.
+    """Runs tasks on the workers of the scheduler at ``address`` (`check_address`).
+
+    With ``tls://`` Dask's own settings name authority, certificate and key.
 
     The campaign goes to each worker once, by its hash. Dask gives what a lost worker had to others;
     what it has lost with several of them comes back as an error (`lost`). Raises InputError if
@@ -56,6 +81,11 @@ class Cluster:
         self._killed = distributed.KilledWorker
         try:
             self._client: Any = distributed.Client(address, timeout=_WAIT_S, set_as_default=False)
+        except TypeError as error:  # tls:// without a certificate
+            raise InputError(
+                f"--cluster: {address} needs authority, certificate and key, Dask's settings "
+                f"distributed.comm.tls: {error}"
+            ) from None
         except (OSError, ValueError) as error:
             raise InputError(f"--cluster: there is no scheduler at {address}: {error}") from None
         try:

@@ -28,7 +28,7 @@ from ..trials.resuming import cut_aside, has_index
 from ..trials.run_schema import CAMPAIGN, checked_json
 from ..trials.stopping_rule import StoppingRule
 from .asked import Asked
-from .cluster import Cluster
+from .cluster import Cluster, check_address
 from .columns import columns_of
 from .ended import Ended
 from .ended_log import ENDED_LOG, EndedLog, ended_cases
@@ -45,7 +45,10 @@ _SLICE_S = 0.2
 
 @dataclass(frozen=True)
 class How:
-    """How a campaign is run: on this machine, ``jobs`` side by side, or on a cluster."""
+    """How a campaign is run: on this machine, ``jobs`` side by side, or on a cluster.
+
+    Raises InputError for a cluster of another host, unless that is allowed.
+    """
 
     engine: Engine = "fmu"
     jobs: int | None = None
@@ -53,6 +56,10 @@ class How:
     keep: Keep | None = None
     """In place of what the campaign says."""
     resume: bool = False
+
+    def __post_init__(self) -> None:
+        if self.cluster is not None:
+            check_address(self.cluster)
 
 
 def keep_named(keep: str | None, origin: str) -> Keep | None:

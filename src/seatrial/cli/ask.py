@@ -16,11 +16,12 @@ from ..campaigns.finding import Finding, Shown
 from ..campaigns.page import write_table_page
 from ..campaigns.sweep import How, keep_named
 from ..errors import InputError
+from ..links.hardware import allow_network
 from ..trials.campaign import load_campaign
 from ..trials.cases import Case
 from ..trials.hooks import Hooks
 from .answer import answer
-from .options import EngineName, Out, engine_named
+from .options import EngineName, Network, Out, engine_named
 from .run_options import Cluster, Jobs, KeepName, NoReport, Resume
 from .show import console, print_notes, print_table
 from .stopping import stoppable
@@ -43,6 +44,7 @@ def ask(
     out: Out = None,
     jobs: Jobs = None,
     cluster: Cluster = None,
+    network: Network = False,
     keep: KeepName = None,
     resume: Resume = False,
     no_report: NoReport = False,
@@ -50,6 +52,8 @@ def ask(
     """Ask a campaign a question: it runs the trials that the answer needs."""
     if resume and out is None:
         raise InputError("--resume needs the question's folder, --out FOLDER")
+    if network:
+        allow_network()
     campaign = load_campaign(name)
     how = How(engine_named(engine), jobs, cluster, keep_named(keep, "--keep"), resume)
     with stoppable() as stop, Watch(campaign.read_from.name) as watch:

@@ -43,7 +43,8 @@ Live = Annotated[
 Cluster = Annotated[
     str | None,
     typer.Option(
-        metavar="ADDRESS", help="Run a campaign on the workers of a Dask scheduler, HOST:PORT."
+        metavar="ADDRESS",
+        help="Run a campaign on the workers of a Dask scheduler, HOST:PORT or tls://HOST:PORT.",
     ),
 ]
 KeepName = Annotated[
