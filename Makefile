@@ -5,12 +5,14 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 DOCS := $(VENV)/.docs-installed
 FUZZ := $(VENV)/.fuzz-installed
+RELEASE := build/release
+TOOLS := $(VENV)-release
 NODE_TOOLS := tests/interop/node/node_modules/.installed
 # One thread of BLAS for each worker: they share the processors. Compiled modules are kept, whatever
 # the environment says: hundreds of tests start processes.
 PYTEST := OPENBLAS_NUM_THREADS=1 PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -n auto --dist worksteal
 
-.PHONY: demo test test-interop test-long fuzz lint docs fmus benchmark clean
+.PHONY: demo test test-interop test-long fuzz lint docs fmus benchmark release clean
 
 $(INSTALLED): pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
@@ -87,6 +89,26 @@ benchmark: $(INSTALLED)
 	$(BIN)/python -m benchmarks.supervision --write
 	$(BIN)/python -m benchmarks.ardupilot --write
 	$(BIN)/python -m benchmarks.big_models --write
+
+# What a release has: the distributions, the packages that the tests here ran with as a lock with hashes
+# (pip install --require-hashes -r), and an SBOM of them. Run it after the tests, in their environment. The tools
+# have one of their own: they are no part of what they list.
+release: $(INSTALLED) $(TOOLS)/.installed
+	rm -rf $(RELEASE) && mkdir -p $(RELEASE)
+	$(BIN)/python -m build --outdir $(RELEASE)
+	$(BIN)/python -m pip freeze --exclude-editable > $(RELEASE)/tested.txt
+	$(TOOLS)/bin/pip-compile --quiet --generate-hashes --no-emit-index-url --no-emit-trusted-host --no-header \
+		--strip-extras --allow-unsafe --no-annotate --constraint $(RELEASE)/tested.txt --extra dev \
+		--output-file $(RELEASE)/seatrial.lock pyproject.toml
+	$(TOOLS)/bin/cyclonedx-py environment --pyproject pyproject.toml --mc-type library --output-reproducible \
+		--output-format JSON --output-file $(RELEASE)/seatrial.cdx.json $(BIN)/python
+	rm $(RELEASE)/tested.txt
+	cd $(RELEASE) && sha256sum * > SHA256SUMS
+
+$(TOOLS)/.installed: pyproject.toml
+	$(PYTHON) -m venv $(TOOLS)
+	$(TOOLS)/bin/python -m pip install --quiet --disable-pip-version-check 'pip-tools>=7.4,<8' 'cyclonedx-bom>=6,<8'
+	@touch $@
 
 fmus: $(INSTALLED)
 	$(BIN)/seatrial fmu build --out build/fmus

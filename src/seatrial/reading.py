@@ -13,6 +13,8 @@ DEEPEST = 64
 """Tables and lists inside one another."""
 LARGEST_TOML = 4 * 2**20
 """Bytes: files that a person writes, whose parser is slow."""
+LARGEST_YAML = 2**19
+"""Bytes: some seconds of PyYAML's parser in Python."""
 LARGEST_JSON = 256 * 2**20
 """Bytes: files that programs write."""
 INTEGERS = (-(2**63), 2**64 - 1)
@@ -76,14 +78,16 @@ def yaml_content(data: bytes, called: str) -> Any:
             return super().compose_node(parent, index)
 
         def construct_mapping(self, node: Any, deep: bool = False) -> Any:
-            keys = [key.value for key, _ in node.value]
-            for i, (key, _) in enumerate(node.value):
-                if key.value in keys[:i]:
+            keys: set[str] = set()
+            for key, _ in node.value:
+                text = str(key.value)
+                if text in keys:
                     line = key.start_mark.line + 1
-                    raise InputError(f"{called}: line {line}: a second key {key.value!r}")
+                    raise InputError(f"{called}: line {line}: a second key {text!r}")
+                keys.add(text)
             return super().construct_mapping(node, deep)
 
-    _refuse_large(data, LARGEST_TOML, called)
+    _refuse_large(data, LARGEST_YAML, called)
     try:
         content = Loader(data).get_single_data()
     except RecursionError:

@@ -163,6 +163,7 @@ def test_an_address_without_a_scheduler_is_said(campaign, tmp_path, monkeypatch)
 def test_tls_with_certificates_of_one_authority(campaign, tmp_path):
     """Made by OpenSSL; without the client's own, or of another authority, nobody is let in."""
     import dask
+    import distributed  # noqa: F401  # its settings are there before they are set
 
     run = lambda *command: subprocess.run(["openssl", *command], check=True, capture_output=True)  # noqa: E731
     for name in ("one", "other"):

@@ -53,6 +53,26 @@ def test_document_types_are_refused_before_they_act(text: str | bytes, tmp_path:
     assert time.perf_counter() - begun < 2.0
 
 
+@pytest.mark.parametrize("place", ["ScalarVariable", "Unit"])
+def test_a_name_that_no_page_could_show(place: str, tmp_path: Path) -> None:
+    """Of a variable, which is streamed, and of what stays in the tree."""
+    name = "a" * 5_000_000
+    variable, unit = (name, "u") if place == "ScalarVariable" else ("v", name)
+    text = (
+        '<fmiModelDescription fmiVersion="2.0" modelName="m" guid="g">'
+        f'<UnitDefinitions><Unit name="{unit}"/></UnitDefinitions>'
+        '<CoSimulation modelIdentifier="m"/><ModelVariables>'
+        f'<ScalarVariable name="{variable}" valueReference="0" causality="output"><Real/>'
+        "</ScalarVariable></ModelVariables><ModelStructure/></fmiModelDescription>"
+    )
+    path = tmp_path / "long.fmu"
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("modelDescription.xml", text)
+    with pytest.raises(InputError, match="a name of 5000000 characters") as error:
+        load_fmu(path)
+    assert len(str(error.value)) < 1000
+
+
 def test_xml_that_is_too_large(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = described_fmu(tmp_path / "x.fmu", FMI2 + " " * 100_000)
     monkeypatch.setattr(xmlfile, "LARGEST_STREAMED", 100_000)

@@ -17,7 +17,7 @@ FOLDER = Path(__file__).parent
 CORPUS = FOLDER / "corpus"
 NAMES = sorted(path.stem.removeprefix("fuzz_") for path in FOLDER.glob("fuzz_*.py"))
 KEPT = sorted(path for path in CORPUS.glob("*/*"))
-SLOW = {"archives": 15, "dronecan": 20, "run_folder": 10, "toml": 15}
+SLOW = {"archives": 15, "panels": 15, "dronecan": 20, "run_folder": 10, "toml": 15}
 """Examples of harnesses that write files and draw pages."""
 
 

@@ -5,6 +5,7 @@ import re
 
 import numpy as np
 import pytest
+import xarray
 
 from seatrial.errors import InputError
 from seatrial.sea.panel_files import read_panels
@@ -146,3 +147,20 @@ def test_files_of_no_panel_code(tmp_path, name, message):
     (tmp_path / name).write_text("nothing", "ascii")
     with pytest.raises(InputError, match=message):
         read_panels(tmp_path / name, 1025.0, 9.81)
+
+
+def test_a_small_file_with_large_arrays_is_refused_before_they_are_unpacked(tmp_path):
+    """Zeros are packed to a thousandth; what is declared counts, and none of it is read."""
+    data = xarray.Dataset({"a": ("x", np.zeros(21_000_000, "u1"))})
+    packed = {"a": {"zlib": True, "complevel": 9}}
+    data.to_netcdf(tmp_path / "hull.nc", engine="h5netcdf", encoding=packed)
+    assert (tmp_path / "hull.nc").stat().st_size < 200_000
+    with pytest.raises(InputError, match="arrays of 21000000 numbers, at most 20000000 are read"):
+        read_panels(tmp_path / "hull.nc", 1025.0, 9.81)
+
+
+@pytest.mark.parametrize("content", [b"", b"CDF\x01", b"\x89HDF\r\n\x1a\n" + bytes(99), b"{}"])
+def test_what_is_no_netcdf(content, tmp_path):
+    (tmp_path / "hull.nc").write_bytes(content)
+    with pytest.raises(InputError, match=r"hull\.nc: not (read as )?NetCDF"):
+        read_panels(tmp_path / "hull.nc", 1025.0, 9.81)

@@ -142,6 +142,7 @@ def test_two_events_at_once_on_one_variable_are_refused(system_file: Path, write
         ("events: [{time: 1", "s.yaml: not YAML: "),
         ("a: &x [1]\nevents: *x", "s.yaml: line 2: aliases are not read"),
         ("end: 1\nend: 2", "s.yaml: line 2: a second key 'end'"),
+        ("#" * (2**19 + 1), "s.yaml: 524289 bytes, at most 524288 are read"),
         ("[" * 100 + "]" * 100, "more than 64 deep"),
         ("[" * 1000, "more than 64 deep"),
         ("- 1", "s.yaml: .*dictionary"),

@@ -16,6 +16,10 @@ LARGEST_STREAMED = 512 * 2**20
 """Bytes of the largest one that is read element by element: more than a million variables."""
 MOST_ELEMENTS = 1_000_000
 """Elements of such a file that stay, units and types say: some 200 bytes each and more."""
+LONGEST_NAME = 4096
+"""Characters of an attribute ``name``: what writes tables, pages and messages of them has time by
+the square of that."""
+_LONG_NAMES = etree.XPath(f"//@name[string-length() > {LONGEST_NAME}]")
 _BLOCK = 2**20
 
 Undeclared = Callable[[str, int], str | None]
@@ -26,8 +30,9 @@ def read_xml(path: Path, called: str, undeclared: Undeclared | None = None) -> A
     """Return the root element of the XML file ``path``, called ``called`` in messages.
 
     Raises InputError for a file that is not there, is larger than `LARGEST_XML`, is not XML, has
-    a prefix that is neither declared nor known to ``undeclared``, or has a document type: what
-    that defines (entities, other files) has no place in FMI or SSP.
+    a prefix that is neither declared nor known to ``undeclared``, a name of more than
+    `LONGEST_NAME`, or has a document type: what that defines (entities, other files) has no place
+    in FMI or SSP.
     """
     _refuse_large(path, called, LARGEST_XML)
     parser = _parser()
@@ -40,6 +45,7 @@ def read_xml(path: Path, called: str, undeclared: Undeclared | None = None) -> A
     except (OSError, LookupError, ValueError):  # for bytes that are none of its encoding
         raise InputError(f"{called}: not XML: it cannot be decoded") from None
     _refuse_doctype(tree, called)
+    _refuse_names(_LONG_NAMES(tree), called)
     return tree.getroot()
 
 
@@ -61,6 +67,8 @@ def streamed_xml(
             for _, element in parser.read_events():
                 if not chosen(element):
                     continue
+                if len(name := element.get("name", "")) > LONGEST_NAME:
+                    _refuse_names([name], called)
                 if root is None:
                     root = element.getroottree().getroot()
                     _refuse_doctype(root.getroottree(), called)
@@ -80,6 +88,7 @@ def streamed_xml(
     if last is not None:
         last.getparent().remove(last)
     _refuse_doctype(whole.getroottree(), called)
+    _refuse_names(_LONG_NAMES(whole), called)
     yield whole
 
 
@@ -115,6 +124,14 @@ def _refuse_large(path: Path, called: str, most: int) -> None:
 def _refuse_doctype(tree: Any, called: str) -> None:
     if tree.docinfo.doctype:
         raise InputError(f"{called}: has a document type (DOCTYPE), which is not allowed")
+
+
+def _refuse_names(long: Sequence[str], called: str) -> None:
+    if long:
+        raise InputError(
+            f"{called}: a name of {len(long[0])} characters ({long[0][:20]}...), at most "
+            f"{LONGEST_NAME} are read"
+        )
 
 
 def _lacks_declarations(parser: etree.XMLParser) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import importlib
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +16,8 @@ from .panels import TURNED, PanelTables, all_round
 
 LARGEST = 256 * 2**20
 """Most bytes of a file."""
+MOST_NUMBERS = 20_000_000
+"""In the arrays of a dataset, unpacked."""
 MOTIONS = ("Surge", "Sway", "Heave", "Roll", "Pitch", "Yaw")
 _FEWEST = 8
 """Frequencies that a memory is fitted to."""
@@ -158,14 +160,37 @@ def _capytaine(path: Path, density: float, gravity: float, _length: float) -> Pa
             "writes WAMIT's .1 and .3"
         ) from None
     try:
-        with xarray.open_dataset(path) as opened:
+        with xarray.open_dataset(path, engine=_engine(path), decode_times=False) as opened:
+            _refuse_large(path, opened.variables.values())  # nothing of them is read so far
             data = opened.load()
-    except (OSError, ValueError, ImportError) as error:
-        raise InputError(f"{path}: not read as NetCDF: {error}") from None
+    except InputError:
+        raise
+    except Exception as error:  # HDF5's errors come as they are
+        raise InputError(f"{path}: not read as NetCDF: {error or type(error).__name__}") from None
     try:
         return _of_dataset(path, data, density, gravity)
+    except (IndexError, TypeError, ValueError) as error:
+        raise InputError(f"{path}: not as Capytaine writes it: {error}") from None
     except KeyError as error:
         raise InputError(f"{path}: Capytaine's {error.args[0]!r} is missing") from None
+
+
+def _engine(path: Path) -> str:
+    """Return what reads a file by its first bytes: NetCDF 4 is HDF5, NetCDF 3 is its own."""
+    with path.open("rb") as file:
+        begin = file.read(8)
+    if begin.startswith(b"CDF"):
+        return "scipy"
+    if begin == b"\x89HDF\r\n\x1a\n":
+        return "h5netcdf"
+    raise InputError(f"{path}: not NetCDF: it begins with {begin!r}")
+
+
+def _refuse_large(path: Path, variables: Iterable[Any]) -> None:
+    """Raise InputError for a file whose arrays, packed or not, have too many numbers."""
+    count = sum(variable.size for variable in variables)
+    if count > MOST_NUMBERS:
+        raise InputError(f"{path}: arrays of {count} numbers, at most {MOST_NUMBERS} are read")
 
 
 def _of_dataset(path: Path, data: Any, density: float, gravity: float) -> PanelTables:
