@@ -86,7 +86,7 @@ class Cluster:
                 f"--cluster: {address} needs authority, certificate and key, Dask's settings "
                 f"distributed.comm.tls: {error}"
             ) from None
-        except (OSError, ValueError) as error:
+        except (OSError, ValueError, MemoryError) as error:  # of a length that nobody has
             raise InputError(f"--cluster: there is no scheduler at {address}: {error}") from None
         try:
             self._client.wait_for_workers(1, timeout=_WAIT_S)

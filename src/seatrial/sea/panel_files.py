@@ -182,6 +182,8 @@ def _engine(path: Path) -> str:
     if begin.startswith(b"CDF"):
         return "scipy"
     if begin == b"\x89HDF\r\n\x1a\n":
+        with importlib.import_module("h5py").File(path) as whole:
+            whole.visititems(lambda *_: None)  # h5netcdf prints a traceback where an object is cut
         return "h5netcdf"
     raise InputError(f"{path}: not NetCDF: it begins with {begin!r}")
 
