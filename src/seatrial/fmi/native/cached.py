@@ -10,13 +10,15 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from ...errors import InputError
 from ..bundle_name import bundle_name
-from ..cache import cache_folder
+from ..cache import cache_folder, write_named
 from ..source import ComponentSource
 from .carriers import checked
 from .compiler import FLAGS, HERE, library_here, require_compiler
 from .export import build_native_fmu
 from .tables import is_built_in
+from .translation.constants import fingerprint
 
 
 def native_fmu(source: ComponentSource, values: Mapping[str, Any] | None = None) -> Path:
@@ -34,15 +36,22 @@ def native_fmu(source: ComponentSource, values: Mapping[str, Any] | None = None)
     given = values or {}
     scalars = cls.scalar_by_name
     own = {n: v for n, v in given.items() if n in scalars and is_built_in(cls, scalars[n].port)}
-    text = f"{_tool_tag()} {sorted(own.items())!r}"
+    text = f"{_tool_tag()} {fingerprint(cls)} {sorted(own.items())!r}"
     tag = hashlib.sha256(text.encode()).hexdigest()[:12]
     path = cache_folder("native") / f"{bundle_name(source)}-{tag}.fmu"
+    refused = path.with_suffix(".refused")
+    if refused.is_file():
+        raise InputError(refused.read_text(encoding="utf-8"))
     if not zipfile.is_zipfile(path):
         component = cls(source.name)
         for name, value in given.items():
             component.set(name, value)
         checked(component, source.origin)
-        build_native_fmu(source, path, (HERE,), own, library_here)
+        try:
+            build_native_fmu(source, path, (HERE,), own, library_here, given=given)
+        except InputError as error:
+            write_named(refused, str(error).encode())
+            raise
     return path
 
 

@@ -6,6 +6,7 @@ import hashlib
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 from xml.etree.ElementTree import Element, SubElement, tostring
 
@@ -22,9 +23,10 @@ from ..source import ComponentSource
 from ..version3.description import build_description
 from ..version3.sources import front_sources
 from .carriers import checked, why_refused
-from .compiler import SEMANTICS, TARGETS, TUPLES, library
+from .compiler import HERE, SEMANTICS, TARGETS, TUPLES, library
 from .equations import header as plant_header
 from .equations import model, started
+from .selfcheck import refuse_difference
 from .statements import Translation
 from .tables import header
 
@@ -40,13 +42,16 @@ def build_native_fmu(
     start_values: Mapping[str, Any] | None = None,
     compiled: Callable[[Mapping[str, bytes], str], bytes] = library,
     version: int = 2,
+    given: Mapping[str, Any] | None = None,
 ) -> Path:
     """Build the native FMU of ``source`` at ``destination`` (a file) and return its path.
 
     ``start_values`` (by port name, SI) are baked in; text parameters, waves, current and wind
     cannot change afterwards. ``version`` of FMI is 2 or 3. The same input gives the same bytes.
+    Where its binary runs on this machine, it has done the same as the Python (`selfcheck`), also
+    with the values ``given`` before a run (by scalar).
     Raises InputError for a component that has no C, naming the line, values it cannot start
-    with, and without a compiler; nothing is written then.
+    with, for a difference from the Python, and without a compiler; nothing is written then.
     """
     cls = source.component_class()
     why = why_refused(cls)
@@ -67,8 +72,14 @@ def build_native_fmu(
         name = f"{source.stem}{TARGETS[platform][1]}"
         files[f"binaries/{folder}/{name}"] = compiled(sources, platform)
     files |= described_files(root, example, version)
+    content = zipped(files)
+    if HERE in platforms:
+        with TemporaryDirectory() as folder:
+            built = Path(folder, destination.name)
+            built.write_bytes(content)
+            refuse_difference(source, built, given or {})
     destination.parent.mkdir(parents=True, exist_ok=True)
-    write_named(destination, zipped(files))
+    write_named(destination, content)
     return destination
 
 

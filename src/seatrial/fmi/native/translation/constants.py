@@ -41,6 +41,13 @@ def is_ours(module: str) -> bool:
     return module.partition(".")[0] == "seatrial"
 
 
+def scope_of(cls: type) -> Mapping[str, Any]:
+    """Return the names of the module that a class is from."""
+    own = [f.__globals__ for f in vars(cls).values() if isinstance(f, types.FunctionType)]
+    module = sys.modules.get(cls.__module__)
+    return vars(module) if module is not None else own[0] if own else {}
+
+
 def why_no_constant(scope: Mapping[str, Any], name: str, value: Any) -> str:
     """Return why a name of a module or class may mean something else in the run; empty if not.
 
@@ -154,14 +161,14 @@ def fingerprint(cls: type) -> str:
     digest, seen = hashlib.sha256(), set[int]()
 
     def add(value: Any, names: tuple[str, ...] = ()) -> None:
-        for text in _told(value, names, add, seen):
+        for text in _texts_of(value, names, add, seen):
             digest.update(f"{text}\0".encode("utf-8", "backslashreplace"))
 
     add(cls)
     return digest.hexdigest()
 
 
-def _told(value: Any, names: tuple[str, ...], add: Any, seen: set[int]) -> Iterator[str]:
+def _texts_of(value: Any, names: tuple[str, ...], add: Any, seen: set[int]) -> Iterator[str]:
     """Yield the texts that tell a value, and ``add`` what it consists of."""
     if isinstance(value, _PLAIN):
         own = sorted(map(repr, value)) if isinstance(value, frozenset) else value
@@ -182,7 +189,7 @@ def _told(value: Any, names: tuple[str, ...], add: Any, seen: set[int]) -> Itera
         return
     seen.add(id(value))
     if isinstance(value, types.FunctionType):
-        yield from _told_function(value, add)
+        yield from _of_function(value, add)
     elif isinstance(value, type):
         for base in value.__bases__:
             add(base)
@@ -205,7 +212,7 @@ def _told(value: Any, names: tuple[str, ...], add: Any, seen: set[int]) -> Itera
             add(own)
 
 
-def _told_function(function: types.FunctionType, add: Any) -> Iterator[str]:
+def _of_function(function: types.FunctionType, add: Any) -> Iterator[str]:
     codes, names = [function.__code__], list[str]()
     for code in codes:
         codes += [each for each in code.co_consts if isinstance(each, types.CodeType)]

@@ -46,7 +46,7 @@ def syntax(function: Any) -> ast.FunctionDef:
     nodes, codes = _file(code.co_filename)
     place = code.co_firstlineno, code.co_name
     node, own = nodes.get(place), codes.get(place)
-    if node is None or own is None or _told(own) != _told(code):
+    if node is None or own is None or _essence(own) != _essence(code):
         raise OSError
     return node
 
@@ -68,7 +68,7 @@ def _file(
     return nodes, {(code.co_firstlineno, code.co_name): code for code in codes}
 
 
-def _told(code: CodeType) -> tuple[Any, ...]:
+def _essence(code: CodeType) -> tuple[Any, ...]:
     """Return what two functions with the same text have in common."""
     plain = [c for c in code.co_consts if isinstance(c, (int, float, str))]
     return code.co_code, code.co_names, code.co_varnames, repr(plain)

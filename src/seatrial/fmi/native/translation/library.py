@@ -303,10 +303,12 @@ def gone_through(frame: Frame, value: Any) -> list[Any]:
 
 @library(zip)
 def _zip(frame: Frame, *values: Any, strict: Any = None) -> Any:
+    later = any(is_once(value) and value.kind is not Zipped for value in values)
     columns = [gone_through(frame, value) for value in values]
     sizes = {len(column) for column in columns}
-    if len(sizes) > 1 and not (isinstance(strict, Known) and strict.value is False):
-        raise frame.refused(f"zip of {sorted(sizes)} values without strict=False")
+    is_strict = strict is not None and not (isinstance(strict, Known) and strict.value is False)
+    if len(sizes) > 1 and (is_strict or later):
+        raise frame.refused(f"zip of {sorted(sizes)} values")
     return Seq(Zipped, [Seq(tuple, list(row)) for row in zip(*columns)])  # noqa: B905
 
 
@@ -369,8 +371,9 @@ LIBRARY[bisect.bisect_left] = lambda frame, table, x: _bisect(frame, table, x, "
 
 @library(np.interp)
 def _interp(frame: Frame, x: Any, xs: Any, ys: Any) -> Num:
-    size = len(unpacked(frame, xs))
-    if not size or size != len(unpacked(frame, ys)):
+    sizes = {len(python_of(v) if is_known(v) else unpacked(frame, v)) for v in (xs, ys)}
+    size = sizes.pop()
+    if not size or sizes:
         raise frame.refused("numpy.interp of tables of other lengths")
     arrays = f"{size}, {_points(frame, xs)}, {_points(frame, ys)}"
     return frame.num("d", f"interpolated({frame.text_of(x, 'd')}, {arrays})")

@@ -108,7 +108,8 @@ def _augmented(frame: Frame, node: ast.AugAssign) -> None:
     if isinstance(target, ast.Attribute) and not isinstance(target.value, ast.Name):
         raise frame.refused("a change of what an expression finds", node)
     before = frame.evaluate(_read(target))
-    if isinstance(opened(before), (Seq, Table, Queue, Choice)):
+    whole = before.alternatives if isinstance(before, Choice) else (before,)
+    if any(isinstance(opened(each), (Seq, Table, Queue)) for each in whole):
         raise frame.refused(f"a change of {described(before)} where it is", node)
     value = binary(frame, node.op, before, frame.evaluate(node.value))
     _note(frame, node)

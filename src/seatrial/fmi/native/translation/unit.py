@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-import sys
 from collections.abc import Iterator, Mapping
 from types import FunctionType, ModuleType
 from typing import Any
@@ -12,7 +11,7 @@ from ....component import Component as Base
 from ....ports import Parameter, Port
 from ..tables import is_built_in, words_of
 from .calls import call
-from .constants import is_ours, why_no_constant
+from .constants import is_ours, scope_of, why_no_constant
 from .domain import (
     C_TYPES,
     Choice,
@@ -235,9 +234,9 @@ class Unit:
         found = getattr(owner, name)
         if isinstance(owner, (str, bytes, int, float)) or is_ours(type(owner).__module__):
             return Known(found)
-        where = owner if isinstance(owner, (ModuleType, type)) else type(owner)
-        scope = vars(where if isinstance(where, ModuleType) else sys.modules[where.__module__])
-        why = why_no_constant(scope, name, found)
+        is_module = isinstance(owner, ModuleType)
+        cls = owner if isinstance(owner, type) else type(owner)
+        why = why_no_constant(vars(owner) if is_module else scope_of(cls), name, found)
         if why and type(owner).__module__ != "numpy":
             raise frame.refused(f"{name} of {described(Known(owner))}, {why},")
         return Known(found)
@@ -293,7 +292,7 @@ class Unit:
         if base is not None and hasattr(getter, "__code__"):
             arguments = [Known(found), receiver, Known(_class_of(self, receiver))]
             return invoke(frame, getter, base, arguments, {})
-        why = why_no_constant(vars(sys.modules[where.__module__]), name, found)
+        why = why_no_constant(scope_of(where), name, found)
         if base is not None and not isinstance(found, type):
             why = "whose value is found its own way"
         if why:

@@ -1,0 +1,134 @@
+"""Programs by a grammar: their C does what their Python does, or there is none."""
+
+from __future__ import annotations
+
+import importlib.util
+import subprocess
+from collections.abc import Mapping, Sequence
+from itertools import count
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import pytest
+
+from seatrial.component import Component
+from seatrial.errors import InputError
+from seatrial.fmi.native.compiler import HERE, SEMANTICS
+from seatrial.fmi.native.export import build_native_fmu
+from seatrial.fmi.native.translation.domain import TranslationError
+from seatrial.fmi.native.translation.unit import Unit
+from seatrial.fmi.source import ComponentSource
+from tests.fmi.native_programs import HEADER, Program, component, smaller, written
+
+pytestmark = pytest.mark.skipif(HERE != "linux64", reason="loads libraries of Linux")
+
+_NUMBERS = count()
+SEEN: dict[str, int] = {"programs": 0, "in C": 0}
+
+
+def loaded(folder: Path, text: str) -> tuple[type[Component], Path, str]:
+    """Return the component of a module that is written and imported, its file and module."""
+    module = f"grammar_{next(_NUMBERS)}"
+    path = folder / f"{module}.py"
+    path.write_text(text)
+    spec = importlib.util.spec_from_file_location(module, path)
+    assert spec is not None
+    assert spec.loader is not None
+    made: Any = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(made)
+    return made.Written, path, module
+
+
+def fails(cls: type[Component]) -> bool:
+    """Return whether a component fails within some steps."""
+    try:
+        own = cls("x")
+        own.setup(0.0)
+        own.initialise()
+        own.begin()
+        for k in range(10):
+            own.advance(k * 0.1, 0.1)
+    except Exception:
+        return True
+    return False
+
+
+def quick(sources: Mapping[str, bytes], _platform: str) -> bytes:
+    """Compile without optimisation: the numbers are the same."""
+    with TemporaryDirectory() as folder:
+        for name, content in sources.items():
+            Path(folder, name).write_bytes(content)
+        names = [name for name in sources if name.endswith(".c")]
+        flags = ("-std=c99", "-O0", "-shared", "-fPIC", "-fvisibility=hidden", *SEMANTICS)
+        subprocess.run(["cc", *flags, *names, "-o", "out.so", "-lm"], cwd=folder, check=True)
+        return Path(folder, "out.so").read_bytes()
+
+
+def refuse_difference(folder: Path, some: Sequence[Program]) -> None:
+    """Raise InputError where the C of programs, all in one component, differs from the Python."""
+    _cls, _path, module = loaded(folder, HEADER + component("Written", some))
+    source = ComponentSource(module, module, module, "Written", module, folder)
+    build_native_fmu(source, folder / "x.fmu", (HERE,), None, quick)
+
+
+def check(some: Sequence[Program]) -> None:
+    """Check programs: those that can be in C all at once, those that fail one by one."""
+    with TemporaryDirectory() as name:
+        folder, together = Path(name), []
+        for program in some:
+            SEEN["programs"] += 1
+            try:
+                cls, _, _ = loaded(folder, HEADER + component("Written", [program]))
+                Unit(cls()).translate()
+            except (TranslationError, SyntaxError):
+                continue
+            SEEN["in C"] += 1
+            if fails(cls):
+                refuse_difference(folder, [program])
+            else:
+                together.append(program)
+        if together:
+            refuse_difference(folder, together)
+
+
+def differs(some: Sequence[Program]) -> str:
+    """Return what differs between the C and the Python of programs, empty if nothing."""
+    try:
+        check(some)
+    except InputError as error:
+        return str(error)
+    return ""
+
+
+def shrunk(program: Program) -> Program:
+    """Return a small program whose C still differs."""
+    for each in smaller(program):
+        if differs([each]):
+            return shrunk(each)
+    return program
+
+
+def check_seeds(first: int, count: int) -> None:
+    """Check programs by their seeds; fail with a small one of those that differ."""
+    some = [written(seed) for seed in range(first, first + count)]
+    if not differs(some):
+        return
+    alone = next((each for each in some if differs([each])), None)
+    if alone is None:
+        pytest.fail(f"seeds {first} to {first + count}, together: {differs(some)}")
+    small = shrunk(alone)
+    pytest.fail(f"{small!r}\n{differs([small])}")
+
+
+@pytest.mark.parametrize("first", [0, 1000])
+def test_some_programs(first: int) -> None:
+    check_seeds(first, 12)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("part", range(100))
+def test_a_hundred_thousand_programs(part: int) -> None:
+    """Seeds that no other part has."""
+    for first in range(part * 10_000, part * 10_000 + 1000, 20):
+        check_seeds(first, 20)
