@@ -21,6 +21,8 @@ Equations = Callable[
     [SimpleNamespace, SimpleNamespace, SimpleNamespace], tuple[Mapping[str, Any], Mapping[str, Any]]
 ]
 
+Pairs = set[tuple[str, str]]
+
 
 @dataclass(frozen=True)
 class Model:
@@ -165,18 +167,29 @@ class Sundials:
             raise ArithmeticError(f"integration stopped after t = {begin}: {reason}") from None
 
 
-def undeclared_feedthrough(
-    model: Model,
-    inputs: Sequence[Port],
-    outputs: Sequence[Port],
-    declared: Mapping[str, Sequence[str]],
-) -> list[tuple[str, str]]:
-    """Return the (output, input) port pairs that the expressions couple and nobody declared."""
-    rows, columns = model.out.jac_sparsity(0, 1).get_triplet()
+def coupled(out: ca.Function, inputs: Sequence[Port], outputs: Sequence[Port]) -> Pairs:
+    """Return the (output, input) port pairs that the expressions of ``out(x, u, p)`` couple."""
+    rows, columns = out.jac_sparsity(0, 1).get_triplet()
     owner_y = [port.name for port in outputs for _ in range(port.size)]
     owner_u = [port.name for port in inputs for _ in range(port.size)]
-    pairs = {(owner_y[r], owner_u[c]) for r, c in zip(rows, columns, strict=True)}
-    return sorted(pair for pair in pairs if pair[1] not in declared.get(pair[0], ()))
+    return {(owner_y[r], owner_u[c]) for r, c in zip(rows, columns, strict=True)}
+
+
+def compile_outputs(
+    name: str,
+    equations: Equations,
+    states: Sequence[Port],
+    inputs: Sequence[Port],
+    parameters: Sequence[Port],
+    outputs: Sequence[Port],
+    texts: Mapping[str, str],
+) -> ca.Function:
+    """Return ``out`` of `compile_model` alone. Raises as it does."""
+    x, u, p = (_symbols(ports) for ports in (states, inputs, parameters))
+    named_p = SimpleNamespace(**vars(p.named), **texts)
+    _, other = _evaluated(name, equations, x.named, u.named, named_p)
+    y = _stacked(f"{name}: outputs", other, outputs)
+    return ca.Function("out", [x.all, u.all, p.all], [y])
 
 
 def bind(

@@ -20,11 +20,13 @@ from .component import Component, Output, Parameter
 from .errors import InputError, unknown
 from .model import (
     Model,
+    Pairs,
     Sundials,
     Vector,
     bind,
     compile_model,
-    undeclared_feedthrough,
+    compile_outputs,
+    coupled,
 )
 from .ports import Port
 
@@ -77,8 +79,8 @@ class Plant(Component):
 
     Declare ports with `State`, `Input`, `Output`, `Parameter` and override `equations`.
     Steps use the classical Runge-Kutta method of order 4 with equal sub-steps no longer than
-    ``max_step``, inputs held. Feed-through is declared, and checked against
-    the expressions. Text parameters choose
+    ``max_step``, inputs held. Feed-through follows from the expressions; one that is declared is
+    checked against them. Text parameters choose
     between equations and reach `equations` as text; text inputs do not reach them.
     """
 
@@ -322,22 +324,32 @@ class Plant(Component):
 
     @classmethod
     def _compile(cls, texts: Mapping[str, str]) -> Model:
+        model = compile_model(*cls._stated(texts))
+        for output, given in sorted(coupled(model.out, cls.input_ports, cls.output_ports)):
+            if given not in cls.feedthrough.get(output, (given,)):
+                raise InputError(
+                    f"{cls.__name__}.feedthrough says that {output!r} does not depend on "
+                    f"{given!r}, but the equations couple them: name it there, or leave {output!r} "
+                    "out, then the equations say it"
+                )
+        return model
+
+    @classmethod
+    def coupled(cls, texts: Mapping[str, str]) -> Pairs:
+        """Return the (output, input) pairs that the equations couple, with these text parameters.
+
+        Outputs are those that are not states. Raises InputError for whatever equations raise.
+        """
+        return coupled(compile_outputs(*cls._stated(texts)), cls.input_ports, cls.output_ports)
+
+    @classmethod
+    def _stated(cls, texts: Mapping[str, str]) -> tuple[Any, ...]:
+        """Return the equations with the ports that they are for, as `compile_model` takes them."""
         if cls.equations is Plant.equations:
             raise TypeError(f"{cls.__name__} defines no equations")
         stub = cls.__new__(cls)  # has the methods and no values
-        model = compile_model(
-            cls.__name__,
-            stub.equations,
-            cls.state_ports,
-            cls.input_ports,
-            cls.parameter_ports,
-            cls.output_ports,
-            texts,
-        )
-        missing = undeclared_feedthrough(model, cls.input_ports, cls.output_ports, cls.feedthrough)
-        if missing:
-            raise TypeError(f"{cls.__name__}.feedthrough lacks (output, input) {missing}")
-        return model
+        ports = cls.state_ports, cls.input_ports, cls.parameter_ports, cls.output_ports
+        return cls.__name__, stub.equations, *ports, texts
 
     def _build_buffers(self) -> None:
         # A buffer does not keep its arrays alive: they stay attributes of the instance.

@@ -50,7 +50,21 @@ def assemble(
     except BaseException:
         system.free()
         raise
+    system.notes += _undecided(system)
     return system
+
+
+def _undecided(system: System) -> list[str]:
+    """Return notes on components whose outputs are taken to follow from all of their inputs."""
+    of_why: dict[str, list[str]] = {}
+    for part in system.parts.values():
+        if part.undecided:
+            of_why.setdefault(part.undecided, []).append(part.name)
+    return [
+        f"{', '.join(names)}: every output is taken to depend on every input at the same instant, "
+        f"because the code does not tell ({why}); a declared feedthrough may say less"
+        for why, names in of_why.items()
+    ]
 
 
 def _refuse_idle_variant(system: System) -> None:

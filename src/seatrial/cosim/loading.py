@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from ..component import seconds
 from ..errors import InputError
 from ..fmi.bundle_name import bundle_name
+from ..fmi.dependencies.checked import checked
 from ..fmi.direct import DirectInstance
 from ..fmi.instance import Instance
 from ..fmi.options import FmuOptions
@@ -46,12 +47,9 @@ def load_part(rig: Rig, name: str, engine: Engine, once: dict[str, str]) -> Part
             )
     timeout_s = _timeout_s(entry, f"{where}.timeout")
     try:
-        instance, sha256, code = _instance(
-            entry, name, placed.scope.folder, engine, timeout_s, once
-        )
+        return _part(entry, name, placed.scope.folder, engine, timeout_s, once, every)
     except InputError as error:
         raise InputError(f"{where}.fmu: {error}") from None
-    return Part(name, entry.fmu, instance, sha256, code, every)
 
 
 def _timeout_s(entry: ComponentEntry, where: str) -> float:
@@ -75,19 +73,16 @@ def _options(entry: ComponentEntry, loaded: LoadedFmu) -> FmuOptions:
     return FmuOptions(entry.interface, entry.tolerance, structure, tuple(entry.locals))
 
 
-def _instance(
+def _part(
     entry: ComponentEntry,
     name: str,
     folder: Path,
     engine: Engine,
     timeout_s: float,
     once: dict[str, str],
-) -> tuple[Instance, str, str]:
-    """Return an instance, the hash of its FMU file and the name of its code; see `Part`.
-
-    An isolated component is an FMU with any engine. ``once`` has, by their hashes, the names
-    of the components in this process whose FMU allows one instance only.
-    """
+    every: int,
+) -> Part:
+    """Return a component; an isolated one is an FMU with any engine."""
     source = find_source(entry.fmu, folder)
     if not isinstance(source, Path):
         for key in ("interface", "tolerance", "locals"):
@@ -98,26 +93,46 @@ def _instance(
     in_process = not entry.isolated and (
         engine == "direct" or (engine == "native" and not isinstance(source, Path))
     )
-    code = "" if isinstance(source, Path) else bundle_name(source)
-    if in_process:
-        if isinstance(source, Path):
+    if isinstance(source, Path):
+        if in_process:
             raise InputError(
                 f"{source.name} can only run with the engines 'fmu' and 'native', or with "
                 "isolated = true"
             )
-        return DirectInstance(source.component_class()(name)), "", code
+        from ..fmi.load import load_fmu
+
+        loaded = load_fmu(source, _options(entry, load_fmu(source)))
+        instance, sha256 = _of_fmu(loaded, entry, name, timeout_s, once)
+        return Part(name, entry.fmu, instance, sha256, "", every)
+    code = bundle_name(source)
+    known = checked(source, code)
+    if in_process:
+        direct = DirectInstance(source.component_class()(name), through=known.through)
+        return Part(name, entry.fmu, direct, "", code, every, undecided=known.undecided)
     # A run in process needs neither FMPy nor pythonfmu.
     from ..fmi.export import cached_fmu
-    from ..fmi.isolated import IsolatedInstance
-    from ..fmi.load import load_fmu, open_instance
+    from ..fmi.load import load_fmu
 
-    loaded = load_fmu(source if isinstance(source, Path) else cached_fmu(source, code))
-    if isinstance(source, Path):
-        loaded = load_fmu(source, _options(entry, loaded))
+    loaded = load_fmu(cached_fmu(source, code))
+    instance, sha256 = _of_fmu(loaded, entry, name, timeout_s, once)
+    return Part(name, entry.fmu, instance, sha256, code, every, undecided=known.undecided)
+
+
+def _of_fmu(
+    loaded: LoadedFmu, entry: ComponentEntry, name: str, timeout_s: float, once: dict[str, str]
+) -> tuple[Instance, str]:
+    """Return an instance of an FMU, and the hash of its file.
+
+    ``once`` has, by their hashes, the names of the components in this process whose FMU allows
+    one instance only.
+    """
+    from ..fmi.isolated import IsolatedInstance
+    from ..fmi.load import open_instance
+
     if entry.isolated:
         sandboxed = entry.isolated == "sandboxed"
         instance = IsolatedInstance(loaded, name, timeout_s, sandboxed=sandboxed)
-        return instance, loaded.sha256, code
+        return instance, loaded.sha256
     if loaded.only_once:
         if loaded.sha256 in once:
             raise InputError(
@@ -125,4 +140,4 @@ def _instance(
                 f"{once[loaded.sha256]} is that; isolated = true gives {name} a process of its own"
             )
         once[loaded.sha256] = name
-    return open_instance(loaded, name), loaded.sha256, code
+    return open_instance(loaded, name), loaded.sha256

@@ -15,6 +15,7 @@ from ..component import Component, Input, Parameter
 from ..errors import InputError
 from ..ports import Port, ScalarPort
 from ..units import unit
+from .dependencies.found import feedthrough_of
 from .slave import Slave
 
 _VARIABLES = {float: Real, int: Integer, bool: Boolean, str: String}
@@ -182,11 +183,12 @@ def _add_unknowns(structure: Element, component: Component) -> None:
     fixed = [s for s in component.scalars if s.port.kind == "parameter"]
     listed = SubElement(structure, "Outputs")
     initial = SubElement(structure, "InitialUnknowns")
+    through = feedthrough_of(type(component))
     for scalar in outputs:
-        ports = component.feedthrough.get(scalar.port.name, ())
-        through = [s for s in component.scalars if s.port.kind == "input" and s.port.name in ports]
-        _add_unknown(listed, scalar, through)
-        _add_unknown(initial, scalar, [*fixed, *through])
+        ports = through[scalar.port.name]
+        acting = [s for s in component.scalars if s.port.kind == "input" and s.port.name in ports]
+        _add_unknown(listed, scalar, acting)
+        _add_unknown(initial, scalar, [*fixed, *acting])
 
 
 def _add_unknown(parent: Element, scalar: ScalarPort, known: list[ScalarPort]) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import traceback
 from collections.abc import Callable, Mapping, Sequence
-from functools import partial
+from functools import cached_property, partial
 from typing import Any
 
 from ..component import Component
@@ -12,6 +12,7 @@ from ..errors import DiscardError, InputError, SimulationError
 from ..plant import Plant
 from ..ports import Input, Parameter, ScalarPort
 from .compiled_functions import compiled_function
+from .dependencies.found import Through, feedthrough_of
 from .instance import ByType, Reader, Value, Variable, Variables, Writer
 
 
@@ -19,13 +20,16 @@ class DirectInstance(ByType):
     """A component as the master sees it; the same calls in the same order as for its FMU.
 
     ``compiles``: the equations of a plant become machine code, where there is a compiler.
+    ``through`` is what its outputs depend on, where somebody knows; it is found out otherwise.
     """
 
-    def __init__(self, component: Component, *, compiles: bool = True) -> None:
+    def __init__(
+        self, component: Component, *, compiles: bool = True, through: Through | None = None
+    ) -> None:
         self.component = component
         self.name = component.name
         self.variables = Variables({s.name: _variable(component, s) for s in component.scalars})
-        self.feedthrough = scalar_feedthrough(component)
+        self._through = through
         self.rolls_back, self.at_once = component.rolls_back, False
         self.any_step = not component.fixed_step
         self.restarts = True
@@ -36,6 +40,17 @@ class DirectInstance(ByType):
         self._publishes = any(port.kind == "output" for port in component.ports.values())
         self._stepped = False
         """The outputs of the last step have not been computed yet."""
+
+    @cached_property
+    def feedthrough(self) -> dict[str, list[str]]:
+        """The inputs that act on each output at the same instant."""
+        through = feedthrough_of(type(self.component)) if self._through is None else self._through
+        ports = self.component.ports
+        return {
+            scalar: [name for port in inputs for name in ports[port].scalar_names]
+            for output, inputs in through.items()
+            for scalar in ports[output].scalar_names
+        }
 
     def set_start(self, values: Mapping[str, Value]) -> None:
         """Set parameters and start values by variable name, before `initialise`."""
@@ -134,16 +149,6 @@ class DirectInstance(ByType):
         return SimulationError(
             f"{self.name}: {what} at t = {self.component.now!r} s raised\n{text}"
         )
-
-
-def scalar_feedthrough(component: Component) -> dict[str, list[str]]:
-    """Return the declared feed-through by scalar names."""
-    ports = component.ports
-    return {
-        scalar: [name for port in inputs for name in ports[port].scalar_names]
-        for output, inputs in component.feedthrough.items()
-        for scalar in ports[output].scalar_names
-    }
 
 
 def _variable(component: Component, scalar: ScalarPort) -> Variable:

@@ -17,6 +17,7 @@ from .. import __version__
 from ..component import Component
 from .bundle import bundled
 from .cache import cache_folder, write_named
+from .dependencies.checked import refuse_mistakes
 from .description import describe
 from .direct import DirectInstance
 from .slave import START_VALUES
@@ -25,6 +26,7 @@ from .terminals import PLACE, terminals_xml
 from .version3.description import arrays, version3
 
 _TIMESTAMP = (1980, 1, 1, 0, 0, 0)
+_DESCRIBING = ("description", "export", "terminals")
 _BINARIES = Path(pythonfmu.__file__).parent / "resources" / "binaries"
 
 
@@ -107,7 +109,9 @@ def described_files(root: Element, component: Component, version: int) -> dict[s
 def _model_description(
     source: ComponentSource, files: Mapping[str, bytes], start_values: Mapping[str, Any]
 ) -> Element:
-    root = describe(source.component_class(), source.name, start_values)
+    cls = source.component_class()
+    refuse_mistakes(cls)
+    root = describe(cls, source.name, start_values)
     root.set("generationTool", f"seatrial {__version__}, pythonfmu {pythonfmu.__version__}")
     simulation = root.find("CoSimulation")
     assert simulation is not None
@@ -136,6 +140,7 @@ def zipped(files: Mapping[str, bytes]) -> bytes:
 def _tool_tag() -> str:
     """Return a tag of what besides the bundle decides an FMU's bytes."""
     digest = hashlib.sha256(f"{__version__} {pythonfmu.__version__}".encode())
-    for module in ("description.py", "export.py", "terminals.py"):
-        digest.update(Path(__file__).with_name(module).read_bytes())
+    modules = [Path(__file__).with_name(f"{name}.py") for name in _DESCRIBING]
+    for module in (*modules, *sorted(Path(__file__).with_name("dependencies").glob("*.py"))):
+        digest.update(module.read_bytes())
     return digest.hexdigest()[:8]

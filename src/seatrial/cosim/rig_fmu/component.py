@@ -179,7 +179,11 @@ def rig_component(
         "algorithm": algorithm,
         "targets": [targets[name] for name in settable],
         "published": [targets[name][0] for name, port in ports.items() if port.kind == "output"],
-        "feedthrough": {name: tuple(inputs) for name, inputs in frozen["through"].items()},
+        "feedthrough": {
+            name: tuple(frozen["through"].get(name, ()))
+            for name, port in ports.items()
+            if port.kind == "output"
+        },
         "rolls_back": frozen["rolls_back"],
         "discrete": frozen["discrete"],
         "fixed_step": frozen["fixed_step"],

@@ -60,6 +60,7 @@ def _tool_tag() -> str:
     """Return a tag of what besides the component decides an FMU's bytes."""
     digest = hashlib.sha256(repr((FLAGS, HERE, sys.version_info[:2])).encode())
     folder = Path(__file__).parent
-    for file in sorted([*folder.rglob("*.py"), *folder.rglob("*.[ch]")]):
+    described = [folder.with_name("description.py"), *folder.with_name("dependencies").glob("*.py")]
+    for file in sorted([*described, *folder.rglob("*.py"), *folder.rglob("*.[ch]")]):
         digest.update(file.read_bytes())
     return digest.hexdigest()
