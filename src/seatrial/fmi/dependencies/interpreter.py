@@ -82,7 +82,8 @@ class Interpreter(Calls):
         method = getattr(self, f"_run_{type(node).__name__}", None)
         if method is None:
             raise self.undecided(node, f"{type(node).__name__} is not followed")
-        return bool(method(node) is not False)
+        ends: bool | None = method(node)
+        return ends is not False
 
     def _run_Expr(self, node: ast.Expr) -> None:
         self.evaluate(node.value)
