@@ -86,8 +86,8 @@ class Component:
     that are not state. A component with an outside world (a socket, firmware) sets
     ``rolls_back = False``; one whose numbers jump at instants and are constant between them,
     ``discrete = True``; one that takes whole multiples of a step only says it in ``fixed_step``, s.
-    ``feedthrough`` declares, per output port, the input ports that act
-    on it at the same instant.
+    Which inputs act on which outputs at the same instant is found out (`fmi.dependencies`).
+    ``feedthrough`` declares it, per output port, for the outputs of which less is true.
 
     ``terminals`` are groups of ports that are connected together (`terminals`), by their names.
     ``views`` says what reports draw of it: by kind of view (`ports.VIEWS`), the ports that it
@@ -135,7 +135,8 @@ class Component:
         named = {**cls.ports, **cls.scalar_by_name}
         terms = declared_terms(cls)
         check_feedthrough(cls.__name__, {**cls.ports, **terms}, cls.feedthrough)
-        cls.feedthrough = with_terms(cls.feedthrough, terms)
+        if "feedthrough" in vars(cls):
+            cls.feedthrough = with_terms(cls.feedthrough, terms)
         check_views(cls.__name__, cls.views)
         check_terminals(cls.__name__, cls.terminals, named, list(terms))
         for kind in (float, int, bool, str):

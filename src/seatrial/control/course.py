@@ -56,7 +56,6 @@ class Course(Waypoints, Sampled):
     rounded = Output("1", "number of waypoints passed, whatever the legs", type=int)
 
     views: ClassVar = {"waypoints": {"count": "count", "place": "waypoint"}}
-    feedthrough: ClassVar = {}
     terminals: ClassVar = {
         "orders": terminal(
             "leg",

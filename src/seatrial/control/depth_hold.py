@@ -34,7 +34,6 @@ class DepthHold(AxisHold):
 
     heave = Output("N", "heave force asked of the thrusters, positive down")
 
-    feedthrough: ClassVar = {"heave": ("depth_wanted", "depth", "depth_valid", "surge")}
     terminals: ClassVar = {
         "wanted": terminal("depth_wanted"),
         "sensors": terminal("depth", "depth_valid"),

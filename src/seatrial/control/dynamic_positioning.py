@@ -81,9 +81,6 @@ class DynamicPositioning(WaveFiltered, Sampled):
 
     demand = Output(_UNITS, "forces and moment asked of the thrusters, body axes", axes="XYN")
 
-    feedthrough: ClassVar = {
-        "demand": ("station", "station_heading", "position", "attitude", "velocity", "rates")
-    }
     terminals: ClassVar = {"truth": terminal("position", "attitude", "velocity", "rates")}
 
     def reset(self, t: float) -> None:

@@ -149,12 +149,10 @@ class Guidance(GuidanceOrders):
     _PATH = (*_STATE, "leg_from", "leg_circle")
     _HEADING = (*_PATH, "target_velocity", "target_heading", "heading")
     feedthrough: ClassVar = {
-        "engaged": _ABLE,
         "direct": ("mode", "armed", "heading_valid", "depth_valid", "manual"),
         "heading_wanted": _HEADING,
         "speed_wanted": (*_HEADING, "target_speed", "leg_speed", "velocity_n"),
         "depth_wanted": (*_STATE, "leg_from", "depth"),
-        "speed": ("velocity_n", "heading"),
         "state": _STATE,
         "cross_track": _PATH,
         "distance": (*_ABLE, *_GOAL),

@@ -51,10 +51,6 @@ class HeadingAutopilot(WaveFiltered, Sampled):
     rudder = Output("rad", "angle asked of the rudder, positive to turn to port")
     error = Output("rad", "heading - reference, wrapped to +-pi")
 
-    feedthrough: ClassVar = {
-        "rudder": ("reference", "reference_rate", "heading", "yaw_rate"),
-        "error": ("reference", "heading"),
-    }
     terminals: ClassVar = {
         "wanted": terminal(heading_wanted="reference", yaw_rate_wanted="reference_rate"),
         "sensors": terminal("heading", "yaw_rate"),

@@ -39,7 +39,6 @@ class HeadingHold(AxisHold):
 
     yaw_moment = Output("N.m", "yaw moment asked of the thrusters, positive to starboard")
 
-    feedthrough: ClassVar = {"yaw_moment": ("heading_wanted", "heading", "heading_valid", "surge")}
     terminals: ClassVar = {
         "wanted": terminal("heading_wanted"),
         "sensors": terminal("heading", "heading_valid"),

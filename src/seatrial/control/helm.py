@@ -41,12 +41,6 @@ class Helm(Component):
     yaw_moment = Output("N.m", "yaw moment wanted, positive to starboard")
     heave = Output("N", "heave force wanted, positive down")
 
-    feedthrough: ClassVar = {
-        "surge": ("engaged", "direct", "surge_held"),
-        "sway": ("direct",),
-        "yaw_moment": ("engaged", "direct", "yaw_moment_held"),
-        "heave": ("engaged", "direct", "heave_held"),
-    }
     terminals: ClassVar = {
         "wanted": terminal("engaged", "direct"),
         "held": terminal(surge="surge_held", yaw_moment="yaw_moment_held", heave="heave_held"),

@@ -46,7 +46,6 @@ class IntegratedVelocity(Sampled):
     terminals: ClassVar = {
         "sensors": terminal("accelerometer", "euler", "imu_valid"),
     }
-    feedthrough: ClassVar = {"nu": ("accelerometer", "euler", "imu_valid")}
 
     def reset(self, t: float) -> None:
         """Start at rest, with nothing read."""

@@ -21,10 +21,6 @@ class PulseAllocation(TwinThrusters):
     surge = Input("N", "surge force wanted, positive ahead")
     yaw_moment = Input("N.m", "yaw moment wanted, positive to starboard")
 
-    feedthrough: ClassVar = {
-        "pulse_port": ("surge", "yaw_moment"),
-        "pulse_starboard": ("surge", "yaw_moment"),
-    }
     terminals: ClassVar = {
         **TwinThrusters.terminals,
         "demand": terminal("surge", "yaw_moment"),

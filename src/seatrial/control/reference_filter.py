@@ -46,10 +46,6 @@ class HeadingReference(Sampled):
     heading = Output("rad", "heading to follow, clockwise from north, any number of turns")
     rate = Output("rad/s", "its derivative, to starboard positive")
 
-    feedthrough: ClassVar = {
-        "heading": ("engaged", "measured_heading"),
-        "rate": ("engaged", "measured_rate"),
-    }
     terminals: ClassVar = {
         "wanted": terminal(heading_wanted="target", heading_engaged="engaged"),
         "sensors": terminal(heading="measured_heading", yaw_rate="measured_rate"),

@@ -29,7 +29,6 @@ class RudderHelm(Component):
 
     rudder = Output("rad", "rudder wanted, positive to turn to port")
 
-    feedthrough: ClassVar = {"rudder": ("engaged", "manual", "rudder_held")}
     terminals: ClassVar = {
         "wanted": terminal(heading_engaged="engaged", direct_yaw="manual"),
         "held": terminal(rudder="rudder_held"),

@@ -120,11 +120,8 @@ class SailControl(Sampled):
     flap = Output("rad", "size wanted of the flap's angle")
     heeling_moment = Output("N.m", "heeling moment predicted, to starboard positive")
 
-    _ACTING = ("heading", "wind", "apparent_wind", "heel", "roll_rate", "trimming")
     feedthrough: ClassVar = {
-        "sail": (*_ACTING, "sheet"),
-        "flap": _ACTING,
-        "heeling_moment": (*_ACTING, "sheet"),
+        "flap": ("heading", "wind", "apparent_wind", "heel", "roll_rate", "trimming")
     }
     terminals: ClassVar = {
         "wanted": terminal(sail_engaged="trimming", direct_sheet="sheet"),

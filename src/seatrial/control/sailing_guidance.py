@@ -212,9 +212,7 @@ class SailingGuidance(GuidanceOrders):
     feedthrough: ClassVar = {
         "engaged": (*_ABLE, *_SPEED, "heading", "velocity_n"),
         "direct": ("mode", "armed", "manual"),
-        "heading_wanted": _SAILED,
-        "course": _SAILED,
-        "wearing": _SAILED,
+        "avoiding": (),
         "state": (*_ABLE, *_GOAL, *_STATE, "heading", "velocity_n", "wind"),
         "cross_track": (*_ABLE, *_SPEED, "leg_from", "heading", "velocity_n", "wind"),
         "distance": (*_ABLE, *_GOAL),

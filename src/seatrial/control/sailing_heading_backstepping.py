@@ -82,11 +82,6 @@ class SailingHeadingBackstepping(SailingHeading):
     lyapunov = Output("1", "V, with z1 in rad.s, z2 in rad and z3 in rad/s")
 
     _ALL = (*SailingHeading._ACTING, "apparent_wind")
-    feedthrough: ClassVar = {
-        "rudder": _ALL,
-        "yaw_moment": _ALL,
-        "lyapunov": SailingHeading._ACTING,
-    }
     terminals: ClassVar = {
         **SailingHeading.terminals,
         "sensors": terminal(

@@ -36,10 +36,6 @@ class SailingHeadingPid(SailingHeading):
 
     heel = Input("rad", "heel, starboard down")
 
-    feedthrough: ClassVar = {
-        "rudder": (*SailingHeading._ACTING, "heel"),
-        "yaw_moment": (*SailingHeading._ACTING, "heel"),
-    }
     terminals: ClassVar = {
         **SailingHeading.terminals,
         "sensors": terminal("heading", "heel"),

@@ -49,10 +49,6 @@ class SailingNavigation(Sampled):
     )
     wind = Output("m/s", "true wind over ground: where it blows to, {n}", axes=("north", "east"))
 
-    feedthrough: ClassVar = {
-        "nu": ("velocity_n", "heading", "heel", "gyro"),
-        "wind": ("velocity_n", "velocity_valid", "heading", "heel", "apparent_wind"),
-    }
     terminals: ClassVar = {
         "sensors": terminal(
             "velocity_n",

@@ -41,7 +41,6 @@ class SpeedHold(Sampled):
 
     surge = Output("N", "surge force asked of the thrusters, positive ahead")
 
-    feedthrough: ClassVar = {"surge": ("enabled", "speed_wanted", "speed")}
     terminals: ClassVar = {
         "wanted": terminal("speed_wanted", "speed", speed_engaged="enabled"),
         "held": terminal("surge"),

@@ -111,22 +111,7 @@ class StationKeeping(Sampled, TwinThrusters):
     distance = Output("m", "horizontal distance from the station")
     mode = Output("1", "0 idle, 1 hold, 2 return, 3 heading only", type=int)
 
-    _ACTING = (
-        "enabled",
-        "station",
-        "station_heading",
-        "position_n",
-        "velocity_n",
-        "position_valid",
-        "heading",
-        "heading_valid",
-        "yaw_rate",
-    )
     feedthrough: ClassVar = {
-        "pulse_port": _ACTING,
-        "pulse_starboard": _ACTING,
-        "surge_force": _ACTING,
-        "yaw_moment": tuple(name for name in _ACTING if name != "velocity_n"),
         "distance": ("station", "position_n"),
         "mode": ("enabled", "station", "position_n", "position_valid", "heading_valid"),
     }

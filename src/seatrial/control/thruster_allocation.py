@@ -32,11 +32,6 @@ class ThrusterAllocation(Component):
     starboard = Output("1", "command of the starboard thruster, -1 to 1, positive ahead")
     vertical = Output("1", "command of the vertical thruster, -1 to 1, positive down")
 
-    feedthrough: ClassVar = {
-        "port": ("surge", "yaw_moment"),
-        "starboard": ("surge", "yaw_moment"),
-        "vertical": ("heave",),
-    }
     terminals: ClassVar = {
         "demand": terminal("surge", "yaw_moment", "heave"),
         "actuators": terminal("port", "starboard", "vertical"),

@@ -93,7 +93,6 @@ class ThrusterMatrixAllocation(FixedThrusters, ThrustCurve, ThrusterPulses):
     pulse = Output("s", "pulse to each thruster, by channel", axes=_CHANNELS, start=1.5e-3)
 
     _DEMAND = ("surge", "sway", "heave", "roll_moment", "pitch_moment", "yaw_moment")
-    feedthrough: ClassVar = {"pulse": _DEMAND}
     terminals: ClassVar = {
         "demand": terminal(*_DEMAND),
         "actuators": Terminal({channel: f"pulse.{channel}" for channel in _CHANNELS}),

@@ -39,7 +39,6 @@ class TiltHold(AxisHold):
 
     moment = Output("N.m", "moment asked of the thrusters, about the same axis")
 
-    feedthrough: ClassVar = {"moment": ("enabled", "angle_wanted", "angle", "surge")}
     terminals: ClassVar = {
         "wanted": terminal(heading_engaged="enabled"),
         "demanded": terminal("surge"),

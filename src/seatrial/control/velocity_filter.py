@@ -102,11 +102,6 @@ class VelocityFilter(Sampled):
     terminals: ClassVar = {
         "sensors": terminal("accelerometer", "euler", "imu_valid", "depth", "depth_valid"),
     }
-    feedthrough: ClassVar = {
-        "nu": ("gyro", *_MEASURED),
-        "deviation": _MEASURED,
-        "heading": _MEASURED,
-    }
 
     def reset(self, t: float) -> None:
         """Start at rest, at the depth and heading of the first valid readings."""

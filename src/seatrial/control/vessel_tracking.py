@@ -32,7 +32,6 @@ class VesselTracking(NominalTrajectory):
     shares = Output("1", "deflections of a topside that give it", axes=("surge", "yaw"))
 
     terminals: ClassVar = {"deflections": terminal(surge="shares__surge", yaw="shares__yaw")}
-    feedthrough: ClassVar = dict.fromkeys(("command", "shares"), ("nu", "nu_bias"))
 
     def demand(self, k: int) -> tuple[float, float]:
         """Return the commands (t1, t2) wanted at instant ``k``, without limits."""

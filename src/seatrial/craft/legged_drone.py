@@ -124,14 +124,6 @@ class LeggedDrone(Plant):
         ),
         "wrench": terminal("force", "moment"),
     }
-    feedthrough: ClassVar = {
-        **dict.fromkeys(
-            ("force", "moment", "contact_force", "load", "slip", "legs_down"),
-            ("deck_position", "deck_velocity", "deck_attitude", "deck_rates"),
-        ),
-        "thrust": ("deck_position", "deck_velocity", "deck_attitude", "deck_rates"),
-        "place": ("deck_position", "deck_attitude"),
-    }
     exercised: ClassVar = {"position_start": [0.02, 0.01, -0.449]}
 
     def equations(

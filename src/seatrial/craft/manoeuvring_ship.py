@@ -103,7 +103,10 @@ class ManoeuvringShip(ThreeDofCraft):
         start=(1.0, 0.0, 0.0),
     )
 
-    feedthrough: ClassVar = {"acceleration": ("rudder", "disturbance", "attachment_force")}
+    feedthrough: ClassVar = {
+        **ThreeDofCraft.feedthrough,
+        "acceleration": ("rudder", "disturbance", "attachment_force"),
+    }
 
     def start(self, t: float) -> None:
         """Start from the start values; raises InputError for what no model can be."""

@@ -82,7 +82,7 @@ class MarineCraft(WindySeaway, SixDofCraft):
     )
 
     terminals: ClassVar = {**SixDofCraft.terminals, "motion": MOTION}
-    feedthrough: ClassVar = {"acceleration": (*LOADS, "current")}
+    feedthrough: ClassVar = {**SixDofCraft.feedthrough, "acceleration": (*LOADS, "current")}
 
     def wave_response(self) -> Response | None:
         """Return the loads of the waves by strips, of a surface form of restoring, else None."""

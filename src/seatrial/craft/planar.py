@@ -33,8 +33,7 @@ class PlanarCraft(WaveHull, Seaway):
     The waves of a trial act by the loads on the hull's sections in the plane, its current on the
     motion through the water (`carried`). Waves do not heave or pitch it.
 
-    The subclass declares its states eta and nu, returns `motion_outputs` among its outputs and
-    names in ``feedthrough`` the inputs that act on ``acceleration``.
+    The subclass declares its states eta and nu and returns `motion_outputs` among its outputs.
 
     A tether or a tow pulls with ``attachment_force`` f, {n}, at ``attachment_place`` r, body axes;
     see `attachment`. What it pulls up or down is lost: there is no heave.
@@ -65,6 +64,9 @@ class PlanarCraft(WaveHull, Seaway):
     attachment_velocity = Output("m/s", "velocity of the attachment over ground, {n}", axes=_NED)
 
     terminals: ClassVar = {"motion": MOTION, "attachment": ATTACHMENT}
+    feedthrough: ClassVar = dict.fromkeys(
+        ("position", "attitude", "velocity", "rates", "attachment_point", "attachment_velocity"), ()
+    )
 
     def wave_response(self) -> Response | None:
         """Return the loads of the waves by strips, with the craft's own coefficients."""

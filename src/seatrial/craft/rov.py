@@ -107,7 +107,11 @@ class Rov(Propellers, SixDofCraft):
         "motion": MOTION,
         "thrusts": Terminal({axis: f"thrust.{axis}" for axis in Propellers.thrust.axes}),
     }
-    feedthrough: ClassVar = {"acceleration": (*LOADS, "thrust", "current", "current_acceleration")}
+    feedthrough: ClassVar = {
+        **SixDofCraft.feedthrough,
+        **dict.fromkeys(("position", "attitude", "velocity", "rates"), ()),
+        "acceleration": (*LOADS, "thrust", "current", "current_acceleration"),
+    }
 
     def start(self, t: float) -> None:
         """Start; raises InputError as the class says and as `SixDofCraft` does."""

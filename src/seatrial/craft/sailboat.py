@@ -155,17 +155,6 @@ class Sailboat(PlanarCraft):
         **PlanarCraft.terminals,
         "angles": terminal("rudder", "sail", "flap"),
     }
-    feedthrough: ClassVar = {
-        "sail_load": ("sail", "sail_rate", "flap", "wind"),
-        "sail_torque": ("sail", "sail_rate", "flap", "wind"),
-        "keel_load": ("current",),
-        "rudder_load": ("rudder", "current"),
-        "apparent_wind": ("wind",),
-        "acceleration": (
-            *("sail", "sail_rate", "flap", "rudder"),
-            *("wind", "current", "attachment_force"),
-        ),
-    }
 
     def start(self, t: float) -> None:
         """Start from the start values; raises InputError if M is not positive definite."""

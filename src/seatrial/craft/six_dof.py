@@ -128,6 +128,7 @@ class SixDofCraft(CoupledDamping, HullPoints, HullLift, Morison, Seaway):
         "wrench": terminal("force", "moment", rule="plug"),
         "attachment": ATTACHMENT,
     }
+    feedthrough: ClassVar = dict.fromkeys(("attachment_point", "attachment_velocity"), ())
 
     def start(self, t: float) -> None:
         """Start from the start values; raises InputError if M is not positive definite."""

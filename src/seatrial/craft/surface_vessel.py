@@ -66,7 +66,7 @@ class SurfaceVessel(LoadedCraft):
     )
 
     command = Input("1", "share of each thruster's full thrust, -1 to 1", axes=("t1", "t2"))
-    feedthrough: ClassVar = {"acceleration": ("command", *LOADS)}
+    feedthrough: ClassVar = {**LoadedCraft.feedthrough, "acceleration": ("command", *LOADS)}
 
     def start(self, t: float) -> None:
         """Start from the start values; raises InputError for a sign between -1 and 1."""

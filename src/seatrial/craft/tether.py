@@ -21,6 +21,7 @@ _NED = ("north", "east", "down")
 _STATIONS = tuple(f"s{tenth}" for tenth in range(11))
 _LAYERS = tuple(f"d{number}" for number in range(1, 9))
 _ENDS = ("top", "bottom")
+_ACTING = ("top_position", "top_velocity", "bottom_position", "bottom_velocity", "current")
 
 
 class Tether(MeetsWaves, MeetsCurrent):
@@ -112,9 +113,9 @@ class Tether(MeetsWaves, MeetsCurrent):
     # Positions are taken at instants, forces hold for a step: a master must not extrapolate them.
     discrete = True
     views: ClassVar = {"line": {"north": "north", "east": "east", "down": "down"}}
+    # From the first step on these follow from the nodes.
     feedthrough: ClassVar = dict.fromkeys(
-        ("force", "surface_force"),
-        ("top_position", "top_velocity", "bottom_position", "bottom_velocity", "current"),
+        ("tension", "greatest_tension", "north", "east", "down"), ()
     )
     transient = Component.transient | {"_cable", "_chain", "_known", "_waves", "_stream"}
 
@@ -222,7 +223,7 @@ class Tether(MeetsWaves, MeetsCurrent):
 
         Outputs and step ask for the same: it is computed once as long as nothing changes.
         """
-        asked = (t, h, *(getattr(self, name) for name in self.feedthrough["force"]))
+        asked = (t, h, *(getattr(self, name) for name in _ACTING))
         if self._known is not None and self._known[0] == asked:
             return self._known[1]
         moved = self._integrated(t, h)

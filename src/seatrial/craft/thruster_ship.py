@@ -67,7 +67,7 @@ class ThrusterShip(LoadedCraft):
     Y_rdot = Parameter(0.0, "kg.m", "added mass, sway from yaw and yaw from sway")
     N_rdot = Parameter(0.0, "kg.m2", "added inertia in yaw, negative")
 
-    feedthrough: ClassVar = {"acceleration": LOADS}
+    feedthrough: ClassVar = {**LoadedCraft.feedthrough, "acceleration": LOADS}
 
     def start(self, t: float) -> None:
         """Start from the start values; raises InputError if M is not positive definite."""

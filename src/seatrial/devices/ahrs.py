@@ -7,7 +7,7 @@ from typing import ClassVar
 
 from ..component import Input, Parameter, terminal
 from ..craft.kinematics import specific_force
-from .sensor import Measured, Sensor, full_circle, half_circle
+from .sensor import ALWAYS_THERE, Measured, Sensor, full_circle, half_circle
 
 _DEG = math.radians(1.0)
 
@@ -74,10 +74,7 @@ class Ahrs(Sensor):
             pitch="euler__theta",
         ),
     }
-    feedthrough: ClassVar = {
-        "euler": ("attitude",),
-        "accelerometer": ("attitude", "acceleration"),
-    }
+    feedthrough: ClassVar = {**ALWAYS_THERE, "euler": ("attitude", "fault")}
 
     def measure(self) -> list[float]:
         """Return the attitude and the specific force."""

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 from ..component import Input, Parameter, terminal
 from ..craft.kinematics import cross, to_body
-from .sensor import Measured, Sensor, half_circle
+from .sensor import ALWAYS_THERE, Measured, Sensor, half_circle
 
 _DEG = math.radians(1.0)
 
@@ -59,7 +59,7 @@ class Anemometer(Sensor):
         "motion": terminal("attitude", "velocity", "rates"),
         "reading": terminal(wind_speed="speed", wind_angle="angle", wind_valid="valid"),
     }
-    feedthrough: ClassVar = {"speed": _ACTING, "angle": _ACTING}
+    feedthrough: ClassVar = ALWAYS_THERE
 
     def measure(self) -> list[float]:
         """Return speed and direction of the flow across the mast."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import ClassVar
 
 from ..component import Input, Output, Parameter
 from ..errors import InputError
@@ -40,8 +39,6 @@ class AngleServo(Actuator, Sampled):
     command = Input("rad", "angle wanted")
     angle = Output("rad", "angle of the shaft")
     speed = Output("rad/s", "rate of the shaft, mean of the period that ends with this move")
-
-    feedthrough: ClassVar = dict.fromkeys(("angle", "speed"), ("command", "fault"))
 
     def reset(self, t: float) -> None:
         """Start at rest; raises InputError for angles out of order."""

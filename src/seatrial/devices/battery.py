@@ -66,7 +66,6 @@ class Battery(Component):
     disconnected = Output("1", "whether it has disconnected", type=bool)
 
     terminals: ClassVar = {"battery": terminal("voltage", "current", "charge")}
-    feedthrough: ClassVar = dict.fromkeys(("voltage", "current"), ("load", "power"))
 
     def start(self, t: float) -> None:
         """Start with the charge given; raises InputError for a curve that falls."""

@@ -9,7 +9,7 @@ from typing import Any, ClassVar, NamedTuple
 from ..component import Input, Parameter, terminal
 from ..craft.kinematics import to_body, to_ned
 from ..waypoints import NED
-from .sensor import Derived, Measured, Sensor, Value, half_circle
+from .sensor import ALWAYS_THERE, Derived, Measured, Sensor, Value, half_circle
 
 TARGETS = SLOTS = 6
 """What it may see, and how many detections of a frame it reports."""
@@ -152,12 +152,12 @@ class Camera(Sensor):
         },
     }
     _SEEN = (
-        *("position", "attitude", "visibility"),
+        *("position", "attitude", "visibility", "fault"),
         *(f"{part}_{n}" for n in _NUMBERS for part in ("position", "diameter")),
     )
     feedthrough: ClassVar = {
+        **ALWAYS_THERE,
         **dict.fromkeys(("bearing", "bearing_valid", "size", "detected"), _SEEN),
-        "kind": (*_SEEN, *(f"kind_{n}" for n in _NUMBERS)),
     }
 
     def measure(self) -> Sequence[Value]:

@@ -6,7 +6,7 @@ import math
 from typing import ClassVar
 
 from ..component import Input, Parameter, terminal
-from .sensor import Measured, Sensor, full_circle
+from .sensor import ALWAYS_THERE, Measured, Sensor, full_circle
 
 _DEG = math.radians(1.0)
 
@@ -50,7 +50,7 @@ class Compass(Sensor):
         "motion": terminal("attitude"),
         "reading": terminal("heading", heading_valid="valid"),
     }
-    feedthrough: ClassVar = {"heading": ("attitude",)}
+    feedthrough: ClassVar = ALWAYS_THERE
 
     def measure(self) -> list[float]:
         """Return the heading as the deviated needle shows it."""

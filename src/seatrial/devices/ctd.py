@@ -87,13 +87,6 @@ class Ctd(Sensor):
             water_temperature_valid="valid",
         ),
     }
-    feedthrough: ClassVar = dict.fromkeys(
-        (
-            *("conductivity", "temperature", "pressure", "salinity", "depth", "speed_of_sound"),
-            *("valid", "count"),
-        ),
-        _POSE,
-    )
 
     def reset(self, t: float) -> None:
         """Raise InputError for a profile that cannot be."""

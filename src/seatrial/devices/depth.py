@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 from ..component import Input, Parameter, seconds, terminal
 from ..craft.kinematics import to_ned
 from ..sea.parameters import MeetsWaves
-from .sensor import Measured, Sensor
+from .sensor import ALWAYS_THERE, Measured, Sensor
 
 
 class Depth(MeetsWaves, Sensor):
@@ -52,7 +52,7 @@ class Depth(MeetsWaves, Sensor):
         "motion": terminal("position", "attitude"),
         "reading": terminal("depth", depth_valid="valid"),
     }
-    feedthrough: ClassVar = {"depth": ("position", "attitude")}
+    feedthrough: ClassVar = ALWAYS_THERE
 
     transient = Sensor.transient | {"_waves"}
 

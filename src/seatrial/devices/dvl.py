@@ -12,7 +12,7 @@ from ..component import Input, Parameter, seconds, terminal
 from ..craft.kinematics import Vector3, cross, to_body, to_ned
 from ..sea.parameters import MeetsCurrent
 from ..seabed.vectors import dot
-from .sensor import Derived, Measured, Value, full_circle, half_circle
+from .sensor import ALWAYS_THERE, Derived, Measured, Value, full_circle, half_circle
 from .sounding import Sounding
 
 _DEG = math.radians(1.0)
@@ -133,8 +133,7 @@ class Dvl(MeetsCurrent, Sounding):
     )
     altitude = Derived("m", "distance to the bottom along the array's axis", validity="whole")
 
-    _POSE: ClassVar = ("position", "attitude")
-    _MOVING: ClassVar = (*_POSE, "velocity", "rates")
+    _MOVING: ClassVar = ("position", "attitude", "velocity", "rates", "fault")
     terminals: ClassVar = {
         "motion": terminal("position", "attitude", "velocity", "rates"),
         "reading": terminal(
@@ -142,6 +141,7 @@ class Dvl(MeetsCurrent, Sounding):
         ),
     }
     feedthrough: ClassVar = {
+        **ALWAYS_THERE,
         **dict.fromkeys(
             ("ranges", "ranges_valid", "bottom", "bottom_valid", "altitude", "altitude_valid"),
             _MOVING,
@@ -149,9 +149,8 @@ class Dvl(MeetsCurrent, Sounding):
         **dict.fromkeys(
             ("velocity_b", "velocity_b_valid", "velocity_n", "velocity_n_valid"), _MOVING
         ),
-        **dict.fromkeys(("water", "water_velocity_b"), (*_MOVING, "current")),
         **dict.fromkeys(("water_valid", "water_velocity_b_valid"), _MOVING),
-        "orientation": ("attitude",),
+        "orientation": ("attitude", "fault"),
     }
 
     transient = Sounding.transient | {"_stream"}

@@ -57,7 +57,6 @@ class EchoSounder(Sounding):
         "motion": terminal("position", "attitude"),
         "reading": terminal(water_depth="distance", water_depth_valid="valid"),
     }
-    feedthrough: ClassVar = dict.fromkeys(("distance", "valid", "count"), ("position", "attitude"))
 
     def reset(self, t: float) -> None:
         """Raise InputError for an axis that is no unit vector."""

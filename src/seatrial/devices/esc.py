@@ -35,8 +35,6 @@ class Esc(PulseRange):
     pulse = Input("s", "width of the servo pulse, 0 for none")
     share = Output("1", "share of full thrust, -1 to 1, positive ahead")
 
-    feedthrough: ClassVar = {"share": ("pulse",)}
-
     def start(self, t: float) -> None:
         """Raise InputError if the pulses do not rise."""
         self.check_pulses()

@@ -42,7 +42,6 @@ class ForceActuator(Actuator):
     moment = Output("N.m", "yaw moment on the ship, positive to starboard")
 
     terminals: ClassVar = {"wrench": terminal("force", "moment")}
-    feedthrough: ClassVar = {"force": ("demand", "fault"), "moment": ("demand", "fault")}
 
     def start(self, t: float) -> None:
         """Start without force."""

@@ -66,12 +66,9 @@ class Gnss(Sensor):
         "motion": terminal("position", "velocity", "attitude", "rates"),
         "reading": terminal("position_n", "velocity_n", position_valid="valid"),
     }
-    feedthrough: ClassVar = {
-        "position_n": ("position", "attitude"),
-        "velocity_n": ("position", "attitude", "velocity", "rates"),
-        "valid": ("position", "attitude"),
-        "count": ("position", "attitude"),
-    }
+    feedthrough: ClassVar = dict.fromkeys(
+        ("position_n", "valid", "count"), ("position", "attitude", "fault")
+    )
 
     def measure(self) -> Sequence[Value]:
         """Return the antenna's position and velocity."""

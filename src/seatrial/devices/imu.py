@@ -8,7 +8,7 @@ from typing import ClassVar
 from ..component import Input, Parameter, terminal
 from ..craft.kinematics import specific_force
 from ..unit_table import STANDARD_GRAVITY
-from .sensor import Measured, Sensor
+from .sensor import ALWAYS_THERE, Measured, Sensor
 
 _DEG = math.radians(1.0)
 
@@ -88,9 +88,10 @@ class Imu(Sensor):
         ),
     }
     feedthrough: ClassVar = {
-        "gyro": ("rates",),
-        "accelerometer": ("attitude", "acceleration"),
-        "roll_pitch": ("attitude",),
+        **ALWAYS_THERE,
+        "gyro": ("rates", "fault"),
+        "accelerometer": ("attitude", "acceleration", "fault"),
+        "roll_pitch": ("attitude", "fault"),
     }
 
     def measure(self) -> list[float]:

@@ -87,6 +87,10 @@ class Lbl(Sensor):
         "m", "position of the transducer, north-east-down", axes=_NED, validity="whole"
     )
 
+    # Sound takes its time: nothing arrives at the instant of the question.
+    feedthrough: ClassVar = dict.fromkeys(
+        ("valid", "count", "ranges", "ranges_valid", "depth", "position_n", "position_n_valid"), ()
+    )
     terminals: ClassVar = {
         "motion": terminal("position", "attitude"),
         "reading": terminal("position_n", position_valid="position_n_valid"),

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import ClassVar
 
 from ..component import Input, Parameter, terminal
-from .sensor import Derived, Measured, Sensor, Value
+from .sensor import ALWAYS_THERE, Derived, Measured, Sensor, Value
 
 
 class Leak(Sensor):
@@ -34,7 +34,7 @@ class Leak(Sensor):
     leaking = Derived("1", "1 where there is water, else 0")
 
     terminals: ClassVar = {"reading": terminal("leaking", leaking_valid="valid")}
-    feedthrough: ClassVar = {"wetness": ("volume",), "leaking": ("volume",)}
+    feedthrough: ClassVar = ALWAYS_THERE
 
     def measure(self) -> list[float]:
         """Return whether the probe is wet."""

@@ -43,7 +43,6 @@ class Marks(Waypoints, Sampled):
     failsafe = Output("1", "whether a failsafe has been reported", type=bool)
 
     views: ClassVar = {"waypoints": {"count": "count", "place": "waypoint"}}
-    feedthrough: ClassVar = {"distance": ("position",)}
     terminals: ClassVar = {"motion": terminal("position"), "report": terminal(failsafe="reported")}
 
     def reset(self, t: float) -> None:

@@ -36,7 +36,6 @@ class Propulsion(FixedThrusters):
     )
 
     terminals: ClassVar = {"wrench": terminal("force", "moment")}
-    feedthrough: ClassVar = {"force": ("thrust",), "moment": ("thrust",)}
 
     def start(self, t: float) -> None:
         """Work out each thruster's force and moment; raises InputError for a bad direction."""

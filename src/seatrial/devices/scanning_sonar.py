@@ -80,12 +80,6 @@ class ScanningSonar(Sounding):
     distance = Derived("m", "range of the first echo", validity="whole")
 
     terminals: ClassVar = {"motion": terminal("position", "attitude")}
-    feedthrough: ClassVar = {
-        **dict.fromkeys(
-            ("intensity", "distance", "distance_valid", "angle", "valid", "count"),
-            ("position", "attitude"),
-        ),
-    }
 
     def measure(self) -> Sequence[Value]:
         """Return the intensities of a ping, and where it looks."""

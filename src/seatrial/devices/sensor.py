@@ -19,6 +19,9 @@ Validity = Literal["", "whole", "axes"]
 Value = float | None
 """A value of a measurement, None where there was nothing to measure."""
 
+ALWAYS_THERE = dict.fromkeys(("valid", "count"), ("fault",))
+"""Feed-through of a sensor that always has something to measure: only a failure loses it."""
+
 
 class Derived(Output):
     """An output that a sensor computes from a measurement, and publishes with it.
@@ -145,9 +148,6 @@ class Sensor(Noise, Fallible, Sampled):
     count = Output("1", "number of measurements published so far", type=int)
 
     def __init_subclass__(cls, **options: Any) -> None:
-        if "feedthrough" in vars(cls):  # a failure acts on everything that is published
-            through = {name: (*inputs, "fault") for name, inputs in cls.feedthrough.items()}
-            cls.feedthrough = {"valid": ("fault",), "count": ("fault",), **through}
         super().__init_subclass__(**options)
         cls.measured = tuple(p for p in cls.ports.values() if isinstance(p, Measured))
         derived = [p for p in cls.ports.values() if isinstance(p, Derived)]

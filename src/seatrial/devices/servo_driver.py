@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 from ..component import Input, Output
 from .pulse_range import AngleRange, PulseRange
 
@@ -24,8 +22,6 @@ class ServoDriver(AngleRange, PulseRange):
 
     angle = Input("rad", "angle wanted")
     pulse = Output("s", "width of the servo pulse")
-
-    feedthrough: ClassVar = {"pulse": ("angle",)}
 
     def start(self, t: float) -> None:
         """Raise InputError for pulses or angles out of order."""

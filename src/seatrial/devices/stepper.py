@@ -70,8 +70,6 @@ class Stepper(Actuator):
     stalled = Output("1", "whether it lost steps in the last step", type=bool)
     power = Output("W", "drawn from the supply")
 
-    feedthrough: ClassVar = {"power": ("enabled",)}
-
     def start(self, t: float) -> None:
         """Start in line with the field, at ``angle_start``."""
         self._field, self._lag = 0.0, 0.0

@@ -42,8 +42,6 @@ class StepperDriver(Sampled):
     steps = Output("1", "pulses counted since the start", type=int)
     counted = Output("rad", "angle of the shaft if no step is lost")
 
-    feedthrough: ClassVar = {}
-
     def reset(self, t: float) -> None:
         """Start at rest; raises InputError for angles out of order."""
         if not self.angle_min <= self.angle_start <= self.angle_max:

@@ -83,6 +83,10 @@ class Usbl(Sensor):
         axes=("north", "east", "down"),
     )
 
+    # Sound takes its time: nothing arrives at the instant of the question.
+    feedthrough: ClassVar = dict.fromkeys(
+        ("valid", "count", "range", "bearing", "depression", "position_n"), ()
+    )
     terminals: ClassVar = {
         "motion": terminal("position", "attitude"),
         "station": terminal(position="station_position", attitude="station_attitude"),

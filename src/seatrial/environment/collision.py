@@ -95,15 +95,7 @@ class Collision(Component):
         "second_velocity",
         "second_rates",
     )
-    feedthrough: ClassVar = {
-        "first_force": _MOTIONS,
-        "first_moment": _MOTIONS,
-        "second_force": _MOTIONS,
-        "second_moment": _MOTIONS,
-        "normal_force": _MOTIONS,
-        "distance": _POSES,
-        "touching": _POSES,
-    }
+    feedthrough: ClassVar = dict.fromkeys(("distance", "touching"), _POSES)
 
     def start(self, t: float) -> None:
         """Start without contact; raises InputError as the class says."""

@@ -74,10 +74,8 @@ class Contact(OverSeabed, Component):
         "wrench": terminal("force", "moment"),
     }
     feedthrough: ClassVar = {
-        **dict.fromkeys(
-            ("force", "moment", "normal_force"), ("position", "velocity", "attitude", "rates")
-        ),
         **dict.fromkeys(("penetration", "touching"), ("position", "attitude")),
+        **dict.fromkeys(("touches", "impact_speed"), ()),
     }
 
     def start(self, t: float) -> None:

@@ -54,13 +54,6 @@ class DeckLimits(Component):
 
     exercised: ClassVar = {"bow": [0.6, 0.0, 0.0]}
     terminals: ClassVar = {"motion": terminal("position", "attitude", "rates", "acceleration")}
-    feedthrough: ClassVar = {
-        **dict.fromkeys(
-            ("gear_force", "lateral_share", "sliding", "tipping"),
-            ("attitude", "rates", "acceleration", "on_deck"),
-        ),
-        "bow_immersion": ("position", "attitude"),
-    }
 
     def start(self, t: float) -> None:
         """Start without angular acceleration."""

@@ -72,7 +72,6 @@ class Downwash(Component):
         "motion": terminal("attitude"),
         "wrench": terminal("force", "moment"),
     }
-    feedthrough: ClassVar = {"force": ("attitude",), "moment": ("attitude",)}
 
     def start(self, t: float) -> None:
         """Check the times; raises InputError if the source's lift-off precedes its spool-up."""

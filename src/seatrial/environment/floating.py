@@ -36,7 +36,6 @@ class Floating(MeetsCurrent, Component):
     kind = Output("1", "what cameras take it for: 1 buoy, 2 obstacle", type=int)
 
     terminals: ClassVar = {"sight": terminal("position", "kind", diameter="size")}
-    feedthrough: ClassVar = {}
 
     transient = Component.transient | {"_stream"}
     shown_as: ClassVar[int] = 1

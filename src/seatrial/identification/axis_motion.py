@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from types import SimpleNamespace
-from typing import Any, ClassVar
+from typing import Any
 
 from ..component import Input, Output, Parameter
 from ..model import Model
@@ -47,8 +47,6 @@ class AxisMotion(Plant):
     velocity = State("m/s", "velocity along the axis")
     share = State("1", "share of full thrust, with a lag")
     acceleration = Output("m/s2", "its rate of change")
-
-    feedthrough: ClassVar = {"acceleration": ("command",)}
 
     def equations(
         self, x: SimpleNamespace, u: SimpleNamespace, p: SimpleNamespace

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from types import SimpleNamespace
-from typing import Any, ClassVar
+from typing import Any
 
 import casadi as ca
 
@@ -49,8 +49,6 @@ class PlanarMotion(Plant):
     velocity = State(("m/s", "m/s", "rad/s"), "velocity in body axes and yaw rate", axes=_UVR)
     share = State("1", "share of full thrust, with a lag", axes=("t1", "t2"))
     acceleration = Output("m/s2", "acceleration of the body origin, body axes", axes="xy")
-
-    feedthrough: ClassVar = {"acceleration": ("command",)}
 
     def equations(
         self, x: SimpleNamespace, u: SimpleNamespace, p: SimpleNamespace

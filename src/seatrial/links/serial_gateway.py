@@ -31,7 +31,6 @@ class SerialGateway(Logging, Reachable, Component):
     cannot be opened, or is not allowed.
     """
 
-    feedthrough: ClassVar = {}
     discrete = True
     rolls_back = False
     transient = Component.transient | {"_endpoints", "_held"}

@@ -82,7 +82,7 @@ class Interpreter(Calls):
         method = getattr(self, f"_run_{type(node).__name__}", None)
         if method is None:
             raise self.undecided(node, f"{type(node).__name__} is not followed")
-        ends: bool | None = method(node)
+        ends: object = method(node)
         return ends is not False
 
     def _run_Expr(self, node: ast.Expr) -> None:
@@ -203,7 +203,8 @@ class Interpreter(Calls):
             self.frame.names = _joined_names(self.frame.names, names)
         self.frame.broken[-1].clear()
         self.frame.names = _joined_names(before, self.frame.names)
-        return self.frame.names != before
+        goes_on: bool = self.frame.names != before
+        return goes_on
 
     def _after_loop(self) -> None:
         for names in self.frame.broken.pop():

@@ -35,8 +35,9 @@ def refuse_dependent(cls: type[Component]) -> None:
     except Exception:  # it needs what only a rig gives, such as files
         return
     step = component.fixed_step or (component.period if isinstance(component, Sampled) else _STEP_S)
-    for point in range(_POINTS):
+    for point in range(1, _POINTS + 1):  # before the first step states may follow from inputs
         try:
+            component.advance((point - 1) * step, step)
             for port in _inputs(cls):
                 component.set(port.name, _drawn(port, draw))
             shown = {output: component.get(output) for output in narrowed}
@@ -44,10 +45,6 @@ def refuse_dependent(cls: type[Component]) -> None:
             return
         for name in sorted({name for inputs in narrowed.values() for name in inputs}):
             _try(component, name, draw, narrowed, shown)
-        try:
-            component.advance(point * step, step)
-        except Exception:
-            return
 
 
 def _begin(component: Component) -> None:

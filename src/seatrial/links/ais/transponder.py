@@ -59,7 +59,6 @@ class AisTransponder(Noise, Component):
     Raises InputError at the start for an identity or a date that cannot be.
     """
 
-    feedthrough: ClassVar = {}
     discrete = True
     transient = Component.transient | {"_identity", "_schedule"}
 

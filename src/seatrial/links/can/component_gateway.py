@@ -52,7 +52,6 @@ class CanGateway(Reachable, Component):
     gateway that is malformed or cannot be opened, or is hardware that is not allowed.
     """
 
-    feedthrough: ClassVar = {}
     discrete = True
     rolls_back = False
     transient = Component.transient | {"_gateway"}

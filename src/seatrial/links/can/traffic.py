@@ -53,7 +53,6 @@ class CanTraffic(Noise, Component):
     Raises InputError at the start for messages and sizes that cannot be.
     """
 
-    feedthrough: ClassVar = {}
     discrete = True
     transient = Component.transient | {"_messages", "_drawn"}
 

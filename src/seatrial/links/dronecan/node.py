@@ -90,7 +90,6 @@ class DroneCanNode(Noise, Component):
     `begin`, `settings`, `tasks`, `received` and `attention`; it sends with `send`.
     """
 
-    feedthrough: ClassVar = {}
     discrete = True
     transient = Component.transient | {
         "_node",

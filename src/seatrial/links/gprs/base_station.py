@@ -32,7 +32,6 @@ class BaseStation(Waypoints):
     Raises InputError at the start for a number of waypoints that is not whole.
     """
 
-    feedthrough: ClassVar = {"age": ()}
     discrete = True
     exercised: ClassVar = {"count": 2.0, "waypoint_1": [1.0, 2.0, 0.0], "radius": 4.0}
 

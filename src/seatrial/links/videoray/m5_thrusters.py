@@ -42,7 +42,6 @@ class M5Thrusters(Logging, Component):
     none; set those of your data sheet.
     """
 
-    feedthrough: ClassVar = {}
     discrete = True
     transient = Component.transient | {"_nodes", "_parser", "_line", "_log"}
 

@@ -21,7 +21,6 @@ class StreamPlayer(Component):
     Raises InputError at the start for a file that is none.
     """
 
-    feedthrough: ClassVar = {}
     discrete = True
     transient = Component.transient | {"_pieces"}
 

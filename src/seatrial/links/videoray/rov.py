@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any, ClassVar
+from typing import Any
 
 from ...component import NS, Component
 from ...errors import InputError
@@ -65,7 +65,6 @@ class Pro4Rov(Pro4RovPorts):
     Raises InputError at the start for an identity, version or register that cannot be.
     """
 
-    feedthrough: ClassVar = {}
     discrete = True
     transient = Component.transient | {"_node", "_parser", "_line", "_loops", "_drive", "_log"}
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any, ClassVar
+from typing import Any
 
 from ...component import NS, Component
 from ..text import Inbox, Outbox
@@ -46,7 +46,6 @@ class Pro4Topside(Pro4TopsidePorts):
     It records its stream in ``run_folder``, ``NAME.stream`` (`StreamLog`).
     """
 
-    feedthrough: ClassVar = {}
     discrete = True
     transient = Component.transient | {"_station", "_parser", "_line", "_log"}
 
