@@ -53,6 +53,16 @@ def unknown(what: str, found: object, allowed: Iterable[str]) -> str:
     return f"unknown {what} {str(found)!r}{hint} (known: {known})"
 
 
+def unmatched(what: str, pattern: str, names: Sequence[str]) -> str:
+    """Return 'no WHAT matches PATTERN' with the names that are most like it.
+
+    >>> unmatched("signal", "hul.*", ["hull.force", "servo.angle"])
+    "no signal matches 'hul.*'; did you mean 'hull.force'? (known: hull.force, servo.angle)"
+    """
+    said = unknown(what, pattern, names).removeprefix(f"unknown {what} {pattern!r}")
+    return f"no {what} matches {pattern!r}{said}"
+
+
 def listed(names: Sequence[str]) -> str:
     """Return names for a message: all of a few, of very many the first and their number."""
     rest = f", ... ({len(names)} in all)" if len(names) > _MOST_LISTED else ""

@@ -11,12 +11,13 @@ from rich.markup import escape
 
 from ..cosim.assembly import assemble
 from ..cosim.flattening import load_rig
+from ..cosim.forgotten import forgotten
 from ..cosim.packages import is_package, read_package
 from ..cosim.paths import joined
 from ..cosim.rig import Rig, Scope
 from ..cosim.system import Joint, System
 from ..cosim.unread import leave_out_unread
-from ..errors import InputError
+from ..errors import InputError, unmatched
 from ..trials.diagram import MOST_DRAWN, diagram
 from ..trials.naming import by_path, named_components
 from ..trials.trial import choices_in, is_trial, load_trial
@@ -94,11 +95,15 @@ def _print_rig(system: System, pattern: str, every: bool) -> None:
     joints = [one for one in system.joints if _matches(pattern, one.source, one.target)]
     width = max((len(joint.source) for joint in joints), default=0)
     lines = [f"{joint.source:{width}} -> {joint.target}{_transformed(joint)}" for joint in joints]
+    alone = forgotten(system)
     lists = {
         f"{len(lines)} connections": lines,
         "not made": system.open,
+        "forces and commands that nothing feeds": [n for n in alone if _matches(pattern, n)],
         "inputs that nothing feeds": [
-            name for name in system.unconnected_inputs() if _matches(pattern, name)
+            name
+            for name in system.unconnected_inputs()
+            if name not in alone and _matches(pattern, name)
         ],
         "optional inputs that nothing feeds": [
             name for name in system.unconnected_inputs(optional=True) if _matches(pattern, name)
@@ -109,6 +114,12 @@ def _print_rig(system: System, pattern: str, every: bool) -> None:
             if _matches(pattern, name)
         ],
     }
+    if pattern and not any(lists.values()):
+        ends = [name for one in system.joints for name in (one.source, one.target)]
+        loose = [
+            name for some in (False, True) for name in system.unconnected_inputs(optional=some)
+        ]
+        raise InputError(unmatched("signal", pattern, [*ends, *loose, *alone, *top.file.shows]))
     answer.result = {
         "title": top.file.title or top.read_from.name,
         "choices": dict(top.choices),
@@ -118,6 +129,7 @@ def _print_rig(system: System, pattern: str, every: bool) -> None:
             for one in joints
         ],
         "not_made": lists["not made"],
+        "unfed_forces": lists["forces and commands that nothing feeds"],
         "unfed_inputs": lists["inputs that nothing feeds"],
     }
     for title, lines in lists.items():

@@ -16,7 +16,7 @@ from rich.table import Table
 from ..cosim.parameters import load_vehicle, split_reference
 from ..cosim.system import settable
 from ..cosim.values import from_entry
-from ..errors import InputError, unknown
+from ..errors import InputError, unknown, unmatched
 from ..fmi.cache import write_named
 from ..fmi.description import summary
 from ..fmi.direct import DirectInstance
@@ -216,7 +216,7 @@ def describe(
     console.print(f"[bold]{escape(name)}[/bold]: {escape(title)}", soft_wrap=True)
     shown = [v for v in variables.values() if fnmatchcase(v.name, pattern or "*")]
     if pattern and not shown:
-        raise InputError(f"{name}: no variable matches {pattern!r}")
+        raise InputError(f"{name}: {unmatched('variable', pattern, list(variables))}")
     most = len(shown) if every else MOST_SHOWN
     columns = ("name", "causality", "type", "unit", "start", "minimum", "maximum", "description")
     rows = [dict(zip(columns, _cells(variable), strict=True)) for variable in shown]

@@ -16,7 +16,7 @@ from ..component import NS
 from ..errors import InputError
 from ..faults.operators import Fixed
 from .algorithms import Algorithm
-from .compiled.choice import is_compiled
+from .compiled.choice import is_compiled, lost_by_algorithm
 from .divergence import DivergenceWatch
 from .fault_schedule import Schedule
 from .feedthrough import Feedthrough
@@ -275,7 +275,8 @@ class Master:
 
     def notes(self) -> list[str]:
         """Return what the user should know of the steps taken so far."""
-        notes = []
+        lost = lost_by_algorithm(self.system)
+        notes = [lost] if lost else []
         if self._rollback.splits:
             notes.append(
                 f"{self._rollback.splits} of {self.steps} steps were discarded by a component "

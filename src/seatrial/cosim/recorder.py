@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..component import NS
-from ..errors import InputError
+from ..errors import InputError, unmatched
 from .compiled.rows import Rows
 from .master import Master
 from .system import System
@@ -39,7 +39,7 @@ def matching(names: Sequence[str], patterns: Sequence[str]) -> list[str]:
     """
     for pattern in patterns:
         if pattern != "*" and not any(fnmatchcase(name, pattern) for name in names):
-            raise InputError(f"no signal matches {pattern!r}")
+            raise InputError(unmatched("signal", pattern, names))
     return [name for name in names if any(fnmatchcase(name, p) for p in patterns)]
 
 

@@ -91,7 +91,9 @@ class ManoeuvringShip(ThreeDofCraft):
     Y = Parameter(0.0, "1", "sway: coefficients of products of u*, v*, r*, d", axes=_SWAY_TERMS)
     N = Parameter(0.0, "1", "yaw: coefficients of products of u*, v*, r*, d", axes=_SWAY_TERMS)
 
-    rudder = Input("rad", "angle of the rudder, trailing edge to port positive: turns to port")
+    rudder = Input(
+        "rad", "angle of the rudder, trailing edge to port positive: turns to port", role="command"
+    )
     disturbance = Input(
         ("m/s2", "rad/s2"), "what a disturbance adds to dv/dt and dr/dt, body axes", axes="vr"
     )

@@ -65,7 +65,9 @@ class SurfaceVessel(LoadedCraft):
         1.0, "1", "s: 1, or -1 to reproduce table 8.1 of the source", min=-1.0, max=1.0
     )
 
-    command = Input("1", "share of each thruster's full thrust, -1 to 1", axes=("t1", "t2"))
+    command = Input(
+        "1", "share of each thruster's full thrust, -1 to 1", axes=("t1", "t2"), role="command"
+    )
     feedthrough: ClassVar = {**LoadedCraft.feedthrough, "acceleration": ("command", *LOADS)}
 
     def start(self, t: float) -> None:

@@ -36,7 +36,7 @@ class AngleServo(Actuator, Sampled):
     angle_start = Parameter(0.0, "rad", "angle before the first move")
     rate = Parameter(math.radians(120.0), "rad/s", "speed of the shaft", min=1e-9)
 
-    command = Input("rad", "angle wanted")
+    command = Input("rad", "angle wanted", role="command")
     angle = Output("rad", "angle of the shaft")
     speed = Output("rad/s", "rate of the shaft, mean of the period that ends with this move")
 

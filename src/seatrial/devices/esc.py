@@ -32,7 +32,7 @@ class Esc(PulseRange):
 
     dead_band = Parameter(0.0, "s", "distance from neutral up to which it stops", min=0.0)
 
-    pulse = Input("s", "width of the servo pulse, 0 for none")
+    pulse = Input("s", "width of the servo pulse, 0 for none", role="command")
     share = Output("1", "share of full thrust, -1 to 1, positive ahead")
 
     def start(self, t: float) -> None:

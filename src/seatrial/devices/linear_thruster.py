@@ -39,7 +39,7 @@ class LinearThruster(Actuator):
     delay = Parameter(0.0, "s", "time from a command to its effect", min=0.0)
     time_constant = Parameter(0.15, "s", "time constant of the thrust", min=1e-6)
 
-    command = Input("1", "share of full thrust, -1 to 1, positive ahead")
+    command = Input("1", "share of full thrust, -1 to 1, positive ahead", role="command")
     thrust = Output("N", "thrust along the axis, positive ahead")
 
     def start(self, t: float) -> None:

@@ -43,7 +43,7 @@ class PolynomialThruster(ThrustCurve, Actuator):
         axes=("s0", "s1", "s2"),
     )
 
-    command = Input("1", "V, -1 to 1, positive ahead")
+    command = Input("1", "V, -1 to 1, positive ahead", role="command")
     thrust = Output("N", "thrust along the axis, positive ahead")
 
     exercised: ClassVar = {"lag_zero": 5000.0}

@@ -42,7 +42,7 @@ class RudderMachine(Actuator):
         "port", "1", "the way a positive command turns the ship", choices=("port", "starboard")
     )
 
-    command = Input("rad", "angle asked for, in the sense of positive")
+    command = Input("rad", "angle asked for, in the sense of positive", role="command")
     angle_start = Parameter(0.0, "rad", "start value of angle")
     angle = Output("rad", "angle of the rudder, trailing edge to port positive: turns to port")
 

@@ -43,7 +43,7 @@ class Servo(AngleRange, PulseRange, Actuator, Sampled):
     rate = Parameter(math.radians(60.0) / 0.21, "rad/s", "speed of the shaft", min=1e-9)
     dead_band = Parameter(8e-6, "s", "error of the pulse at which the motor rests", min=0.0)
 
-    pulse = Input("s", "width of the servo pulse, 0 for none", start=1.5e-3)
+    pulse = Input("s", "width of the servo pulse, 0 for none", start=1.5e-3, role="command")
     angle = Output("rad", "angle of the shaft")
 
     def reset(self, t: float) -> None:

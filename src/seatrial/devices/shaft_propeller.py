@@ -39,7 +39,7 @@ class ShaftPropeller(Actuator):
     time_constant = Parameter(0.1, "s", "time constant of the shaft speed", min=1e-6)
     speed_start = Parameter(0.0, "rad/s", "shaft speed at the start, positive ahead")
 
-    command = Input("1", "share of full shaft speed, -1 to 1, positive ahead")
+    command = Input("1", "share of full shaft speed, -1 to 1, positive ahead", role="command")
     thrust = Output("N", "thrust along the axis, positive ahead")
     speed = Output("rad/s", "shaft speed, positive ahead")
 

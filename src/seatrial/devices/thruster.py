@@ -57,7 +57,7 @@ class Thruster(PulseRange, Actuator):
 
     time_constant = Parameter(0.15, "s", "time constant of thrust and current", min=1e-6)
 
-    pulse = Input("s", "width of the servo pulse, 0 for none", start=1.5e-3)
+    pulse = Input("s", "width of the servo pulse, 0 for none", start=1.5e-3, role="command")
     supply_voltage = Input("V", "voltage at the speed controller", start=16.0, optional=True)
     thrust = Output("N", "thrust along the axis, positive ahead")
     current = Output("A", "supply current")

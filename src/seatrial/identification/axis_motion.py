@@ -42,7 +42,7 @@ class AxisMotion(Plant):
     offset = Parameter(0.0, "m/s2", "D/A: constant force over mass")
     thrust = Parameter(1.0, "m/s2", "E/A: thrust of the command 1 over mass")
     time_constant = Parameter(0.15, "s", "time constant of the thrust, with a lag", min=1e-6)
-    command = Input("1", "command of the thrust, -1 to 1")
+    command = Input("1", "command of the thrust, -1 to 1", role="command")
     place = State("m", "distance along the axis")
     velocity = State("m/s", "velocity along the axis")
     share = State("1", "share of full thrust, with a lag")

@@ -127,7 +127,8 @@ def _require_truth(signal: str, outputs: Mapping[str, Variable]) -> None:
 def _require_text(signal: str, outputs: Mapping[str, Variable]) -> None:
     if signal not in outputs:
         texts = [name for name, variable in outputs.items() if variable.type is str]
-        raise InputError(unknown("text signal", signal, texts))
+        what, known = ("text signal", texts) if texts else ("signal", list(outputs))
+        raise InputError(unknown(what, signal, known))
     if outputs[signal].type is not str:
         raise InputError(f"{signal} is no text: 'says' and 'is' need one")
 

@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import Any
 
 from ..cosim.assembly import assemble
+from ..cosim.forgotten import forgotten
 from ..cosim.master import Master
 from ..cosim.native_carriers import carry_natively
 from ..cosim.system import Engine, System
@@ -63,11 +64,16 @@ class Prepared:
         return master
 
     def loose_inputs(self) -> list[str]:
-        """Return a note on the inputs that neither connection nor event reaches, if any."""
+        """Return notes on the inputs that neither connection nor event reaches.
+
+        Forces, moments and commands have a line each.
+        """
         moved = {event.key for event in self.trial.events()}
         loose = [name for name in self.system.unconnected_inputs() if name not in moved]
-        said = f"inputs that nothing feeds keep their start values: {listed(loose)}"
-        return [said] if loose else []
+        alone = forgotten(self.system, moved)
+        others = [name for name in loose if name not in alone]
+        said = f"inputs that nothing feeds keep their start values: {listed(others)}"
+        return [*alone.values(), *([said] if others else [])]
 
 
 def prepare(trial: Trial, engine: Engine, hooks: Hooks) -> Prepared:
