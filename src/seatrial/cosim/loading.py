@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -113,7 +114,7 @@ def _part(
     from ..fmi.export import cached_fmu
     from ..fmi.load import load_fmu
 
-    loaded = load_fmu(cached_fmu(source, code))
+    loaded = replace(load_fmu(cached_fmu(source, code)), origin=source.folder)
     instance, sha256 = _of_fmu(loaded, entry, name, timeout_s, once)
     return Part(name, entry.fmu, instance, sha256, code, every, undecided=known.undecided)
 

@@ -16,6 +16,7 @@ from .instance import ByType, Reader, Value, Variable, Writer
 from .lenient import lenient
 from .loaded import LoadedFmu
 from .messages import ACCEPTED, DISCARD, FATAL, Messages, word
+from .origins import with_origins
 from .unloadable import reason
 
 _INTERRUPTIONS = INTERRUPTED, f"{KeyboardInterrupt()!r}"
@@ -52,7 +53,7 @@ class FmuInstance(ByType):
         self.ended_at: float | None = None
         self._ours = (fmu.description.generationTool or "").startswith("seatrial")
         self._fatal = False
-        self._messages = Messages(name)
+        self._messages = Messages(name, lambda text: with_origins(text, fmu))
         self._slave = self._opened(fmu.simulation.modelIdentifier)
         self._functions: dict[str, Any] = {
             function.removeprefix(self._prefix): call

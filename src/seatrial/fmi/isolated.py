@@ -19,6 +19,7 @@ from typing import Any
 from ..errors import DiscardError, InputError, SimulationError
 from .instance import Reader, Value, Writer
 from .loaded import LoadedFmu
+from .origins import with_origins
 from .pipe import CALL, ENDED, INTERVAL, READ, RESULT, STEP, WRITE, Codec, Frames, frame
 from .process import EndedError, WorkerProcess
 from .sandbox import MEMORY_GIB, PARENT, sandbox_command, sandbox_environment
@@ -253,6 +254,7 @@ class IsolatedInstance:
             kind, text = map(str, json.loads(answer))
         except _NO_ANSWER:
             raise self._misunderstood(what()) from None
+        text = with_origins(text, self.fmu)
         if kind == KeyboardInterrupt.__name__:
             raise KeyboardInterrupt
         if MemoryError.__name__ in text:
@@ -263,7 +265,7 @@ class IsolatedInstance:
 
     def _end(self, how: str, what: str, printed: str = "") -> SimulationError:
         """Keep what every further call will raise, and return it."""
-        last = f"; the last it wrote:\n{printed}" if printed else ""
+        last = f"; the last it wrote:\n{with_origins(printed, self.fmu)}" if printed else ""
         self._ended = f"{self.name}: its process {how} in {what}{last}"
         return SimulationError(self._ended)
 

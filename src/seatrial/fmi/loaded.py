@@ -45,6 +45,8 @@ class LoadedFmu:
     buses: Sequence[BusTerminal] = ()
     """Terminals of FMI-LS-BUS, whose data and clocks are two ports here."""
     options: FmuOptions = DEFAULTS
+    origin: Path | None = None
+    """Where the user's modules lie that it has copies of, if somebody knows."""
 
     @property
     def version(self) -> int:

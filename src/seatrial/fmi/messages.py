@@ -31,10 +31,10 @@ def word(status: int) -> str:
 
 
 class Messages:
-    """The messages of one instance since somebody last asked."""
+    """The messages of one instance since somebody last asked; ``shown`` makes them readable."""
 
-    def __init__(self, name: str) -> None:
-        self.name = name
+    def __init__(self, name: str, shown: Callable[[str], str] = str) -> None:
+        self.name, self._shown = name, shown
         self._logger = logging.getLogger(f"seatrial.fmu.{name}")
         self.kept: list[tuple[int, str]] = []
         """Status and text; the same list for ever, so that callers see at once if it is empty."""
@@ -61,7 +61,7 @@ class Messages:
 
     def said(self) -> str:
         """Return all of them as the end of an error message, and forget them."""
-        texts = [text.strip() for _, text in self.kept]
+        texts = [self._shown(text.strip()) for _, text in self.kept]
         if self._lost:
             texts.append(f"({self._lost} more messages)")
         self._forget()
@@ -77,7 +77,7 @@ class Messages:
             level = (
                 logging.ERROR if status >= ERROR else logging.WARNING if status else logging.INFO
             )
-            self._logger.log(level, "%s", text)
+            self._logger.log(level, "%s", self._shown(text))
         if self._lost:
             self._logger.warning("%d more messages", self._lost)
         self._forget()

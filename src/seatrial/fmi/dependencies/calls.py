@@ -14,6 +14,7 @@ from typing import Any
 
 from ...plant import Plant
 from .expressions import Expressions
+from .frame import Frame
 from .text import tree_of
 from .values import NONE, NOTHING, Callee, Value, constant, joined, mixed
 
@@ -245,8 +246,6 @@ class Calls(Expressions):
 
     def _run(self, callee: Callee, given: list[Value], named: dict[str, Value]) -> Value:
         """Run a function of the component's text with arguments."""
-        from .interpreter import Frame
-
         if callee.function in (Plant.outputs, Plant._publish):
             return self._publish()
         if callee.function is Plant._load:  # copies inputs to where the equations take them

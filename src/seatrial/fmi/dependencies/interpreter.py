@@ -14,26 +14,12 @@ import ast
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
 
 from .calls import Calls
+from .frame import Frame
 from .values import NONE, NOTHING, SHARED, Inputs, UndecidedError, Value, joined, mixed
 
 _MOST_PASSES = 30
-
-
-@dataclass
-class Frame:
-    """One call of a function."""
-
-    names: dict[str, Value]
-    code: object
-    """The `Callee` that runs."""
-    left: Inputs = NONE
-    """What it follows from that the rest of the function runs at all."""
-    returned: Value | None = None
-    broken: list[list[dict[str, Value]]] = field(default_factory=list)
-    """Names as they are where the loops around are left early."""
 
 
 class Interpreter(Calls):
