@@ -390,6 +390,43 @@ class Computed(Two):
         self.y = getattr(self, chr(97))
 
 
+class Evaluated(Two):
+    truth: ClassVar = {"y": "a", "z": ""}
+    unknown = True
+
+    def outputs(self, t: float) -> None:
+        self.y = eval("self.a")
+
+
+class Elsewhere(Two):
+    truth: ClassVar = {"y": "a", "z": "b"}
+
+    def start(self, t: float) -> None:
+        self._memory, self._buffer = Memory(), np.zeros(2)
+
+    def outputs(self, t: float) -> None:
+        self._memory.kept = self.a
+        self.y = self._memory.kept
+        np.add(self.b, 1.0, out=self._buffer[:1])
+        self.z = float(self._buffer[0])
+
+
+class Nested(Two):
+    truth: ClassVar = {"y": "a", "z": "a b"}
+
+    def outputs(self, t: float) -> None:
+        table = [[0.0, 0.0] for _ in range(2)]
+        for i, row in enumerate(table):
+            row[i] = self.a * (i + 1)
+        self.y = sum(map(sum, table))
+        for name, value in {"one": self.a, "two": self.b}.items():
+            if name == "two" or value > 1.0:
+                self.z = value
+                break
+        else:
+            self.z = -9.0
+
+
 class Shelved(Two):
     truth: ClassVar = {"y": "a", "z": ""}
 

@@ -16,11 +16,13 @@ from ...plant import Plant
 from .expressions import Expressions
 from .frame import Frame
 from .text import tree_of
-from .values import NONE, NOTHING, Callee, Value, constant, joined, mixed
+from .values import NONE, NOTHING, Callee, Value, computed, constant, joined, mixed
 
 _DEEPEST = 60
 _KEEPS_NOTHING = (math, operator)
-_COPIES = (tuple, list, set, frozenset, dict, float, int, bool, str, bytes, complex, range)
+_OPAQUE = (eval, exec, locals, globals, compile, __import__)
+_SCALARS = (float, int, bool, str, bytes, complex, len, abs, round, any, all, repr, ord, chr)
+_COPIES = (tuple, list, set, frozenset, dict, range)
 
 
 class Calls(Expressions):
@@ -51,9 +53,9 @@ class Calls(Expressions):
         if isinstance(node.func, ast.Attribute):
             if _is_super(node.func.value):
                 return self._call_super(node, given, named)
-            found = self._call_on(node, given, named)
-            if found is not None:
-                return found
+            answer = self._call_on(node, given, named)
+            if answer is not None:
+                return answer
         callee = self.evaluate(node.func)
         if loose or rest:
             every = mixed([*given, *named.values(), *rest])
@@ -67,7 +69,9 @@ class Calls(Expressions):
         if callee.known is None and not callee.callees and (callee.carries or with_self):
             raise self.undecided(node, f"{ast.unparse(node.func)} may read any input")
         try:
-            return self.call_value(callee, given, named).after(NONE, self.made_at(node))
+            found = self.call_value(callee, given, named)
+            makes = not callee.callees and not _is_scalar(callee)
+            return found.after(NONE, self.made_at(node)) if makes else found
         except RecursionError:
             raise self.undecided(node, "calls are nested too deeply") from None
 
@@ -154,8 +158,12 @@ class Calls(Expressions):
     def _builtin(self, node: ast.Call, callee: Value, given: list[Value]) -> Value | None:
         """Return what some functions of Python give that take the component, or sequences."""
         function = callee.known.object if callee.known is not None else None
+        if function in _OPAQUE:
+            raise self.undecided(node, f"{ast.unparse(node.func)} may read any input")
         if function in (getattr, setattr, hasattr) and given and given[0].is_self:
             return self._by_name(node, function, given)
+        if function is setattr and given:
+            self.pour(given[0], mixed(given).depends, carries=mixed(given).carries)
         if function in (isinstance, type, id, super, hasattr, callable, issubclass):
             return mixed(one for one in given if not one.is_self)
         if function in (zip, enumerate, reversed, tuple, list, len):
@@ -215,7 +223,9 @@ class Calls(Expressions):
             raise self.undecided(ast.Pass(), f"{known} is given the component")
         back = self._called_back(every)
         met = mixed([callee, back, *every])
-        if not (known in _COPIES or getattr(known, "__module__", "") in ("math", "builtins")):
+        if _is_scalar(callee):
+            return computed([met])
+        if not (known in _COPIES or getattr(known, "__module__", "") == "builtins"):
             for each in every:
                 self.pour(each, met.depends, carries=met.carries)
         return met
@@ -311,6 +321,12 @@ class Calls(Expressions):
         for name, inputs in self.publishes().items():
             self.fill(self.output_cells[name], frozenset(inputs))
         return NOTHING
+
+
+def _is_scalar(callee: Value) -> bool:
+    """Say if a function gives a number or a text, and keeps nothing."""
+    known = None if callee.known is None else callee.known.object
+    return known in _SCALARS or getattr(known, "__module__", "") == "math"
 
 
 def _is_super(node: ast.expr) -> bool:

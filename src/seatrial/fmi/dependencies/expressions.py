@@ -25,6 +25,7 @@ from .values import (
     Inputs,
     UndecidedError,
     Value,
+    computed,
     constant,
     joined,
     mixed,
@@ -255,6 +256,8 @@ class Expressions:
         if isinstance(node, ast.Await):
             raise self.undecided(node, "await is not followed")
         parts = [one for one in ast.iter_child_nodes(node) if isinstance(one, ast.expr)]
+        if isinstance(node, (ast.Compare, ast.UnaryOp, ast.FormattedValue)):
+            return computed(map(self.evaluate, parts))
         return mixed(map(self.evaluate, parts)).after(NONE, self.made_at(node))
 
     def _value_Constant(self, node: ast.Constant) -> Value:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from weakref import WeakKeyDictionary
 
 from ...component import Component
+from ...errors import InputError
 from ...plant import Plant
 from .equations import equations_depend
 from .interpreter import Interpreter
@@ -49,8 +50,13 @@ def _find(cls: type[Component]) -> Found:
             plant = cls
             interpreter.publishes = lambda: _equations(plant)
         depends = interpreter.run()
-    except UndecidedError as error:
-        return Found(dict.fromkeys(outputs, tuple(inputs)), str(error))
+    except InputError:  # of equations that are wrong
+        raise
+    except Exception as error:  # the text of a user may be anything
+        why = (
+            str(error) if isinstance(error, UndecidedError) else f"{type(error).__name__}: {error}"
+        )
+        return Found(dict.fromkeys(outputs, tuple(inputs)), why)
     return Found({name: tuple(i for i in inputs if i in depends[name]) for name in outputs})
 
 

@@ -29,8 +29,8 @@ def refuse_dependent(cls: type[Component]) -> None:
     if not narrowed or not cls.rolls_back:
         return
     draw = random.Random(1)
-    component = cls(cls.__name__)
     try:
+        component = cls(cls.__name__)
         _begin(component)
     except Exception:  # it needs what only a rig gives, such as files
         return

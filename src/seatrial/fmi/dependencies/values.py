@@ -117,14 +117,23 @@ NOTHING = Value()
 
 
 def mixed(values: Iterable[Value], inputs: Inputs = NONE) -> Value:
-    """Return something made of values: it follows from all of them, nothing else is known."""
-    found, carrying = set(inputs), set[Cell]()
-    for value in values:
-        found |= value.depends
-        carrying |= {cell for cell in value.cells if cell.carries}
-        if value.carries and not any(cell.carries for cell in value.cells):
-            carrying.add(_CARRIER)
-    return Value(frozenset(found), frozenset(carrying))
+    """Return something made of values, which may hold them: nothing else is known of it."""
+    found, behind = set(inputs), set[Cell]()
+    waiting = list(values)
+    while waiting:
+        value = waiting.pop()
+        found |= value.inputs
+        behind |= value.cells
+        waiting += value.items or ()
+        if value.is_self or any(callee.carries for callee in value.callees):
+            behind.add(_CARRIER)
+    return Value(frozenset(found), frozenset(behind))
+
+
+def computed(values: Iterable[Value]) -> Value:
+    """Return a number or a text made of values: what becomes of them later changes it no more."""
+    whole = mixed(values)
+    return Value(whole.depends)
 
 
 _CARRIER = Cell()
