@@ -64,7 +64,10 @@ class Limited(Component):
     """A parameter with a limit."""
 
     width = Parameter(0.5, "m", "width", max=0.55, tunable=True)
-    y = Output("m", "nothing")
+    y = Output("m", "the width")
+
+    def outputs(self, t):
+        self.y = self.width
 
 
 class Bad(Component):

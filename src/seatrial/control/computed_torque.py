@@ -28,6 +28,8 @@ class ComputedTorque(VesselTracking):
     """
 
     exercised: ClassVar = {"mass": [8.44, 12.55, 0.133], "command_limit": 1e9}
+    # The plan does not follow from what is measured, whatever the law compares it with.
+    feedthrough: ClassVar = dict.fromkeys(("nominal", "nominal_command"), ())
 
     kp = Parameter(2.0, "1/s", "rate against the error", min=0.0)
     ki = Parameter(1.0, "1/s2", "rate against its integral, 0 for none", min=0.0)
