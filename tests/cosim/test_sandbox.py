@@ -236,6 +236,7 @@ class Liar(Component):
     y = Output("m", "output")
 
     def step(self, t, h):
+        self.y = t
         os.write(int(sys.argv[2]), ANSWER)
 """
 

@@ -89,6 +89,6 @@ class Barge(Component):
     }
 
     def outputs(self, t):
-        self.position = self.force
+        self.position, self.attitude = self.force, (0.0, 0.0, 0.0)
         self.depth = (self.lift + self.moment[0],)
 '''

@@ -27,7 +27,8 @@ def refuse_mistyped(cls: type[Component]) -> None:
     An attribute is meant that is read and never set, or set and never read; its name has no
     underscore first, and differs little from a port's. Classes whose text hands ``self`` on, or
     sets attributes by computed names, are not judged: there anything may be set. An
-    output whose declaration gives a start value other than zero may be a constant.
+    output whose declaration gives a start value other than zero may be a constant, a text may
+    have nothing to say, and a class without a method does nothing on purpose.
     """
     try:
         own = [function for function in methods(cls) if not function.__module__.startswith(_OURS)]
@@ -39,8 +40,10 @@ def refuse_mistyped(cls: type[Component]) -> None:
         return
     used = {name: places for name, places in named.items() if name not in dir(cls)}
     unset = [name for name in _set_by_text(cls) if name not in texts and not _is_set(name, named)]
-    for name in unset:
+    for name in unset if own else ():
         near = difflib.get_close_matches(name, used, n=1, cutoff=_NEAR)
+        if cls.ports[name].type is str and not near:  # it has nothing to say
+            continue
         hint = f"; {_place(used[near[0]][0])} has self.{near[0]}" if near else ""
         raise InputError(f"{cls.__name__}: nothing sets the output {name!r}{hint}")
     for name, places in used.items():
@@ -63,8 +66,7 @@ def _set_by_text(cls: type[Component]) -> Iterator[str]:
             continue
         for name in vars(base).get("_declared", ()):
             port = cls.ports[name]
-            zero = port.start[:1] in _ZERO
-            if type(port) is Output and zero:
+            if type(port) is Output and port.start[:1] in _ZERO and not port.role:
                 yield name
 
 
