@@ -65,8 +65,8 @@ def effect(
     length = math.hypot(*direction)
     if abs(length - 1.0) > 1e-6:
         raise InputError(
-            f"{owner}.{name} is {direction}, of length {length:.6g}: give a unit vector, or (0, 0, 0) for "
-            "no thruster"
+            f"{owner}.{name} is {direction}, of length {length:.6g}: give a unit vector, or "
+            "(0, 0, 0) for no thruster"
         )
     (x, y, z), (a, b, c) = position, direction
     return [a, b, c, y * c - z * b, z * a - x * c, x * b - y * a]
