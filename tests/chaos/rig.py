@@ -155,11 +155,14 @@ class Episode:
 
     def processes(self) -> dict[str, list[int]]:
         """Return its processes by their part: supervisor, child, worker, board."""
-        found: dict[str, list[int]] = {"supervisor": [], "child": [], "worker": [], "board": []}
+        names = ("supervisor", "child", "keeper", "worker", "board")
+        found: dict[str, list[int]] = {name: [] for name in names}
         marked = dict(_marked(self.mark))
         for pid, parent in marked.items():
             line = _command_line(pid)
-            if "sketches/" in line:
+            if line.startswith("seatrial-keeper"):
+                found["keeper"].append(pid)
+            elif "sketches/" in line:
                 found["board"].append(pid)
             elif line.startswith(("unshare ", "sh ")):
                 continue

@@ -9,7 +9,7 @@ from pathlib import Path
 from ..campaigns.sweep import How as SweepHow
 from ..campaigns.sweep import keep_named
 from ..cosim.system import Engine
-from ..errors import SimulationError
+from ..errors import InputError, SimulationError
 from ..trials.campaign import Campaign, load_campaign, run_campaign
 from ..trials.campaign_report import write_campaign_report, write_case_report
 from ..trials.cases import Case
@@ -33,12 +33,15 @@ class How:
     resume: bool
     cluster: str | None
     keep: str | None
+    hang_after: float | None
 
 
 def run_cases(name: str, out: Path | None, how: How, leaves: Leaves) -> None:
     """Run a campaign into its table, or each case into a folder. Raises InputError."""
     campaign = load_campaign(name)
     if how.keep is not None or how.cluster is not None or campaign.has_table:
+        if how.hang_after is not None:
+            raise InputError("--hang-after works with a campaign whose every case leaves a folder")
         sweep = SweepHow(
             how.engine, how.jobs, how.cluster, keep_named(how.keep, "--keep"), how.resume
         )
@@ -62,6 +65,7 @@ def _run_folders(campaign: Campaign, out: Path | None, how: How, leaves: Leaves)
                 stop_requested=stop.requested,
                 interruptible=stop.interruptible,
                 note=lambda text: print_notes([text]),
+                hang_after=how.hang_after,
             )
             watch.expect(len(cases))
             folder, finished = run_campaign(

@@ -19,6 +19,7 @@ from ..links.serial_gateway import SerialGateway
 from ..links.videoray.frame import encode
 from ..links.videoray.station import NEUTRAL
 from ..links.videoray.topside import Pro4Topside
+from ..trials.call_trace import IN_REAL_TIME
 from ..trials.forked import Forked
 from ..trials.forked_child import Child
 from ..trials.link import Frame
@@ -55,13 +56,13 @@ def drive(
         allow_network()
     loaded = load_profile(profile)
     if not hasattr(os, "fork"):
-        _drive(loaded, link, record, gamepad)
+        _drive(loaded, link, record, gamepad, None)
         return
 
     def driven(child: Child) -> None:
         try:
             with child.interruptible():
-                _drive(loaded, link, record, gamepad)
+                _drive(loaded, link, record, gamepad, child)
             child.link.send("done", "", "")
         except KeyboardInterrupt:
             child.link.send("error", SimulationError.__name__, INTERRUPTED)
@@ -70,7 +71,9 @@ def drive(
         except BaseException as error:
             child.link.send("error", SimulationError.__name__, repr(error))
 
-    _supervised(Forked(driven))
+    forked = Forked(driven)
+    forked.call_trace.limits, forked.call_trace.devices = IN_REAL_TIME, int(hardware)
+    _supervised(forked)
 
 
 def _supervised(forked: Forked) -> None:
@@ -90,7 +93,13 @@ def _supervised(forked: Forked) -> None:
         raise InputError(text) if name == InputError.__name__ else SimulationError(text)
 
 
-def _drive(loaded: Profile, link: str | None, record: Path | None, gamepad: Path | None) -> None:
+def _drive(
+    loaded: Profile,
+    link: str | None,
+    record: Path | None,
+    gamepad: Path | None,
+    child: Child | None,
+) -> None:
     """Drive until the pilot quits; a port without a safe state gets the protocol's own."""
     topside, gateway = Pro4Topside("topside"), SerialGateway("topside-port")
     _start(topside, {**loaded.parameters("links.topside"), "run_folder": str(record or "")})
@@ -100,7 +109,7 @@ def _drive(loaded: Profile, link: str | None, record: Path | None, gamepad: Path
     try:
         _start(gateway, {**own, "links": link} if link else own)
         with raw_terminal():
-            _run(topside, gateway, Pilot(), pad)
+            _run(topside, gateway, Pilot(), pad, child)
     finally:
         gateway.close()  # sends what stops the thrusters
         topside.close()
@@ -116,11 +125,21 @@ def _start(component: Component, parameters: dict[str, Any]) -> None:
     component.begin()
 
 
-def _run(topside: Pro4Topside, gateway: SerialGateway, pilot: Pilot, pad: Gamepad | None) -> None:
+def _run(
+    topside: Pro4Topside,
+    gateway: SerialGateway,
+    pilot: Pilot,
+    pad: Gamepad | None,
+    child: Child | None,
+) -> None:
     begun, steps = time.monotonic(), 0
+    if child is not None:
+        child.begun()
     with Live(console=console, screen=True, auto_refresh=False) as live:
         while not pilot.quits:
             now = time.monotonic()
+            if child is not None:
+                child.asked()  # the keeper sees that it goes on
             for key in pressed_keys():
                 pilot.press(key, now)
             if pad is not None:

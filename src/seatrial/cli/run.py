@@ -38,6 +38,7 @@ from .options import (
 from .play import Open, Port
 from .run_options import (
     Cluster,
+    HangAfter,
     Jobs,
     Junit,
     KeepName,
@@ -82,10 +83,13 @@ def run(
     cluster: Cluster = None,
     keep: KeepName = None,
     no_report: NoReport = False,
+    hang_after: HangAfter = None,
 ) -> None:
     """Run a trial, or a campaign of trials, and say what holds."""
     chosen = engine_named(engine)
     if hardware:
+        if hang_after == 0.0:
+            raise InputError("--hang-after 0 does not go with --hardware: a device needs a limit")
         allow_devices()
     if network:
         allow_network()
@@ -109,7 +113,7 @@ def run(
         for refusal, given in of_trials.items():
             if given:
                 raise InputError(refusal)
-        run_cases(trial, out, How(chosen, jobs, resume, cluster, keep), leaves)
+        run_cases(trial, out, How(chosen, jobs, resume, cluster, keep, hang_after), leaves)
         return
     if jobs is not None or resume or keep or cluster:
         said = "--jobs, --resume, --keep and --cluster"
@@ -118,11 +122,16 @@ def run(
     loaded = load_trial(trial, changes=changes, origin="--set")
     loaded = loaded.failing([read_fault(text, "--fault") for text in faults or []], "--fault")
     loaded = _paced(loaded, pace).recording(record, "--record")
-    _run_trial(loaded, out, chosen, page, leaves)
+    _run_trial(loaded, out, chosen, page, leaves, hang_after)
 
 
 def _run_trial(
-    trial: Trial, out: Path | None, engine: Engine, page: Page | None, leaves: Leaves
+    trial: Trial,
+    out: Path | None,
+    engine: Engine,
+    page: Page | None,
+    leaves: Leaves,
+    hang_after: float | None,
 ) -> None:
     print_notes(trial.notes)
     with stoppable() as stop:
@@ -133,6 +142,7 @@ def _run_trial(
                 stop_requested=stop.requested,
                 interruptible=stop.interruptible,
                 reachable=print_reachable,
+                hang_after=hang_after,
             )
             if page is None:
                 result = run_supervised(trial, out, engine=engine, hooks=hooks)

@@ -40,6 +40,15 @@ Live = Annotated[
     bool,
     typer.Option("--live", help="Show the run in three dimensions, in a browser, as it goes."),
 ]
+HangAfter = Annotated[
+    float | None,
+    typer.Option(
+        metavar="SECONDS",
+        min=0.0,
+        help="Wall time of a call after which it hangs, and the run ends; 0: never (default: in "
+        "real time 2 in a step and 10 at the end, else 60).",
+    ),
+]
 Cluster = Annotated[
     str | None,
     typer.Option(

@@ -40,6 +40,11 @@ def allow_network() -> None:
     os.environ[NETWORK_ALLOWED] = "1"
 
 
+def devices_allowed() -> bool:
+    """Return whether devices may be reached."""
+    return os.environ.get(ALLOWED) == "1"
+
+
 @contextmanager
 def confined() -> Iterator[None]:
     """Allow neither devices nor other hosts to components that start inside.

@@ -1,8 +1,9 @@
-"""Safe states held by whoever supervises this process, to be sent if it ends without doing so.
+"""Safe states held by the keeper of this process, to be sent if it ends without doing so.
 
 A link that can move something holds here what stops that, and the descriptor through which it
-goes. The supervisor, if there is one, gets both over a socket that this process inherited, and
-sends the data if the process ends without having released them, whatever ends it.
+goes. The keeper (`trials.keeper`), if there is one, gets both over a socket that this process
+inherited, and sends the data if the process ends without having released them, whatever ends it.
+It ends the process itself if that hangs.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from typing import Any
 from .endpoints.endpoint import Channel, Endpoint
 
 ENVIRONMENT = "SEATRIAL_SAFE_STATE"
-"""Environment variable with the number of the socket's descriptor; without it nobody supervises."""
+"""Environment variable with the number of the socket's descriptor; without it there is no keeper."""
 
 _NUMBER_BITS = 63
 
@@ -54,6 +55,11 @@ def hold(
     ``address`` is the receiver of a datagram, where the descriptor has none of its own.
     """
     return Held(name, where, {"data": data.hex(), "address": address}, [descriptor])
+
+
+def waits() -> None:
+    """Say that this process waits for somebody outside, and does not hang."""
+    _send({"waits": True})
 
 
 def hold_bus(name: str, where: str, bus: Mapping[str, Any], frames: str) -> Held:

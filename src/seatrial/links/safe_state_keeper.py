@@ -1,4 +1,4 @@
-"""The supervisor's side of safe states: kept for other processes, and sent when they end."""
+"""The keeper's side of safe states: kept for other processes, and sent when they have ended."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import os
 import select
 import signal
 import socket
+import sys
 import time
 from dataclasses import dataclass
 from typing import Any
@@ -16,8 +17,10 @@ _SEND_S = 1.0
 """Wall time that one safe state may take to be sent."""
 _BUS_S = 5.0
 """The same of a bus, which is opened first: drivers wait for adapters."""
-_IN_ORDER_S = 3.0
-"""Wall time in which processes that the run started may end in order, and send it themselves."""
+_KILLED_S = 2.0
+"""The same for the end of a process that was killed; one stuck in the kernel takes longer."""
+_QUEUE_S = 0.5
+"""Wall time in which a line may take what is queued for it; what is left then is dropped."""
 _LONGEST = 1 << 17
 
 
@@ -27,6 +30,42 @@ class _Entry:
 
     message: dict[str, Any]
     descriptor: int
+
+
+class Process:
+    """A process that is no child of this one."""
+
+    def __init__(self, pid: int) -> None:
+        self._pid, self._descriptor = pid, -1
+        with contextlib.suppress(OSError, AttributeError):  # it has ended; there are none
+            self._descriptor = os.pidfd_open(pid)
+
+    def fileno(self) -> int:
+        """Return what can be waited at until it has ended; -1 if there is nothing."""
+        return self._descriptor
+
+    def has_ended(self) -> bool:
+        """Return whether it has ended, and with it all that it had open."""
+        if self._descriptor >= 0:
+            return _is_ready(self._descriptor, select.POLLIN, 0.0)
+        try:
+            os.kill(self._pid, 0)
+        except OSError:
+            return True
+        return False
+
+    def kill(self) -> None:
+        """Kill it."""
+        with contextlib.suppress(OSError):
+            if self._descriptor >= 0:
+                signal.pidfd_send_signal(self._descriptor, signal.SIGKILL)
+            elif not self.has_ended():
+                os.kill(self._pid, signal.SIGKILL)
+
+    def close(self) -> None:
+        """Forget it."""
+        if self._descriptor >= 0:
+            os.close(self._descriptor)
 
 
 class SafeStates:
@@ -39,8 +78,10 @@ class SafeStates:
         self._ours, self._theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_DGRAM)
         self._ours.setblocking(False)
         self._entries: dict[tuple[int, int], _Entry] = {}
-        self._processes: dict[int, int] = {}
-        """Descriptors of the processes that hold something, by number."""
+        self._processes: dict[int, Process] = {}
+        """Those that hold something, by number."""
+        self.waits = 0
+        """How often one has said that it waits for somebody, and does not hang."""
 
     def fileno(self) -> int:
         """Return the descriptor to wait at."""
@@ -51,6 +92,11 @@ class SafeStates:
         self._ours.close()
         return self._theirs.fileno()
 
+    def left_to_keeper(self) -> int:
+        """Keep, in a fork, the keeper's end alone; return its descriptor."""
+        self._theirs.close()
+        return self._ours.fileno()
+
     def take(self) -> None:
         """Take in what is held, changed and released."""
         while True:
@@ -59,6 +105,9 @@ class SafeStates:
             except BlockingIOError:
                 return
             message = json.loads(data)
+            if "waits" in message:
+                self.waits += 1
+                continue
             key = (message["pid"], message["number"])
             if "released" in message:
                 self._forget(key)
@@ -68,34 +117,44 @@ class SafeStates:
             elif key in self._entries:
                 self._entries[key].message.update(message)
 
+    @property
+    def held(self) -> bool:
+        """Whether anything is held."""
+        return bool(self._entries)
+
+    def descriptors(self) -> list[int]:
+        """Return what can be waited at until something is to be taken in, or one has ended."""
+        ended = [process.fileno() for process in self._processes.values()]
+        return [self._ours.fileno(), *(each for each in ended if each >= 0)]
+
     def of_ended(self) -> list[str]:
         """Send what processes held that have ended; return a line for each safe state."""
         self.take()
-        return [
-            line
-            for pid in list(self._processes)
-            if _has_ended(pid, self._processes[pid])
-            for line in self._send_of(pid)
-        ]
+        ended = {pid for pid, process in self._processes.items() if process.has_ended()}
+        return self._send([key for key in self._entries if key[0] in ended])
 
-    def all(self) -> list[str]:
-        """Send everything that is still held, by processes that live too; return the lines.
+    def of_killed(self, *others: Process) -> list[str]:
+        """End the processes that hold something, and ``others``; send all; return the lines.
 
-        Those that still end in order may do it themselves first.
+        Nothing of theirs comes after what is sent: they have ended before.
         """
-        lines, deadline = self.of_ended(), time.monotonic() + _IN_ORDER_S
-        while self._processes and time.monotonic() < deadline:
-            time.sleep(0.01)
-            lines += self.of_ended()
-        return lines + [line for pid in list(self._processes) for line in self._send_of(pid)]
+        self.take()
+        killed = [*self._processes.values(), *others]
+        for process in killed:
+            process.kill()
+        deadline = time.monotonic() + _KILLED_S
+        while time.monotonic() < deadline and not all(each.has_ended() for each in killed):
+            time.sleep(0.001)
+        self.take()
+        return self._send(list(self._entries))
 
     def close(self) -> None:
         """Close everything."""
         for entry in self._entries.values():
             if entry.descriptor >= 0:
                 os.close(entry.descriptor)
-        for descriptor in self._processes.values():
-            os.close(descriptor)
+        for process in self._processes.values():
+            process.close()
         self._ours.close()
         self._theirs.close()
 
@@ -103,58 +162,76 @@ class SafeStates:
 
     def _watch(self, pid: int) -> None:
         if pid not in self._processes:
-            try:
-                self._processes[pid] = os.pidfd_open(pid)
-            except OSError:  # it has ended, and its parent knows
-                self._processes[pid] = os.open(os.devnull, os.O_RDONLY)
+            self._processes[pid] = Process(pid)
 
     def _forget(self, key: tuple[int, int]) -> None:
         entry = self._entries.pop(key, None)
         if entry is not None and entry.descriptor >= 0:
             os.close(entry.descriptor)
         if not any(pid == key[0] for pid, _ in self._entries):
-            descriptor = self._processes.pop(key[0], None)
-            if descriptor is not None:
-                os.close(descriptor)
+            process = self._processes.pop(key[0], None)
+            if process is not None:
+                process.close()
 
-    def _send_of(self, pid: int) -> list[str]:
-        lines = []
-        for key in [key for key in self._entries if key[0] == pid]:
-            entry = self._entries[key]
-            message = entry.message
-            sent = _bus(message) if entry.descriptor < 0 else _data(message, entry.descriptor)
-            said = "sent" if sent else "could not send"
-            lines.append(f"{said} the safe state of {message['name']} to {message['where']}")
+    def _send(self, keys: list[tuple[int, int]]) -> list[str]:
+        """Send what ``keys`` hold, lines first: a bus takes its time, beside the others."""
+        entries = [self._entries[key] for key in keys]
+        lines = {}
+        for entry in entries:
+            if entry.descriptor >= 0:
+                lines[id(entry)] = _data(entry.message, entry.descriptor)
+        buses = {id(each): _bus(each.message) for each in entries if each.descriptor < 0}
+        deadline = time.monotonic() + _BUS_S
+        lines |= {number: _has_sent(pid, deadline) for number, pid in buses.items()}
+        for key in keys:
             self._forget(key)
-        return lines
+        return [
+            f"{'sent' if lines[id(each)] else 'could not send'} the safe state of "
+            f"{each.message['name']} to {each.message['where']}"
+            for each in entries
+        ]
 
 
-def _has_ended(pid: int, descriptor: int) -> bool:
+def _is_ready(descriptor: int, event: int, timeout_s: float) -> bool:
     waiting = select.poll()
-    waiting.register(descriptor, select.POLLIN)
-    return bool(waiting.poll(0))
+    waiting.register(descriptor, event)
+    return bool(waiting.poll(timeout_s * 1e3))
 
 
 def _data(message: dict[str, Any], descriptor: int) -> bool:
     """Send bytes through a descriptor, for a bounded time; return whether it took them all."""
     data, address = bytes.fromhex(message["data"]), message["address"]
-    deadline = time.monotonic() + _SEND_S
     with contextlib.suppress(OSError):
         os.set_blocking(descriptor, False)
         if address is not None:
             with socket.socket(fileno=os.dup(descriptor)) as opened:
                 return opened.sendto(data, tuple(address)) == len(data)
-        waiting = select.poll()
-        waiting.register(descriptor, select.POLLOUT)
+        if os.isatty(descriptor):
+            _empty(descriptor)
+        deadline = time.monotonic() + _SEND_S
         while data and (left := deadline - time.monotonic()) > 0:
-            if waiting.poll(left * 1e3):
+            if _is_ready(descriptor, select.POLLOUT, left):
                 data = data[os.write(descriptor, data) :]
         return not data
     return False
 
 
-def _bus(message: dict[str, Any]) -> bool:
-    """Send frames to a bus, in a process of its own: drivers may take any time."""
+def _empty(line: int) -> None:
+    """Let a line take what is queued for it, and drop the rest: orders that nobody is to get."""
+    import fcntl
+    import termios
+
+    deadline = time.monotonic() + _QUEUE_S
+    while time.monotonic() < deadline:
+        queued = fcntl.ioctl(line, termios.TIOCOUTQ, b"\0\0\0\0")
+        if not int.from_bytes(queued, sys.byteorder) and _is_ready(line, select.POLLOUT, 0.0):
+            return
+        time.sleep(0.005)
+    termios.tcflush(line, termios.TCOFLUSH)
+
+
+def _bus(message: dict[str, Any]) -> int:
+    """Begin to send frames to a bus; return the process that does: drivers may take any time."""
     import warnings
 
     with warnings.catch_warnings():
@@ -169,7 +246,11 @@ def _bus(message: dict[str, Any]) -> bool:
             status = 0
         finally:
             os._exit(status)
-    deadline = time.monotonic() + _BUS_S
+    return pid
+
+
+def _has_sent(pid: int, deadline: float) -> bool:
+    """Return whether a process of `_bus` has sent its frames in time; it is over then."""
     while time.monotonic() < deadline:
         done, status = os.waitpid(pid, os.WNOHANG)
         if done:

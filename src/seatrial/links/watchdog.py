@@ -7,7 +7,10 @@ import logging
 import time
 
 from ..errors import SimulationError
+from .safe_state import waits
 
+_SAYS_S = 0.5
+"""Wall time between two notes that the component waits, and does not hang."""
 FIRST_S, EVERY_S = 5.0, 30.0
 """Wall time of silence before the first message, and between others."""
 
@@ -23,7 +26,7 @@ class Watchdog:
     def __init__(self, name: str, whom: str, limit: float = 0.0) -> None:
         self._name, self._whom, self._limit = name, whom, limit
         self._since: float | None = None
-        self._next = 0.0
+        self._next = self._said = 0.0
 
     def say(self, message: str) -> None:
         """Say something at once."""
@@ -42,6 +45,9 @@ class Watchdog:
                 f"{self._name}: nothing came from {self._whom}, within {self._limit:g} s of wall "
                 "time: start it, or give a longer wait_limit (0 s: without end)"
             )
+        if now >= self._said:
+            self._said = now + _SAYS_S
+            waits()
         if now >= self._next:
             self._next = now + EVERY_S
             since = datetime.datetime.now() - datetime.timedelta(seconds=now - self._since)

@@ -1,8 +1,9 @@
-"""CallTrace of a run, in memory that two processes share: the call it is in, and orders to stop."""
+"""Trace of a run, in memory that processes share: its call, its progress, and orders to stop."""
 
 from __future__ import annotations
 
 import ctypes
+import math
 import mmap
 from collections.abc import Callable, Sequence
 from typing import Any, cast
@@ -27,7 +28,27 @@ _CALLS = {
 }
 _KINDS = {name: number for number, name in enumerate(_CALLS)}
 _WORDS = list(_CALLS.values())
-_ASKED, _CALL, _TIME = range(3)
+_ENDS = {_KINDS["terminate"], _KINDS["free"], _KINDS["free_state"]}
+_ASKED, _CALL, _TIME, _POINTS, _ORDERS, _PHASE, _END, _DEVICES, _LIMITS = range(9)
+"""Cells: the first three as `Marks` has them. From the last one on: seconds, as doubles."""
+
+Limits = tuple[float, float, float]
+"""Wall time of a call at the start, in a step and at the end, s; infinite where there is none."""
+NO_LIMITS: Limits = (math.inf, math.inf, math.inf)
+AT_ANY_PACE: Limits = (60.0, 60.0, 60.0)
+IN_REAL_TIME: Limits = (60.0, 2.0, 10.0)
+STARTS, STEPS = 1, 2
+HUNG, ASKED_IN_VAIN = 1, 2
+"""Why the keeper has ended the process of a run."""
+
+
+def _cell(place: int, what: str) -> Any:
+    """Return a property that is a cell."""
+
+    def written(self: CallTrace, value: int) -> None:
+        self.cells[place] = value
+
+    return property(lambda self: self.cells[place], written, doc=what)
 
 
 class CallTrace:
@@ -36,21 +57,55 @@ class CallTrace:
     def __init__(self) -> None:
         memory = memoryview(mmap.mmap(-1, mmap.PAGESIZE))
         self.cells, self._times = memory.cast("q"), memory.cast("d")
+        self.limits = NO_LIMITS
+
+    asked = _cell(_ASKED, "How urgently a stop is requested: 1 after the step, 2 at once.")
+    orders = _cell(_ORDERS, "How many orders to stop the supervisor has sent.")
+    end = _cell(_END, "Why the keeper has ended the process, 0 if it has not.")
+    devices = _cell(_DEVICES, "Whether the run may reach devices.")
 
     @property
-    def asked(self) -> int:
-        """How urgently a stop is requested: 1 after the step, 2 at once."""
-        return self.cells[_ASKED]
+    def limits(self) -> Limits:
+        """How long a call may take before its process is taken for hung."""
+        start, step, end = self._times[_LIMITS : _LIMITS + len(NO_LIMITS)]
+        return start, step, end
 
-    @asked.setter
-    def asked(self, level: int) -> None:
-        self.cells[_ASKED] = level
+    @limits.setter
+    def limits(self, limits: Limits) -> None:
+        for place, limit in enumerate(limits, _LIMITS):
+            self._times[place] = limit
 
     def between_calls(self) -> int:
         """Note that no component is in a call, and return how urgently a stop is requested."""
         cells = self.cells
         cells[_CALL] = 0
+        cells[_POINTS] += 1
         return cells[_ASKED]
+
+    @property
+    def phase(self) -> int:
+        """What goes on that may hang: `STARTS`, which ends are too, or `STEPS`; 0 for nothing."""
+        return self.cells[_PHASE]
+
+    @phase.setter
+    def phase(self, phase: int) -> None:
+        self.cells[_CALL], self.cells[_PHASE] = 0, phase
+
+    def progress(self) -> tuple[int, int, float]:
+        """Return what changes as long as a run goes on, whatever is slow in it."""
+        return self.cells[_POINTS], self.cells[_CALL], self._times[_TIME]
+
+    def limit(self, held: bool) -> float:
+        """Return how long there may be no progress now, s; ``held``: links hold safe states."""
+        code, phase = self.cells[_CALL], self.cells[_PHASE]
+        start, step, end = self.limits
+        if not phase:
+            return end if held else math.inf
+        if code and (code - 1) % len(_WORDS) in _ENDS:
+            return end
+        if phase == STEPS:
+            return step
+        return start if code or held else math.inf
 
     def entry(self, names: Sequence[str]) -> tuple[str, str]:
         """Return the component in a call and the call, with its time; two empty texts for none."""

@@ -5,6 +5,8 @@ from __future__ import annotations
 import contextlib
 import faulthandler
 import gc
+import logging
+import math
 import os
 import re
 import select
@@ -23,25 +25,29 @@ from ..links.safe_state import ENVIRONMENT
 from ..links.safe_state_keeper import SafeStates
 from .call_trace import CallTrace
 from .forked_child import ASKING, ORDER, Child, flush_c_streams
+from .keeper import Keeper
 from .link import Frame, Link
 
 SLICE_MS = 200
 """A stop is passed on within this time."""
-_EXIT_S = 10.0
+_URGENT_S = 2.0
+"""Wall time from the first request to stop until it is to be at once: the step takes its time."""
+_EXIT_S = 5.0
 """Wall time for a child that is to end at once; one that takes longer is killed."""
 _LAST_STREAM = 2
 _SHOWN_FRAMES = 3
 _FRAME = re.compile(r'^  File "(.+)", line (\d+) in (.+)$', re.MULTILINE)
+_LOGGER = logging.getLogger("seatrial.trials.forked")
 _OWN = str(Path(__file__).parents[1])
 
 
 class Forked:
     """Runs ``body`` in a child of this process, whatever becomes of that. POSIX only.
 
-    The child heeds no signal of a terminal or a service manager: this process gets them too, and
-    passes on how urgently a stop is ``asked`` for. It ends in order if this process is killed.
-    The safe states that it and its own processes held are sent when they have ended without
-    doing so themselves; ``sent`` has a line for each.
+    This process passes on how urgently a stop is ``asked`` for; so does the child, of the signals
+    that it gets itself. It ends in order if this process is killed. A third process, the keeper,
+    ends it if it hangs, and sends the safe states of all that have ended without doing so
+    themselves; ``sent`` has a line for each.
     """
 
     _others: ClassVar[set[Forked]] = set()
@@ -50,11 +56,11 @@ class Forked:
     def __init__(self, body: Callable[[Child], None]) -> None:
         _fill_standard_streams()
         self.call_trace, self.sent = CallTrace(), list[str]()
-        self._states = SafeStates()
         ours, theirs = socket.socketpair()
+        states, (alarm, self._alarm) = SafeStates(), os.pipe2(os.O_NONBLOCK | os.O_CLOEXEC)
         self._stack = tempfile.TemporaryFile()  # noqa: SIM115  it lives as long as the child
         parent = os.getpid()
-        # A handler of this process must not run in the child.
+        # A handler of this process must not run in the others.
         mask = signal.pthread_sigmask(signal.SIG_BLOCK, ASKING)
         try:
             with warnings.catch_warnings():
@@ -62,36 +68,41 @@ class Forked:
                 self._pid = os.fork()
             if not self._pid:
                 ours.close()
-                self._be_child(body, Link(theirs), parent, mask)
+                os.close(alarm)
+                self._be_child(body, Link(theirs), parent, mask, states)
+            theirs.close()
+            self._keeper = Keeper(self._pid, states, self.call_trace, alarm)
         finally:
             signal.pthread_sigmask(signal.SIG_SETMASK, mask)
-        theirs.close()
+        states.close()
+        os.close(alarm)
         self.link = Link(ours)
         self._waiting = select.poll()
         self._waiting.register(self.link.fileno(), select.POLLIN)
-        self._waiting.register(self._states.fileno(), select.POLLIN)
+        self._waiting.register(self._keeper.fileno(), select.POLLIN)
         self._status: int | None = None
-        self._to_end_by = float("inf")
+        self._told, self._asked_at, self._to_end_by = 0, math.inf, math.inf
         self._others.add(self)
 
     def descriptors(self) -> tuple[int, int]:
         """Return what can be waited at until there is something for `frames`."""
-        return self.link.fileno(), self._states.fileno()
+        return self.link.fileno(), self._keeper.fileno()
 
     def frames(self, asked: int, *, wait: bool = True) -> list[Frame] | None:
         """Return the frames that come within a moment; None once the child has ended.
 
         Without ``wait`` they are those that are there.
 
-        ``asked`` is how urgently it is to stop: 1 after its step, 2 at once. It is killed if it
-        does not do the latter.
+        ``asked`` is how urgently it is to stop: 1 after its step, 2 at once, which the former
+        becomes where the step goes on. It is killed if it does not do the latter.
         """
         ended = self._has_ended()  # before it is looked whether there is anything left to read
         if not ended:
             self._ask(asked)
         slice_ms = 0 if ended or not wait else SLICE_MS
         ready = {descriptor for descriptor, _ in self._waiting.poll(slice_ms)}
-        self.sent += self._states.of_ended()
+        if self._keeper.fileno() in ready:
+            self._take_sent()
         if self.link.fileno() in ready:
             frames = self.link.receive()
             if frames is None:
@@ -123,9 +134,10 @@ class Forked:
             self._wait()
         finally:  # whatever went wrong, the vehicle gets its neutral
             self._others.discard(self)
-            self.sent += self._states.all()
-            self._states.close()
+            self.sent += self._keeper.finish()
+            self._keeper.close()
             self._stack.close()
+            os.close(self._alarm)
             signal.pthread_sigmask(signal.SIG_SETMASK, mask)
 
     # ------------------------------------------------------------------ inside
@@ -133,16 +145,31 @@ class Forked:
     def _let_go(self) -> None:
         """Close what a copy of the parent has of it: it would not notice the parent's end."""
         self.link.close()
-        self._states.close()
+        self._keeper.close()
         self._stack.close()
+        os.close(self._alarm)
+
+    def _take_sent(self) -> None:
+        """Take what the keeper has sent; without a keeper nothing goes on."""
+        self.sent += self._keeper.sent()
+        if self._keeper.is_gone:
+            self._waiting.unregister(self._keeper.fileno())
+            _LOGGER.error("the keeper of the safe states was killed: the run is stopped")
+            self._ask(2)
 
     def _ask(self, level: int) -> None:
-        level = min(level, 2)
-        if level > self.call_trace.asked:
-            self.call_trace.asked = level
+        trace, now = self.call_trace, time.monotonic()
+        level = min(max(level, trace.asked), 2)
+        if level:
+            self._asked_at = min(self._asked_at, now)
+        if now > self._asked_at + _URGENT_S:
+            level = 2
+        if level > self._told:
+            self._told = trace.asked = level
+            trace.orders += 1
             os.kill(self._pid, ORDER)
             if level > 1:
-                self._to_end_by = time.monotonic() + _EXIT_S
+                self._to_end_by = now + _EXIT_S
         if time.monotonic() > self._to_end_by:
             self._kill()
 
@@ -171,6 +198,7 @@ class Forked:
         link: Link,
         parent: int,
         mask: set[int | signal.Signals],
+        states: SafeStates,
     ) -> NoReturn:
         """Run the body and end, whatever it does: nothing of the parent's may go on here."""
         status = 1
@@ -178,9 +206,9 @@ class Forked:
         try:
             for other in self._others:
                 other._let_go()
-            os.environ[ENVIRONMENT] = str(self._states.left_to_child())
+            os.environ[ENVIRONMENT] = str(states.left_to_child())
             faulthandler.enable(self._stack, all_threads=False)
-            child = Child(link, self.call_trace, parent)
+            child = Child(link, self.call_trace, parent, self._alarm)
             signal.pthread_sigmask(signal.SIG_SETMASK, mask)
             body(child)
             status = 0

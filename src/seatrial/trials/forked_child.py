@@ -13,7 +13,7 @@ from contextlib import contextmanager, suppress
 from typing import Any
 
 from ..fmi.orphan import end_with
-from .call_trace import CallTrace
+from .call_trace import STARTS, STEPS, CallTrace
 from .link import Link
 
 ASKING = [
@@ -33,19 +33,23 @@ class Child:
     """What a child knows of its parent: orders to stop, in the trace, and whether it lives.
 
     A stop that is more urgent than 1 raises KeyboardInterrupt, once, where a component may hang.
-    Signals alone do nothing: those of a terminal reach the parent too, which then passes on its
-    orders with a signal of its own. It comes too when the parent is killed.
+    A signal to this process asks for a stop too, unless the parent ignores it. Those of a terminal
+    reach the parent as well, which passes on its orders with a signal of its own: it says before
+    how many there are, so that they are not counted twice. One comes when the parent is killed.
+    ``alarm`` gets the number of each signal at once.
     """
 
-    def __init__(self, link: Link, trace: CallTrace, parent: int) -> None:
+    def __init__(self, link: Link, trace: CallTrace, parent: int, alarm: int) -> None:
         self.link, self.call_trace = link, trace
         self._parent, self._own = parent, os.getpid()
         self._may_hang = self._interrupted = False
+        self._orders = self._requests = 0
+        self._heeded = [each for each in ASKING if signal.getsignal(each) != signal.SIG_IGN]
         for number in ASKING:
             # Not SIG_IGN: a program that a component starts would ignore them too.
             signal.signal(number, self._heed)
             signal.siginterrupt(number, False)
-        signal.set_wakeup_fd(-1)  # an event loop's of the parent
+        signal.set_wakeup_fd(alarm, warn_on_full_buffer=False)
         if sys.platform == "linux":
             ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, ORDER)
         if os.getppid() != parent:  # it ended before the line above
@@ -62,15 +66,27 @@ class Child:
     def interruptible(self) -> Iterator[None]:
         """Let an urgent stop end what is done inside."""
         self._may_hang = True
+        self.call_trace.phase = STARTS
         try:
             self._interrupt()
             yield
         finally:
             self._may_hang = False
+            self.call_trace.phase = 0
 
-    def _heed(self, _number: int, _frame: object) -> None:
+    def begun(self) -> None:
+        """Note that steps follow, with their own limit of time."""
+        self.call_trace.phase = STEPS
+
+    def _heed(self, number: int, _frame: object) -> None:
+        trace = self.call_trace
         if os.getppid() != self._parent:
-            self.call_trace.asked = 2
+            trace.asked = 2
+        elif number == ORDER and self._orders < trace.orders:
+            self._orders = trace.orders
+        elif number in self._heeded:
+            self._requests += 1
+            trace.asked = max(trace.asked, min(self._requests, 2))
         self._interrupt()
 
     def _interrupt(self) -> None:

@@ -50,6 +50,8 @@ class Hooks:
     progress: Progress = lambda _passed, _whole: None
     assembled: Callable[[System, dict[str, Any]], None] = lambda _system, _manifest: None
     """Called with the rig and the run's manifest, before the components are started."""
+    begun: Callable[[], None] = lambda: None
+    """Called when all has started, and steps follow."""
     claimed: Callable[[Path], None] = lambda _: None
     """Called with the run's folder."""
     stop_requested: Callable[[], int] = lambda: 0
@@ -63,6 +65,9 @@ class Hooks:
     """Called with what a person should know before anything runs."""
 
     observer: Observer | None = None
+    hang_after: float | None = None
+    """Wall time without progress, s, after which a call is taken for hung; 0: never. None: 2 s in
+    the steps of a run in real time and 10 s at its end, else 60 s."""
 
     def refuse_if_stopped(self) -> None:
         """Raise StoppedError if a stop was requested before anything was written."""

@@ -59,6 +59,7 @@ class Stepping:
         events, steps, observer = self._events, self._prepared.trial.steps, self._hooks.observer
         may_decide = termination.has_any
         stop_requested, pace = self._hooks.stop_requested, self.pace
+        self._hooks.begun()
         if observer is not None:
             assert self._folder is not None
             pacer = None if pace is None else pace.pacer

@@ -76,7 +76,7 @@ def _carried_out(
 
 def _unnoted(child: Child) -> Hooks:
     """Return hooks without a note of each call: who dies is run again, with them."""
-    return Hooks(stop_requested=child.asked, interruptible=child.interruptible)
+    return Hooks(stop_requested=child.asked, interruptible=child.interruptible, begun=child.begun)
 
 
 def _hooks(child: Child, observer: Observer | None) -> Hooks:
@@ -95,6 +95,7 @@ def _hooks(child: Child, observer: Observer | None) -> Hooks:
         claimed=lambda folder: link.send("claimed", str(folder)),
         stop_requested=child.asked,
         interruptible=child.interruptible,
+        begun=child.begun,
         observer=observer,
     )
 

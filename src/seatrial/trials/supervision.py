@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import math
 import os
 import sys
 from collections.abc import Mapping, Sequence
@@ -15,9 +16,12 @@ from typing import Any, Literal, NoReturn
 
 from ..cosim.system import Engine
 from ..errors import InputError, SimulationError
+from ..links.hardware import devices_allowed
+from .call_trace import AT_ANY_PACE, HUNG, IN_REAL_TIME, CallTrace, Limits
 from .ending import is_whole
 from .forked import Forked
 from .hooks import Hooks, StoppedError
+from .keeper import ASKED_S
 from .link import Frame
 from .measuring import Measured, measure_trial
 from .output import claim_folder, write_json
@@ -116,6 +120,8 @@ class Supervisor:
             observer = self._hooks.observer
             self._forked = Forked(partial(serve, self._trials, self._engine, self._page, observer))
         self._busy = True
+        self._forked.call_trace.limits = _limits(self._trials[number], self._hooks.hang_after)
+        self._forked.call_trace.devices = int(devices_allowed())
         self._forked.link.send(what, number, None if folder is None else str(folder), changes)
 
     def descriptors(self) -> tuple[int, ...]:
@@ -250,7 +256,9 @@ class Supervisor:
         how, trace = forked.how(), forked.call_trace
         forked.end()
         component, call = trace.entry(list(self._manifest.get("components", [])))
-        if component:
+        if trace.end:
+            error = _killed(trace, component, call)
+        elif component:
             error = f"{component}: the process of the run {how} in {call}"
         elif self._loading and not self._manifest:
             error = f"the process of the run {how} while it loaded {self._loading}"
@@ -262,6 +270,21 @@ class Supervisor:
         assert self._forked is not None
         result.notes += self._forked.sent
         self._forked.sent = []
+
+
+def _limits(trial: Trial, hang_after: float | None) -> Limits:
+    """Return how long a call at the start, in a step and at the end may take."""
+    if hang_after is not None:
+        return (hang_after or math.inf,) * 3
+    return IN_REAL_TIME if trial.file.real_time is not None else AT_ANY_PACE
+
+
+def _killed(trace: CallTrace, component: str, call: str) -> str:
+    """Return why the keeper has ended the process of a run."""
+    where = f"{component}: {call}" if component else "between two calls of components the run"
+    if trace.end == HUNG:
+        return f"{where} hung: no progress for {trace.limit(held=True):g} s (--hang-after)"
+    return f"{where} did not end within {ASKED_S:g} s of the request to stop"
 
 
 def run_supervised(

@@ -1,0 +1,436 @@
+"""A run that does not get on, and is asked to end while it does not: the vehicle gets its neutral.
+
+Orders come in every step; what is asserted is that the safe state is the last, and that nothing
+comes after it for longer than the component that hung would have taken to go on.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.command import SEATRIAL, seatrial
+
+from .gateway import RIG, SAFE, TALKER, Vehicle
+from .test_stop import children_of, has_ended, wait_for
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processes and name spaces")
+
+HANGER = '''
+"""Hangs in one of many ways, in one of many calls, and goes on after 20 s."""
+import ctypes
+import re
+import time
+from pathlib import Path
+
+from seatrial.component import Component, Output, Parameter
+
+
+class Hanger(Component):
+    """Counts its steps."""
+
+    how = Parameter("", "1", "how it hangs")
+    where = Parameter("step", "1", "in which call")
+    steps = Output("1", "steps", type=int)
+
+    def start(self, t):
+        self.count = 0
+        self.hang("start")
+
+    def step(self, t, h):
+        self.count += 1
+        if self.count == 30:
+            self.hang("step")
+
+    def outputs(self, t):
+        self.steps = self.count
+
+    def close(self):
+        self.hang("close")
+
+    def hang(self, where):
+        if where != self.where or not self.how:
+            return
+        Path("hanging").touch()
+        match self.how:
+            case "sleeps":
+                time.sleep(20.0)
+            case "is busy":
+                until = time.monotonic() + 20.0
+                while time.monotonic() < until:
+                    pass
+            case "holds the lock":
+                ctypes.PyDLL(None).usleep(20_000_000)
+            case "matches":
+                re.match("(a?){27}a{27}", "a" * 27)
+            case "ignores":
+                until = time.monotonic() + 20.0
+                while time.monotonic() < until:
+                    try:
+                        time.sleep(20.0)
+                    except KeyboardInterrupt:
+                        pass
+'''
+HANGING_RIG = f"""{RIG}
+[components.hanger]
+fmu = "hanger.py:Hanger"
+set = {{{{ how = "{{how}}", where = "{{where}}" }}}}
+"""
+NAMESPACE = ["unshare", "--user", "--map-root-user", "--pid", "--fork", "--kill-child", "--mount-proc"]
+ENGINES = ["direct", pytest.param("fmu", marks=pytest.mark.interop)]
+
+Start = Callable[..., subprocess.Popen[str]]
+
+
+def has_namespaces() -> bool:
+    if shutil.which("unshare") is None:
+        return False
+    return subprocess.run([*NAMESPACE, "true"], capture_output=True).returncode == 0
+
+
+in_namespace = pytest.mark.skipif(
+    not has_namespaces(), reason="no name space of processes can be made here (unshare)"
+)
+
+
+@pytest.fixture
+def vehicle() -> Iterator[Vehicle]:
+    vehicle = Vehicle()
+    yield vehicle
+    vehicle.close()
+
+
+@pytest.fixture
+def start(write, vehicle: Vehicle, tmp_path: Path) -> Iterator[Start]:
+    """Return a function that starts a run of the vehicle beside a component that hangs."""
+    write("talker.py", TALKER)
+    write("hanger.py", HANGER)
+    write("trial.toml", 'rig = "rig.toml"\nstop = "1000 s"\n')
+    processes: list[subprocess.Popen[str]] = []
+
+    def start(
+        how: str = "sleeps", where: str = "step", *options: str, within: tuple[str, ...] = ()
+    ) -> subprocess.Popen[str]:
+        values = {"isolated": "false", "device": vehicle.device, "safe": SAFE.hex()}
+        text = HANGING_RIG.format(**values, start_takes=0.0, how=how, where=where)
+        write("rig.toml", text)
+        (tmp_path / "hanging").unlink(missing_ok=True)
+        shutil.rmtree(tmp_path / "run", ignore_errors=True)
+        options = options or ("--engine", "direct")
+        command = [SEATRIAL, "run", "trial.toml", "--real-time", "1", "--hardware", "--out", "run"]
+        processes.append(
+            subprocess.Popen(
+                [*within, *command, *options], cwd=tmp_path, text=True, start_new_session=True,
+                stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+            )
+        )  # fmt: skip
+        return processes[-1]
+
+    yield start
+    for process in processes:
+        process.kill()
+        process.communicate()
+
+
+def hanging(tmp_path: Path) -> None:
+    wait_for((tmp_path / "hanging").is_file)
+
+
+def is_last(vehicle: Vehicle, for_s: float = 0.5) -> None:
+    """Check that the safe state comes, and that nothing comes after it."""
+    wait_for(lambda: SAFE in vehicle.read())
+    time.sleep(for_s)
+    assert vehicle.read().endswith(SAFE)
+
+
+def keeper_of(process: subprocess.Popen[str]) -> int:
+    """Return the keeper of a run: the process that has the run's end of no terminal, by name."""
+    ours = Path(f"/proc/{process.pid}/cwd").resolve()
+    for place in Path("/proc").glob("[0-9]*"):
+        try:
+            if (place / "comm").read_text() == "seatrial-keeper\n" and (
+                place / "cwd"
+            ).resolve() == ours:
+                return int(place.name)
+        except OSError:
+            continue
+    pytest.fail("there is no keeper")
+
+
+# ---------------------------------------------------------------------- a hang
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize(
+    "how",
+    [
+        pytest.param("sleeps", marks=pytest.mark.interop),
+        pytest.param("is busy", marks=pytest.mark.interop),
+        "holds the lock",
+        pytest.param("matches", marks=pytest.mark.interop),
+    ],
+)
+def test_a_hang_in_a_step_ends_the_run(
+    how: str, engine: str, start: Start, vehicle: Vehicle, tmp_path: Path
+) -> None:
+    process = start(how, "step", "--engine", engine)
+    hanging(tmp_path)
+    begun = time.monotonic()
+    is_last(vehicle)
+    assert time.monotonic() - begun < 15.0  # not when it goes on
+    assert vehicle.read().count(b"!") >= 25
+    _, message = process.communicate(timeout=60)
+    assert process.returncode == 3
+    assert "hanger: its step at t = 0.29 s hung: no progress for 2 s (--hang-after)" in message
+    assert f"sent the safe state of port to serial:{vehicle.device}:115200" in message
+    assert '"status": "failed"' in (tmp_path / "run" / "manifest.json").read_text()
+
+
+def test_a_hang_in_the_start_ends_the_run(start: Start, vehicle: Vehicle, tmp_path: Path) -> None:
+    process = start("sleeps", "start", "--engine", "direct", "--hang-after", "1")
+    is_last(vehicle)
+    _, message = process.communicate(timeout=60)
+    assert process.returncode == 3
+    assert "hanger: its initialisation at t = 0.0 s hung" in message
+    assert '"status": "failed"' in (tmp_path / "run" / "manifest.json").read_text()
+
+
+@pytest.mark.interop
+def test_a_hang_at_the_end_ends_the_run(start: Start, vehicle: Vehicle, tmp_path: Path) -> None:
+    process = start("ignores", "close", "--engine", "direct", "--hang-after", "1")
+    wait_for(lambda: b"!!!" in vehicle.read())
+    process.send_signal(signal.SIGINT)
+    is_last(vehicle)
+    process.communicate(timeout=60)
+    assert process.returncode == 3
+
+
+def test_a_hang_without_hardware_ends_the_run(write, tmp_path: Path) -> None:
+    write("hanger.py", HANGER)
+    write("rig.toml", 'step = "10 ms"\n[components]\nhanger = { fmu = "hanger.py:Hanger" }\n')
+    write("trial.toml", 'rig = "rig.toml"\nstop = "10 s"\n[set]\n"hanger.how" = "holds the lock"\n')
+    arguments = ("--engine", "direct", "--hang-after", "0.5", "--out", "run")
+    done = seatrial("run", "trial.toml", *arguments, cwd=tmp_path)
+    assert done.returncode == 3
+    assert "hanger: its step at t = 0.29 s hung: no progress for 0.5 s (--hang-after)" in done.stderr
+    lines = (tmp_path / "run" / "signals.csv").read_text().splitlines()
+    assert len(lines) == 31
+    refused = seatrial("run", "trial.toml", "--hardware", "--hang-after", "0", cwd=tmp_path)
+    assert refused.returncode == 2
+    assert "a device needs a limit" in refused.stderr
+
+
+def test_a_slow_step_is_no_hang(write, tmp_path: Path) -> None:
+    write("hanger.py", HANGER.replace("time.sleep(20.0)", "time.sleep(1.0)"))
+    write("rig.toml", 'step = "10 ms"\n[components]\nhanger = { fmu = "hanger.py:Hanger" }\n')
+    write("trial.toml", 'rig = "rig.toml"\nstop = "0.5 s"\n[set]\n"hanger.how" = "sleeps"\n')
+    for limit in ("10", "0"):
+        arguments = ("--engine", "direct", "--hang-after", limit, "--out", f"run{limit}")
+        assert seatrial("run", "trial.toml", *arguments, cwd=tmp_path).returncode == 0
+
+
+def test_a_run_that_is_suspended_leaves_no_order(start: Start, vehicle: Vehicle) -> None:
+    process = start("")
+    wait_for(lambda: b"!!!" in vehicle.read())
+    (child,) = children_of(process)
+    os.kill(child, signal.SIGSTOP)
+    is_last(vehicle)
+    process.communicate(timeout=60)
+    assert process.returncode == 3
+
+
+def test_a_simulation_that_is_suspended_goes_on(write, tmp_path: Path) -> None:
+    write("hanger.py", HANGER)
+    write("rig.toml", 'step = "10 ms"\n[components]\nhanger = { fmu = "hanger.py:Hanger" }\n')
+    write("trial.toml", 'rig = "rig.toml"\nstop = "2 s"\n')
+    command = [SEATRIAL, "run", "trial.toml", "--engine", "direct", "--real-time", "1"]
+    process = subprocess.Popen([*command, "--hang-after", "0.5", "--out", "run"], cwd=tmp_path)
+    wait_for((tmp_path / "run").is_dir)
+    (child,) = children_of(process)
+    for pid in (process.pid, child):
+        os.kill(pid, signal.SIGSTOP)
+    time.sleep(1.5)
+    for pid in (process.pid, child):
+        os.kill(pid, signal.SIGCONT)
+    assert process.wait(60) == 0
+
+
+# ---------------------------------------------------------------------- requests to stop
+
+
+@pytest.mark.parametrize(
+    "number",
+    [
+        signal.SIGTERM,
+        pytest.param(signal.SIGHUP, marks=pytest.mark.interop),
+        pytest.param(signal.SIGQUIT, marks=pytest.mark.interop),
+        pytest.param(signal.SIGINT, marks=pytest.mark.interop),
+    ],
+)
+def test_a_signal_to_the_process_of_the_run_ends_it_in_order(
+    number: int, start: Start, vehicle: Vehicle, tmp_path: Path
+) -> None:
+    process = start("")
+    wait_for(lambda: b"!!!" in vehicle.read())
+    (child,) = children_of(process)
+    os.kill(child, number)
+    _, message = process.communicate(timeout=60)
+    assert (process.returncode, "stopped" in message) == (3, True), message
+    assert vehicle.read().endswith(SAFE)
+    assert '"status": "stopped"' in (tmp_path / "run" / "manifest.json").read_text()
+    assert (tmp_path / "run" / "report.html").is_file()
+
+
+@pytest.mark.parametrize(
+    ("how", "whose"),
+    [
+        ("ignores", "supervisor"),
+        pytest.param("sleeps", "supervisor", marks=pytest.mark.interop),
+        pytest.param("sleeps", "child", marks=pytest.mark.interop),
+        ("holds the lock", "child"),
+    ],
+)
+def test_one_signal_ends_a_hang_in_bounded_time(
+    how: str, whose: str, start: Start, vehicle: Vehicle, tmp_path: Path
+) -> None:
+    process = start(how, "step", "--engine", "direct", "--hang-after", "100")
+    hanging(tmp_path)
+    (child,) = children_of(process)
+    os.kill(child if whose == "child" else process.pid, signal.SIGTERM)
+    begun = time.monotonic()
+    is_last(vehicle)
+    process.communicate(timeout=60)
+    assert time.monotonic() - begun < 15.0
+    assert process.returncode == 3
+    assert '"status": "stopped"' in (tmp_path / "run" / "manifest.json").read_text()
+
+
+def test_one_signal_ends_a_hung_simulation(write, tmp_path: Path) -> None:
+    write("hanger.py", HANGER)
+    write("rig.toml", 'step = "10 ms"\n[components]\nhanger = { fmu = "hanger.py:Hanger" }\n')
+    write("trial.toml", 'rig = "rig.toml"\nstop = "10 s"\n[set]\n"hanger.how" = "holds the lock"\n')
+    command = [SEATRIAL, "run", "trial.toml", "--engine", "direct", "--out", "run"]
+    process = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
+    hanging(tmp_path)
+    process.send_signal(signal.SIGTERM)
+    begun = time.monotonic()
+    process.communicate(timeout=60)
+    assert time.monotonic() - begun < 15.0
+    assert process.returncode == 3
+    assert '"status": "stopped"' in (tmp_path / "run" / "manifest.json").read_text()
+
+
+# ---------------------------------------------------------------------- deaths
+
+
+@pytest.mark.parametrize("how", ["", pytest.param("holds the lock", marks=pytest.mark.interop)])
+def test_a_group_that_is_killed_leaves_the_safe_state(
+    how: str, start: Start, vehicle: Vehicle, tmp_path: Path
+) -> None:
+    process = start(how)
+    wait_for(lambda: b"!!!" in vehicle.read())
+    if how:
+        hanging(tmp_path)
+    os.killpg(process.pid, signal.SIGKILL)
+    is_last(vehicle)
+
+
+def test_a_hung_run_whose_supervisor_is_suspended_or_killed(
+    start: Start, vehicle: Vehicle, tmp_path: Path
+) -> None:
+    process = start("holds the lock", "step", "--engine", "direct", "--hang-after", "5")
+    hanging(tmp_path)
+    (child,) = children_of(process)
+    os.kill(process.pid, signal.SIGSTOP)
+    is_last(vehicle)
+    wait_for(lambda: has_ended(child))
+    os.kill(process.pid, signal.SIGKILL)
+
+
+def test_a_keeper_that_is_killed_ends_the_run(start: Start, vehicle: Vehicle) -> None:
+    process = start("")
+    wait_for(lambda: b"!!!" in vehicle.read())
+    keeper = keeper_of(process)
+    assert os.getsid(keeper) != os.getsid(process.pid)
+    os.kill(keeper, signal.SIGTERM)  # it is meant for the others
+    before = len(vehicle.read())
+    wait_for(lambda: len(vehicle.read()) > before + 10)
+    os.kill(keeper, signal.SIGKILL)
+    _, message = process.communicate(timeout=60)
+    assert process.returncode == 3
+    assert "the keeper of the safe states was killed" in message
+    assert vehicle.read().endswith(SAFE)
+
+
+def test_no_keeper_is_left(start: Start, vehicle: Vehicle) -> None:
+    process = start("")
+    wait_for(lambda: b"!!!" in vehicle.read())
+    keeper = keeper_of(process)
+    process.send_signal(signal.SIGTERM)
+    process.communicate(timeout=60)
+    wait_for(lambda: has_ended(keeper))
+
+
+# ---------------------------------------------------------------------- containers
+
+
+def container_stops(process: subprocess.Popen[str]) -> float:
+    """Do what ``docker stop`` does to process 1 of a name space; return how long that took, s."""
+    (first,) = children_of(process)
+    begun = time.monotonic()
+    os.kill(first, signal.SIGTERM)
+    while not has_ended(first) and time.monotonic() < begun + 10.0:
+        time.sleep(0.01)
+    os.kill(process.pid, signal.SIGKILL)  # and, by --kill-child, all that is inside
+    process.communicate(timeout=60)
+    return time.monotonic() - begun
+
+
+@in_namespace
+@pytest.mark.parametrize(
+    ("how", "where"),
+    [
+        ("holds the lock", "start"),
+        ("ignores", "step"),
+        pytest.param("", "step", marks=pytest.mark.interop),
+    ],
+)
+def test_a_container_that_is_stopped_leaves_the_safe_state(
+    how: str, where: str, start: Start, vehicle: Vehicle, tmp_path: Path
+) -> None:
+    stop_container(how, where, start, vehicle, tmp_path)
+
+
+@in_namespace
+@pytest.mark.long
+@pytest.mark.parametrize("engine", ["direct", "fmu"])
+@pytest.mark.parametrize("where", ["start", "step"])
+def test_twenty_of_twenty_containers_leave_the_safe_state(
+    where: str, engine: str, start: Start, vehicle: Vehicle, tmp_path: Path
+) -> None:
+    ways = ["sleeps", "is busy", "holds the lock", "ignores", ""]
+    for number in range(20):
+        vehicle.received = b""
+        stop_container(ways[number % len(ways)], where, start, vehicle, tmp_path, engine)
+
+
+def stop_container(
+    how: str, where: str, start: Start, vehicle: Vehicle, tmp_path: Path, engine: str = "direct"
+) -> None:
+    options = ("--engine", engine, "--hang-after", "100")
+    process = start(how, where, *options, within=tuple(NAMESPACE))
+    if how:
+        hanging(tmp_path)
+    if where == "step" or not how:
+        wait_for(lambda: b"!!!" in vehicle.read())
+    took = container_stops(process)
+    assert vehicle.read().endswith(SAFE)
+    assert took < 10.0
