@@ -63,3 +63,10 @@ class Reachable:
     exceeded = Output(
         "1", "steps in which a peer brought more than one takes in", type=int, role="exceeded"
     )
+    link_lost = Output(
+        "1", "whether a link that was there is lost: unplugged, or its peer gone", type=bool,
+        role="link-lost",
+    )  # fmt: skip
+    reconnections = Output(
+        "1", "times that a lost link came back", type=int, role="reconnections"
+    )

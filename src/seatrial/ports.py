@@ -20,6 +20,8 @@ ROLES = {
     "run-folder": "folder of the run, for logs of its own: given once there is one",
     "address": "where programs outside connect to: shown when a run in real time begins",
     "exceeded": "steps in which more came from outside than one takes in: a note of the run",
+    "link-lost": "whether a link is lost: a note of the run, its end if it may reach devices",
+    "reconnections": "times that a lost link came back: in the note of the run",
     "sea": "one of the parameters of the waves: given by a trial's sea, if it has one",
     "current": "one of the parameters of the current: given by a trial's current",
     "wind": "one of the parameters of the wind: given by a trial's wind",

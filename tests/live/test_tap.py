@@ -231,3 +231,19 @@ def test_what_can_be_set_is_named_with_unit_and_limits(tmp_path: Path) -> None:
         assert (station["unit"], station["value"]) == ("m", 0.0)
         assert "vehicle.hull.mass" not in keys  # it is fixed
         assert "vehicle.port_thruster.pulse" not in keys  # the autopilot feeds it
+
+
+def test_the_page_is_told_of_a_lost_link(write, tmp_path: Path) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        link = f"tcpout:127.0.0.1:{server.getsockname()[1]}"
+        port = f'{{ fmu = "serial-gateway", set = {{ links = "{link}" }} }}'
+        write("rig.toml", f'step = "10 ms"\n[components]\nport = {port}\n')
+        trial = load_trial(write("trial.toml", 'rig = "rig.toml"\nstop = "1000 s"\n'))
+        page = Page(trial, tmp_path / "run", factor=1.0)
+        with page:
+            server.accept()[0].close()
+            now, lost = page.next("links")
+            assert (now > 0.0, lost) == (True, ["port"])
+            server.accept()
+            assert page.next("links")[1] == []
+            page.send("stop")

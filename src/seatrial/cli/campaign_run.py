@@ -34,6 +34,7 @@ class How:
     cluster: str | None
     keep: str | None
     hang_after: float | None
+    keep_going: bool
 
 
 def run_cases(name: str, out: Path | None, how: How, leaves: Leaves) -> None:
@@ -66,6 +67,7 @@ def _run_folders(campaign: Campaign, out: Path | None, how: How, leaves: Leaves)
                 interruptible=stop.interruptible,
                 note=lambda text: print_notes([text]),
                 hang_after=how.hang_after,
+                keep_going=how.keep_going,
             )
             watch.expect(len(cases))
             folder, finished = run_campaign(

@@ -41,6 +41,7 @@ from .run_options import (
     HangAfter,
     Jobs,
     Junit,
+    KeepGoing,
     KeepName,
     Live,
     NoReport,
@@ -84,9 +85,12 @@ def run(
     keep: KeepName = None,
     no_report: NoReport = False,
     hang_after: HangAfter = None,
+    keep_going: KeepGoing = False,
 ) -> None:
     """Run a trial, or a campaign of trials, and say what holds."""
     chosen = engine_named(engine)
+    if keep_going and not hardware:
+        raise InputError("--keep-going goes with --hardware: a simulation goes on in any case")
     if hardware:
         if hang_after == 0.0:
             raise InputError("--hang-after 0 does not go with --hardware: a device needs a limit")
@@ -113,7 +117,7 @@ def run(
         for refusal, given in of_trials.items():
             if given:
                 raise InputError(refusal)
-        run_cases(trial, out, How(chosen, jobs, resume, cluster, keep, hang_after), leaves)
+        run_cases(trial, out, How(chosen, jobs, resume, cluster, keep, hang_after, keep_going), leaves)
         return
     if jobs is not None or resume or keep or cluster:
         said = "--jobs, --resume, --keep and --cluster"
@@ -122,7 +126,7 @@ def run(
     loaded = load_trial(trial, changes=changes, origin="--set")
     loaded = loaded.failing([read_fault(text, "--fault") for text in faults or []], "--fault")
     loaded = _paced(loaded, pace).recording(record, "--record")
-    _run_trial(loaded, out, chosen, page, leaves, hang_after)
+    _run_trial(loaded, out, chosen, page, leaves, hang_after, keep_going)
 
 
 def _run_trial(
@@ -132,6 +136,7 @@ def _run_trial(
     page: Page | None,
     leaves: Leaves,
     hang_after: float | None,
+    keep_going: bool,
 ) -> None:
     print_notes(trial.notes)
     with stoppable() as stop:
@@ -143,6 +148,7 @@ def _run_trial(
                 interruptible=stop.interruptible,
                 reachable=print_reachable,
                 hang_after=hang_after,
+                keep_going=keep_going,
             )
             if page is None:
                 result = run_supervised(trial, out, engine=engine, hooks=hooks)

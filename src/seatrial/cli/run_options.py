@@ -49,6 +49,10 @@ HangAfter = Annotated[
         "real time 2 in a step and 10 at the end, else 60).",
     ),
 ]
+KeepGoing = Annotated[
+    bool,
+    typer.Option("--keep-going", help="With --hardware: go on without a link that is lost."),
+]
 Cluster = Annotated[
     str | None,
     typer.Option(

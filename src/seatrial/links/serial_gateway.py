@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 from ..component import Component, Input, Logging, Output, Parameter, Reachable, terminal
 from ..errors import InputError
 from .endpoints.budget import Budget
-from .endpoints.endpoint import Endpoint
+from .endpoints.endpoint import Endpoint, report
 from .endpoints.url import check_urls, open_endpoints, other_end
 from .safe_state import HeldChannels
 from .safe_state_bytes import UNSET, check_safe_state, require_safe_state, safe_state_bytes
@@ -89,7 +89,7 @@ class SerialGateway(Logging, Reachable, Component):
         self.tx = Outbox(self._tx).text
         self.sent, self.received = self._sent, self._received
         self.reached_at = " ".join(other_end(endpoint.url) for endpoint in self._endpoints)
-        self.exceeded = sum(endpoint.budget.exceeded for endpoint in self._endpoints)
+        report(self, self._endpoints)
 
     def close(self) -> None:
         """Send the safe-state bytes and close the links."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -57,6 +57,7 @@ class LivePage:
         title = self._manifest["trial"].get("title") or self._manifest["trial"]["name"]
         gui.add_html(f'<div style="padding:0 .8em">{escape(str(title))}</div>')
         self._state = gui.add_html("")
+        self._lost = gui.add_html("")
         self.helm = Helm(server, may_command)
         if may_command:
             self._controls = Controls(gui, self.helm, command, described, done)
@@ -107,6 +108,13 @@ class LivePage:
             "clear": lambda: f"fault {key} ended",
         }[what]()
         self._add_line(f"{number(now, 6)} s: {said}")
+
+    def lost(self, now: float, components: Sequence[str]) -> None:
+        """Show which components have lost a link; there may be none any more."""
+        said = f"link lost: {', '.join(components)}" if components else ""
+        self._add_line(f"{number(now, 6)} s: {said or 'no link is lost'}")
+        style = "padding:0 .8em;font-weight:bold;color:#c62f24"
+        self._lost.content = said and f'<div class="lost" style="{style}">{escape(said)}</div>'
 
     def refused(self, why: str) -> None:
         """Say that a command was refused, and why."""

@@ -119,6 +119,8 @@ class Session:
         elif what == "done":
             self._done.add(*content)
             page.log(*content)
+        elif what == "links":
+            page.lost(*content)
         elif what == "refused":
             page.refused(content[0])
 

@@ -28,6 +28,7 @@ from ..cosim.faults import resolved
 from ..cosim.files import validated
 from ..cosim.master import Master
 from ..errors import InputError, SimulationError
+from ..trials.lost_links import watched
 from .settables import orders_of, settables_of
 
 _FRAME_S = 1.0 / 30.0
@@ -52,6 +53,7 @@ class Tap:
     _steps: int = 0
     _next_look: float = 0.0
     _next_frame: float = 0.0
+    _lost: list[str] = field(default_factory=list)
     _faults: dict[int, Fault] = field(default_factory=dict)
 
     def begin(
@@ -61,6 +63,7 @@ class Tap:
         self._master, self._of_trial = master, pacer
         numbers = [i for i, value in enumerate(master.signals) if isinstance(value, int | float)]
         self._numbers = numbers
+        self._links = [(name, place) for name, place, _ in watched(master)]
         self._own: Pacer | None = None
         self._changed_pace(self.factor)
         described = {
@@ -81,6 +84,11 @@ class Tap:
             self._own.keep(self._master.time_ns, lambda: stop_requested() or self._looked())
         if time.perf_counter() >= self._next_look:
             self._look()
+        signals = self._master.signals
+        lost = [name for name, place in self._links if signals[place]] if self._links else []
+        if lost != self._lost:
+            self._lost = lost
+            self._send("links", seconds(self._master.time_ns), lost)
         if not self._paused:
             return
         if self._steps:

@@ -65,6 +65,8 @@ class Hooks:
     """Called with what a person should know before anything runs."""
 
     observer: Observer | None = None
+    keep_going: bool = False
+    """Whether a run that may reach devices goes on without a link that it has lost."""
     hang_after: float | None = None
     """Wall time without progress, s, after which a call is taken for hung; 0: never. None: 2 s in
     the steps of a run in real time and 10 s at its end, else 60 s."""

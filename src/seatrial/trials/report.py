@@ -18,6 +18,7 @@ from .decks import deck, pads
 from .diagram import diagram
 from .event_marks import events_of, happenings
 from .expressions import FloatArray
+from .lost_links import lost_links
 from .parameter_tables import parameter_tables, value_text
 from .plotly_js import plotly_js
 from .plots import MAX_POINTS, Line, Mark, Panel, deck_figure, time_figure, track_figure
@@ -92,6 +93,10 @@ class Port:
         return signal.removeprefix(f"{self.component}.{self.name}").lstrip(".") or self.name
 
 
+_OWN_TABLES = ("step_times", "lost_links")
+"""What ``timing.json`` has that is shown apart."""
+
+
 def write_report(
     folder: Path | str,
     library: str | None = None,
@@ -117,9 +122,10 @@ def write_report(
         verdicts=run.verdicts,
         sections=list(_sections(run)),
         parameters=list(parameter_tables(run)),
-        timing=list(_flat({k: v for k, v in run.timing.items() if k != "step_times"})),
+        timing=list(_flat({k: v for k, v in run.timing.items() if k not in _OWN_TABLES})),
         step_times=step_times(run.timing),
         pacing=pacing(run.timing),
+        lost_links=lost_links(run.timing),
         accuracy=None if convergence is None else accuracy_section(convergence),
         happenings=happenings(run),
         diagram=_diagram(run.manifest),

@@ -221,9 +221,16 @@ class _Pacing(_Entry):
     wake_ups: _Durations
 
 
+class _LostLinks(_Entry):
+    first_at: Number
+    lost_s: Number
+    reconnections: Count
+
+
 class _Timing(_Entry):
     step_times: dict[str, _Durations] = Field(default_factory=dict)
     pacing: _Pacing | None = None
+    lost_links: dict[str, _LostLinks] = Field(default_factory=dict)
 
 
 class _CaseVerdict(_Entry):

@@ -135,4 +135,6 @@ class Run:
             "real_time_factor": stepping.simulated_s / self.wall["run"],
             "step_times": {name: of.as_json() for name, of in master.step_times.items()},
         }
+        if lost := stepping.links.as_json():
+            content["lost_links"] = lost
         return content if pace is None else {**content, "pacing": pace.pacer.as_json()}

@@ -14,6 +14,7 @@ from ..cosim.master import Master
 from ..cosim.recorder import Recorder, Watched
 from .ending import ended_by
 from .hooks import Hooks
+from .lost_links import LostLinks
 from .pacing import Pace
 from .preparation import Prepared
 from .termination import TerminationConditions
@@ -49,6 +50,7 @@ class Stepping:
         self._folder = folder
         self._termination = TerminationConditions(trial, master, prepared.units)
         self._events = trial.events()
+        self.links = LostLinks(master, hooks.keep_going)
         self._shown = time.perf_counter()
         self._block = 1
         """Most steps of the next block."""
@@ -75,6 +77,7 @@ class Stepping:
                 observer.at_point(stop_requested)
             stopping = stop_requested() or (observer is not None and observer.stops)
             decided = termination.status() if may_decide else None
+            self.links.look()
             over = master.steps >= steps
             enders = master.ended()
             recorder.record(last=bool(stopping or decided or over or enders))
@@ -121,8 +124,8 @@ class Stepping:
         return [*of_rig, *self.master.notes(), *self.master.end_notes()]
 
     def pace_notes(self) -> list[str]:
-        """Return how the pace was kept, if wall time paces it."""
-        return [] if self.pace is None else [self.pace.pacer.note()]
+        """Return what depends on wall time: which links were lost, and how the pace was kept."""
+        return [*self.links.notes(), *([] if self.pace is None else [self.pace.pacer.note()])]
 
     def _advance(self, most: int) -> None:
         """Step up to the next point at which something else than recording is done."""

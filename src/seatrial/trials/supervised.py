@@ -28,11 +28,17 @@ def no_page(_folder: Path) -> None:
 
 
 def serve(
-    trials: Sequence[Trial], engine: Engine, page: Page, observer: Observer | None, child: Child
+    trials: Sequence[Trial],
+    engine: Engine,
+    page: Page,
+    observer: Observer | None,
+    keep_going: bool,
+    child: Child,
 ) -> None:
     """Carry out orders until there are no more: ``check``, ``measure``, ``run``, ``report``.
 
-    ``page`` writes the report of a run's folder, ``observer`` looks at the runs.
+    ``page`` writes the report of a run's folder, ``observer`` looks at the runs, which
+    ``keep_going`` without a lost link.
 
     Each ends with one frame: ``done`` or ``error``.
     """
@@ -41,7 +47,7 @@ def serve(
     while (orders := child.link.receive()) is not None:
         for order in orders:
             os.chdir(here)  # a component may have left it
-            hooks = _unnoted(child) if order[0] == "measure" else _hooks(child, observer)
+            hooks = _unnoted(child) if order[0] == "measure" else _hooks(child, observer, keep_going)
             child.link.send(*_carried_out(order, trials, engine, page, hooks))
             gc.collect(0)  # a trial's objects refer to each other: thousands of them would pile up
 
@@ -79,7 +85,7 @@ def _unnoted(child: Child) -> Hooks:
     return Hooks(stop_requested=child.asked, interruptible=child.interruptible, begun=child.begun)
 
 
-def _hooks(child: Child, observer: Observer | None) -> Hooks:
+def _hooks(child: Child, observer: Observer | None, keep_going: bool) -> Hooks:
     link, trace = child.link, child.call_trace
 
     def assembled(system: System, manifest: dict[str, Any]) -> None:
@@ -97,6 +103,7 @@ def _hooks(child: Child, observer: Observer | None) -> Hooks:
         interruptible=child.interruptible,
         begun=child.begun,
         observer=observer,
+        keep_going=keep_going,
     )
 
 

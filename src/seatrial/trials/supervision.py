@@ -117,8 +117,9 @@ class Supervisor:
             return
         if self._forked is None:
             preload(self._alike, self._engine)
-            observer = self._hooks.observer
-            self._forked = Forked(partial(serve, self._trials, self._engine, self._page, observer))
+            hooks = self._hooks
+            how = self._engine, self._page, hooks.observer, hooks.keep_going
+            self._forked = Forked(partial(serve, self._trials, *how))
         self._busy = True
         self._forked.call_trace.limits = _limits(self._trials[number], self._hooks.hang_after)
         self._forked.call_trace.devices = int(devices_allowed())

@@ -11,7 +11,7 @@ from ...component import NS, Component
 from ...craft.kinematics import to_body
 from ...errors import InputError
 from ..earth_field import earth_field
-from ..endpoints.endpoint import Endpoint
+from ..endpoints.endpoint import Endpoint, report
 from ..endpoints.url import other_end
 from ..parameter_validation import start_us
 from ..text import Inbox, Outbox
@@ -128,9 +128,8 @@ class Arduino(ArduinoPorts):
         """Publish pulses, levels and bytes."""
         self.tx = [Outbox(memory).text for memory in self._tx]
         self.reached_at = " ".join(other_end(each.url) for each in self._monitors.values())
-        self.exceeded = sum(each.budget.exceeded for each in self._monitors.values())
         real = self._board if isinstance(self._board, RealBoard) else None
-        self.exceeded += real.exceeded if real is not None else 0
+        report(self, [*self._monitors.values(), *(real.endpoints if real is not None else ())])
         self.on_wall_clock, self.connected = real is not None, real is None or real.connected
         self.resets, self.powered, self.steps = self._resets, not self._off, self._steps
         self.bytes_sent, self.bytes_received = self._sent, self._received

@@ -5,6 +5,7 @@ from __future__ import annotations
 import struct
 
 from ...errors import InputError
+from ..endpoints.endpoint import Endpoint
 from ..safe_state import HeldChannels
 from ..safe_state_bytes import require_safe_state, safe_state_bytes
 from .board import UART, Event, Inputs
@@ -46,17 +47,18 @@ class RealBoard:
         if not self._ports:
             raise InputError("links: the back end 'board' needs UART=URL of a serial port")
         self._held = HeldChannels(name)
-        self._held.keep(list(self._ports.values()), lambda _: self._safe_state)
+        self._hold()
 
     @property
-    def exceeded(self) -> int:
-        """In how many steps a board sent more than one takes in."""
-        return sum(port.budget.exceeded for port in self._ports.values())
+    def endpoints(self) -> list[Endpoint]:
+        """Its serial ports."""
+        return list(self._ports.values())
 
     @property
     def connected(self) -> bool:
         """Whether something has been received, and all UARTs that have sent still do."""
-        return bool(self._received) and not self._lost
+        there = not any(port.is_lost for port in self._ports.values())
+        return there and bool(self._received) and not self._lost
 
     def run(self, target: int, inputs: Inputs) -> list[Event]:
         """Send what waits and return what has come, with the time of the end of the step."""
@@ -71,7 +73,11 @@ class RealBoard:
                 self._lost.discard(uart)
                 events += [(UART, uart, byte, target) for byte in data]
         self._watch(target)
+        self._hold()
         return events
+
+    def _hold(self) -> None:
+        self._held.keep(self.endpoints, lambda _: self._safe_state)
 
     def _watch(self, now: int) -> None:
         """Send the safe-state bytes where an input is stale or a link is lost."""

@@ -8,6 +8,7 @@ from typing import Any
 
 from ...component import Component
 from ...errors import InputError, SimulationError
+from ..endpoints.endpoint import report
 from ..endpoints.udp import UdpListener
 from ..endpoints.url import open_endpoints, other_end
 from ..geodesy import Origin
@@ -121,7 +122,7 @@ class ArduPilot(ArduPilotPorts):
         self.restarts, self.repeated = lockstep.restarts, lockstep.repeated
         self.lost = lockstep.lost
         self.reached_at = other_end(lockstep.endpoint.url)
-        self.exceeded = lockstep.endpoint.budget.exceeded
+        report(self, [lockstep.endpoint])
 
     def close(self) -> None:
         """End the program, and close the port."""

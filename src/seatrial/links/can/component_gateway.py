@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 
 from ...component import NS, Component, Input, Output, Parameter, Reachable, terminal
 from ...errors import InputError
+from ..endpoints.endpoint import report
 from .frame import Frame
 from .gateway import Gateway
 from .gateway_url import check_link, open_gateway
@@ -122,7 +123,7 @@ class CanGateway(Reachable, Component):
         assert self._gateway is not None
         self.tx = CanNode(self._can).text
         self.clients, self.reached_at = self._gateway.clients, self._gateway.reached_at
-        self.exceeded = self._gateway.budget.exceeded
+        report(self, [self._gateway])
         self.frames_in, self.frames_out = self._in, self._out
         self.forgotten = self._forgotten
 

@@ -22,6 +22,10 @@ class Gateway(ABC):
 
     budget: Budget
     """What one poll takes in."""
+    is_lost = False
+    """Whether the bus was there and is gone."""
+    reconnections = 0
+    """How often it came back."""
     reached_at: str
     """What the other side opens, as it is bound: with the port's number where 0 was given."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import select
 from typing import Any
 
 import can
@@ -46,11 +47,13 @@ class PythonCanGateway(Gateway):
     def poll(self) -> list[tuple[int, Frame]]:
         """Return frames that have arrived; others than ISO 11898-1 has are passed over."""
         found: list[tuple[int, Frame]] = []
+        self.is_lost = self.is_lost or self._has_gone()
         self.budget.renew([self])
-        while self.budget.take(self, FRAME_BYTES):
+        while not self.is_lost and self.budget.take(self, FRAME_BYTES):
             try:
                 received = self._bus.recv(0.0)
-            except can.CanError:
+            except (can.CanError, OSError):
+                self.is_lost = True
                 break
             if received is None:
                 break
@@ -81,6 +84,14 @@ class PythonCanGateway(Gateway):
             self._held.release()
         with contextlib.suppress(can.CanError, OSError):
             self._bus.shutdown()
+
+    def _has_gone(self) -> bool:
+        """Return whether the adapter is unplugged, or its server gone: nothing may come then."""
+        with contextlib.suppress(can.CanError, NotImplementedError, OSError, ValueError):
+            waiting = select.poll()
+            waiting.register(self._bus.fileno(), 0)
+            return bool(waiting.poll(0))
+        return False
 
     def _put(self, sent: can.Message) -> None:
         with contextlib.suppress(can.CanError, OSError):  # full, or no receiver: it is lost

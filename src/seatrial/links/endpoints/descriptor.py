@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import select
 from collections.abc import Sequence
 
 from .budget import Budget
@@ -41,13 +42,23 @@ class DescriptorChannel(Channel):
 class DescriptorEndpoint(Endpoint):
     """One peer at a descriptor. What one poll does not take in waits in the system's queue."""
 
-    def __init__(self, descriptor: int, longest: int) -> None:
-        self._descriptor, self.budget = descriptor, Budget()
+    def __init__(self) -> None:
+        self.budget = Budget()
+
+    def connect(self, descriptor: int, longest: int) -> None:
+        """Let the peer be the one at a descriptor."""
+        self._descriptor = descriptor
         self._peers = [DescriptorChannel(descriptor, longest)]
 
     def channels(self) -> Sequence[Channel]:
         """Return the one peer, whether it is there or not."""
         return self._peers
+
+    def has_gone(self) -> bool:
+        """Return whether the other end is gone: unplugged, or closed."""
+        waiting = select.poll()
+        waiting.register(self._descriptor, 0)
+        return bool(waiting.poll(0))
 
     def poll(self) -> list[tuple[Channel, bytes]]:
         """Return what has arrived."""

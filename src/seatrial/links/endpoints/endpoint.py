@@ -32,11 +32,26 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from typing import Literal
+from typing import Any, Literal, Protocol
 
 from .budget import Budget
 
 LARGEST_DATAGRAM = 65536
+
+
+class Reached(Protocol):
+    """What a component reports of an endpoint, or of a gateway."""
+
+    budget: Budget
+    is_lost: bool
+    reconnections: int
+
+
+def report(component: Any, reached: Sequence[Reached]) -> None:
+    """Set the outputs of a `Reachable` component that say how its links do."""
+    component.exceeded = sum(each.budget.exceeded for each in reached)
+    component.link_lost = any(each.is_lost for each in reached)
+    component.reconnections = sum(each.reconnections for each in reached)
 
 
 class Channel(ABC):
@@ -66,6 +81,11 @@ class Endpoint(ABC):
 
     budget = Budget()
     """What one poll takes in: each object sets its own, unless it bounds that in another way."""
+
+    is_lost = False
+    """Whether what the URL names was there and is gone. Where peers come and go, none is lost."""
+    reconnections = 0
+    """How often it came back."""
 
     peers: Literal["named", "connected", "senders"] = "named"
     """Who they are: those that the URL names, all that connect, or all that send something."""

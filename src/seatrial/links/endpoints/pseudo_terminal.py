@@ -22,6 +22,7 @@ class PseudoTerminal(DescriptorEndpoint):
     """
 
     def __init__(self, place: str = "") -> None:
+        super().__init__()
         self._place = Path(place) if place else None
         if self._place is not None:
             _clear(self._place)
@@ -31,7 +32,7 @@ class PseudoTerminal(DescriptorEndpoint):
         self._device = os.ttyname(self._other)
         self._claim = claim(self._device)
         self.url = f"pty:{place}" if place else self._device
-        super().__init__(self._own, LONGEST_QUEUE)
+        self.connect(self._own, LONGEST_QUEUE)
         if self._place is not None:
             try:
                 self._place.symlink_to(self._device)

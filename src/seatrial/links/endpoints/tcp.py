@@ -19,6 +19,14 @@ LONGEST_QUEUE = 1 << 18
 RETRY_S = 1.0
 """Wall time between two attempts to connect."""
 
+_LIVENESS = {
+    "TCP_KEEPIDLE": 2,
+    "TCP_KEEPINTVL": 1,
+    "TCP_KEEPCNT": 3,
+    "TCP_USER_TIMEOUT": 10_000,
+}
+"""tcp(7): a connection whose peer acknowledges nothing is broken off after 10 s."""
+
 _Address = tuple[str, int]
 
 
@@ -87,6 +95,14 @@ def _read(streams: Sequence[_Stream], budget: Budget) -> list[tuple[Channel, byt
     return arrived
 
 
+def _watch(opened: socket.socket) -> None:
+    """Let the system notice that the other host is gone, where nothing comes and nothing is sent."""
+    opened.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
+    for option, value in _LIVENESS.items():
+        if hasattr(socket, option):  # Linux's
+            opened.setsockopt(socket.IPPROTO_TCP, getattr(socket, option), value)
+
+
 class TcpServer(Endpoint):
     """Accepts clients, up to `MOST_CLIENTS` at once."""
 
@@ -151,7 +167,9 @@ class TcpClient(Endpoint):
         """Connect if there is no connection, and return what has arrived."""
         if self._stream is None or not self._stream.is_open:
             self._connect()
-        return _read([self._stream] if self._stream is not None else [], self.budget)
+        arrived = _read([self._stream] if self._stream is not None else [], self.budget)
+        self.is_lost = self._stream is not None and not self._stream.is_open
+        return arrived
 
     def close(self) -> None:
         """Close the connection."""
@@ -167,8 +185,10 @@ class TcpClient(Endpoint):
             self._tried = now
             self._connecting = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
             self._connecting.setblocking(False)
+            _watch(self._connecting)
         result = self._connecting.connect_ex(self._address)
         if result in (0, errno.EISCONN):
+            self.reconnections += self._stream is not None
             self._stream, self._connecting = _Stream(self._connecting), None
         elif result not in (errno.EINPROGRESS, errno.EALREADY, errno.EWOULDBLOCK):
             self._give_up()

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from ...errors import InputError
 from ...sampled import Sampled
+from ..endpoints.endpoint import report
 from ..endpoints.url import open_endpoints, other_end
 from ..geodesy import Origin
 from ..parameter_validation import serial_number, start_us, value_names, version, whole_number
@@ -175,7 +176,7 @@ class Mavlink(MavlinkPorts):
         self.failsafe_active, self.ground_stations = vehicle.failsafe, vehicle.stations
         self.reached_at = " ".join(other_end(url) for url in self.urls)
         assert self._transport is not None
-        self.exceeded = sum(each.budget.exceeded for each in self._transport.endpoints)
+        report(self, self._transport.endpoints)
 
     def update(self, t: float, k: int) -> None:
         """Take in what has arrived, and send what is due."""

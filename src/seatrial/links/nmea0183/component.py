@@ -10,7 +10,7 @@ from weakref import WeakKeyDictionary
 from ...component import NS
 from ...errors import InputError
 from ...sampled import Sampled
-from ..endpoints.endpoint import Channel, Endpoint
+from ..endpoints.endpoint import Channel, Endpoint, report
 from ..endpoints.url import open_endpoints, other_end
 from ..geodesy import Origin
 from ..leg import LegStatus, leg_status
@@ -114,7 +114,7 @@ class Nmea0183(Nmea0183Ports):
         self.cross_track = reported.cross_track or 0.0
         self.waypoint, self.arrived = reported.waypoint or "", bool(reported.arrived)
         self.reached_at = " ".join(other_end(each.url) for each in self._endpoints)
-        self.exceeded = sum(each.budget.exceeded for each in self._endpoints)
+        report(self, self._endpoints)
 
     def update(self, t: float, k: int) -> None:
         """Take in what has arrived, and send what is due."""

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from ...component import Component
 from ...errors import InputError, SimulationError
+from ..endpoints.endpoint import report
 from ..endpoints.tcp import TcpServer
 from ..endpoints.url import open_endpoints, other_end
 from ..mavlink.parameters_servo import Servo, read_servos
@@ -147,7 +148,7 @@ class Px4(Px4Ports):
         )
         self.restarts, self.missed = max(0, lockstep.connections - 1), lockstep.missed
         self.reached_at = other_end(lockstep.endpoint.url)
-        self.exceeded = lockstep.endpoint.budget.exceeded
+        report(self, [lockstep.endpoint])
 
     def close(self) -> None:
         """End the program, and close the port."""
