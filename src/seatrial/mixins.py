@@ -67,6 +67,4 @@ class Reachable:
         "1", "whether a link that was there is lost: unplugged, or its peer gone", type=bool,
         role="link-lost",
     )  # fmt: skip
-    reconnections = Output(
-        "1", "times that a lost link came back", type=int, role="reconnections"
-    )
+    reconnections = Output("1", "times that a lost link came back", type=int, role="reconnections")

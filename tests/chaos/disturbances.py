@@ -85,13 +85,13 @@ def jump(episode: Episode, chance: random.Random) -> None:
 
 
 def suspend(episode: Episode, chance: random.Random) -> None:
-    """Stop a process for a while, and let it go on."""
+    """Stop a process for a while, and let it go on before its run is taken for hung."""
     every = [pid for each in episode.processes().values() for pid in each]
     if every:
         pid = chance.choice(sorted(every))
         with suppress(ProcessLookupError):
             os.kill(pid, signal.SIGSTOP)
-            time.sleep(chance.uniform(0.05, 2.0))
+            time.sleep(chance.uniform(0.05, 1.0))
             os.kill(pid, signal.SIGCONT)
 
 

@@ -84,7 +84,15 @@ HANGING_RIG = f"""{RIG}
 fmu = "hanger.py:Hanger"
 set = {{{{ how = "{{how}}", where = "{{where}}" }}}}
 """
-NAMESPACE = ["unshare", "--user", "--map-root-user", "--pid", "--fork", "--kill-child", "--mount-proc"]
+NAMESPACE = [
+    "unshare",
+    "--user",
+    "--map-root-user",
+    "--pid",
+    "--fork",
+    "--kill-child",
+    "--mount-proc",
+]
 ENGINES = ["direct", pytest.param("fmu", marks=pytest.mark.interop)]
 
 Start = Callable[..., subprocess.Popen[str]]
@@ -220,7 +228,9 @@ def test_a_hang_without_hardware_ends_the_run(write, tmp_path: Path) -> None:
     arguments = ("--engine", "direct", "--hang-after", "0.5", "--out", "run")
     done = seatrial("run", "trial.toml", *arguments, cwd=tmp_path)
     assert done.returncode == 3
-    assert "hanger: its step at t = 0.29 s hung: no progress for 0.5 s (--hang-after)" in done.stderr
+    assert (
+        "hanger: its step at t = 0.29 s hung: no progress for 0.5 s (--hang-after)" in done.stderr
+    )
     lines = (tmp_path / "run" / "signals.csv").read_text().splitlines()
     assert len(lines) == 31
     refused = seatrial("run", "trial.toml", "--hardware", "--hang-after", "0", cwd=tmp_path)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import socket
 import threading
 import time
 from collections.abc import Iterator
@@ -238,7 +239,7 @@ def test_the_page_is_told_of_a_lost_link(write, tmp_path: Path) -> None:
         link = f"tcpout:127.0.0.1:{server.getsockname()[1]}"
         port = f'{{ fmu = "serial-gateway", set = {{ links = "{link}" }} }}'
         write("rig.toml", f'step = "10 ms"\n[components]\nport = {port}\n')
-        trial = load_trial(write("trial.toml", 'rig = "rig.toml"\nstop = "1000 s"\n'))
+        trial = load_trial(str(write("trial.toml", 'rig = "rig.toml"\nstop = "1000 s"\n')))
         page = Page(trial, tmp_path / "run", factor=1.0)
         with page:
             server.accept()[0].close()

@@ -117,7 +117,9 @@ def run(
         for refusal, given in of_trials.items():
             if given:
                 raise InputError(refusal)
-        run_cases(trial, out, How(chosen, jobs, resume, cluster, keep, hang_after, keep_going), leaves)
+        run_cases(
+            trial, out, How(chosen, jobs, resume, cluster, keep, hang_after, keep_going), leaves
+        )
         return
     if jobs is not None or resume or keep or cluster:
         said = "--jobs, --resume, --keep and --cluster"

@@ -19,7 +19,7 @@ from typing import Any
 from .endpoints.endpoint import Channel, Endpoint
 
 ENVIRONMENT = "SEATRIAL_SAFE_STATE"
-"""Environment variable with the number of the socket's descriptor; without it there is no keeper."""
+"""Environment variable with the number of the socket's descriptor; without it nobody keeps."""
 
 _NUMBER_BITS = 63
 

@@ -20,6 +20,7 @@ import sys
 import time
 import warnings
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import NoReturn
 
@@ -211,7 +212,7 @@ def _close_others(*kept: int) -> None:
         if stream not in kept:
             os.dup2(nothing, stream)
     edges = [2, *sorted(kept), os.sysconf("SC_OPEN_MAX")]
-    for before, after in zip(edges, edges[1:], strict=False):
+    for before, after in pairwise(edges):
         os.closerange(before + 1, after)
 
 

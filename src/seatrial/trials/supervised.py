@@ -47,7 +47,8 @@ def serve(
     while (orders := child.link.receive()) is not None:
         for order in orders:
             os.chdir(here)  # a component may have left it
-            hooks = _unnoted(child) if order[0] == "measure" else _hooks(child, observer, keep_going)
+            measures = order[0] == "measure"
+            hooks = _unnoted(child) if measures else _hooks(child, observer, keep_going)
             child.link.send(*_carried_out(order, trials, engine, page, hooks))
             gc.collect(0)  # a trial's objects refer to each other: thousands of them would pile up
 

@@ -96,7 +96,7 @@ def _read(streams: Sequence[_Stream], budget: Budget) -> list[tuple[Channel, byt
 
 
 def _watch(opened: socket.socket) -> None:
-    """Let the system notice that the other host is gone, where nothing comes and nothing is sent."""
+    """Let the system notice that the other host is gone, where nothing comes or is sent."""
     opened.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
     for option, value in _LIVENESS.items():
         if hasattr(socket, option):  # Linux's
