@@ -57,7 +57,9 @@ class Forked:
         _fill_standard_streams()
         self.call_trace, self.sent = CallTrace(), list[str]()
         ours, theirs = socket.socketpair()
-        states, (alarm, self._alarm) = SafeStates(), os.pipe2(os.O_NONBLOCK | os.O_CLOEXEC)
+        states, (alarm, self._alarm) = SafeStates(), os.pipe()
+        for end in (alarm, self._alarm):
+            os.set_blocking(end, False)
         self._stack = tempfile.TemporaryFile()  # noqa: SIM115  it lives as long as the child
         parent = os.getpid()
         # A handler of this process must not run in the others.

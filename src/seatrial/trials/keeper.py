@@ -49,7 +49,6 @@ class Keeper:
 
     def __init__(self, run: int, states: SafeStates, trace: CallTrace, alarm: int) -> None:
         self._ours, theirs = socket.socketpair()
-        self._unread = b""
         self.is_gone = False
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", DeprecationWarning)  # of other threads
@@ -58,6 +57,8 @@ class Keeper:
             _begin(run, states, trace, alarm, theirs)
         os.waitpid(between, 0)  # so that it is nobody's child, whom somebody might kill with it
         theirs.close()
+        number, _, self._unread = self._ours.recv(_LONGEST).partition(b"\n")
+        self._pid = int(number or 0)
 
     def fileno(self) -> int:
         """Return the descriptor to wait at."""
@@ -84,8 +85,11 @@ class Keeper:
         return lines
 
     def close(self) -> None:
-        """Close this end."""
+        """Close this end; process 1 of a container is who adopted the keeper, and reaps it."""
         self._ours.close()
+        if self.is_gone and self._pid:
+            with contextlib.suppress(ChildProcessError):
+                os.waitpid(self._pid, 0)
 
 
 class _Watch:
@@ -131,6 +135,7 @@ def _begin(
         os.setsid()
         if os.fork():
             os._exit(0)
+        control.sendall(b"%d\n" % os.getpid())
         gc.disable()  # what it looks through, it would copy: the memory is shared
         heeded = [each for each in ASKING if signal.getsignal(each) != signal.SIG_IGN]
         for number in (*ASKING, signal.SIGPIPE):
