@@ -18,7 +18,7 @@ import warnings
 from collections.abc import Callable
 from itertools import takewhile
 from pathlib import Path
-from typing import ClassVar, NoReturn
+from typing import Any, ClassVar, NoReturn
 
 from ..fmi.exit_status import how_ended
 from ..links.safe_state import ENVIRONMENT
@@ -53,7 +53,8 @@ class Forked:
     _others: ClassVar[set[Forked]] = set()
     """Those that live: a copy of this process must not keep their ends open."""
 
-    def __init__(self, body: Callable[[Child], None]) -> None:
+    def __init__(self, body: Callable[[Child], None], *first: Any) -> None:
+        """Start ``body``, which finds the frame ``first`` there, if it is not empty."""
         _fill_standard_streams()
         self.call_trace, self.sent = CallTrace(), list[str]()
         ours, theirs = socket.socketpair()
@@ -73,12 +74,14 @@ class Forked:
                 os.close(alarm)
                 self._be_child(body, Link(theirs), parent, mask, states)
             theirs.close()
+            self.link = Link(ours)
+            if first:
+                self.link.send(*first)  # it begins while there is no keeper yet
             self._keeper = Keeper(self._pid, states, self.call_trace, alarm)
         finally:
             signal.pthread_sigmask(signal.SIG_SETMASK, mask)
         states.close()
         os.close(alarm)
-        self.link = Link(ours)
         self._waiting = select.poll()
         self._waiting.register(self.link.fileno(), select.POLLIN)
         self._waiting.register(self._keeper.fileno(), select.POLLIN)

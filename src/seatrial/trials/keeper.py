@@ -49,7 +49,7 @@ class Keeper:
 
     def __init__(self, run: int, states: SafeStates, trace: CallTrace, alarm: int) -> None:
         self._ours, theirs = socket.socketpair()
-        self.is_gone = False
+        self._unread, self.is_gone = b"", False
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", DeprecationWarning)  # of other threads
             between = os.fork()
@@ -57,8 +57,7 @@ class Keeper:
             _begin(run, states, trace, alarm, theirs)
         os.waitpid(between, 0)  # so that it is nobody's child, whom somebody might kill with it
         theirs.close()
-        number, _, self._unread = self._ours.recv(_LONGEST).partition(b"\n")
-        self._pid = int(number or 0)
+        self._pid = 0
 
     def fileno(self) -> int:
         """Return the descriptor to wait at."""
@@ -72,6 +71,8 @@ class Keeper:
             data = b""
         self.is_gone = not data
         *lines, self._unread = (self._unread + data).split(b"\n")
+        if lines and not self._pid:
+            self._pid = int(lines.pop(0))
         return [line.decode() for line in lines]
 
     def finish(self) -> list[str]:

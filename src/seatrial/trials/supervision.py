@@ -115,15 +115,18 @@ class Supervisor:
         self._order = what, number, folder, changes
         if _IN_PROCESS:
             return
+        order = what, number, None if folder is None else str(folder), changes
+        begins = self._forked is None
         if self._forked is None:
             preload(self._alike, self._engine)
             hooks = self._hooks
             how = self._engine, self._page, hooks.observer, hooks.keep_going
-            self._forked = Forked(partial(serve, self._trials, *how))
+            self._forked = Forked(partial(serve, self._trials, *how), *order)
         self._busy = True
         self._forked.call_trace.limits = _limits(self._trials[number], self._hooks.hang_after)
         self._forked.call_trace.devices = int(devices_allowed())
-        self._forked.link.send(what, number, None if folder is None else str(folder), changes)
+        if not begins:
+            self._forked.link.send(*order)
 
     def descriptors(self) -> tuple[int, ...]:
         """Return what can be waited at until `poll` may find something."""
