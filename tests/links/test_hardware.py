@@ -181,6 +181,7 @@ def test_nothing_else_opens_sockets_or_ports():
         "links/own_terminals.py",
         "links/safe_state.py",
         "trials/forked.py",
+        "trials/keeper.py",
         "trials/link.py",
     }
     opened_before = {"links/safe_state_keeper.py", "links/can/safe_state.py"}

@@ -234,7 +234,7 @@ def test_what_can_be_set_is_named_with_unit_and_limits(tmp_path: Path) -> None:
         assert "vehicle.port_thruster.pulse" not in keys  # the autopilot feeds it
 
 
-def test_the_page_is_told_of_a_lost_link(write, tmp_path: Path) -> None:
+def test_the_page_gets_a_lost_link(write, tmp_path: Path) -> None:
     with socket.create_server(("127.0.0.1", 0)) as server:
         link = f"tcpout:127.0.0.1:{server.getsockname()[1]}"
         port = f'{{ fmu = "serial-gateway", set = {{ links = "{link}" }} }}'

@@ -13,6 +13,10 @@ import time
 from dataclasses import dataclass
 from typing import Any
 
+with contextlib.suppress(ImportError):  # not on Windows; a copy of a process imports nothing
+    import fcntl
+    import termios
+
 _SEND_S = 1.0
 """Wall time that one safe state may take to be sent."""
 _BUS_S = 5.0
@@ -218,9 +222,6 @@ def _data(message: dict[str, Any], descriptor: int) -> bool:
 
 def _empty(line: int) -> None:
     """Let a line take what is queued for it, and drop the rest: orders that nobody is to get."""
-    import fcntl
-    import termios
-
     deadline = time.monotonic() + _QUEUE_S
     while time.monotonic() < deadline:
         queued = fcntl.ioctl(line, termios.TIOCOUTQ, b"\0\0\0\0")

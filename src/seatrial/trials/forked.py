@@ -86,7 +86,7 @@ class Forked:
         self._waiting.register(self.link.fileno(), select.POLLIN)
         self._waiting.register(self._keeper.fileno(), select.POLLIN)
         self._status: int | None = None
-        self._told, self._asked_at, self._to_end_by = 0, math.inf, math.inf
+        self._ordered, self._asked_at, self._to_end_by = 0, math.inf, math.inf
         self._others.add(self)
 
     def descriptors(self) -> tuple[int, int]:
@@ -169,8 +169,8 @@ class Forked:
             self._asked_at = min(self._asked_at, now)
         if now > self._asked_at + _URGENT_S:
             level = 2
-        if level > self._told:
-            self._told = trace.asked = level
+        if level > self._ordered:
+            self._ordered = trace.asked = level
             trace.orders += 1
             os.kill(self._pid, ORDER)
             if level > 1:

@@ -223,7 +223,7 @@ def _close_others(*kept: int) -> None:
 
 
 def _name() -> None:
-    """Be told from the others: who kills those by their names means not this one."""
+    """Be distinguished from the others: who kills those by their names means not this one."""
     if sys.platform != "linux":
         return
     ctypes.CDLL(None).prctl(_PR_SET_NAME, _TITLE)
