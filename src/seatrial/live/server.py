@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import errno
 import functools
 import secrets
+import socket
 import threading
 from collections.abc import Callable
 from typing import Any, ClassVar
@@ -30,7 +32,8 @@ class PageServer(viser.ViserServer):
     _starting: ClassVar = threading.Lock()
 
     def __init__(self, port: int = 0, token: str | None = None) -> None:
-        """Listen at a port, 0 for any that is free. Raises InputError if it is taken."""
+        """Listen at a port, 0 for any that is free. Raises InputError, as `check_port`."""
+        check_port(port)
         self.token = token or secrets.token_urlsafe(16)
         rich.get_console().quiet = True  # viser says where it is, without the token
         self.gate = Gate(self.token, self._widget)
@@ -38,9 +41,10 @@ class PageServer(viser.ViserServer):
         behind = functools.partial(_serve, serve, self.gate)
         with self._starting, mock.patch.object(websockets.asyncio.server, "serve", behind):
             super().__init__(host=LOOPBACK, port=port, verbose=False)
-        if port and self.get_port() != port:
+        if port and self.get_port() != port:  # taken since it was checked: viser takes another one
             self.stop()
-            raise InputError(f"--port: port {port} of {LOOPBACK} is taken")
+            check_port(port)
+            raise InputError(f"--port: port {port} of {LOOPBACK} was taken while the page started")
 
     @property
     def address(self) -> str:
@@ -59,6 +63,18 @@ class PageServer(viser.ViserServer):
     def request_share_url(self, verbose: bool = True) -> str | None:
         """Refuse to: viser would let others in by a server of its makers."""
         return None
+
+
+def check_port(port: int) -> None:
+    """Raise InputError for a port that cannot be listened at now; 0 is any that is free."""
+    try:
+        socket.create_server((LOOPBACK, port)).close()
+    except OSError as error:
+        taken = error.errno == errno.EADDRINUSE
+        why = "is taken" if taken else f"cannot be had ({error.strerror})"
+        raise InputError(
+            f"--port: port {port} of {LOOPBACK} {why}; 0 is any that is free"
+        ) from None
 
 
 def look(gui: Any, *, dark: bool = False) -> None:

@@ -13,10 +13,11 @@ from typing import Any
 
 import numpy as np
 
+from ..errors import InputError
 from ..trials.trial import Trial
 from .by_hand import ByHand
 from .live_page import LivePage
-from .server import PageServer
+from .server import PageServer, check_port
 from .tap import Tap
 
 _POLL_S = 0.02
@@ -30,11 +31,15 @@ class Session:
     Give `observer` of a run to its hooks, and run it inside a ``with`` block; the server is there
     from the first step to the end of the block. ``announce`` is called with the address, once.
     ``restart_seed`` is the seed that the page wants the trial to begin anew with, or None.
+
+    Raises InputError for a port that is taken: before the run begins, or, where somebody takes the
+    port meanwhile, at the end of the block; the run is stopped then.
     """
 
     def __init__(
         self, announce: Callable[[str], None], port: int = 0, *, may_command: bool = True
     ) -> None:
+        check_port(port)
         self._announce, self._port, self._token = announce, port, ""
         self._may_command = may_command
         self._pace: float | None = 1.0
@@ -53,6 +58,7 @@ class Session:
 
     def __enter__(self) -> Session:
         self._over = threading.Event()
+        self._failure: InputError | None = None
         self._folder: Path | None = None
         self._thread = threading.Thread(target=self._serve, daemon=True)
         self._thread.start()
@@ -70,6 +76,8 @@ class Session:
         self.observer.pipe.close()
         if self._done and self._folder is not None and self._folder.is_dir():
             (self._folder / "by-hand.toml").write_text(self._done.text(), "utf-8")
+        if self._failure is not None and error is None:
+            raise self._failure
 
     # ------------------------------------------------------------------ inside
 
@@ -85,7 +93,12 @@ class Session:
                 break
         else:
             return
-        server = PageServer(self._port, self._token or None)
+        try:
+            server = PageServer(self._port, self._token or None)
+        except InputError as failure:
+            self._failure = failure
+            self._command("stop")
+            return
         if not self._token:
             self._announce(server.address)
         self._port, self._token = server.get_port(), server.token

@@ -14,7 +14,7 @@ from ...errors import InputError
 from ..bundle_name import bundle_name
 from ..cache import cache_folder, write_named
 from ..source import ComponentSource
-from .carriers import checked
+from .carriers import checked, refuse
 from .compiler import FLAGS, HERE, library_here, require_compiler
 from .export import build_native_fmu
 from .tables import is_built_in
@@ -31,6 +31,7 @@ def native_fmu(source: ComponentSource, values: Mapping[str, Any] | None = None)
     Raises InputError, with the reason, for a component that has no C, values that it cannot
     start with or that cannot be built in, and without a compiler.
     """
+    refuse(source)
     require_compiler()
     cls = source.component_class()
     given = values or {}

@@ -5,6 +5,7 @@ from __future__ import annotations
 from ...component import Component
 from ...errors import InputError, SimulationError
 from ...plant import Plant
+from ..source import ComponentSource
 from . import equations
 from .tables import words_of
 from .translation.domain import TranslationError
@@ -43,8 +44,18 @@ def why_refused(cls: type[Component]) -> str:
     return f"its ports {', '.join(texts)} are texts" if texts else ""
 
 
+def refuse(source: ComponentSource) -> None:
+    """Raise InputError for a component that cannot be native, before there is one.
+
+    One that reaches outside the simulation is refused by its class: to start it, as `checked`
+    does, would open its links.
+    """
+    if why := why_refused(source.component_class()):
+        raise InputError(f"{source.origin} cannot be native: {why}")
+
+
 def checked(component: Component, name: str) -> None:
-    """Start a component, which makes all its checks, with the values that it has.
+    """Start a component that `refuse` lets pass, which makes all its checks, and close it.
 
     Raises InputError for values that it cannot start with.
     """
@@ -53,3 +64,5 @@ def checked(component: Component, name: str) -> None:
         component.initialise()
     except SimulationError as error:
         raise InputError(f"{name}: {error}") from None
+    finally:
+        component.close()

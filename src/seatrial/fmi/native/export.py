@@ -14,7 +14,6 @@ import fmpy
 
 from ... import __version__
 from ...component import Component
-from ...errors import InputError
 from ...plant import Plant
 from ..cache import write_named
 from ..description import describe
@@ -22,7 +21,7 @@ from ..export import described_files, zipped
 from ..source import ComponentSource
 from ..version3.description import build_description
 from ..version3.sources import front_sources
-from .carriers import checked, why_refused
+from .carriers import checked, refuse
 from .compiler import HERE, SEMANTICS, TARGETS, TUPLES, library
 from .equations import header as plant_header
 from .equations import model, started
@@ -54,9 +53,7 @@ def build_native_fmu(
     with, for a difference from the Python, and without a compiler; nothing is written then.
     """
     cls = source.component_class()
-    why = why_refused(cls)
-    if why:
-        raise InputError(f"{source.origin} cannot be native: {why}")
+    refuse(source)
     sources, own = _sources(partial(_made, source, start_values or {}), source.origin)
     if version == 3:
         sources |= front_sources()

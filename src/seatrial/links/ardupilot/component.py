@@ -120,7 +120,7 @@ class ArduPilot(ArduPilotPorts):
         self.connected = frame is not None
         self.frame_rate = 0.0 if frame is None else float(frame.rate)
         self.restarts, self.repeated = lockstep.restarts, lockstep.repeated
-        self.lost = lockstep.lost
+        self.lost, self.frames_refused = lockstep.lost, lockstep.refused
         self.reached_at = other_end(lockstep.endpoint.url)
         report(self, [lockstep.endpoint])
 

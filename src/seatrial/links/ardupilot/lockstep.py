@@ -81,6 +81,7 @@ class Lockstep:
     def _take_in(self) -> None:
         for channel, data in self.endpoint.poll():
             frame = read_frame(data)
+            self.refused += frame is None
             if frame is not None and self._is_ours(channel, frame):
                 self._received_at = self._clock()
                 self._receive(channel, frame)

@@ -82,6 +82,7 @@ class ArduPilotPorts(Logging, Reachable, TrueMotion):
     frame_rate = Output("Hz", "frames per second that the firmware expects")
     restarts = Output("1", "times that the firmware began again", type=int)
     repeated = Output("1", "frames that the firmware repeated", type=int)
+    frames_refused = Output("1", "datagrams that are no frame, or another's", type=int)
     lost = Output("1", "frames that were never received", type=int)
 
     terminals: ClassVar = {

@@ -43,8 +43,8 @@ class CanGateway(Reachable, Component):
     a client has to wait too.
 
     ``clients`` is how many are connected, ``frames_in`` what came in, ``frames_out`` what went
-    out, ``forgotten`` what came in and was not confirmed in 5 s: the node is off the bus, or
-    never gets its turn.
+    out, ``frames_refused`` what came and was no frame, ``forgotten`` what came in and was not
+    confirmed in 5 s: the node is off the bus, or never gets its turn.
 
     ``safe_state`` are frames, as candump writes them, that are sent when it closes, and by whoever
     supervises the run if that ends without closing it: what stops the thrusters of a real vehicle.
@@ -71,6 +71,7 @@ class CanGateway(Reachable, Component):
     clients = Output("1", "clients connected", type=int)
     frames_in = Output("1", "frames from outside", type=int)
     frames_out = Output("1", "frames to the outside", type=int)
+    frames_refused = Output("1", "lines and frames from outside that are none", type=int)
     forgotten = Output("1", "frames from outside that were never confirmed", type=int)
 
     terminals: ClassVar = {"bus": terminal("tx", "rx")}
@@ -125,7 +126,7 @@ class CanGateway(Reachable, Component):
         self.clients, self.reached_at = self._gateway.clients, self._gateway.reached_at
         report(self, [self._gateway])
         self.frames_in, self.frames_out = self._in, self._out
-        self.forgotten = self._forgotten
+        self.forgotten, self.frames_refused = self._forgotten, self._gateway.refused
 
     def close(self) -> None:
         """Send the frames of the safe state and close the gateway."""

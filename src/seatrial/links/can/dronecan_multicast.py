@@ -106,7 +106,7 @@ class DroneCanMulticastGateway(Gateway):
         return len(self._senders)
 
     def poll(self) -> list[tuple[int, Frame]]:
-        """Return frames that have arrived, with their senders; other datagrams are passed over."""
+        """Return frames that have arrived, with their senders; other datagrams are counted."""
         found: list[tuple[int, Frame]] = []
         own = self._sending.getsockname()
         self.budget.renew(self._senders)
@@ -115,7 +115,10 @@ class DroneCanMulticastGateway(Gateway):
                 datagram, sender = self._receiving.recvfrom(_LONGEST)
             except OSError:
                 break
-            frame = unpacked(datagram) if sender != own else None
+            if sender == own:
+                continue
+            frame = unpacked(datagram)
+            self.refused += frame is None
             if frame is not None and self.budget.take(sender, FRAME_BYTES):
                 found.append((self._number(sender), frame))
         return found

@@ -26,6 +26,8 @@ class Gateway(ABC):
     """Whether the bus was there and is gone."""
     reconnections = 0
     """How often it came back."""
+    refused = 0
+    """Lines, datagrams and frames from outside that were none."""
     reached_at: str
     """What the other side opens, as it is bound: with the port's number where 0 was given."""
 

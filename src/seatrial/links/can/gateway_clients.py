@@ -24,17 +24,21 @@ class Client(ABC):
     def __init__(self, channel: Channel) -> None:
         self._channel = channel
         self._unread = b""
+        self.refused = 0
+        """Lines that were not understood, and texts without an end."""
 
     def receive(self, data: bytes) -> list[Frame]:
         """Take in bytes; return the frames among them, and answer the rest."""
         *lines, self._unread = (self._unread + data).split(self.end)
         if len(self._unread) > LONGEST_LINE:
             self._unread = b""
+            self.refused += 1
         found = []
         for line in lines:
             try:
                 frame = self.read(line.decode("ascii", "replace"))
             except (InputError, ValueError, IndexError):
+                self.refused += 1
                 self.refuse()
                 continue
             if frame is not None:
@@ -109,7 +113,10 @@ class ClientsGateway(Gateway):
         self._greet([*self._endpoint.channels(), *(channel for channel, _ in arrived)])
         found = []
         for channel, data in arrived:
-            frames = self._clients[channel].receive(data)
+            client = self._clients[channel]
+            before = client.refused
+            frames = client.receive(data)
+            self.refused += client.refused - before
             found += [(self._numbers[channel], frame) for frame in frames]
         self._forget(
             self._endpoint.channels()

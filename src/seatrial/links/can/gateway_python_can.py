@@ -7,6 +7,7 @@ import select
 from typing import Any
 
 import can
+from can.interfaces.slcan import slcanBus
 
 from ...errors import InputError
 from ..endpoints.budget import Budget
@@ -45,22 +46,24 @@ class PythonCanGateway(Gateway):
         return 1
 
     def poll(self) -> list[tuple[int, Frame]]:
-        """Return frames that have arrived; others than ISO 11898-1 has are passed over."""
+        """Return frames that have arrived; what is no frame of ISO 11898-1 is counted."""
         found: list[tuple[int, Frame]] = []
         self.is_lost = self.is_lost or self._has_gone()
         self.budget.renew([self])
         while not self.is_lost and self.budget.take(self, FRAME_BYTES):
             try:
                 received = self._bus.recv(0.0)
+                if received is None:
+                    break
+                frame = frame_of(received)
             except (can.CanError, OSError):
                 self.is_lost = True
                 break
-            if received is None:
-                break
-            with contextlib.suppress(InputError):
-                frame = frame_of(received)
-                if frame is not None:
-                    found.append((0, frame))
+            except Exception:  # drivers let pass what their parsers meet in a garbled line
+                self._refuse()
+                continue
+            if frame is not None:
+                found.append((0, frame))
         return found
 
     def send(self, time_ns: int, frame: Frame, sender: int | None = None) -> None:
@@ -92,6 +95,13 @@ class PythonCanGateway(Gateway):
             waiting.register(self._bus.fileno(), 0)
             return bool(waiting.poll(0))
         return False
+
+    def _refuse(self) -> None:
+        """Count what was no frame, and let a driver forget the rest of it."""
+        self.refused += 1
+        if isinstance(self._bus, slcanBus):  # it keeps a line that is no text, and all after it
+            with contextlib.suppress(can.CanError, OSError):
+                self._bus.flush()
 
     def _put(self, sent: can.Message) -> None:
         with contextlib.suppress(can.CanError, OSError):  # full, or no receiver: it is lost

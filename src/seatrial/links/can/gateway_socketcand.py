@@ -103,8 +103,8 @@ class _Client(Client):
     def read(self, line: str) -> Frame | None:
         command, *words = line.strip().lstrip("<").split()
         if command not in _COMMANDS[self._mode]:
-            self.refuse()
-        elif command in _MODES:
+            raise ValueError("unknown command")
+        if command in _MODES:
             self._enter(_MODES[command])
         elif command in _SENDS:
             return _frame(command, words)

@@ -92,6 +92,7 @@ class GroundStation(Waypoints, Sampled):
     mode = Output("1", "the vehicle's mode, its custom_mode", type=int)
     under_way = Output("1", "whether the mission was started", type=bool)
     reached = Output("1", "number of the last waypoint that the vehicle took for reached", type=int)
+    frames_refused = Output("1", "frames received that are no message", type=int)
     failsafe = Output("1", "whether the vehicle had a failsafe or left its mission", type=bool)
 
     feedthrough: ClassVar = {}
@@ -106,7 +107,7 @@ class GroundStation(Waypoints, Sampled):
     def reset(self, t: float) -> None:
         """Open the link, if there is one."""
         self.close()
-        self._places = self.waypoints()
+        self._places, self._refused = self.waypoints(), 0
         self._channel: Channel | None = None
         self._started: Dialect | None = None
         self._begin()
@@ -122,6 +123,7 @@ class GroundStation(Waypoints, Sampled):
         self.doing, self.under_way = self._doing, self._started is not None
         self.armed, self.mode = self._armed, self._mode
         self.reached, self.failsafe = self._reached, self._failsafe
+        self.frames_refused = self._refused
 
     def update(self, t: float, k: int) -> None:
         """Take in what came, and go on."""
@@ -182,7 +184,10 @@ class GroundStation(Waypoints, Sampled):
                 self._begin()  # a vehicle that was started again
                 self._conversation.now = t
             self._channel = channel
-            for message in self._codec.decode(data):
+            before = self._codec.unusable
+            messages = self._codec.decode(data)
+            self._refused += self._codec.unusable - before
+            for message in messages:
                 if self._conversation.take(message):
                     self._note(message)
 

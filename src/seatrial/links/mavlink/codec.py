@@ -41,6 +41,11 @@ class Codec:
         self.duplicated = 0
         """Frames with the number of the one before."""
 
+    @property
+    def unusable(self) -> int:
+        """Frames and runs of bytes of which nothing came through."""
+        return self.bad + self.refused
+
     def encode(self, message: Message) -> bytes:
         """Return a message as the next frame of the sequence."""
         if self._mav.guard is not None:

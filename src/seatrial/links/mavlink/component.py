@@ -176,6 +176,7 @@ class Mavlink(MavlinkPorts):
         self.failsafe_active, self.ground_stations = vehicle.failsafe, vehicle.stations
         self.reached_at = " ".join(other_end(url) for url in self.urls)
         assert self._transport is not None
+        self.frames_refused = self._transport.refused
         report(self, self._transport.endpoints)
 
     def update(self, t: float, k: int) -> None:

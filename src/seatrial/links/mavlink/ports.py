@@ -205,6 +205,7 @@ class MavlinkPorts(Logging, Reachable, TrueMotion, Sampled):
     failure = Output("1", "failure of each unit, none without", axes=UNITS, type=str, start="none")
     speedup = Output("1", "simulated time per wall time that is wanted", start=1.0)
     paused = Output("s", "wall time that it stood still")
+    frames_refused = Output("1", "frames received that are no message, or not signed", type=int)
     ground_stations = Output("1", "number of ground stations that are there", type=int)
 
     terminals: ClassVar = {

@@ -75,6 +75,8 @@ class EndpointTransport:
         self._log = log
         self._links: dict[Channel, Link] = {}
         self._made = 0
+        self.refused = 0
+        """Frames and runs of bytes that were no message, or had no signature that holds."""
         self._held = HeldChannels(name)
         self._kept_for, self._kept_until = set[Channel](), 0.0
 
@@ -88,7 +90,9 @@ class EndpointTransport:
         for endpoint in self.endpoints:
             for channel, data in endpoint.poll():
                 link = self._link(channel, endpoint)
+                before = link.codec.unusable
                 messages = link.codec.decode(data)
+                self.refused += link.codec.unusable - before
                 endpoint.budget.charge(channel, len(messages), MESSAGE_COST)
                 for message in messages:
                     link.admitted |= self._signing is None or message.get_signed()

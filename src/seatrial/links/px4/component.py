@@ -147,6 +147,7 @@ class Px4(Px4Ports):
             pulse(control, self._servos.get(number)) for number, control in enumerate(padded, 1)
         )
         self.restarts, self.missed = max(0, lockstep.connections - 1), lockstep.missed
+        self.frames_refused = lockstep.refused
         self.reached_at = other_end(lockstep.endpoint.url)
         report(self, [lockstep.endpoint])
 

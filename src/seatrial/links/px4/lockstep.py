@@ -35,7 +35,7 @@ class Lockstep:
     def __init__(self, endpoint: TcpServer, clock: Callable[[], float] = time.monotonic) -> None:
         self.endpoint, self._clock = endpoint, clock
         endpoint.budget = Budget.of_raw_bytes()  # 250 messages a second and more, simulated time
-        self.connections = self.missed = 0
+        self.connections = self.missed = self.refused = 0
         self._held = ExitStack()
         # All the time: a request between two waits must not be missed by the second.
         self._interruption = self._held.enter_context(Interruption())
@@ -137,8 +137,10 @@ class Lockstep:
             self.connections += 1
         for channel, data in arrived:
             if channel is self._peer:
+                before = self._codec.unusable
                 for message in self._codec.decode(data):
                     self._note(message)
+                self.refused += self._codec.unusable - before
 
     def _note(self, message: Message) -> None:
         if message.get_type() == "HIL_ACTUATOR_CONTROLS":

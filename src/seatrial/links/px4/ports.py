@@ -99,6 +99,7 @@ class Px4Ports(Logging, Noise, Reachable, TrueMotion):
     armed = Output("1", "whether it says that it is armed", type=bool)
     lockstep = Output("1", "whether each step waits for its actuators", type=bool)
     restarts = Output("1", "times that a firmware connected again", type=int)
+    frames_refused = Output("1", "frames received that are no message", type=int)
     missed = Output("1", "times that actuators did not come in time", type=int)
 
     terminals: ClassVar = {
