@@ -1,7 +1,9 @@
 """A component that ends its own process, or never returns; the C slave's ways to do so."""
 
-FINE, SEGFAULT, ABORT, EXIT, HANG, PRINT, LOG, REFUSE = range(8)
-"""What the C slave's ``how`` makes of its steps from t = 0.25 s."""
+FINE, SEGFAULT, ABORT, EXIT, HANG, PRINT, LOG, REFUSE, DIE_AT_THE_END, DIE_IN_THE_RELEASE = range(
+    10
+)
+"""What the C slave's ``how`` makes of its steps from t = 0.25 s, or of its last calls."""
 
 CRASHING = '''
 """Ends its process, or never returns."""

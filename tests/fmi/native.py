@@ -52,6 +52,12 @@ def lacking(path: Path, to: Path, *functions: str) -> Path:
     return _with_library(path, library, to)
 
 
+def dying(path: Path, to: Path, where: str) -> Path:
+    """Copy the FMI 3.0 slave to ``to``, with a library that dies AT_THE_END or IN_THE_RELEASE."""
+    library = compiled(SLAVES / "fmi3.c", to.with_suffix(".so"), f"-DDIES_{where}")
+    return _with_library(path, library, to)
+
+
 def without_events(path: Path, to: Path) -> Path:
     """Copy the FMI 3.0 slave to ``to``, with a library that refuses the event mode it promises."""
     library = compiled(SLAVES / "fmi3.c", to.with_suffix(".so"), "-DREFUSES_EVENTS")

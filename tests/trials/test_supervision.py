@@ -18,11 +18,13 @@ import pytest
 import seatrial as api
 from seatrial.errors import InputError, SimulationError
 from seatrial.trials.hooks import Hooks
+from seatrial.trials.measuring import measure_trial
 from seatrial.trials.supervision import Supervisor, run_supervised
 from seatrial.trials.trial import load_trial
 
 from ..command import seatrial, seatrial_process
 from ..fmi import crashing
+from ..fmi.native import dying
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="processes are not copied there")
 
@@ -192,6 +194,52 @@ def test_a_death_before_and_after_the_steps(where, call, rows, trial, tmp_path: 
     there = (tmp_path / "run" / "signals.csv").is_file()
     assert (len(times(tmp_path / "run")) if there else 0) == rows
     assert (tmp_path / "run" / "report.html").is_file()
+
+
+LAST_CALLS = {
+    crashing.DIE_AT_THE_END: ("AT_THE_END", "its termination"),
+    crashing.DIE_IN_THE_RELEASE: ("IN_THE_RELEASE", "its release"),
+}
+
+
+@pytest.mark.parametrize("version", [2, 3])
+@pytest.mark.parametrize("isolated", [False, True])
+@pytest.mark.parametrize("how", LAST_CALLS)
+def test_an_fmu_that_dies_after_the_last_step_has_failed_the_run(
+    how: int, isolated: bool, version: int, write, native_fmu, tmp_path: Path
+) -> None:
+    """Overwritten memory is often noticed only in the release: no verdict on such numbers."""
+    where, call = LAST_CALLS[how]
+    path, step = native_fmu("crash"), 0.1
+    if version == 3:
+        path = dying(native_fmu("fmi3"), tmp_path / f"{where}.fmu", where)
+    keys = f", isolated = {str(isolated).lower()}"
+    keys += f", set = {{ how = {how} }}" if version == 2 else ""
+    write("rig.toml", RIG.format(fmu=path, keys=keys))
+    write("trial.toml", 'rig = "rig.toml"\nstop = "1 s"\n')
+    done = seatrial("run", "trial.toml", "--out", "run", cwd=tmp_path)
+    assert done.returncode == 3
+    whose = "its process" if isolated else "the process of the run"
+    assert f"boat: {whose} was ended by SIGABRT in {call}" in done.stderr
+    assert manifest(tmp_path / "run")["status"] == "failed"
+    assert "was ended by SIGABRT" in manifest(tmp_path / "run")["error"]
+    assert len(times(tmp_path / "run")) == 1.0 / step + 1
+
+
+def test_an_fmu_that_dies_in_its_release_has_failed_a_measured_run(
+    write, native_fmu, tmp_path: Path
+) -> None:
+    keys = f", isolated = true, set = {{ how = {crashing.DIE_IN_THE_RELEASE} }}"
+    write("rig.toml", RIG.format(fmu=native_fmu("crash"), keys=keys))
+    trial = write("trial.toml", 'rig = "rig.toml"\nstop = "1 s"\n')
+    measured = measure_trial(load_trial(str(trial)))
+    assert measured.status == "failed"
+    assert "its release" in str(measured.error)
+    simulation = api.Simulation(str(tmp_path / "rig.toml"))
+    simulation.run("1 s")
+    with pytest.raises(SimulationError, match="its release"):
+        simulation.close()
+    simulation.close()
 
 
 def test_a_death_while_a_component_is_loaded_leaves_nothing(trial, write, tmp_path: Path) -> None:

@@ -101,9 +101,9 @@ class Simulation:
                         system.set(key, written, "set")
                 self._master = _started(system)
             except BaseException:
-                system.free()
+                system.discard()
                 raise
-        self._free = weakref.finalize(self, system.free)
+        self._free = weakref.finalize(self, system.discard)
 
     # ------------------------------------------------------------------ time
 
@@ -305,7 +305,8 @@ class Simulation:
                 if not self._error:
                     self._master.terminate()
             finally:
-                self._free()
+                self._free.detach()
+                self._master.system.free()
 
     def __enter__(self) -> Simulation:
         return self

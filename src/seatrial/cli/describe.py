@@ -60,7 +60,7 @@ def describe(
         if drawn is not None:
             _draw(system, drawn)
     finally:
-        system.free()
+        system.discard()
 
 
 def _in_process(rig: Rig) -> bool:

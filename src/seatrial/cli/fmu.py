@@ -332,7 +332,7 @@ def _run_once(fmu: LoadedFmu) -> list[str]:
     """Step an instance twice; its errors are the problems."""
     from ..errors import SimulationError
 
-    instance, step = None, 0.01
+    instance, step, found = None, 0.01, list[str]()
     experiment = fmu.description.defaultExperiment
     if experiment is not None and experiment.stepSize and not fmu.any_step:
         step = float(experiment.stepSize)
@@ -345,8 +345,10 @@ def _run_once(fmu: LoadedFmu) -> list[str]:
         instance.reader([v.name for v in fmu.variables.values() if v.causality == "output"])()
         instance.terminate()
     except SimulationError as error:
-        return [str(error)]
-    finally:
-        if instance is not None:
+        found.append(str(error))
+    if instance is not None:
+        try:
             instance.free()
-    return []
+        except SimulationError as error:
+            found.append(str(error))
+    return found

@@ -63,7 +63,7 @@ class RigBuild:
                 console.print(f"in C: {len(system.parts)} components", soft_wrap=True)
             return whys
         finally:
-            system.free()
+            system.discard()
 
     def _in_python(self, path: Path, standalone: bool) -> None:
         system = self._assembled("direct")
@@ -71,7 +71,7 @@ class RigBuild:
             glibc = build_python_rig(system, path, standalone=standalone, version=self.version)
             print_notes(system.notes)
         finally:
-            system.free()
+            system.discard()
         if glibc:
             print_notes([f"{path} runs on Linux on x86-64 with glibc {glibc} or newer"])
 
@@ -81,7 +81,7 @@ class RigBuild:
         try:
             leave_out_unread(system, self._set(system))
         except BaseException:
-            system.free()
+            system.discard()
             raise
         return system
 

@@ -48,7 +48,7 @@ def assemble(
         _yield_to_connections(system)
         resolve_shapes(system)
     except BaseException:
-        system.free()
+        system.discard()
         raise
     system.notes += _undecided(system)
     return system

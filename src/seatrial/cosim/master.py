@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -268,10 +269,11 @@ class Master:
         self._rollback.free(snapshot.checkpoint)
 
     def terminate(self) -> None:
-        """Tell every component that the run has ended. Raises SimulationError."""
+        """Tell every component that the run has ended, the others too if one raises. SimulationError."""
         self._rollback.forget()
-        for part in self.system.parts.values():
-            part.instance.terminate()
+        with ExitStack() as ends:
+            for part in reversed(self.system.parts.values()):
+                ends.callback(part.instance.terminate)
 
     def notes(self) -> list[str]:
         """Return what the user should know of the steps taken so far."""

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal, Protocol
 
-from ..errors import InputError, unknown
+from ..errors import InputError, SimulationError, unknown
 from ..fmi.instance import Variable, Variables
 from .joining import Resolver
 from .part import Part
 from .paths import split_path
 from .rig import Rig
 from .values import Given, from_written, placed, port_names, port_scalars
+
+_LOGGER = logging.getLogger("seatrial.release")
 
 Engine = Literal["fmu", "direct", "native"]
 """Every component an FMU; in process; or an FMU in C where there is one, else in process."""
@@ -242,6 +245,13 @@ class System:
         with ExitStack() as releases:
             for part in reversed(self.parts.values()):
                 releases.callback(part.instance.free)
+
+    def discard(self) -> None:
+        """Release all instances after an error, which is what counts: others are logged."""
+        try:
+            self.free()
+        except SimulationError as error:
+            _LOGGER.warning("%s", error)
 
 
 def settable(variables: Variables, port: str, where: str) -> list[Variable]:

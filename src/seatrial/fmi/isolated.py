@@ -181,14 +181,13 @@ class IsolatedInstance:
             self._call("terminate", "its termination")
 
     def free(self) -> None:
-        """Release the instance and end its process."""
+        """Release the instance and end its process. Raises SimulationError if it dies in that."""
         if not self._ended:
             try:
                 self._call("free", "its release")
-            except SimulationError as error:  # nothing of the run depends on it any more
-                self._log(logging.WARNING, str(error))
-            self._process.wait()
-            self._ended = f"{self.name} has been released"
+            finally:
+                self._process.wait()
+                self._ended = f"{self.name} has been released"
 
     # ------------------------------------------------------------------ inside
 

@@ -45,7 +45,7 @@ def export_ssp(
             raise InputError(f"{path} would replace what it is made from; name another with --out")
         notes += write_ssp(system, experiment, path, in_one=in_one, version=version)
     finally:
-        system.free()
+        system.discard()
     return path, notes
 
 
@@ -70,7 +70,7 @@ def export_osp(
             )
         notes += write_osp(system, experiment, folder)
     finally:
-        system.free()
+        system.discard()
     return folder, notes
 
 
@@ -101,7 +101,7 @@ def _set_up(trial: Trial) -> System:
         for setting in trial.settings():
             system.set(*setting)
     except BaseException:
-        system.free()
+        system.discard()
         raise
     return system
 

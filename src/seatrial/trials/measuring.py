@@ -59,9 +59,16 @@ def measure_trial(trial: Trial, *, engine: Engine = "fmu", hooks: Hooks | None =
         prepared = prepare(trial, engine, hooks)
     try:
         found = _stepped(prepared, hooks)
-    finally:
+    except BaseException:
+        with contextlib.suppress(KeyboardInterrupt), hooks.interruptible():
+            prepared.system.discard()
+        raise
+    try:
         with contextlib.suppress(KeyboardInterrupt), hooks.interruptible():
             prepared.system.free()
+    except SimulationError as problem:
+        if found.status not in ("failed", "stopped"):
+            found = Measured("failed", str(problem), found.seed)
     found.wall = time.perf_counter() - begun
     return found
 

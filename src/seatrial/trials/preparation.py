@@ -112,6 +112,6 @@ def prepare(trial: Trial, engine: Engine, hooks: Hooks) -> Prepared:
         carry_natively(system, building)
         recorded = recorded_signals(trial, system, is_asked=is_asked)
     except BaseException:
-        system.free()
+        system.discard()
         raise
     return Prepared(trial, engine, system, units, recorded)

@@ -78,9 +78,11 @@ def run_trial(
         if trial.file.real_time is not None:
             _report_addresses(master, hooks)
         run.simulate()
-    finally:
+    except BaseException:
         with contextlib.suppress(KeyboardInterrupt), hooks.interruptible():
-            prepared.system.free()  # nothing of the run depends on it any more
+            prepared.system.discard()
+        raise
+    run.release()
     verdicts = [] if run.status in ("failed", "stopped") else run.evaluate()
     figures = [] if run.status in ("failed", "stopped") else run.stepping.figures()
     seed = prepared.system.seed
@@ -98,7 +100,7 @@ def check_trial(trial: Trial, engine: Engine = "fmu", hooks: Hooks | None = None
             _has_links(part) for part in system.parts.values()
         )
     finally:
-        system.free()
+        system.discard()
 
 
 def _has_links(part: Part) -> bool:

@@ -46,6 +46,8 @@ class Run:
         )
         self.stepping = Stepping(prepared, master, self._recorder, hooks, folder)
         self._floods: list[str] = []
+        self._late: list[str] = []
+        """Errors of the release of a run that had failed or was stopped before."""
 
     def simulate(self) -> None:
         """Run to the end. Errors of the simulation and of the disk are kept in ``error``."""
@@ -69,6 +71,24 @@ class Run:
                 self._floods = list(self.prepared.system.floods())
             self._end(started)
 
+    def release(self) -> None:
+        """Release the components. A run one of which dies in that has failed; its rows stay.
+
+        What such a component computed is not to be trusted: memory that it has overwritten is
+        often noticed only when it is released.
+        """
+        try:
+            with self._hooks.interruptible():
+                self.prepared.system.free()
+        except KeyboardInterrupt:
+            pass
+        except SimulationError as problem:
+            if self.status in ("failed", "stopped"):
+                self._late.append(str(problem))
+                return
+            self.status, self.error = "failed", str(problem)
+            self._write_end()
+
     def evaluate(self) -> list[tuple[str, str, Verdict]]:
         """Evaluate the criteria on every communication step, however often rows were recorded.
 
@@ -86,7 +106,8 @@ class Run:
 
     def notes(self) -> list[str]:
         """Return what the user should know: of profiles, the rig, the steps, the pace."""
-        return [*self.stepping.notes(), *self._floods, *self.stepping.pace_notes()]
+        of_end = [*self._floods, *self._late, *self.stepping.pace_notes()]
+        return [*self.stepping.notes(), *of_end]
 
     # ------------------------------------------------------------------ inside
 

@@ -8,7 +8,7 @@
 
 #include "fmi2FunctionTypes.h"
 
-enum { FINE, SEGFAULT, ABORT, EXIT, HANG, PRINT, LOG, REFUSE };
+enum { FINE, SEGFAULT, ABORT, EXIT, HANG, PRINT, LOG, REFUSE, DIE_AT_THE_END, DIE_IN_THE_RELEASE };
 
 static double real_value;
 static int integer_value, boolean_value, how;
@@ -26,7 +26,9 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
     environment = functions->componentEnvironment;
     return &real_value;
 }
-void fmi2FreeInstance(fmi2Component c) {}
+void fmi2FreeInstance(fmi2Component c) {
+    if (how == DIE_IN_THE_RELEASE) abort();
+}
 fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t n, const fmi2String k[]) {
     return fmi2OK;
 }
@@ -36,7 +38,10 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean b, fmi2Real toleranc
 }
 fmi2Status fmi2EnterInitializationMode(fmi2Component c) { return fmi2OK; }
 fmi2Status fmi2ExitInitializationMode(fmi2Component c) { return fmi2OK; }
-fmi2Status fmi2Terminate(fmi2Component c) { return fmi2OK; }
+fmi2Status fmi2Terminate(fmi2Component c) {
+    if (how == DIE_AT_THE_END) abort();
+    return fmi2OK;
+}
 fmi2Status fmi2Reset(fmi2Component c) { return fmi2OK; }
 
 fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference r[], size_t n, fmi2Real v[]) {

@@ -67,7 +67,12 @@ fmi3Instance fmi3InstantiateCoSimulation(
     }
     return s;
 }
-void fmi3FreeInstance(fmi3Instance c) { free(c); }
+void fmi3FreeInstance(fmi3Instance c) {
+#ifdef DIES_IN_THE_RELEASE
+    abort();
+#endif
+    free(c);
+}
 
 fmi3Status fmi3EnterConfigurationMode(fmi3Instance c) {
     Slave *s = c;
@@ -107,7 +112,12 @@ fmi3Status fmi3EnterStepMode(fmi3Instance c) {
     s->state = STEPPING;
     return fmi3OK;
 }
-fmi3Status fmi3Terminate(fmi3Instance c) { return fmi3OK; }
+fmi3Status fmi3Terminate(fmi3Instance c) {
+#ifdef DIES_AT_THE_END
+    abort();
+#endif
+    return fmi3OK;
+}
 
 /* ------------------------------------------------------------------ model */
 

@@ -58,7 +58,7 @@ class RigComponent(Component):
         try:
             master.initialise()
         except BaseException:
-            master.system.free()
+            master.system.discard()
             raise
         self._master = master
         place = {name: i for i, name in enumerate(master.names)}
