@@ -269,7 +269,10 @@ class Master:
         self._rollback.free(snapshot.checkpoint)
 
     def terminate(self) -> None:
-        """Tell every component that the run has ended, the others too if one raises. SimulationError."""
+        """Tell every component that the run has ended, the rest too if one raises.
+
+        Raises SimulationError.
+        """
         self._rollback.forget()
         with ExitStack() as ends:
             for part in reversed(self.system.parts.values()):

@@ -74,7 +74,7 @@ def test_beats_that_come_doubled_are_no_faster_ones():
         assert bench.vehicle.stations == 1
 
 
-def test_it_acts_once_and_again_after_somebody_was_back():
+def test_it_acts_again_on_whoever_takes_over_without_a_heartbeat():
     bench = Bench(station_timeout=2.0)
     bench.arm()
     for _ in range(2):
@@ -83,9 +83,92 @@ def test_it_acts_once_and_again_after_somebody_was_back():
         assert not bench.vehicle.failsafe
         bench.wait(3.0)
         assert bench.vehicle.mode.name == "hold"
-        bench.enter("guided")  # a sender without a heartbeat; not refused
-        bench.wait(10.0)
-        assert bench.vehicle.mode.name == "guided"
+        for _ in range(2):
+            bench.enter("guided")  # not refused, as in ArduPilot
+            bench.wait(2.0)
+            assert bench.vehicle.mode.name == "guided"
+            bench.wait(0.02)
+            assert bench.vehicle.mode.name == "hold"
+
+
+def test_it_acts_once_on_a_station_that_comes_back_in_time():
+    bench = Bench(station_timeout=2.0)
+    bench.arm()
+    bench.heartbeat()
+    bench.wait(3.0)
+    bench.enter("guided")
+    for _ in range(4):
+        bench.wait(1.0)
+        bench.heartbeat()
+    assert (bench.vehicle.mode.name, bench.vehicle.failsafe) == ("guided", False)
+
+
+ARM, FORCE = mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 21196
+FAILED, ACCEPTED = mavlink.MAV_RESULT_FAILED, mavlink.MAV_RESULT_ACCEPTED
+
+
+def test_it_does_not_arm_in_failsafe():
+    bench = Bench(station_timeout=2.0, failsafe="disarm")
+    bench.heartbeat()
+    bench.wait(3.0)
+    sender = Sender(99, 1, 0)  # sends no heartbeat
+    assert bench.command(ARM, 1, sender=sender) == FAILED
+    assert "PreArm: all ground stations lost" in bench.texts()
+    assert not bench.vehicle.armed
+    bench.heartbeat()
+    assert bench.command(ARM, 1, sender=sender) == ACCEPTED
+    bench.wait(3.0)
+    assert not bench.vehicle.armed
+
+
+def test_armed_by_force_in_failsafe_it_acts_again_after_the_time_out():
+    bench = Bench(station_timeout=2.0, failsafe="disarm")
+    bench.heartbeat()
+    bench.wait(3.0)
+    assert bench.command(ARM, 1, FORCE) == ACCEPTED
+    bench.wait(2.0)
+    assert bench.vehicle.armed
+    bench.wait(0.02)
+    assert not bench.vehicle.armed
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [{"failsafe": "none"}, {"watches_stations": False}, {"arming_check": 0}],
+    ids=lambda settings: next(iter(settings)),
+)
+def test_a_failsafe_that_is_off_prevents_no_arming(settings):
+    bench = Bench(station_timeout=2.0, station_to_arm=True, **settings)
+    bench.heartbeat()
+    bench.wait(3.0)
+    bench.arm()
+    bench.wait(10.0)
+    assert bench.vehicle.armed
+
+
+def test_a_vehicle_that_needs_a_station_does_not_arm_before_the_first():
+    bench = Bench(station_to_arm=True)
+    assert bench.command(ARM, 1) == FAILED
+    assert "PreArm: no ground station" in bench.texts()
+    bench.heartbeat()
+    assert bench.command(ARM, 1) == ACCEPTED
+
+
+def test_manual_control_that_was_lost_is_missed_again_in_the_next_manual_mode():
+    bench = Bench(manual_timeout=3.0)
+    bench.receive(mavlink.MAVLink_manual_control_message(7, 0, 0, 1000, 0, 0))
+    bench.wait(60.0)  # lost while nobody steers
+    assert not bench.vehicle.failsafe
+    bench.arm()
+    bench.enter("manual")
+    bench.wait(3.0)
+    assert bench.vehicle.mode.name == "manual"
+    bench.wait(0.02)
+    assert (bench.vehicle.mode.name, bench.vehicle.failsafe) == ("hold", True)
+    bench.command(ARM, 0)
+    assert bench.command(ARM, 1) == FAILED
+    bench.receive(mavlink.MAVLink_manual_control_message(7, 0, 0, 1000, 0, 0))
+    bench.arm()
 
 
 @pytest.mark.parametrize(

@@ -79,7 +79,8 @@ class Node:
         lists = Plans(vehicle, plans)
         rally = RallyService(vehicle, transport, lists.rally)
         fence = FenceService(vehicle, transport, lists.fence, settings, failsafe)
-        arming.checks.append(fence.check)
+        stations = StationService(vehicle, transport, failsafe, settings, clock)
+        arming.checks += [fence.check, stations.check]
         guided = GuidedService(vehicle, transport, modes, settings)
         self.missions = MissionService(
             vehicle,
@@ -99,7 +100,7 @@ class Node:
             CommandService(vehicle, transport, handlers),
             arming,
             modes,
-            StationService(vehicle, transport, failsafe, settings, clock),
+            stations,
             joystick,
             ManualControlService(vehicle, transport, failsafe, settings, lambda: joystick.gain),
             guided,

@@ -22,14 +22,17 @@ class ArmingService(Service):
     """COMPONENT_ARM_DISARM and RUN_PREARM_CHECKS.
 
     A boat needs a position and a heading, a submarine a heading; other services add ``checks``
-    of theirs, and the settings say which of them apply. Each reason against arming is
-    reported. Disarming always works, and so does arming by `FORCE`, which is reported.
+    of theirs, and the settings say which of them apply. It does not arm in a failsafe. Each reason
+    against arming is reported. Disarming always works, and so does arming by `FORCE`, which is
+    reported.
     """
 
     def __init__(self, vehicle: Vehicle, transport: Transport, settings: Settings) -> None:
         super().__init__(vehicle, transport)
         self._settings = settings
         self.checks: list[Check] = [self._needs_position, self._needs_heading]
+        self.lasting: dict[str, None] = {}
+        """Reasons of failsafes that last."""
 
     @property
     def commands(self) -> Mapping[int, Handler]:
@@ -50,8 +53,10 @@ class ArmingService(Service):
         self.vehicle.healthy = not self._reasons()
 
     def _reasons(self) -> list[str]:
-        found = [check() for check in self.checks if self._settings.checks()]
-        return [reason for reason in found if reason is not None]
+        if not self._settings.checks():
+            return []
+        found = dict.fromkeys(reason for check in self.checks if (reason := check()) is not None)
+        return [*(found | self.lasting)]
 
     def _arm_or_disarm(self, command: Command, sender: Sender, now: float) -> int:
         wanted, how = command.parameters[:2]

@@ -93,7 +93,8 @@ class FenceService(Service):
     def _begin(self, breach: str, now: float) -> None:
         self._breach, self._at, self._count = breach, now, self._count + 1
         self.vehicle.fence_breached = True
-        self._failsafe.act(breach, self._settings.fence_action)
+        # Whether it arms is a matter of where it is now: see `check`.
+        self._failsafe.act(breach, self._settings.fence_action, prevents=False)
         self.transport.broadcast(self._status(now)[0])
 
     def _end(self) -> None:

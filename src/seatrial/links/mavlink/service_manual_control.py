@@ -43,8 +43,9 @@ class ManualControlService(Service):
     ``gain`` is the share of MANUAL_CONTROL's axes that acts.
 
     After the time-out without either the axes are 0, and in an armed vehicle in a manual mode
-    the failsafe acts, unless it is set not to watch them. A station that releases all channels has
-    released them on purpose.
+    the failsafe acts, unless it is set not to watch them, and again as long after somebody has
+    armed it or entered such a mode without. A station that releases all channels has released them
+    on purpose.
     """
 
     def __init__(
@@ -59,7 +60,7 @@ class ManualControlService(Service):
         self._failsafe, self._settings, self._gain = failsafe, settings, gain
         self._ignored: set[int] = set()
         self._held_until = math.inf
-        self._let_go = False
+        self._lost = False
 
     @property
     def receivers(self) -> Mapping[int, Receiver]:
@@ -82,6 +83,7 @@ class ManualControlService(Service):
         self._override(message)
         if not any(self.vehicle.channels):
             self._release()
+            self._found("Manual control was released")
             return
         self.vehicle.manual = self._from_channels()
         self._hold(now)
@@ -99,20 +101,29 @@ class ManualControlService(Service):
 
     def _hold(self, now: float) -> None:
         self._held_until = now + self._settings.manual_timeout
-        if self._let_go:
-            self._let_go = False
-            self._failsafe.end(_LOST, "Manual control is back")
+        self._found("Manual control is back")
+
+    def _found(self, news: str) -> None:
+        if self._lost:
+            self._lost = False
+            self._failsafe.end(_LOST, news)
 
     def tick(self, now: float) -> None:
         """Release manual control that no longer comes."""
-        if now <= self._held_until:
-            return
-        self._release()
-        steered = self.vehicle.armed and self.vehicle.mode.name in MANUAL_MODES
+        expired = now > self._held_until
+        if expired:
+            self._release()
+            self._lost = True
         action = self._settings.manual_failsafe
-        if steered and self._settings.watches_manual_control and action != "off":
-            self._let_go = True
+        watched = self._settings.watches_manual_control and action != "off"
+        if not self._lost or not watched:
+            return
+        steered = self.vehicle.armed and self.vehicle.mode.name in MANUAL_MODES
+        if expired and steered:
             self._failsafe.act(_LOST, action)
+        else:
+            patience = self._settings.manual_timeout if steered else math.inf
+            self._failsafe.act_again(_LOST, now, patience, action)
 
     def _release(self) -> None:
         self._held_until = math.inf

@@ -49,8 +49,9 @@ class StationService(Service):
     its own too, by wall time (``clock``, s), or for that time-out: in a trial that is much faster
     stations would be lost between two beats.
 
-    When the last one is lost the failsafe acts, unless it is set not to watch them; before the
-    first one was seen nothing happens.
+    When the last one is lost the failsafe acts, unless it is set not to watch them, and again on
+    whoever takes over without being one; before the first one was seen nothing happens. A vehicle
+    that needs one to arm (``settings.station_to_arm``) does not arm before that either.
     """
 
     def __init__(
@@ -73,6 +74,13 @@ class StationService(Service):
         return {
             mavlink.MAVLINK_MSG_ID_HEARTBEAT: self._note,
         }
+
+    def check(self) -> str | None:
+        """Return the reason against arming, None if there is none."""
+        settings = self._settings
+        watches = settings.watches_stations and settings.failsafe != "none"
+        needed = settings.station_to_arm and watches
+        return "no ground station" if needed and not self._there else None
 
     def _note(self, message: Message, sender: Sender, now: float) -> None:
         if message.type != mavlink.MAV_TYPE_GCS:
@@ -98,3 +106,5 @@ class StationService(Service):
         if lost and not there and self._settings.watches_stations:
             self._left_alone = True
             self._failsafe.act(_LOST)
+        elif self._left_alone and self._settings.watches_stations:
+            self._failsafe.act_again(_LOST, now, timeout)

@@ -42,6 +42,8 @@ class Settings:
     """What it does with a low battery: one of the actions of the failsafe."""
     watches_stations: bool = True
     """Whether the failsafe acts when all ground stations are lost."""
+    station_to_arm: bool = False
+    """Whether it arms in the presence of a ground station alone, if it watches them."""
     watches_manual_control: bool = True
     """Whether the failsafe acts when manual control is lost."""
     manual_failsafe: str = ""
