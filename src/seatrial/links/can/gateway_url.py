@@ -34,7 +34,7 @@ from .gateway_slcan import SlcanGateway
 from .gateway_socketcand import SocketcandGateway
 from .gateway_yd_raw import YdRawGateway
 
-_FORMS = {
+FORMS = {
     "socketcand": "socketcand:127.0.0.1:29536",
     "slcan-tcp": "slcan-tcp:127.0.0.1:29537",
     "slcan-pty": "slcan-pty",
@@ -44,6 +44,7 @@ _FORMS = {
     "virtual": "virtual:can0",
     "python-can": "python-can:socketcan:can0:250000",
 }
+"""Every kind of gateway, with an example of its URL."""
 _SHAPES = {
     "socketcand": r"(?P<host>[^:/]+):(?P<port>\d{1,5})",
     "slcan-tcp": r"(?P<host>[^:/]+):(?P<port>\d{1,5})",
@@ -104,9 +105,9 @@ _SERVERS: dict[str, Callable[[TcpServer], Gateway]] = {
 
 def _parts(url: str) -> tuple[str, dict[str, str]]:
     kind, _, rest = url.partition(":")
-    if kind not in _FORMS:
-        raise InputError(f"gateway {url!r}: {unknown('kind of gateway', kind, _FORMS)}")
+    if kind not in FORMS:
+        raise InputError(f"gateway {url!r}: {unknown('kind of gateway', kind, FORMS)}")
     match = re.fullmatch(_SHAPES[kind], rest)
     if match is None:
-        raise InputError(f"gateway {url!r} is not of the form {_FORMS[kind]!r}")
+        raise InputError(f"gateway {url!r} is not of the form {FORMS[kind]!r}")
     return kind, match.groupdict()

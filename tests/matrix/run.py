@@ -1,0 +1,236 @@
+"""A run of some link kinds, in a copy of this process: a start costs no imports."""
+
+from __future__ import annotations
+
+import contextlib
+import csv
+import os
+import signal
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from seatrial.cli import main
+
+from .kinds import Kind
+from .peers import Peer
+
+WAIT_S = 60.0
+_PAUSE_S = 0.005
+TALKER = '''
+"""Bytes in every step; and a step that never ends, if that is wanted."""
+import time
+
+from seatrial.component import Component, Output, Parameter
+from seatrial.links.text import Outbox
+
+
+class Talker(Component):
+    """Sends a byte in every step, which says full ahead."""
+
+    tx = Output("1", "bytes", type=str)
+
+    def start(self, t):
+        self._tx = {}
+
+    def step(self, t, h):
+        box = Outbox(self._tx)
+        box.put(self.now_ns, b"!")
+        box.flush()
+
+    def outputs(self, t):
+        self.tx = Outbox(self._tx).text
+
+
+class Hanging(Component):
+    """Hangs from a time on."""
+
+    hangs_at = Parameter(0.5, "s", "when")
+
+    def step(self, t, h):
+        while t > self.hangs_at:
+            time.sleep(0.1)
+'''
+SKETCH = "void setup() { Serial.begin(115200); }\nvoid loop() { Serial.println(1); delay(20); }\n"
+
+
+class Rig:
+    """Files of a rig with links of some kinds, and the peers at their other ends."""
+
+    def __init__(self, folder: Path, names: list[str], *, isolated: bool, hangs: bool) -> None:
+        self.folder, self.kinds, self.peers = folder, dict[str, Kind](), dict[str, Peer]()
+        for name in names:
+            kind = Kind.of(name)
+            assert kind is not None
+            own = name.replace("-", "_").replace(" ", "_")
+            self.kinds[own] = kind
+            self.peers[own] = kind.peer(folder, own, kind.hello)
+        (folder / "talker.py").write_text(TALKER)
+        (folder / "sketch").mkdir()
+        (folder / "sketch" / "sketch.ino").write_text(SKETCH)
+        (folder / "rig.toml").write_text(self._text(isolated, hangs))
+
+    def write_trial(self, stop: float) -> None:
+        """Write the trial, which ends at ``stop``, s."""
+        signals = [f"{own}.{kind.counter}" for own, kind in self.kinds.items() if kind.counter]
+        listed = ", ".join(f'"{each}"' for each in [*signals, "wind.*"])
+        (self.folder / "trial.toml").write_text(
+            f'rig = "rig.toml"\nstop = "{stop} s"\n[record]\nsignals = [{listed}]\n[real_time]\n'
+        )
+
+    def poll(self) -> None:
+        """Let all peers do what is due."""
+        for peer in self.peers.values():
+            peer.poll()
+
+    def have_heard(self) -> bool:
+        """Say if every peer, that there is one, has received something."""
+        return all(peer.received or type(peer) is Peer for peer in self.peers.values())
+
+    def left(self) -> list[str]:
+        """Return what is left behind of links."""
+        return [left for peer in self.peers.values() if (left := peer.left())]
+
+    def close(self) -> None:
+        """Close the peers."""
+        for peer in self.peers.values():
+            peer.close()
+
+    def _text(self, isolated: bool, hangs: bool) -> str:
+        lines = ['step = "20 ms"', "[components]", 'talker = { fmu = "talker.py:Talker" }']
+        lines.append('wind = { fmu = "wind" }')  # has C
+        if hangs:
+            lines.append('hanging = { fmu = "talker.py:Hanging" }')
+        down = [own for own, kind in self.kinds.items() if kind.component == "serial-gateway"]
+        buses = [own for own, kind in self.kinds.items() if kind.component == "can-gateway"]
+        keys = "isolated = true, " if isolated else ""
+        for own, kind in self.kinds.items():
+            values = vars(self.peers[own])
+            given = kind.set
+            for key in ("port", "device", "path"):
+                given = given.replace(f"{{{key}}}", str(values.get(key)))
+            lines.append(f'{own} = {{ fmu = "{kind.component}", {keys}set = {{ {given} }} }}')
+        if buses:
+            nodes = " ".join(["traffic", *buses])
+            lines.append(f'bus = {{ fmu = "canbus", set = {{ nodes = "{nodes}" }} }}')
+            traffic = 'set = { messages = "0x0DF80102 0.02 8" }'
+            lines.append(f'traffic = {{ fmu = "can-traffic", {traffic} }}')
+        lines.append("[connections]")
+        if down:
+            ends = ", ".join(f'"{own}.rx"' for own in down)
+            lines.append(f'"talker.tx" = [{ends}]')
+        for number, own in enumerate(["traffic", *buses] if buses else [], 1):
+            lines.append(f'"bus.n{number}" = "{own}.bus"')
+        return "\n".join(lines) + "\n"
+
+
+class Run:
+    """``seatrial run`` of a rig, in a process of its own from here on."""
+
+    def __init__(self, rig: Rig, carrier: str, *options: str) -> None:
+        self._rig, self.folder = rig, rig.folder
+        engine = {"isolated": "fmu", "live": "direct"}.get(carrier, carrier)
+        arguments = ["seatrial", "run", "trial.toml", "--engine", engine, "--out", "run"]
+        arguments += [*(["--live"] if carrier == "live" else []), "--no-report", *options]
+        (self.folder / "tmp").mkdir()
+        self.status: int | None = None
+        self.pid = os.fork()
+        if not self.pid:
+            os._exit(_run(self.folder, arguments))
+
+    def wait_for(self, holds: Callable[[], bool], what: str) -> None:
+        """Poll the peers until something holds, or the run has ended."""
+        deadline = time.monotonic() + WAIT_S
+        while not holds() and not self.has_ended():
+            assert time.monotonic() < deadline, f"{what}: {self.said}"
+            self._tell()
+            self._rig.poll()
+            time.sleep(_PAUSE_S)
+
+    def wait(self) -> int:
+        """Wait for the end, and for what was sent until then; return the status."""
+        self.wait_for(lambda: False, "it does not end")
+        self._rig.poll()
+        assert self.status is not None
+        return self.status
+
+    def has_ended(self) -> bool:
+        """Say if it has ended."""
+        if self.status is None:
+            pid, status = os.waitpid(self.pid, os.WNOHANG)
+            if pid:
+                self.status = os.waitstatus_to_exitcode(status)
+        return self.status is not None
+
+    def child(self) -> int:
+        """Return the process in which the components are."""
+        (child,) = map(int, Path(f"/proc/{self.pid}/task/{self.pid}/children").read_text().split())
+        return child
+
+    @property
+    def said(self) -> str:
+        """What it has printed."""
+        return (self.folder / "stdout").read_text() + (self.folder / "stderr").read_text()
+
+    def last_row(self) -> dict[str, str]:
+        """Return the last values of what was recorded."""
+        with (self.folder / "run" / "signals.csv").open(newline="") as file:
+            return list(csv.DictReader(file))[-1]
+
+    def left(self) -> list[str]:
+        """Return what is left of it: processes, passing files, links."""
+        deadline = time.monotonic() + WAIT_S
+        while (there := self._processes()) and time.monotonic() < deadline:
+            time.sleep(0.02)
+        return [*there, *map(str, (self.folder / "tmp").iterdir()), *self._rig.left()]
+
+    def close(self) -> None:
+        """End it whatever it does."""
+        if not self.has_ended():
+            os.kill(self.pid, signal.SIGKILL)
+            os.waitpid(self.pid, 0)
+        for line in self._processes():
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(int(line.split()[0]), signal.SIGKILL)
+
+    def _tell(self) -> None:
+        """Tell peers where the run says that their links are."""
+        lines = (self.folder / "stdout").read_text().splitlines()
+        for name, where in zip(lines, lines[1:], strict=False):
+            own = name.removesuffix(": connect to")
+            if own != name and own in self._rig.peers:
+                self._rig.peers[own].found(where.strip())
+
+    def _processes(self) -> list[str]:
+        """Return numbers and names of processes that are at home in the run's folder."""
+        found = []
+        for place in Path("/proc").glob("[0-9]*"):
+            with contextlib.suppress(OSError):
+                if Path(os.readlink(place / "cwd")).is_relative_to(self.folder):
+                    found.append(f"{place.name} {(place / 'comm').read_text().strip()}")
+        return found
+
+
+def _run(folder: Path, arguments: list[str]) -> int:
+    """Run a command as a process of its own would; return its status."""
+    try:
+        os.chdir(folder)
+        for number, name in enumerate(("stdin", "stdout", "stderr")):
+            opened = os.open(name if number else os.devnull, os.O_RDWR | os.O_CREAT, 0o600)
+            os.dup2(opened, number)
+        sys.stdin, sys.stdout, sys.stderr = (open(n, "rw"[n > 0], closefd=False) for n in range(3))
+        os.environ["TMPDIR"] = tempfile.tempdir = str(folder / "tmp")
+        sys.argv = arguments
+        main()
+    except SystemExit as end:
+        return end.code if isinstance(end.code, int) else int(end.code is not None)
+    except BaseException:
+        sys.excepthook(*sys.exc_info())  # type: ignore[arg-type]
+        return 99
+    finally:
+        with contextlib.suppress(Exception):
+            sys.stdout.flush()
+            sys.stderr.flush()
+    return 0
