@@ -12,8 +12,10 @@ from seatrial.links.endpoints.url import TRANSPORTS
 
 from .kinds import Kind
 
-CARRIERS = ("fmu", "direct", "native", "isolated", "live")
-EVENTS = ("start", "garbage", "unplug", "port taken", "hang", "term", "kill")
+CARRIERS = ("direct", "fmu", "native", "live", "isolated")
+EVENTS = ("start", "garbage", "hang", "term", "kill", "unplug", "port taken")
+ENDS_ONE = ("unplug", "port taken")
+"""What ends the run for one link: others cannot share that run."""
 
 
 class Cell(NamedTuple):
@@ -56,14 +58,18 @@ def applying(cells: Iterable[Cell]) -> list[Cell]:
 def pairwise(cells: list[Cell]) -> list[Cell]:
     """Return cells among which is each pair of two dimensions' values that the given ones have.
 
-    Greedy: of the cells with the most new pairs the first. The same cells give the same choice.
+    Greedy: of the cells with the most new pairs the first, those whose runs are shared before the
+    others. The same cells give the same choice.
     """
-    left = {pair for cell in cells for pair in _pairs(cell)}
+    found: set[tuple[str, str, str]] = set()
     chosen: list[Cell] = []
-    while left:
-        best = max(cells, key=lambda cell: len(left.intersection(_pairs(cell))))
-        chosen.append(best)
-        left.difference_update(_pairs(best))
+    for some in ([cell for cell in cells if cell.event not in ENDS_ONE], cells):
+        left = {pair for cell in some for pair in _pairs(cell)} - found
+        while left:
+            best = max(some, key=lambda cell: len(left.intersection(_pairs(cell))))
+            chosen.append(best)
+            left.difference_update(_pairs(best))
+            found.update(_pairs(best))
     return sorted(chosen, key=cells.index)
 
 
@@ -76,6 +82,6 @@ def runs(cells: Iterable[Cell]) -> dict[tuple[str, str], list[str]]:
     """Return the kinds that one run has, by carrier and event: those that it does not end share."""
     found: dict[tuple[str, str], list[str]] = {}
     for kind, carrier, event in cells:
-        alone = f" of {kind}" if event in ("unplug", "port taken") else ""
+        alone = f" of {kind}" if event in ENDS_ONE else ""
         found.setdefault((carrier, event + alone), []).append(kind)
     return found

@@ -101,7 +101,7 @@ _KINDS = {
         b"18FF0001 00\r\n",
         unplug=NO_CONNECTION,
         port_taken=NO_PORT,
-    ),  # fmt: skip
+    ),
     "can-gateway dronecan-multicast": _can(
         Peer, "dronecan-multicast:7", b"", b"", **{"*": NAMESPACE}
     ),
@@ -113,7 +113,7 @@ _KINDS = {
         garbage=ALONE,
         unplug=ALONE,
         port_taken=NO_PORT,
-    ),  # fmt: skip
+    ),
     "can-gateway python-can": _can(
         Terminal, "python-can:slcan:{device}:250000", b"", b"T18FF0001100\r", port_taken=NO_PORT
     ),
@@ -123,13 +123,13 @@ _KINDS = {
         'link = "udpin:127.0.0.1:{port}"',
         counter="frames_refused",
         excuses={"unplug": NO_CONNECTION},
-    ),  # fmt: skip
+    ),
     "arduino": Kind(
         "arduino",
         Caller,
-        'sketch = "sketch", links = "0=tcpin:127.0.0.1:{port}"',
+        'sketch = "sketch", monitors = "0=tcpin:127.0.0.1:{port}"',
         excuses={"unplug": COME_AND_GO, "garbage": RAW},
-    ),  # fmt: skip
+    ),
     "ground-station": Kind(
         "ground-station",
         Sender,
@@ -137,7 +137,7 @@ _KINDS = {
         b"?",
         counter="frames_refused",
         excuses={"unplug": NO_CONNECTION},
-    ),  # fmt: skip
+    ),
     "mavlink": Kind(
         "mavlink",
         Caller,
@@ -145,19 +145,19 @@ _KINDS = {
         counter="frames_refused",
         neutral=_disarmed,
         excuses={"unplug": COME_AND_GO},
-    ),  # fmt: skip
+    ),
     "nmea0183": Kind(
         "nmea0183",
         Caller,
         'links = "tcpin:127.0.0.1:{port}"',
         counter="lines_refused",
         excuses={"unplug": COME_AND_GO},
-    ),  # fmt: skip
+    ),
     "px4": Kind(
         "px4",
         Caller,
         'link = "tcpin:127.0.0.1:{port}"',
         counter="frames_refused",
         excuses={"unplug": COME_AND_GO},
-    ),  # fmt: skip
+    ),
 }

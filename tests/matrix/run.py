@@ -10,6 +10,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
+from itertools import pairwise
 from pathlib import Path
 
 from seatrial.cli import main
@@ -85,9 +86,10 @@ class Rig:
         for peer in self.peers.values():
             peer.poll()
 
-    def have_heard(self) -> bool:
-        """Say if every peer, that there is one, has received something."""
-        return all(peer.received or type(peer) is Peer for peer in self.peers.values())
+    def silent(self) -> list[str]:
+        """Return the links at whose other end nothing has been received, if there is one."""
+        there = {own: peer for own, peer in self.peers.items() if type(peer) is not Peer}
+        return [own for own, peer in there.items() if not peer.received]
 
     def left(self) -> list[str]:
         """Return what is left behind of links."""
@@ -135,6 +137,8 @@ class Run:
         arguments = ["seatrial", "run", "trial.toml", "--engine", engine, "--out", "run"]
         arguments += [*(["--live"] if carrier == "live" else []), "--no-report", *options]
         (self.folder / "tmp").mkdir()
+        for name in ("stdout", "stderr"):
+            (self.folder / name).touch()
         self.status: int | None = None
         self.pid = os.fork()
         if not self.pid:
@@ -144,10 +148,15 @@ class Run:
         """Poll the peers until something holds, or the run has ended."""
         deadline = time.monotonic() + WAIT_S
         while not holds() and not self.has_ended():
-            assert time.monotonic() < deadline, f"{what}: {self.said}"
+            assert time.monotonic() < deadline, f"{what}: {self._rig.silent()} {self.said}"
             self._tell()
             self._rig.poll()
             time.sleep(_PAUSE_S)
+
+    def wait_until_heard(self) -> None:
+        """Poll until something has come from every link."""
+        self.wait_for(lambda: not self._rig.silent(), "links are silent")
+        assert not self.has_ended(), self.said
 
     def wait(self) -> int:
         """Wait for the end, and for what was sent until then; return the status."""
@@ -198,7 +207,7 @@ class Run:
     def _tell(self) -> None:
         """Tell peers where the run says that their links are."""
         lines = (self.folder / "stdout").read_text().splitlines()
-        for name, where in zip(lines, lines[1:], strict=False):
+        for name, where in pairwise(lines):
             own = name.removesuffix(": connect to")
             if own != name and own in self._rig.peers:
                 self._rig.peers[own].found(where.strip())
@@ -218,9 +227,9 @@ def _run(folder: Path, arguments: list[str]) -> int:
     try:
         os.chdir(folder)
         for number, name in enumerate(("stdin", "stdout", "stderr")):
-            opened = os.open(name if number else os.devnull, os.O_RDWR | os.O_CREAT, 0o600)
+            opened = os.open(name if number else os.devnull, os.O_RDWR)
             os.dup2(opened, number)
-        sys.stdin, sys.stdout, sys.stderr = (open(n, "rw"[n > 0], closefd=False) for n in range(3))
+        sys.stdin, sys.stdout, sys.stderr = map(open, (0, 1, 2), "rww")
         os.environ["TMPDIR"] = tempfile.tempdir = str(folder / "tmp")
         sys.argv = arguments
         main()

@@ -79,6 +79,9 @@ class Client(ABC):
             self._channel = channel
         return bytes(collected.data)
 
+    def finish(self) -> None:  # noqa: B027  most keep nothing back
+        """Send what was kept back: nothing follows."""
+
     def tick(self) -> None:  # noqa: B027  most have nothing to do
         """Do what is due by wall time."""
 
@@ -149,6 +152,8 @@ class ClientsGateway(Gateway):
         """Close all connections."""
         if self._held is not None:
             self._held.release()
+        for client in self._clients.values():
+            client.finish()
         self._endpoint.close()
 
     def _greet(self, present: Sequence[Channel]) -> None:

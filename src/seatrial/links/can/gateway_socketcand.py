@@ -148,13 +148,16 @@ class _Client(Client):
         ]
         return "".join(wanted).encode("ascii")
 
+    def finish(self) -> None:
+        self._end_quiet()
+        for each in self._subscriptions.values():
+            if each.waiting:
+                self.write(each.waiting)
+
     def tick(self) -> None:
         now = time.monotonic()
         if self._quiet_until is not None and now >= self._quiet_until:
-            self._quiet_until = None
-            held, self._held = self._held, []
-            for text in held:
-                self.write(text)
+            self._end_quiet()
         if self._mode == "bcm":
             for each in self._subscriptions.values():
                 self._write_ready(each)
@@ -162,6 +165,12 @@ class _Client(Client):
             self._statistics_due = now + self._statistics_s
             t = self._traffic
             self.write(f"< stat {t.received_bytes} {t.received} {t.sent_bytes} {t.sent} >")
+
+    def _end_quiet(self) -> None:
+        self._quiet_until = None
+        held, self._held = self._held, []
+        for text in held:
+            self.write(text)
 
     def _open(self, bus: str) -> None:
         if bus != BUS:

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
+import termios
+import time
 import tty
+from array import array
 from pathlib import Path
 
 from ...errors import InputError
 from ..own_terminals import claim
 from .descriptor import DescriptorEndpoint
 
+_UNREAD_S = 0.2
+"""Wall time for programs to read what was sent last: a terminal that is closed forgets it."""
 LONGEST_QUEUE = 1 << 16
 """Bytes kept while the other end does not read; what comes beyond is lost."""
 
@@ -43,7 +49,8 @@ class PseudoTerminal(DescriptorEndpoint):
                 ) from None
 
     def close(self) -> None:
-        """Close both ends, and take the symbolic link away."""
+        """Close both ends, once what was sent is read, and take the symbolic link away."""
+        wait_until_read(self._other)
         # Another run may have put its own link there in the meantime.
         if self._place is not None and _leads_to(self._place) == self._device:
             self._place.unlink()
@@ -54,6 +61,15 @@ class PseudoTerminal(DescriptorEndpoint):
             self._claim.close()
         os.close(self._own)
         os.close(self._other)
+
+
+def wait_until_read(terminal: int) -> None:
+    """Wait until nothing is left to be read at a terminal, for a bounded time."""
+    unread, deadline = array("i", [0]), time.monotonic() + _UNREAD_S
+    fcntl.ioctl(terminal, termios.FIONREAD, unread)
+    while unread[0] and time.monotonic() < deadline:
+        time.sleep(0.005)
+        fcntl.ioctl(terminal, termios.FIONREAD, unread)
 
 
 def _leads_to(place: Path) -> str:
