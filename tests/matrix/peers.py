@@ -39,8 +39,8 @@ class Peer:
     def unplug(self) -> None:
         """Go without a word."""
 
-    def left(self) -> str:
-        """Return what the run has left behind of the link, empty for nothing."""
+    def left(self, *, orderly: bool) -> str:
+        """Return what the run has left behind of the link, ``orderly`` ended or not; empty for nothing."""
         return ""
 
     def close(self) -> None:
@@ -85,7 +85,7 @@ class _AtSocket(Peer):
             self.socket.close()
             self.socket = None
 
-    def left(self) -> str:
+    def left(self, *, orderly: bool) -> str:
         if not self.listened or self._blocker is not None:
             return ""
         with socket.socket(type=self.kind) as one:
@@ -144,7 +144,7 @@ class Server(_AtSocket):
 
     def poll(self) -> None:
         if self.socket is None:
-            with contextlib.suppress(BlockingIOError):
+            with contextlib.suppress(OSError):  # nobody, or it is closed
                 self.socket, _ = self._server.accept()
                 self.socket.setblocking(False)
         if self.socket is not None:
@@ -287,8 +287,9 @@ class Guest(Peer):
     def take(self) -> None:
         self.path.write_text("something else")
 
-    def left(self) -> str:
-        return f"{self.path} is there" if self.path.is_symlink() else ""
+    def left(self, *, orderly: bool) -> str:
+        # A run that was killed leaves its link to the next one, which takes it away.
+        return f"{self.path} is there" if orderly and self.path.is_symlink() else ""
 
     def close(self) -> None:
         if self._descriptor >= 0:

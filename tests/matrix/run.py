@@ -91,9 +91,10 @@ class Rig:
         there = {own: peer for own, peer in self.peers.items() if type(peer) is not Peer}
         return [own for own, peer in there.items() if not peer.received]
 
-    def left(self) -> list[str]:
+    def left(self, *, orderly: bool) -> list[str]:
         """Return what is left behind of links."""
-        return [left for peer in self.peers.values() if (left := peer.left())]
+        found = (peer.left(orderly=orderly) for peer in self.peers.values())
+        return [left for left in found if left]
 
     def close(self) -> None:
         """Close the peers."""
@@ -142,6 +143,7 @@ class Run:
         self.status: int | None = None
         self.pid = os.fork()
         if not self.pid:
+            rig.close()  # a copy of a peer would keep its end open
             os._exit(_run(self.folder, arguments))
 
     def wait_for(self, holds: Callable[[], bool], what: str) -> None:
@@ -188,12 +190,13 @@ class Run:
         with (self.folder / "run" / "signals.csv").open(newline="") as file:
             return list(csv.DictReader(file))[-1]
 
-    def left(self) -> list[str]:
+    def left(self, *, orderly: bool) -> list[str]:
         """Return what is left of it: processes, passing files, links."""
         deadline = time.monotonic() + WAIT_S
         while (there := self._processes()) and time.monotonic() < deadline:
             time.sleep(0.02)
-        return [*there, *map(str, (self.folder / "tmp").iterdir()), *self._rig.left()]
+        passing = map(str, (self.folder / "tmp").iterdir())
+        return [*there, *passing, *self._rig.left(orderly=orderly)]
 
     def close(self) -> None:
         """End it whatever it does."""

@@ -216,6 +216,10 @@ def _data(message: dict[str, Any], descriptor: int) -> bool:
         while data and (left := deadline - time.monotonic()) > 0:
             if _is_ready(descriptor, select.POLLOUT, left):
                 data = data[os.write(descriptor, data) :]
+        if os.isatty(descriptor):
+            from .endpoints.pseudo_terminal import wait_until_others_read
+
+            wait_until_others_read(descriptor)
         return not data
     return False
 

@@ -14,8 +14,11 @@ from ...errors import InputError
 from ..own_terminals import claim
 from .descriptor import DescriptorEndpoint
 
-_UNREAD_S = 0.2
-"""Wall time for programs to read what was sent last: a terminal that is closed forgets it."""
+_TIOCGPTN = 0x80045430
+"""Linux's request for the number of the terminal behind a master, which Python has no name for."""
+_UNREAD_S, _LAST_S = 0.5, 1.0
+"""Wall time for programs to read what was sent last, which a closed terminal forgets: at the end of
+a run, and of one that has died."""
 LONGEST_QUEUE = 1 << 16
 """Bytes kept while the other end does not read; what comes beyond is lost."""
 
@@ -50,7 +53,7 @@ class PseudoTerminal(DescriptorEndpoint):
 
     def close(self) -> None:
         """Close both ends, once what was sent is read, and take the symbolic link away."""
-        wait_until_read(self._other)
+        _wait_until_read(self._other, _UNREAD_S)
         # Another run may have put its own link there in the meantime.
         if self._place is not None and _leads_to(self._place) == self._device:
             self._place.unlink()
@@ -63,9 +66,26 @@ class PseudoTerminal(DescriptorEndpoint):
         os.close(self._other)
 
 
-def wait_until_read(terminal: int) -> None:
-    """Wait until nothing is left to be read at a terminal, for a bounded time."""
-    unread, deadline = array("i", [0]), time.monotonic() + _UNREAD_S
+def wait_until_others_read(own: int) -> None:
+    """Wait until what went to a pseudo-terminal is read; at any other device nothing is done.
+
+    ``own`` is this program's end: the programs' end is opened, which is how that is known.
+    """
+    number = array("i", [0])
+    try:
+        fcntl.ioctl(own, _TIOCGPTN, number)
+        other = os.open(f"/dev/pts/{number[0]}", os.O_RDONLY | os.O_NOCTTY | os.O_NONBLOCK)
+    except OSError:
+        return
+    try:
+        _wait_until_read(other, _LAST_S)
+    finally:
+        os.close(other)
+
+
+def _wait_until_read(terminal: int, limit: float) -> None:
+    """Wait until nothing is left to be read at a terminal, for ``limit`` of wall time at most, s."""
+    unread, deadline = array("i", [0]), time.monotonic() + limit
     fcntl.ioctl(terminal, termios.FIONREAD, unread)
     while unread[0] and time.monotonic() < deadline:
         time.sleep(0.005)
