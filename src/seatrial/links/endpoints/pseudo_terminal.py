@@ -16,6 +16,8 @@ from .descriptor import DescriptorEndpoint
 
 _TIOCGPTN = 0x80045430
 """Linux's request for the number of the terminal behind a master, which Python has no name for."""
+_ARRIVES_S = 0.05
+"""Wall time in which Linux carries what was written from one end of a terminal to the other."""
 _UNREAD_S, _LAST_S = 0.5, 1.0
 """Wall time for programs to read what was sent last, which a closed terminal forgets: at the end of
 a run, and of one that has died."""
@@ -84,8 +86,9 @@ def wait_until_others_read(own: int) -> None:
 
 
 def _wait_until_read(terminal: int, limit: float) -> None:
-    """Wait until nothing is left to be read at a terminal, for ``limit`` of wall time at most, s."""
+    """Wait until nothing is left to be read at a terminal, ``limit`` of wall time at most, s."""
     unread, deadline = array("i", [0]), time.monotonic() + limit
+    time.sleep(_ARRIVES_S)
     fcntl.ioctl(terminal, termios.FIONREAD, unread)
     while unread[0] and time.monotonic() < deadline:
         time.sleep(0.005)
