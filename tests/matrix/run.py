@@ -18,7 +18,7 @@ from seatrial.cli import main
 from .kinds import Kind
 from .peers import Peer
 
-WAIT_S = 60.0
+WAIT_S = 180.0
 _PAUSE_S = 0.005
 TALKER = '''
 """Bytes in every step; and a step that never ends, if that is wanted."""
