@@ -230,8 +230,9 @@ class AisTransponder(Noise, Component):
     def _receive(self, when_ns: int, data: bytes) -> None:
         self._received += 1
         found = read(*self._present(when_ns, data, VDM)) or {}
-        if "lat" in found and abs(found["lat"]) <= 90.0 and abs(found["lon"]) <= 180.0:
-            north, east, _ = self._origin().position(found["lat"], found["lon"], self.altitude)
+        lat, lon = found.get("lat"), found.get("lon")  # None: the message is shorter than its kind
+        if lat is not None and lon is not None and abs(lat) <= 90.0 and abs(lon) <= 180.0:
+            north, east, _ = self._origin().position(lat, lon, self.altitude)
             self._known[str(found["mmsi"])] = [when_ns / NS, north, east]
 
     def _present(self, when_ns: int, data: bytes, kind: str) -> list[bytes]:
