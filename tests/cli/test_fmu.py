@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
+import socket
 import tomllib
 from pathlib import Path
 
@@ -92,3 +94,15 @@ def test_a_file_without_a_class_is_answered_with_its_classes(tmp_path: Path) -> 
     assert "a class is needed, as in empty.py:Boat, and the file has none" in done.stderr
     done = seatrial("fmu", "build", "none.py", cwd=tmp_path)
     assert f"none.py: there is no file {tmp_path / 'none.py'}" in done.stderr
+
+
+def test_a_check_opens_no_link(tmp_path: Path) -> None:
+    """The gateway's own port is in use: by another run, or somebody else."""
+    with socket.socket() as other:
+        with contextlib.suppress(OSError):  # somebody has it already
+            other.bind(("127.0.0.1", 29536))
+            other.listen()
+        done = seatrial("fmu", "check", "can-gateway", "mavlink", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "can-gateway: not run, since it would open its links" in done.stderr
+    assert done.stdout.count("no problem found") == 2

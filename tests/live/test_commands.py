@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import os
+import socket
 import re
 import threading
 import time
@@ -40,6 +41,16 @@ def test_what_does_not_fit_is_refused(arguments, says, tmp_path: Path) -> None:
     done = seatrial(*arguments, cwd=tmp_path)
     assert done.returncode == 2
     assert says in done.stderr
+    assert not os.listdir(tmp_path)
+
+
+@pytest.mark.parametrize("command", [("run", "hydrone-landing", "--live"), ("live", "landing")])
+def test_a_port_that_is_taken_is_refused_before_the_run(command, tmp_path: Path) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as other:
+        port = other.getsockname()[1]
+        done = seatrial(*command, "--port", str(port), "--engine", "direct", cwd=tmp_path)
+    assert done.returncode == 2
+    assert f"--port: port {port} of 127.0.0.1 is taken" in done.stderr
     assert not os.listdir(tmp_path)
 
 
