@@ -155,7 +155,7 @@ class Run:
             self._rig.poll()
             time.sleep(_PAUSE_S)
 
-    def wait_until_heard(self) -> None:
+    def wait_until_received(self) -> None:
         """Poll until something has come from every link."""
         self.wait_for(lambda: not self._rig.silent(), "links are silent")
         assert not self.has_ended(), self.said

@@ -117,7 +117,7 @@ def _garbled(rig: Rig, run: Run) -> None:
 
 def _unplugged(rig: Rig, run: Run) -> None:
     ((own, peer),) = rig.peers.items()
-    run.wait_until_heard()
+    run.wait_until_received()
     peer.unplug()
     assert run.wait() == 3, run.said
     assert f"{own}: " in run.said
@@ -134,21 +134,21 @@ def _taken(rig: Rig, run: Run) -> None:
 
 
 def _hung(rig: Rig, run: Run) -> None:
-    run.wait_until_heard()
+    run.wait_until_received()
     assert run.wait() == 3, run.said
     assert "hanging: " in run.said
     _is_stopped(rig, run, "failed")
 
 
 def _terminated(rig: Rig, run: Run) -> None:
-    run.wait_until_heard()
+    run.wait_until_received()
     os.kill(run.pid, signal.SIGTERM)
     assert run.wait() == 3, run.said
     _is_stopped(rig, run, "stopped")
 
 
 def _killed(rig: Rig, run: Run) -> None:
-    run.wait_until_heard()
+    run.wait_until_received()
     os.kill(run.child(), signal.SIGKILL)
     assert run.wait() == 3, run.said
     assert "SIGKILL" in run.said
