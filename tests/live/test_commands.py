@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import base64
 import os
-import socket
 import re
+import socket
 import threading
 import time
 from pathlib import Path
