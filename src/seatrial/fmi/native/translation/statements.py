@@ -345,7 +345,6 @@ def _attempt(
 ) -> dict[str, Shape] | None:
     """Write the loop with those shapes; return others if they are too narrow."""
     assert frame.names is not None
-    before = dict(frame.names)
     variables = {name: [frame.variable(k) for k in leaves(s)] for name, s in shapes.items()}
     for name, shape in shapes.items():
         _set(frame, variables[name], frame.names[name], shape)
@@ -355,17 +354,18 @@ def _attempt(
     with frame.block("for (;;) {"):
         flag = test()
         if isinstance(flag, Known) and not flag.value:
-            frame.code, frame.names = [], before
-            return None
-        with frame.block(f"if (!{frame.text_of(flag, 'b')}) {{"):
             breaks.come(frame.names)
-        with frame.block("if (self->error[0]) {"):  # what the turn before computed is nothing
-            frame.emit(f"goto {FAILED};")
-        begin()
-        frame.loops.append((breaks, continues))
-        frame.execute(body)
-        frame.loops.pop()
-        _arrive(frame, continues)
+            frame.names = None
+        else:
+            with frame.block(f"if (!{frame.text_of(flag, 'b')}) {{"):
+                breaks.come(frame.names)
+            with frame.block("if (self->error[0]) {"):  # the turn before has computed nothing
+                frame.emit(f"goto {FAILED};")
+            begin()
+            frame.loops.append((breaks, continues))
+            frame.execute(body)
+            frame.loops.pop()
+            _arrive(frame, continues)
         if frame.names is not None:
             ends = {name: frame.names[name] for name in shapes}
             wider = {n: joined(shapes[n], shape_of(v)) for n, v in ends.items()}
