@@ -17,6 +17,7 @@ from ..source import ComponentSource
 from .carriers import checked, refuse
 from .compiler import FLAGS, HERE, library_here, require_compiler
 from .export import build_native_fmu
+from .selfcheck import DifferenceError
 from .tables import is_built_in
 from .translation.constants import fingerprint
 
@@ -50,7 +51,7 @@ def native_fmu(source: ComponentSource, values: Mapping[str, Any] | None = None)
         checked(component, source.origin)
         try:
             build_native_fmu(source, path, (HERE,), own, library_here, given=given)
-        except InputError as error:
+        except DifferenceError as error:
             write_named(refused, str(error).encode())
             raise
     return path

@@ -51,6 +51,9 @@ static inline double checked(Instance *self, double result, double x, const char
 
 static inline double power(Instance *self, double a, double b, const char *where) {
     const double result = pow(a, b);
+    if (isnan(result) && isfinite(a) && isfinite(b)) /* in Python a complex number */
+        fail(self, "%s: %s to the power of %s is no real number at %s", self->name, shown(self, a),
+             shown(self, b), where);
     return isfinite(b) ? checked(self, result, a, where) : result;
 }
 

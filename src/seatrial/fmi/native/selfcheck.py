@@ -25,8 +25,12 @@ _SHARES = (0.31, 1.0, 0.7, 2.6)
 """Communication steps, of what a component takes for one."""
 
 
+class DifferenceError(InputError):
+    """The C of a component does not do what its Python does."""
+
+
 def refuse_difference(source: ComponentSource, fmu: Path, values: Mapping[str, Any]) -> None:
-    """Raise InputError, with both values, where a native FMU and its Python differ.
+    """Raise DifferenceError, with both values, where a native FMU and its Python differ.
 
     Both start with ``values`` (by scalar), once more with those that the class is ``exercised``
     with; inputs are random, near their start values and far from them, within their limits. An
@@ -36,7 +40,7 @@ def refuse_difference(source: ComponentSource, fmu: Path, values: Mapping[str, A
     for seed, (spread, start) in enumerate(((0.2, values), (3.0, values), (0.2, exercised))):
         found = _Pair(source, fmu, start, random.Random(seed), spread).difference()
         if found:
-            raise InputError(
+            raise DifferenceError(
                 f"{source.origin} cannot be native: {found}. That is a fault of seatrial, not of "
                 "the component: please report it"
             )
