@@ -1,4 +1,4 @@
-"""What --cluster may reach: this machine, and other hosts only if that is said."""
+"""Hosts that --cluster may reach: this machine, and others only if that is said."""
 
 import subprocess
 

@@ -129,7 +129,8 @@ def test_a_run_that_fails_is_an_error_of_the_junit_file(folder: Path) -> None:
     (folder / "dies.py").write_text(
         "from seatrial.component import Component, Output\n\n\nclass Dies(Component):\n"
         '    """Dies."""\n\n    x = Output("1", "x")\n\n'
-        "    def step(self, t, h):\n        raise RuntimeError('it is dead')\n"
+        "    def step(self, t, h):\n        raise RuntimeError('it is dead')\n\n"
+        "    def outputs(self, t):\n        self.x = 0.0\n"
     )
     (folder / "dead.toml").write_text(
         'step = "10 ms"\n[components]\nd = { fmu = "dies.py:Dies" }\n'
@@ -180,7 +181,8 @@ def test_what_an_fmu_prints_is_not_in_the_document(folder: Path) -> None:
     (folder / "talks.py").write_text(
         "import os\n\nfrom seatrial.component import Component, Output\n\n\n"
         'class Talks(Component):\n    """Talks."""\n\n    x = Output("1", "x")\n\n'
-        "    def step(self, t, h):\n        os.write(1, b'chatter\\n')\n"
+        "    def step(self, t, h):\n        os.write(1, b'chatter\\n')\n\n"
+        "    def outputs(self, t):\n        self.x = 0.0\n"
     )
     (folder / "rig.toml").write_text(
         'step = "10 ms"\n[components]\nt = { fmu = "talks.py:Talks" }\n'

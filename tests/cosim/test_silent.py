@@ -1,4 +1,4 @@
-"""What would go on without a word: delays, forgotten connections, a lost compiled master."""
+"""Mistakes that would go on without a word: delays, forgotten connections, a lost compiled master."""
 
 from __future__ import annotations
 
@@ -161,7 +161,7 @@ def test_a_plant_needs_no_declaration(tmp_path: Path, engine: Any) -> None:
     assert run(trial, engine).status == "complete"
 
 
-def test_what_cannot_be_told_is_said_once(tmp_path: Path) -> None:
+def test_what_is_unknown_is_said_once(tmp_path: Path) -> None:
     trial = written(tmp_path, {"a": "Dark", "b": "Dark", "ramp": "Ramp"}, '"ramp.y" = "a.u"')
     notes = [note for note in run(trial, "direct").notes if "depend" in note]
     assert len(notes) == 1

@@ -1,4 +1,4 @@
-"""What outputs depend on, found: against what a change of the inputs shows."""
+"""Dependencies of outputs, found: against what a change of the inputs shows."""
 
 import random
 from typing import Any

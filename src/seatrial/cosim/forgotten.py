@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Container, Iterable
 
+from ..errors import InputError
 from ..fmi.instance import Variable
 from ..units import unit
 from .paths import split_path
@@ -56,7 +57,11 @@ def _what(variable: Variable) -> str | None:
         return "command"
     if variable.type is not float or not variable.unit or _ENERGY.search(variable.unit):
         return None
-    exponents = unit(variable.unit).exponents
+    measure = variable.measure  # of a unit of its own, an FMU's definition
+    try:
+        exponents = (unit(measure) if isinstance(measure, str) else measure).exponents
+    except InputError:
+        return None
     return None if exponents not in _FORCES else ("force", "moment")[_FORCES.index(exponents)]
 
 

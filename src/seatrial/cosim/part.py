@@ -41,6 +41,6 @@ class Part:
     """Origin of {n} where it is, if its rig says one: latitude and longitude, rad; altitude, m."""
     presets: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     undecided: str = ""
-    """Why it cannot be told what its outputs depend on, if so: they are taken to on all inputs."""
+    """Why the dependencies of its outputs are unknown, if so: all depend on all inputs then."""
     is_sum: bool = False
     """It takes no step: every algorithm evaluates it where values move."""

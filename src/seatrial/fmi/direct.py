@@ -49,6 +49,7 @@ class DirectInstance(ByType):
         return {
             scalar: [name for port in inputs for name in ports[port].scalar_names]
             for output, inputs in through.items()
+            if inputs
             for scalar in ports[output].scalar_names
         }
 

@@ -16,7 +16,7 @@ LARGEST_STREAMED = 512 * 2**20
 """Bytes of the largest one that is read element by element: more than a million variables."""
 MOST_ELEMENTS = 1_000_000
 """Elements of such a file that stay, units and types say: some 200 bytes each and more."""
-LONGEST_NAME = 4096
+LONGEST_NAME = 32_768
 """Characters of an attribute ``name``: what writes tables, pages and messages of them has time by
 the square of that."""
 _LONG_NAMES = etree.XPath(f"//@name[string-length() > {LONGEST_NAME}]")

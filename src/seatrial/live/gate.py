@@ -1,4 +1,4 @@
-"""Who gets to the page and its websocket, and what of a viewer's messages gets to viser.
+"""Access to the page and its websocket, and a viewer's messages on their way to viser.
 
 Whoever runs as somebody else on this machine, or serves a page that a viewer's browser opens, can
 send requests to the port. So a request needs the token, in the address once and in a cookie from

@@ -1,4 +1,4 @@
-"""What the page of a viewer may send: viser takes whatever can be decoded, and writes it down."""
+"""Messages that the page of a viewer may send: viser keeps whatever can be decoded."""
 
 from __future__ import annotations
 

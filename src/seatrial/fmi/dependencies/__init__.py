@@ -1,4 +1,4 @@
-"""What outputs depend on at the same instant, found from what a component is made of.
+"""Dependencies of outputs at the same instant, found from what a component is made of.
 
 `found` answers for a class: from the sparsity of a plant's expressions (`equations`), and from the
 Python text of everything else (`interpreter`). `perturbation` tries what a declaration narrows,

@@ -103,7 +103,7 @@ class Calls(Expressions):
         assert isinstance(node.func, ast.Attribute)
         owner = self.frame.code.owner
         if owner is None or owner not in self.cls.__mro__:
-            raise self.undecided(node, "which class super() means cannot be told")
+            raise self.undecided(node, "the class that super() means is unknown")
         behind = self.cls.__mro__[self.cls.__mro__.index(owner) + 1 :]
         for base in behind:
             static = vars(base).get(node.func.attr)

@@ -1,4 +1,4 @@
-"""What is found of a component and of its mistakes, remembered by the hash of its code."""
+"""Findings about a component and its mistakes, remembered by the hash of its code."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Checked:
 
     through: Through
     undecided: str
-    """Why that of undeclared outputs cannot be told, if so: they depend on all inputs."""
+    """Why that of undeclared outputs is unknown, if so: they depend on all inputs."""
 
 
 def refuse_mistakes(cls: type[Component]) -> None:

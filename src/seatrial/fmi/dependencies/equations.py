@@ -1,4 +1,4 @@
-"""What a plant's equations couple, by the sparsity of its expressions."""
+"""Dependencies of a plant's outputs, by the sparsity of its expressions."""
 
 from __future__ import annotations
 

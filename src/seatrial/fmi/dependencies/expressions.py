@@ -295,7 +295,7 @@ class Expressions:
         if node.id in self.globals:
             return self.object(self.globals[node.id])
         if not hasattr(builtins, node.id):
-            raise self.undecided(node, f"what {node.id} is cannot be told")
+            raise self.undecided(node, f"{node.id} is unknown")
         return self.object(getattr(builtins, node.id))
 
     def _value_Attribute(self, node: ast.Attribute) -> Value:

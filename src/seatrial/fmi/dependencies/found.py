@@ -1,4 +1,4 @@
-"""What each output of a class depends on at the same instant: declared, or found."""
+"""Dependencies of each output of a class at the same instant: declared, or found."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Found:
 
     through: Through
     undecided: str = ""
-    """Why it cannot be told; then every output depends on every input."""
+    """Why it is unknown; then every output depends on every input."""
 
 
 _KNOWN: WeakKeyDictionary[type[Component], Found] = WeakKeyDictionary()

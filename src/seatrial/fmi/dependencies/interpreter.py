@@ -1,4 +1,4 @@
-"""Which inputs each output follows from, by the text of ``outputs`` and all that it calls.
+"""Inputs from which each output follows, by the text of ``outputs`` and all that it calls.
 
 The text is run with abstract values (`values`): a value is the set of inputs that it follows from.
 Both ways of a branch are taken, and what they do follows from the branch's condition too; loops

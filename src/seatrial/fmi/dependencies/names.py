@@ -26,7 +26,7 @@ def refuse_mistyped(cls: type[Component]) -> None:
 
     An attribute is meant that is read and never set, or set and never read; its name has no
     underscore first, and differs little from a port's. Classes whose text hands ``self`` on, or
-    sets attributes by computed names, are not judged: there anything may be set. An
+    sets attributes by computed names, are not checked: there anything may be set. An
     output whose declaration gives a start value other than zero may be a constant, a text may
     have nothing to say, and a class without a method does nothing on purpose.
     """

@@ -24,7 +24,7 @@ def refuse_dependent(cls: type[Component]) -> None:
     """Raise InputError if an output follows from an input that its declaration leaves out.
 
     Both are tried at several points of a run with random inputs within their limits. A
-    component that reaches outside is not started; one that refuses the values is not judged.
+    component that reaches outside is not started; one that refuses the values is not checked.
     """
     narrowed = _narrowed(cls)
     if not narrowed or not cls.rolls_back:

@@ -14,7 +14,7 @@ _MOST_ITEMS = 64
 
 
 class UndecidedError(Exception):
-    """The text does something whose dependencies cannot be told."""
+    """The text does something whose dependencies are unknown."""
 
 
 class Cell:

@@ -74,7 +74,7 @@ def build_native_fmu(
         with TemporaryDirectory() as folder:
             built = Path(folder, destination.name)
             built.write_bytes(content)
-            refuse_difference(source, built, given or {})
+            refuse_difference(source, built, start_values or {}, given or {})
     destination.parent.mkdir(parents=True, exist_ok=True)
     write_named(destination, content)
     return destination

@@ -9,6 +9,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+from ...component import Component
 from ...errors import InputError, SimulationError
 from ...faults.catalogue import FAILURES
 from ...ports import ScalarPort
@@ -29,16 +30,22 @@ class DifferenceError(InputError):
     """The C of a component does not do what its Python does."""
 
 
-def refuse_difference(source: ComponentSource, fmu: Path, values: Mapping[str, Any]) -> None:
+def refuse_difference(
+    source: ComponentSource, fmu: Path, built_in: Mapping[str, Any], values: Mapping[str, Any]
+) -> None:
     """Raise DifferenceError, with both values, where a native FMU and its Python differ.
 
-    Both start with ``values`` (by scalar), once more with those that the class is ``exercised``
-    with; inputs are random, near their start values and far from them, within their limits. An
-    error that only one of them makes is a difference too.
+    The FMU was made with start values ``built_in`` (by port); both start with ``values`` (by
+    scalar), once more with those that the class is ``exercised`` with. Inputs are random, near
+    their start values and far from them, within their limits. An error that only one of them
+    makes is a difference too.
     """
-    exercised = {**_exercised(source), **values}
+    exercised = {**_exercised(source, built_in), **values}
     for seed, (spread, start) in enumerate(((0.2, values), (3.0, values), (0.2, exercised))):
-        found = _Pair(source, fmu, start, random.Random(seed), spread).difference()
+        python = source.component_class()(source.name)
+        for port, value in built_in.items():
+            python.set(port, value)
+        found = _Pair(python, fmu, start, random.Random(seed), spread).difference()
         if found:
             raise DifferenceError(
                 f"{source.origin} cannot be native: {found}. That is a fault of seatrial, not of "
@@ -46,13 +53,13 @@ def refuse_difference(source: ComponentSource, fmu: Path, values: Mapping[str, A
             )
 
 
-def _exercised(source: ComponentSource) -> dict[str, Any]:
+def _exercised(source: ComponentSource, built_in: Mapping[str, Any]) -> dict[str, Any]:
     """Return the parameters that a class is exercised with, but for those that are built in."""
     cls = source.component_class()
     found: dict[str, Any] = {}
     for name, value in cls.exercised.items():
         port = cls.ports[name]
-        if port.kind == "parameter" and not is_built_in(cls, port):
+        if port.kind == "parameter" and name not in built_in and not is_built_in(cls, port):
             found |= dict(zip(port.scalar_names, port._spread(value), strict=True))
     return found
 
@@ -62,22 +69,22 @@ class _Pair:
 
     def __init__(
         self,
-        source: ComponentSource,
+        python: Component,
         fmu: Path,
         values: Mapping[str, Any],
         draw: random.Random,
         spread: float,
     ) -> None:
-        cls = source.component_class()
+        cls = type(python)
         self.draw, self.spread, self.values = draw, spread, values
         self.inputs = [s for s in cls.scalars if s.port.kind == "input"]
         outputs = [s for s in cls.scalars if s.port.kind == "output" and s.port.type is not str]
         self.outputs = [scalar.name for scalar in outputs]
         self.both: tuple[Instance, Instance] = (
-            DirectInstance(cls(source.name), compiles=False),
-            open_instance(load_fmu(fmu), source.name),
+            DirectInstance(python, compiles=False),
+            open_instance(load_fmu(fmu), python.name),
         )
-        step = values.get("period") or cls.fixed_step or 0.02
+        step = values.get("period") or getattr(python, "period", 0.0) or cls.fixed_step or 0.02
         self.steps = [step if cls.fixed_step else share * step for share in _SHARES]
 
     def difference(self) -> str:

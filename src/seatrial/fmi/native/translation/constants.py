@@ -1,4 +1,4 @@
-"""What of modules and classes stays as it is: what a component may know when its C is written."""
+"""Constants of modules and classes: known when the C of a component is written."""
 
 from __future__ import annotations
 
