@@ -225,6 +225,38 @@ sum = {{ sum = {{ inputs = 2 }} }}
     assert equal(fmus / f"mixed-{algorithm}.toml", text)["error"] is None
 
 
+@pytest.mark.parametrize("algorithm", ALGORITHMS)
+def test_sums_are_taken_in_c(fmus: Path, algorithm: str) -> None:
+    """Numbers and vectors, in a chain and in a loop: C sets and reads them."""
+    text = f"""
+step = "10 ms"
+algorithm = "{algorithm}"
+[components]
+a = {{ fmu = "fmi2.fmu", set = {{ gain = 0.3, k = 0.7 }} }}
+b = {{ fmu = "fmi2.fmu", set = {{ gain = -0.4 }}, step = "20 ms" }}
+total = {{ sum = {{ inputs = 3 }} }}
+forces = {{ sum = {{ inputs = 2, dimension = 2 }} }}
+[connections]
+"a.y" = ["total.in[0]", "forces.in[0][0]"]
+"b.y" = [{{ to = "total.in[1]", factor = 0.3, offset = 0.2 }}, "forces.in[1][1]"]
+"total.out" = ["a.u", "forces.in[1][0]"]
+"a.x" = "forces.in[0][1]"
+"forces.out[0]" = "b.u"
+"forces.out[1]" = "b.q[1]"
+"""
+    path = fmus / f"sums-{algorithm}.toml"
+    assert equal(path, text)["error"] is None
+    system = assemble(load_rig(str(path)))
+    try:
+        master = Master(system)
+        master.initialise()
+        assert master._compiled is not None
+        asked = {(fmu.name, call) for fmu, call in master._compiled._program.asked.values()}
+        assert {(n, c) for n in ("total", "forces") for c in ("SetReal", "GetReal")} <= asked
+    finally:
+        system.free()
+
+
 def test_an_oscillation_that_grows_is_found_at_the_same_step(fmus: Path) -> None:
     text = """
 step = "10 ms"

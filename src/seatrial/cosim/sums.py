@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -27,19 +28,20 @@ class SumInstance:
         self.name = name
         suffixes = [""] if dimension is None else [f"[{axis}]" for axis in range(dimension)]
         self.variables, self.feedthrough = Variables(), dict[str, Sequence[str]]()
-        self._terms: dict[str, list[str]] = {}
         for suffix in suffixes:
-            terms = [f"in[{number}]{suffix}" for number in range(inputs)]
-            self._terms[f"out{suffix}"] = self.feedthrough[f"out{suffix}"] = terms
-        for term in (t for terms in self._terms.values() for t in terms):
+            self.feedthrough[f"out{suffix}"] = [f"in[{n}]{suffix}" for n in range(inputs)]
+        for term in (term for terms in self.feedthrough.values() for term in terms):
             self.variables[term] = _variable(term, "input", len(self.variables))
-        for out in self._terms:
+        for out in self.feedthrough:
             self.variables[out] = _variable(out, "output", len(self.variables))
-        self._inputs = {term: 0.0 for terms in self._terms.values() for term in terms}
+        self.terms = inputs
+        """Inputs of each output; those of the first stand first, by value reference."""
+        self.inputs = (ctypes.c_double * (inputs * len(suffixes)))()
+        """Values of the inputs, which C reads and writes too."""
 
     def set_start(self, values: Mapping[str, Value]) -> None:
         """Set inputs by name."""
-        self._inputs.update({name: _real(value) for name, value in values.items()})
+        self.writer(list(values))([_real(value) for value in values.values()])
 
     def initialise(self, start_time: float, stop_time: float) -> None:
         """Start: nothing to do."""
@@ -49,21 +51,28 @@ class SumInstance:
 
     def reader(self, names: Sequence[str]) -> Reader:
         """Return a callable that returns the values of ``names``, in that order."""
-        inputs, terms = self._inputs, self._terms
+        inputs, terms = self.inputs, self.terms
 
-        def value(name: str) -> float:
-            if name in inputs:
-                return inputs[name]
-            total = 0.0
-            for term in terms[name]:  # one after the other, as libcosim adds
-                total += inputs[term]
+        def value(reference: int) -> float:
+            if reference < len(inputs):
+                return inputs[reference]
+            first, total = terms * (reference - len(inputs)), 0.0
+            for term in inputs[first : first + terms]:  # one after the other, as libcosim adds
+                total += term
             return total
 
-        return lambda: [value(name) for name in names]
+        references = [self.variables[name].reference for name in names]
+        return lambda: [value(reference) for reference in references]
 
     def writer(self, names: Sequence[str]) -> Writer:
         """Return a callable that sets ``names`` to a sequence of values."""
-        return lambda values: self._inputs.update(zip(names, values, strict=True))
+        references = [self.variables[name].reference for name in names]
+
+        def write(values: Sequence[Any]) -> None:
+            for reference, value in zip(references, values, strict=True):
+                self.inputs[reference] = value
+
+        return write
 
     def step(self, t: float, h: float) -> None:
         """Advance: nothing to do, a sum has no state."""
@@ -73,11 +82,11 @@ class SumInstance:
 
     def get_state(self) -> Any:
         """Return a copy of the inputs."""
-        return dict(self._inputs)
+        return list(self.inputs)
 
     def set_state(self, state: Any) -> None:
         """Restore what `get_state` returned."""
-        self._inputs.update(state)
+        self.inputs[:] = state
 
     def free_state(self, state: Any) -> None:
         """Release a state: nothing to do."""

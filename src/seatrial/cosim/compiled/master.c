@@ -137,6 +137,36 @@ static void count_time(Times *times, int64_t taken, int64_t at_ns) {
         times->longest_ns = taken, times->longest_at_ns = at_ns;
 }
 
+/* ------------------------------------------------------------------ sums */
+
+typedef struct { /* `SumInstance`: references are of its inputs, those of each output, then of outputs */
+    double *inputs;
+    int64_t count, terms;
+} Sum;
+
+EXPORT int sum_set(void *component, const uint32_t *references, size_t count, void *values) {
+    const Sum *sum = component;
+    for (size_t i = 0; i < count; i++) sum->inputs[references[i]] = ((const double *)values)[i];
+    return OK;
+}
+
+EXPORT int sum_get(void *component, const uint32_t *references, size_t count, void *values) {
+    const Sum *sum = component;
+    for (size_t i = 0; i < count; i++) {
+        const int64_t output = (int64_t)references[i] - sum->count;
+        double total = 0.0;
+        for (int64_t k = 0; k < sum->terms && output >= 0; k++)
+            total += sum->inputs[output * sum->terms + k];
+        ((double *)values)[i] = output < 0 ? sum->inputs[references[i]] : total;
+    }
+    return OK;
+}
+
+EXPORT int sum_step(void *component, double t, double h, int never_back) {
+    (void)component, (void)t, (void)h, (void)never_back;
+    return OK;
+}
+
 /* ------------------------------------------------------------------ operations */
 
 static void gather(Operation *o, const double *signals) {

@@ -37,9 +37,11 @@ from .structures import (
     Operation,
     Times,
 )
+from .sums import CompiledSum
 
 if TYPE_CHECKING:
     from ...fmi.fmi2 import Fmi2Slave
+    from ..sums import SumInstance
 
 _TYPES: dict[type, tuple[int, str, Any]] = {
     float: (REAL, "Real", ctypes.c_double),
@@ -55,7 +57,7 @@ class Program:
         self.operations: list[Operation] = []
         self.calls: list[list[Callable[[int, int], None]]] = []
         """Of each operation CALL: what Python does, by the steps taken and its time, ns."""
-        self.asked: dict[int, tuple[Fmi2Slave, str]] = {}
+        self.asked: dict[int, tuple[Fmi2Slave | CompiledSum, str]] = {}
         """By operation: which FMU is called, and the function."""
         self.chunks: dict[int, Chunk] = {}
         """By operation STORE."""
@@ -70,6 +72,7 @@ class Program:
         """Of each operation CALL: what Python has read, for C."""
         self.kept: list[Any] = []
         """Arrays that operations point to."""
+        self._sums: dict[str, CompiledSum] = {}
         self._network, self._feedthrough, self._step_ns = network, feedthrough, step_ns
 
     def add_step(self, algorithm: Algorithm) -> int:
@@ -217,7 +220,7 @@ class Program:
             self._add(store)
 
     def _step(self, node: Node, phase: int, start: int) -> None:
-        slave, length = slave_of(node, "DoStep"), node.every * self._step_ns
+        slave, length = self._slave_of(node, "DoStep"), node.every * self._step_ns
         if slave is None:
 
             def step(steps: int, t_ns: int) -> None:
@@ -236,7 +239,7 @@ class Program:
         self,
         operation: Operation,
         node: Node,
-        slave: Fmi2Slave,
+        slave: Fmi2Slave | CompiledSum,
         function: str,
         variables: list[Any],
     ) -> None:
@@ -300,23 +303,26 @@ class Program:
         self.kept.append(array)
         return array
 
-    def _setting(self, node: Node, writes: Writes) -> Fmi2Slave | None:
+    def _setting(self, node: Node, writes: Writes) -> Fmi2Slave | CompiledSum | None:
         """Return the FMU whose inputs C can write: numbers, without tables; else None."""
         kind = node.part.instance.variables[writes.connections[0].target[1]].type
         if kind not in _TYPES or writes.mappings or (writes.scales and kind is not float):
             return None
-        return slave_of(node, f"Set{_TYPES[kind][1]}")
+        return self._slave_of(node, f"Set{_TYPES[kind][1]}")
 
-    def _getting(self, node: Node, chunk: Chunk) -> Fmi2Slave | None:
+    def _getting(self, node: Node, chunk: Chunk) -> Fmi2Slave | CompiledSum | None:
         """Return the FMU whose outputs C can read: numbers; else None."""
         kind = node.part.instance.variables[self._network.names[chunk.start][1]].type
-        return slave_of(node, f"Get{_TYPES[kind][1]}") if kind in _TYPES else None
+        return self._slave_of(node, f"Get{_TYPES[kind][1]}") if kind in _TYPES else None
 
-
-def slave_of(node: Node, function: str) -> Fmi2Slave | None:
-    """Return the FMU of a component, if it has a function that C may call; else None."""
-    instance = node.part.instance
-    if not getattr(instance, "is_native", False):
-        return None
-    slave = cast("Fmi2Slave", instance)
-    return slave if slave.address(function) else None
+    def _slave_of(self, node: Node, function: str) -> Fmi2Slave | CompiledSum | None:
+        """Return the FMU of a component, if it has a function that C may call; else None."""
+        instance, name = node.part.instance, node.part.name
+        if node.part.is_sum:
+            slave = self._sums.setdefault(name, CompiledSum(cast("SumInstance", instance)))
+            return slave if slave.address(function) else None
+        if not getattr(instance, "is_native", False):
+            return None
+        return (
+            cast("Fmi2Slave", instance) if cast("Fmi2Slave", instance).address(function) else None
+        )
