@@ -527,6 +527,41 @@ def test_a_loop_in_one_fmu(stiffening: Path, tmp_path: Path) -> None:
     box.fmu.freeInstance()
 
 
+def test_sums(folder: Path, tmp_path: Path) -> None:
+    """A number and a vector, fed from inside and from outside; a state restored."""
+    text = RIG.format(algorithm="plain-jacobi").partition('"mass.pull"')[0]
+    text = text.replace(
+        "[connections]",
+        "total = { sum = { inputs = 3 } }\nboth = { sum = { inputs = 2, dimension = 2 } }\n"
+        "[connections]",
+    )
+    text += """
+"mass.pull"   = ["total.in[0]", "both.in[0][1]"]
+"other.y"     = "total.in[1]"
+"total.out"   = ["first.u", "both.in[1][1]"]
+"first.y"     = ["other.u", "both.in[0][0]"]
+"both.out[1]" = "first.w"
+"""
+    rig = folder / "sums.toml"
+    rig.write_text(text, "utf-8")
+    box = Box(built(rig, tmp_path), tmp_path)
+    box.begin()
+    with Simulation(rig) as simulation:
+        for k in range(40):
+            if k == 11:
+                box.set("total.in[2]", 0.3)
+                simulation.set("total.in[2]", 0.3)
+            agree(box, simulation)
+            if k == 20:
+                saved, before = box.serialized(), box.outputs()
+            box.fmu.doStep(k * 0.01, 0.01)
+            simulation.step()
+        agree(box, simulation)
+        box.restore(saved)
+        assert box.outputs() == before
+    box.fmu.freeInstance()
+
+
 def test_what_cannot_be_one(tmp_path: Path) -> None:
     run = command("fmu", "build", "--rig", "tether-towed", "--native", cwd=tmp_path)
     assert run.returncode == 2

@@ -34,7 +34,7 @@ typedef struct {
 
 #endif
 
-#if defined(CARRIER)
+#if defined(CARRIER) && !defined(TERMS) /* a sum's is its own */
 const Carrier CARRIER = {
     MODEL_GUID,
     sizeof(State),

@@ -6,6 +6,7 @@ import hashlib
 import re
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from typing import cast
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from ...errors import InputError, SimulationError
@@ -19,6 +20,7 @@ from ..compiled import choice
 from ..compiled.structures import CALL
 from ..master import Master
 from ..part import Part
+from ..sums import SumInstance
 from ..system import System
 from .description import describe_rig, scalars_of
 from .face import Face, face_of
@@ -40,6 +42,12 @@ _COMPONENT = """\
 #define CARRIER {name}
 #include "carrier.h"
 """
+_SUM = """\
+#define CARRIER {}
+#define TERMS {}
+#define OUTPUTS {}
+#include "sum.inc"
+"""
 _DECLARED = re.compile(r"^(?!static|typedef)[a-z][\w *]*?\b(\w+)\([^;{}]*\);", re.MULTILINE)
 """A function that the files of the runtime share, in its headers."""
 
@@ -52,8 +60,8 @@ def why_not_native(system: System, in_python: Mapping[str, Sequence[str]]) -> li
     whys = [f"{', '.join(names)}: {why}" for why, names in in_python.items()]
     known = {name for names in in_python.values() for name in names}
     for part in system.parts.values():
-        if part.name not in known and not _is_ours(part):
-            what = "a sum" if part.is_sum else "isolated" if part.fmu[-4:] != ".fmu" else "an FMU"
+        if part.name not in known and not part.is_sum and not _is_ours(part):
+            what = "isolated" if part.fmu[-4:] != ".fmu" else "an FMU"
             whys.append(f"{part.name}: it is {what}")
     algorithm = system.rig.file.algorithm
     if algorithm not in choice.ALGORITHMS:
@@ -165,6 +173,12 @@ def _components(system: System) -> tuple[dict[str, bytes], dict[str, str]]:
     carriers: dict[str, str] = {}
     of_code: dict[str, str] = {}
     for name, part in system.parts.items():
+        if part.is_sum:
+            adding = cast(SumInstance, part.instance)
+            carriers[name] = f"sum_{adding.terms}_{len(adding.feedthrough)}"
+            text = _SUM.format(carriers[name], adding.terms, len(adding.feedthrough))
+            sources[f"{carriers[name]}.c"] = text.encode()
+            continue
         if part.sha256 not in of_code:
             of_code[part.sha256] = f"c{len(of_code)}"
             folder = part.instance.fmu.folder / "sources"  # type: ignore[attr-defined]
