@@ -10,23 +10,14 @@ from typing import Any
 
 import numpy as np
 
-from .constants import is_ours, why_no_record
-from .domain import (
-    Choice,
-    Closure,
-    Component,
-    Draws,
-    Known,
-    Method,
-    Super,
-    described,
-    is_record_class,
-)
+from .constants import is_ours, is_record, why_no_record
+from .domain import Choice, Closure, Component, Draws, Known, Method, Super, described
 from .frame import Frame
 from .functions import inlined, invoke, record
 from .intrinsics import INTRINSICS, begun, drawn
-from .library import LIBRARY, method
+from .library import LIBRARY
 from .operations import is_known, python_of, split
+from .sequences import method
 
 _OBJECTS = (getattr, setattr, hasattr, isinstance, type)
 _NUMBERS = set(LIBRARY) - {list, tuple, dict, zip, enumerate, reversed, pairwise, len, *_OBJECTS}
@@ -64,7 +55,7 @@ def call(frame: Frame, function: Any, arguments: list[Any], named: dict[str, Any
         if own in _NUMBERS and not named:
             return split(frame, handler, *arguments)
         return handler(*arguments, **named)
-    if is_record_class(own):
+    if is_record(own):
         return record(frame, own, arguments, named)
     if isinstance(own, MethodType):
         receiver = Known(own.__self__)
@@ -78,7 +69,7 @@ def _is_pure(function: Any) -> bool:
         return True
     if function in _PURE:
         return True
-    if is_record_class(function):
+    if is_record(function):
         return not why_no_record(function)
     if isinstance(function, (type, MethodType)):
         return False

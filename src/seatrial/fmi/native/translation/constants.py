@@ -78,8 +78,12 @@ def why_mutable(value: Any) -> str:
     return f"a {type(value).__name__} that may change"
 
 
-def is_record(cls: type) -> bool:
+def is_record(cls: Any) -> bool:
     """Return whether a class is a named tuple or a data class."""
+    return isinstance(cls, type) and _has_fields(cls)
+
+
+def _has_fields(cls: type) -> bool:
     return (issubclass(cls, tuple) and hasattr(cls, "_fields")) or dataclasses.is_dataclass(cls)
 
 

@@ -8,18 +8,7 @@ from collections.abc import Callable
 from typing import Any
 
 from .constants import why_no_constant
-from .domain import (
-    Choice,
-    Known,
-    Once,
-    Queue,
-    Seq,
-    Table,
-    described,
-    is_once,
-    opened,
-    parts_of,
-)
+from .domain import Choice, Known, Once, Queue, Seq, Table, described, is_once
 from .frame import Frame, Join, expression
 from .narrowing import narrowing
 from .operations import (
@@ -32,6 +21,7 @@ from .operations import (
     negative,
     truth,
 )
+from .shapes import opened, parts_of
 
 
 @expression(ast.Constant)

@@ -18,17 +18,10 @@ from .domain import (
     MismatchError,
     Num,
     Seq,
-    Shape,
     TranslationError,
-    built,
     described,
-    flattened,
-    joined,
-    leaves,
-    number,
-    number_kind,
-    shape_of,
 )
+from .shapes import Shape, built, flattened, joined, leaves, number, number_kind, shape_of
 
 FAILED = "failed"
 """Label at the end of a function that has failed."""

@@ -12,26 +12,11 @@ from types import CodeType, FunctionType
 from typing import Any
 
 from .constants import why_mutable, why_no_record
-from .domain import (
-    C_TYPES,
-    Closure,
-    EndedError,
-    Known,
-    Record,
-    Seq,
-    Shape,
-    Table,
-    built,
-    called,
-    field_names,
-    flattened,
-    is_once,
-    leaves,
-    shape_of,
-)
+from .domain import C_TYPES, Closure, EndedError, Known, Record, Seq, Table, called, is_once
 from .expressions import storable
 from .frame import FAILED, Frame, lines, merged, pruned
 from .operations import held
+from .shapes import Shape, built, field_names, flattened, leaves, shape_of
 
 
 def syntax(function: Any) -> ast.FunctionDef:

@@ -22,11 +22,11 @@ from .domain import (
     Seq,
     Table,
     Unconverted,
-    opened,
 )
 from .expressions import unpacked
 from .frame import Frame
 from .operations import is_known, python_of
+from .shapes import opened
 
 SETTINGS = ("value", "rate", "factor", "coefficients")
 """Settings of the faults of measurements, in the order of the runtime."""

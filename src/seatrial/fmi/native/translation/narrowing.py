@@ -7,9 +7,10 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from .domain import Choice, Component, Record, opened
+from .domain import Choice, Component, Record
 from .frame import Frame
 from .operations import truth
+from .shapes import opened
 
 
 def narrowing(frame: Frame, test: ast.expr) -> Callable[..., Any]:

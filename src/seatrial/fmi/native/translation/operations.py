@@ -22,11 +22,9 @@ from .domain import (
     Table,
     described,
     is_once,
-    number_kind,
-    opened,
-    parts_of,
 )
 from .frame import Frame
+from .shapes import number_kind, opened, parts_of
 
 _PYTHON: dict[type, Callable[..., Any]] = {
     ast.Add: operator.add,

@@ -13,24 +13,17 @@ from .domain import (
     Queue,
     Range,
     Seq,
-    Shape,
     Table,
     Zipped,
-    built,
     described,
-    fits,
-    flattened,
     is_once,
-    joined,
-    leaves,
-    opened,
-    shape_of,
 )
 from .expressions import storable, unpacked
 from .frame import FAILED, Frame, Join, statement
 from .messages import failure
 from .narrowing import narrowing
 from .operations import binary, compared, either, held, truth
+from .shapes import Shape, built, fits, flattened, joined, leaves, opened, shape_of
 
 _UNROLLED = 16
 """Turns of a loop over a range that are written one by one; more become a loop of C."""

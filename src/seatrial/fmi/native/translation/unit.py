@@ -11,7 +11,7 @@ from ....component import Component as Base
 from ....ports import Parameter, Port
 from ..tables import is_built_in, words_of
 from .calls import call
-from .constants import is_ours, scope_of, why_no_constant
+from .constants import is_ours, is_record, scope_of, why_no_constant
 from .domain import (
     C_TYPES,
     Choice,
@@ -26,23 +26,17 @@ from .domain import (
     Queue,
     Record,
     Seq,
-    Shape,
     Super,
     TranslationError,
     UnshapedError,
     described,
-    flattened,
-    is_record_class,
-    joined,
-    leaves,
-    opened,
-    shape_of,
 )
 from .expressions import storable, unpacked
 from .frame import WORD, Frame, lines
 from .functions import appended_attributes, found_method, invoke
 from .intrinsics import begun, fault_value
 from .operations import binary, held, is_number, truth
+from .shapes import Shape, flattened, joined, leaves, opened, shape_of
 from .statements import assign
 
 ROOTS = ("start", "step", "outputs")
@@ -215,7 +209,7 @@ class Unit:
         if isinstance(owner, Super):
             found, where = found_method(_class_of(self, owner.receiver), name, owner.owner)
             return Method(found, where, owner.receiver)
-        if isinstance(owner, Known) and not is_record_class(type(owner.value)):
+        if isinstance(owner, Known) and not is_record(type(owner.value)):
             if isinstance(owner.value, (list, tuple, Mapping)):
                 return Method(name, None, opened(owner))
             return self._known(frame, owner.value, name)
