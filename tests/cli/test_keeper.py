@@ -20,7 +20,7 @@ import pytest
 from tests.command import SEATRIAL, seatrial
 
 from .gateway import RIG, SAFE, TALKER, Vehicle
-from .test_stop import children_of, has_ended, wait_for
+from .test_stop import child_of, has_ended, wait_for
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processes and name spaces")
 
@@ -250,7 +250,7 @@ def test_a_slow_step_is_no_hang(write, tmp_path: Path) -> None:
 def test_a_run_that_is_suspended_leaves_no_order(start: Start, vehicle: Vehicle) -> None:
     process = start("")
     wait_for(lambda: b"!!!" in vehicle.read())
-    (child,) = children_of(process)
+    child = child_of(process)
     os.kill(child, signal.SIGSTOP)
     is_last(vehicle)
     process.communicate(timeout=60)
@@ -264,7 +264,7 @@ def test_a_simulation_that_is_suspended_goes_on(write, tmp_path: Path) -> None:
     command = [SEATRIAL, "run", "trial.toml", "--engine", "direct", "--real-time", "1"]
     process = subprocess.Popen([*command, "--hang-after", "0.5", "--out", "run"], cwd=tmp_path)
     wait_for((tmp_path / "run").is_dir)
-    (child,) = children_of(process)
+    child = child_of(process)
     for pid in (process.pid, child):
         os.kill(pid, signal.SIGSTOP)
     time.sleep(1.5)
@@ -290,7 +290,7 @@ def test_a_signal_to_the_process_of_the_run_ends_it_in_order(
 ) -> None:
     process = start("")
     wait_for(lambda: b"!!!" in vehicle.read())
-    (child,) = children_of(process)
+    child = child_of(process)
     os.kill(child, number)
     _, message = process.communicate(timeout=60)
     assert (process.returncode, "stopped" in message) == (3, True), message
@@ -313,7 +313,7 @@ def test_one_signal_ends_a_hang_in_bounded_time(
 ) -> None:
     process = start(how, "step", "--engine", "direct", "--hang-after", "100")
     hanging(tmp_path)
-    (child,) = children_of(process)
+    child = child_of(process)
     os.kill(child if whose == "child" else process.pid, signal.SIGTERM)
     begun = time.monotonic()
     is_last(vehicle)
@@ -358,7 +358,7 @@ def test_a_hung_run_whose_supervisor_is_suspended_or_killed(
 ) -> None:
     process = start("holds the lock", "step", "--engine", "direct", "--hang-after", "5")
     hanging(tmp_path)
-    (child,) = children_of(process)
+    child = child_of(process)
     os.kill(process.pid, signal.SIGSTOP)
     is_last(vehicle)
     wait_for(lambda: has_ended(child))
@@ -394,7 +394,7 @@ def test_no_keeper_is_left(start: Start, vehicle: Vehicle) -> None:
 
 def container_stops(process: subprocess.Popen[str]) -> float:
     """Do what ``docker stop`` does to process 1 of a name space; return how long that took, s."""
-    (first,) = children_of(process)
+    first = child_of(process)
     begun = time.monotonic()
     os.kill(first, signal.SIGTERM)
     while not has_ended(first) and time.monotonic() < begun + 10.0:

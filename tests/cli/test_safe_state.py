@@ -15,14 +15,14 @@ import pytest
 from tests.command import SEATRIAL
 
 from .gateway import ENDS, SAFE, Vehicle
-from .test_stop import children_of, has_ended, wait_for
+from .test_stop import child_of, children_of, has_ended, wait_for
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="terminals and processes")
 
 
 def ended(process: subprocess.Popen[str], whose: str, number: int) -> str:
     """Send a signal and wait for the end of all; return the message."""
-    (child,) = children_of(process)
+    child = child_of(process)
     os.kill(child if whose == "child" else process.pid, number)
     _, message = process.communicate(timeout=60)
     wait_for(lambda: has_ended(child))
@@ -83,7 +83,7 @@ def test_an_isolated_gateway_that_is_killed_leaves_its_safe_state(
 ) -> None:
     process = start(isolated=True)
     wait_for(lambda: b"!!!" in vehicle.read())
-    (child,) = children_of(process)
+    child = child_of(process)
     (worker,) = Path(f"/proc/{child}/task/{child}/children").read_text().split()
     os.kill(int(worker), signal.SIGKILL)
     _, message = process.communicate(timeout=60)
@@ -97,7 +97,7 @@ def test_a_gateway_whose_master_and_supervisor_are_killed_ends_in_order(
 ) -> None:
     process = start(isolated=True)
     wait_for(lambda: b"!!!" in vehicle.read())
-    (child,) = children_of(process)
+    child = child_of(process)
     os.kill(process.pid, signal.SIGSTOP)  # it sends nothing any more
     os.kill(child, signal.SIGKILL)
     wait_for(lambda: vehicle.read().endswith(SAFE))
@@ -107,7 +107,7 @@ def test_a_gateway_whose_master_and_supervisor_are_killed_ends_in_order(
 def test_a_stopped_run_goes_on(start, vehicle: Vehicle) -> None:
     process = start()
     wait_for(lambda: b"!!!" in vehicle.read())
-    (child,) = children_of(process)
+    child = child_of(process)
     for pid in (process.pid, child):
         os.kill(pid, signal.SIGSTOP)
     time.sleep(0.2)

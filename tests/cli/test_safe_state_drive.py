@@ -19,7 +19,7 @@ from tests.command import SEATRIAL
 
 from .test_drive import WAIT_S, Terminal
 from .test_safe_state import SAFE, Vehicle
-from .test_stop import children_of, wait_for
+from .test_stop import child_of, wait_for
 
 OF_NODE_5 = bytes.fromhex("FAAF0500000F5F0000000000000000000000FFFFFFFF00")
 """As `SAFE`; the header's check, the sixth byte's next, is the XOR of those before."""
@@ -70,7 +70,7 @@ def test_the_vehicle_gets_its_safe_state_last(
     url = f"serial:{vehicle.device}:115200"
     with Terminal(SEATRIAL, "drive", url, "--hardware", *options) as terminal:
         wait_for(lambda: vehicle.read().count(b"\xfa\xaf") > 2)  # it looks for its vehicle
-        (child,) = children_of(terminal.process)
+        child = child_of(terminal.process)
         os.kill(child if whose == "child" else terminal.process.pid, number)
         assert terminal.process.wait(WAIT_S) == 3
         wait_for(lambda: vehicle.read().endswith(safe))
@@ -87,7 +87,7 @@ def test_no_safe_state_is_what_the_profile_says_if_it_says_so(
     url = f"serial:{vehicle.device}:115200"
     with Terminal(SEATRIAL, "drive", url, "--hardware", *profile(tmp_path, "")) as terminal:
         wait_for(lambda: vehicle.read().count(b"\xfa\xaf") > 2)
-        os.kill(children_of(terminal.process)[0], signal.SIGKILL)
+        os.kill(child_of(terminal.process), signal.SIGKILL)
         assert terminal.process.wait(WAIT_S) == 3
         assert OF_NODE_5 not in vehicle.read()
         assert "safe state" not in "".join(terminal.screen.display)

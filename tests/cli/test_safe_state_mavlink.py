@@ -18,7 +18,7 @@ from pymavlink.dialects.v20 import all as mavlink
 
 from tests.command import SEATRIAL
 
-from .test_stop import children_of
+from .test_stop import child_of
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="processes are not copied there")
 
@@ -120,7 +120,7 @@ def test_the_last_heartbeat_says_disarmed(signed: bool, isolated: bool, run, mon
             (beats or [before])[-1]
             for beats, before in zip(received_by(stations), last, strict=True)
         ]
-    (child,) = children_of(process)
+    child = child_of(process)
     os.kill(child, signal.SIGKILL)
     _, message = process.communicate(timeout=60)
     assert process.returncode == 3, message

@@ -228,6 +228,18 @@ def children_of(process: subprocess.Popen[str]) -> list[int]:
     return [int(pid) for pid in listed.split()]
 
 
+def child_of(process: subprocess.Popen[str]) -> int:
+    """Return the process of the run: while a keeper is made, there is another one."""
+    found: list[int] = []
+
+    def one() -> bool:
+        found[:] = [pid for pid in children_of(process) if not has_ended(pid)]
+        return len(found) == 1
+
+    wait_for(one)
+    return found[0]
+
+
 def has_ended(pid: int) -> bool:
     stat = Path(f"/proc/{pid}/stat")
     return not stat.exists() or stat.read_text().rpartition(")")[2].split()[0] == "Z"
@@ -239,7 +251,7 @@ def test_a_run_whose_supervisor_is_killed_ends_in_order(
 ) -> None:
     process = start("run", "trial.toml", "--out", "run", "--engine", "direct", *pace)
     wait_for(lambda: rows_of(tmp_path / "run") >= rows)
-    (child,) = children_of(process)
+    child = child_of(process)
     os.kill(process.pid, signal.SIGKILL)
     wait_for(lambda: has_ended(child))
     assert has_status(tmp_path / "run", "stopped")
@@ -253,7 +265,7 @@ def test_a_suspended_run_whose_supervisor_is_killed_ends_when_it_goes_on(
 ) -> None:
     process = start("run", "trial.toml", "--out", "run", "--engine", "direct")
     wait_for(lambda: rows_of(tmp_path / "run") >= 10)
-    (child,) = children_of(process)
+    child = child_of(process)
     os.kill(child, signal.SIGSTOP)
     os.kill(process.pid, signal.SIGKILL)
     assert process.wait(60) == -signal.SIGKILL
@@ -269,7 +281,7 @@ def test_a_run_of_which_all_is_killed_is_whole_up_to_its_last_row(
 ) -> None:
     process = start("run", "trial.toml", "--out", "run", "--engine", "direct", *pace)
     wait_for(lambda: rows_of(tmp_path / "run") >= rows)
-    (child,) = children_of(process)
+    child = child_of(process)
     os.kill(child, signal.SIGSTOP)  # it cannot do anything any more
     for pid in (process.pid, child):
         os.kill(pid, signal.SIGKILL)

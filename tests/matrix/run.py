@@ -176,9 +176,15 @@ class Run:
         return self.status is not None
 
     def child(self) -> int:
-        """Return the process in which the components are."""
-        (child,) = map(int, Path(f"/proc/{self.pid}/task/{self.pid}/children").read_text().split())
-        return child
+        """Return the process in which the components are: while a keeper is made, there are two."""
+        until, found = time.monotonic() + WAIT_S, list[int]()
+        while time.monotonic() < until:
+            listed = Path(f"/proc/{self.pid}/task/{self.pid}/children").read_text().split()
+            found = [int(pid) for pid in listed if not _has_ended(int(pid))]
+            if len(found) == 1:
+                return found[0]
+            time.sleep(_PAUSE_S)
+        raise AssertionError(f"{found} are the children of {self.pid}")
 
     @property
     def said(self) -> str:
@@ -246,3 +252,11 @@ def _run(folder: Path, arguments: list[str]) -> int:
             sys.stdout.flush()
             sys.stderr.flush()
     return 0
+
+
+def _has_ended(pid: int) -> bool:
+    """Return whether a process is gone, or waited for by nobody yet."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(") ")[2].startswith("Z")
+    except FileNotFoundError:
+        return True
