@@ -240,7 +240,8 @@ def _explained(error: BaseException) -> str:
     trace = "".join(traceback.format_exception(error)).strip()
     if len(trace) > _LONGEST_TRACE:
         half = _LONGEST_TRACE // 2
-        trace = f"{trace[:half]}\n  ...\n{trace[-half:]}"
+        begin, end = trace[:half].rpartition("\n")[0], trace[-half:].partition("\n")[2]
+        trace = f"{begin}\n  ...\n{end}"  # whole lines: a part of a path is no path
     return f"{first[:_LONGEST_TRACE]}\n{trace}"
 
 

@@ -17,6 +17,20 @@ FIRST_S, EVERY_S = 5.0, 30.0
 _LOGGER = logging.getLogger("seatrial.waiting")
 
 
+class Waiting:
+    """Notes, now and then, that a component waits for somebody outside and does not hang."""
+
+    def __init__(self) -> None:
+        self._said = 0.0
+
+    def note(self) -> None:
+        """Note it, if the last note is some time ago."""
+        now = time.monotonic()
+        if now >= self._said:
+            self._said = now + _SAYS_S
+            waits()
+
+
 class Watchdog:
     """Messages of the component ``name`` that waits for ``whom``, for ``limit`` of wall time, s.
 
@@ -26,7 +40,7 @@ class Watchdog:
     def __init__(self, name: str, whom: str, limit: float = 0.0) -> None:
         self._name, self._whom, self._limit = name, whom, limit
         self._since: float | None = None
-        self._next = self._said = 0.0
+        self._next, self._waiting = 0.0, Waiting()
 
     def say(self, message: str) -> None:
         """Say something at once."""
@@ -45,9 +59,7 @@ class Watchdog:
                 f"{self._name}: nothing came from {self._whom}, within {self._limit:g} s of wall "
                 "time: start it, or give a longer wait_limit (0 s: without end)"
             )
-        if now >= self._said:
-            self._said = now + _SAYS_S
-            waits()
+        self._waiting.note()
         if now >= self._next:
             self._next = now + EVERY_S
             since = datetime.datetime.now() - datetime.timedelta(seconds=now - self._since)

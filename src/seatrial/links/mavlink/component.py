@@ -248,7 +248,7 @@ class Mavlink(MavlinkPorts):
             self.manual_timeout,
             self.target_timeout,
             self.full_speed,
-            station_to_arm=bool(self.signing_key_file) or self.autopilot_type == "px4",
+            station_to_arm=bool(self.signing_key_file),
             cruise_speed=self.cruise_speed,
             waypoint_radius=self.waypoint_radius,
             loiter_radius=self.loiter_radius,

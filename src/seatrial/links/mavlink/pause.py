@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable
 
 from ..interruption import Interruption
+from ..watchdog import Waiting
 from .node import Node
 from .parameter_table import ParameterTable
 from .parameters_simulation import SPEEDUP
@@ -34,10 +35,11 @@ def stand_still(
     vehicle = node.vehicle
     vehicle.report(NOTICE, f"Paused: {SPEEDUP} above 0 goes on")
     begun, before = clock(), vehicle.paused_s
-    received = begun
+    received, waiting = begun, Waiting()
     with Interruption() as interruption:
         while settings.paused and not interruption.requested:
             sleep(POLL_S)
+            waiting.note()
             now = clock()
             vehicle.paused_s = before + now - begun
             if exchange():

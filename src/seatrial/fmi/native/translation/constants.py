@@ -189,7 +189,8 @@ def _texts_of(value: Any, names: tuple[str, ...], add: Any, seen: set[int]) -> I
     if isinstance(value, Port):
         yield repr([(k, v) for k, v in sorted(vars(value).items()) if not callable(v)])
         return
-    if id(value) in seen or is_ours(getattr(value, "__module__", "") or ""):
+    module = getattr(value, "__module__", "") or ""
+    if id(value) in seen or is_ours(module) or module.partition(".")[0] in _STABLE:
         return
     seen.add(id(value))
     if isinstance(value, types.FunctionType):
@@ -198,8 +199,9 @@ def _texts_of(value: Any, names: tuple[str, ...], add: Any, seen: set[int]) -> I
         for base in value.__bases__:
             add(base)
         for name, own in sorted(vars(value).items()):
-            yield name
-            add(own)
+            if not name.startswith("__") or isinstance(own, types.FunctionType):
+                yield name  # what Python keeps there itself comes and goes
+                add(own)
     elif isinstance(value, (tuple, list, set)):
         for each in value:
             add(each)
