@@ -5,6 +5,7 @@ import functools
 import os
 import socket
 import time
+from contextlib import ExitStack
 
 import pytest
 
@@ -215,8 +216,9 @@ def test_a_udp_peer_that_floods_a_sender_is_bounded(opened):
 
 def test_senders_that_are_new_each_time_are_bounded(opened):
     endpoint = opened("udpin:127.0.0.1:0")
-    for _ in range(200):
-        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as flood:
+    with ExitStack() as open_ones:  # a port that is free again could be a sender known already
+        for _ in range(200):
+            flood = open_ones.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
             flood.sendto(PIECE, place(endpoint))
     polls = [endpoint.poll() for _ in range(10)]
     assert 0 < max(map(len, polls)) <= MOST_NEW
