@@ -271,6 +271,7 @@ SCALE = 3.0;self.v_NO_ += SCALE
 if self.flag:;    SCALE = 3.0;self.v_NO_ += SCALE
 match self.row_NO_:;    case [a, *b]:;        self.v_NO_ += a
 match self.pair_NO_:;    case Pair(left=a):;        self.v_NO_ += a
+$N = [$F];match @:;    case other:;        other[0] = $F;        self.v_NO_ += @[0]
 match self.flag:;    case True:;        self.v_NO_ += 1.0
 self.v_NO_ += $N;@ = 1.0
 self.values[0] = 3.0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Any
@@ -18,6 +19,8 @@ VDM, VDO = "VDM", "VDO"
 _REFUSALS = (AISBaseException, ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
 _MOST_PARTS = 10
 """Messages whose parts are waited for: there are ten numbers."""
+_ENDING = re.compile(rb"[0-5]\*[0-9A-Fa-f]{2}")
+"""Bits that fill up the last character, and the checksum."""
 _CHARACTERS = range(ord("0"), ord("w") + 1)
 
 
@@ -62,6 +65,8 @@ class Assembly:
         words = line.strip().split(b",")
         if len(words) != 7 or words[0][3:] not in (b"VDM", b"VDO") or words[0][:1] != b"!":
             return None
+        if not _ENDING.fullmatch(words[6]):  # pyais reads what is no checksum as one
+            return None
         if not words[5] or any(each not in _CHARACTERS for each in words[5]):
             return None
         own = words[0][3:] == b"VDO"
@@ -73,6 +78,8 @@ class Assembly:
         count, number = words[1], words[2]
         if count == b"1":
             return [text]
+        if len(count) != 1:  # a message has up to nine parts
+            return None
         key = b",".join((words[0], count, words[3], words[4])).decode("latin-1")
         parts = self.waiting.setdefault(key, [])
         if number != str(len(parts) + 1).encode():

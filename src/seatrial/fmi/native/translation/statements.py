@@ -416,6 +416,6 @@ def _matches(frame: Frame, subject: Any, pattern: ast.pattern) -> Any:
         return result
     if isinstance(pattern, ast.MatchAs) and pattern.pattern is None:
         if pattern.name:
-            frame.names = {**(frame.names or {}), pattern.name: subject}
+            assign(frame, ast.copy_location(ast.Name(pattern.name, ast.Store()), pattern), subject)
         return Known(True)
     raise frame.refused(f"a pattern {type(pattern).__name__}", pattern)

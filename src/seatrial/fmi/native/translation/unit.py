@@ -48,7 +48,16 @@ _ORDINARY = frozenset(
     | {"__annotate__", "__annotate_func__", "__annotations_cache__"}
 )
 _WRITTEN = (
-    *("feedthrough", "discrete", "fixed_step", "terminals", "views", "structural", "tabulated"),
+    *(
+        "feedthrough",
+        "rolls_back",
+        "discrete",
+        "fixed_step",
+        "terminals",
+        "views",
+        "structural",
+        "tabulated",
+    ),
     *("exercised", "ports", "scalars", "scalar_by_name", "_declared", "_settable"),
     *("_always_settable", "_of_type", "_real_outputs", "_of_real_outputs", "_other_outputs"),
     "_inputs",
