@@ -8,9 +8,9 @@ from types import FunctionType, ModuleType
 from typing import Any
 
 from ....component import Component as Base
-from ....ports import Parameter, Port
-from ..tables import is_built_in, words_of
+from . import loops  # noqa: F401  which registers its statements
 from .calls import call
+from .classes import FRAMEWORK, ROOTS, refuse_unusual
 from .constants import is_ours, is_record, scope_of, why_no_constant
 from .domain import (
     C_TYPES,
@@ -21,7 +21,6 @@ from .domain import (
     Known,
     Method,
     Num,
-    OtherText,
     OwnName,
     Queue,
     Record,
@@ -31,40 +30,16 @@ from .domain import (
     UnshapedError,
     described,
 )
-from .expressions import storable, unpacked
+from .expressions import storable
 from .frame import WORD, Frame, lines
 from .functions import appended_attributes, found_method, invoke
 from .intrinsics import begun, fault_value
-from .operations import binary, held, is_number, truth
+from .operations import binary, held
+from .port_access import publish, read
 from .shapes import Shape, flattened, joined, leaves, opened, shape_of
 from .statements import assign
 
-ROOTS = ("start", "step", "outputs")
-"""Methods that the runtime calls: ``model_NAME`` in C."""
 _PASSES = 12
-_ORDINARY = frozenset(
-    {"__module__", "__doc__", "__annotations__", "__dict__", "__weakref__", "__orig_bases__"}
-    | {"__parameters__", "__abstractmethods__", "__static_attributes__", "__firstlineno__"}
-    | {"__annotate__", "__annotate_func__", "__annotations_cache__"}
-)
-_WRITTEN = (
-    *(
-        "feedthrough",
-        "rolls_back",
-        "discrete",
-        "fixed_step",
-        "terminals",
-        "views",
-        "structural",
-        "tabulated",
-    ),
-    *("exercised", "ports", "scalars", "scalar_by_name", "_declared", "_settable"),
-    *("_always_settable", "_of_type", "_real_outputs", "_of_real_outputs", "_other_outputs"),
-    "_inputs",
-)
-"""What a class of a user may have of its own beside `ROOTS`, and what each class has."""
-_FRAMEWORK = frozenset(vars(Base())) | {n for n in dir(Base) if callable(getattr(Base, n))}
-"""Names that are not the component's to assign."""
 
 
 class Unit:
@@ -104,7 +79,7 @@ class Unit:
         Raises TranslationError, naming file, line and construct, for whatever has none.
         """
         try:
-            self._refuse_unusual()
+            refuse_unusual(self.cls)
             return self._settled()
         except TranslationError:
             raise
@@ -112,16 +87,6 @@ class Unit:
             # A mistake of the translator, or a value that Python would refuse when it comes there.
             what = f"{type(error).__name__}: {error}"
             raise TranslationError(f"{self.here}: {what}: that has no C") from error
-
-    def _refuse_unusual(self) -> None:
-        """Raise TranslationError for a class that does by itself what the runtime does in C."""
-        for base in self.cls.__mro__[:-1]:
-            for name in () if is_ours(base.__module__) else vars(base):
-                own = name.startswith("__") or hasattr(Base, name)
-                if own and name not in (*_ORDINARY, *_WRITTEN, *ROOTS):
-                    raise TranslationError(f"{base.__name__}.{name}, a way of its own, has no C")
-        if type(self.cls) is not type(Base):
-            raise TranslationError(f"{self.cls.__name__}, made its own way, has no C")
 
     def _settled(self) -> str:
         for _ in range(_PASSES):
@@ -246,7 +211,7 @@ class Unit:
 
     def _own(self, frame: Frame, name: str) -> Any:
         if name in self.cls.ports:
-            return self._port(frame, self.cls.ports[name])
+            return read(frame, self.cls.ports[name])
         match name:
             case "name":
                 return OwnName()
@@ -302,22 +267,6 @@ class Unit:
             raise frame.refused(f"{where.__name__}.{name}, {why},")
         return Known(found)
 
-    def _port(self, frame: Frame, port: Port) -> Any:
-        if is_built_in(self.cls, port):
-            return Known(getattr(self.example, port.name))
-        references = range(port.offset, port.offset + port.size)
-        if port.type is str:
-            words = words_of(port)
-            texts = [s.port.name for s in self.cls.scalars if _is_text_input(s.port)]
-            if not words or port.name not in texts:
-                raise frame.refused(f"the text {port.name}")
-            word = frame.num("b", f"self->state.words[{texts.index(port.name)}]")
-            return Choice(word.text, (*map(Known, words), OtherText(words)))
-        reading = {float: "V[{}]", int: "(long long)V[{}]", bool: "V[{}] != 0"}[port.type]
-        kind = {float: "d", int: "i", bool: "b"}[port.type]
-        values = [frame.num(kind, reading.format(r)) for r in references]
-        return values[0] if port.axes is None else Seq(tuple, values, fresh=False)
-
     def remembers(self, name: str) -> bool:
         """Return whether a name is an attribute that the component sets."""
         return name in self.attributes
@@ -335,7 +284,7 @@ class Unit:
         if not isinstance(owner, Component):
             raise frame.refused(f"an assignment to {name} of {described(owner)}")
         if name in self.cls.ports:
-            self._publish(frame, self.cls.ports[name], value)
+            publish(frame, self.cls.ports[name], value)
         elif name in self.appended:
             if not (isinstance(value, Seq) and not value.items):
                 raise frame.refused(f"a list from elsewhere as {name}, which is appended to,")
@@ -343,7 +292,7 @@ class Unit:
                 frame.emit(f"M.{name}_q.count = 0;")
         else:
             found = found_method(self.cls, name)[0]
-            if name.startswith("__") or name in _FRAMEWORK or hasattr(type(found), "__set__"):
+            if name.startswith("__") or name in FRAMEWORK or hasattr(type(found), "__set__"):
                 raise frame.refused(f"an assignment to {name}")
             self._remember(frame, name, storable(frame, value))
         frame.stores([name])
@@ -361,34 +310,6 @@ class Unit:
         for field, text in zip(self._fields(name, wider), texts, strict=True):
             if text is not None:
                 frame.emit(f"{field} = {text};")
-
-    def _publish(self, frame: Frame, port: Port, value: Any) -> None:
-        if isinstance(port, Parameter) or port.kind != "output":
-            raise frame.refused(f"an assignment to {port.name}, which is no output,")
-        if port.type is str:
-            raise frame.refused(f"the text {port.name}")
-        if port.axes is not None and is_number(value):
-            value = Seq(tuple, [value] * port.size)
-        values = [value] if port.axes is None else unpacked(frame, storable(frame, value))
-        if len(values) != port.size:
-            raise frame.refused(f"{len(values)} values for the {port.size} of {port.name}")
-        for at, each in enumerate(values):
-            text = self._converted(frame, port, each)
-            frame.emit(f"V[{port.offset + at}] = {text};")
-
-    def _converted(self, frame: Frame, port: Port, value: Any) -> str:
-        """Return what a port holds, as Python converts it."""
-        if isinstance(value, Choice):
-            return frame.text_of(
-                frame.each(value, lambda one: frame.num("d", self._converted(frame, port, one)))
-            )
-        if not is_number(value):
-            raise frame.mismatched(f"{described(value)} as {port.name}", value)
-        if port.type is bool:
-            return frame.text_of(truth(frame, value), "d")
-        if port.type is int:
-            return f"integer(self, {frame.text_of(value, 'd')}, {frame.place()})"
-        return frame.text_of(value, "d")
 
     # ------------------------------------------------------------------ queues
 
@@ -461,10 +382,6 @@ class Unit:
     def fault_values(self, frame: Frame, values: FaultValues, kind: type) -> Any:
         """Return the five coefficients of a fault."""
         return Seq(kind, [fault_value(frame, values, Known(i)) for i in range(5)])
-
-
-def _is_text_input(port: Port) -> bool:
-    return port.kind == "input" and port.type is str
 
 
 def _class_of(unit: Unit, receiver: Any) -> type:
