@@ -5,12 +5,13 @@ from __future__ import annotations
 import subprocess
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from tests.command import SEATRIAL
 
-from .gateway import RIG, SAFE, TALKER, Start, Vehicle
+from .gateway import RIG, SAFE, TALKER, Launched, Start, Vehicle
 
 
 @pytest.fixture
@@ -21,37 +22,34 @@ def vehicle() -> Iterator[Vehicle]:
 
 
 @pytest.fixture
-def start(write, tmp_path: Path, vehicle: Vehicle) -> Iterator[Start]:
+def launched(tmp_path: Path) -> Iterator[Launched]:
+    """Return a function that starts a command in the test's folder; it ends with the test."""
+    processes: list[subprocess.Popen[str]] = []
+
+    def launch(*command: str, **options: Any) -> subprocess.Popen[str]:
+        pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+        processes.append(subprocess.Popen(command, cwd=tmp_path, text=True, **pipes, **options))
+        return processes[-1]
+
+    yield launch
+    for process in processes:
+        process.kill()
+        process.communicate()
+
+
+@pytest.fixture
+def start(write, vehicle: Vehicle, launched: Launched) -> Start:
     """Return a function that starts a run with a gateway to the vehicle."""
-    processes = []
 
     def start(
         isolated: bool = False, start_takes: float = 0.0, out: str = "run"
     ) -> subprocess.Popen[str]:
         write("talker.py", TALKER)
-        write("rig.toml", RIG.format(
-            isolated=str(isolated).lower(), device=vehicle.device, safe=SAFE.hex(), start_takes=start_takes
-        ))  # fmt: skip
+        values = {"isolated": str(isolated).lower(), "device": vehicle.device, "safe": SAFE.hex()}
+        write("rig.toml", RIG.format(**values, start_takes=start_takes))
         write("trial.toml", 'rig = "rig.toml"\nstop = "1000 s"\n')
-        command = [
-            SEATRIAL,
-            "run",
-            "trial.toml",
-            "--engine",
-            "direct",
-            "--real-time",
-            "1",
-            "--out",
-            out,
-        ]
-        command.append("--hardware")  # the terminal is this test's, which a run cannot know
-        pipe = subprocess.PIPE
-        processes.append(
-            subprocess.Popen(command, cwd=tmp_path, stdout=pipe, stderr=pipe, text=True)
-        )
-        return processes[-1]
+        # The terminal is this test's, which a run cannot know.
+        options = ("--engine", "direct", "--real-time", "1", "--out", out, "--hardware")
+        return launched(SEATRIAL, "run", "trial.toml", *options)
 
-    yield start
-    for process in processes:
-        process.kill()
-        process.communicate()
+    return start

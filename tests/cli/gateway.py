@@ -77,3 +77,4 @@ class Vehicle:
 
 
 Start = Callable[..., subprocess.Popen[str]]
+Launched = Callable[..., subprocess.Popen[str]]

@@ -12,14 +12,13 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
 from tests.command import SEATRIAL, seatrial
 
-from .gateway import RIG, SAFE, TALKER, Vehicle
+from .gateway import RIG, SAFE, TALKER, Launched, Start, Vehicle
 from .test_stop import child_of, has_ended, wait_for
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processes and name spaces")
@@ -95,8 +94,6 @@ NAMESPACE = [
 ]
 ENGINES = ["direct", pytest.param("fmu", marks=pytest.mark.interop)]
 
-Start = Callable[..., subprocess.Popen[str]]
-
 
 def has_namespaces() -> bool:
     if shutil.which("unshare") is None:
@@ -110,19 +107,11 @@ in_namespace = pytest.mark.skipif(
 
 
 @pytest.fixture
-def vehicle() -> Iterator[Vehicle]:
-    vehicle = Vehicle()
-    yield vehicle
-    vehicle.close()
-
-
-@pytest.fixture
-def start(write, vehicle: Vehicle, tmp_path: Path) -> Iterator[Start]:
+def start(write, vehicle: Vehicle, launched: Launched, tmp_path: Path) -> Start:
     """Return a function that starts a run of the vehicle beside a component that hangs."""
     write("talker.py", TALKER)
     write("hanger.py", HANGER)
     write("trial.toml", 'rig = "rig.toml"\nstop = "1000 s"\n')
-    processes: list[subprocess.Popen[str]] = []
 
     def start(
         how: str = "sleeps", where: str = "step", *options: str, within: tuple[str, ...] = ()
@@ -133,19 +122,10 @@ def start(write, vehicle: Vehicle, tmp_path: Path) -> Iterator[Start]:
         (tmp_path / "hanging").unlink(missing_ok=True)
         shutil.rmtree(tmp_path / "run", ignore_errors=True)
         options = options or ("--engine", "direct")
-        command = [SEATRIAL, "run", "trial.toml", "--real-time", "1", "--hardware", "--out", "run"]
-        processes.append(
-            subprocess.Popen(
-                [*within, *command, *options], cwd=tmp_path, text=True, start_new_session=True,
-                stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-            )
-        )  # fmt: skip
-        return processes[-1]
+        command = (SEATRIAL, "run", "trial.toml", "--real-time", "1", "--hardware", "--out", "run")
+        return launched(*within, *command, *options, start_new_session=True)
 
-    yield start
-    for process in processes:
-        process.kill()
-        process.communicate()
+    return start
 
 
 def hanging(tmp_path: Path) -> None:
@@ -221,10 +201,15 @@ def test_a_hang_at_the_end_ends_the_run(start: Start, vehicle: Vehicle, tmp_path
     assert process.returncode == 3
 
 
-def test_a_hang_without_hardware_ends_the_run(write, tmp_path: Path) -> None:
-    write("hanger.py", HANGER)
+def write_hanger(write, *, stop: str, how: str, longest: str = "20.0") -> None:
+    """Write the trial of a component that hangs, alone."""
+    write("hanger.py", HANGER.replace("time.sleep(20.0)", f"time.sleep({longest})"))
     write("rig.toml", 'step = "10 ms"\n[components]\nhanger = { fmu = "hanger.py:Hanger" }\n')
-    write("trial.toml", 'rig = "rig.toml"\nstop = "10 s"\n[set]\n"hanger.how" = "holds the lock"\n')
+    write("trial.toml", f'rig = "rig.toml"\nstop = "{stop}"\n[set]\n"hanger.how" = "{how}"\n')
+
+
+def test_a_hang_without_hardware_ends_the_run(write, tmp_path: Path) -> None:
+    write_hanger(write, stop="10 s", how="holds the lock")
     arguments = ("--engine", "direct", "--hang-after", "0.5", "--out", "run")
     done = seatrial("run", "trial.toml", *arguments, cwd=tmp_path)
     assert done.returncode == 3
@@ -239,9 +224,7 @@ def test_a_hang_without_hardware_ends_the_run(write, tmp_path: Path) -> None:
 
 
 def test_a_slow_step_is_no_hang(write, tmp_path: Path) -> None:
-    write("hanger.py", HANGER.replace("time.sleep(20.0)", "time.sleep(1.0)"))
-    write("rig.toml", 'step = "10 ms"\n[components]\nhanger = { fmu = "hanger.py:Hanger" }\n')
-    write("trial.toml", 'rig = "rig.toml"\nstop = "0.5 s"\n[set]\n"hanger.how" = "sleeps"\n')
+    write_hanger(write, stop="0.5 s", how="sleeps", longest="1.0")
     for limit in ("10", "0"):
         arguments = ("--engine", "direct", "--hang-after", limit, "--out", f"run{limit}")
         assert seatrial("run", "trial.toml", *arguments, cwd=tmp_path).returncode == 0
@@ -258,9 +241,7 @@ def test_a_run_that_is_suspended_leaves_no_order(start: Start, vehicle: Vehicle)
 
 
 def test_a_simulation_that_is_suspended_goes_on(write, tmp_path: Path) -> None:
-    write("hanger.py", HANGER)
-    write("rig.toml", 'step = "10 ms"\n[components]\nhanger = { fmu = "hanger.py:Hanger" }\n')
-    write("trial.toml", 'rig = "rig.toml"\nstop = "2 s"\n')
+    write_hanger(write, stop="2 s", how="")
     command = [SEATRIAL, "run", "trial.toml", "--engine", "direct", "--real-time", "1"]
     process = subprocess.Popen([*command, "--hang-after", "0.5", "--out", "run"], cwd=tmp_path)
     wait_for((tmp_path / "run").is_dir)
@@ -324,9 +305,7 @@ def test_one_signal_ends_a_hang_in_bounded_time(
 
 
 def test_one_signal_ends_a_hung_simulation(write, tmp_path: Path) -> None:
-    write("hanger.py", HANGER)
-    write("rig.toml", 'step = "10 ms"\n[components]\nhanger = { fmu = "hanger.py:Hanger" }\n')
-    write("trial.toml", 'rig = "rig.toml"\nstop = "10 s"\n[set]\n"hanger.how" = "holds the lock"\n')
+    write_hanger(write, stop="10 s", how="holds the lock")
     command = [SEATRIAL, "run", "trial.toml", "--engine", "direct", "--out", "run"]
     process = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
     hanging(tmp_path)

@@ -9,14 +9,14 @@ import socket
 import subprocess
 import time
 import tty
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from tests.command import SEATRIAL, seatrial
 
-from .gateway import SAFE, TALKER
+from .gateway import SAFE, TALKER, Launched, Start
 from .test_stop import wait_for
 
 if not hasattr(os, "openpty"):
@@ -86,13 +86,9 @@ def lines(tmp_path: Path) -> Iterator[tuple[Line, Line]]:
         line.close()
 
 
-Start = Callable[..., subprocess.Popen[str]]
-
-
 @pytest.fixture
-def start(write, tmp_path: Path) -> Iterator[Start]:
+def start(write, tmp_path: Path, launched: Launched) -> Start:
     """Return a function that starts a run of one line beside another."""
-    processes: list[subprocess.Popen[str]] = []
 
     def start(port: str, stop: float, *options: str) -> subprocess.Popen[str]:
         write("talker.py", TALKER)
@@ -101,19 +97,10 @@ def start(write, tmp_path: Path) -> Iterator[Start]:
         text = f'step = "10 ms"\n[components]{port}{OTHER}{bus}'.format(**place)
         write("rig.toml", text)
         write("trial.toml", TRIAL.format(stop=stop))
-        command = [SEATRIAL, "run", "trial.toml", "--real-time", "1", "--hardware", "--out", "run"]
-        processes.append(
-            subprocess.Popen(
-                [*command, *options], cwd=tmp_path, text=True,
-                stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-            )
-        )  # fmt: skip
-        return processes[-1]
+        command = (SEATRIAL, "run", "trial.toml", "--real-time", "1", "--hardware", "--out", "run")
+        return launched(*command, *options)
 
-    yield start
-    for process in processes:
-        process.kill()
-        process.communicate()
+    return start
 
 
 @pytest.mark.parametrize("engine", ["direct", pytest.param("fmu", marks=pytest.mark.interop)])

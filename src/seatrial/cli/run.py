@@ -89,14 +89,7 @@ def run(
 ) -> None:
     """Run a trial, or a campaign of trials, and say what holds."""
     chosen = engine_named(engine)
-    if keep_going and not hardware:
-        raise InputError("--keep-going goes with --hardware: a simulation goes on in any case")
-    if hardware:
-        if hang_after == 0.0:
-            raise InputError("--hang-after 0 does not go with --hardware: a device needs a limit")
-        allow_devices()
-    if network:
-        allow_network()
+    _allow(hardware, network, hang_after, keep_going)
     changes = changes_of(settings, choices, vehicle, autopilot)
     pace = {"factor": real_time, "overrun": overrun}
     pace = {key: value for key, value in pace.items() if value is not None}
@@ -129,6 +122,18 @@ def run(
     loaded = loaded.failing([read_fault(text, "--fault") for text in faults or []], "--fault")
     loaded = _paced(loaded, pace).recording(record, "--record")
     _run_trial(loaded, out, chosen, page, leaves, hang_after, keep_going)
+
+
+def _allow(hardware: bool, network: bool, hang_after: float | None, keep_going: bool) -> None:
+    """Allow devices and other hosts. Raises InputError for options that need devices or limits."""
+    if keep_going and not hardware:
+        raise InputError("--keep-going goes with --hardware: a simulation goes on in any case")
+    if hardware:
+        if hang_after == 0.0:
+            raise InputError("--hang-after 0 does not go with --hardware: a device needs a limit")
+        allow_devices()
+    if network:
+        allow_network()
 
 
 def _run_trial(
