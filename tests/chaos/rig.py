@@ -160,7 +160,7 @@ class Episode:
         marked = dict(_marked(self.mark))
         for pid, parent in marked.items():
             line = _command_line(pid)
-            if line.startswith("seatrial-keeper"):
+            if line.startswith("keeper-of-links"):
                 found["keeper"].append(pid)
             elif "sketches/" in line:
                 found["board"].append(pid)

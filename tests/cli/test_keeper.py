@@ -6,6 +6,7 @@ comes after it for longer than the component that hung would have taken to go on
 
 from __future__ import annotations
 
+import contextlib
 import os
 import shutil
 import signal
@@ -144,7 +145,7 @@ def keeper_of(process: subprocess.Popen[str]) -> int:
     ours = Path(f"/proc/{process.pid}/cwd").resolve()
     for place in Path("/proc").glob("[0-9]*"):
         try:
-            if (place / "comm").read_text() == "seatrial-keeper\n" and (
+            if (place / "comm").read_text() == "keeper-of-links\n" and (
                 place / "cwd"
             ).resolve() == ours:
                 return int(place.name)
@@ -199,6 +200,25 @@ def test_a_hang_at_the_end_ends_the_run(start: Start, vehicle: Vehicle, tmp_path
     is_last(vehicle)
     process.communicate(timeout=60)
     assert process.returncode == 3
+
+
+def test_all_that_is_called_seatrial_is_killed_at_once(
+    start: Start, vehicle: Vehicle, tmp_path: Path
+) -> None:
+    """As ``pkill -9 -f seatrial`` does, of the processes of this test."""
+    process = start("")
+    wait_for(lambda: b"!!!" in vehicle.read())
+    keeper_of(process)
+    named = []
+    for place in Path("/proc").glob("[0-9]*"):
+        with contextlib.suppress(OSError):
+            called = (place / "comm").read_bytes() + (place / "cmdline").read_bytes()
+            if (place / "cwd").resolve() == tmp_path and b"seatrial" in called:
+                named.append(int(place.name))
+    assert len(named) >= 2
+    for pid in named:
+        os.kill(pid, signal.SIGKILL)
+    is_last(vehicle)
 
 
 def write_hanger(write, *, stop: str, how: str, longest: str = "20.0") -> None:
