@@ -439,6 +439,17 @@ def written(seed: int) -> Program:
 # ------------------------------------------------------------------ shrinking
 
 
+def shorter(program: Program) -> Iterator[Program]:
+    """Yield programs without a half of their statements, without a quarter, and so on."""
+    body = ast.parse("\n".join(program.lines)).body
+    size = len(body) // 2
+    while size:
+        for at in range(0, len(body), size):
+            rest = ast.Module([*body[:at], *body[at + size :]], [])
+            yield Program(ast.unparse(rest).split("\n"), program.methods)
+        size //= 2
+
+
 def smaller(program: Program) -> Iterator[Program]:
     """Yield programs with one statement less, or with one expression in the place of its parent."""
     text = "\n".join(program.lines)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib.util
 import subprocess
 from collections.abc import Mapping, Sequence
-from itertools import count
+from itertools import chain, count
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -19,7 +19,7 @@ from seatrial.fmi.native.export import build_native_fmu
 from seatrial.fmi.native.translation.domain import TranslationError
 from seatrial.fmi.native.translation.unit import Unit
 from seatrial.fmi.source import ComponentSource
-from tests.fmi.native_programs import HEADER, Program, component, smaller, written
+from tests.fmi.native_programs import HEADER, Program, component, shorter, smaller, written
 
 pytestmark = pytest.mark.skipif(HERE != "linux64", reason="loads libraries of Linux")
 
@@ -111,8 +111,8 @@ def differs(some: Sequence[Program]) -> str:
 
 
 def shrunk(program: Program) -> Program:
-    """Return a small program whose C still differs."""
-    for each in smaller(program):
+    """Return a small program whose C still differs: halves and quarters are taken out first."""
+    for each in chain(shorter(program), smaller(program)):
         if differs([each]):
             return shrunk(each)
     return program
@@ -128,6 +128,55 @@ def check_seeds(first: int, count: int) -> None:
         pytest.fail(f"seeds {first} to {first + count}, together: {differs(some)}")
     small = shrunk(alone)
     pytest.fail(f"{small!r}\n{differs([small])}")
+
+
+DIFFERED = {
+    "the target of a loop without turns keeps its value": (
+        "for i in range(3):\n    pass\nfor i in range(self.n % 4):\n    pass\nself.v_NO_ += i"
+    ),
+    "what fails in one branch of a choice": (
+        "self.maybe_NO_ = {'one': math.floor(self.x)}.get(self.mode, 0.0)\n"
+        "if self.shared < self.help_NO_(self.shared) < self.pair_NO_[1] or self.maybe_NO_ is None:\n"
+        "    self.row_NO_ = [self.x, self.z, 0.5]\n"
+        "    match self.n:\n"
+        "        case 0:\n"
+        "            pass\n"
+        "        case _:\n"
+        "            self.v_NO_ %= math.dist((self.maybe_NO_ + self.row_NO_[1], 1.0), (0.0, 0.5))"
+    ),
+}
+"""Statements that once had a C of their own."""
+HELP = """
+    def help_NO_(self, x):
+        self.v_NO_ += x
+        return self.v_NO_
+"""
+ENDLESS = (
+    *("10**9 ** 10**9", "len('x' * 10**9)", "len([1.0] * 10**9)", "math.factorial(10**9)"),
+    *("sorted(range(10**10))[0]", "len('x'.ljust(10**10))", "max(range(10**10))"),
+)
+"""Expressions whose values, known before the run, take too long or too much."""
+
+
+@pytest.mark.parametrize("text", DIFFERED.values(), ids=DIFFERED)
+def test_what_differed_once(text: str) -> None:
+    program = Program(text.split("\n"), [HELP])
+    assert not differs([program])
+
+
+@pytest.mark.parametrize("text", ENDLESS)
+def test_what_takes_for_ever_has_no_c(text: str, tmp_path: Path) -> None:
+    program = Program([f"self.v_NO_ += self.z and ({text})"], [])
+    cls, _, _ = loaded(tmp_path, HEADER + component("Written", [program]))
+    with pytest.raises(TranslationError, match="has no C"):
+        Unit(cls()).translate()
+
+
+def test_kinds_of_values_without_end_have_no_c(tmp_path: Path) -> None:
+    program = Program(["self.maybe_NO_ = (self.maybe_NO_ or 1.0, 2)"], [])
+    cls, _, _ = loaded(tmp_path, HEADER + component("Written", [program]))
+    with pytest.raises(TranslationError):
+        Unit(cls()).translate()
 
 
 @pytest.mark.parametrize("first", [0, 1000])

@@ -181,6 +181,8 @@ def test_a_session_with_signatures(tmp_path: Path) -> None:
         proxy.expect(r"online system 1$")
         assert int(proxy.ask("param fetch", r"Received (\d+) parameters( \(ftp\))?$")[1]) > 100
         proxy.ask("mode MANUAL", r"Mode MANUAL$")
+        # Signed commands count at once, but a vehicle arms only once a signed heartbeat has come.
+        wait_for(lambda: "AP: Ground station 255:230" in proxy.transcript, "its heartbeat")
         proxy.ask("arm throttle", r"\bARMED$")
         proxy.ask('signing setup "battery staple"', r"AP: No key is taken over a link")
 

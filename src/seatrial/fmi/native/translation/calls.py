@@ -18,6 +18,7 @@ from .intrinsics import INTRINSICS, begun, drawn
 from .library import LIBRARY
 from .operations import is_known, python_of, split
 from .sequences import method
+from .shapes import MOST
 
 _OBJECTS = (getattr, setattr, hasattr, isinstance, type)
 _NUMBERS = set(LIBRARY) - {list, tuple, dict, zip, enumerate, reversed, pairwise, len, *_OBJECTS}
@@ -25,6 +26,7 @@ _NUMBERS = set(LIBRARY) - {list, tuple, dict, zip, enumerate, reversed, pairwise
 _PURE = (_NUMBERS - {sum, any, all, min, max, range}) | {
     own for own in vars(math).values() if callable(own)
 }
+_PURE -= {math.factorial, math.comb, math.perm}  # may take for ever
 _PURE |= {sorted, set, frozenset, str, repr, range, np.array, np.linalg.pinv}
 _IMMUTABLE = (str, bytes, int, float, np.ndarray)
 """Whose own methods change nothing; an array is in no name, but between two calls."""
@@ -97,4 +99,9 @@ def _method(frame: Frame, function: Method, arguments: list[Any], named: dict[st
 def _evaluated(frame: Frame, function: Any, arguments: list[Any], named: dict[str, Any]) -> Known:
     """Call a function of what is known, here and now."""
     values = [python_of(a) for a in arguments]
+    on_text = isinstance(function, BuiltinMethodType) and isinstance(function.__self__, str)
+    for each in values:
+        size = len(each) if isinstance(each, range) else each if on_text else 0
+        if isinstance(size, int) and size > MOST:
+            raise frame.refused(f"{function.__name__} of {each!r}, known before the run,")
     return Known(function(*values, **{n: python_of(v) for n, v in named.items()}))

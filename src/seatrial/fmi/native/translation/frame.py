@@ -256,13 +256,20 @@ class Frame:
 
     @contextmanager
     def block(self, opening: str) -> Iterator[None]:
-        """Write what is emitted inside as a block."""
+        """Write what is emitted inside as a block, which has its end whatever happens inside.
+
+        What Python refuses inside it refuses in this block only: that has no place outside.
+        """
         outer, self.code = self.code, []
         outer.append(opening)
         outer.append(self.code)
-        yield
-        outer.append("}")
-        self.code = outer
+        try:
+            yield
+        except MismatchError as error:
+            raise TranslationError(str(error)) from error
+        finally:
+            outer.append("}")
+            self.code = outer
 
     def branch(self, condition: Num | Known, yes: Callable[[], Any], no: Callable[[], Any]) -> Any:
         """Return what ``yes`` or ``no`` returns, by a condition; each may change names."""

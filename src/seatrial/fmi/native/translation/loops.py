@@ -73,7 +73,7 @@ def _over_range(frame: Frame, node: ast.For, values: Range) -> None:
         assign(frame, node.target, frame.num("i", at.text))
 
     step = f"{at.text} += {values.step};"
-    _looped(frame, node.body, lambda: frame.num("b", test), step, begin)
+    _looped(frame, node, lambda: frame.num("b", test), step, begin)
 
 
 def _reversed(node: ast.expr) -> ast.expr | None:
@@ -101,7 +101,7 @@ def _over_queue(frame: Frame, node: ast.For, queue: Queue, backwards: bool) -> N
     def begin() -> None:
         assign(frame, node.target, frame.unit.queue_entry(frame, queue, at))
 
-    _looped(frame, node.body, lambda: frame.num("b", test), step, begin)
+    _looped(frame, node, lambda: frame.num("b", test), step, begin)
     if queue.name in frame.stored:
         raise frame.refused(f"a change of {queue.name} within a loop over it", node)
     frame.stored |= before
@@ -111,22 +111,22 @@ def _over_queue(frame: Frame, node: ast.For, queue: Queue, backwards: bool) -> N
 def _while(frame: Frame, node: ast.While) -> None:
     if node.orelse:
         raise frame.refused("while ... else", node)
-    _looped(frame, node.body, lambda: truth(frame, frame.evaluate(node.test)), "", lambda: None)
+    _looped(frame, node, lambda: truth(frame, frame.evaluate(node.test)), "", lambda: None)
 
 
-def _looped(frame: Frame, body: list[ast.stmt], test: Any, step: str, begin: Any) -> None:
+def _looped(frame: Frame, node: ast.For | ast.While, test: Any, step: str, begin: Any) -> None:
     """Write a loop of C. The shapes of names that change in it are found by trying."""
     assert frame.names is not None
     # What is known of attributes may not hold in the next turn, and what is gone through is spent.
     frame.names = {
         n: v for n, v in frame.names.items() if not (n.startswith("self.") or is_once(v))
     }
-    changed = _changed(body) & set(frame.names)
+    changed = _changed(node) & set(frame.names)
     shapes = {name: shape_of(frame.names[name]) for name in sorted(changed)}
     before, code = dict(frame.names), frame.code
     while True:
         frame.names, frame.code = dict(before), []
-        found = _attempt(frame, body, test, step, begin, shapes)
+        found = _attempt(frame, node.body, test, step, begin, shapes)
         if found is None:
             code += frame.code
             frame.code = code
@@ -134,10 +134,10 @@ def _looped(frame: Frame, body: list[ast.stmt], test: Any, step: str, begin: Any
         shapes = found
 
 
-def _changed(body: list[ast.stmt]) -> set[str]:
-    """Return the names that statements may give other values, or whose lists they may change."""
+def _changed(loop: ast.For | ast.While) -> set[str]:
+    """Return the names that a loop may give other values, its target too, or whose lists it may change."""
     found: set[str] = set()
-    for node in (own for each in body for own in ast.walk(each)):
+    for node in ast.walk(loop):
         if isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Load):
             found.add(node.id)
         elif isinstance(node, (ast.MatchAs, ast.MatchStar, ast.FunctionDef)) and node.name:

@@ -24,7 +24,7 @@ from .domain import (
     is_once,
 )
 from .frame import Frame
-from .shapes import number_kind, opened, parts_of
+from .shapes import MOST, number_kind, opened, parts_of
 
 _PYTHON: dict[type, Callable[..., Any]] = {
     ast.Add: operator.add,
@@ -120,7 +120,7 @@ def _binary(frame: Frame, op: ast.operator, left: Any, right: Any) -> Any:
     if is_plain(left) and is_plain(right):
         if type(op) not in _PYTHON:
             raise frame.refused(f"the operator {type(op).__name__}")
-        return Known(_PYTHON[type(op)](left.value, right.value))
+        return _of_known(frame, op, left.value, right.value)
     if is_number(left) and is_number(right):
         return _arithmetic(frame, op, left, right)
     a, b = opened(left), opened(right)
@@ -128,9 +128,29 @@ def _binary(frame: Frame, op: ast.operator, left: Any, right: Any) -> Any:
     if lists and isinstance(b, Seq) and a.kind is b.kind and isinstance(op, ast.Add):
         return Seq(a.kind, held([*a.items, *b.items]))
     if lists and isinstance(op, ast.Mult) and isinstance(b, Known) and type(b.value) is int:
+        _refuse_large(frame, len(a.items) * b.value)
         return Seq(a.kind, held(a.items * b.value))
     what = f"{type(op).__name__} of {described(left)} and {described(right)}"
     raise frame.mismatched(what, left, right)
+
+
+def _of_known(frame: Frame, op: ast.operator, left: Any, right: Any) -> Known:
+    """Return what Python makes of two plain values, unless it would take long or has no C."""
+    if isinstance(op, ast.Pow) and type(left) is type(right) is int:
+        _refuse_large(frame, left.bit_length() * right)
+    if isinstance(op, ast.Mult):
+        for text, times in ((left, right), (right, left)):
+            if isinstance(text, str):
+                _refuse_large(frame, len(text) * times)
+    value = _PYTHON[type(op)](left, right)
+    if isinstance(value, complex):
+        raise frame.refused(f"{value}, which is no real number,")
+    return Known(value)
+
+
+def _refuse_large(frame: Frame, size: int) -> None:
+    if size > MOST:
+        raise frame.refused(f"a value of {size} parts, known before the run,")
 
 
 def _arithmetic(frame: Frame, op: ast.operator, left: Any, right: Any) -> Num:

@@ -10,7 +10,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from .constants import is_record
-from .domain import C_TYPES, Choice, Draws, Known, Num, Record, Seq, Table
+from .domain import C_TYPES, Choice, Draws, Known, Num, Record, Seq, Table, TranslationError
+
+MOST = 100_000
+"""Parts, or bits, of a value that is computed when C is written."""
+_KINDS = 32
+"""Alternatives of a `Choice`: each takes a branch of C wherever the value is used."""
 
 
 @dataclass(frozen=True)
@@ -55,6 +60,8 @@ def opened(value: Any) -> Any:
     if type(own) in (list, tuple):
         return Seq(type(own), [Known(each) for each in own], fresh=False)
     if isinstance(own, range):
+        if len(own) > MOST:
+            raise TranslationError(f"{own}, gone through before the run, has no C")
         return Seq(range, [Known(each) for each in own], fresh=False)
     if isinstance(own, Mapping):
         return Table({key: Known(each) for key, each in own.items()})
@@ -128,6 +135,8 @@ def joined(a: Shape, b: Shape) -> Shape:
                     break
             else:
                 found.append(each)
+    if len(found) > _KINDS:
+        raise TranslationError(f"more than {_KINDS} kinds of values under one name have no C")
     return found[0] if len(found) == 1 else Shape(Choice, None, tuple(found))
 
 
