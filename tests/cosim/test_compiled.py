@@ -19,7 +19,7 @@ from seatrial.cosim.master import Master
 from seatrial.errors import SimulationError
 from seatrial.fmi import on_demand
 
-from ..fmi.native import build_native_fmu
+from ..fmi.native import build_native_fmu, changed
 from . import bodies
 
 ALGORITHMS = ("jacobi", "plain-jacobi", "gauss-seidel", "extrapolated")
@@ -253,6 +253,50 @@ forces = {{ sum = {{ inputs = 2, dimension = 2 }} }}
         assert master._compiled is not None
         asked = {(fmu.name, call) for fmu, call in master._compiled._program.asked.values()}
         assert {(n, c) for n in ("total", "forces") for c in ("SetReal", "GetReal")} <= asked
+    finally:
+        system.free()
+
+
+@pytest.mark.parametrize("algorithm", ALGORITHMS)
+def test_fmus_of_fmi_3_are_called_from_c(fmus: Path, algorithm: str) -> None:
+    """Numbers and whole arrays; early returns, the end; their texts and other types by Python."""
+    own = fmus / "three"
+    own.mkdir(exist_ok=True)
+    path = own / f"{algorithm}.toml"
+    build_native_fmu("fmi2", own)
+    clock = '    <Clock name="tick" valueReference="300" causality="local" intervalVariability="triggered"/>'
+    changed(
+        build_native_fmu("fmi3", own), own / "plain.fmu", (' hasEventMode="true"', ""), (clock, "")
+    )
+    text = f"""
+step = "10 ms"
+algorithm = "{algorithm}"
+[components]
+a = {{ fmu = "plain.fmu", set = {{ longest_step = 0.004, end_time = 0.333 }} }}
+b = {{ fmu = "plain.fmu", set = {{ gain = 0.4, k = 0.7 }}, step = "20 ms" }}
+c = {{ fmu = "fmi2.fmu", set = {{ gain = 0.4 }} }}
+[connections]
+"a.x" = ["c.u", "b.in_Float64[1]"]
+"c.y" = {{ to = "b.in_Float64[2]", factor = 2.0 }}
+"c.x" = ["b.in_Float64[3]", "a.in_Float64[2]"]
+"b.out_Float64[3]" = "c.q[1]"
+"a.steps" = ["b.in_Int32[1]", "b.in_Int32[2]", "b.in_Int32[3]", "a.in_Int16[2]"]
+"c.c" = ["b.in_Boolean[1]", "b.in_Boolean[2]", "b.in_Boolean[3]"]
+"""
+    found = equal(path, text)
+    assert found["error"] is None
+    assert found["ends"]
+    assert found["steps"] == 34
+    system = assemble(load_rig(str(path)))
+    try:
+        master = Master(system)
+        master.initialise()
+        assert master._compiled is not None
+        asked = {(fmu.name, call) for fmu, call in master._compiled._program.asked.values()}
+        calls = ("SetReal", "SetInteger", "SetBoolean", "DoStep", "GetReal", "GetBoolean")
+        assert {("b", call) for call in calls} <= asked
+        assert ("a", "SetReal") not in asked  # of an array that is set in part
+        assert ("a", "SetInteger") not in asked  # of a type that C does not call
     finally:
         system.free()
 

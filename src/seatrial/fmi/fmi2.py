@@ -85,20 +85,6 @@ class Fmi2Slave(Fmi2Access):
             self._refuse(f"DoStep(t = {t!r} s, h = {h!r} s)", status)
         self._messages.forward()
 
-    def forward(self) -> None:
-        """Log what the FMU has said since."""
-        self._messages.forward()
-
-    def address(self, function: str) -> int:
-        """Return where a function of the library is, 0 if it has none of that name."""
-        found = self._functions[function]
-        return 0 if isinstance(found, Missing) else ctypes.cast(found, ctypes.c_void_p).value or 0
-
-    @property
-    def component(self) -> int:
-        """What its functions take first, as C has it."""
-        return int(self._c if isinstance(self._c, int) else self._c.value)
-
     def _ends(self, t: float) -> bool:
         """Say if a discarded step is the FMU's end, which it may have in the midst of a step.
 

@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 from fmpy import fmi3
 
 from ..errors import SimulationError
+from .arrays import ArrayCall
 from .fmi3 import Fmi3Access
 from .instance import Variable
 from .loaded import LoadedFmu
@@ -17,6 +18,8 @@ from .messages import ACCEPTED
 
 _MOST_RETURNS = 10_000
 """Early returns from one step."""
+_SETTABLE = ("input", "parameter")
+_IN_C = {"Float64", "Int32", "Boolean"}
 
 
 class Fmi3Slave(Fmi3Access):
@@ -34,7 +37,12 @@ class Fmi3Slave(Fmi3Access):
         self._reached = ctypes.c_double()
         self._now = 0.0
         super().__init__(fmu, name)
-        self._never_back = not self.rolls_back
+        self.never_back = not self.rolls_back
+        self.left = self._event, self._end, self._early, self._reached
+        """What the last step left: an event to handle, the end, an early return, and its time."""
+        waits = any(self._waits(v) for v in self.variables.values() if v.causality in _SETTABLE)
+        self.is_native = not (fmu.simulation.needsExecutionTool or fmu.clocks.by_reference or waits)
+        """Whether C may call it: others may need Python's interpreter, or events between steps."""
 
     def initialise(self, start_time: float, stop_time: float) -> None:
         """Start at ``start_time``."""
@@ -56,26 +64,64 @@ class Fmi3Slave(Fmi3Access):
         self._flush()
         if self._is_due():
             self._in_event([])
-        end, returns = t + h, 0
+        self._go_on(t, h, 0)
+        if self._messages:
+            self._messages.forward()
+
+    def stepped(self, t: float, h: float, status: int) -> None:
+        """Take what a step from C returned, and go on to its end. Raises SimulationError."""
+        self._now = t
+        self._took(t, h, status)
+        self._go_on(t, h, self._arrive(t + h))
+        self.forward()
+
+    def answered(self, function: str, status: int) -> None:
+        """Take what a get or a set that C asked for returned. Raises SimulationError."""
+        if status not in ACCEPTED:
+            self._refuse(function, status)
+        self.forward()
+
+    def in_c(self, variables: Sequence[Variable]) -> bool:
+        """Return whether C can read and set variables: numbers as it has them, arrays whole."""
+        kinds = {self._type(variable) for variable in variables}
+        return not kinds or (
+            len(kinds) == 1
+            and kinds <= _IN_C
+            and ArrayCall(variables, kinds.pop(), self.fmu.arrays).is_whole
+        )
+
+    # ------------------------------------------------------------------ inside
+
+    def _go_on(self, t: float, h: float, returns: int) -> None:
+        """Step to ``t + h``, after so many early returns."""
+        end = t + h
         while self._now != end and self.ended_at is None:
             stop = self._stop(end)
-            self._do_step(self._now, h if (self._now, stop) == (t, end) else stop - self._now)
-            if not self._early.value or not self._reached.value < stop - 2 * math.ulp(stop):
-                self._now = stop
-            else:
-                self._now = max(self._now, self._reached.value)
-                returns += 1
-            if (self._event.value and self._has_events) or self._is_due():
-                self._in_event([])
+            own = h if (self._now, stop) == (t, end) else stop - self._now
+            status = self._functions["DoStep"](
+                self._c, self._now, own, self.never_back, *(ctypes.byref(one) for one in self.left)
+            )
+            self._took(self._now, own, status)
+            returns += self._arrive(stop)
             if returns == _MOST_RETURNS:
                 raise SimulationError(
                     f"{self.name}: fmi3DoStep(t = {t!r} s, h = {h!r} s) returned early "
                     f"{_MOST_RETURNS} times and got no further than {self._now!r} s"
                 )
-        if self._messages:
-            self._messages.forward()
 
-    # ------------------------------------------------------------------ inside
+    def _took(self, t: float, h: float, status: int) -> None:
+        if status not in ACCEPTED:
+            self._refuse(f"DoStep(t = {t!r} s, h = {h!r} s)", status)
+        if self._end.value:
+            self.ended_at = self._reached.value
+
+    def _arrive(self, stop: float) -> bool:
+        """Take in where a step towards ``stop`` ended; return whether that was early."""
+        early = self._early.value and self._reached.value < stop - 2 * math.ulp(stop)
+        self._now = max(self._now, self._reached.value) if early else stop
+        if (self._event.value and self._has_events) or self._is_due():
+            self._in_event([])
+        return early
 
     def _instantiate(self) -> None:
         try:
@@ -100,17 +146,6 @@ class Fmi3Slave(Fmi3Access):
     def _stop(self, end: float) -> float:
         """Return how far it may step now, on its way to ``end``."""
         return end
-
-    def _do_step(self, t: float, h: float) -> None:
-        status = self._functions["DoStep"](
-            self._c, t, h, self._never_back,
-            ctypes.byref(self._event), ctypes.byref(self._end),
-            ctypes.byref(self._early), ctypes.byref(self._reached),
-        )  # fmt: skip
-        if status not in ACCEPTED:
-            self._refuse(f"DoStep(t = {t!r} s, h = {h!r} s)", status)
-        if self._end.value:
-            self.ended_at = self._reached.value
 
     def _waits(self, variable: Variable) -> bool:
         return self._has_events and variable.variability != "continuous"

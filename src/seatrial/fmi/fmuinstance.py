@@ -13,7 +13,7 @@ from fmpy import sharedLibraryExtension
 from ..errors import INTERRUPTED, DiscardError, FatalError, InputError, SimulationError
 from ..serialisation import is_c_text
 from .instance import ByType, Reader, Value, Variable, Writer
-from .lenient import lenient
+from .lenient import Missing, lenient
 from .loaded import LoadedFmu
 from .messages import ACCEPTED, DISCARD, FATAL, Messages, word
 from .origins import with_origins
@@ -138,6 +138,24 @@ class FmuInstance(ByType):
         if self._c is not None and not self._fatal:
             self._functions[self._free_word](self._c)
         self._c = None
+
+    def forward(self) -> None:
+        """Log what the FMU has said since."""
+        self._messages.forward()
+
+    def references(self, variables: Sequence[Variable]) -> list[int]:
+        """Return the value references of variables, as FMI 1.0 and 2.0 take them."""
+        return [variable.reference for variable in variables]
+
+    def address(self, function: str) -> int:
+        """Return where a function of the library is, 0 if it has none of that name."""
+        found = self._functions[function]
+        return 0 if isinstance(found, Missing) else ctypes.cast(found, ctypes.c_void_p).value or 0
+
+    @property
+    def component(self) -> int:
+        """What its functions take first, as C has it."""
+        return int(self._c if isinstance(self._c, int) else self._c.value)
 
     # ------------------------------------------------------------------ inside
 

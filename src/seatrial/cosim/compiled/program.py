@@ -41,7 +41,12 @@ from .sums import CompiledSum
 
 if TYPE_CHECKING:
     from ...fmi.fmi2 import Fmi2Slave
+    from ...fmi.fmi3slave import Fmi3Slave
+    from ...fmi.instance import Variable
     from ..sums import SumInstance
+    from .fmi3 import CompiledFmi3
+
+    Slave = Fmi2Slave | CompiledFmi3 | CompiledSum
 
 _TYPES: dict[type, tuple[int, str, Any]] = {
     float: (REAL, "Real", ctypes.c_double),
@@ -57,7 +62,7 @@ class Program:
         self.operations: list[Operation] = []
         self.calls: list[list[Callable[[int, int], None]]] = []
         """Of each operation CALL: what Python does, by the steps taken and its time, ns."""
-        self.asked: dict[int, tuple[Fmi2Slave | CompiledSum, str]] = {}
+        self.asked: dict[int, tuple[Slave, str]] = {}
         """By operation: which FMU is called, and the function."""
         self.chunks: dict[int, Chunk] = {}
         """By operation STORE."""
@@ -72,7 +77,8 @@ class Program:
         """Of each operation CALL: what Python has read, for C."""
         self.kept: list[Any] = []
         """Arrays that operations point to."""
-        self._sums: dict[str, CompiledSum] = {}
+        self._adapted: dict[str, CompiledFmi3 | CompiledSum] = {}
+        """By component: what is not called as FMI 2.0 has it."""
         self._network, self._feedthrough, self._step_ns = network, feedthrough, step_ns
 
     def add_step(self, algorithm: Algorithm) -> int:
@@ -239,13 +245,13 @@ class Program:
         self,
         operation: Operation,
         node: Node,
-        slave: Fmi2Slave | CompiledSum,
+        slave: Slave,
         function: str,
         variables: list[Any],
     ) -> None:
         """Add an operation that calls a function of an FMU."""
         operation.function, operation.component = slave.address(function), slave.component
-        operation.references = self._array(ctypes.c_uint32, [v.reference for v in variables])
+        operation.references = self._array(ctypes.c_uint32, slave.references(variables))
         marks = getattr(node.part.instance, "marks", None)
         if marks is not None:
             operation.mark = marks.codes[Marks.CALLS[operation.kind]]
@@ -303,26 +309,38 @@ class Program:
         self.kept.append(array)
         return array
 
-    def _setting(self, node: Node, writes: Writes) -> Fmi2Slave | CompiledSum | None:
+    def _setting(self, node: Node, writes: Writes) -> Slave | None:
         """Return the FMU whose inputs C can write: numbers, without tables; else None."""
-        kind = node.part.instance.variables[writes.connections[0].target[1]].type
+        variables = [node.part.instance.variables[one.target[1]] for one in writes.connections]
+        kind = variables[0].type
         if kind not in _TYPES or writes.mappings or (writes.scales and kind is not float):
             return None
-        return self._slave_of(node, f"Set{_TYPES[kind][1]}")
+        return self._slave_of(node, f"Set{_TYPES[kind][1]}", variables)
 
-    def _getting(self, node: Node, chunk: Chunk) -> Fmi2Slave | CompiledSum | None:
+    def _getting(self, node: Node, chunk: Chunk) -> Slave | None:
         """Return the FMU whose outputs C can read: numbers; else None."""
-        kind = node.part.instance.variables[self._network.names[chunk.start][1]].type
-        return self._slave_of(node, f"Get{_TYPES[kind][1]}") if kind in _TYPES else None
+        names = [name for _, name in self._network.names[chunk.start : chunk.stop]]
+        variables = [node.part.instance.variables[name] for name in names]
+        kind = variables[0].type
+        return self._slave_of(node, f"Get{_TYPES[kind][1]}", variables) if kind in _TYPES else None
 
-    def _slave_of(self, node: Node, function: str) -> Fmi2Slave | CompiledSum | None:
-        """Return the FMU of a component, if it has a function that C may call; else None."""
+    def _slave_of(
+        self, node: Node, function: str, variables: Sequence[Variable] = ()
+    ) -> Slave | None:
+        """Return the FMU of a component if C may call its function for variables; else None."""
         instance, name = node.part.instance, node.part.name
+        slave: Slave
         if node.part.is_sum:
-            slave = self._sums.setdefault(name, CompiledSum(cast("SumInstance", instance)))
-            return slave if slave.address(function) else None
-        if not getattr(instance, "is_native", False):
+            slave = self._adapted.setdefault(name, CompiledSum(cast("SumInstance", instance)))
+        elif not getattr(instance, "is_native", False):
             return None
-        return (
-            cast("Fmi2Slave", instance) if cast("Fmi2Slave", instance).address(function) else None
-        )
+        elif hasattr(instance, "in_c"):
+            from .fmi3 import CompiledFmi3
+
+            own = cast("Fmi3Slave", instance)
+            if not own.in_c(variables):
+                return None
+            slave = self._adapted.setdefault(name, CompiledFmi3(own))
+        else:
+            slave = cast("Fmi2Slave", instance)
+        return slave if slave.address(function) else None

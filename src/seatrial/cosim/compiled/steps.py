@@ -6,7 +6,7 @@ import ctypes
 from collections.abc import Callable
 from typing import Any
 
-from ...fmi.messages import DISCARD, said
+from ...fmi.messages import ACCEPTED, said
 from ..algorithms import Algorithm
 from ..divergence import DivergenceWatch
 from ..feedthrough import Feedthrough
@@ -130,9 +130,9 @@ class CompiledSteps:
         if operation.kind == STEP:
             t_ns = self._master.begin_ns + operation.start
             slave.stepped(t_ns / 1e9, operation.length / 1e9, status)
-            if status == DISCARD:  # it was not refused: the FMU has asked for the end
+            if status not in ACCEPTED:  # it was not refused: C has not counted it
                 self._network.nodes[slave.name].times.add(self._master.took_ns, t_ns)
-                self.ends = True
+            self.ends |= slave.ended_at is not None
         else:
             slave.answered(function, status)
         for other in self._slaves.values():

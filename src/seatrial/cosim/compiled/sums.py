@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Sequence
 from typing import ClassVar
 
+from ...fmi.instance import Variable
 from ..sums import SumInstance
-from .library import library
+from .library import function_address
 
 
 class Sum(ctypes.Structure):
@@ -25,6 +27,7 @@ class CompiledSum:
     _FUNCTIONS: ClassVar = {"SetReal": "sum_set", "GetReal": "sum_get", "DoStep": "sum_step"}
 
     never_back = 0
+    ended_at = None
 
     def __init__(self, instance: SumInstance) -> None:
         self.name = instance.name
@@ -32,13 +35,13 @@ class CompiledSum:
         self._sum = Sum(inputs=inputs, count=len(instance.inputs), terms=instance.terms)
         self.component = ctypes.addressof(self._sum)
 
+    def references(self, variables: Sequence[Variable]) -> list[int]:
+        """Return the places of variables."""
+        return [variable.reference for variable in variables]
+
     def address(self, function: str) -> int:
         """Return where a function is, 0 if there is none of that name."""
-        found = library()
-        if found is None or function not in self._FUNCTIONS:
-            return 0
-        own = getattr(found, self._FUNCTIONS[function])
-        return ctypes.cast(own, ctypes.c_void_p).value or 0
+        return function_address(self._FUNCTIONS[function]) if function in self._FUNCTIONS else 0
 
     def answered(self, function: str, status: int) -> None:
         """Take what a call returned: nothing is ever refused."""

@@ -135,7 +135,7 @@ def _looped(frame: Frame, node: ast.For | ast.While, test: Any, step: str, begin
 
 
 def _changed(loop: ast.For | ast.While) -> set[str]:
-    """Return the names that a loop may give other values, its target too, or whose lists it may change."""
+    """Return the names to which a loop may give other values, or whose lists it may change."""
     found: set[str] = set()
     for node in ast.walk(loop):
         if isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Load):
