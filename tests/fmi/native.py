@@ -52,6 +52,14 @@ def lacking(path: Path, to: Path, *functions: str) -> Path:
     return _with_library(path, library, to)
 
 
+def variant(path: Path, to: Path, *defined: str) -> Path:
+    """Copy a slave to ``to``, with a library for which names are defined."""
+    library = compiled(
+        SLAVES / f"{path.stem}.c", to.with_suffix(".so"), *(f"-D{one}" for one in defined)
+    )
+    return _with_library(path, library, to)
+
+
 def dying(path: Path, to: Path, where: str) -> Path:
     """Copy the FMI 3.0 slave to ``to``, with a library that dies AT_THE_END or IN_THE_RELEASE."""
     library = compiled(SLAVES / "fmi3.c", to.with_suffix(".so"), f"-DDIES_{where}")

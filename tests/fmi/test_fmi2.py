@@ -168,7 +168,10 @@ def test_too_large_a_step_is_tried_again_in_smaller_ones(fmi2) -> None:
 
 
 @pytest.mark.parametrize("can", ["true", "false"])
-def test_the_fmu_is_notified_if_it_may_be_rolled_back(can: str, native_fmu, tmp_path: Path) -> None:
+def test_the_fmu_is_notified_of_what_the_master_will_do(
+    can: str, native_fmu, tmp_path: Path
+) -> None:
+    """Not of what it can do itself."""
     path = changed(
         native_fmu("fmi2"), tmp_path / "x.fmu", ('FMUstate="true"', f'FMUstate="{can}"'),
         ('StepSize="true"', f'StepSize="{can}"'),
@@ -176,7 +179,10 @@ def test_the_fmu_is_notified_if_it_may_be_rolled_back(can: str, native_fmu, tmp_
     instance = started(open_instance(load_fmu(path), "x"))
     assert (instance.rolls_back, instance.any_step) == (can == "true", can == "true")
     instance.step(0.0, 0.1)
-    assert read(instance, "never_back") == [int(can == "false")]
+    assert read(instance, "never_back") == [1]
+    instance.goes_back(True)
+    instance.step(0.1, 0.1)
+    assert read(instance, "never_back") == [0]
     instance.free()
 
 

@@ -179,8 +179,6 @@ def test_both_interfaces_are_co_simulation_unless_said(folder: Path) -> None:
 def test_what_the_fmu_does_not_have_is_refused(folder: Path) -> None:
     with pytest.raises(InputError, match=r"model3\.fmu has no co-simulation, only model exchange"):
         load_fmu(build_model_fmu(3, folder), FmuOptions("co-simulation"))
-    with pytest.raises(InputError, match="a tolerance has no effect in co-simulation"):
-        load_fmu(build_model_fmu(2, folder), FmuOptions(tolerance=1e-3))
 
 
 def test_the_fmu_may_say_the_tolerance(folder: Path, tmp_path: Path) -> None:

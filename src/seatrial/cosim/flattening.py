@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -69,12 +69,19 @@ class _Around:
     variant: str | None = None
     home: tuple[str, str, str] | None = None
     step: tuple[str, str] | None = None
+    tolerance: float | None = None
 
     def inside(self, entry: ComponentEntry, choices: Mapping[str, str], where: str) -> _Around:
         """Return what holds inside the rig of ``entry``: its own keys, else those around it."""
         home = (entry.home[0], entry.home[1], entry.home[2]) if entry.home else self.home
         step = self.step if entry.step is None else (entry.step, f"{where}.step")
-        return _Around({**choices, **entry.choices}, entry.variant or self.variant, home, step)
+        return replace(
+            self,
+            choices={**choices, **entry.choices},
+            variant=entry.variant or self.variant,
+            home=home,
+            step=step,
+        )
 
 
 @dataclass
@@ -96,6 +103,8 @@ class _Reading:
         file = validated(RigFile, _chosen(content, choices), path)
         _refuse_unchosen(file, path)
         check_rig_file(file, path)
+        tolerance = around.tolerance if file.tolerance is None else file.tolerance
+        around = replace(around, tolerance=tolerance)
         inner = {
             name: self._inner(
                 part,
@@ -118,6 +127,7 @@ class _Reading:
             around.variant or file.variant,
             around.home,
             step=around.step,
+            tolerance=tolerance,
         )
 
     def _inner(

@@ -15,7 +15,7 @@ from ..fmi.instance import Instance
 from ..fmi.options import FmuOptions
 from ..fmi.source import find_source
 from .part import Part
-from .rig import ComponentEntry, Rig, duration_ns
+from .rig import ComponentEntry, Rig, Scope, duration_ns
 from .sums import SumInstance
 from .system import Engine
 from .values import from_written
@@ -48,7 +48,7 @@ def load_part(rig: Rig, name: str, engine: Engine, once: dict[str, str]) -> Part
             )
     timeout_s = _timeout_s(entry, f"{where}.timeout")
     try:
-        return _part(entry, name, placed.scope.folder, engine, timeout_s, once, every)
+        return _part(entry, name, placed.scope, engine, timeout_s, once, every)
     except InputError as error:
         raise InputError(f"{where}.fmu: {error}") from None
 
@@ -63,7 +63,7 @@ def _timeout_s(entry: ComponentEntry, where: str) -> float:
     return seconds(timeout_ns)
 
 
-def _options(entry: ComponentEntry, loaded: LoadedFmu) -> FmuOptions:
+def _options(entry: ComponentEntry, loaded: LoadedFmu, tolerance: float | None) -> FmuOptions:
     """Return how a rig uses an FMU; structural parameters are set before anything has a size."""
     structure = {}
     for name, written in entry.set.items():
@@ -71,20 +71,22 @@ def _options(entry: ComponentEntry, loaded: LoadedFmu) -> FmuOptions:
         if variable is not None and variable.causality == "structuralParameter":
             given = from_written(written, [variable], {}, f"set.{name}")
             structure[name] = int(given[name].value)
-    return FmuOptions(entry.interface, entry.tolerance, structure, tuple(entry.locals))
+    takes = entry.tolerance is not None or loaded.takes_tolerance(entry.interface)
+    own = entry.tolerance if entry.tolerance is not None else tolerance if takes else None
+    return FmuOptions(entry.interface, own, structure, tuple(entry.locals))
 
 
 def _part(
     entry: ComponentEntry,
     name: str,
-    folder: Path,
+    scope: Scope,
     engine: Engine,
     timeout_s: float,
     once: dict[str, str],
     every: int,
 ) -> Part:
     """Return a component; an isolated one is an FMU with any engine."""
-    source = find_source(entry.fmu, folder)
+    source = find_source(entry.fmu, scope.folder)
     if not isinstance(source, Path):
         for key in ("interface", "tolerance", "locals"):
             if key in entry.model_fields_set:
@@ -102,7 +104,7 @@ def _part(
             )
         from ..fmi.load import load_fmu
 
-        loaded = load_fmu(source, _options(entry, load_fmu(source)))
+        loaded = load_fmu(source, _options(entry, load_fmu(source), scope.tolerance))
         instance, sha256 = _of_fmu(loaded, entry, name, timeout_s, once)
         return Part(name, entry.fmu, instance, sha256, "", every)
     code = bundle_name(source)

@@ -247,12 +247,10 @@ class Master:
                 f"the state of {', '.join(stuck)} cannot be saved and restored: what is outside "
                 "the simulation does not go back, and some FMUs say that they cannot"
             )
-        return Snapshot(
-            self.time,
-            self._rollback.save(self.steps),
-            self.faults.save(),
-            self._watch.save(),
-        )
+        checkpoint = self._rollback.save(self.steps)
+        self._rollback.keep(checkpoint)
+        self._in_python()
+        return Snapshot(self.time, checkpoint, self.faults.save(), self._watch.save())
 
     def restore(self, snapshot: Snapshot) -> None:
         """Return to a state that `save` returned; it stays valid. Raises SimulationError."""
@@ -267,6 +265,7 @@ class Master:
     def free(self, snapshot: Snapshot) -> None:
         """Release a state."""
         self._rollback.free(snapshot.checkpoint)
+        self._in_python()
 
     def terminate(self) -> None:
         """Tell every component that the run has ended, the rest too if one raises.

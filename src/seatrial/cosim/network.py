@@ -17,6 +17,7 @@ from ..component import NS
 from ..errors import ExcessError, SimulationError
 from ..fmi.instance import Writer
 from .injected import Acting, Injected
+from .instants import interval
 from .node import Chunk, Node, Writes
 from .system import Connection, System
 
@@ -148,8 +149,10 @@ class Network:
 
     def step(self, node: Node, t_ns: int, h_ns: int) -> None:
         """Step a node. Raises SimulationError."""
+        instance = node.part.instance
+        t, h = interval(t_ns, h_ns, constant=not instance.any_step)
         begun = perf_counter_ns()
-        node.part.instance.step(t_ns / NS, h_ns / NS)
+        instance.step(t, h)
         node.times.add(perf_counter_ns() - begun, t_ns)
 
     @property

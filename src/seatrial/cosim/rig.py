@@ -86,7 +86,7 @@ class ComponentEntry(FileModel):
     interface: Interface | None = None
     """Of an FMU that has several; co-simulation if it has that."""
     tolerance: float | None = Field(default=None, gt=0.0, le=0.1, allow_inf_nan=False)
-    """Relative tolerance of the solver of an FMU in model exchange."""
+    """Relative: of an FMU's own solver in co-simulation, of ours in model exchange."""
     locals: list[str] = Field(default_factory=list)
     """Local variables of an FMU that are outputs in this rig."""
 
@@ -109,6 +109,8 @@ class RigFile(FileModel):
     title: str = ""
     step: str | None = None
     """Communication step; an inner rig's holds where that runs alone."""
+    tolerance: float | None = Field(default=None, gt=0.0, le=0.1, allow_inf_nan=False)
+    """Relative tolerance for the FMUs of others in it, and in inner rigs, that say none."""
     algorithm: str = "jacobi"
     """A name of `registry.ALGORITHMS`."""
     iteration: IterationEntry | None = None
@@ -145,6 +147,8 @@ class Scope:
     """Whatever is inside may be connected to, by its path; otherwise what its file shows."""
     step: tuple[str, str] | None = None
     """Of its components that say none themselves, and where it is written."""
+    tolerance: float | None = None
+    """Of its FMUs that say none themselves."""
 
     def all(self) -> Iterator[Scope]:
         """Yield the rigs inside, the innermost first, then this one."""

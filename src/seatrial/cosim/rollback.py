@@ -51,6 +51,8 @@ class Rollback:
         self._obstacle = _obstacle(network)
         self.splits = 0
         """Steps that were split."""
+        self._kept: set[int] = set()
+        """Checkpoints, by identity, that somebody else may restore."""
 
     def advance(self, steps: int, t_ns: int, h_ns: int) -> None:
         """Advance by one communication step. Raises SimulationError."""
@@ -113,8 +115,26 @@ class Rollback:
     def free(self, checkpoint: Checkpoint) -> None:
         """Release a checkpoint."""
         self._free(checkpoint.states)
+        if id(checkpoint) in self._kept:
+            self._kept.remove(id(checkpoint))
+            self._tell()
+
+    def keep(self, checkpoint: Checkpoint) -> None:
+        """Say that a checkpoint may be restored, whenever somebody likes, until it is released."""
+        self._kept.add(id(checkpoint))
+        self._tell()
 
     # ------------------------------------------------------------------ inside
+
+    def _tell(self) -> None:
+        """Tell the components whether states of before their next steps may be restored.
+
+        Checkpoints for discarded steps are left out: FMUs exist that stand still where a restored
+        state is announced, a discard is rare, and a component that cannot go back is found
+        (`Network.refuse_unrestored`).
+        """
+        for instance in self._instances:
+            instance.goes_back(bool(self._kept))
 
     def _save_if_due(self, steps: int, between: int = _STEPS_BETWEEN) -> None:
         if not self._obstacle and (

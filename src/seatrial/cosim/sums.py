@@ -80,6 +80,9 @@ class SumInstance:
     def reset(self) -> None:
         """Never called: it does not restart."""
 
+    def goes_back(self, may: bool) -> None:
+        """Say whether a state may be restored: nothing depends on it."""
+
     def get_state(self) -> Any:
         """Return a copy of the inputs."""
         return list(self.inputs)

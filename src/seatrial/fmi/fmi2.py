@@ -56,7 +56,6 @@ class Fmi2Slave(Fmi2Access):
         super().__init__(fmu, name)
         self._do_step, self._said_so_far = self._functions["DoStep"], self._messages.kept
         self.restarts = True
-        self.never_back = int(not self.rolls_back)
         self.is_native = not fmu.simulation.needsExecutionTool
         """Whether it is C that may be called from C: others may need Python's interpreter."""
         tool = fmu.description.generationTool or ""
@@ -64,7 +63,7 @@ class Fmi2Slave(Fmi2Access):
 
     def initialise(self, start_time: float, stop_time: float) -> None:
         """Start at ``start_time``."""
-        self._enter_initialisation(None, start_time, stop_time)
+        self._enter_initialisation(self.fmu.tolerance, start_time, stop_time)
 
     def begin(self) -> None:
         """End the initialisation."""

@@ -56,7 +56,7 @@ class Fmi2Model(ModelInstance, Fmi2Access):
     def _wants_event(self) -> bool:
         wants, ends = ctypes.c_int(), ctypes.c_int()
         self._call(
-            "CompletedIntegratorStep", int(not self.rolls_back),
+            "CompletedIntegratorStep", self.never_back,
             ctypes.byref(wants), ctypes.byref(ends),
         )  # fmt: skip
         if ends.value:

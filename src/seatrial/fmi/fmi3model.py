@@ -58,7 +58,7 @@ class Fmi3Model(ModelInstance, Fmi3Access):
     def _wants_event(self) -> bool:
         wants, ends = ctypes.c_bool(), ctypes.c_bool()
         self._call(
-            "CompletedIntegratorStep", not self.rolls_back,
+            "CompletedIntegratorStep", bool(self.never_back),
             ctypes.byref(wants), ctypes.byref(ends),
         )  # fmt: skip
         if ends.value:

@@ -37,7 +37,6 @@ class Fmi3Slave(Fmi3Access):
         self._reached = ctypes.c_double()
         self._now = 0.0
         super().__init__(fmu, name)
-        self.never_back = not self.rolls_back
         self.left = self._event, self._end, self._early, self._reached
         """What the last step left: an event to handle, the end, an early return, and its time."""
         waits = any(self._waits(v) for v in self.variables.values() if v.causality in _SETTABLE)
@@ -47,7 +46,7 @@ class Fmi3Slave(Fmi3Access):
     def initialise(self, start_time: float, stop_time: float) -> None:
         """Start at ``start_time``."""
         self._now = start_time
-        self._enter_initialisation(None, start_time, stop_time)
+        self._enter_initialisation(self.fmu.tolerance, start_time, stop_time)
 
     def begin(self) -> None:
         """End the initialisation."""
@@ -99,7 +98,11 @@ class Fmi3Slave(Fmi3Access):
             stop = self._stop(end)
             own = h if (self._now, stop) == (t, end) else stop - self._now
             status = self._functions["DoStep"](
-                self._c, self._now, own, self.never_back, *(ctypes.byref(one) for one in self.left)
+                self._c,
+                self._now,
+                own,
+                bool(self.never_back),
+                *(ctypes.byref(one) for one in self.left),
             )
             self._took(self._now, own, status)
             returns += self._arrive(stop)

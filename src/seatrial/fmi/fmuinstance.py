@@ -50,6 +50,8 @@ class FmuInstance(ByType):
         self.rolls_back, self.any_step = fmu.rolls_back, fmu.any_step
         self.at_once = fmu.at_once
         self.restarts = False
+        self.never_back = 1
+        """FMI's noSetFMUStatePriorToCurrentPoint: what the master will do, not what the FMU can."""
         self.ended_at: float | None = None
         self._ours = (fmu.description.generationTool or "").startswith("seatrial")
         self._fatal = False
@@ -95,6 +97,10 @@ class FmuInstance(ByType):
         """Set parameters and start values by variable name, before `initialise`."""
         if values:
             self.writer(list(values))(list(values.values()))
+
+    def goes_back(self, may: bool) -> None:
+        """Say whether a state of before the next step may be restored after it."""
+        self.never_back = int(not may)
 
     def get_state(self) -> Any:
         """Return a handle of the whole state."""

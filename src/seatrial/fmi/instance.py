@@ -201,6 +201,12 @@ class Instance(Protocol):
     def step(self, t: float, h: float) -> None:
         """Advance from ``t`` to ``t + h``, s. Raises DiscardError if a smaller step may do."""
 
+    def goes_back(self, may: bool) -> None:
+        """Say whether a state of before the next step may be restored after it; none may at first.
+
+        FMUs are given that with each step (``noSetFMUStatePriorToCurrentPoint``).
+        """
+
     def get_state(self) -> Any:
         """Return a handle of the whole state."""
 
@@ -232,6 +238,9 @@ class ByType(ABC):
     @abstractmethod
     def _writer(self, variables: list[Variable], kind: Any) -> Writer:
         """Return a writer of variables of one type."""
+
+    def goes_back(self, may: bool) -> None:  # noqa: B027  many need not know
+        """Say whether a state of before the next step may be restored after it."""
 
     def _kind(self, variable: Variable) -> Any:
         """Return what variables have in common that one call reads or writes."""

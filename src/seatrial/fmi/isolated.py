@@ -155,6 +155,10 @@ class IsolatedInstance:
         self.ended_at = None if math.isnan(ended_at) else ended_at
         self._time, self._just_stepped = t + h, True
 
+    def goes_back(self, may: bool) -> None:
+        """Say whether a state of before the next step may be restored after it."""
+        self._call("goes_back", "the notice of restored states", may)
+
     def get_state(self) -> Any:
         """Return the number of the whole state, which is kept in the process."""
         return self._call("get_state", "the saving of its state")

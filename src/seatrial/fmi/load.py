@@ -94,10 +94,10 @@ def _with_options(fmu: LoadedFmu, options: FmuOptions) -> LoadedFmu:
             f"{fmu.path.name} has no {options.interface}, only {' and '.join(fmu.interfaces)}"
         )
     chosen = replace(fmu, options=options)
-    if options.tolerance is not None and chosen.interface != "model exchange":
+    if options.tolerance is not None and not fmu.takes_tolerance(options.interface):
         raise InputError(
-            f"{fmu.path.name}: a tolerance has no effect in co-simulation, only with "
-            'interface = "model exchange"'
+            f"{fmu.path.name}: co-simulation of FMI 1.0 has no tolerance; that of later "
+            "versions has, and model exchange"
         )
     if not (options.structure or options.locals or fmu.clocks.by_reference):
         return chosen

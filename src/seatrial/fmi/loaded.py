@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -87,6 +88,22 @@ class LoadedFmu:
         if self.version == 1:
             return self._says("canHandleVariableCommunicationStepSize")
         return bool(self.simulation.canHandleVariableCommunicationStepSize)
+
+    @property
+    def tolerance(self) -> float | None:
+        """The relative tolerance to use: of the options, else of its default experiment."""
+        if self.options.tolerance is not None:
+            return self.options.tolerance
+        said = self.description.defaultExperiment
+        try:
+            found = float(said.tolerance)
+        except (AttributeError, TypeError, ValueError):
+            return None
+        return found if 0.0 < found < math.inf else None
+
+    def takes_tolerance(self, interface: Interface | None) -> bool:
+        """Return whether its functions take a tolerance, with an interface, or its first."""
+        return self.version > 1 or (interface or self.interfaces[0]) == "model exchange"
 
     @property
     def at_once(self) -> bool:

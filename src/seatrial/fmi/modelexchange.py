@@ -35,9 +35,7 @@ class ModelInstance(EventfulInstance):
     """How this version of FMI calls these functions."""
 
     def __init__(self, fmu: LoadedFmu, name: str) -> None:
-        said = fmu.description.defaultExperiment
-        of_fmu = float(said.tolerance) if said is not None and said.tolerance else TOLERANCE
-        self._tolerance = fmu.options.tolerance or of_fmu
+        self._tolerance = fmu.tolerance or TOLERANCE
         self._now = 0.0
         self._next_event: float | None = None
         self._solver: Any = None

@@ -17,7 +17,7 @@ class FmuOptions:
 
     interface: Interface | None = None
     tolerance: float | None = None
-    """Relative tolerance of the solver, in model exchange."""
+    """Relative tolerance: of its own solver in co-simulation, of ours in model exchange."""
     structure: Mapping[str, int] = field(default_factory=dict)
     """Structural parameters of FMI 3.0, by name: sizes of arrays follow from them."""
     locals: Sequence[str] = ()

@@ -196,6 +196,10 @@ class Worker:
         self._instance.begin()
         return self._instance.ended_at
 
+    def call_goes_back(self, may: bool) -> None:
+        """Say whether a state of before the next step may be restored."""
+        self._instance.goes_back(may)
+
     def call_get_state(self) -> int:
         """Keep the whole state; return its number."""
         number = self._next_number()

@@ -12,7 +12,7 @@ enum { FINE, NOT_A_NUMBER, DISCARD, ERROR, FATAL, WARN, BAD_START, NEGATIVE, BEY
 
 typedef struct {
     fmi2CallbackFunctions calls;
-    double real[REALS], time;
+    double real[REALS], time, stop, step;
     int integer[INTEGERS], boolean[2];
     char text[2][64];
 } Slave;
@@ -40,7 +40,12 @@ fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t n, const 
 }
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean b, fmi2Real tolerance, fmi2Real start,
                                fmi2Boolean stops, fmi2Real stop) {
-    ((Slave *)c)->time = start;
+    Slave *s = c;
+    s->time = start;
+    s->stop = stops ? stop : INFINITY;
+#ifdef SHOWS_TOLERANCE
+    s->real[X] = b ? tolerance : -1.0;
+#endif
     return fmi2OK;
 }
 fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
@@ -119,6 +124,20 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real t, fmi2Real h, fmi2Boolean never
     double *x = s->real;
     s->integer[NEVER_BACK] = never_back;
     if (fabs(t - s->time) > 1e-9) return say(s, fmi2Error, "steps do not follow each other");
+#ifdef STRICT /* as some tools' FMUs are */
+    if (t != s->time) return say(s, fmi2Error, "it is another time");
+    if (t + h > s->stop) return say(s, fmi2Error, "it is beyond the stop time");
+#endif
+#ifdef COUNTS /* steps of another length than the one before */
+    if (s->step != 0.0 && h != s->step) s->integer[I]++;
+    s->step = h;
+#endif
+#ifdef COMMITS /* it keeps a step only if nobody goes back before it */
+    if (!never_back) {
+        s->time = t + h;
+        return fmi2OK;
+    }
+#endif
     if (x[LARGEST_STEP] > 0 && h > x[LARGEST_STEP] * (1 + 1e-9)) {
         return say(s, fmi2Discard, "the step is too large");
     }

@@ -91,6 +91,9 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean b, fmi3Float6
     Slave *s = c;
     s->time = start;
     s->state = INITIALISING;
+#ifdef SHOWS_TOLERANCE
+    s->real[X] = b ? tolerance : -1.0;
+#endif
     return fmi3OK;
 }
 fmi3Status fmi3ExitInitializationMode(fmi3Instance c) {

@@ -48,7 +48,6 @@ class CompiledFmi3:
 
     def __init__(self, instance: Fmi3Slave) -> None:
         self.name, self._instance = instance.name, instance
-        self.never_back = int(instance.never_back)
         event, end, early, reached = instance.left
         self._own = Fmi3(
             component=instance.component,
@@ -82,6 +81,11 @@ class CompiledFmi3:
     def stepped(self, t: float, h: float, status: int) -> None:
         """Take what a step returned, and go on to its end. Raises SimulationError."""
         self._instance.stepped(t, h, 0 if status == RETURNED else status)
+
+    @property
+    def never_back(self) -> int:
+        """Whether no state of before a step will be restored."""
+        return self._instance.never_back
 
     @property
     def ended_at(self) -> float | None:

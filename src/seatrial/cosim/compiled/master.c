@@ -47,6 +47,7 @@ typedef struct {
     int64_t count;
     int64_t start;         /* STORE: place of the first; STEP: its begin, ns after the step's */
     int64_t length;        /* STEP: ns; LOOP: operations in it */
+    int64_t constant;      /* STEP: h is that of `length`, whatever t and the next t are as doubles */
     int64_t never_back;
     Times *times;
     const int64_t *places; /* WRITE: of the sources; LOOP: of its outputs */
@@ -388,7 +389,9 @@ static int finish_step(Master *m) {
             break;
         case STEP: {
             const int64_t at_ns = m->begin_ns + o->start;
-            const double t = (double)at_ns / 1e9, h = (double)o->length / 1e9;
+            const double t = (double)at_ns / 1e9;
+            const double h = o->constant ? (double)o->length / 1e9
+                                         : (double)(at_ns + o->length) / 1e9 - t;
             if (m->cells) m->times[2] = t, m->cells[1] = o->mark;
             if (begun < 0) begun = ticks();
             m->status = ((DoStep)o->function)(o->component, t, h, (int)o->never_back);

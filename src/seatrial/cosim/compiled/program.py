@@ -237,6 +237,7 @@ class Program:
             return
         times = self.times[node.part.name] = Times(longest_at_ns=-1)
         operation = Operation(kind=STEP, every=node.every, phase=phase, start=start, length=length)
+        operation.constant = not node.part.instance.any_step
         operation.never_back = slave.never_back
         operation.times = ctypes.pointer(times)
         self._ask(operation, node, slave, "DoStep", [])

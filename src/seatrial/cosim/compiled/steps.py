@@ -10,6 +10,7 @@ from ...fmi.messages import ACCEPTED, said
 from ..algorithms import Algorithm
 from ..divergence import DivergenceWatch
 from ..feedthrough import Feedthrough
+from ..instants import interval
 from ..network import ANY_QUANTITY, Network
 from .library import library
 from .program import Program
@@ -129,7 +130,8 @@ class CompiledSteps:
         said.value = 0
         if operation.kind == STEP:
             t_ns = self._master.begin_ns + operation.start
-            slave.stepped(t_ns / 1e9, operation.length / 1e9, status)
+            t, h = interval(t_ns, operation.length, constant=bool(operation.constant))
+            slave.stepped(t, h, status)
             if status not in ACCEPTED:  # it was not refused: C has not counted it
                 self._network.nodes[slave.name].times.add(self._master.took_ns, t_ns)
             self.ends |= slave.ended_at is not None
@@ -171,6 +173,9 @@ class CompiledSteps:
 
     def _push(self) -> None:
         self._push_signals()
+        for at, (slave, function) in self._program.asked.items():
+            if function == "DoStep":
+                self._operations[at].never_back = slave.never_back
         for at, group in self._program.loops.items():
             self._operations[at].relaxation = group.relaxation
         for at, past in self._program.past.items():

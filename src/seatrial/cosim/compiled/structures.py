@@ -41,6 +41,7 @@ class Operation(Structure):
         ("count", c_int64),
         ("start", c_int64),
         ("length", c_int64),
+        ("constant", c_int64),
         ("never_back", c_int64),
         ("times", POINTER(Times)),
         ("places", POINTER(c_int64)),

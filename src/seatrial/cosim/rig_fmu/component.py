@@ -107,7 +107,9 @@ class RigComponent(Component):
 
     def get_state(self) -> dict[str, Any]:
         """Return the whole state, with those of the parts, as plain data."""
-        saved = self._running().save()
+        master = self._running()
+        saved = master.save()
+        master.free(saved)  # the parts run in process: their states are plain data
         rest = {"time": saved.time, "faults": saved.faults, "watch": saved.watch}
         return {**super().get_state(), "rig": {**rest, "checkpoint": vars(saved.checkpoint)}}
 
