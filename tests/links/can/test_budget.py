@@ -3,12 +3,14 @@
 import os
 import socket
 import time
+import tty
 
 import can
 import pytest
 
 from seatrial.links.can.frame import Frame
 from seatrial.links.can.gateway import FRAME_BYTES, LEAST
+from seatrial.links.can.gateway_python_can import PythonCanGateway
 from seatrial.links.can.gateway_url import open_gateway
 from seatrial.links.endpoints.budget import MOST
 from seatrial.links.endpoints.udp import MOST_READS
@@ -73,6 +75,35 @@ def test_a_program_that_floods_an_adapter_waits(opened):
         assert len(polls) >= count * len(flood) // LEAST
     finally:
         os.close(descriptor)
+
+
+def test_a_line_that_never_ends_is_refused():
+    """python-can's driver for serial adapters keeps what has come until a line is whole."""
+    ours, theirs = os.openpty()
+    tty.setraw(theirs)
+    device = os.ttyname(theirs)
+    url = f"python-can:slcan:{device}@500000"
+    gateway = PythonCanGateway(url, "slcan", device, 500_000)
+    try:
+        os.write(ours, b"t" * 900)
+        gateway.poll()
+        assert gateway.refused == 0
+        for _ in range(20):
+            os.write(ours, b"t" * 900)
+            gateway.poll()
+            assert len(gateway._bus._buffer) <= 2000
+        assert gateway.refused == 10
+        os.write(ours, b"\r")  # the end of what is left of it
+        gateway.poll()
+        os.write(ours, b"t12320102\r")
+        found, until = [], time.monotonic() + WAIT_S
+        while not found and time.monotonic() < until:
+            found = gateway.poll()
+        assert [frame for _, frame in found] == [Frame(0x123, b"\x01\x02")]
+    finally:
+        gateway.close()
+        os.close(ours)
+        os.close(theirs)
 
 
 def test_a_bus_that_is_flooded_is_read_by_and_by(opened):

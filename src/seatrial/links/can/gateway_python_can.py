@@ -17,6 +17,9 @@ from .gateway import FRAME_BYTES, LEAST, RATE, Gateway
 from .messages import error_message, frame_of, message
 from .operations import Error
 
+_LONGEST_LINE = 1024
+"""Bytes of a line of slcan; a frame has 31, one of CAN FD 139."""
+
 
 class PythonCanGateway(Gateway):
     """A bus of python-can's; its nodes are one client.
@@ -54,6 +57,7 @@ class PythonCanGateway(Gateway):
             try:
                 received = self._bus.recv(0.0)
                 if received is None:
+                    self._bound_line()
                     break
                 frame = frame_of(received)
             except (can.CanError, OSError):
@@ -95,6 +99,11 @@ class PythonCanGateway(Gateway):
             waiting.register(self._bus.fileno(), 0)
             return bool(waiting.poll(0))
         return False
+
+    def _bound_line(self) -> None:
+        """Refuse a line that does not end: python-can's slcan driver would keep it for ever."""
+        if isinstance(self._bus, slcanBus) and len(self._bus._buffer) > _LONGEST_LINE:
+            self._refuse()
 
     def _refuse(self) -> None:
         """Count what was no frame, and let a driver forget the rest of it."""
