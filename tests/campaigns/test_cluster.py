@@ -189,10 +189,11 @@ def test_tls_with_certificates_of_one_authority(campaign, tmp_path):
             run_sweep(campaign, tmp_path / "other", How("direct", cluster=address))
 
 
-@pytest.mark.parametrize("answer", [b"", b"\xff" * 64])
+@pytest.mark.parametrize("answer", [b"", b"\xff" * 64, None])
 def test_a_peer_that_is_no_scheduler_is_said(campaign, tmp_path, monkeypatch, answer):
-    """Closes at once, or sends lengths that nobody has."""
+    """Closes at once, sends lengths that nobody has, or waits for more, as a web server does."""
     monkeypatch.setattr("seatrial.campaigns.cluster._WAIT_S", 2)
+    monkeypatch.setattr("seatrial.campaigns.cluster._LATE_S", 2)
     with socket.create_server(("127.0.0.1", 0)) as server:
         taken = []
 
@@ -202,8 +203,9 @@ def test_a_peer_that_is_no_scheduler_is_said(campaign, tmp_path, monkeypatch, an
                     taken.append(server.accept()[0])
                 except OSError:
                     return
-                taken[-1].sendall(answer)
-                taken[-1].close()
+                if answer is not None:
+                    taken[-1].sendall(answer)
+                    taken[-1].close()
 
         threading.Thread(target=serve, daemon=True).start()
         how = How("direct", cluster=f"tcp://127.0.0.1:{server.getsockname()[1]}")

@@ -6,6 +6,7 @@ import hashlib
 import ipaddress
 import re
 import tempfile
+import threading
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Future
@@ -24,7 +25,9 @@ from .shipment import pack_folder, packed, unpacked
 from .workers import Task
 
 _WAIT_S = 30
-"""For the first worker."""
+"""For the scheduler, and for the first worker."""
+_LATE_S = 5
+"""What Dask may take longer than it was asked to."""
 _TASK_S = 2.0
 """Wall time of a task of short cases: a scheduler does some thousand tasks a second."""
 _MOST_CASES = 1000
@@ -54,6 +57,30 @@ def check_address(address: str) -> None:
         check_host("--cluster", resolved("--cluster", host))
 
 
+def _connected(client: Any, address: str) -> Any:
+    """Return a client of a scheduler. Raises what Dask does, OSError for a peer that is none.
+
+    Dask waits without end for a greeting that does not come, of a web server say: in a thread
+    that may be left behind.
+    """
+    found: list[Any] = []
+
+    def connect() -> None:
+        try:
+            found.append(client(address, timeout=_WAIT_S, set_as_default=False))
+        except BaseException as error:
+            found.append(error)
+
+    thread = threading.Thread(target=connect, daemon=True)
+    thread.start()
+    thread.join(_WAIT_S + _LATE_S)
+    if not found:
+        raise OSError("who answers there does not speak Dask's protocol")
+    if isinstance(found[0], BaseException):
+        raise found[0]
+    return found[0]
+
+
 class Cluster:
     """Runs tasks on the workers of the scheduler at ``address`` (`check_address`).
 
@@ -80,7 +107,7 @@ class Cluster:
             )
         self._killed = distributed.KilledWorker
         try:
-            self._client: Any = distributed.Client(address, timeout=_WAIT_S, set_as_default=False)
+            self._client: Any = _connected(distributed.Client, address)
         except TypeError as error:  # tls:// without a certificate
             raise InputError(
                 f"--cluster: {address} needs authority, certificate and key, Dask's settings "
