@@ -147,6 +147,18 @@ def equal(path: Path, text: str, **options: Any) -> dict[str, Any]:
     return found
 
 
+def called_from_c(path: Path) -> set[tuple[str, str]]:
+    """Return components and functions of them that C calls."""
+    system = assemble(load_rig(str(path)))
+    try:
+        master = Master(system)
+        master.initialise()
+        assert master._compiled is not None
+        return {(fmu.name, call) for fmu, call in master._compiled._program.asked.values()}
+    finally:
+        system.free()
+
+
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
 @pytest.mark.parametrize("seed", range(12))
 def test_random_graphs_have_the_same_bits(fmus: Path, algorithm: str, seed: int) -> None:
@@ -246,15 +258,8 @@ forces = {{ sum = {{ inputs = 2, dimension = 2 }} }}
 """
     path = fmus / f"sums-{algorithm}.toml"
     assert equal(path, text)["error"] is None
-    system = assemble(load_rig(str(path)))
-    try:
-        master = Master(system)
-        master.initialise()
-        assert master._compiled is not None
-        asked = {(fmu.name, call) for fmu, call in master._compiled._program.asked.values()}
-        assert {(n, c) for n in ("total", "forces") for c in ("SetReal", "GetReal")} <= asked
-    finally:
-        system.free()
+    asked = called_from_c(path)
+    assert {(n, c) for n in ("total", "forces") for c in ("SetReal", "GetReal")} <= asked
 
 
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
@@ -287,18 +292,11 @@ c = {{ fmu = "fmi2.fmu", set = {{ gain = 0.4 }} }}
     assert found["error"] is None
     assert found["ends"]
     assert found["steps"] == 34
-    system = assemble(load_rig(str(path)))
-    try:
-        master = Master(system)
-        master.initialise()
-        assert master._compiled is not None
-        asked = {(fmu.name, call) for fmu, call in master._compiled._program.asked.values()}
-        calls = ("SetReal", "SetInteger", "SetBoolean", "DoStep", "GetReal", "GetBoolean")
-        assert {("b", call) for call in calls} <= asked
-        assert ("a", "SetReal") not in asked  # of an array that is set in part
-        assert ("a", "SetInteger") not in asked  # of a type that C does not call
-    finally:
-        system.free()
+    asked = called_from_c(path)
+    calls = ("SetReal", "SetInteger", "SetBoolean", "DoStep", "GetReal", "GetBoolean")
+    assert {("b", call) for call in calls} <= asked
+    assert ("a", "SetReal") not in asked  # of an array that is set in part
+    assert ("a", "SetInteger") not in asked  # of a type that C does not call
 
 
 def test_an_oscillation_that_grows_is_found_at_the_same_step(fmus: Path) -> None:

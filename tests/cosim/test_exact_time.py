@@ -18,7 +18,7 @@ from seatrial.cosim.master import Master
 
 from ..fmi.native import build_native_fmu, changed, variant
 
-HALVES = (1, 3, 7, 10, 33, 50, 100, 333)
+MILLISECONDS = (1, 3, 7, 10, 33, 50, 100, 333)
 CARRIERS = ("compiled", "python", "isolated")
 
 
@@ -62,7 +62,7 @@ def rig(fmu: str, step: str, carrier: str = "", **options: str) -> str:
 
 
 @pytest.mark.parametrize("carrier", CARRIERS)
-@pytest.mark.parametrize("milliseconds", HALVES)
+@pytest.mark.parametrize("milliseconds", MILLISECONDS)
 def test_every_step_begins_where_the_one_before_ended(
     fmus: Path, carrier: str, milliseconds: int
 ) -> None:

@@ -172,10 +172,29 @@ def test_what_takes_for_ever_has_no_c(text: str, tmp_path: Path) -> None:
         Unit(cls()).translate()
 
 
-def test_kinds_of_values_without_end_have_no_c(tmp_path: Path) -> None:
-    program = Program(["self.maybe_NO_ = (self.maybe_NO_ or 1.0, 2)"], [])
+MANY_KINDS = """
+for w in reversed(self.row_NO_):
+    if self.n < 2.5:
+        self.maybe_NO_ = frozenset((1.0, 2.0))
+if self.maybe_NO_ is None:
+    self.v_NO_ += 1.0
+else:
+    self.maybe_NO_ = None
+    if self.help_NO_(self.v_NO_) > 1.0:
+        self.maybe_NO_ = None
+        self.maybe_NO_ = frozenset((1.0, 2.0))
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [("self.maybe_NO_ = (1.0 - 3.0) ** 0.5", "no real number"), (MANY_KINDS, "more than 32 kinds")],
+)
+def test_values_of_ever_more_kinds_have_no_c(text: str, why: str, tmp_path: Path) -> None:
+    """Each is an object of its own, so that the types of attributes would grow without end."""
+    program = Program(text.strip().split("\n"), [HELP])
     cls, _, _ = loaded(tmp_path, HEADER + component("Written", [program]))
-    with pytest.raises(TranslationError):
+    with pytest.raises(TranslationError, match=why):
         Unit(cls()).translate()
 
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import ctypes
 import math
+from collections.abc import Sequence
 from typing import Any, ClassVar
 
 import fmpy
 from fmpy import fmi2
 
+from .instance import Variable
 from .lenient import Missing
 from .loaded import LoadedFmu
 from .messages import ACCEPTED, DISCARD, OK, listening_callbacks, stop_listening
@@ -83,6 +85,10 @@ class Fmi2Slave(Fmi2Access):
         if status not in ACCEPTED and not (status == DISCARD and self._ends(t)):
             self._refuse(f"DoStep(t = {t!r} s, h = {h!r} s)", status)
         self._messages.forward()
+
+    def references(self, variables: Sequence[Variable]) -> list[int]:
+        """Return the value references of variables, as its functions take them."""
+        return [variable.reference for variable in variables]
 
     def _ends(self, t: float) -> bool:
         """Say if a discarded step is the FMU's end, which it may have in the midst of a step.

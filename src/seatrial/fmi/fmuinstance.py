@@ -149,10 +149,6 @@ class FmuInstance(ByType):
         """Log what the FMU has said since."""
         self._messages.forward()
 
-    def references(self, variables: Sequence[Variable]) -> list[int]:
-        """Return the value references of variables, as FMI 1.0 and 2.0 take them."""
-        return [variable.reference for variable in variables]
-
     def address(self, function: str) -> int:
         """Return where a function of the library is, 0 if it has none of that name."""
         found = self._functions[function]
