@@ -90,24 +90,26 @@ benchmark: $(INSTALLED)
 	$(BIN)/python -m benchmarks.ardupilot --write
 	$(BIN)/python -m benchmarks.big_models --write
 
-# What a release has: the distributions, the packages that the tests here ran with as a lock with hashes
-# (pip install --require-hashes -r), and an SBOM of them. Run it after the tests, in their environment. The tools
-# have one of their own: they are no part of what they list.
+# What a release has: the distributions, the packages that the tests here ran with as a lock with the hashes of
+# their files for this platform and Python (pip install --require-hashes --no-deps -r), and an SBOM of them. Run it
+# after the tests, in their environment. The tools have one of their own: they are no part of what they list.
 release: $(INSTALLED) $(TOOLS)/.installed
 	rm -rf $(RELEASE) && mkdir -p $(RELEASE)
 	$(BIN)/python -m build --outdir $(RELEASE)
 	$(BIN)/python -m pip freeze --exclude-editable > $(RELEASE)/tested.txt
-	$(TOOLS)/bin/pip-compile --quiet --generate-hashes --no-emit-index-url --no-emit-trusted-host --no-header \
-		--strip-extras --allow-unsafe --no-annotate --constraint $(RELEASE)/tested.txt --extra dev \
-		--output-file $(RELEASE)/seatrial.lock pyproject.toml
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --dry-run --ignore-installed --no-deps \
+		--report $(RELEASE)/report.json --requirement $(RELEASE)/tested.txt
+	$(BIN)/python -c 'import json, sys; [print(one["metadata"]["name"], "==", one["metadata"]["version"], \
+		" --hash=sha256:", one["download_info"]["archive_info"]["hashes"]["sha256"], sep="") \
+		for one in json.load(sys.stdin)["install"]]' < $(RELEASE)/report.json > $(RELEASE)/seatrial.lock
 	$(TOOLS)/bin/cyclonedx-py environment --pyproject pyproject.toml --mc-type library --output-reproducible \
 		--output-format JSON --output-file $(RELEASE)/seatrial.cdx.json $(BIN)/python
-	rm $(RELEASE)/tested.txt
+	rm $(RELEASE)/tested.txt $(RELEASE)/report.json
 	cd $(RELEASE) && sha256sum * > SHA256SUMS
 
 $(TOOLS)/.installed: pyproject.toml
 	$(PYTHON) -m venv $(TOOLS)
-	$(TOOLS)/bin/python -m pip install --quiet --disable-pip-version-check 'pip-tools>=7.4,<8' 'cyclonedx-bom>=6,<8'
+	$(TOOLS)/bin/python -m pip install --quiet --disable-pip-version-check 'cyclonedx-bom>=6,<8'
 	@touch $@
 
 fmus: $(INSTALLED)
