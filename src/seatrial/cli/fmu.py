@@ -21,7 +21,6 @@ from ..fmi.cache import write_named
 from ..fmi.description import summary
 from ..fmi.direct import DirectInstance
 from ..fmi.export import build_fmu
-from ..fmi.export3 import build_fmu3
 from ..fmi.instance import Value, Variable
 from ..fmi.load import load_fmu, open_instance
 from ..fmi.loaded import LoadedFmu
@@ -141,10 +140,8 @@ def _write_fmu(
     elif carrier == "standalone":
         glibc = build_standalone_fmu(source, path, values, version)
         print_notes([f"{path} runs on Linux on x86-64 with glibc {glibc} or newer"])
-    elif version == 3:
-        build_fmu3(source, path, targets, values)
     else:
-        build_fmu(source, path, values)
+        build_fmu(source, path, values, version, targets)
 
 
 def _version(text: str) -> int:

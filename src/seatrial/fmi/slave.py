@@ -198,7 +198,7 @@ def _drop_interpreter_handle(resources: str | None) -> None:
     launched = list(Path(resources, "python", "lib").glob("libpythonfmu-export.so"))
     if not launched and not sys.orig_argv:
         return
-    beneath = list(Path(resources, "pythonfmu").glob("*.so"))  # of FMI 3.0
+    beneath = list(Path(resources, "pythonfmu").glob("*.so"))  # a library of ours
     binaries = Path(resources).parent / "binaries" / "linux64"
     for path in launched or beneath or binaries.glob("*.so"):
         library = ctypes.CDLL(str(path), mode=os.RTLD_NOLOAD | os.RTLD_LAZY)

@@ -98,7 +98,7 @@ def _sources(made: Callable[[], Component], name: str) -> tuple[dict[str, bytes]
         translation = Translation(component)
         checked(made(), name)
         text, own, parts = translation.model(), translation.header(), translation.parts()
-    ours = ("component.h", "fmi2.c", *parts)
+    ours = ("component.h", "fmi2.c", "seal.h", *parts)
     return {
         "model.c": text.encode(),
         **{each: _OWN.joinpath(each).read_bytes() for each in ours},
