@@ -3,7 +3,6 @@
    What a component logs as an error is an error of the call that runs: pythonfmu returns that all
    is well, or that everything is lost. A refused call changes nothing. */
 
-#include <math.h>
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -239,7 +238,7 @@ fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t count,
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean has_tolerance, fmi2Real tolerance,
                                fmi2Real start, fmi2Boolean has_stop, fmi2Real stop) {
     ENTER(fmi2SetupExperiment, INSTANTIATED);
-    if (!isfinite(start)) REFUSE(fmi2SetupExperiment, "the start time is %g s", start);
+    if (!__builtin_isfinite(start)) REFUSE(fmi2SetupExperiment, "the start time is %g s", start);
     const fmi2Status status = outcome(
         self, its->fmi2SetupExperiment(self->inner, has_tolerance, tolerance, start, has_stop, stop));
     if (status <= fmi2Warning) self->time = start;
@@ -277,10 +276,10 @@ fmi2Status fmi2Reset(fmi2Component c) {
 
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real t, fmi2Real h, fmi2Boolean no_earlier) {
     ENTER(fmi2DoStep, RUNNING);
-    if (!(h > 0.0) || !isfinite(h))
+    if (!(h > 0.0) || !__builtin_isfinite(h))
         REFUSE(fmi2DoStep, "the step is %g s, allowed are finite ones greater than 0 s", h);
     const double slack = h / 100.0 > 1e-9 ? h / 100.0 : 1e-9; /* of hosts that add up steps */
-    if (!(fabs(t - self->time) <= slack))
+    if (!(__builtin_fabs(t - self->time) <= slack))
         REFUSE(fmi2DoStep, "the step begins at %.12g s, but %.12g s was reached", t, self->time);
     const fmi2Status status = outcome(self, its->fmi2DoStep(self->inner, t, h, no_earlier));
     if (status <= fmi2Warning) self->time = t + h;
