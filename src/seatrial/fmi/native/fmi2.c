@@ -12,6 +12,10 @@
 #include "component.h"
 #include "seal.h"
 
+#ifndef CALLED /* the name by which the host called the function */
+#define CALLED(name) #name
+#endif
+
 #define LATEST 2e6 /* s, up to which a double gives its nanoseconds back */
 
 static void report(Instance *self) {
@@ -206,10 +210,19 @@ fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t count,
     return fmi2OK;
 }
 
+static int is_in(Instance *self, Phase phase, const char *call) {
+    static const char *const words[] = {"before", "during", "once", "once"};
+    if (self->state.phase == phase) return 1;
+    say(self, "%s: %s: not allowed %s the initialisation%s", self->name, call,
+        words[self->state.phase], self->state.phase > INITIALISING ? " has ended" : "");
+    return 0;
+}
+
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean has_tolerance, fmi2Real tolerance,
                                fmi2Real start, fmi2Boolean has_stop, fmi2Real stop) {
     (void)has_tolerance, (void)tolerance, (void)has_stop, (void)stop;
     Instance *self = c;
+    if (!is_in(self, INSTANTIATED, CALLED(fmi2SetupExperiment))) return fmi2Error;
     if (!(fabs(start) < LATEST)) {
         say(self, "%s: start time is %g s; times are exact to the nanosecond up to %g s only",
             self->name, start, LATEST);
@@ -222,6 +235,7 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean has_tolerance, fmi2R
 
 fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
     Instance *self = c;
+    if (!is_in(self, INSTANTIATED, CALLED(fmi2EnterInitializationMode))) return fmi2Error;
     self->state.phase = INITIALISING;
     self->state.stale = self->state.restart = 1;
     return refresh(self) ? fmi2OK : fmi2Error;
@@ -229,6 +243,7 @@ fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
 
 fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
     Instance *self = c;
+    if (!is_in(self, INITIALISING, CALLED(fmi2ExitInitializationMode))) return fmi2Error;
     if (!refresh(self)) return fmi2Error;
     self->state.phase = RUNNING;
     return fmi2OK;
@@ -254,8 +269,8 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real t, fmi2Real h, fmi2Boolean no_ea
         return fmi2Error;
     }
     if (fabs(t - state->reached) > slack) {
-        say(self, "%s: the step begins at %s s, but %s s was reached", self->name, shown(self, t),
-            shown(self, state->reached));
+        say(self, "%s: the step begins at %.12g s, but %.12g s was reached", self->name, t,
+            state->reached);
         return fmi2Error;
     }
     if (state->failed) {
@@ -407,7 +422,7 @@ fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *kept) {
 fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate kept) {
     Instance *self = c;
     if (!kept || ((State *)kept)->fmu != self->state.fmu) {
-        say(self, "%s: fmi2SetFMUstate: %s", self->name,
+        say(self, "%s: %s: %s", self->name, CALLED(fmi2SetFMUstate),
             kept ? "the state is not of this FMU" : "there is no state");
         return fmi2Error;
     }
@@ -431,8 +446,8 @@ fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate kept, size_t
 fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate kept, fmi2Byte bytes[], size_t size) {
     Instance *self = c;
     if (!kept || !bytes || size < sizeof(Seal) + sizeof(State)) {
-        say(self, "%s: fmi2SerializeFMUstate: no state, or less room than its %zu bytes",
-            self->name, sizeof(Seal) + sizeof(State));
+        say(self, "%s: %s: no state, or less room than its %zu bytes",
+            self->name, CALLED(fmi2SerializeFMUstate), sizeof(Seal) + sizeof(State));
         return fmi2Error;
     }
     memcpy(bytes + sizeof(Seal), kept, sizeof(State));
@@ -445,7 +460,7 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size
     Instance *self = c;
     char why[128];
     if (!seal_holds(bytes, size, self->state.fmu, why, sizeof why)) {
-        say(self, "%s: fmi2DeSerializeFMUstate: %s", self->name, why);
+        say(self, "%s: %s: %s", self->name, CALLED(fmi2DeSerializeFMUstate), why);
         return fmi2Error;
     }
     if (!*kept && !(*kept = malloc(sizeof(State)))) return fmi2Error;
