@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import importlib.util
 import json
+import shutil
 import subprocess
 import sys
 from collections.abc import Callable
@@ -12,7 +14,9 @@ from typing import Any
 
 import fmpy
 import pytest
+from typer.testing import CliRunner
 
+from seatrial.cli.fmu import fmu_app
 from seatrial.fmi.export import build_fmu
 from seatrial.fmi.native.compiler import HERE, library_here
 from seatrial.fmi.native.export import build_native_fmu
@@ -182,9 +186,7 @@ def test_what_fmi_does_not_allow_is_refused_and_does_no_harm(
         pytest.param("standalone 3", marks=pytest.mark.long),
     ],
 )
-def test_it_runs_unpacked_anywhere(
-    kind: str, built: Callable[[str], Path], tmp_path: Path
-) -> None:
+def test_it_runs_unpacked_anywhere(kind: str, built: Callable[[str], Path], tmp_path: Path) -> None:
     path = built(kind)
     names = {v.name for v in fmpy.read_model_description(str(path)).modelVariables}
     assert any(name.endswith("level") for name in names)
@@ -194,5 +196,26 @@ def test_it_runs_unpacked_anywhere(
         "import sys, fmpy; r = fmpy.simulate_fmu(sys.argv[1], stop_time=0.2, output_interval=0.01); "
         "print(len(r))"
     )
-    done = subprocess.run([sys.executable, "-c", script, str(folder)], capture_output=True, text=True)
+    done = subprocess.run(
+        [sys.executable, "-c", script, str(folder)], capture_output=True, text=True
+    )
     assert (done.returncode, done.stdout.strip()) == (0, "21"), done.stderr
+
+
+def test_without_a_compiler_it_is_built_and_that_is_said(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "tank.py").write_text(TANK, "utf-8")
+    found = importlib.util.find_spec
+    hidden = {"ziglang"}
+    monkeypatch.setattr(importlib.util, "find_spec", lambda n: None if n in hidden else found(n))
+    monkeypatch.setattr(shutil, "which", lambda _: None)
+    monkeypatch.setenv("SEATRIAL_CACHE", str(tmp_path / "cache"))
+    monkeypatch.chdir(tmp_path)
+    done = CliRunner().invoke(fmu_app, ["build", "tank.py:Tank"])
+    assert done.exit_code == 0, done.output
+    said = " ".join(done.output.split())
+    assert "do not check what their host does" in said
+    assert "need a compiler to build: pip install 'seatrial[native]'" in said
+    levels, _ = _hosted(tmp_path / "Tank.fmu", tmp_path / "plain", str(tmp_path / "state"))
+    assert levels == pytest.approx(LEVELS, rel=1e-12)
