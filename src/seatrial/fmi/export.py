@@ -3,34 +3,29 @@
 from __future__ import annotations
 
 import hashlib
-import io
 import json
 import zipfile
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
-from xml.etree.ElementTree import Element, indent, tostring
+from xml.etree.ElementTree import Element, tostring
 
 import pythonfmu
 
 from .. import __version__
-from ..component import Component
 from ..errors import InputError
 from .bundle import bundled
 from .cache import cache_folder, write_named
 from .dependencies.checked import refuse_mistakes
 from .description import describe
-from .direct import DirectInstance
 from .forwarding.libraries import Compiler, bare_libraries, checked_libraries
 from .native.compiler import HERE
+from .packing import described_files, zipped
 from .slave import START_VALUES
 from .source import ComponentSource
-from .terminals import PLACE, terminals_xml
-from .version3.description import arrays, version3
 
-_TIMESTAMP = (1980, 1, 1, 0, 0, 0)
-_DESCRIBING = ("description", "export", "terminals")
+_DESCRIBING = ("description", "export", "packing", "terminals")
 
 
 def build_fmu(
@@ -104,22 +99,6 @@ def fmu_files(
     return described_files(root, source.component_class()(source.name), version) | files
 
 
-def described_files(root: Element, component: Component, version: int) -> dict[str, bytes]:
-    """Return model description and terminals, as the version of FMI has them, by path.
-
-    ``root`` is the model description of FMI 2.0.
-    """
-    instance = DirectInstance(component)
-    whole = arrays(component.scalars, root) if version == 3 else ()
-    files = {}
-    if instance.terminals:
-        files[PLACE] = terminals_xml(instance.terminals, instance.variables, whole)
-    described = version3(root, component.scalars) if version == 3 else root
-    indent(described)
-    text: bytes = tostring(described, encoding="UTF-8", xml_declaration=True)
-    return {"modelDescription.xml": text, **files}
-
-
 def _model_description(
     source: ComponentSource, files: Mapping[str, bytes], start_values: Mapping[str, Any]
 ) -> Element:
@@ -136,19 +115,6 @@ def _model_description(
         digest.update(name.encode() + b"\0" + hashlib.sha256(data).digest())
     root.set("guid", f"{{{digest.hexdigest()[:32]}}}")
     return root
-
-
-def zipped(files: Mapping[str, bytes]) -> bytes:
-    """Return a ZIP archive of ``files`` by name: same content, same bytes; never ZIP64."""
-    buffer = io.BytesIO()
-    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED, False, 6) as archive:
-        for name, data in sorted(files.items()):
-            info = zipfile.ZipInfo(name, _TIMESTAMP)
-            info.compress_type = zipfile.ZIP_DEFLATED
-            info.create_system = 3
-            info.external_attr = 0o644 << 16
-            archive.writestr(info, data)
-    return buffer.getvalue()
 
 
 def _tool_tag() -> str:

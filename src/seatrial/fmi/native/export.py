@@ -17,7 +17,7 @@ from ...component import Component
 from ...plant import Plant
 from ..cache import write_named
 from ..description import describe
-from ..export import described_files, zipped
+from ..packing import described_files, zipped
 from ..source import ComponentSource
 from ..version3.description import build_description
 from ..version3.sources import front_sources

@@ -12,11 +12,12 @@ from typing import Any
 from ...errors import InputError
 from ..bundle import bundled
 from ..cache import write_named
-from ..export import fmu_files, zipped
+from ..export import fmu_files
 from ..forwarding.libraries import pythonfmu_libraries
 from ..forwarding.sources import checked_sources
 from ..libpython import find_libpython
 from ..native.compiler import TUPLES, library_here
+from ..packing import zipped
 from ..source import ComponentSource
 from .distribution import compiled, distributions, files_of, standard_library
 from .shared_objects import least_glibc, needed
