@@ -117,7 +117,7 @@ def test_the_command_says_what_it_needs(gnss: Path, tmp_path: Path) -> None:
     wrong = subprocess.run([*host, guid, "http://x/y", "0.2"], capture_output=True, text=True)
     assert (wrong.returncode, wrong.stderr) == (
         4,
-        "the location of the resources is no file: http://x/y\n",
+        "x: fmi2Instantiate: the location of the resources is no file: http://x/y\n",
     )
 
 

@@ -23,7 +23,6 @@ from pymavlink import mavutil
 from seatrial.component import Component, Input, Output
 from seatrial.errors import InputError, SimulationError
 from seatrial.fmi.export import build_fmu
-from seatrial.fmi.export3 import build_fmu3
 from seatrial.fmi.load import load_fmu, open_instance
 from seatrial.fmi.native.compiler import HERE, checked_platforms, library_here
 from seatrial.fmi.native.export import build_native_fmu
@@ -53,7 +52,7 @@ def python(name: str, folder: Path) -> Path:
     source = find_source(name, Path.cwd())
     assert isinstance(source, ComponentSource)
     path = folder / f"{source.name}.fmu"
-    return build_fmu3(source, path, (HERE,), None, library_here)
+    return build_fmu(source, path, None, 3, (HERE,), library_here)
 
 
 def _valid(archive: zipfile.ZipFile, member: str, schema: str) -> Any:
@@ -343,7 +342,8 @@ def test_binaries_for_others(tmp_path: Path) -> None:
     source = find_source("thruster", Path.cwd())
     path = tmp_path / "thruster.fmu"
     build_native_fmu(source, path, checked_platforms(",".join(names)), version=3)
-    build_fmu3(source, tmp_path / "python.fmu", checked_platforms("x86_64-linux,x86_64-windows"))
+    both = checked_platforms("x86_64-linux,x86_64-windows")
+    build_fmu(source, tmp_path / "python.fmu", None, 3, both)
     with zipfile.ZipFile(path) as archive:
         for name, suffix in names.items():
             library = archive.read(f"binaries/{name}/thruster{suffix}")
@@ -355,7 +355,7 @@ def test_binaries_for_others(tmp_path: Path) -> None:
         assert b"fmi3SetFloat64" in windows
         assert archive.getinfo("resources/pythonfmu/pythonfmu-export.dll").file_size > 10_000
     with pytest.raises(InputError, match="unknown platform 'darwin64'"):
-        build_fmu3(source, tmp_path / "mac.fmu", ["darwin64"])
+        build_fmu(source, tmp_path / "mac.fmu", None, 3, ["darwin64"])
 
 
 @pytest.mark.long

@@ -63,12 +63,13 @@ def test_a_c_program_steps_a_plant_like_we_do(host: Path, tmp_path: Path) -> Non
     assert expected == pytest.approx([0.25, 1.0, 2.0], rel=1e-12)
 
 
-def test_without_the_preload_the_library_does_not_load(host: Path, tmp_path: Path) -> None:
+def test_without_the_preload_there_is_a_message(host: Path, tmp_path: Path) -> None:
     path = build_fmu(shipped_sources()["servo"], tmp_path / "servo.fmu")
     folder = Path(extract(str(path), str(tmp_path / "servo")))
     library = folder / "binaries" / "linux64" / "servo.so"
-    command = [str(host), str(library), "guid", "file:///x", "1", "0.01", "0", "0", "0"]
+    resources = (folder / "resources").as_uri()
+    command = [str(host), str(library), "guid", resources, "1", "0.01", "0", "0", "0"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert done.returncode == 2
+    assert done.returncode == 3
     assert "undefined symbol" in done.stderr
     assert sys.version_info >= (3, 11)

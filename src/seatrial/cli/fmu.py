@@ -21,7 +21,7 @@ from ..fmi.cache import write_named
 from ..fmi.description import summary
 from ..fmi.direct import DirectInstance
 from ..fmi.export import build_fmu
-from ..fmi.export3 import build_fmu3
+from ..fmi.forwarding.libraries import why_unchecked
 from ..fmi.instance import Value, Variable
 from ..fmi.load import load_fmu, open_instance
 from ..fmi.loaded import LoadedFmu
@@ -77,7 +77,7 @@ def build(
     ] = False,
     platforms: Annotated[
         str | None,
-        typer.Option(help=f"Of FMUs in C and of FMI 3, with commas: {', '.join(TARGETS)}."),
+        typer.Option(help=f"Of FMUs that are compiled, with commas: {', '.join(TARGETS)}."),
     ] = None,
     fmi: Annotated[str, typer.Option(help="Version of FMI: 2 or 3.")] = "2",
     rig: Annotated[
@@ -99,12 +99,8 @@ def build(
     if native and standalone:
         raise InputError("--native FMUs need no Python, --standalone ones carry it: name one")
     carrier = "native" if native else "standalone" if standalone else ""
-    is_compiled = native or (version == 3 and not standalone)
-    if platforms and not is_compiled and (standalone or not rig):
-        raise InputError(
-            "--platforms is of --native, --fmi 3 and --rig: other FMUs carry all platforms they "
-            "run on"
-        )
+    if platforms and standalone:
+        raise InputError("--platforms: --standalone FMUs are for Linux on x86-64 alone")
     changes = changes_of(settings, choices, vehicle, autopilot)
     if rig is not None:
         for option, given in {"FMU": names, "--parameters": parameters, "--osp": osp}.items():
@@ -116,7 +112,15 @@ def build(
         return
     if changes or seed is not None:
         raise InputError("--set, --choose, --vehicle, --autopilot and --seed are of --rig")
-    targets = checked_platforms(platforms or "linux64") if is_compiled else []
+    default = "linux64" if native or version == 3 else ""
+    targets = checked_platforms(platforms or default) if platforms or default else []
+    if not native and not standalone and not targets and (why := why_unchecked()):
+        print_notes(
+            [
+                "the FMUs do not check what their host does, and run below folders with plain "
+                f"ASCII names only: {why}"
+            ]
+        )
     for name in names or _default_names(native):
         source = _buildable(name)
         values = _start_values(source, parameters, variant) if parameters else None
@@ -141,10 +145,8 @@ def _write_fmu(
     elif carrier == "standalone":
         glibc = build_standalone_fmu(source, path, values, version)
         print_notes([f"{path} runs on Linux on x86-64 with glibc {glibc} or newer"])
-    elif version == 3:
-        build_fmu3(source, path, targets, values)
     else:
-        build_fmu(source, path, values)
+        build_fmu(source, path, values, version, targets)
 
 
 def _version(text: str) -> int:

@@ -3,43 +3,51 @@
 from __future__ import annotations
 
 import hashlib
-import io
 import json
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
-from xml.etree.ElementTree import Element, indent, tostring
+from xml.etree.ElementTree import Element, tostring
 
 import pythonfmu
 
 from .. import __version__
-from ..component import Component
+from ..errors import InputError
 from .bundle import bundled
 from .cache import cache_folder, write_named
 from .dependencies.checked import refuse_mistakes
 from .description import describe
-from .direct import DirectInstance
+from .forwarding.libraries import Compiler, bare_libraries, checked_libraries
+from .native.compiler import HERE
+from .packing import described_files, zipped
 from .slave import START_VALUES
 from .source import ComponentSource
-from .terminals import PLACE, terminals_xml
-from .version3.description import arrays, version3
 
-_TIMESTAMP = (1980, 1, 1, 0, 0, 0)
-_DESCRIBING = ("description", "export", "terminals")
-_BINARIES = Path(pythonfmu.__file__).parent / "resources" / "binaries"
+_DESCRIBING = ("description", "export", "packing", "terminals")
 
 
 def build_fmu(
-    source: ComponentSource, destination: Path, start_values: Mapping[str, Any] | None = None
+    source: ComponentSource,
+    destination: Path,
+    start_values: Mapping[str, Any] | None = None,
+    version: int = 2,
+    platforms: Sequence[str] = (),
+    compiled: Compiler | None = None,
 ) -> Path:
     """Build the FMU of ``source`` at ``destination`` (a file) and return its path.
 
-    ``start_values`` (by port name, SI) are baked in as start values. The same input gives the
-    same bytes. Raises InputError for a component that cannot be imported, or a start value
-    that does not fit its port; nothing is written then.
+    ``start_values`` (by port name, SI) are baked in as start values. ``version`` of FMI is 2 or 3.
+    The FMU runs on the ``platforms`` named, where it checks every call; without any, one of FMI
+    2.0 runs on all that pythonfmu has, and checks them on this one, if a compiler is here. The
+    same input gives the same bytes.
+
+    Raises InputError for a component that cannot be imported, a start value that does not fit its
+    port, a platform that pythonfmu has not, and without a compiler for those named; nothing is
+    written then.
     """
-    content = fmu_bytes(source, start_values)
+    content = fmu_bytes(source, start_values, version, platforms, compiled)
     destination.parent.mkdir(parents=True, exist_ok=True)
     write_named(destination, content)
     return destination
@@ -48,29 +56,30 @@ def build_fmu(
 def cached_fmu(source: ComponentSource, code: str) -> Path:
     """Return the FMU of ``source`` in the user's cache, built if it is not there yet.
 
-    ``code`` is the script's name in its bundle, which carries the hash of all its code.
+    ``code`` is the script's name in its bundle, which carries the hash of all its code. It is for
+    our own host, which checks what it calls: nothing is compiled.
     """
     path = cache_folder("fmus") / f"{code}-{_tool_tag()}.fmu"
-    return path if zipfile.is_zipfile(path) else build_fmu(source, path)
+    if not zipfile.is_zipfile(path):
+        write_named(path, zipped(fmu_files(source, None, bare_libraries(source.stem))))
+    return path
 
 
-def fmu_bytes(source: ComponentSource, start_values: Mapping[str, Any] | None = None) -> bytes:
+def fmu_bytes(
+    source: ComponentSource,
+    start_values: Mapping[str, Any] | None = None,
+    version: int = 2,
+    platforms: Sequence[str] = (),
+    compiled: Compiler | None = None,
+) -> bytes:
     """Return the content of the FMU file; see `build_fmu`."""
-    binaries = {
-        f"binaries/{platform}/{source.stem}{library.suffix}": library.read_bytes()
-        for platform, library in pythonfmu_libraries().items()
-    }
-    return zipped(fmu_files(source, start_values, binaries))
-
-
-def pythonfmu_library(platform: str) -> Path:
-    """Return pythonfmu's library for one of FMI's platforms."""
-    return pythonfmu_libraries()[platform]
-
-
-def pythonfmu_libraries() -> dict[str, Path]:
-    """Return pythonfmu's libraries by FMI's platforms."""
-    return {one.parent.name: one for one in sorted(_BINARIES.rglob("*pythonfmu-export.*"))}
+    if platforms or version == 3:
+        carried = checked_libraries(source.stem, platforms, version, compiled)
+    else:
+        carried = bare_libraries(source.stem)
+        with suppress(InputError):
+            carried |= checked_libraries(source.stem, [HERE], version, compiled)
+    return zipped(fmu_files(source, start_values, carried, version))
 
 
 def fmu_files(
@@ -90,22 +99,6 @@ def fmu_files(
     return described_files(root, source.component_class()(source.name), version) | files
 
 
-def described_files(root: Element, component: Component, version: int) -> dict[str, bytes]:
-    """Return model description and terminals, as the version of FMI has them, by path.
-
-    ``root`` is the model description of FMI 2.0.
-    """
-    instance = DirectInstance(component)
-    whole = arrays(component.scalars, root) if version == 3 else ()
-    files = {}
-    if instance.terminals:
-        files[PLACE] = terminals_xml(instance.terminals, instance.variables, whole)
-    described = version3(root, component.scalars) if version == 3 else root
-    indent(described)
-    text: bytes = tostring(described, encoding="UTF-8", xml_declaration=True)
-    return {"modelDescription.xml": text, **files}
-
-
 def _model_description(
     source: ComponentSource, files: Mapping[str, bytes], start_values: Mapping[str, Any]
 ) -> Element:
@@ -122,19 +115,6 @@ def _model_description(
         digest.update(name.encode() + b"\0" + hashlib.sha256(data).digest())
     root.set("guid", f"{{{digest.hexdigest()[:32]}}}")
     return root
-
-
-def zipped(files: Mapping[str, bytes]) -> bytes:
-    """Return a ZIP archive of ``files`` by name: same content, same bytes; never ZIP64."""
-    buffer = io.BytesIO()
-    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED, False, 6) as archive:
-        for name, data in sorted(files.items()):
-            info = zipfile.ZipInfo(name, _TIMESTAMP)
-            info.compress_type = zipfile.ZIP_DEFLATED
-            info.create_system = 3
-            info.external_attr = 0o644 << 16
-            archive.writestr(info, data)
-    return buffer.getvalue()
 
 
 def _tool_tag() -> str:

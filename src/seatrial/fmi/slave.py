@@ -2,7 +2,8 @@
 
 pythonfmu's binary turns any Python exception into fmi2Fatal and frees the instance while the
 host still holds it. So nothing raises here: errors are logged with their traceback, kept in
-``last_error``, and the next step is discarded.
+``last_error``, and the next step is discarded. Where a library of ours is in front of that binary,
+the call that logs an error fails, and a value that is refused does no more than that.
 """
 
 from __future__ import annotations
@@ -48,8 +49,10 @@ class Slave(Fmi2Slave):  # type: ignore[misc]
         super().__init__(**kwargs)
         while self.resources in sys.path:
             sys.path.remove(self.resources)
-        _drop_interpreter_handle(self.resources)
+        libraries = _behind_ours(self.resources)
+        _drop_interpreter_handle(self.resources, libraries)
         _follow_to(self.resources)
+        self._reports_at_once = bool(libraries)
         self.last_error: str | None = None
         self._failed = False
         self.component = self.component_class(self.instance_name)
@@ -107,19 +110,19 @@ class Slave(Fmi2Slave):  # type: ignore[misc]
 
     def set_real(self, vrs: list[int], values: list[float]) -> None:
         """Set Real variables; an error is reported by the next step."""
-        self._guarded(lambda: self.component.write(vrs, values, float))
+        self._write(vrs, values, float)
 
     def set_integer(self, vrs: list[int], values: list[int]) -> None:
         """Set Integer variables; an error is reported by the next step."""
-        self._guarded(lambda: self.component.write(vrs, values, int))
+        self._write(vrs, values, int)
 
     def set_boolean(self, vrs: list[int], values: list[bool]) -> None:
         """Set Boolean variables; an error is reported by the next step."""
-        self._guarded(lambda: self.component.write(vrs, values, bool))
+        self._write(vrs, values, bool)
 
     def set_string(self, vrs: list[int], values: list[str]) -> None:
         """Set String variables; an error is reported by the next step."""
-        self._guarded(lambda: self.component.write(vrs, values, str))
+        self._write(vrs, values, str)
 
     # ------------------------------------------------------------------ state
 
@@ -166,8 +169,19 @@ class Slave(Fmi2Slave):  # type: ignore[misc]
         try:
             return self.component.read(vrs, kind)
         except BaseException as error:
-            self._fail(_explained(error))
+            self._refuse_access(error)
             return [default] * len(vrs)
+
+    def _write(self, vrs: Sequence[int], values: Sequence[Any], kind: type) -> None:
+        try:
+            self.component.write(vrs, values, kind)
+        except BaseException as error:
+            self._refuse_access(error)
+
+    def _refuse_access(self, error: BaseException) -> None:
+        """Log what the host did wrong; the next step fails of it if no earlier call can."""
+        is_harmless = self._reports_at_once and isinstance(error, InputError)
+        (self._log if is_harmless else self._fail)(_explained(error))
 
     def _guarded(self, call: Callable[[], Any]) -> None:
         try:
@@ -186,7 +200,14 @@ class Slave(Fmi2Slave):  # type: ignore[misc]
         self.log(text.encode("utf-8", "replace").decode(), Fmi2Status.error)
 
 
-def _drop_interpreter_handle(resources: str | None) -> None:
+def _behind_ours(resources: str | None) -> list[Path]:
+    """Return pythonfmu's library if one of ours has loaded it, nothing if the host has."""
+    suffix = "dll" if sys.platform == "win32" else "so"
+    launched = Path(resources or "", "python", "lib").glob("libpythonfmu-export.so")
+    return [*launched, *Path(resources or "", "pythonfmu").glob(f"*.{suffix}")]
+
+
+def _drop_interpreter_handle(resources: str | None, libraries: Sequence[Path]) -> None:
     """Release the binary's handle of the interpreter now, because at unloading it does so twice.
 
     The second release writes to freed memory: a process can die of it after all work is done.
@@ -195,12 +216,9 @@ def _drop_interpreter_handle(resources: str | None) -> None:
     """
     if not resources or sys.platform != "linux":
         return
-    launched = list(Path(resources, "python", "lib").glob("libpythonfmu-export.so"))
-    if not launched and not sys.orig_argv:
+    if not Path(resources, "python").is_dir() and not sys.orig_argv:
         return
-    beneath = list(Path(resources, "pythonfmu").glob("*.so"))  # of FMI 3.0
-    binaries = Path(resources).parent / "binaries" / "linux64"
-    for path in launched or beneath or binaries.glob("*.so"):
+    for path in libraries or (Path(resources).parent / "binaries" / "linux64").glob("*.so"):
         library = ctypes.CDLL(str(path), mode=os.RTLD_NOLOAD | os.RTLD_LAZY)
         library.finalizePythonInterpreter()
         _ctypes.dlclose(library._handle)

@@ -11,8 +11,8 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from ...errors import InputError, SimulationError
 from ...fmi.cache import write_named
-from ...fmi.export import zipped
 from ...fmi.native.compiler import SEMANTICS, TARGETS, TUPLES, library
+from ...fmi.packing import zipped
 from ...fmi.terminals import PLACE, terminals_xml
 from ...fmi.version3.description import arrays, build_description, version3
 from ...fmi.version3.sources import front_sources

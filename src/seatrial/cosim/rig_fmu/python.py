@@ -7,7 +7,6 @@ from pathlib import Path
 from ...component import Component
 from ...errors import InputError, SimulationError
 from ...fmi.export import build_fmu
-from ...fmi.export3 import build_fmu3
 from ...fmi.standalone.export import build_standalone_fmu
 from ..registry import ALGORITHMS
 from ..system import System
@@ -32,10 +31,7 @@ def build_python_rig(
         _start(source.component_class()(source.name), system)
     if standalone:
         return build_standalone_fmu(source, destination, version=version)
-    if version == 3:
-        build_fmu3(source, destination, ["linux64"])
-    else:
-        build_fmu(source, destination)
+    build_fmu(source, destination, version=version, platforms=["linux64"] if version == 3 else [])
     return ""
 
 

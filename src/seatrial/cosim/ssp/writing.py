@@ -7,7 +7,8 @@ from pathlib import Path
 
 from ...errors import InputError
 from ...fmi.cache import write_named
-from ...fmi.export import fmu_bytes, zipped
+from ...fmi.export import fmu_bytes
+from ...fmi.packing import zipped
 from ...fmi.source import find_source
 from ..packaged import SSP_FILE
 from ..part import Part

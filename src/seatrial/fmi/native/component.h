@@ -33,8 +33,10 @@ typedef struct {
 typedef enum { INSTANTIATED, INITIALISING, RUNNING, TERMINATED } Phase;
 
 typedef struct {
+    uint64_t fmu;               /* of which it is a state */
     double values[SCALARS + 1]; /* of all types, by value reference */
     long long now_ns;
+    double reached; /* the same as the host has it, s */
     Phase phase;
     int stale, restart, failed;
     char texts[TEXTS + 1][TEXT_SIZE]; /* inputs of text */

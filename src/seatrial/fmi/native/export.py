@@ -17,7 +17,7 @@ from ...component import Component
 from ...plant import Plant
 from ..cache import write_named
 from ..description import describe
-from ..export import described_files, zipped
+from ..packing import described_files, zipped
 from ..source import ComponentSource
 from ..version3.description import build_description
 from ..version3.sources import front_sources
@@ -98,7 +98,7 @@ def _sources(made: Callable[[], Component], name: str) -> tuple[dict[str, bytes]
         translation = Translation(component)
         checked(made(), name)
         text, own, parts = translation.model(), translation.header(), translation.parts()
-    ours = ("component.h", "fmi2.c", *parts)
+    ours = ("component.h", "fmi2.c", "seal.h", *parts)
     return {
         "model.c": text.encode(),
         **{each: _OWN.joinpath(each).read_bytes() for each in ours},

@@ -10,6 +10,11 @@
 #include <string.h>
 
 #include "component.h"
+#include "seal.h"
+
+#ifndef CALLED /* the name by which the host called the function */
+#define CALLED(name) #name
+#endif
 
 #define LATEST 2e6 /* s, up to which a double gives its nanoseconds back */
 
@@ -62,6 +67,7 @@ static void take_text(Instance *self, int input, const char *text) {
 static void begin_anew(Instance *self) {
     State *state = &self->state;
     memset(state, 0, sizeof *state);
+    state->fmu = seal_fmu(MODEL_GUID);
     memcpy(state->values, model_starts, SCALARS * sizeof *state->values);
     for (int i = 0; i < TEXTS; i++) take_text(self, i, model_texts[model_text_inputs[i]]);
     state->stale = state->restart = 1;
@@ -204,21 +210,32 @@ fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t count,
     return fmi2OK;
 }
 
+static int is_in(Instance *self, Phase phase, const char *call) {
+    static const char *const words[] = {"before", "during", "once", "once"};
+    if (self->state.phase == phase) return 1;
+    say(self, "%s: %s: not allowed %s the initialisation%s", self->name, call,
+        words[self->state.phase], self->state.phase > INITIALISING ? " has ended" : "");
+    return 0;
+}
+
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean has_tolerance, fmi2Real tolerance,
                                fmi2Real start, fmi2Boolean has_stop, fmi2Real stop) {
     (void)has_tolerance, (void)tolerance, (void)has_stop, (void)stop;
     Instance *self = c;
+    if (!is_in(self, INSTANTIATED, CALLED(fmi2SetupExperiment))) return fmi2Error;
     if (!(fabs(start) < LATEST)) {
         say(self, "%s: start time is %g s; times are exact to the nanosecond up to %g s only",
             self->name, start, LATEST);
         return fmi2Error;
     }
     self->state.now_ns = __builtin_llrint(start * NS);
+    self->state.reached = start;
     return fmi2OK;
 }
 
 fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
     Instance *self = c;
+    if (!is_in(self, INSTANTIATED, CALLED(fmi2EnterInitializationMode))) return fmi2Error;
     self->state.phase = INITIALISING;
     self->state.stale = self->state.restart = 1;
     return refresh(self) ? fmi2OK : fmi2Error;
@@ -226,6 +243,7 @@ fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
 
 fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
     Instance *self = c;
+    if (!is_in(self, INITIALISING, CALLED(fmi2ExitInitializationMode))) return fmi2Error;
     if (!refresh(self)) return fmi2Error;
     self->state.phase = RUNNING;
     return fmi2OK;
@@ -245,8 +263,14 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real t, fmi2Real h, fmi2Boolean no_ea
     (void)no_earlier;
     Instance *self = c;
     State *state = &self->state;
-    if (state->phase != RUNNING || !(h >= 0.0 && h < LATEST) || !(fabs(t) < LATEST)) {
+    const double slack = h / 100.0 > 1.0 / NS ? h / 100.0 : 1.0 / NS; /* of hosts that add up steps */
+    if (state->phase != RUNNING || !(h > 0.0 && h < LATEST) || !(fabs(t) < LATEST)) {
         say(self, "%s: no step from %g s over %g s is possible now", self->name, t, h);
+        return fmi2Error;
+    }
+    if (fabs(t - state->reached) > slack) {
+        say(self, "%s: the step begins at %.12g s, but %.12g s was reached", self->name, t,
+            state->reached);
         return fmi2Error;
     }
     if (state->failed) {
@@ -258,6 +282,7 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real t, fmi2Real h, fmi2Boolean no_ea
     model_step(self, now(self), (double)h_ns / NS);
     state->now_ns += h_ns;
     state->failed = !is_well(self) || !set_outputs(self);
+    if (!state->failed) state->reached = t + h;
     return state->failed ? fmi2Discard : fmi2OK;
 }
 
@@ -395,8 +420,13 @@ fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *kept) {
 }
 
 fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate kept) {
-    if (!kept) return fmi2Error;
-    memcpy(&((Instance *)c)->state, kept, sizeof(State));
+    Instance *self = c;
+    if (!kept || ((State *)kept)->fmu != self->state.fmu) {
+        say(self, "%s: %s: %s", self->name, CALLED(fmi2SetFMUstate),
+            kept ? "the state is not of this FMU" : "there is no state");
+        return fmi2Error;
+    }
+    memcpy(&self->state, kept, sizeof(State));
     return fmi2OK;
 }
 
@@ -409,25 +439,32 @@ fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *kept) {
 
 fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate kept, size_t *size) {
     (void)c, (void)kept;
-    *size = sizeof(State);
+    *size = sizeof(Seal) + sizeof(State);
     return fmi2OK;
 }
 
 fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate kept, fmi2Byte bytes[], size_t size) {
-    (void)c;
-    if (size < sizeof(State)) return fmi2Error;
-    memcpy(bytes, kept, sizeof(State));
+    Instance *self = c;
+    if (!kept || !bytes || size < sizeof(Seal) + sizeof(State)) {
+        say(self, "%s: %s: no state, or less room than its %zu bytes",
+            self->name, CALLED(fmi2SerializeFMUstate), sizeof(Seal) + sizeof(State));
+        return fmi2Error;
+    }
+    memcpy(bytes + sizeof(Seal), kept, sizeof(State));
+    seal_up(bytes, self->state.fmu, sizeof(State));
     return fmi2OK;
 }
 
 fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size,
                                    fmi2FMUstate *kept) {
-    if (size != sizeof(State)) {
-        say(c, "%s: a state has %zu bytes, found %zu", ((Instance *)c)->name, sizeof(State), size);
+    Instance *self = c;
+    char why[128];
+    if (!seal_holds(bytes, size, self->state.fmu, why, sizeof why)) {
+        say(self, "%s: %s: %s", self->name, CALLED(fmi2DeSerializeFMUstate), why);
         return fmi2Error;
     }
     if (!*kept && !(*kept = malloc(sizeof(State)))) return fmi2Error;
-    memcpy(*kept, bytes, sizeof(State));
+    memcpy(*kept, bytes + sizeof(Seal), sizeof(State));
     return fmi2OK;
 }
 

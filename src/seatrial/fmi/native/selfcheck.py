@@ -107,7 +107,7 @@ class _Pair:
         states: list[Any] = []
         for k, (t, end) in enumerate(pairwise(times)):
             if k == _STEPS - _AGAIN:
-                with suppress(SimulationError):  # what Python cannot save is not restored either
+                with suppress(SimulationError):  # what Python cannot save is not stepped again
                     states = [each.get_state() for each in self.both]
             ended, found = self._step(k, t, end - t)
             if ended:
@@ -115,7 +115,8 @@ class _Pair:
         for each, state in zip(self.both, states, strict=False):
             each.set_state(state)
             each.free_state(state)
-        for k, (t, end) in list(enumerate(pairwise(times)))[-_AGAIN:]:
+        again = list(enumerate(pairwise(times)))[-_AGAIN:] if states else []
+        for k, (t, end) in again:
             ended, found = self._step(k, t, end - t)
             if ended:
                 return found

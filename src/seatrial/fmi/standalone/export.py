@@ -9,16 +9,16 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import fmpy
-
 from ...errors import InputError
 from ..bundle import bundled
 from ..cache import write_named
-from ..export import fmu_files, pythonfmu_library, zipped
+from ..export import fmu_files
+from ..forwarding.libraries import pythonfmu_libraries
+from ..forwarding.sources import checked_sources
 from ..libpython import find_libpython
 from ..native.compiler import TUPLES, library_here
+from ..packing import zipped
 from ..source import ComponentSource
-from ..version3.sources import FORWARDED, front_sources
 from .distribution import compiled, distributions, files_of, standard_library
 from .shared_objects import least_glibc, needed
 
@@ -26,7 +26,6 @@ _PLATFORM = "linux64"
 _HOME = "resources/python"
 _LAUNCHER = "libpythonfmu-export.so"
 _VERSION = f"{sys.version_info.major}.{sys.version_info.minor}"
-_HEADERS = ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h")
 
 
 def build_standalone_fmu(
@@ -66,7 +65,7 @@ def _python() -> dict[str, bytes]:
     assert libpython is not None
     files = {
         f"lib/{libpython.name}": libpython.read_bytes(),
-        f"lib/{_LAUNCHER}": pythonfmu_library(_PLATFORM).read_bytes(),
+        f"lib/{_LAUNCHER}": pythonfmu_libraries()[_PLATFORM].read_bytes(),
     }
     for name, data in standard_library():
         files |= _with_bytecode(f"lib/{name}", data)
@@ -105,7 +104,6 @@ def _libraries(files: Mapping[str, bytes]) -> dict[str, bytes]:
 def _launcher(version: int) -> bytes:
     libpython = find_libpython()
     assert libpython is not None
-    headers = Path(fmpy.__file__).parent / "c-code"
     defined = {
         "PYTHON_VERSION": _VERSION,
         "PYTHON_LIBRARY": libpython.name,
@@ -113,11 +111,8 @@ def _launcher(version: int) -> bytes:
     }
     lines = "".join(f'#define {name} "{value}"\n' for name, value in defined.items())
     sources = {
+        **checked_sources(version),
         "launcher.c": Path(__file__).with_name("launcher.c").read_bytes(),
         "python.h": lines.encode(),
-        FORWARDED.name: FORWARDED.read_bytes(),
-        **{name: (headers / name).read_bytes() for name in _HEADERS},
     }
-    if version == 3:
-        sources |= front_sources()
     return library_here(sources, _PLATFORM, ("-ldl", "-lpthread"))

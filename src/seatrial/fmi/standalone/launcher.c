@@ -1,5 +1,5 @@
 /* Library of a standalone FMU: it starts the Python that the FMU carries, unless the process has
-   one, loads pythonfmu's library from the FMU's resources, and passes every call on to it.
+   one, and loads pythonfmu's library from the FMU's resources.
 
    Python is never finalised: extension modules and threads of the components may outlive the last
    instance, and pythonfmu's library, when it is the one to start Python, ends it in an exit handler after
@@ -17,6 +17,8 @@
 
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static void *library;
+static Forwarded its;
+static char problem[LONGEST + 512];
 
 /* ---- Python ---- */
 
@@ -88,36 +90,24 @@ static int with_python(const char *home) {
     return !failed;
 }
 
-static int loaded(const char *uri) {
+static int loaded(const char *resources) {
     char home[LONGEST];
     if (library) return 1;
-    if (!path_of(uri, "/python", home, sizeof home)) {
-        snprintf(problem, sizeof problem, "the location of the resources is no file: %s",
-                 uri ? uri : "(none)");
-        return 0;
-    }
+    snprintf(home, sizeof home, "%s/python", resources);
     open_needed(home);
     if (!with_python(home)) return 0;
     void *opened = open_in(home, FMU_LIBRARY, RTLD_LOCAL);
     if (!opened) return 0;
-#define FIND(name, parameters, arguments) *(void **)&its_##name = dlsym(opened, #name);
-    EVERY(FIND)
+#define FIND(name) *(void **)&its.name = dlsym(opened, #name);
+    FORWARDED(FIND)
     library = opened;
     return 1;
 }
 
-FMI2_Export fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid,
-                                          fmi2String resources,
-                                          const fmi2CallbackFunctions *functions,
-                                          fmi2Boolean visible, fmi2Boolean logging) {
+const Forwarded *library_of(const char *resources, char *text, size_t room) {
     pthread_mutex_lock(&lock);
-    int ready = loaded(resources);
+    const int ready = loaded(resources);
+    if (!ready) snprintf(text, room, "%s", problem);
     pthread_mutex_unlock(&lock);
-    if (!ready) {
-        if (functions && functions->logger)
-            functions->logger(functions->componentEnvironment, name, fmi2Error, "logStatusError",
-                              "%s", problem);
-        return NULL;
-    }
-    return its_fmi2Instantiate(name, type, guid, resources, functions, visible, logging);
+    return ready ? &its : NULL;
 }

@@ -8,16 +8,15 @@
 #include <string.h>
 
 #include "front.h"
+#include "retired.h"
+#include "seal.h"
 
 static const char *const categories[] = {"", "logStatusWarning", "logStatusDiscard",
                                          "logStatusError", "logStatusFatal"};
 
 static void logged(Front *self, int status, const char *message) {
-    if (fmi3Warning <= status && status <= fmi3Fatal) {
-        self->complained |= status >= fmi3Error;
-        if (self->log)
-            self->log(self->environment, (fmi3Status)status, categories[status], message);
-    }
+    if (self->log && fmi3Warning <= status && status <= fmi3Fatal)
+        self->log(self->environment, (fmi3Status)status, categories[status], message);
 }
 
 static void take_message(fmi2ComponentEnvironment environment, fmi2String name, fmi2Status status,
@@ -41,11 +40,6 @@ fmi3Status front_refuses(Front *self, const char *format, ...) {
     return fmi3Error;
 }
 
-fmi3Status front_status(Front *self, fmi2Status status) {
-    if (status > fmi2Fatal) return fmi3Error;
-    return status <= fmi2Warning && self->complained ? fmi3Error : (fmi3Status)status;
-}
-
 /* ------------------------------------------------------------------ life */
 
 /* Return a folder's path as a URI, without a separator at its end, as FMI 2.0 has it. */
@@ -65,11 +59,6 @@ static char *uri_of(const char *path) {
     return uri;
 }
 
-static void released(Front *self) {
-    free(self->buffer);
-    free(self);
-}
-
 fmi3Instance fmi3InstantiateCoSimulation(
     fmi3String name, fmi3String token, fmi3String resources, fmi3Boolean visible,
     fmi3Boolean logging, fmi3Boolean events, fmi3Boolean early, const fmi3ValueReference required[],
@@ -85,6 +74,7 @@ fmi3Instance fmi3InstantiateCoSimulation(
         return NULL;
     }
     self->log = log, self->environment = environment;
+    self->fmu = seal_fmu(token ? token : "");
     snprintf(self->name, sizeof self->name, "%s", name ? name : "");
     self->functions = (fmi2CallbackFunctions){take_message, calloc, free, NULL, self};
     if (events)
@@ -93,17 +83,18 @@ fmi3Instance fmi3InstantiateCoSimulation(
         self->inner = fmi2Instantiate(self->name, fmi2CoSimulation, token ? token : "", uri,
                                       &self->functions, visible, fmi2True);
     free(uri);
-    if (self->inner && !self->complained) return self;
-    if (self->inner) fmi2FreeInstance(self->inner);
-    released(self);
+    if (self->inner) return self;
+    free(self);
     return NULL;
 }
 
 void fmi3FreeInstance(fmi3Instance instance) {
     Front *self = instance;
-    if (!self) return;
+    if (!self || !self->inner) return;
     fmi2FreeInstance(self->inner);
-    released(self);
+    free(self->buffer);
+    *self = (Front){0};
+    retire(self);
 }
 
 const char *fmi3GetVersion(void) { return fmi3Version; }
@@ -118,34 +109,34 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean has_to
                                        fmi3Float64 tolerance, fmi3Float64 start,
                                        fmi3Boolean has_stop, fmi3Float64 stop) {
     Front *self = instance;
-    const fmi3Status status = PASSED(
-        self, fmi2SetupExperiment(self->inner, has_tolerance, tolerance, start, has_stop, stop));
+    const fmi3Status status = passed(
+        fmi2SetupExperiment(self->inner, has_tolerance, tolerance, start, has_stop, stop));
     if (status > fmi3Warning) return status;
     self->time = start;
-    return PASSED(self, fmi2EnterInitializationMode(self->inner));
+    return passed(fmi2EnterInitializationMode(self->inner));
 }
 
 fmi3Status fmi3ExitInitializationMode(fmi3Instance instance) {
     Front *self = instance;
-    return PASSED(self, fmi2ExitInitializationMode(self->inner));
+    return passed(fmi2ExitInitializationMode(self->inner));
 }
 
 fmi3Status fmi3Terminate(fmi3Instance instance) {
     Front *self = instance;
-    return PASSED(self, fmi2Terminate(self->inner));
+    return passed(fmi2Terminate(self->inner));
 }
 
 fmi3Status fmi3Reset(fmi3Instance instance) {
     Front *self = instance;
     self->time = 0.0;
-    return PASSED(self, fmi2Reset(self->inner));
+    return passed(fmi2Reset(self->inner));
 }
 
 fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 t, fmi3Float64 h,
                       fmi3Boolean no_earlier, fmi3Boolean *event, fmi3Boolean *ends,
                       fmi3Boolean *early, fmi3Float64 *last) {
     Front *self = instance;
-    const fmi3Status status = PASSED(self, fmi2DoStep(self->inner, t, h, no_earlier));
+    const fmi3Status status = passed(fmi2DoStep(self->inner, t, h, no_earlier));
     if (status <= fmi3Warning) self->time = t + h;
     *event = *ends = *early = fmi3False;
     *last = self->time;
@@ -159,6 +150,8 @@ typedef struct {
     double time;
 } Kept;
 
+#define HEAD (sizeof(Seal) + sizeof(double)) /* of serialised states: those of FMI 2.0 follow */
+
 /* Return the state at `place`, made if there is none; NULL without memory. */
 static Kept *kept_at(fmi3FMUState *place) {
     if (!*place) *place = calloc(1, sizeof(Kept));
@@ -170,14 +163,14 @@ fmi3Status fmi3GetFMUState(fmi3Instance instance, fmi3FMUState *state) {
     Kept *const kept = kept_at(state);
     if (!kept) return fmi3Error;
     kept->time = self->time;
-    return PASSED(self, fmi2GetFMUstate(self->inner, &kept->inner));
+    return passed(fmi2GetFMUstate(self->inner, &kept->inner));
 }
 
 fmi3Status fmi3SetFMUState(fmi3Instance instance, fmi3FMUState state) {
     Front *self = instance;
     const Kept *const kept = state;
     if (!kept) return front_refuses(self, "%s: there is no state to restore", self->name);
-    const fmi3Status status = PASSED(self, fmi2SetFMUstate(self->inner, kept->inner));
+    const fmi3Status status = passed(fmi2SetFMUstate(self->inner, kept->inner));
     if (status <= fmi3Warning) self->time = kept->time;
     return status;
 }
@@ -187,7 +180,7 @@ fmi3Status fmi3FreeFMUState(fmi3Instance instance, fmi3FMUState *state) {
     if (!state || !*state) return fmi3OK;
     Kept *const kept = *state;
     const fmi3Status status =
-        kept->inner ? PASSED(self, fmi2FreeFMUstate(self->inner, &kept->inner)) : fmi3OK;
+        kept->inner ? passed(fmi2FreeFMUstate(self->inner, &kept->inner)) : fmi3OK;
     free(kept);
     *state = NULL;
     return status;
@@ -198,8 +191,8 @@ fmi3Status fmi3SerializedFMUStateSize(fmi3Instance instance, fmi3FMUState state,
     const Kept *const kept = state;
     if (!kept) return front_refuses(self, "%s: there is no state to serialise", self->name);
     const fmi3Status status =
-        PASSED(self, fmi2SerializedFMUstateSize(self->inner, kept->inner, size));
-    *size += sizeof kept->time;
+        passed(fmi2SerializedFMUstateSize(self->inner, kept->inner, size));
+    *size += HEAD;
     return status;
 }
 
@@ -207,24 +200,32 @@ fmi3Status fmi3SerializeFMUState(fmi3Instance instance, fmi3FMUState state, fmi3
                                  size_t size) {
     Front *self = instance;
     const Kept *const kept = state;
-    const size_t own = sizeof kept->time;
-    if (!kept || size < own)
-        return front_refuses(self, "%s: no state, or too few bytes for it", self->name);
-    memcpy(bytes, &kept->time, own);
-    return PASSED(self, fmi2SerializeFMUstate(self->inner, kept->inner, (fmi2Byte *)bytes + own,
-                                              size - own));
+    if (!kept || !bytes || size < HEAD)
+        return front_refuses(self, "%s: fmi3SerializeFMUState: no state, or too few bytes for it",
+                             self->name);
+    memcpy(bytes + sizeof(Seal), &kept->time, sizeof kept->time);
+    const fmi3Status status = passed(fmi2SerializeFMUstate(
+        self->inner, kept->inner, (fmi2Byte *)bytes + HEAD, size - HEAD));
+    if (status <= fmi3Warning) seal_up(bytes, self->fmu, size - sizeof(Seal));
+    return status;
 }
 
 fmi3Status fmi3DeserializeFMUState(fmi3Instance instance, const fmi3Byte bytes[], size_t size,
                                    fmi3FMUState *state) {
     Front *self = instance;
-    const size_t own = sizeof(double);
-    if (size < own) return front_refuses(self, "%s: %zu bytes are no state", self->name, size);
+    char why[128] = "there is no state, or no place for it";
+    if (!bytes || !state || !seal_holds(bytes, size, self->fmu, why, sizeof why))
+        return front_refuses(self, "%s: fmi3DeserializeFMUState: %s", self->name, why);
+    fmi2FMUstate inner = NULL;
+    const fmi3Status status = passed(fmi2DeSerializeFMUstate(
+        self->inner, (const fmi2Byte *)bytes + HEAD, size - HEAD, &inner));
+    if (status > fmi3Warning) return status;
+    fmi3FreeFMUState(instance, state);
     Kept *const kept = kept_at(state);
     if (!kept) return fmi3Error;
-    memcpy(&kept->time, bytes, own);
-    return PASSED(self, fmi2DeSerializeFMUstate(self->inner, (const fmi2Byte *)bytes + own,
-                                                size - own, &kept->inner));
+    kept->inner = inner;
+    memcpy(&kept->time, bytes + sizeof(Seal), sizeof kept->time);
+    return status;
 }
 
 /* ------------------------------------------------------------------ derivatives */
@@ -249,7 +250,7 @@ static fmi3Status adjoint(Front *self, const fmi2ValueReference *unknowns, size_
     const double one = 1.0;
     fmi3Status status = column ? fmi3OK : fmi3Error;
     for (size_t k = 0; k < columns && status <= fmi3Warning; k++) {
-        status = PASSED(self, fmi2GetDirectionalDerivative(self->inner, unknowns, rows, &knowns[k],
+        status = passed(fmi2GetDirectionalDerivative(self->inner, unknowns, rows, &knowns[k],
                                                            1, &one, column));
         product[k] = 0.0;
         for (size_t i = 0; i < rows && status <= fmi3Warning; i++)
@@ -272,7 +273,7 @@ static fmi3Status derivative(Front *self, const fmi3ValueReference unknowns[], s
     else if (of && by && is_adjoint)
         status = adjoint(self, of, rows, by, columns, seed, product);
     else if (of && by)
-        status = PASSED(self, fmi2GetDirectionalDerivative(self->inner, of, rows, by, columns, seed,
+        status = passed(fmi2GetDirectionalDerivative(self->inner, of, rows, by, columns, seed,
                                                            product));
     free(of);
     free(by);

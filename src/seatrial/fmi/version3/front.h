@@ -6,6 +6,8 @@
 #ifndef FRONT_H
 #define FRONT_H
 
+#include <stdint.h>
+
 #include "fmi2Functions.h"
 #include "fmi3Functions.h"
 
@@ -18,15 +20,16 @@ typedef struct {
     fmi3LogMessageCallback log;
     fmi3InstanceEnvironment environment;
     double time;
-    int complained; /* in the call that runs */
+    uint64_t fmu;
     char name[256];
     char *buffer; /* for values of Binary until the next call */
     size_t buffer_size;
 } Front;
 
-/* What a call returns that was passed on: an error that was logged is one, whatever its status. */
-#define PASSED(self, call) ((self)->complained = 0, front_status(self, call))
-fmi3Status front_status(Front *self, fmi2Status status);
+/* The status of a call that was passed on. */
+static inline fmi3Status passed(fmi2Status status) {
+    return status > fmi2Fatal ? fmi3Error : (fmi3Status)status;
+}
 
 /* Log an error and return it. */
 #if defined(__GNUC__)

@@ -46,13 +46,13 @@ static int are(Front *self, const fmi3ValueReference references[], size_t count,
 #define GET(Type, Type2)                                                                        \
     static fmi3Status get_##Type(Front *self, const fmi3ValueReference references[],            \
                                  size_t count, fmi3##Type values[], size_t n) {                 \
-        BY_SCALARS(PASSED(self, fmi2Get##Type2(self->inner, scalars, some, values + done)))     \
+        BY_SCALARS(passed(fmi2Get##Type2(self->inner, scalars, some, values + done)))     \
     }
 #define SET(Type, Type2)                                                                        \
     fmi3Status fmi3Set##Type(fmi3Instance instance, const fmi3ValueReference references[],      \
                              size_t count, const fmi3##Type values[], size_t n) {               \
         Front *self = instance;                                                                 \
-        BY_SCALARS(PASSED(self, fmi2Set##Type2(self->inner, scalars, some, values + done)))     \
+        BY_SCALARS(passed(fmi2Set##Type2(self->inner, scalars, some, values + done)))     \
     }
 
 GET(Float64, Real)
@@ -95,7 +95,7 @@ fmi3Status fmi3GetString(fmi3Instance instance, const fmi3ValueReference referen
 static fmi3Status get_truths(Front *self, const fmi2ValueReference scalars[], size_t some,
                              fmi3Boolean values[]) {
     fmi2Boolean truths[BATCH] = {0};
-    const fmi3Status status = PASSED(self, fmi2GetBoolean(self->inner, scalars, some, truths));
+    const fmi3Status status = passed(fmi2GetBoolean(self->inner, scalars, some, truths));
     for (size_t i = 0; i < some; i++) values[i] = truths[i] != 0;
     return status;
 }
@@ -104,7 +104,7 @@ static fmi3Status set_truths(Front *self, const fmi2ValueReference scalars[], si
                              const fmi3Boolean values[]) {
     fmi2Boolean truths[BATCH];
     for (size_t i = 0; i < some; i++) truths[i] = values[i];
-    return PASSED(self, fmi2SetBoolean(self->inner, scalars, some, truths));
+    return passed(fmi2SetBoolean(self->inner, scalars, some, truths));
 }
 
 fmi3Status fmi3GetBoolean(fmi3Instance instance, const fmi3ValueReference references[],
@@ -166,7 +166,7 @@ fmi3Status fmi3SetBinary(fmi3Instance instance, const fmi3ValueReference referen
                 return front_refuses(self, "%s: %zu bytes are no chunks", self->name, size);
             const fmi2String text = self->buffer;
             const fmi3Status status =
-                PASSED(self, fmi2SetString(self->inner, &scalars[i], 1, &text));
+                passed(fmi2SetString(self->inner, &scalars[i], 1, &text));
             if (status > fmi3Warning) return status;
         }
     return fmi3OK;

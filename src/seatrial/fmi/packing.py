@@ -1,0 +1,44 @@
+"""What every FMU of ours has: its description by the version of FMI, in a reproducible archive."""
+
+from __future__ import annotations
+
+import io
+import zipfile
+from collections.abc import Mapping
+from xml.etree.ElementTree import Element, indent, tostring
+
+from ..component import Component
+from .direct import DirectInstance
+from .terminals import PLACE, terminals_xml
+from .version3.description import arrays, version3
+
+_TIMESTAMP = (1980, 1, 1, 0, 0, 0)
+
+
+def described_files(root: Element, component: Component, version: int) -> dict[str, bytes]:
+    """Return model description and terminals, as the version of FMI has them, by path.
+
+    ``root`` is the model description of FMI 2.0.
+    """
+    instance = DirectInstance(component)
+    whole = arrays(component.scalars, root) if version == 3 else ()
+    files = {}
+    if instance.terminals:
+        files[PLACE] = terminals_xml(instance.terminals, instance.variables, whole)
+    described = version3(root, component.scalars) if version == 3 else root
+    indent(described)
+    text: bytes = tostring(described, encoding="UTF-8", xml_declaration=True)
+    return {"modelDescription.xml": text, **files}
+
+
+def zipped(files: Mapping[str, bytes]) -> bytes:
+    """Return a ZIP archive of ``files`` by name: same content, same bytes; never ZIP64."""
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED, False, 6) as archive:
+        for name, data in sorted(files.items()):
+            info = zipfile.ZipInfo(name, _TIMESTAMP)
+            info.compress_type = zipfile.ZIP_DEFLATED
+            info.create_system = 3
+            info.external_attr = 0o644 << 16
+            archive.writestr(info, data)
+    return buffer.getvalue()
