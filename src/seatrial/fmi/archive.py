@@ -192,12 +192,12 @@ def _place(path: Path, info: zipfile.ZipInfo) -> PurePosixPath:
     is_folder = info.file_size == 0 and (by_name or _is_marked_folder(info))
     parts: list[str] = []
     for part in name.split("/"):
-        if part == ".." and parts:
+        if part == ".." and parts and parts[-1] != "..":
             parts.pop()
         elif part not in ("", "."):
             parts.append(part)
     rooted = name.startswith("/") and parts
-    if ".." in parts or rooted or re.match(r"[A-Za-z]:", name):
+    if ".." in parts or rooted or re.match(r"[A-Za-z]:", "/".join(parts)):
         raise InputError(f"{path}: member {name!r} would be unpacked outside its folder")
     if (
         by_name > is_folder  # with content

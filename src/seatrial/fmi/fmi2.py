@@ -6,7 +6,6 @@ import ctypes
 import math
 from typing import Any, ClassVar
 
-import fmpy
 from fmpy import fmi2
 
 from .lenient import Missing
@@ -23,7 +22,6 @@ class Fmi2Access(TypedAccess):
 
     _prefix: ClassVar[str] = "fmi2"
     _state_word: ClassVar[str] = "FMUstate"
-    _platform: ClassVar[str] = fmpy.platform
 
     def free(self) -> None:
         """Release the instance."""
