@@ -213,7 +213,7 @@ REFUSED = {
         {"fmi2.c": '#include "gone.h"\n' + TWO}, "", r"sources/fmi2\.c: .*gone\.h: No such file"
     ),
     "an error in C": ({"fmi2.c": TWO + "\nint x = ;"}, "", r"fmi2\.c:\d+:\d+: error: expected"),
-    "a file that is not there": ({"fmi2.c": TWO}, "a.c", r"line 3: the FMU has no file sources/a\.c"),
+    "a file that is not there": ({"fmi2.c": TWO}, "a.c", r"line 3: no file sources/a\.c"),
     "a file elsewhere": ({"fmi2.c": TWO}, "../../a.c", r"'\.\./\.\./a\.c' is outside the FMU"),
     "another language": ({"fmi2.f90": "end"}, "fmi2.f90", r"'fmi2\.f90' is in no language"),
     "a symbol": (

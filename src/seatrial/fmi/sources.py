@@ -149,7 +149,7 @@ def _place(fmu: LoadedFmu, element: Any, where: str) -> str:
         place = _inside(fmu, one, where)
         if os.path.isfile(sources / place):  # which a name of any length may be asked
             return place
-    raise InputError(f"{where}: the FMU has no file sources/{name[:_LONGEST]}, which is to be compiled")
+    raise InputError(f"{where}: no file sources/{name[:_LONGEST]} is in the FMU")
 
 
 def _inside(fmu: LoadedFmu, name: str, where: str) -> str:
