@@ -194,7 +194,7 @@ def test_beyond_its_rows_it_refuses_or_holds(tmp_path: Path) -> None:
             r"line 1, column 'a': .*real, integer, boolean, text, held can",
         ),
         ("time [m],a\n0,1\n", r"line 1, column 'time': unit 'm' cannot be converted to 's'"),
-        ("time,a,a\n0,1,2\n", r"line 1, column 'a': the column 'a' occurs twice"),
+        ("time,a,a\n0,1,2\n", r"line 1: the column 'a' occurs twice"),
         ("time,,a\n0,1,2\n", r"line 1: an output cannot be called ''"),
         ("time,step\n0,1\n", r"an output cannot be called 'step'; rename"),
         ("time,beyond\n0,1\n", r"an output cannot be called 'beyond'"),
