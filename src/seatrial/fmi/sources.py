@@ -1,4 +1,4 @@
-"""What a source FMU says of its build: files, language, definitions, folders, libraries.
+"""Builds as source FMUs describe them: files, language, definitions, folders, libraries.
 
 FMI 3.0 has ``sources/buildDescription.xml``; FMI 2.0 lists files in its model description, to which
 tools add ``sources/defines.def`` (a definition a line) and ``sources/includes.txt`` (a folder a

@@ -197,9 +197,9 @@ class Flat:
     def _add_leaf(self, component: Component, source: Path, path: Path_) -> None:
         if len(self.leaves) >= _MOST_COMPONENTS:
             raise InputError(f"{component.where}: more than {_MOST_COMPONENTS} FMUs")
-        kind, endings = ("an FMU", (".fmu",)) if component.kind == FMU else ("a table", SUFFIXES)
-        if source.suffix not in endings:
-            ends = " or ".join(endings)
+        kind, suffixes = ("an FMU", (".fmu",)) if component.kind == FMU else ("a table", SUFFIXES)
+        if source.suffix not in suffixes:
+            ends = " or ".join(suffixes)
             raise InputError(f"{component.where}: the name of {kind} must end in {ends}")
         if component.implementation == "ScheduledExecution":
             raise InputError(f"{component.where}: ScheduledExecution is not supported")
