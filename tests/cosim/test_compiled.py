@@ -353,7 +353,7 @@ def test_changes_from_outside_count_at_once_and_states_come_back(fmus: Path) -> 
 
 
 def test_without_a_compiler_python_steps(fmus: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(on_demand, "_compilers", list)
+    monkeypatch.setattr(on_demand, "compilers_of", list)
     monkeypatch.setenv("SEATRIAL_CACHE", str(fmus / "empty"))
     library.library.cache_clear()
     try:

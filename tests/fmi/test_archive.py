@@ -17,6 +17,7 @@ from hypothesis import strategies as st
 from seatrial.errors import InputError
 from seatrial.fmi import archive
 from seatrial.fmi.archive import content_hash, unpacked
+from seatrial.fmi.load import load_fmu
 
 
 @pytest.fixture
@@ -60,11 +61,16 @@ def test_what_is_in_it_is_unpacked_once(cache: Path, tmp_path: Path) -> None:
 
 OUTSIDE = (
     "../evil",
+    "../../evil",
     "a/../../evil",
+    "a/../../../../b/../evil",
+    "../a/../evil",
     "/etc/evil",
     "//host/evil",
     "C:evil",
     "c:/evil",
+    "./C:evil",
+    "a/../C:evil",
     "..\\evil",
     "a\\..\\..\\evil",
     "..",
@@ -81,6 +87,67 @@ def test_backslashes_of_tools_on_windows_are_folders(cache: Path, tmp_path: Path
     folder = unpacked(zipped(tmp_path / "x.fmu", *members), "FMU")
     assert (folder / "binaries/win64/x.dll").read_bytes() == b"MZ"
     assert (folder / "a/b").read_bytes() == b"1"
+
+
+ODD = (
+    ("./", b""),
+    ("/", b""),
+    ("", b""),
+    (".", b""),
+    ("./a", b"1"),
+    (".\\b", b"2"),
+    ("c//d", b"3"),
+    ("c/", b""),
+    ("c/./", b""),
+    ("e/.", b""),
+    ("f/../g", b"4"),
+    ("h/./../c/./i", b"5"),
+    ("c/../", b""),
+)
+"""Members that tools write, or could, and that harm nobody."""
+
+
+def test_odd_members_are_where_they_say(cache: Path, tmp_path: Path) -> None:
+    members = [(zipfile.ZipInfo(name), data) for name, data in ODD]
+    for (name, _), (info, _data) in zip(ODD, members, strict=True):
+        info.filename = info.orig_filename = name
+    folder = unpacked(zipped(tmp_path / "x.fmu", *members), "FMU")
+    found = {p.relative_to(folder).as_posix() for p in folder.rglob("*")}
+    assert found == {"a", "b", "c", "c/d", "c/i", "e", "g"}
+    assert [(folder / n).read_bytes() for n in ("a", "b", "c/d", "g", "c/i")] == [
+        b"1", b"2", b"3", b"4", b"5"
+    ]  # fmt: skip
+    assert unpacked(tmp_path / "x.fmu", "FMU") == folder
+    (folder / "c/i").write_bytes(b"cut")
+    assert (unpacked(tmp_path / "x.fmu", "FMU") / "c/i").read_bytes() == b"5"
+
+
+def test_folders_by_their_attributes(cache: Path, tmp_path: Path) -> None:
+    unix, dos = zipfile.ZipInfo("unix"), zipfile.ZipInfo("dos")
+    unix.external_attr, dos.external_attr = (stat.S_IFDIR | 0o755) << 16, 0x10
+    folder = unpacked(
+        zipped(tmp_path / "x.fmu", (unix, b""), (dos, b""), ("unix/a", b"1"), ("dos/b", b"2")),
+        "FMU",
+    )
+    assert (folder / "unix/a").is_file()
+    assert (folder / "dos/b").is_file()
+
+
+@pytest.mark.parametrize(
+    ("first", "second"), [("a", "./a"), ("b//c", "b/c"), ("d\\e", "d/./e"), ("f", "g/../f")]
+)
+def test_two_members_that_become_the_same_file(
+    first: str, second: str, cache: Path, tmp_path: Path
+) -> None:
+    refused(zipped(tmp_path / "x.fmu", (first, b"1"), (second, b"2")), "two members are called")
+
+
+def test_an_fmu_whose_folders_have_entries_is_loaded(cache: Path, tmp_path: Path) -> None:
+    """As `zip -r x.fmu .` and CMake's tar write it: libcosim's build adds ``./``."""
+    path = tmp_path / "x.fmu"
+    described = (Path(__file__).parent / "slaves/fmi2.xml").read_bytes()
+    zipped(path, ("./", b""), ("./modelDescription.xml", described), ("./binaries/", b""))
+    assert load_fmu(path).version == 2
 
 
 def test_members_that_are_no_plain_files(cache: Path, tmp_path: Path) -> None:
@@ -102,6 +169,7 @@ def test_members_that_are_no_plain_files(cache: Path, tmp_path: Path) -> None:
         (("é" * 128,), "is no name of a file"),
         (("a/" * 600 + "a",), "is no name of a file"),
         ((".",), "is no name of a file"),
+        (("a/",), "is no name of a file"),
     ],
 )
 def test_names_that_no_folder_can_hold(

@@ -156,11 +156,10 @@ def test_platforms_that_it_has_are_named(path: Path, tmp_path: Path) -> None:
         new.writestr("modelDescription.xml", old.read("modelDescription.xml"))
         new.writestr("binaries/win64/model.dll", b"MZ")
         new.writestr("binaries/darwin64/model.dylib", b"x")
-        new.writestr("sources/model.c", "")
     with pytest.raises(
         InputError,
         match=rf"other\.fmu: cannot be loaded on this machine, which needs binaries for "
-        rf"{fmpy.platform}; the FMU has binaries for darwin64, win64, and sources .fmpy compile.",
+        rf"{fmpy.platform}, or sources; the FMU has binaries for darwin64, win64",
     ):
         open_instance(load_fmu(other), "boat")
 

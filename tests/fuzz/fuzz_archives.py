@@ -11,6 +11,7 @@ from pathlib import Path
 from seatrial.cosim.ssp.reading import read_ssp
 from seatrial.errors import InputError
 from seatrial.fmi import load
+from seatrial.fmi.sources import read_build
 
 _DESCRIPTION, _STRUCTURE = "modelDescription.xml", "SystemStructure.ssd"
 
@@ -40,6 +41,6 @@ def _read(folder: Path, data: bytes) -> None:
             with zipfile.ZipFile(path, "w") as archive:
                 archive.writestr(member, data)
     with contextlib.suppress(InputError):
-        load.load_fmu(fmu)
+        read_build(load.load_fmu(fmu))
     with contextlib.suppress(InputError):
         read_ssp(ssp)

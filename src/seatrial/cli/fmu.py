@@ -17,6 +17,7 @@ from ..cosim.parameters import load_vehicle, split_reference
 from ..cosim.system import settable
 from ..cosim.values import from_entry
 from ..errors import InputError, unknown, unmatched
+from ..fmi.built import build_needed, compiler_of
 from ..fmi.cache import write_named
 from ..fmi.description import summary
 from ..fmi.direct import DirectInstance
@@ -208,7 +209,7 @@ def describe(
         clocks = (*fmu.clocks.by_reference.values(),)
         title += (
             f"\nFMI {fmu.description.fmiVersion}, {' and '.join(fmu.interfaces)}; binaries for "
-            f"{', '.join(fmu.platforms) or 'no platform'}"
+            f"{', '.join(fmu.platforms) or 'no platform'}{_build_said(fmu)}"
         )
     else:
         instance = DirectInstance(found.component_class()(found.name))
@@ -244,6 +245,16 @@ def describe(
         print_proposals(name, variables)
     for note in notes:
         console.print(f"note: {escape(note)}", soft_wrap=True)
+
+
+def _build_said(fmu: LoadedFmu) -> str:
+    """Return what happens to an FMU whose library for this machine is still to be built."""
+    try:
+        build = build_needed(fmu)
+        by = "" if build is None else compiler_of(build).version
+    except InputError as error:
+        return f"; its sources cannot be built here: {error}"
+    return "" if build is None else f"; it will be built of its sources by {by}"
 
 
 def _counts(variables: list[Variable]) -> str:
@@ -317,6 +328,8 @@ def _problems(name: str) -> list[str]:
                     "variables are checked in it, and that it runs"
                 ]
             )
+        if said := _build_said(fmu):
+            print_notes([f"{name}{said}"])
         if _reaches_outside(source, fmu):
             print_notes([f"{name}: not run, since it would open its links"])
             return problems(fmu)

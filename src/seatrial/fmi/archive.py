@@ -39,6 +39,7 @@ _LONGEST_NAME = 1024
 _DEEPEST = 64
 _CONTROL = re.compile(r"[\x00-\x1f\x7f]")
 _ENCRYPTED = 0x1
+_DOS_FOLDER = 0x10
 _METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)  # FMI and SSP allow no other
 
 
@@ -145,8 +146,10 @@ def _checked(path: Path, archive: zipfile.ZipFile) -> Members:
     _refuse_many(path, len(infos))
     members: Members = {}
     for info in infos:
-        place = _place(path, info)
         _refuse_odd(path, info)
+        place = _place(path, info)
+        if not place.parts:  # the archive's own folder, which many tools write
+            continue
         if not _are_alike(members.setdefault(place, info), info):
             raise InputError(f"{path}: two members are called {info.filename!r}")
     folders = {parent for place in members for parent in place.parents}
@@ -179,28 +182,45 @@ def _refuse_bomb(path: Path, unpacked_bytes: int) -> None:
 
 
 def _place(path: Path, info: zipfile.ZipInfo) -> PurePosixPath:
+    """Return where a member goes, empty for the archive's own folder; its name is that then.
+
+    ``./``, doubled slashes and ``..`` within the archive are harmless, as nothing in it is a link.
+    """
     # zipfile cuts the other one at a NUL. Some tools on Windows write backslashes.
-    info.filename = name = info.orig_filename.replace("\\", "/")
-    place = PurePosixPath(name)
-    if ".." in place.parts or name.startswith("/") or re.match(r"[A-Za-z]:", name):
+    name = info.orig_filename.replace("\\", "/")
+    by_name = name.rpartition("/")[2] in ("", ".", "..")
+    is_folder = info.file_size == 0 and (by_name or _is_marked_folder(info))
+    parts: list[str] = []
+    for part in name.split("/"):
+        if part == ".." and parts and parts[-1] != "..":
+            parts.pop()
+        elif part not in ("", "."):
+            parts.append(part)
+    rooted = name.startswith("/") and parts
+    if ".." in parts or rooted or re.match(r"[A-Za-z]:", "/".join(parts)):
         raise InputError(f"{path}: member {name!r} would be unpacked outside its folder")
-    parts = [part.encode("utf-8", "replace") for part in place.parts]
     if (
-        not parts
-        or max(map(len, parts)) > _LONGEST_PART
+        by_name > is_folder  # with content
+        or max((len(part.encode("utf-8", "replace")) for part in parts), default=0) > _LONGEST_PART
         or len(parts) > _DEEPEST
         or len(name) > _LONGEST_NAME
         or _CONTROL.search(name)
-        or (os.name == "nt" and PureWindowsPath(name).is_reserved())
+        or (os.name == "nt" and PureWindowsPath(*parts).is_reserved())
     ):
         raise InputError(f"{path}: member {name[:80]!r} is no name of a file")
-    return place
+    info.filename = "/".join(parts) + "/" * is_folder
+    return PurePosixPath(*parts)
+
+
+def _is_marked_folder(info: zipfile.ZipInfo) -> bool:
+    """Say if a member is a folder by its attributes, of Unix or of MS-DOS."""
+    return stat.S_ISDIR(info.external_attr >> 16) or bool(info.external_attr & _DOS_FOLDER)
 
 
 def _refuse_odd(path: Path, info: zipfile.ZipInfo) -> None:
     """Raise InputError for a member that is no plain file or folder of a reasonable size."""
     kind = stat.S_IFMT(info.external_attr >> 16)
-    name = info.filename
+    name = info.orig_filename
     if kind not in (0, stat.S_IFREG, stat.S_IFDIR):
         what = "a symbolic link" if kind == stat.S_IFLNK else "no plain file"
         raise InputError(f"{path}: member {name!r} is {what}")

@@ -7,7 +7,6 @@ import math
 from collections.abc import Sequence
 from typing import Any, ClassVar
 
-import fmpy
 from fmpy import fmi1
 
 from .instance import Reader, Variable, Writer
@@ -25,7 +24,6 @@ class Fmi1Access(TypedAccess):
     _boolean: ClassVar[type] = ctypes.c_ubyte  # FMI's is a char, of which ctypes makes bytes
 
     _prefix: ClassVar[str] = "fmi1"
-    _platform: ClassVar[str] = fmpy.platform
 
     def free(self) -> None:
         """Release the instance."""

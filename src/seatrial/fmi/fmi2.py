@@ -7,7 +7,6 @@ import math
 from collections.abc import Sequence
 from typing import Any, ClassVar
 
-import fmpy
 from fmpy import fmi2
 
 from .instance import Variable
@@ -25,7 +24,6 @@ class Fmi2Access(TypedAccess):
 
     _prefix: ClassVar[str] = "fmi2"
     _state_word: ClassVar[str] = "FMUstate"
-    _platform: ClassVar[str] = fmpy.platform
 
     def free(self) -> None:
         """Release the instance."""

@@ -7,8 +7,6 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar
 
-import fmpy
-
 from ..errors import SimulationError
 from .arrays import ArrayCall
 from .eventful import MOST_UPDATES, EventfulInstance
@@ -24,7 +22,6 @@ class Fmi3Access(EventfulInstance):
 
     _prefix: ClassVar[str] = "fmi3"
     _state_word: ClassVar[str] = "FMUState"
-    _platform: ClassVar[str] = fmpy.platform_tuple
 
     def __init__(self, fmu: LoadedFmu, name: str) -> None:
         self._written: dict[int, list[Any]] = {}

@@ -8,8 +8,6 @@ from abc import abstractmethod
 from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar
 
-from fmpy import sharedLibraryExtension
-
 from ..errors import INTERRUPTED, DiscardError, FatalError, InputError, SimulationError
 from ..serialisation import is_c_text
 from .instance import ByType, Reader, Value, Variable, Writer
@@ -37,8 +35,6 @@ class FmuInstance(ByType):
     _free_word: ClassVar[str] = "FreeInstance"
     _terminate_word: ClassVar[str] = "Terminate"
     """How this version of FMI calls these functions."""
-    _platform: ClassVar[str]
-    """Folder of an FMU with the binaries for this machine."""
     _library: ClassVar[type[Any]]
     """FMPy's class for such an FMU."""
 
@@ -164,33 +160,34 @@ class FmuInstance(ByType):
     def _opened(self, identifier: str) -> Any:
         """Return FMPy's class with the library loaded."""
         description, folder = self.fmu.description, self.fmu.folder
-        library = folder / "binaries" / self._platform / f"{identifier}{sharedLibraryExtension}"
+        library = self.fmu.binary
         if not library.is_file():
             raise InputError(f"{self.fmu.path}: {self._missing(library.name)}")
         before = os.getcwd()
         try:
-            return lenient(self._library)(
+            opened = lenient(self._library)(
                 guid=description.guid or "",
                 modelIdentifier=identifier,
-                unzipDirectory=str(folder),
+                unzipDirectory=str(self.fmu.built or folder),
                 instanceName=self.name,
             )
+            opened.unzipDirectory = str(folder)  # where its resources are
+            return opened
         except Exception as error:
             os.chdir(before)  # FMPy stays in the library's folder when it cannot be loaded
             raise InputError(
-                f"{self.fmu.path}: binaries/{self._platform}/{library.name} cannot be loaded on "
+                f"{self.fmu.path}: binaries/{self.fmu.platform}/{library.name} cannot be loaded on "
                 f"this machine: {reason(error)}"
             ) from None
 
     def _missing(self, library: str) -> str:
         """Return what platforms an FMU has whose library for this machine is not there."""
-        having = self.fmu.platforms
-        if self._platform in having:
-            return f"binaries/{self._platform} has no {library}"
+        having, platform = self.fmu.platforms, self.fmu.platform
+        if platform in having:
+            return f"binaries/{platform} has no {library}"
         return (
-            f"cannot be loaded on this machine, which needs binaries for {self._platform}; the "
-            f"FMU has binaries for {', '.join(having) or 'no platform'}"
-            + (", and sources (fmpy compile)" if (self.fmu.folder / "sources").is_dir() else "")
+            f"cannot be loaded on this machine, which needs binaries for {platform}, or sources; "
+            f"the FMU has binaries for {', '.join(having) or 'no platform'}"
         )
 
     @property

@@ -17,6 +17,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from ..errors import DiscardError, InputError, SimulationError
+from .built import with_library
 from .instance import Reader, Value, Writer
 from .loaded import LoadedFmu
 from .origins import with_origins
@@ -48,6 +49,7 @@ class IsolatedInstance:
     ) -> None:
         if os.name != "posix":
             raise InputError("isolated components need Linux or another POSIX system")
+        fmu = with_library(fmu, sandboxed=sandboxed)
         self.name, self.fmu = name, fmu
         self.variables, self.feedthrough = fmu.variables, fmu.feedthrough
         self.terminals, self.views = fmu.terminals, fmu.views
@@ -84,6 +86,7 @@ class IsolatedInstance:
                 name,
                 sys.path,
                 fmu.options.as_json(),
+                None if fmu.built is None else str(fmu.built),
             )
             if not (isinstance(able, list) and len(able) == 3):
                 raise self._misunderstood("its instantiation")

@@ -19,16 +19,21 @@ class Missing:
 
 
 class _Library:
-    """A loaded library that gives something for every name."""
+    """A loaded library that gives something for every name.
 
-    def __init__(self, library: Any, instance: str) -> None:
-        self._library, self._instance = library, instance
+    In code, FMI's functions have the model identifier as a prefix; in libraries FMI 1.0's alone
+    should. What was compiled otherwise is found all the same.
+    """
+
+    def __init__(self, library: Any, identifier: str, instance: str) -> None:
+        self._library, self._prefix, self._instance = library, f"{identifier}_", instance
 
     def __getattr__(self, name: str) -> Any:
-        try:
-            return getattr(self._library, name)
-        except AttributeError:
-            return Missing(name, self._instance)
+        plain = name.removeprefix(self._prefix)
+        for one in (name, plain, self._prefix + plain):
+            if (found := getattr(self._library, one, None)) is not None:
+                return found
+        return Missing(name, self._instance)
 
 
 def lenient(library: type[Any]) -> type[Any]:
@@ -39,7 +44,7 @@ def lenient(library: type[Any]) -> type[Any]:
     """
 
     def load(self: Any) -> None:
-        self.dll = _Library(self.dll, self.instanceName)
+        self.dll = _Library(self.dll, self.modelIdentifier, self.instanceName)
         library._loadFunctions(self)
 
     # FMPy takes the version from the name of the class.

@@ -14,6 +14,7 @@ from fmpy.model_description import ValidationError, read_model_description
 
 from ..errors import InputError
 from .archive import content_hash, unpacked
+from .built import with_library
 from .fmi1 import Fmi1Slave
 from .fmi1model import Fmi1Model
 from .fmi2 import Fmi2Slave
@@ -79,9 +80,10 @@ def _near(path: Path) -> str:
 def open_instance(fmu: LoadedFmu, name: str) -> Instance:
     """Return a new instance of ``fmu``, called ``name`` in the rig.
 
-    Raises InputError if it has no binary that this machine can load, and SimulationError if
-    it cannot be instantiated.
+    A source FMU is built first. Raises InputError if it has no binary that this machine can load,
+    or sources that cannot be built, and SimulationError if it cannot be instantiated.
     """
+    fmu = with_library(fmu)
     if fmu.clocks.by_reference:
         return Fmi3ClockedSlave(fmu, name)
     return _INSTANCES[fmu.version, fmu.interface](fmu, name)

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import fmpy
 from fmpy.model_description import ModelDescription
 
 from ..terminals import Terminal
@@ -48,6 +49,8 @@ class LoadedFmu:
     options: FmuOptions = DEFAULTS
     origin: Path | None = None
     """Where the user's modules lie that it has copies of, if somebody knows."""
+    built: Path | None = None
+    """Folder with what was built of its sources, if the archive has no library for this machine."""
 
     @property
     def version(self) -> int:
@@ -116,6 +119,17 @@ class LoadedFmu:
         if self.version == 1:
             return self._says("canBeInstantiatedOnlyOncePerProcess")
         return bool(self.simulation.canBeInstantiatedOnlyOncePerProcess)
+
+    @property
+    def platform(self) -> str:
+        """This machine's, as its version of FMI calls it."""
+        return str(fmpy.platform_tuple if self.version == 3 else fmpy.platform)
+
+    @property
+    def binary(self) -> Path:
+        """Its library for this machine and its interface, which may not be there."""
+        name = f"{self.simulation.modelIdentifier}{fmpy.sharedLibraryExtension}"
+        return (self.built or self.folder) / "binaries" / self.platform / name
 
     @property
     def platforms(self) -> list[str]:

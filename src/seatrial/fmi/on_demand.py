@@ -32,7 +32,7 @@ _SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 
 def shared_library(kind: str, source: bytes, flags: Sequence[str]) -> Path | None:
     """Return the library of a C file in the cache's folder ``kind``, None if none can be had."""
-    compilers, options = _compilers(), (*flags, *_FLAGS)
+    compilers, options = compilers_of(), (*flags, *_FLAGS)
     said = " ".join((*options, platform.machine(), *(compilers[0] if compilers else ())))
     name = hashlib.sha256(source + said.encode()).hexdigest()[:16]
     try:
@@ -67,10 +67,14 @@ def _compiled(
     return None
 
 
-def _compilers() -> list[list[str]]:
-    """Return the commands of the compilers that there are: the system's, and Zig's from pip."""
-    system = os.environ.get("CC") or "cc"
+def compilers_of(language: str = "c") -> list[list[str]]:
+    """Return the commands of the compilers that there are: the system's, and Zig's from pip.
+
+    ``language`` is ``c`` or ``c++``.
+    """
+    variable, usual = {"c": ("CC", "cc"), "c++": ("CXX", "c++")}[language]
+    system = os.environ.get(variable) or usual
     found = [[system]] if shutil.which(system) else []
     if importlib.util.find_spec("ziglang"):
-        found.append([sys.executable, "-m", "ziglang", "cc"])
+        found.append([sys.executable, "-m", "ziglang", usual])
     return found

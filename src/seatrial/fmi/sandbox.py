@@ -7,7 +7,7 @@ import shutil
 import site
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cache
 from pathlib import Path
 
@@ -24,6 +24,8 @@ _GIB = 1 << 30
 _FILES = str(_GIB)
 """Bytes of files in memory, in /tmp and in /dev/shm each."""
 _SYSTEM = ("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/etc/ld.so.cache")
+_ALTERNATIVES = Path("/etc/alternatives")
+"""Links by which Debian's /usr/bin/cc leads to a compiler."""
 _ENVIRONMENT = ("LANG", "LC_ALL", "LD_LIBRARY_PATH", "PATH", "PYTHONDONTWRITEBYTECODE", "TZ")
 """What of the environment it gets: others may hold secrets."""
 _ISOLATION = (
@@ -47,6 +49,22 @@ def sandbox_command(fmu: LoadedFmu) -> list[str]:
 
     Raises InputError if bubblewrap is not there or cannot make a sandbox here.
     """
+    built = [] if fmu.built is None else [fmu.built]
+    return _sandbox((*_python(), fmu.folder, fmu.path, *built), "/tmp")
+
+
+def build_sandbox(fmu: LoadedFmu, work: Path, sources: Path) -> list[str]:
+    """Return the command for a compiler of a source FMU, started in its ``sources``.
+
+    It sees, read-only, what the FMU's worker sees; it writes in ``work``. Raises InputError as
+    `sandbox_command`.
+    """
+    links = [_ALTERNATIVES] if _ALTERNATIVES.is_dir() else []
+    return _sandbox((*_python(), *links, fmu.folder), str(sources), work)
+
+
+def _sandbox(read: Iterable[Path], start: str, written: Path | None = None) -> list[str]:
+    """Return bubblewrap's command, up to the command that it runs in the folder ``start``."""
     bwrap = shutil.which("bwrap")
     if bwrap is None:
         raise InputError(
@@ -55,9 +73,11 @@ def sandbox_command(fmu: LoadedFmu) -> list[str]:
         )
     _refuse_unable(bwrap)
     command = [bwrap, *_ISOLATION, *_system()]
-    for path in (*_python(), fmu.folder, fmu.path):
+    for path in read:
         command += ["--ro-bind", str(path), str(path)]
-    return [*command, "--chdir", "/tmp", "--"]
+    if written is not None:
+        command += ["--bind", str(written), str(written)]
+    return [*command, "--chdir", start, "--"]
 
 
 def sandbox_environment(fmu: LoadedFmu) -> dict[str, str]:

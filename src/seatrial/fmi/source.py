@@ -1,13 +1,14 @@
-"""Sources of FMUs: a name of the index, an ``.fmu`` file, or ``my_boat.py:Class``."""
+"""Sources of FMUs: a name of the index, an ``.fmu`` file, ``my_boat.py:Class`` or a table."""
 
 from __future__ import annotations
 
 import ast
+import hashlib
 import importlib
 import os
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +18,8 @@ from typing import Any
 from ..component import Component
 from ..errors import InputError, unknown
 from .index import component_class, components, title
+from .table import table_component
+from .table_file import SUFFIXES, frozen_table
 
 # The method is there because pythonfmu's binary releases the script's globals once too often: only
 # a function that is defined in the script keeps them alive at the second instantiation.
@@ -57,6 +60,10 @@ class ComponentSource:
         text = _SCRIPT.format(name=self.name, module=self.module, class_name=self.class_name)
         return text.encode()
 
+    def imported(self, alias: str) -> str:
+        """Return the lines of a script that give the class a name."""
+        return f"from {self.module} import {self.class_name} as {alias}"
+
     @property
     def package(self) -> str | None:
         """Top-level package of somebody else that has to travel in the FMU."""
@@ -93,12 +100,72 @@ class ComponentSource:
         return cls  # type: ignore[no-any-return]
 
 
+_TABLE_SCRIPT = '''"""{name}: a table of values over time as an FMU."""
+
+from seatrial.fmi.slave import Slave
+from seatrial.fmi.table import table_component
+
+Table = table_component({text!r})
+
+
+class TableFmu(Slave):
+    """FMU of the table."""
+
+    component_class = Table
+
+    def __init__(self, **kwargs):
+        super().__init__(**kwargs)
+'''
+
+
+@dataclass(frozen=True)
+class TableSource(ComponentSource):
+    """A table of values over time, which is a component with its columns as outputs."""
+
+    text: str = ""
+    """The table, as `frozen_table` returns it."""
+
+    @property
+    def script(self) -> bytes:
+        """Text of the FMU's slave script, with all values."""
+        return _TABLE_SCRIPT.format(name=self.name, text=self.text).encode()
+
+    @property
+    def title(self) -> str:
+        """What it is, for listings."""
+        return f"table of {self.name}"
+
+    def component_class(self) -> type[Component]:
+        """Return the component."""
+        return table_component(self.text)
+
+    def imported(self, alias: str) -> str:
+        """Return the lines of a script that give the class a name."""
+        return (
+            f"from seatrial.fmi.table import table_component\n"
+            f"{alias} = table_component({self.text!r})"
+        )
+
+
+def table_source(path: Path, types: Mapping[str, type] | None = None) -> TableSource:
+    """Return the component of a file of values over time; see `frozen_table`. Raises InputError."""
+    if not path.is_file():
+        raise InputError(f"there is no table {path}")
+    text = frozen_table(path, types)
+    stem = re.sub(r"\W", "_", f"table_{path.stem}", flags=re.ASCII)
+    of = hashlib.sha256(text.encode()).hexdigest()[:12]
+    return TableSource(path.name, stem, "seatrial.fmi.table", f"Table_{of}", str(path), None, text)
+
+
 def find_source(text: str, relative_to: Path) -> ComponentSource | Path:
     """Return what ``text`` names: a component, or the path of an ``.fmu`` file.
 
-    ``text`` is ``path/to/x.fmu``, ``path/to/my_boat.py:Class`` (both relative to the file that
-    says it) or a name of the index. Raises InputError if there is nothing there.
+    ``text`` is ``path/to/x.fmu``, ``path/to/my_boat.py:Class``, ``path/to/inputs.csv`` or
+    ``.parquet`` (all relative to the file that says it), or a name of the index. Raises InputError
+    if there is nothing there.
     """
+    if text.endswith(SUFFIXES):
+        return table_source((relative_to / text).resolve())
     if text.endswith(".fmu"):
         path = (relative_to / text).resolve()
         if not path.is_file():
@@ -111,7 +178,8 @@ def find_source(text: str, relative_to: Path) -> ComponentSource | Path:
         raise InputError(_lacks_class((relative_to / text).resolve(), text))
     if text not in components().names():
         raise InputError(
-            unknown("FMU", text, components().names()) + "; or give a path: x.fmu, my_boat.py:Class"
+            unknown("FMU", text, components().names())
+            + "; or give a path: x.fmu, my_boat.py:Class, x.csv"
         )
     return _indexed(text)
 

@@ -19,6 +19,7 @@ import struct
 import sys
 import traceback
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -144,6 +145,7 @@ class Worker:
         name: str,
         module_path: list[str],
         options: dict[str, Any],
+        built: str | None,
     ) -> list[bool]:
         """Load the FMU; return whether it rolls back, and takes steps of any length."""
         sys.path[:] = module_path
@@ -154,6 +156,8 @@ class Worker:
         fmu = load_fmu(Path(path), FmuOptions(**options))
         if fmu.sha256 != sha256:
             raise InputError(f"{path} was changed while it was being loaded")
+        if built is not None:
+            fmu = replace(fmu, built=Path(built))
         self._instance = open_instance(fmu, name)
         self._is_open = True
         instance = self._instance

@@ -56,10 +56,7 @@ class RigSource(ComponentSource):
         """Text of the FMU's slave script."""
         module, _, name = ALGORITHMS.target(self.algorithm).partition(":")
         imports = [f"from {module} import {name} as Algorithm"]
-        imports += [
-            f"from {one.module} import {one.class_name} as Class{i}"
-            for i, one in enumerate(self.parts)
-        ]
+        imports += [one.imported(f"Class{i}") for i, one in enumerate(self.parts)]
         classes = ", ".join(f"{_key(one)!r}: Class{i}" for i, one in enumerate(self.parts))
         return _SCRIPT.format(
             name=self.name, imports="\n".join(imports), text=self.text, classes=classes

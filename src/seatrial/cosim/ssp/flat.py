@@ -7,8 +7,12 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from ...errors import InputError, unknown
+from ...fmi.bundle_name import bundle_name
+from ...fmi.export import cached_fmu
 from ...fmi.load import load_fmu
 from ...fmi.options import FmuOptions, Interface
+from ...fmi.source import table_source
+from ...fmi.table_file import SUFFIXES
 from ..packaged import SSP_FILE
 from .binding import Bound
 from .dictionaries import Dictionaries
@@ -19,6 +23,7 @@ from .model import (
     FMU,
     MOST_SYSTEMS,
     PACKAGE,
+    TABLES,
     Component,
     Connection,
     Connector,
@@ -164,7 +169,7 @@ class Flat:
             connectors = {(path, name): c for name, c in component.connectors.items()}
             self.graph.connectors.update(connectors)
             self._bindings.append((component.parameters, path))
-        elif component.kind == FMU:
+        elif component.kind in (FMU, *TABLES):
             self._add_leaf(component, component.source.file, path)
         else:
             self._add_reference(component, component.source.file, path, place)
@@ -192,11 +197,15 @@ class Flat:
     def _add_leaf(self, component: Component, source: Path, path: Path_) -> None:
         if len(self.leaves) >= _MOST_COMPONENTS:
             raise InputError(f"{component.where}: more than {_MOST_COMPONENTS} FMUs")
-        if source.suffix != ".fmu":
-            raise InputError(f"{component.where}: the name of an FMU must end in .fmu")
+        kind, suffixes = ("an FMU", (".fmu",)) if component.kind == FMU else ("a table", SUFFIXES)
+        if source.suffix not in suffixes:
+            ends = " or ".join(suffixes)
+            raise InputError(f"{component.where}: the name of {kind} must end in {ends}")
         if component.implementation == "ScheduledExecution":
             raise InputError(f"{component.where}: ScheduledExecution is not supported")
         try:
+            if component.kind != FMU:
+                source = _table_fmu(component, source)
             fmu = load_fmu(source, FmuOptions(_INTERFACES.get(component.implementation)))
         except InputError as error:
             raise InputError(f"{component.where}: {error}") from None
@@ -295,3 +304,10 @@ class Flat:
             raise InputError(
                 f"{place}: {output!r}, an output, cannot feed {target[1]!r}, a fixed parameter"
             )
+
+
+def _table_fmu(component: Component, source: Path) -> Path:
+    """Return the FMU of a file of values over time; connectors say the types of its columns."""
+    connectors = component.connectors.values()
+    table = table_source(source, {one.name: one.type for one in connectors if one.type})
+    return cached_fmu(table, bundle_name(table))

@@ -15,6 +15,9 @@ FMU = "application/x-fmu-sharedlibrary"
 PACKAGE = "application/x-ssp-package"
 DEFINITION = "application/x-ssp-definition"
 
+TABLES = ("text/csv", "application/table", "application/vnd.apache.parquet")
+"""Files of values over time, as OMSimulator 3 and 2 have them, and Parquet's own type."""
+
 DEEPEST = 32
 """Levels of systems inside systems."""
 MOST_SYSTEMS = 1000

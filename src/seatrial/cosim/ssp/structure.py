@@ -30,6 +30,7 @@ from .model import (
     FMU,
     MOST_SYSTEMS,
     PACKAGE,
+    TABLES,
     Component,
     Connection,
     Dictionary,
@@ -169,10 +170,11 @@ class _Reader:
                 where(element), "a component without source is an empty system: nothing computes it"
             )
             return Source(None, ""), None
-        if kind not in (FMU, PACKAGE, DEFINITION):
+        kinds = (FMU, PACKAGE, DEFINITION, *TABLES)
+        if kind not in kinds:
             raise InputError(
                 f"{where(element)}: components of type {kind!r} are not supported "
-                f"(read are: {FMU}, {PACKAGE}, {DEFINITION})"
+                f"(read are: {', '.join(kinds)})"
             )
         source = self._sources.source(element)
         if source.file is None:
