@@ -1,4 +1,4 @@
-"""What every FMU of ours has: its description by the version of FMI, in a reproducible archive."""
+"""The description of any FMU built here by its version of FMI, and its reproducible archive."""
 
 from __future__ import annotations
 

@@ -378,7 +378,7 @@ fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte b
         outcome(self, its->fmi2SerializedFMUstateSize(self->inner, kept->inner, &inner));
     if (status > fmi2Warning) return status;
     if (!bytes || size < HEAD + inner)
-        REFUSE(fmi2SerializeFMUstate, "the state has %zu bytes, room is for %zu", HEAD + inner, size);
+        REFUSE(fmi2SerializeFMUstate, "the state has %zu bytes, the buffer %zu", HEAD + inner, size);
     memcpy(bytes + sizeof(Seal), &kept->own, sizeof(Own));
     status = outcome(self,
                      its->fmi2SerializeFMUstate(self->inner, kept->inner, bytes + HEAD, inner));

@@ -27,9 +27,9 @@ static const char *path_in(const char *location) {
     return path && *path ? path : NULL;
 }
 
-static void copied(const char *path, int decodes, char *folder, size_t room) {
+static void copied(const char *path, int decodes, char *folder, size_t capacity) {
     size_t n = 0;
-    for (; *path && n + 1 < room; path++) {
+    for (; *path && n + 1 < capacity; path++) {
         const char digits[] = {path[0] == '%' ? path[1] : 0, path[0] == '%' && path[1] ? path[2] : 0, 0};
         const int is_code = isxdigit((unsigned char)digits[0]) && isxdigit((unsigned char)digits[1]);
         folder[n++] = decodes && is_code ? (char)strtol(digits, NULL, 16) : *path;
@@ -54,29 +54,29 @@ static int has_script(const char *folder) {
     return file != NULL;
 }
 
-int folder_of(const char *location, char *folder, size_t room, char *problem, size_t problem_room) {
+int folder_of(const char *location, char *folder, size_t capacity, char *problem, size_t problem_capacity) {
     const char *const path = path_in(location);
     if (!path) {
-        snprintf(problem, problem_room, "the location of the resources is no file: %s",
+        snprintf(problem, problem_capacity, "the location of the resources is no file: %s",
                  location ? location : "(none)");
         return 0;
     }
-    if (strlen(path) + SCRIPT >= room) {
-        snprintf(problem, problem_room, "the path of the resources is longer than %zu bytes",
-                 room - SCRIPT);
+    if (strlen(path) + SCRIPT >= capacity) {
+        snprintf(problem, problem_capacity, "the path of the resources is longer than %zu bytes",
+                 capacity - SCRIPT);
         return 0;
     }
-    copied(path, 1, folder, room);
+    copied(path, 1, folder, capacity);
     if (!has_script(folder)) { /* a path that was not encoded, of FMI 3.0 say */
-        copied(path, 0, folder, room);
+        copied(path, 0, folder, capacity);
         if (!has_script(folder)) {
-            snprintf(problem, problem_room,
+            snprintf(problem, problem_capacity,
                      "the script that slavemodule.txt names cannot be opened in %s", folder);
             return 0;
         }
     }
     if (strstr(folder, "%20")) {
-        snprintf(problem, problem_room,
+        snprintf(problem, problem_capacity,
                  "pythonfmu takes %%20 for a space, and the path of the resources has it: %s",
                  folder);
         return 0;

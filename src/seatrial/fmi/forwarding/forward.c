@@ -19,7 +19,7 @@
 #include "forwarded.h"
 
 /* Twice at once does no harm, as both find the same. */
-const Forwarded *library_of(const char *resources, char *problem, size_t room) {
+const Forwarded *library_of(const char *resources, char *problem, size_t capacity) {
     static Forwarded its;
     static int is_loaded;
     char path[LONGEST];
@@ -27,7 +27,7 @@ const Forwarded *library_of(const char *resources, char *problem, size_t room) {
     snprintf(path, sizeof path, "%s/pythonfmu/%s", resources, LIBRARY);
     void *const library = OPEN(path);
     if (!library) {
-        snprintf(problem, room, "%s: %s", path, WHY);
+        snprintf(problem, capacity, "%s: %s", path, WHY);
         return NULL;
     }
 #define FIND(name) *(void **)&its.name = FOUND(library, #name);

@@ -26,6 +26,6 @@ typedef struct {
 
 /* The library of the FMU whose resources are in a folder; NULL, with the problem written, if it
    cannot be loaded. */
-const Forwarded *library_of(const char *resources, char *problem, size_t room);
+const Forwarded *library_of(const char *resources, char *problem, size_t capacity);
 
 #endif

@@ -446,7 +446,7 @@ fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate kept, size_t
 fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate kept, fmi2Byte bytes[], size_t size) {
     Instance *self = c;
     if (!kept || !bytes || size < sizeof(Seal) + sizeof(State)) {
-        say(self, "%s: %s: no state, or less room than its %zu bytes",
+        say(self, "%s: %s: no state, or a buffer of less than its %zu bytes",
             self->name, CALLED(fmi2SerializeFMUstate), sizeof(Seal) + sizeof(State));
         return fmi2Error;
     }

@@ -29,21 +29,21 @@ static inline void seal_up(void *sealed, uint64_t fmu, size_t size) {
 }
 
 /* Whether `size` bytes with their seal are what was sealed by this FMU; if not, write why. */
-static inline int seal_holds(const void *sealed, size_t size, uint64_t fmu, char *why, size_t room) {
+static inline int seal_holds(const void *sealed, size_t size, uint64_t fmu, char *why, size_t capacity) {
     Seal seal = {0, 0, 0};
     if (size < sizeof seal) {
-        snprintf(why, room, "%zu bytes are no state", size);
+        snprintf(why, capacity, "%zu bytes are no state", size);
         return 0;
     }
     memcpy(&seal, sealed, sizeof seal);
     const size_t rest = size - sizeof seal;
     if (seal.fmu != fmu)
-        snprintf(why, room, "the %zu bytes are no state of this FMU", size);
+        snprintf(why, capacity, "the %zu bytes are no state of this FMU", size);
     else if (seal.size != rest)
-        snprintf(why, room, "the state has %zu bytes, found %zu", (size_t)seal.size + sizeof seal,
+        snprintf(why, capacity, "the state has %zu bytes, found %zu", (size_t)seal.size + sizeof seal,
                  size);
     else if (seal.content != seal_hash((const char *)sealed + sizeof seal, rest))
-        snprintf(why, room, "the bytes are not those that were saved: their hash differs");
+        snprintf(why, capacity, "the bytes are not those that were saved: their hash differs");
     else
         return 1;
     return 0;

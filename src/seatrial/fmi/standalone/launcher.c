@@ -104,10 +104,10 @@ static int loaded(const char *resources) {
     return 1;
 }
 
-const Forwarded *library_of(const char *resources, char *text, size_t room) {
+const Forwarded *library_of(const char *resources, char *text, size_t capacity) {
     pthread_mutex_lock(&lock);
     const int ready = loaded(resources);
-    if (!ready) snprintf(text, room, "%s", problem);
+    if (!ready) snprintf(text, capacity, "%s", problem);
     pthread_mutex_unlock(&lock);
     return ready ? &its : NULL;
 }
