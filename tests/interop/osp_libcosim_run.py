@@ -1,6 +1,7 @@
 """Run an OspSystemStructure.xml in libcosim, in a process of its own; prints every step as JSON.
 
-Reads {"file", "steps", "watch": [[slave, type, references]], "scenario": file} from standard input.
+Reads {"file", "steps", "watch": [[slave, type, references]], "scenario": file, "times": true} from
+standard input; with times, each row begins with that of its step, ns.
 """
 
 from __future__ import annotations
@@ -37,6 +38,8 @@ def run(job: dict[str, Any]) -> list[list[Any]]:
     for _ in range(job["steps"]):
         assert execution.step()
         values = [value for read, slave, refs in watch for value in read(slave, refs)]
+        if job.get("times"):
+            values = [execution.status().current_time, *values]
         rows.append([v.decode() if isinstance(v, bytes) else v for v in values])
     return rows
 

@@ -227,3 +227,11 @@ def test_a_file_of_another_shape_is_refused(bench, tmp_path: Path) -> None:
     (tmp_path / "run" / "convergence.json").write_text('{"outputs": [{"name": "x"}]}')
     with pytest.raises(InputError, match=r"convergence.json: trial: this key is missing"):
         load_convergence(tmp_path / "run")
+
+
+def test_ecco_is_not_halved(tmp_path: Path) -> None:
+    (tmp_path / "rig.toml").write_text('step = "1 s"\nalgorithm = "ecco"\n[components]\n', "utf-8")
+    (tmp_path / "t.toml").write_text('rig = "rig.toml"\nstop = "1 s"\n', "utf-8")
+    trial = load_trial(str(tmp_path / "t.toml"))
+    with pytest.raises(InputError, match=r"rig\.toml: ecco chooses its steps"):
+        run_convergence(trial, tmp_path / "out")

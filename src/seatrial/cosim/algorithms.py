@@ -61,7 +61,12 @@ class Algorithm(ABC):
         calls of `advance` only. An algorithm without memory writes none of them.
     9.  **Repeatable**: the same calls from the same state give the same bytes. Steps are run again
         after a discard, so no clock, no random numbers, no file.
-    10. **Nothing else**: events, recording, time keeping and the check for divergence are the
+    10. **Shorter steps** of its own, of any length in ns, may lead from ``t_ns`` to
+        ``t_ns + h_ns``: rules 2 to 4 hold for each, with the same ``steps``, and
+        ``network.time_ns`` is the end of each. All components must say that they take them
+        (``instance.any_step``), none may have a longer step. Events act and rows are recorded at
+        the end, ``t_ns + h_ns``, alone.
+    11. **Nothing else**: events, recording, time keeping and the check for divergence are the
         master's.
     """
 
@@ -69,6 +74,8 @@ class Algorithm(ABC):
     """Whether outputs follow an event at its own instant, or after the next step only."""
     iterates: ClassVar[bool] = False
     """Whether it takes the rig's settings ``iteration``."""
+    bonds: ClassVar[bool] = False
+    """Whether it takes the rig's settings ``ecco``; the bonds are ``network.system.bonds``."""
 
     @abstractmethod
     def __init__(self, network: Network, feedthrough: Feedthrough) -> None: ...

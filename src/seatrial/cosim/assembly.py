@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ..errors import InputError, unknown
+from .bonds import bonds_of
 from .component_parameters import give_parameters, variants_of
 from .connecting import connect
 from .loading import load_part
@@ -43,6 +44,7 @@ def assemble(
             system.set(*setting)
         _refuse_idle_variant(system)
         connect(system)
+        system.bonds = bonds_of(system)
         for name, placed in rig.components.items():
             connect_tunables(system, system.parts[name], profiles[placed.scope.path])
         _yield_to_connections(system)

@@ -12,6 +12,7 @@ ALGORITHMS = Registry(
         "plain-jacobi": "seatrial.cosim.algorithms:PlainJacobi",
         "gauss-seidel": "seatrial.cosim.algorithms:GaussSeidel",
         "extrapolated": "seatrial.cosim.algorithms:Extrapolated",
+        "ecco": "seatrial.cosim.ecco:Ecco",
         "iterated": "seatrial.cosim.iteration:Iterated",
     },
 )

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
@@ -34,6 +34,53 @@ class IterationEntry(FileModel):
     """At most so many repetitions."""
     relaxation: float = Field(default=1.0, gt=0.0, le=1.0)
     """Share of each repetition's change that is applied."""
+
+
+class EccoEntry(FileModel):
+    """How the algorithm ecco controls its step; see `ecco.Ecco` for the equations."""
+
+    step: str | None = None
+    """The first step, also after an event; a tenth of ``max_step`` without it."""
+    min_step: str | None = None
+    """A thousandth of ``max_step`` without it."""
+    max_step: str | None = None
+    """The rig's communication step without it."""
+    safety_factor: float = Field(default=0.9, gt=0.0, le=1.0)
+    """alpha, which each new step is multiplied by."""
+    min_change: float = Field(default=0.2, gt=0.0, le=1.0)
+    """At least so many times the step before."""
+    max_change: float = Field(default=1.5, ge=1.0, le=1e6)
+    """At most so many times the step before."""
+    proportional_gain: float = Field(default=0.2, ge=0.0, le=10.0)
+    integral_gain: float = Field(default=0.15, ge=0.0, le=10.0)
+    relative_tolerance: float = Field(default=1e-6, ge=0.0, le=1e6)
+    """Of the greatest energy residual of the bonds."""
+    absolute_tolerance: float = Field(default=1e-6, ge=1e-30, le=1e30)
+    """Energy residual of a bond in one step, J; in the units of its connections."""
+
+    def lengths(self, step_ns: int, where: str) -> tuple[int, int, int]:
+        """Return the shortest, first and longest step, ns; ``step_ns`` is the communication step.
+
+        Raises InputError, saying ``where``, for lengths that do not fit each other.
+        """
+
+        def length(key: str, written: str | None, default_ns: int) -> int:
+            return default_ns if written is None else duration_ns(written, f"{where}.{key}")
+
+        longest = length("max_step", self.max_step, step_ns)
+        shortest = length("min_step", self.min_step, max(1, longest // 1000))
+        first = length("step", self.step, max(shortest, longest // 10))
+        if not 0 < shortest <= first <= longest:
+            raise InputError(
+                f"{where}: 0 < min_step <= step <= max_step is needed, found {shortest / NS!r} s, "
+                f"{first / NS!r} s and {longest / NS!r} s"
+            )
+        if shortest > step_ns:
+            raise InputError(
+                f"{where}.min_step: {shortest / NS!r} s is longer than the communication step of "
+                f"{step_ns / NS!r} s, at which steps end"
+            )
+        return shortest, first, longest
 
 
 class ConnectionEntry(FileModel):
@@ -114,6 +161,11 @@ class RigFile(FileModel):
     algorithm: str = "jacobi"
     """A name of `registry.ALGORITHMS`."""
     iteration: IterationEntry | None = None
+    ecco: EccoEntry | None = None
+    bonds: dict[str, Annotated[list[str], Field(min_length=2, max_length=2)]] = Field(
+        default_factory=dict
+    )
+    """Power bonds: the two inputs that the connections of each feed."""
     variant: str | None = None
     profile: str | None = None
     choices: dict[str, str] = Field(default_factory=dict)
@@ -198,8 +250,18 @@ class Rig:
         return duration_ns(self.file.step, where)
 
     def changed(self, changes: Mapping[str, Any]) -> Rig:
-        """Return the rig with keys of its own file replaced, ``step`` say. Raises InputError."""
-        content = {**self.file.model_dump(exclude_unset=True), **changes}
+        """Return the rig with keys of its own file replaced, ``step`` say. Raises InputError.
+
+        Settings of an algorithm are replaced key by key; those of the file that another algorithm
+        does not take are dropped.
+        """
+        before = self.file.model_dump(exclude_unset=True)
+        content = {**before, **changes}
+        for table, takes in RIG_TABLES.items():
+            if table in changes:
+                content[table] = {**(before.get(table) or {}), **changes[table]}
+            elif "algorithm" in changes and not _takes(content["algorithm"], takes):
+                content.pop(table, None)
         file = validated(RigFile, content, self.read_from.path)
         check_rig_file(file, self.read_from.path)
         return Rig(file, self.read_from, replace(self.top, file=file))
@@ -295,14 +357,31 @@ def _check_component(name: str, component: ComponentEntry, where: str) -> None:
         raise InputError(f"{where}.timeout: needs isolated = true")
 
 
+RIG_TABLES = {"iteration": "iterates", "ecco": "bonds"}
+"""Tables of a rig's file for algorithms, and which of these takes each."""
+
+
+def _takes(algorithm: Any, attribute: str) -> bool:
+    """Say if an algorithm takes settings; one that does not exist is refused later."""
+    try:
+        return bool(getattr(ALGORITHMS.load(algorithm), attribute, False))
+    except InputError:
+        return True
+
+
 def _check_algorithm(path: Path, file: RigFile) -> None:
     try:
         ALGORITHMS.target(file.algorithm)
         # What a package brings is imported at once only where a setting depends on it.
-        if file.iteration and not getattr(ALGORITHMS.load(file.algorithm), "iterates", False):
+        if file.iteration and not _takes(file.algorithm, RIG_TABLES["iteration"]):
             raise InputError(
                 f"iteration has no effect with {file.algorithm!r}, only with one that iterates, "
                 'such as "iterated"'
+            )
+        if file.ecco and not _takes(file.algorithm, RIG_TABLES["ecco"]):
+            raise InputError(
+                f"ecco has no effect with {file.algorithm!r}, only with one that controls its step "
+                'by power bonds, such as "ecco"'
             )
     except InputError as error:
         raise InputError(f"{path}: algorithm: {error}") from None

@@ -62,6 +62,14 @@ class Joint:
     """Pairs of values, before and after."""
 
 
+@dataclass(frozen=True)
+class Bond:
+    """A power bond: by scalar, the inputs of its two connections, component and variable each."""
+
+    name: str
+    pairs: tuple[tuple[tuple[str, str], tuple[str, str]], ...]
+
+
 class Tuned(Protocol):
     """Tunables of a link, which start at the values of what they set."""
 
@@ -89,6 +97,7 @@ class System:
     connections: list[Connection] = field(default_factory=list)
     initial: list[Connection] = field(default_factory=list)
     """Those that carry a value once, while the system is initialised: calculated parameters."""
+    bonds: list[Bond] = field(default_factory=list)
     joints: list[Joint] = field(default_factory=list)
     """The same, port by port."""
     open: list[str] = field(default_factory=list)
@@ -217,6 +226,7 @@ class System:
         self.left_out += names
         self.connections = [c for c in self.connections if c.target[0] in self.parts]
         self.initial = [c for c in self.initial if c.target[0] in self.parts]
+        self.bonds = [b for b in self.bonds if all(i[0] in self.parts for p in b.pairs for i in p)]
         gone = tuple(f"{name}." for name in names)
         self.joints = [joint for joint in self.joints if not joint.target.startswith(gone)]
 

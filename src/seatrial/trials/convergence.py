@@ -78,6 +78,11 @@ def run_convergence(
     """
     if halvings < 2:
         raise InputError(f"--halvings: at least 2 are needed to see an order, found {halvings}")
+    if trial.rig.file.algorithm == "ecco":
+        raise InputError(
+            f"{trial.rig.read_from.path}: ecco chooses its steps by their energy residual, not "
+            "by the communication step; compare runs with other values of ecco.absolute_tolerance"
+        )
     trials = [_halved(trial, count) for count in range(halvings + 1)]
     folders: list[Path] = []
     with Supervisor(trials, engine, hooks) as supervisor:

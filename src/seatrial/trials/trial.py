@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -13,7 +13,7 @@ from ..cosim.files import Source, find_file, read_toml, validated
 from ..cosim.flattening import load_rig
 from ..cosim.isolation import KEY_END, isolated_in, isolating
 from ..cosim.packages import is_package, read_package
-from ..cosim.rig import Isolated, Rig, duration_ns
+from ..cosim.rig import RIG_TABLES, Isolated, Rig, duration_ns
 from ..cosim.system import System
 from ..cosim.values import Setting
 from ..errors import InputError, unknown
@@ -213,8 +213,8 @@ class Trial:
 
         Keys of the trial are variant, seed, start, stop, utc, scenario, ``choices.NAME``, those of
         its faults such as ``faults.0.at``, and those of its sea, current, wind and seabed such as
-        ``sea.height``, unless a component has that name; of its rig, step, algorithm and
-        ``component.isolated``. Raises InputError.
+        ``sea.height``, unless a component has that name; of its rig, step, algorithm,
+        ``iteration.KEY``, ``ecco.KEY`` and ``component.isolated``. Raises InputError.
         """
         keys = ("variant", "seed", "start", "stop", "utc", "scenario")
         rig_keys = ("step", "algorithm")
@@ -228,7 +228,9 @@ class Trial:
                 of_processes[key] = value
             elif key.startswith(PREFIX) and not self._has_component(key):
                 of_faults[key] = value
-            elif (group := self._group_in(key)) is not None:
+            elif (group := self._group_in(key, RIG_TABLES)) is not None:
+                of_rig[group] = {**of_rig.get(group, {}), key.partition(".")[2]: value}
+            elif (group := self._group_in(key, _TABLES)) is not None:
                 before = own.get(group, self.file.model_dump(exclude_none=True).get(group, {}))
                 own[group] = {**before, key.partition(".")[2]: value}
             elif "." in key:
@@ -264,10 +266,10 @@ class Trial:
         )
         return _checked(replace(changed, overrides=tuple(overrides)))
 
-    def _group_in(self, key: str) -> str | None:
-        """Return the table of the trial that a key is of, if no component has its name."""
+    def _group_in(self, key: str, tables: Collection[str]) -> str | None:
+        """Return the one of some tables that a key is of, if no component has its name."""
         group, dot, _ = key.partition(".")
-        return group if dot and group in _TABLES and not self._has_component(key) else None
+        return group if dot and group in tables and not self._has_component(key) else None
 
     def _has_component(self, key: str) -> bool:
         """Say if a component of the rig has the name that a key begins with."""
@@ -314,7 +316,11 @@ def load_trial(
 _CHOICES = "choices."
 """What the key of a choice begins with, among settings."""
 _TABLES = (*GROUPS, "seabed")
-_PATTERNS = (f"{_CHOICES}NAME", f"{PREFIX}N.KEY", *(f"{group}.KEY" for group in _TABLES))
+_PATTERNS = (
+    f"{_CHOICES}NAME",
+    f"{PREFIX}N.KEY",
+    *(f"{group}.KEY" for group in (*_TABLES, *RIG_TABLES)),
+)
 
 
 def _unexpected(criterion: dict[str, Any]) -> dict[str, Any]:

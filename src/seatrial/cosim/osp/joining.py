@@ -62,6 +62,15 @@ class Joining:
                 raise InputError(f"{function.where}: function {name!r}: {error}") from None
         return self._links
 
+    def bonds(self) -> dict[str, list[tuple[list[End], str]]]:
+        """Return, of each connection of a power bond, the inputs that it feeds, and its line."""
+        found: dict[str, list[tuple[list[End], str]]] = {}
+        for connection in self._structure.connections:
+            if connection.bond is not None:
+                targets = [self._directed(*pair)[1] for pair in self._pairs(connection)]
+                found.setdefault(connection.bond, []).append((targets, connection.where))
+        return found
+
     def _pairs(self, connection: Connection) -> Iterator[tuple[End, End]]:
         one, other = connection.variables
         if not connection.groups:
@@ -89,10 +98,12 @@ class Joining:
 
     def _connect(self, one: End, other: End, where: str) -> None:
         """Connect two variables, from the output to the input."""
-        source, target = one, other
-        if self._variable(one).causality not in _OUTPUTS:
-            source, target = other, one
+        source, target = self._directed(one, other)
         self._link(source, target, Transformation(1.0, 0.0, where), where)
+
+    def _directed(self, one: End, other: End) -> tuple[End, End]:
+        """Return two variables, the output first."""
+        return (one, other) if self._variable(one).causality in _OUTPUTS else (other, one)
 
     def _link(self, source: End, target: End, by: Transformation, where: str) -> None:
         for end, causalities in ((source, _OUTPUTS), (target, ("input",))):

@@ -18,6 +18,7 @@ from ..flattening import rig_of
 from ..packaged import OSP_FILE, PackagedSystem
 from ..rig import duration_ns
 from ..ssp.layout import unused
+from .ecco import bonds_as_written, read_settings
 from .joining import Joining, Link
 from .structure import Simulator, Structure, Sum, read_structure
 
@@ -35,18 +36,20 @@ def read_osp(path: Path, step: Any = None) -> PackagedSystem:
     title = file.parent.name if file.name == OSP_FILE else file.stem
     notes: list[str] = []
     fmus = {name: _fmu(simulator) for name, simulator in structure.simulators.items()}
-    links = Joining(structure, fmus, file.parent).links()
+    joining = Joining(structure, fmus, file.parent)
+    links = joining.links()
     names = _names(structure, notes)
-    step_ns = _step_ns(structure, step, notes)
-    notes += _coupling_notes(structure, step_ns)
+    coupling = _coupling(file, structure, notes)
+    step_ns = _step_ns(structure, coupling.get("ecco"), step, notes)
     every = {
-        name: _every(name, simulator, step_ns, notes)
+        name: 1 if "ecco" in coupling else _every(name, simulator, step_ns, notes)
         for name, simulator in structure.simulators.items()
     }
     content = {
         "title": title,
         "step": f"{step_ns / NS!r} s",
-        "algorithm": "plain-jacobi",  # libcosim's fixedStep
+        **coupling,
+        "bonds": bonds_as_written(joining.bonds(), names),
         "components": {
             **{
                 names[name]: {
@@ -94,26 +97,33 @@ def _time(value: float | None) -> str | None:
     return None if value is None else f"{value!r} s"
 
 
-def _coupling_notes(structure: Structure, step_ns: int) -> list[str]:
-    """Return notes on what ecco alone would use."""
-    if structure.algorithm == "ecco":
-        return [
-            "the algorithm ecco, which varies the step by the energy of power bonds, is not "
-            f"available: plain-jacobi couples with the fixed step of {step_ns / NS!r} s"
-        ]
-    bonds = ", ".join(dict.fromkeys(structure.bonds))
-    return [f"power bonds matter to ecco alone: {bonds}"] if bonds else []
+def _coupling(file: Path, structure: Structure, notes: list[str]) -> dict[str, Any]:
+    """Return the algorithm of a rig, with its settings."""
+    if structure.algorithm != "ecco":
+        return {"algorithm": "plain-jacobi"}  # libcosim's fixedStep
+    if structure.ecco is None:
+        raise InputError(f"{file}: the algorithm ecco needs an EccoConfiguration")
+    stepping = [name for name, one in structure.simulators.items() if one.step is not None]
+    if stepping:
+        notes.append(f"stepSize of {', '.join(stepping)} has no effect with ecco, as in libcosim")
+    return {"algorithm": "ecco", "ecco": read_settings(structure.ecco)}
 
 
-def _step_ns(structure: Structure, step: Any, notes: list[str]) -> int:
+def _step_ns(
+    structure: Structure, ecco: Mapping[str, Any] | None, step: Any, notes: list[str]
+) -> int:
     if step is not None:
         step_ns = duration_ns(step, "step") if isinstance(step, str) else 0
         if step_ns <= 0:
             raise InputError(f"step: a duration such as '10 ms' is needed, found {step!r}")
         return step_ns
+    if ecco is not None:
+        notes.append(
+            "BaseStepSize has no effect with ecco, as in libcosim: communication points, with rows "
+            f"and events, are MaximumStepSize apart ({ecco['max_step']}), ecco's steps in between"
+        )
+        return duration_ns(ecco["max_step"], "MaximumStepSize")
     written = structure.step
-    if written is None and structure.algorithm == "ecco":
-        written = structure.ecco_step
     if written is None:
         notes.append(f"there is no BaseStepSize: {_USUAL_STEP} s is taken, as libcosim does")
         written = _USUAL_STEP

@@ -77,6 +77,8 @@ class Connection:
     signal: End | None
     groups: bool
     where: str
+    bond: str | None = None
+    """Name of the power bond that it is one half of."""
 
 
 @dataclass
@@ -87,13 +89,11 @@ class Structure:
     stop: float | None = None
     step: float | None = None
     algorithm: str | None = None
-    ecco_step: float | None = None
-    """Of the settings of ecco, s."""
+    ecco: Any | None = None
+    """The element with the settings of ecco."""
     simulators: dict[str, Simulator] = field(default_factory=dict)
     functions: dict[str, Transformation | Sum] = field(default_factory=dict)
     connections: list[Connection] = field(default_factory=list)
-    bonds: list[str] = field(default_factory=list)
-    """Names of power bonds."""
 
 
 def read_structure(path: Path) -> Structure:
@@ -118,7 +118,7 @@ def read_structure(path: Path) -> Structure:
         element = child(root, name)
         if element is not None:
             read(reading, element)
-    reading.read_ecco(child(root, "EccoConfiguration"))
+    reading.structure.ecco = child(root, "EccoConfiguration")
     if not reading.structure.simulators:
         raise InputError(f"{where(root)}: there is no Simulator")
     return reading.structure
@@ -147,13 +147,13 @@ class _Reading:
         self._folder = folder
 
     def read_start(self, element: Any) -> None:
-        self.structure.start = _content(element)
+        self.structure.start = content_of(element)
 
     def read_stop(self, element: Any) -> None:
-        self.structure.stop = _content(element)
+        self.structure.stop = content_of(element)
 
     def read_step(self, element: Any) -> None:
-        self.structure.step = _positive(_content(element), element, "BaseStepSize")
+        self.structure.step = _positive(content_of(element), element, "BaseStepSize")
 
     def read_algorithm(self, element: Any) -> None:
         _only(element, (), ())
@@ -162,11 +162,6 @@ class _Reading:
         if found is None:
             raise InputError(f"{where(element)}: {unknown('Algorithm', text, ALGORITHMS)}")
         self.structure.algorithm = found
-
-    def read_ecco(self, element: Any | None) -> None:
-        step = None if element is None else child(element, "StepSize")
-        if step is not None:
-            self.structure.ecco_step = _positive(_content(step), step, "StepSize")
 
     def read_simulators(self, element: Any) -> None:
         _only(element, (), {"Simulator"})
@@ -226,8 +221,6 @@ class _Reading:
         for one in children(element):
             kinds = _ENDS[tag(one)]
             _only(one, {"powerBond"} if kinds[0] == kinds[1] else (), set(kinds))
-            if one.get("powerBond") is not None:
-                self.structure.bonds.append(one.get("powerBond"))
             found = list(children(one))
             if sorted(map(tag, found)) != sorted(kinds):
                 raise InputError(
@@ -269,7 +262,7 @@ def _connection(element: Any, ends: list[Any]) -> Connection:
         else:
             variables.append(end)
     groups = tag(element).endswith("GroupConnection")
-    return Connection(tuple(variables), signal, groups, where(element))
+    return Connection(tuple(variables), signal, groups, where(element), element.get("powerBond"))
 
 
 def _function(element: Any, kind: str) -> Transformation | Sum:
@@ -334,8 +327,8 @@ _TYPES: dict[str, Callable[[Any], Value]] = {
 }
 
 
-def _content(element: Any) -> float:
-    """Return the number that an element holds."""
+def content_of(element: Any) -> float:
+    """Return the number that an element holds. Raises InputError."""
     _only(element, (), ())
     text = (element.text or "").strip()
     try:

@@ -22,6 +22,7 @@ from ..ssp.parameters import type_name, written
 from ..ssp.shapes import local_outputs
 from ..ssp.writing import refuse_made, unsaid
 from ..system import Connection, System
+from .ecco import bonds_by_input, write_settings
 from .structure import NAMESPACE
 
 
@@ -39,14 +40,14 @@ def write_osp(system: System, experiment: Experiment, folder: Path) -> list[str]
     for name, part in top.parts():
         if not part.is_sum:
             _add_fmu(files, name, part, system, notes)
-    files[OSP_FILE] = as_xml(_Describer(system, top).document(experiment))
+    files[OSP_FILE] = as_xml(_Describer(system, top, notes).document(experiment))
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"cannot write {folder}: {error.strerror}") from None
     for name, content in files.items():  # the structure last: it names the others
         write_named(folder / name, content)
-    return [*notes, *unsaid(system)]
+    return [*notes, *unsaid(system, ("plain-jacobi", "ecco"))]
 
 
 def _add_fmu(
@@ -76,7 +77,7 @@ def _add_fmu(
 class _Describer:
     """Describes the one system of all components. Raises InputError for what OSP-IS cannot say."""
 
-    def __init__(self, system: System, top: Level) -> None:
+    def __init__(self, system: System, top: Level, notes: list[str]) -> None:
         self._system, self._top = system, top
         self._made: dict[End, tuple[End, Connection]] = {}
         """Connections by their targets."""
@@ -85,6 +86,7 @@ class _Describer:
             self._refuse(connection)
             self._made[target] = source, connection
         self._taken = set(top.elements)
+        self._bonds = bonds_by_input(system, notes)
 
     def document(self, experiment: Experiment) -> Any:
         """Return the whole description."""
@@ -92,12 +94,12 @@ class _Describer:
         root = etree.Element(
             f"{{{NAMESPACE}}}OspSystemStructure", {"version": "0.1"}, nsmap=default
         )
-        step = seconds(self._system.rig.step_ns)
+        step, file = seconds(self._system.rig.step_ns), self._system.rig.file
         for name, text in (
             ("StartTime", repr(experiment.start)),
             ("EndTime", repr(experiment.stop)),
             ("BaseStepSize", repr(step)),
-            ("Algorithm", "fixedStep"),
+            ("Algorithm", "ecco" if file.algorithm == "ecco" else "fixedStep"),
         ):
             _add(root, name).text = text
         simulators = _add(root, "Simulators")
@@ -115,6 +117,8 @@ class _Describer:
         for element in (functions, connections):
             if not len(element):
                 root.remove(element)
+        if file.algorithm == "ecco":
+            write_settings(root, self._system)
         return root
 
     def _part(self, end: End) -> Part:
@@ -163,8 +167,13 @@ class _Describer:
     ) -> None:
         if (made.factor, made.offset) == (1.0, 0.0):
             connection = _add(connections, "VariableConnection")
-            for simulator, variable in (source, target):
-                _add(connection, "Variable", simulator=simulator, name=variable)
+            bond = self._bonds.get(made.target)
+            if bond is not None:
+                connection.set("powerBond", bond)
+            for (simulator, variable), causality in ((source, "output"), (target, "input")):
+                element = _add(connection, "Variable", simulator=simulator, name=variable)
+                if bond is not None:
+                    element.set("causality", causality)
             return
         name = self._function("_".join(target))
         numbers = {"factor": repr(made.factor), "offset": repr(made.offset)}

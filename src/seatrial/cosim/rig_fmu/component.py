@@ -17,10 +17,10 @@ from ..algorithms import Algorithm
 from ..files import Source
 from ..master import Master, Snapshot
 from ..part import Part
-from ..rig import IterationEntry, Rig, RigFile, Scope
+from ..rig import EccoEntry, IterationEntry, Rig, RigFile, Scope
 from ..rollback import Checkpoint
 from ..sums import SumInstance
-from ..system import Connection, System
+from ..system import Bond, Connection, System
 from ..values import Given
 
 Name = tuple[str, str]
@@ -159,6 +159,7 @@ class RigComponent(Component):
                 given = system.parts[component].given
                 given[name] = Given(self.values[reference], f"{self.name}")
         system.connections = [_connection(one) for one in frozen["connections"]]
+        system.bonds = [_bond(*one) for one in frozen["bonds"]]
         system.initial = [_connection(one) for one in frozen["initial"]]
         return system
 
@@ -218,12 +219,13 @@ def _port(one: Mapping[str, Any]) -> Port:
 
 
 def _rig(frozen: Mapping[str, Any]) -> Rig:
-    iteration = frozen["iteration"]
+    iteration, ecco = frozen["iteration"], frozen["ecco"]
     file = RigFile(
         title=frozen["title"],
         step=frozen["step"],
         algorithm=frozen["algorithm"],
         iteration=None if iteration is None else IterationEntry(**iteration),
+        ecco=None if ecco is None else EccoEntry(**ecco),
         components={},
     )
     source = Source(frozen["name"], Path(frozen["name"]), "")
@@ -235,6 +237,10 @@ def _instance(one: Mapping[str, Any], classes: Mapping[str, type[Component]]) ->
         return SumInstance(one["name"], *one["sum"])
     # A host need not have a compiler, nor a place for what one makes.
     return DirectInstance(classes[one["class"]](one["name"]), compiles=False)
+
+
+def _bond(name: str, pairs: list[Any]) -> Bond:
+    return Bond(name, tuple((tuple(one), tuple(other)) for one, other in pairs))
 
 
 def _connection(one: list[Any]) -> Connection:

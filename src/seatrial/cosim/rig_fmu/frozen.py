@@ -121,6 +121,8 @@ def _frozen(system: System, face: Face, name: str) -> dict[str, Any]:
         "fixed_step": seconds(system.rig.step_ns),
         "algorithm": file.algorithm,
         "iteration": None if file.iteration is None else file.iteration.model_dump(),
+        "ecco": None if file.ecco is None else file.ecco.model_dump(),
+        "bonds": [[one.name, one.pairs] for one in system.bonds],
         "parts": [_part(system, part) for part in parts],
         "connections": [_connection(one) for one in system.connections],
         "initial": [_connection(one) for one in system.initial],

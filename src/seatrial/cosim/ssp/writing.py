@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 
 from ...errors import InputError
@@ -132,11 +132,11 @@ def _beyond_version_1(system: System) -> list[str]:
     return notes
 
 
-def unsaid(system: System) -> list[str]:
-    """Return what packages of other tools cannot say of a rig."""
+def unsaid(system: System, sayable: Collection[str] = ("plain-jacobi",)) -> list[str]:
+    """Return what packages of other tools cannot say of a rig; ``sayable`` are algorithms."""
     notes = []
     file = system.rig.file
-    if file.algorithm != "plain-jacobi":
+    if file.algorithm not in sayable:
         notes.append(
             f"the algorithm {file.algorithm!r} cannot be said: other tools couple by plain Jacobi, "
             "one step of delay per connection"
