@@ -99,8 +99,8 @@ def test_initial_loop_is_solved(bench: Bench) -> None:
 def test_loop_without_a_solution_names_its_connections(bench: Bench) -> None:
     with pytest.raises(SimulationError, match=r"loop through a\.y, b\.y does not settle"):
         bench.master(
-            'a = { fmu = "users.py:Scale", set = { gain = 2.0 } }\n'
-            'b = { fmu = "users.py:Scale", set = { gain = 2.0 } }',
+            'a = { fmu = "users.py:Scale", set = { gain = 2.0, bias = 1.0 } }\n'
+            'b = { fmu = "users.py:Scale", set = { gain = 0.5, bias = 1.0 } }',
             '"a.y" = "b.u"\n"b.y" = "a.u"',
         )
 

@@ -143,14 +143,15 @@ class Feedthrough:
     def solve(self, group: Group, steps: int) -> None:
         """Find a fixed point of a loop: as it was last found, else in every other way.
 
-        Relaxation is for iterations that grow, acceleration for those that shrink too slowly.
+        Relaxation is for iterations that grow and alternate, acceleration for those that shrink too
+        slowly and for fixed points that repel.
         """
         places = [self._network.places[name] for name in group.outputs]
         begun = [self._network.signals[p] for p in places]
-        factor, shrinks = 0.0, group.relaxation == _ACCELERATED
+        factor, has_reals = 0.0, any(isinstance(value, float) for value in begun)
         excess: ExcessError | None = None
         for relaxation in dict.fromkeys((group.relaxation, *_TRIED)):
-            if relaxation == _ACCELERATED and not shrinks:
+            if relaxation == _ACCELERATED and not has_reals:
                 continue
             group.relaxation = relaxation
             iterate = self._accelerate if relaxation == _ACCELERATED else self._iterate
@@ -161,7 +162,6 @@ class Feedthrough:
                 settled, factor, excess = False, float("inf"), error
             if settled:
                 return
-            shrinks = shrinks or factor < 1.0
             for place, value in zip(places, begun, strict=True):
                 self._network.signals[place] = value
         group.relaxation = 1.0
@@ -171,7 +171,8 @@ class Feedthrough:
         raise SimulationError(
             f"at t = {self._network.time_ns / NS!r} s the loop through {names} does not settle: "
             f"each repetition changes it {factor:.3g} times as much as the one before, even with "
-            f"a relaxation of {_LEAST_RELAXATION:g}; break it with a component that has a state"
+            f"a relaxation of {_LEAST_RELAXATION:g}, or has no solution; break it with a component "
+            "that has a state"
         )
 
     def _iterate(self, group: Group, places: list[int], steps: int) -> tuple[bool, float]:
