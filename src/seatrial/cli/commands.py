@@ -74,7 +74,7 @@ COMMANDS = {
     "live": Command(
         "live:live", "Run a rig in real time and show it in three dimensions, in a browser."
     ),
-    "fmu": Command("fmu:fmu_app", "List, build, check and describe FMUs."),
+    "fmu": Command("fmu:fmu_app", "List, build, check, describe and survey FMUs."),
     "profile": Command("profile:profile_app", "Check and describe profiles of electronics."),
     "decode": Command("decode:decode_app", "Show recorded streams as text."),
     "sketch": Command("sketch:sketch_app", "Begin, check, build and run Arduino sketches."),

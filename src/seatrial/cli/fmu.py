@@ -1,4 +1,4 @@
-"""``seatrial fmu``: list, build, check and describe FMUs."""
+"""``seatrial fmu``: list, build, check, describe and survey FMUs."""
 
 from __future__ import annotations
 
@@ -36,12 +36,15 @@ from .answer import answer
 from .options import Autopilot, Choices, Every, Match, Settings, Variant, Vehicle, changes_of
 from .rig_fmu import RigBuild
 from .show import MOST_SHOWN, console, print_more, print_notes, print_table
+from .survey import survey_folder
 from .terminals import print_proposals, print_terminals
 
 fmu_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
 
 _WIDEST_NAME = 40
 """Of the column of names, in characters, where a terminal has not the width for all columns."""
+
+fmu_app.command("survey")(survey_folder)
 
 Named = Annotated[str, typer.Argument(metavar="FMU", help="A shipped name, x.fmu or my.py:Class.")]
 

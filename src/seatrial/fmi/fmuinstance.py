@@ -161,8 +161,8 @@ class FmuInstance(ByType):
         """Return FMPy's class with the library loaded."""
         description, folder = self.fmu.description, self.fmu.folder
         library = self.fmu.binary
-        if not library.is_file():
-            raise InputError(f"{self.fmu.path}: {self._missing(library.name)}")
+        if lacking := self.fmu.lacking:
+            raise InputError(f"{self.fmu.path}: {lacking}")
         before = os.getcwd()
         try:
             opened = lenient(self._library)(
@@ -179,16 +179,6 @@ class FmuInstance(ByType):
                 f"{self.fmu.path}: binaries/{self.fmu.platform}/{library.name} cannot be loaded on "
                 f"this machine: {reason(error)}"
             ) from None
-
-    def _missing(self, library: str) -> str:
-        """Return what platforms an FMU has whose library for this machine is not there."""
-        having, platform = self.fmu.platforms, self.fmu.platform
-        if platform in having:
-            return f"binaries/{platform} has no {library}"
-        return (
-            f"cannot be loaded on this machine, which needs binaries for {platform}, or sources; "
-            f"the FMU has binaries for {', '.join(having) or 'no platform'}"
-        )
 
     @property
     def _fmi(self) -> str:

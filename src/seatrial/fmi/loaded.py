@@ -132,6 +132,19 @@ class LoadedFmu:
         return (self.built or self.folder) / "binaries" / self.platform / name
 
     @property
+    def lacking(self) -> str:
+        """What is missing of it to run here, where its library is not there; else empty."""
+        having, library = self.platforms, self.binary
+        if library.is_file():
+            return ""
+        if self.platform in having:
+            return f"binaries/{self.platform} has no {library.name}"
+        return (
+            f"cannot be loaded on this machine, which needs binaries for {self.platform}, or "
+            f"sources; the FMU has binaries for {', '.join(having) or 'no platform'}"
+        )
+
+    @property
     def platforms(self) -> list[str]:
         """Platforms that it has binaries for, as its folders call them."""
         binaries = (self.folder / "binaries").glob("*/*")
