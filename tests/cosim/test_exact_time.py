@@ -66,9 +66,10 @@ def rig(fmu: str, step: str, carrier: str = "", **options: str) -> str:
 def test_every_step_begins_where_the_one_before_ended(
     fmus: Path, carrier: str, milliseconds: int
 ) -> None:
-    """An FMU that takes no other time, and none beyond the stop time, for ten stop times a step."""
+    """An FMU that takes no other time, and none beyond the stop time: 304 stop times, 24 isolated."""
     step_ns = milliseconds * 1_000_000
-    for number in (1, 2, 3, 4, 5, 7, 15, 29, 61, 100):
+    numbers = (3, 29, 100) if carrier == "isolated" else range(1, 39)
+    for number in numbers:
         text = rig("strict.fmu", f"{milliseconds} ms", carrier)
         with running(fmus / "r.toml", text, carrier=carrier, stop_ns=number * step_ns) as master:
             while master.steps < number:

@@ -32,6 +32,9 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
     s->calls = *functions;
     s->real[K] = s->real[X] = 1.0;
     s->real[GAIN] = 2.0;
+#ifdef SHOWS_FLAGS
+    s->real[X] = logging;
+#endif
     return s;
 }
 void fmi2FreeInstance(fmi2Component c) { free(c); }

@@ -60,6 +60,9 @@ fmi3Instance fmi3InstantiateCoSimulation(
     s->real[K] = s->real[X] = s->real[HEIGHT] = 1.0;
     s->real[GAIN] = 2.0;
     s->rows = 3;
+#ifdef SHOWS_FLAGS
+    s->real[X] = logging + 2 * early + 4 * with_events + 8 * (n > 0) + 16 * (update != NULL);
+#endif
     if (!early || strcmp(token, "{fmi3}")) {
         log(environment, fmi3Error, "all", "early return and the right token are needed");
         free(s);
