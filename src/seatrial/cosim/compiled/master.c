@@ -47,8 +47,8 @@ typedef struct {
     int64_t count;
     int64_t start;         /* STORE: place of the first; STEP: its begin, ns after the step's */
     int64_t length;        /* STEP: ns; LOOP: operations in it */
-    int64_t constant;      /* STEP: h is that of `length`, whatever t and the next t are as doubles */
-    int64_t never_back;
+    int32_t constant;      /* STEP: h is that of `length`, whatever t and the next t are as doubles */
+    int32_t never_back;
     Times *times;
     const int64_t *places; /* WRITE: of the sources; LOOP: of its outputs */
     double *numbers;       /* WRITE: the sources' values, converted; LOOP: before, after, begun */
@@ -372,6 +372,8 @@ static int diverges(Pace *p, const double *signals, int64_t steps) {
 /* Carry out what is left of a step; return DONE at its end. */
 static int finish_step(Master *m) {
     int64_t begun = -1; /* when the call before ended, if a step was the operation before */
+    int64_t from_ns = -1, length = -1, constant = -1; /* what t and h are of: most steps share them */
+    double t = 0.0, h = 0.0;
     while (m->at < m->count) {
         Operation *o = m->operations + m->at++;
         if (o->kind == LOOP) {
@@ -389,9 +391,11 @@ static int finish_step(Master *m) {
             break;
         case STEP: {
             const int64_t at_ns = m->begin_ns + o->start;
-            const double t = (double)at_ns / 1e9;
-            const double h = o->constant ? (double)o->length / 1e9
-                                         : (double)(at_ns + o->length) / 1e9 - t;
+            if (at_ns != from_ns || o->length != length || o->constant != constant) {
+                from_ns = at_ns, length = o->length, constant = o->constant;
+                t = (double)at_ns / 1e9;
+                h = constant ? (double)length / 1e9 : (double)(at_ns + length) / 1e9 - t;
+            }
             if (m->cells) m->times[2] = t, m->cells[1] = o->mark;
             if (begun < 0) begun = ticks();
             m->status = ((DoStep)o->function)(o->component, t, h, (int)o->never_back);
