@@ -53,7 +53,9 @@ def build_standalone_fmu(
     carried |= _libraries(carried)
     inside = {f"{_HOME}/{name}": data for name, data in carried.items()}
     folder = TUPLES[_PLATFORM] if version == 3 else _PLATFORM
-    inside[f"binaries/{folder}/{source.stem}.so"] = _launcher(version, source.component_class()(source.name))
+    inside[f"binaries/{folder}/{source.stem}.so"] = _launcher(
+        version, source.component_class()(source.name)
+    )
     files = fmu_files(source, start_values, inside, version)
     destination.parent.mkdir(parents=True, exist_ok=True)
     write_named(destination, zipped(files))

@@ -64,8 +64,8 @@ def can_terminals(component: Component) -> list[CanTerminal]:
         one = CanTerminal(name, kinds["input"], kinds["output"], ends["tx"].port.kind == "input")
         if one.name in component.terminals or one.name in component.ports:
             raise InputError(
-                f"{type(component).__name__}: the CAN terminal {name!r} is {one.name!r} in FMI 3.0, "
-                "and there is another of this name"
+                f"{type(component).__name__}: the CAN terminal {name!r} is {one.name!r} in FMI "
+                "3.0, and there is another of this name"
             )
         found.append(one)
     return found
@@ -78,7 +78,7 @@ def events_header(component: Component | None) -> str:
     """
     buses = can_terminals(component) if component is not None else []
     lines = [
-        "/* Buses: texts that the component receives and sends by. Outputs that wait for events. */",
+        "/* Texts that a component has of buses; and outputs that wait for events. */",
         f"#define BUSES {len(buses)}",
         f"#define BUS_SCALARS {_pairs(buses)}",
     ]
@@ -165,7 +165,9 @@ def add_bus_terminals(terminals: Element, buses: Sequence[CanTerminal]) -> None:
         if bus.is_bus:
             inner = {"name": "Configuration", "matchingRule": "bus"}
             inner["terminalKind"] = f"{KINDS[0]}.configuration"
-            _add_members(SubElement(element, "Terminal", inner), {"BusNotifications": _notifies(bus)})
+            _add_members(
+                SubElement(element, "Terminal", inner), {"BusNotifications": _notifies(bus)}
+            )
         note = SubElement(SubElement(element, "Annotations"), "Annotation", {"type": TOOL})
         SubElement(note, ANNOTATION, {"terminal": bus.own})
 

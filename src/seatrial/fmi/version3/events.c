@@ -35,9 +35,10 @@ static int append(Bytes *to, const void *bytes, size_t size) {
     return 1;
 }
 
-static Bytes *incoming(Front *self, int bus) { return &self->events.parts[2 * bus]; }
-static Bytes *outgoing(Front *self, int bus) { return &self->events.parts[2 * bus + 1]; }
-static Bytes *held_text(Front *self, int i) { return &self->events.parts[2 * BUSES + i]; }
+static Bytes *rx_data(Front *self, int bus) { return &self->events.parts[3 * bus]; }
+static Bytes *incoming(Front *self, int bus) { return &self->events.parts[3 * bus + 1]; }
+static Bytes *outgoing(Front *self, int bus) { return &self->events.parts[3 * bus + 2]; }
+static Bytes *held_text(Front *self, int i) { return &self->events.parts[3 * BUSES + i]; }
 
 static fmi3Status no_memory(Front *self) {
     return front_refuses(self, "%s: there is no memory left", self->name);
@@ -124,10 +125,14 @@ static uint64_t number_at(const unsigned char *from, int size) {
     return number;
 }
 
-/* Let the component have, in its next step, operations that came in this event: one by one, so
-   that one that is damaged takes no other with it. */
-static fmi3Status receive(Front *self, int bus, const unsigned char *bytes, size_t size) {
+/* Let the component have, in its next step, what is in Rx_Data if its clock is active: operation
+   by operation, so that one that is damaged takes no other with it. */
+static fmi3Status receive(Front *self, int bus) {
     const uint64_t now = self->time > 0.0 ? (uint64_t)(self->time * 1e9 + 0.5) : 0;
+    const unsigned char *bytes = rx_data(self, bus)->content;
+    size_t size = self->events.fixed.listens[bus] ? rx_data(self, bus)->size : 0;
+    self->events.fixed.listens[bus] = 0;
+    rx_data(self, bus)->size = 0;
     while (size > 0) {
         uint64_t own = size < 8 ? size : number_at(bytes + 4, 4);
         if (own < 8 || own > size) own = size;
@@ -243,9 +248,9 @@ fmi3Status fmi3UpdateDiscreteStates(fmi3Instance instance, fmi3Boolean *more, fm
     Front *self = instance;
     *more = *ends = *nominals = *states = *defined = fmi3False;
     *next = 0.0;
-    const fmi3Status status = enters(self, "fmi3UpdateDiscreteStates", EVENT_MODE, EVENT_MODE);
+    fmi3Status status = enters(self, "fmi3UpdateDiscreteStates", EVENT_MODE, EVENT_MODE);
     for (int bus = 0; status == fmi3OK && bus < BUSES; bus++) {
-        self->events.fixed.listens[bus] = 0;
+        status = receive(self, bus);
         if (!self->events.fixed.ticks[bus]) outgoing(self, bus)->size = 0;
     }
     return status;
@@ -254,9 +259,10 @@ fmi3Status fmi3UpdateDiscreteStates(fmi3Instance instance, fmi3Boolean *more, fm
 /* An instant is over: what nobody has taken in it is gone. */
 fmi3Status fmi3EnterStepMode(fmi3Instance instance) {
     Front *self = instance;
-    const fmi3Status status = enters(self, "fmi3EnterStepMode", EVENT_MODE, STEP_MODE);
+    fmi3Status status = enters(self, "fmi3EnterStepMode", EVENT_MODE, STEP_MODE);
     for (int bus = 0; status == fmi3OK && bus < BUSES; bus++) {
-        self->events.fixed.listens[bus] = self->events.fixed.ticks[bus] = 0;
+        status = receive(self, bus);
+        self->events.fixed.ticks[bus] = 0;
         outgoing(self, bus)->size = 0;
     }
     return status;
@@ -326,10 +332,11 @@ fmi3Status events_set_binary(Front *self, fmi3ValueReference reference, fmi3Bina
     if (member(reference, &bus) != RX_DATA)
         return front_refuses(self, "%s: there is no Binary input with value reference %u", self->name,
                              reference);
-    if (size == 0) return fmi3OK;
-    if (self->events.fixed.listens[bus]) return receive(self, bus, value, size);
-    return front_refuses(self, "%s: fmi3SetBinary: Rx_Data needs its clock to be active, in event mode",
-                         self->name);
+    if (size > 0 && self->events.fixed.mode != EVENT_MODE)
+        return front_refuses(self, "%s: fmi3SetBinary: Rx_Data is not allowed outside event mode",
+                             self->name);
+    rx_data(self, bus)->size = 0;
+    return append(rx_data(self, bus), value, size) ? fmi3OK : no_memory(self);
 }
 
 fmi3Status events_get_truth(Front *self, fmi3ValueReference reference, fmi3Boolean *value) {

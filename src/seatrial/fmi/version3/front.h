@@ -35,10 +35,10 @@ typedef struct {
     int ticks[BUSES + 1], listens[BUSES + 1];   /* whether Tx_Clock and Rx_Clock are active */
 } Fixed;
 
-#define PARTS (2 * BUSES + HELD_STRINGS)
+#define PARTS (3 * BUSES + HELD_STRINGS)
 
-/* What event mode remembers: of each bus the operations to the component and from it, and the
-   texts that outputs show. */
+/* What event mode remembers: of each bus Rx_Data, the operations to the component and from
+   it; and the texts that outputs show. */
 typedef struct {
     Fixed fixed;
     Bytes parts[PARTS + 1];
