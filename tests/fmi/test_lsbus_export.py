@@ -332,6 +332,25 @@ def test_what_a_node_says_of_its_bit_rate_reaches_the_bus(fmus, tmp_path: Path) 
     assert "node 'b' has 500000 bit/s, the bus's bit_rate is 250000" in bus.messages[-1]
 
 
+@pytest.mark.parametrize(("name", "of"), [("can-signals", "can_bus"), ("canbus", "can_n1")])
+def test_what_is_no_operation_is_answered_and_the_run_goes_on(fmus, tmp_path, name, of) -> None:
+    """CAN XL, which others have, and bytes that are longer than an answer can be."""
+    xl = bytes.fromhex("12000000 17000000 23010000 00 00 00 00 00000000 0100 AA")
+    for k, (wrong, answered) in enumerate(((xl, xl), (70_000 * b"x", 65_535 * b"x"))):
+        peer = Peer(fmus(name), tmp_path / str(k))
+        peer.receive(of, wrong)
+        peer.fmu.updateDiscreteStates()
+        answers = []
+        for step in range(3):
+            peer.fmu.enterStepMode()
+            peer.step(0.1 * step, 0.1)
+            peer.fmu.enterEventMode()
+            answers.append(peer.sent(of))
+        expected = struct.pack("<IIH", 1, 10 + len(answered), len(answered)) + answered
+        assert [one for one in answers if one] == [expected]
+        assert peer.messages == []
+
+
 def test_what_changes_in_steps_shows_in_events_only(fmus, dbc, tmp_path: Path) -> None:
     """Continuous are none: counts, and the bytes of our own ports, wait for the event mode."""
     node = {"database": str(dbc), "sends": "R.Y"}

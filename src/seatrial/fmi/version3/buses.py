@@ -83,9 +83,11 @@ def events_header(component: Component | None) -> str:
         f"#define BUS_SCALARS {_pairs(buses)}",
     ]
     held: dict[type, list[int]] = {kind: [] for kind in _HELD}
-    for scalar in component.scalars if component is not None and buses else ():
-        if scalar.port.kind == "output" and variability(component, scalar).value != "continuous":
-            held[scalar.port.type].append(scalar.reference)
+    if component is not None and buses:
+        for scalar in component.scalars:
+            changes = variability(component, scalar).value
+            if scalar.port.kind == "output" and changes != "continuous":
+                held[scalar.port.type].append(scalar.reference)
     for kind, name in _HELD.items():
         listed = ", ".join(map(str, (*held[kind], 0)))
         lines += [

@@ -265,8 +265,8 @@ class CanBus(Logging, Noise, Component):
                     for other in range(len(self._ports)):
                         if other != node:
                             self._send(other, when, operation)
-                case Status():
-                    pass  # this bus counts its nodes' errors itself
+                case Status() | FormatError():
+                    pass  # this bus counts its nodes' errors itself, and has nothing to repeat
                 case _:
                     self._send(node, when, FormatError(data))
 
