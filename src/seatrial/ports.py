@@ -32,9 +32,13 @@ ROLES = {
     "tunables": "parameters of others that a link sets: a table in its profile",
     "command": "an order that something moves by: a run has a line for one that nothing feeds",
     "bytes": "bytes with their times, as text (`links.text`): a Binary in FMI 3.0",
+    "can": "the same with operations of a CAN bus: a terminal of FMI-LS-BUS too in FMI 3.0",
     "tunable": "values of a link's tunables, in their order: connected to what they set",
 }
 """What whoever runs a component does with a port that declares a role."""
+
+BYTES = ("bytes", "can")
+"""Roles of texts that are bytes with their times."""
 
 VIEWS = {
     "landing-point": ("place", "phase"),

@@ -72,6 +72,18 @@ def without_events(path: Path, to: Path) -> Path:
     return _with_library(path, library, to)
 
 
+def sharing(path: Path, to: Path, flag: str, source: str, *flags: str) -> Path:
+    """Copy a slave's FMU to ``to``, whose instances in one process are one, and that says so.
+
+    ``flag`` is an attribute of its model description, beside which it is said.
+    """
+    shared = ("-include", str(SLAVES / "sharing.h"), *flags)
+    library = compiled(SLAVES / source, to.with_suffix(".so"), *shared)
+    only = f'{flag} canBeInstantiatedOnlyOncePerProcess="true"'
+    with_library = _with_library(path, library, to.with_name(f"one-{to.name}"))
+    return changed(with_library, to, (flag, only))
+
+
 def _with_library(path: Path, library: Path, to: Path) -> Path:
     with zipfile.ZipFile(path) as old, zipfile.ZipFile(to, "w") as new:
         for member in old.infolist():

@@ -216,23 +216,6 @@ def test_a_failing_fmu_ends_the_run_with_what_it_said(trouble: str, message: str
         master.step()
 
 
-@pytest.mark.parametrize("kind", ["fmi2", "fmi3"])
-def test_an_fmu_for_one_instance_per_process(kind: str, rig, native_fmu, tmp_path: Path) -> None:
-    """A second instance would share the state of the first; in a process of its own it has one."""
-    flag = 'canGetAndSetFMUstate="true"' if kind == "fmi2" else 'canGetAndSetFMUState="true"'
-    only = 'canBeInstantiatedOnlyOncePerProcess="true"'
-    path = changed(native_fmu(kind), tmp_path / "only.fmu", (flag, f"{flag} {only}"))
-    components = f'a = {{ fmu = "{path}" }}\nb = {{ fmu = "{path}"'
-    with pytest.raises(
-        InputError, match=r"components\.b\.fmu: only\.fmu .* one instance .* a is that; isolated"
-    ):
-        rig(components + " }")
-    master = rig(components + ", isolated = true, set = { k = 2.0 } }")
-    for _ in range(10):
-        master.step()
-    assert values(master, "a.x", "b.x") == pytest.approx([math.exp(-1), math.exp(-2)], rel=1e-12)
-
-
 @pytest.mark.parametrize("isolated", ["true", "false"])
 @pytest.mark.parametrize("algorithm", ["jacobi", "iterated"])
 def test_an_fmu_that_cannot_restore_its_state_although_it_says_so(

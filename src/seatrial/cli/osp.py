@@ -8,8 +8,7 @@ from typing import Annotated
 import typer
 
 from ..trials.export import export_osp
-from ..trials.trial import choices_in
-from .options import Autopilot, Choices, Variant, Vehicle, changes_of
+from .options import Autopilot, Choices, Settings, Variant, Vehicle, changes_of
 from .show import console, print_notes
 
 osp_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
@@ -28,13 +27,14 @@ def export(
     out: Annotated[
         Path | None, typer.Option(help="The folder (default: NAME-osp in this folder).")
     ] = None,
+    settings: Settings = None,
     variant: Variant = None,
     choices: Choices = None,
     vehicle: Vehicle = None,
     autopilot: Autopilot = None,
 ) -> None:
     """Write a rig, or a trial with its settings, as an OspSystemStructure.xml with its FMUs."""
-    chosen = choices_in(changes_of(None, choices, vehicle, autopilot), "--choose")
-    folder, notes = export_osp(name, out, variant, choices=chosen)
+    changes = changes_of(settings, choices, vehicle, autopilot)
+    folder, notes = export_osp(name, out, variant, changes=changes)
     print_notes(notes)
     console.print(str(folder / "OspSystemStructure.xml"), soft_wrap=True)

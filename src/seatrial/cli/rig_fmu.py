@@ -8,20 +8,16 @@ from pathlib import Path
 from typing import Any
 
 from ..cosim.assembly import assemble
-from ..cosim.flattening import load_rig
 from ..cosim.native_carriers import carry_natively
-from ..cosim.paths import split_path
 from ..cosim.rig import Rig
 from ..cosim.rig_fmu.native import build_native_rig, why_not_native
 from ..cosim.rig_fmu.python import build_python_rig
 from ..cosim.system import Engine, System
 from ..cosim.unread import leave_out_unread
-from ..errors import InputError, unknown
+from ..errors import InputError
 from ..shipped import available
-from ..trials.trial import choices_in
+from ..trials.rig_changes import changed_rig, set_values
 from .show import console, print_notes
-
-_OF_RIG = ("step", "algorithm")
 
 
 @dataclass(frozen=True)
@@ -79,20 +75,11 @@ class RigBuild:
         rig = _loaded(self.name, self.changes)
         system = assemble(rig, engine, variant=self.variant, seed=self.seed)
         try:
-            leave_out_unread(system, self._set(system))
+            leave_out_unread(system, set_values(system, self.changes))
         except BaseException:
             system.discard()
             raise
         return system
-
-    def _set(self, system: System) -> set[str]:
-        """Give components what the command line sets; return their names."""
-        named = set()
-        for key, written in self.changes.items():
-            if "." in key and not key.startswith("choices."):
-                system.set(key, written, "--set", Path.cwd())
-                named.add(split_path(system.parts, key)[0])
-        return named
 
 
 def _loaded(name: str, changes: Mapping[str, Any]) -> Rig:
@@ -101,9 +88,4 @@ def _loaded(name: str, changes: Mapping[str, Any]) -> Rig:
         vehicles = available("harness/rigs/vehicles")
         if name in vehicles:
             name = str(vehicles[name])
-    rig = load_rig(name, None, choices_in(changes, "--choose"))
-    own = {key: value for key, value in changes.items() if "." not in key}
-    for key in own:
-        if key not in _OF_RIG:
-            raise InputError(f"--set: {unknown('key', key, _OF_RIG)}, or component.port")
-    return rig.changed(own) if own else rig
+    return changed_rig(name, changes)

@@ -14,9 +14,8 @@ from ..cosim.ssp.shapes import Version
 from ..cosim.ssp.tools import TOOLS, findings
 from ..errors import InputError, unknown
 from ..trials.export import export_ssp
-from ..trials.trial import choices_in
 from .answer import answer
-from .options import Autopilot, Choices, Variant, Vehicle, changes_of
+from .options import Autopilot, Choices, Settings, Variant, Vehicle, changes_of
 from .show import console, print_notes
 
 _VERSIONS: dict[str, Version] = {"1.0": "1.0", "2.0": "2.0"}
@@ -32,6 +31,7 @@ def export(
     out: Annotated[
         Path | None, typer.Option(help="The package (default: NAME.ssp in this folder).")
     ] = None,
+    settings: Settings = None,
     variant: Variant = None,
     choices: Choices = None,
     vehicle: Vehicle = None,
@@ -50,9 +50,9 @@ def export(
     components stand in one system.
     """
     _refuse_unknown(tool)
-    chosen = choices_in(changes_of(None, choices, vehicle, autopilot), "--choose")
+    changes = changes_of(settings, choices, vehicle, autopilot)
     path, notes = export_ssp(
-        name, out, variant, choices=chosen, tool=tool, version=_version(version)
+        name, out, variant, changes=changes, tool=tool, version=_version(version)
     )
     print_notes(notes)
     answer.result = {"file": str(path)}

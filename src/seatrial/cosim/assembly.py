@@ -31,11 +31,10 @@ def assemble(
     """
     system = System(rig, engine, seed, variant or rig.file.variant)
     profiles: dict[str, Profiles] = {}
-    once: dict[str, str] = {}
     try:
         for name, placed in rig.components.items():
             progress(f"{name} ({placed.entry.what})")
-            system.parts[name] = load_part(rig, name, engine, once)
+            system.parts[name] = load_part(rig, name, engine)
             scope = placed.scope
             if scope.path not in profiles:
                 profiles[scope.path] = Profiles(scope.file.profile, scope.read_from.path.parent)

@@ -171,11 +171,14 @@ class Resolver:
         instance = self._parts[path].instance
         name, _, member = rest.partition(".")
         scalars = port_scalars(instance.variables, rest)
-        # Nothing is connected to a fixed parameter: a terminal may have its name.
-        fixed = scalars and kind_of(scalars[0]) == "fixed parameter"
-        if (scalars and not (fixed and name in instance.terminals)) or (
-            rest in instance.variables.terms
-        ):
+        # A terminal may have the name of what nothing is connected to: a fixed parameter, or what
+        # FMUs say of their networks beside the data and clocks that are the terminal's.
+        members = instance.terminals[name].members if name in instance.terminals else {}
+        made = any(
+            instance.variables[m].is_made for m in members.values() if m in instance.variables
+        )
+        other = scalars and (made or kind_of(scalars[0]) == "fixed parameter")
+        if (scalars and not (members and other)) or rest in instance.variables.terms:
             return Group({"": [self._end(path, rest)]})
         if name in instance.terminals:
             terminal = instance.terminals[name]

@@ -26,13 +26,15 @@ if TYPE_CHECKING:
 _TIMEOUT_S = 60.0
 """Longest wall time of a call of an isolated component, where the rig says nothing else."""
 
+_ONCE: set[str] = set()
+"""Hashes of FMUs that allow one instance for each process, and have had theirs in this one.
 
-def load_part(rig: Rig, name: str, engine: Engine, once: dict[str, str]) -> Part:
-    """Return the component ``name`` of a rig, with nothing given yet.
+Their libraries stay loaded, with what a run has left in them.
+"""
 
-    ``once`` has, by their hashes, the names of the components in this process whose FMU allows
-    one instance only; it is kept up to date. Raises InputError.
-    """
+
+def load_part(rig: Rig, name: str, engine: Engine) -> Part:
+    """Return the component ``name`` of a rig, with nothing given yet. Raises InputError."""
     placed = rig.components[name]
     entry, where, every = placed.entry, placed.where, 1
     if entry.sum is not None:
@@ -48,7 +50,7 @@ def load_part(rig: Rig, name: str, engine: Engine, once: dict[str, str]) -> Part
             )
     timeout_s = _timeout_s(entry, f"{where}.timeout")
     try:
-        return _part(entry, name, placed.scope, engine, timeout_s, once, every)
+        return _part(entry, name, placed.scope, engine, timeout_s, every)
     except InputError as error:
         raise InputError(f"{where}.fmu: {error}") from None
 
@@ -82,7 +84,6 @@ def _part(
     scope: Scope,
     engine: Engine,
     timeout_s: float,
-    once: dict[str, str],
     every: int,
 ) -> Part:
     """Return a component; an isolated one is an FMU with any engine."""
@@ -105,7 +106,7 @@ def _part(
         from ..fmi.load import load_fmu
 
         loaded = load_fmu(source, _options(entry, load_fmu(source), scope.tolerance))
-        instance, sha256 = _of_fmu(loaded, entry, name, timeout_s, once)
+        instance, sha256 = _of_fmu(loaded, entry, name, timeout_s)
         return Part(name, entry.fmu, instance, sha256, "", every)
     code = bundle_name(source)
     known = checked(source, code)
@@ -117,30 +118,25 @@ def _part(
     from ..fmi.load import load_fmu
 
     loaded = replace(load_fmu(cached_fmu(source, code)), origin=source.folder)
-    instance, sha256 = _of_fmu(loaded, entry, name, timeout_s, once)
+    instance, sha256 = _of_fmu(loaded, entry, name, timeout_s)
     return Part(name, entry.fmu, instance, sha256, code, every, undecided=known.undecided)
 
 
 def _of_fmu(
-    loaded: LoadedFmu, entry: ComponentEntry, name: str, timeout_s: float, once: dict[str, str]
+    loaded: LoadedFmu, entry: ComponentEntry, name: str, timeout_s: float
 ) -> tuple[Instance, str]:
     """Return an instance of an FMU, and the hash of its file.
 
-    ``once`` has, by their hashes, the names of the components in this process whose FMU allows
-    one instance only.
+    Of one that allows one instance for each process, a further one gets a process of its own.
     """
     from ..fmi.isolated import IsolatedInstance
     from ..fmi.load import open_instance
 
-    if entry.isolated:
+    is_further = loaded.only_once and loaded.sha256 in _ONCE
+    if entry.isolated or is_further:
         sandboxed = entry.isolated == "sandboxed"
         instance = IsolatedInstance(loaded, name, timeout_s, sandboxed=sandboxed)
         return instance, loaded.sha256
     if loaded.only_once:
-        if loaded.sha256 in once:
-            raise InputError(
-                f"{loaded.path.name} says that a process can have one instance of it only, and "
-                f"{once[loaded.sha256]} is that; isolated = true gives {name} a process of its own"
-            )
-        once[loaded.sha256] = name
+        _ONCE.add(loaded.sha256)
     return open_instance(loaded, name), loaded.sha256

@@ -114,7 +114,7 @@ def _register(slave: Slave) -> None:
         variable = _VARIABLES[port.type](
             scalar.name,
             causality=_CAUSALITY[port.kind],
-            variability=_variability(component, scalar),
+            variability=variability(component, scalar),
             initial=Fmi2Initial.calculated if output else None,
             description=_text(port.description),
             getter=lambda reference=reference: component.values[reference],
@@ -122,7 +122,8 @@ def _register(slave: Slave) -> None:
         slave.register_variable(variable, nested=False)
 
 
-def _variability(component: Component, scalar: ScalarPort) -> Fmi2Variability:
+def variability(component: Component, scalar: ScalarPort) -> Fmi2Variability:
+    """Return the variability of a variable in FMI."""
     port = scalar.port
     if isinstance(port, Parameter):
         return Fmi2Variability.tunable if port.tunable else Fmi2Variability.fixed

@@ -74,7 +74,8 @@ def fmu_bytes(
 ) -> bytes:
     """Return the content of the FMU file; see `build_fmu`."""
     if platforms or version == 3:
-        carried = checked_libraries(source.stem, platforms, version, compiled)
+        component = source.component_class()(source.name)
+        carried = checked_libraries(source.stem, platforms, version, compiled, component)
     else:
         carried = bare_libraries(source.stem)
         with suppress(InputError):

@@ -24,7 +24,7 @@ from .fmi3model import Fmi3Model
 from .fmi3slave import Fmi3Slave
 from .instance import Instance
 from .loaded import LoadedFmu
-from .lsbus import port_terminals, read_buses, with_ports
+from .lsbus import port_terminals, read_buses, with_ports, without_own
 from .modelfile import read_model
 from .options import DEFAULTS, FmuOptions, Interface
 from .osp import read_osp
@@ -112,8 +112,9 @@ def _with_content(fmu: LoadedFmu) -> LoadedFmu:
         content = described(fmu.model, fmu.description, fmu.options)
     except InputError as error:
         raise InputError(f"{fmu.path}: {error}") from None
-    buses, notes = read_buses(fmu.folder, fmu.model, content.variables, content.clocks)
-    variables, clocks = with_ports(buses, content.variables, content.clocks)
+    usable = without_own(fmu.folder, fmu.model, content.variables, content.clocks)
+    buses, notes = read_buses(fmu.folder, fmu.model, *usable)
+    variables, clocks = with_ports(buses, *usable)
     others = content.others | (content.variables.keys() - variables.keys())
     terminals = read_terminals(fmu.folder, fmu.path, variables, others)
     return replace(

@@ -17,14 +17,16 @@ from ..terminals import Terminal
 from .clocks import Clock, Clocks
 from .instance import Variable, Variables
 from .modelfile import ModelFile
-from .terminals import PLACE, attribute
+from .terminals import PLACE, TOOL, attribute
 from .xmlfile import read_xml
 
-_KINDS = ("org.fmi-ls-bus.network-terminal", "org.fmi-standard.fmi-ls-bus.network-terminal")
+KINDS = ("org.fmi-ls-bus.network-terminal", "org.fmi-standard.fmi-ls-bus.network-terminal")
 """The second stands in drafts."""
 _MEMBERS = ("Rx_Data", "Rx_Clock", "Tx_Data", "Tx_Clock")
-_MANIFEST = "extra/org.fmi-standard.fmi-ls-bus/fmi-ls-manifest.xml"
-_CAN = "application/org.fmi-standard.fmi-ls-bus.can"
+MANIFEST = "extra/org.fmi-standard.fmi-ls-bus/fmi-ls-manifest.xml"
+CAN = "application/org.fmi-standard.fmi-ls-bus.can"
+ANNOTATION = "port"
+"""Of a terminal that our FMUs have for others: as a port of bytes with times it is there too."""
 
 
 @dataclass(frozen=True)
@@ -52,13 +54,10 @@ def read_buses(
     ``folder`` is where the FMU lies unpacked. Raises InputError for a terminal of CAN that is
     none.
     """
-    if not clocks.by_reference or not (folder / PLACE).is_file():
-        return [], []
-    called = model.called.removesuffix(": modelDescription.xml")
-    listed = read_xml(folder / PLACE, f"{called}: {PLACE}")
-    elements = [one for one in listed.iter("Terminal") if one.get("terminalKind") in _KINDS]
+    elements = [one for one in _elements(folder, model, clocks) if not _is_own(one)]
     if not elements:
         return [], []
+    called = _called(model)
     binaries = {e.get("name"): dict(e.attrib) for e in model.variables() if e.tag == "Binary"}
     reading = _Reading(binaries, variables, clocks, _is_bus(folder, called))
     found: dict[str, BusTerminal] = {}
@@ -68,9 +67,9 @@ def read_buses(
         try:
             members = _members(element)
             mime = binaries.get(members["Rx_Data"], {}).get("mimeType", "").partition(";")[0]
-            if mime.strip() != _CAN:
+            if mime.strip() != CAN:
                 notes.append(
-                    f"bus terminal {name!r} has {mime or 'no mimeType'}, only {_CAN} is known: "
+                    f"bus terminal {name!r} has {mime or 'no mimeType'}, only {CAN} is known: "
                     "its clocks and data are signals"
                 )
                 continue
@@ -83,6 +82,42 @@ def read_buses(
                 f"{called}: {PLACE}: bus terminal {name!r} (line {line}): {error}"
             ) from None
     return list(found.values()), notes
+
+
+def without_own(
+    folder: Path, model: ModelFile, variables: Variables, clocks: Clocks
+) -> tuple[Variables, Clocks]:
+    """Return variables and clocks without those that an FMU of ours has for other importers.
+
+    What they are for it has as a port of bytes too, each of which has its own time.
+    """
+    own = [one for one in _elements(folder, model, clocks) if _is_own(one)]
+    gone = {
+        member.get("variableName") for one in own for member in one.iter("TerminalMemberVariable")
+    }
+    if not gone:
+        return variables, clocks
+    left = Clocks(
+        {r: clock for r, clock in clocks.by_reference.items() if clock.name not in gone},
+        {name: one for name, one in clocks.signals.items() if name not in gone},
+        {name: some for name, some in clocks.clocked.items() if name not in gone},
+    )
+    return Variables({name: v for name, v in variables.items() if name not in gone}), left
+
+
+def _elements(folder: Path, model: ModelFile, clocks: Clocks) -> list[Any]:
+    if not clocks.by_reference or not (folder / PLACE).is_file():
+        return []
+    listed = read_xml(folder / PLACE, f"{_called(model)}: {PLACE}")
+    return [one for one in listed.iter("Terminal") if one.get("terminalKind") in KINDS]
+
+
+def _is_own(element: Any) -> bool:
+    return element.find(f"Annotations/Annotation[@type='{TOOL}']/{ANNOTATION}") is not None
+
+
+def _called(model: ModelFile) -> str:
+    return model.called.removesuffix(": modelDescription.xml")
 
 
 def _members(element: Any) -> dict[str, str]:
@@ -98,9 +133,9 @@ def _members(element: Any) -> dict[str, str]:
 
 def _is_bus(folder: Path, called: str) -> bool:
     """Say if the FMU is a bus, to which nodes are connected, and no node of one."""
-    if not (folder / _MANIFEST).is_file():
+    if not (folder / MANIFEST).is_file():
         return False
-    manifest = read_xml(folder / _MANIFEST, f"{called}: {_MANIFEST}")
+    manifest = read_xml(folder / MANIFEST, f"{called}: {MANIFEST}")
     return manifest.get("isBusSimulationFMU") in ("true", "1")
 
 

@@ -9,7 +9,8 @@ from xml.etree.ElementTree import Element, indent, tostring
 
 from ..component import Component
 from .direct import DirectInstance
-from .terminals import PLACE, terminals_xml
+from .terminals import PLACE, terminals_element, xml_text
+from .version3.buses import add_bus_terminals, can_terminals, manifest
 from .version3.description import arrays, version3
 
 _TIMESTAMP = (1980, 1, 1, 0, 0, 0)
@@ -22,10 +23,13 @@ def described_files(root: Element, component: Component, version: int) -> dict[s
     """
     instance = DirectInstance(component)
     whole = arrays(component.scalars, root) if version == 3 else ()
-    files = {}
+    buses = can_terminals(component) if version == 3 else []
+    files = manifest(buses)
     if instance.terminals:
-        files[PLACE] = terminals_xml(instance.terminals, instance.variables, whole)
-    described = version3(root, component.scalars) if version == 3 else root
+        terminals = terminals_element(instance.terminals, instance.variables, whole)
+        add_bus_terminals(terminals[0], buses)
+        files[PLACE] = xml_text(terminals)
+    described = version3(root, component.scalars, buses) if version == 3 else root
     indent(described)
     text: bytes = tostring(described, encoding="UTF-8", xml_declaration=True)
     return {"modelDescription.xml": text, **files}

@@ -13,6 +13,7 @@ from fmpy.model_description import ModelDescription
 
 from ..errors import InputError, unknown
 from ..links.text import unpacked
+from ..ports import BYTES
 from ..units import Unit, defined_unit
 from .clocks import Clock, clock_types, read_clock
 from .instance import Value, Variable
@@ -135,7 +136,7 @@ class ScalarReader:
             raise InputError(f"its declared type {declared!r} is not defined")
         said = self._inherited(value, self._types.get(declared), kind)
         ours = _ours(annotations)
-        if fmi_type == "Binary" and ours.get("role") == "bytes":
+        if fmi_type == "Binary" and ours.get("role") in BYTES:
             kind = str  # as our components have it
         texts = _starts(element, value, kind, bool(dimensions))
         if fmi_type == "Binary" and kind is str:

@@ -67,6 +67,13 @@ def terminals_xml(
 
     Raises InputError as `by_term`.
     """
+    return xml_text(terminals_element(terminals, variables, arrays))
+
+
+def terminals_element(
+    terminals: Mapping[str, Terminal], variables: Variables, arrays: Collection[str] = ()
+) -> Element:
+    """Return what `terminals_xml` writes; its first element holds the terminals."""
     root = Element("fmiTerminalsAndIcons", {"fmiVersion": "3.0"})
     listed = SubElement(root, "Terminals")
     for name, whole, members in by_term(terminals, variables):
@@ -79,7 +86,7 @@ def terminals_xml(
         if name != whole:
             note = SubElement(SubElement(element, "Annotations"), "Annotation", {"type": TOOL})
             SubElement(note, "term", {"of": whole})
-    return xml_text(root)
+    return root
 
 
 def _members_of(member: str, scalars: Scalars, arrays: Collection[str]) -> dict[str, str]:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from ..component import seconds
 from ..cosim.assembly import assemble
-from ..cosim.flattening import load_rig
 from ..cosim.osp.writing import write_osp
 from ..cosim.ssp.describing import Experiment
 from ..cosim.ssp.shapes import Version
@@ -15,6 +15,7 @@ from ..cosim.ssp.tools import takes_systems
 from ..cosim.ssp.writing import write_ssp
 from ..cosim.system import System
 from ..errors import InputError
+from .rig_changes import changed_rig, set_values
 from .trial import Trial, is_trial, load_trial
 
 _USUAL_STOP = 10.0
@@ -26,19 +27,20 @@ def export_ssp(
     out: Path | None = None,
     variant: str | None = None,
     *,
-    choices: Mapping[str, str] | None = None,
+    changes: Mapping[str, Any] | None = None,
     tool: str | None = None,
     version: Version = "1.0",
 ) -> tuple[Path, list[str]]:
     """Write the trial or rig ``name`` as an SSP package of ``version``; return its path and notes.
 
     ``name`` is a shipped name or a path; where a trial and a rig share it, the trial is meant.
-    The package is ``out``, or ``NAME.ssp`` in the current folder. ``choices`` are of the rig.
+    The package is ``out``, or ``NAME.ssp`` in the current folder. ``changes`` are those of
+    `Trial.changed`; of a rig its step, algorithm, ``choices.NAME`` and ``component.port``.
     Rigs inside rigs are systems inside systems, unless ``tool``, one of `TOOLS`, takes none.
     The notes say what SSP cannot. Raises InputError.
     """
     in_one = tool is not None and not takes_systems(tool)
-    system, experiment, notes = _opened(name, variant, choices or {})
+    system, experiment, notes = _opened(name, variant, changes or {})
     path = out or Path(f"{experiment.name}.ssp")
     try:
         if path.resolve() == Path(name).resolve():
@@ -54,14 +56,14 @@ def export_osp(
     out: Path | None = None,
     variant: str | None = None,
     *,
-    choices: Mapping[str, str] | None = None,
+    changes: Mapping[str, Any] | None = None,
 ) -> tuple[Path, list[str]]:
     """Write the trial or rig ``name`` for libcosim; return the folder and notes.
 
     The folder is ``out``, or ``NAME-osp`` in the current folder; the rest is as for
     `export_ssp`.
     """
-    system, experiment, notes = _opened(name, variant, choices or {})
+    system, experiment, notes = _opened(name, variant, changes or {})
     folder = out or Path(f"{experiment.name}-osp")
     try:
         if folder.resolve() in (Path(name).resolve(), Path(name).resolve().parent):
@@ -75,18 +77,22 @@ def export_osp(
 
 
 def _opened(
-    name: str, variant: str | None, choices: Mapping[str, str]
+    name: str, variant: str | None, changes: Mapping[str, Any]
 ) -> tuple[System, Experiment, list[str]]:
     """Return a trial or rig assembled, its name and times, and what no package can say of it."""
     if is_trial(name):
-        changes = {f"choices.{key}": value for key, value in choices.items()}
         if variant is not None:
-            changes["variant"] = variant
-        trial = load_trial(name, changes=changes, origin="--choose, --variant")
+            changes = {**changes, "variant": variant}
+        trial = load_trial(name, changes=changes, origin="--set")
         times = seconds(trial.start_ns), seconds(trial.stop_ns)
         return _set_up(trial), Experiment(trial.name, *times), [*trial.notes, *_unsaid(trial)]
-    rig = load_rig(name, choices=choices)
+    rig = changed_rig(name, changes)
     system = assemble(rig, "fmu", variant=variant)
+    try:
+        set_values(system, changes)
+    except BaseException:
+        system.discard()
+        raise
     notes = [f"a rig has no stop time: the package says {_USUAL_STOP:g} s"]
     return system, Experiment(rig.read_from.name, 0.0, _USUAL_STOP), notes
 

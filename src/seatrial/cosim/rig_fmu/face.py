@@ -6,12 +6,13 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from ...fmi.instance import Variable, Variables
+from ...ports import BYTES
 from ...terminals import Terminal
 from ..joining import End, Group, Resolver
 from ..network import Name, sources_by_target
 from ..system import System
 
-_KEPT_ROLES = ("seed", "wall-clock", "address", "run-folder", "exceeded")
+_KEPT_ROLES = ("seed", "wall-clock", "address", "run-folder", "exceeded", *BYTES)
 """Roles that mean the same for one component and for several in one."""
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pythonfmu
 
+from ...component import Component
 from ...errors import InputError, unknown
 from ..cache import cache_folder, write_named
 from ..native.compiler import FLAGS, HERE, TARGETS, TUPLES, library, library_here
@@ -33,12 +34,16 @@ def bare_libraries(stem: str) -> dict[str, bytes]:
 
 
 def checked_libraries(
-    stem: str, platforms: Sequence[str], version: int, compiled: Compiler | None = None
+    stem: str,
+    platforms: Sequence[str],
+    version: int,
+    compiled: Compiler | None = None,
+    component: Component | None = None,
 ) -> dict[str, bytes]:
     """Return libraries that check every call, and pythonfmu's behind them, by path in the FMU.
 
-    ``version`` of FMI is 2 or 3. Raises InputError without a compiler, and for a platform that
-    pythonfmu has no library for.
+    ``version`` of FMI is 2 or 3; with 3 a ``component`` has events if it has CAN terminals.
+    Raises InputError without a compiler, and for a platform that pythonfmu has no library for.
     """
     behind = pythonfmu_libraries()
     carried = {}
@@ -47,7 +52,8 @@ def checked_libraries(
             raise InputError(unknown("platform", platform, [*behind]))
         own = behind[platform]
         folder = TUPLES[platform] if version == 3 else platform
-        checked = _checked_library(platform, version, compiled or _compiler(platform))
+        sources = forwarding_sources(version, component)
+        checked = _checked_library(sources, platform, compiled or _compiler(platform))
         carried[f"binaries/{folder}/{stem}{own.suffix}"] = checked
         carried[f"resources/pythonfmu/{own.name}"] = own.read_bytes()
     return carried
@@ -68,9 +74,8 @@ def _compiler(platform: str) -> Compiler:
     return library if has_zig or platform != HERE else library_here
 
 
-def _checked_library(platform: str, version: int, compiled: Compiler) -> bytes:
-    """Return the library, which is the same for all components: it is kept in the user's cache."""
-    sources = forwarding_sources(version)
+def _checked_library(sources: Mapping[str, bytes], platform: str, compiled: Compiler) -> bytes:
+    """Return the library, the same for nearly all components: it is kept in the user's cache."""
     what = repr((sorted(sources.items()), FLAGS, compiled.__name__))
     name = f"{platform}-{hashlib.sha256(what.encode()).hexdigest()[:16]}{TARGETS[platform][1]}"
     path = cache_folder("fronts") / name

@@ -55,10 +55,10 @@ def build_native_fmu(
     cls = source.component_class()
     refuse(source)
     sources, own = _sources(partial(_made, source, start_values or {}), source.origin)
-    if version == 3:
-        sources |= front_sources()
-    root = _described(source, sources, start_values or {})
     example = cls(source.name)
+    if version == 3:
+        sources |= front_sources(example)
+    root = _described(source, sources, start_values or {})
     sources["model.h"] = header(example, str(root.get("guid")), own).encode()
     files = {f"sources/{name}": content for name, content in sources.items()}
     if version == 3:

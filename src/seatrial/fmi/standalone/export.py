@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from ...component import Component
 from ...errors import InputError
 from ..bundle import bundled
 from ..cache import write_named
@@ -52,7 +53,9 @@ def build_standalone_fmu(
     carried |= _libraries(carried)
     inside = {f"{_HOME}/{name}": data for name, data in carried.items()}
     folder = TUPLES[_PLATFORM] if version == 3 else _PLATFORM
-    inside[f"binaries/{folder}/{source.stem}.so"] = _launcher(version)
+    inside[f"binaries/{folder}/{source.stem}.so"] = _launcher(
+        version, source.component_class()(source.name)
+    )
     files = fmu_files(source, start_values, inside, version)
     destination.parent.mkdir(parents=True, exist_ok=True)
     write_named(destination, zipped(files))
@@ -101,7 +104,7 @@ def _libraries(files: Mapping[str, bytes]) -> dict[str, bytes]:
     return {**listed, "lib/libraries.txt": "".join(f"{name}\n" for name in found).encode()}
 
 
-def _launcher(version: int) -> bytes:
+def _launcher(version: int, component: Component) -> bytes:
     libpython = find_libpython()
     assert libpython is not None
     defined = {
@@ -111,7 +114,7 @@ def _launcher(version: int) -> bytes:
     }
     lines = "".join(f'#define {name} "{value}"\n' for name, value in defined.items())
     sources = {
-        **checked_sources(version),
+        **checked_sources(version, component),
         "launcher.c": Path(__file__).with_name("launcher.c").read_bytes(),
         "python.h": lines.encode(),
     }

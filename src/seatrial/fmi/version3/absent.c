@@ -38,33 +38,29 @@ TYPE(UInt64)
         return none_of(instance, count, what);                                                  \
     }
 
-/* ------------------------------------------------------------------ clocks */
+/* ------------------------------------------------------------------ intervals of clocks */
 
 #define REFERENCES fmi3Instance instance, const fmi3ValueReference references[], size_t count
 
-ABSENT(fmi3GetClock, count, "Clock",
-       (REFERENCES, fmi3Clock values[]), references, values)
-ABSENT(fmi3SetClock, count, "Clock",
-       (REFERENCES, const fmi3Clock values[]), references, values)
-ABSENT(fmi3GetIntervalDecimal, count, "Clock",
+ABSENT(fmi3GetIntervalDecimal, count, "time-based Clock",
        (REFERENCES, fmi3Float64 intervals[], fmi3IntervalQualifier qualifiers[]),
        references, intervals, qualifiers)
-ABSENT(fmi3GetIntervalFraction, count, "Clock",
+ABSENT(fmi3GetIntervalFraction, count, "time-based Clock",
        (REFERENCES, fmi3UInt64 counters[], fmi3UInt64 resolutions[],
         fmi3IntervalQualifier qualifiers[]), references, counters, resolutions, qualifiers)
-ABSENT(fmi3GetShiftDecimal, count, "Clock",
+ABSENT(fmi3GetShiftDecimal, count, "time-based Clock",
        (REFERENCES, fmi3Float64 shifts[]), references, shifts)
-ABSENT(fmi3GetShiftFraction, count, "Clock",
+ABSENT(fmi3GetShiftFraction, count, "time-based Clock",
        (REFERENCES, fmi3UInt64 counters[], fmi3UInt64 resolutions[]),
        references, counters, resolutions)
-ABSENT(fmi3SetIntervalDecimal, count, "Clock",
+ABSENT(fmi3SetIntervalDecimal, count, "time-based Clock",
        (REFERENCES, const fmi3Float64 intervals[]), references, intervals)
-ABSENT(fmi3SetIntervalFraction, count, "Clock",
+ABSENT(fmi3SetIntervalFraction, count, "time-based Clock",
        (REFERENCES, const fmi3UInt64 counters[], const fmi3UInt64 resolutions[]),
        references, counters, resolutions)
-ABSENT(fmi3SetShiftDecimal, count, "Clock",
+ABSENT(fmi3SetShiftDecimal, count, "time-based Clock",
        (REFERENCES, const fmi3Float64 shifts[]), references, shifts)
-ABSENT(fmi3SetShiftFraction, count, "Clock",
+ABSENT(fmi3SetShiftFraction, count, "time-based Clock",
        (REFERENCES, const fmi3UInt64 counters[], const fmi3UInt64 resolutions[]),
        references, counters, resolutions)
 
@@ -90,13 +86,6 @@ ABSENT(fmi3EnterConfigurationMode, 1, "structural parameter to set",
        (fmi3Instance instance), NULL)
 ABSENT(fmi3ExitConfigurationMode, 1, "structural parameter to set",
        (fmi3Instance instance), NULL)
-ABSENT(fmi3EnterEventMode, 1, "event mode", (fmi3Instance instance), NULL)
-ABSENT(fmi3EnterStepMode, 1, "event mode", (fmi3Instance instance), NULL)
-ABSENT(fmi3EvaluateDiscreteStates, 1, "event mode", (fmi3Instance instance), NULL)
-ABSENT(fmi3UpdateDiscreteStates, 1, "event mode",
-       (fmi3Instance instance, fmi3Boolean *more, fmi3Boolean *ends, fmi3Boolean *nominals,
-        fmi3Boolean *states, fmi3Boolean *defined, fmi3Float64 *next),
-       more, ends, nominals, states, defined, next)
 ABSENT(fmi3EnterContinuousTimeMode, 1, "model exchange", (fmi3Instance instance), NULL)
 ABSENT(fmi3CompletedIntegratorStep, 1, "model exchange",
        (fmi3Instance instance, fmi3Boolean no_earlier, fmi3Boolean *event, fmi3Boolean *ends),

@@ -11,14 +11,16 @@ from itertools import groupby
 from xml.etree.ElementTree import Element, SubElement
 
 from ...links.text import packed
-from ...ports import Port, ScalarPort
+from ...ports import BYTES, Port, ScalarPort
 from ..osp import QUANTITIES
 from ..terminals import TOOL, xml_text
+from .buses import CanTerminal, add_bus_outputs, bus_variables
 
 MORE_THAN_ONE = 1 << 20
 """Part of a value reference for each element that follows the first; see ``front.h``."""
 _TIME = MORE_THAN_ONE - 1
-_MOST_ELEMENTS = 4096
+_MOST_ELEMENTS = 4095
+"""Of an array; the references of more are those of buses."""
 
 BINARY = "application/vnd.seatrial.chunks"
 """Type of the content of a Binary; see ``chunks.c``."""
@@ -28,10 +30,13 @@ _SHARED = ("unit", "min", "max", "nominal")
 _CATEGORIES = ("logStatusWarning", "logStatusDiscard", "logStatusError", "logStatusFatal")
 
 
-def version3(root: Element, scalars: Sequence[ScalarPort]) -> Element:
+def version3(
+    root: Element, scalars: Sequence[ScalarPort], buses: Sequence[CanTerminal] = ()
+) -> Element:
     """Return the model description of FMI 3.0 that says what ``root`` does in FMI 2.0.
 
-    ``scalars`` are its variables, in their order.
+    ``scalars`` are its variables, in their order; ``buses`` its CAN terminals, with which it has
+    event mode.
     """
     variables = root.find("ModelVariables")
     assert variables is not None
@@ -40,6 +45,8 @@ def version3(root: Element, scalars: Sequence[ScalarPort]) -> Element:
     assert simulation is not None
     result = Element("fmiModelDescription", {"fmiVersion": "3.0", **_of_model(root)})
     result.append(_co_simulation(simulation))
+    if buses:
+        result[-1].set("hasEventMode", "true")
     units = root.find("UnitDefinitions")
     if units is not None:
         result.append(units)
@@ -53,8 +60,11 @@ def version3(root: Element, scalars: Sequence[ScalarPort]) -> Element:
     listed = SubElement(result, "ModelVariables")
     for group in groups:
         listed.append(_variable(group))
+    listed.extend(bus_variables(buses))
     _add_time(listed, "s" in {u.get("name") for u in units} if units is not None else False)
-    result.append(_structure(root, groups))
+    structure = _structure(root, groups)
+    add_bus_outputs(structure, buses)
+    result.append(structure)
     views = root.find("VendorAnnotations/Tool")
     if views is not None:
         note = SubElement(SubElement(result, "Annotations"), "Annotation", {"type": TOOL})
@@ -137,7 +147,7 @@ def _types(units: Element) -> list[Element]:
 
 def _variable(group: _Group) -> Element:
     outer, inner = group.elements[0], group.elements[0][0]
-    is_binary = group.port.role == "bytes" and group.port.type is str
+    is_binary = group.port.role in BYTES and group.port.type is str
     fmi_type = "Binary" if is_binary else _TYPES[inner.tag]
     said = {"name": group.name, "valueReference": str(group.reference)}
     for name in ("description", "causality", "variability", "initial"):

@@ -1,6 +1,6 @@
 /* FMI 3.0 co-simulation: life, steps, states and derivatives, by the functions of FMI 2.0.
 
-   Values are in values.c, what these FMUs do not have in absent.c. */
+   Values are in values.c, events and buses in events.c, what these FMUs do not have in absent.c. */
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -77,7 +77,8 @@ fmi3Instance fmi3InstantiateCoSimulation(
     self->fmu = seal_fmu(token ? token : "");
     snprintf(self->name, sizeof self->name, "%s", name ? name : "");
     self->functions = (fmi2CallbackFunctions){take_message, calloc, free, NULL, self};
-    if (events)
+    self->uses_events = events;
+    if (events && BUSES == 0)
         front_refuses(self, "%s: this FMU has no event mode", self->name);
     else
         self->inner = fmi2Instantiate(self->name, fmi2CoSimulation, token ? token : "", uri,
@@ -93,6 +94,7 @@ void fmi3FreeInstance(fmi3Instance instance) {
     if (!self || !self->inner) return;
     fmi2FreeInstance(self->inner);
     free(self->buffer);
+    events_free(&self->events);
     *self = (Front){0};
     retire(self);
 }
@@ -118,7 +120,8 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean has_to
 
 fmi3Status fmi3ExitInitializationMode(fmi3Instance instance) {
     Front *self = instance;
-    return passed(fmi2ExitInitializationMode(self->inner));
+    const fmi3Status status = passed(fmi2ExitInitializationMode(self->inner));
+    return status <= fmi3Warning ? events_begin(self) : status;
 }
 
 fmi3Status fmi3Terminate(fmi3Instance instance) {
@@ -129,6 +132,7 @@ fmi3Status fmi3Terminate(fmi3Instance instance) {
 fmi3Status fmi3Reset(fmi3Instance instance) {
     Front *self = instance;
     self->time = 0.0;
+    events_free(&self->events);
     return passed(fmi2Reset(self->inner));
 }
 
@@ -136,11 +140,14 @@ fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 t, fmi3Float64 h,
                       fmi3Boolean no_earlier, fmi3Boolean *event, fmi3Boolean *ends,
                       fmi3Boolean *early, fmi3Float64 *last) {
     Front *self = instance;
-    const fmi3Status status = passed(fmi2DoStep(self->inner, t, h, no_earlier));
-    if (status <= fmi3Warning) self->time = t + h;
     *event = *ends = *early = fmi3False;
     *last = self->time;
-    return status;
+    fmi3Status status = events_before_step(self);
+    if (status > fmi3Warning) return status;
+    status = passed(fmi2DoStep(self->inner, t, h, no_earlier));
+    if (status > fmi3Warning) return status;
+    *last = self->time = t + h;
+    return events_after_step(self, event);
 }
 
 /* ------------------------------------------------------------------ states */
@@ -148,9 +155,10 @@ fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 t, fmi3Float64 h,
 typedef struct {
     fmi2FMUstate inner;
     double time;
+    Events events;
 } Kept;
 
-#define HEAD (sizeof(Seal) + sizeof(double)) /* of serialised states: those of FMI 2.0 follow */
+#define HEAD (sizeof(Seal) + sizeof(double)) /* of serialised states: events and FMI 2.0's follow */
 
 /* Return the state at `place`, made if there is none; NULL without memory. */
 static Kept *kept_at(fmi3FMUState *place) {
@@ -163,6 +171,7 @@ fmi3Status fmi3GetFMUState(fmi3Instance instance, fmi3FMUState *state) {
     Kept *const kept = kept_at(state);
     if (!kept) return fmi3Error;
     kept->time = self->time;
+    if (!events_copy(&kept->events, &self->events)) return fmi3Error;
     return passed(fmi2GetFMUstate(self->inner, &kept->inner));
 }
 
@@ -171,8 +180,9 @@ fmi3Status fmi3SetFMUState(fmi3Instance instance, fmi3FMUState state) {
     const Kept *const kept = state;
     if (!kept) return front_refuses(self, "%s: there is no state to restore", self->name);
     const fmi3Status status = passed(fmi2SetFMUstate(self->inner, kept->inner));
-    if (status <= fmi3Warning) self->time = kept->time;
-    return status;
+    if (status > fmi3Warning) return status;
+    self->time = kept->time;
+    return events_copy(&self->events, &kept->events) ? status : fmi3Error;
 }
 
 fmi3Status fmi3FreeFMUState(fmi3Instance instance, fmi3FMUState *state) {
@@ -181,6 +191,7 @@ fmi3Status fmi3FreeFMUState(fmi3Instance instance, fmi3FMUState *state) {
     Kept *const kept = *state;
     const fmi3Status status =
         kept->inner ? passed(fmi2FreeFMUstate(self->inner, &kept->inner)) : fmi3OK;
+    events_free(&kept->events);
     free(kept);
     *state = NULL;
     return status;
@@ -192,7 +203,7 @@ fmi3Status fmi3SerializedFMUStateSize(fmi3Instance instance, fmi3FMUState state,
     if (!kept) return front_refuses(self, "%s: there is no state to serialise", self->name);
     const fmi3Status status =
         passed(fmi2SerializedFMUstateSize(self->inner, kept->inner, size));
-    *size += HEAD;
+    *size += HEAD + events_size(&kept->events);
     return status;
 }
 
@@ -200,12 +211,14 @@ fmi3Status fmi3SerializeFMUState(fmi3Instance instance, fmi3FMUState state, fmi3
                                  size_t size) {
     Front *self = instance;
     const Kept *const kept = state;
-    if (!kept || !bytes || size < HEAD)
+    const size_t head = kept ? HEAD + events_size(&kept->events) : 0;
+    if (!kept || !bytes || size < head)
         return front_refuses(self, "%s: fmi3SerializeFMUState: no state, or too few bytes for it",
                              self->name);
     memcpy(bytes + sizeof(Seal), &kept->time, sizeof kept->time);
+    events_write(&kept->events, bytes + HEAD);
     const fmi3Status status = passed(fmi2SerializeFMUstate(
-        self->inner, kept->inner, (fmi2Byte *)bytes + HEAD, size - HEAD));
+        self->inner, kept->inner, (fmi2Byte *)bytes + head, size - head));
     if (status <= fmi3Warning) seal_up(bytes, self->fmu, size - sizeof(Seal));
     return status;
 }
@@ -216,15 +229,17 @@ fmi3Status fmi3DeserializeFMUState(fmi3Instance instance, const fmi3Byte bytes[]
     char why[128] = "there is no state, or no place for it";
     if (!bytes || !state || !seal_holds(bytes, size, self->fmu, why, sizeof why))
         return front_refuses(self, "%s: fmi3DeserializeFMUState: %s", self->name, why);
-    fmi2FMUstate inner = NULL;
-    const fmi3Status status = passed(fmi2DeSerializeFMUstate(
-        self->inner, (const fmi2Byte *)bytes + HEAD, size - HEAD, &inner));
-    if (status > fmi3Warning) return status;
-    fmi3FreeFMUState(instance, state);
-    Kept *const kept = kept_at(state);
+    Kept *const kept = calloc(1, sizeof *kept);
     if (!kept) return fmi3Error;
-    kept->inner = inner;
     memcpy(&kept->time, bytes + sizeof(Seal), sizeof kept->time);
+    const size_t taken = events_read(&kept->events, bytes + HEAD, size - HEAD);
+    fmi3Status status = taken ? fmi3OK : fmi3Error;
+    if (taken)
+        status = passed(fmi2DeSerializeFMUstate(self->inner, (const fmi2Byte *)bytes + HEAD + taken,
+                                                size - HEAD - taken, &kept->inner));
+    fmi3FMUState failed = kept;
+    fmi3FreeFMUState(instance, status > fmi3Warning ? &failed : state);
+    if (status <= fmi3Warning) *state = kept;
     return status;
 }
 

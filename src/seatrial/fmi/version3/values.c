@@ -13,19 +13,24 @@ typedef struct {
     unsigned element;
 } Walk;
 
-/* Take the next scalars of variables; return how many. */
+static size_t elements_of(fmi3ValueReference reference) {
+    return IS_OF_BUS(reference) ? 1 : (reference >> MORE_THAN_ONE) + 1;
+}
+
+/* Take the next scalars of variables; return how many. Of a bus there are none: FMI 2.0 refuses. */
 static size_t taken(Walk *walk, fmi2ValueReference scalars[BATCH]) {
     size_t count = 0;
     while (walk->next < walk->end && count < BATCH) {
-        scalars[count++] = (*walk->next & TIME) + walk->element;
-        if (walk->element++ == *walk->next >> MORE_THAN_ONE) walk->next++, walk->element = 0;
+        const fmi3ValueReference first = IS_OF_BUS(*walk->next) ? ~0u : *walk->next & TIME;
+        scalars[count++] = first + walk->element;
+        if (++walk->element == elements_of(*walk->next)) walk->next++, walk->element = 0;
     }
     return count;
 }
 
 static int are(Front *self, const fmi3ValueReference references[], size_t count, size_t values) {
     size_t elements = 0;
-    for (size_t i = 0; i < count; i++) elements += (references[i] >> MORE_THAN_ONE) + 1;
+    for (size_t i = 0; i < count; i++) elements += elements_of(references[i]);
     if (elements == values) return 1;
     front_refuses(self, "%s: the variables have %zu elements, found %zu values", self->name,
                   elements, values);
@@ -46,7 +51,7 @@ static int are(Front *self, const fmi3ValueReference references[], size_t count,
 #define GET(Type, Type2)                                                                        \
     static fmi3Status get_##Type(Front *self, const fmi3ValueReference references[],            \
                                  size_t count, fmi3##Type values[], size_t n) {                 \
-        BY_SCALARS(passed(fmi2Get##Type2(self->inner, scalars, some, values + done)))     \
+        BY_SCALARS(shown_##Type2(self, scalars, some, values + done))                           \
     }
 #define SET(Type, Type2)                                                                        \
     fmi3Status fmi3Set##Type(fmi3Instance instance, const fmi3ValueReference references[],      \
@@ -95,7 +100,7 @@ fmi3Status fmi3GetString(fmi3Instance instance, const fmi3ValueReference referen
 static fmi3Status get_truths(Front *self, const fmi2ValueReference scalars[], size_t some,
                              fmi3Boolean values[]) {
     fmi2Boolean truths[BATCH] = {0};
-    const fmi3Status status = passed(fmi2GetBoolean(self->inner, scalars, some, truths));
+    const fmi3Status status = shown_Boolean(self, scalars, some, truths);
     for (size_t i = 0; i < some; i++) values[i] = truths[i] != 0;
     return status;
 }
@@ -107,10 +112,31 @@ static fmi3Status set_truths(Front *self, const fmi2ValueReference scalars[], si
     return passed(fmi2SetBoolean(self->inner, scalars, some, truths));
 }
 
+static fmi3Status get_Boolean(Front *self, const fmi3ValueReference references[], size_t count,
+                              fmi3Boolean values[], size_t n) {
+    BY_SCALARS(get_truths(self, scalars, some, values + done))
+}
+
+/* The same with some of buses among them. */
+static fmi3Status get_mixed(Front *self, const fmi3ValueReference references[], size_t count,
+                            fmi3Boolean values[], size_t n) {
+    if (!are(self, references, count, n)) return fmi3Error;
+    for (size_t i = 0, size; i < count; i++, values += size) {
+        size = elements_of(references[i]);
+        const fmi3Status status = IS_OF_BUS(references[i])
+                                      ? events_get_truth(self, references[i], values)
+                                      : get_Boolean(self, &references[i], 1, values, size);
+        if (status > fmi3Warning) return status;
+    }
+    return fmi3OK;
+}
+
 fmi3Status fmi3GetBoolean(fmi3Instance instance, const fmi3ValueReference references[],
                           size_t count, fmi3Boolean values[], size_t n) {
     Front *self = instance;
-    BY_SCALARS(get_truths(self, scalars, some, values + done))
+    for (size_t i = 0; i < count; i++)
+        if (IS_OF_BUS(references[i])) return get_mixed(self, references, count, values, n);
+    return get_Boolean(self, references, count, values, n);
 }
 
 fmi3Status fmi3SetBoolean(fmi3Instance instance, const fmi3ValueReference references[],
@@ -132,42 +158,59 @@ static int fits(Front *self, size_t size) {
 fmi3Status fmi3GetBinary(fmi3Instance instance, const fmi3ValueReference references[], size_t count,
                          size_t sizes[], fmi3Binary values[], size_t n) {
     Front *self = instance;
-    fmi3String texts[BATCH];
-    size_t needed = 0, place = 0;
+    fmi3ValueReference plain[BATCH] = {0};
+    fmi3String texts[BATCH], *text = texts;
+    size_t plains = 0, needed = 0;
     if (n > BATCH)
         return front_refuses(self, "%s: at most %d values at once, found %zu", self->name, BATCH,
                              n);
-    const fmi3Status status = get_String(self, references, count, texts, n);
+    if (!are(self, references, count, n)) return fmi3Error;
+    for (size_t i = 0; i < count; i++)
+        if (!IS_OF_BUS(references[i])) plain[plains++] = references[i];
+    /* In one call: a further one of FMI 2.0 would free these texts. */
+    const size_t all = n - (count - plains);
+    fmi3Status status = get_String(self, plain, plains, texts, all);
     if (status > fmi3Warning) return status;
-    for (size_t i = 0; i < n; i++) needed += MOST_BYTES(strlen(texts[i]));
+    for (size_t i = 0; i < all; i++) needed += MOST_BYTES(strlen(texts[i]));
     if (!fits(self, needed)) return fmi3Error;
-    for (size_t i = 0; i < n; i++) {
-        unsigned char *const to = (unsigned char *)self->buffer + place;
-        const long long size = chunks_from_text(texts[i], to);
-        if (size < 0)
-            return front_refuses(self, "%s: this text is no bytes: '%.60s'", self->name, texts[i]);
-        values[i] = to, sizes[i] = (size_t)size;
-        place += sizes[i];
-    }
+    unsigned char *to = (unsigned char *)self->buffer;
+    for (size_t i = 0, place = 0; i < count && status <= fmi3Warning; i++)
+        if (IS_OF_BUS(references[i])) {
+            status = events_get_binary(self, references[i], &values[place], &sizes[place]);
+            place++;
+        } else {
+            for (size_t k = elements_of(references[i]); k > 0; k--, place++, text++) {
+                const long long size = chunks_from_text(*text, to);
+                if (size < 0)
+                    return front_refuses(self, "%s: this text is no bytes: '%.60s'", self->name,
+                                         *text);
+                values[place] = to, sizes[place] = (size_t)size;
+                to += size;
+            }
+        }
     return status;
+}
+
+static fmi3Status set_bytes(Front *self, fmi2ValueReference scalar, fmi3Binary value, size_t size) {
+    if (!fits(self, MOST_TEXT(size))) return fmi3Error;
+    if (chunks_to_text(value, size, self->buffer) < 0)
+        return front_refuses(self, "%s: %zu bytes are no chunks", self->name, size);
+    const fmi2String text = self->buffer;
+    return passed(fmi2SetString(self->inner, &scalar, 1, &text));
 }
 
 fmi3Status fmi3SetBinary(fmi3Instance instance, const fmi3ValueReference references[], size_t count,
                          const size_t sizes[], const fmi3Binary values[], size_t n) {
     Front *self = instance;
-    Walk walk = {references, references + count, 0};
-    fmi2ValueReference scalars[BATCH];
+    fmi3Status status = fmi3OK;
     if (!are(self, references, count, n)) return fmi3Error;
-    for (size_t done = 0, some; (some = taken(&walk, scalars)) > 0; done += some)
-        for (size_t i = 0; i < some; i++) {
-            const size_t size = sizes[done + i];
-            if (!fits(self, MOST_TEXT(size))) return fmi3Error;
-            if (chunks_to_text(values[done + i], size, self->buffer) < 0)
-                return front_refuses(self, "%s: %zu bytes are no chunks", self->name, size);
-            const fmi2String text = self->buffer;
-            const fmi3Status status =
-                passed(fmi2SetString(self->inner, &scalars[i], 1, &text));
+    for (size_t i = 0, place = 0; i < count; i++)
+        for (size_t k = 0; k < elements_of(references[i]); k++, place++) {
+            const fmi2ValueReference scalar = (references[i] & TIME) + (unsigned)k;
+            status = IS_OF_BUS(references[i])
+                         ? events_set_binary(self, references[i], values[place], sizes[place])
+                         : set_bytes(self, scalar, values[place], sizes[place]);
             if (status > fmi3Warning) return status;
         }
-    return fmi3OK;
+    return status;
 }

@@ -116,7 +116,7 @@ class CanBus(Logging, Noise, Component):
     watched = Parameter("", "1", "identifiers whose latency is reported, separated by spaces")
     load_window = Parameter(1.0, "s", "time over which the load is counted", min=1e-3)
 
-    tx = Input("1", "operations from the nodes", type=str, role="bytes", axes=_NODES, optional=True)
+    tx = Input("1", "operations from the nodes", type=str, role="can", axes=_NODES, optional=True)
     fault = Input(
         "1",
         f"{', '.join(FAULTS)}",
@@ -127,7 +127,7 @@ class CanBus(Logging, Noise, Component):
         role="fault",
     )
 
-    rx = Output("1", "operations to the nodes", type=str, role="bytes", axes=_NODES)
+    rx = Output("1", "operations to the nodes", type=str, role="can", axes=_NODES)
     load = Output("1", "share of time that the bus is busy")
     frames = Output("1", "frames sent", type=int)
     error_frames = Output("1", "error frames", type=int)
@@ -265,8 +265,8 @@ class CanBus(Logging, Noise, Component):
                     for other in range(len(self._ports)):
                         if other != node:
                             self._send(other, when, operation)
-                case Status():
-                    pass  # this bus counts its nodes' errors itself
+                case Status() | FormatError():
+                    pass  # this bus counts its nodes' errors itself, and has nothing to repeat
                 case _:
                     self._send(node, when, FormatError(data))
 

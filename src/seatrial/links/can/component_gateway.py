@@ -65,9 +65,9 @@ class CanGateway(Reachable, Component):
         "", "1", "frames sent at the end, IDENTIFIER#DATA, separated by spaces", check=check_frames
     )
 
-    rx = Input("1", "operations from the bus", type=str, role="bytes")
+    rx = Input("1", "operations from the bus", type=str, role="can")
 
-    tx = Output("1", "operations to the bus", type=str, role="bytes")
+    tx = Output("1", "operations to the bus", type=str, role="can")
     clients = Output("1", "clients connected", type=int)
     frames_in = Output("1", "frames from outside", type=int)
     frames_out = Output("1", "frames to the outside", type=int)

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
+from ...errors import InputError
 from ..text import Inbox, Outbox
 from .frame import Frame
-from .operations import Operation, Transmit, decode, encode
+from .operations import FormatError, Operation, Transmit, decode, encode
 
 
 class CanNode:
@@ -45,9 +46,16 @@ class CanNode:
     def receive(self, rx: str) -> list[tuple[int, Operation]]:
         """Return what is new on ``rx``, once: simulated time (ns) and operation.
 
-        Raises InputError for a text that no bus has written, SimulationError if one was missed.
+        Bytes that are no operations here, CAN XL say, are answered with a `FormatError`. Raises
+        InputError for a text that no bus has written, SimulationError if one was missed.
         """
-        return [(when, each) for when, data in self._inbox.take(rx) for each in decode(data)]
+        found: list[tuple[int, Operation]] = []
+        for when, data in self._inbox.take(rx):
+            try:
+                found += [(when, each) for each in decode(data)]
+            except InputError:
+                self.send_operation(when, FormatError(data))
+        return found
 
     def send(self, time_ns: int, frame: Frame) -> None:
         """Request a frame of the bus at ``time_ns``."""

@@ -114,6 +114,8 @@ Operation = (
 )
 
 _HEADER = struct.Struct("<II")
+_MOST_SHOWN = 0xFFFF
+"""Bytes of an operation that a format error has room for."""
 _CAN = struct.Struct("<IBBH")  # identifier, IDE, RTR, length
 _FD = struct.Struct("<IBBBH")  # identifier, IDE, BRS, ESI, length
 _ID = struct.Struct("<I")
@@ -154,6 +156,7 @@ def encode(operation: Operation) -> bytes:
         case Wakeup():
             return _whole(WAKEUP, b"")
         case FormatError(found):
+            found = found[:_MOST_SHOWN]
             return _whole(FORMAT_ERROR, _LENGTH.pack(len(found)) + found)
 
 

@@ -67,10 +67,10 @@ class CanTraffic(Noise, Component):
         2_000_000.0, "1/s", "bit rate of CAN FD's data phase", min=1000.0, max=2e7
     )
 
-    rx = Input("1", "operations from the bus", type=str, role="bytes")
+    rx = Input("1", "operations from the bus", type=str, role="can")
     silent = Input("1", "whether it is silent", type=bool, optional=True)
 
-    tx = Output("1", "operations to the bus", type=str, role="bytes")
+    tx = Output("1", "operations to the bus", type=str, role="can")
     asked = Output("1", "frames requested", type=int)
     confirmed = Output("1", "frames sent", type=int)
     received = Output("1", "frames received", type=int)

@@ -68,10 +68,10 @@ class CanSignals(Component):
         3.0, "1", "cycles without a message after which it is lost, 0: never", min=0.0
     )
 
-    rx = Input("1", "operations from the bus", type=str, role="bytes")
+    rx = Input("1", "operations from the bus", type=str, role="can")
     send = Input("", "values to send, in SI", axes=_AXES, optional=True)
 
-    tx = Output("1", "operations to the bus", type=str, role="bytes")
+    tx = Output("1", "operations to the bus", type=str, role="can")
     received = Output("", "values that were received, in SI", axes=_AXES)
     valid = Output("1", "whether they were, and are not lost", type=bool, axes=_AXES)
     frames_sent = Output("1", "frames requested", type=int)

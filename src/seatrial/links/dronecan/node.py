@@ -106,9 +106,9 @@ class DroneCanNode(Noise, Component):
     software_version = Parameter("1.0", "1", "version of the software", check=check_version)
     hardware_version = Parameter("1.0", "1", "version of the hardware", check=check_version)
 
-    rx = Input("1", "operations from the bus", type=str, role="bytes")
+    rx = Input("1", "operations from the bus", type=str, role="can")
 
-    tx = Output("1", "operations to the bus", type=str, role="bytes")
+    tx = Output("1", "operations to the bus", type=str, role="can")
     own_id = Output("1", "node ID that it has, 0 while it has none", type=int)
     malformed = Output("1", "transfers received that could not be understood", type=int)
 

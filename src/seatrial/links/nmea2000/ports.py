@@ -86,7 +86,7 @@ class Nmea2000Ports(Noise, Component):
         1.0, "s", "time for which a received value is valid, at least 3 intervals", min=0.0
     )
 
-    rx = Input("1", "operations from the bus", type=str, role="bytes")
+    rx = Input("1", "operations from the bus", type=str, role="can")
     heading = _measured("rad", "heading, clockwise from north, as a compass shows it")
     heading_valid = _valid("the heading")
     deviation = _measured("rad", "deviation of the heading, positive east")
@@ -137,7 +137,7 @@ class Nmea2000Ports(Noise, Component):
         "1", "whether it sends no data; the network's messages go on", type=bool, optional=True
     )
 
-    tx = Output("1", "operations to the bus", type=str, role="bytes")
+    tx = Output("1", "operations to the bus", type=str, role="can")
     claimed_address = Output("1", "its address, 254 while it has none", type=int, start=254)
     contests = Output("1", "claims of its address by others", type=int)
     twins = Output("1", "claims by others under its own NAME", type=int)
