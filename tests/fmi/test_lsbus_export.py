@@ -297,6 +297,8 @@ def test_a_node_and_a_bus_run_on_the_bus_of_another_importer(fmus, dbc, tmp_path
     r, m = transmit(2, struct.pack("<H", 1234)), transmit(1, bytes([56, 0, 0, 0]))
     # Both ask at once, and 1 wins; both frames are over within 10 ms.
     assert [one for one in passed if one[0] < 0.1] == [
+        (0.0, "can_bus", configured(250_000)),
+        (0.0, "can_bus", configured(250_000)),
         (0.01, "can_bus", r),
         (0.01, "can_bus", m),
         (0.03, "can_n1", m + confirm(2)),
@@ -320,6 +322,25 @@ def test_nodes_are_connected_without_a_bus(fmus, dbc, tmp_path: Path) -> None:
     run([(ends[0], ends[1])], 100, 0.01)
     assert [end[0].count("frames_sent") for end in ends] == [[5], [10]]
     assert [end[0].count("frames_received") for end in ends] == [[10], [5]]
+
+
+def test_a_node_says_its_bit_rates_at_the_start(fmus, tmp_path: Path) -> None:
+    """Some buses wait for that of each node; our own compares it with its own."""
+    for said, expected in (
+        ({}, configured(250_000)),
+        ({"can_bus.bit_rate": 0.0}, b""),
+        (
+            {"can_bus.bit_rate": 500e3, "can_bus.data_bit_rate": 2e6},
+            configured(500_000) + struct.pack("<IIBI", 0x40, 13, 2, 2_000_000),
+        ),
+    ):
+        node = Peer(fmus("can-signals"), tmp_path / str(len(expected)), said)
+        assert node.sent("can_bus") == expected
+    reference = node.reference["can_bus.bit_rate"]
+    assert node.fmu.getFloat64([node.reference["time"], reference]) == [0.0, 500e3]
+    with pytest.raises(Exception, match="fmi3SetFloat64"):
+        node.fmu.setFloat64([reference], [250e3])
+    assert node.messages == ["can-signals: a bit rate is set before the run"]
 
 
 def test_what_a_node_says_of_its_bit_rate_reaches_the_bus(fmus, tmp_path: Path) -> None:
@@ -506,6 +527,7 @@ def test_our_node_is_one_of_another_on_our_bus(foreign, fmus, dbc, write) -> Non
 EVENTS = """
 #define BUSES 1
 #define BUS_SCALARS {{0, 1}, {0, 0}}
+#define ARE_BUSES 1
 #define HELD_REALS 0
 #define HELD_REALS_SCALARS {0}
 #define HELD_INTEGERS 1

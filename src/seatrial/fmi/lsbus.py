@@ -92,17 +92,15 @@ def without_own(
     What they are for it has as a port of bytes too, each of which has its own time.
     """
     own = [one for one in _elements(folder, model, clocks) if _is_own(one)]
-    gone = {
-        member.get("variableName") for one in own for member in one.iter("TerminalMemberVariable")
-    }
-    if not gone:
+    beginnings = tuple(f"{one.get('name')}." for one in own)
+    if not own:
         return variables, clocks
     left = Clocks(
-        {r: clock for r, clock in clocks.by_reference.items() if clock.name not in gone},
-        {name: one for name, one in clocks.signals.items() if name not in gone},
-        {name: some for name, some in clocks.clocked.items() if name not in gone},
+        {r: c for r, c in clocks.by_reference.items() if not c.name.startswith(beginnings)},
+        {name: one for name, one in clocks.signals.items() if not name.startswith(beginnings)},
+        {name: some for name, some in clocks.clocked.items() if not name.startswith(beginnings)},
     )
-    return Variables({name: v for name, v in variables.items() if name not in gone}), left
+    return Variables({n: v for n, v in variables.items() if not n.startswith(beginnings)}), left
 
 
 def _elements(folder: Path, model: ModelFile, clocks: Clocks) -> list[Any]:

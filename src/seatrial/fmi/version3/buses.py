@@ -30,6 +30,11 @@ _DESCRIPTION = (
     "or Network Abstraction based level."
 )
 _HELD = {float: "REALS", int: "INTEGERS", bool: "BOOLEANS", str: "STRINGS"}
+_RATES = (
+    ("bit_rate", "250000.0", "bit/s that the node says of itself at the start; 0: nothing"),
+    ("data_bit_rate", "0.0", "bit/s of its data phase of CAN FD, said at the start; 0: nothing"),
+)
+"""Parameters of nodes by name, start and description."""
 
 
 @dataclass(frozen=True)
@@ -81,6 +86,7 @@ def events_header(component: Component | None) -> str:
         "/* Texts that a component has of buses; and outputs that wait for events. */",
         f"#define BUSES {len(buses)}",
         f"#define BUS_SCALARS {_pairs(buses)}",
+        f"#define ARE_BUSES {int(any(bus.is_bus for bus in buses))}",
     ]
     held: dict[type, list[int]] = {kind: [] for kind in _HELD}
     if component is not None and buses:
@@ -136,6 +142,11 @@ def bus_variables(buses: Sequence[CanTerminal]) -> Iterator[Element]:
             said |= {"description": "whether nodes are notified of what happens to their frames"}
             said |= {"causality": "output", "variability": "constant", "start": "true"}
             yield Element("Boolean", said)
+            continue
+        for place, (name, start, text) in enumerate(_RATES, start=5):
+            said = {"name": f"{bus.name}.{name}", "valueReference": str(first + place)}
+            said |= {"description": text, "causality": "parameter", "variability": "fixed"}
+            yield Element("Float64", {**said, "min": "0", "start": start})
 
 
 def add_bus_outputs(structure: Element, buses: Sequence[CanTerminal]) -> None:

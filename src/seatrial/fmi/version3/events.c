@@ -13,7 +13,7 @@ static const struct {
     fmi2ValueReference receives, sends;
 } buses[BUSES + 1] = BUS_SCALARS;
 
-enum { RX_DATA, RX_CLOCK, TX_DATA, TX_CLOCK, NOTIFIES };
+enum { RX_DATA, RX_CLOCK, TX_DATA, TX_CLOCK, NOTIFIES, BIT_RATE, DATA_BIT_RATE };
 
 #define CHUNK_HEAD 12 /* of a packed chunk: time and size */
 
@@ -185,13 +185,32 @@ static fmi3Status collect(Front *self, int bus) {
     return front_refuses(self, "%s: this text is no bytes: '%.60s'", self->name, text);
 }
 
+/* Send a node's bit rates, if they are said: some buses wait for that of each node. */
+static int configure(Front *self, int bus) {
+    Bytes *const to = outgoing(self, bus);
+    for (int i = 0; !ARE_BUSES && i < 2; i++) {
+        const double rate = self->events.fixed.rates[bus][i];
+        if (rate > 0.0 && !(put_number(to, 0x40, 4) && put_number(to, 13, 4) &&
+                            put_number(to, (uint64_t)i + 1, 1) && put_number(to, (uint64_t)rate, 4)))
+            return 0;
+    }
+    self->events.fixed.ticks[bus] = to->size > 0;
+    return 1;
+}
+
 /* ------------------------------------------------------------------ steps */
+
+void events_reset(Front *self) {
+    events_free(&self->events);
+    for (int bus = 0; bus < BUSES; bus++) self->events.fixed.rates[bus][0] = USUAL_BIT_RATE;
+}
 
 fmi3Status events_begin(Front *self) {
     fmi3Status status = fmi3OK;
     if (!self->uses_events) return status;
     self->events.fixed.mode = EVENT_MODE;
-    for (int bus = 0; bus < BUSES && status <= fmi3Warning; bus++) status = collect(self, bus);
+    for (int bus = 0; bus < BUSES && status <= fmi3Warning; bus++)
+        status = configure(self, bus) ? collect(self, bus) : no_memory(self);
     return status;
 }
 
@@ -339,9 +358,36 @@ fmi3Status events_set_binary(Front *self, fmi3ValueReference reference, fmi3Bina
     return append(rx_data(self, bus), value, size) ? fmi3OK : no_memory(self);
 }
 
+/* Return where a node's bit rate is, NULL for a reference of none. */
+static double *rate_at(Front *self, fmi3ValueReference reference) {
+    int bus = 0;
+    const int what = member(reference, &bus);
+    if (!ARE_BUSES && what == BIT_RATE) return &self->events.fixed.rates[bus][0];
+    if (!ARE_BUSES && what == DATA_BIT_RATE) return &self->events.fixed.rates[bus][1];
+    front_refuses(self, "%s: there is no Float64 with value reference %u", self->name, reference);
+    return NULL;
+}
+
+fmi3Status events_get_number(Front *self, fmi3ValueReference reference, fmi3Float64 *value) {
+    const double *const rate = rate_at(self, reference);
+    if (rate) *value = *rate;
+    return rate ? fmi3OK : fmi3Error;
+}
+
+fmi3Status events_set_number(Front *self, fmi3ValueReference reference, fmi3Float64 value) {
+    double *const rate = rate_at(self, reference);
+    if (!rate) return fmi3Error;
+    if (!(value >= 0.0 && value <= UINT32_MAX))
+        return front_refuses(self, "%s: a bit rate of %g bit/s cannot be", self->name, value);
+    if (self->events.fixed.mode != BEFORE_THE_RUN)
+        return front_refuses(self, "%s: a bit rate is set before the run", self->name);
+    *rate = value;
+    return fmi3OK;
+}
+
 fmi3Status events_get_truth(Front *self, fmi3ValueReference reference, fmi3Boolean *value) {
     int bus = 0;
-    if (member(reference, &bus) != NOTIFIES)
+    if (!ARE_BUSES || member(reference, &bus) != NOTIFIES)
         return front_refuses(self, "%s: there is no Boolean with value reference %u", self->name,
                              reference);
     *value = fmi3True;

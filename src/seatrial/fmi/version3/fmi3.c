@@ -78,6 +78,7 @@ fmi3Instance fmi3InstantiateCoSimulation(
     snprintf(self->name, sizeof self->name, "%s", name ? name : "");
     self->functions = (fmi2CallbackFunctions){take_message, calloc, free, NULL, self};
     self->uses_events = events;
+    events_reset(self);
     if (events && BUSES == 0)
         front_refuses(self, "%s: this FMU has no event mode", self->name);
     else
@@ -132,7 +133,7 @@ fmi3Status fmi3Terminate(fmi3Instance instance) {
 fmi3Status fmi3Reset(fmi3Instance instance) {
     Front *self = instance;
     self->time = 0.0;
-    events_free(&self->events);
+    events_reset(self);
     return passed(fmi2Reset(self->inner));
 }
 

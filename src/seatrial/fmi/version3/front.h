@@ -24,6 +24,8 @@ typedef struct {
     size_t size, room;
 } Bytes;
 
+#define USUAL_BIT_RATE 250000.0 /* that of our bus, if nobody says another, bit/s */
+
 enum { BEFORE_THE_RUN, EVENT_MODE, STEP_MODE };
 
 typedef struct {
@@ -31,6 +33,7 @@ typedef struct {
     double Real[HELD_REALS + 1];
     fmi2Integer Integer[HELD_INTEGERS + 1];
     fmi2Boolean Boolean[HELD_BOOLEANS + 1];
+    double rates[BUSES + 1][2];                 /* of a node, and of its CAN FD data, bit/s */
     uint64_t sent[BUSES + 1];                   /* number of the last text from the component */
     int ticks[BUSES + 1], listens[BUSES + 1];   /* whether Tx_Clock and Rx_Clock are active */
 } Fixed;
@@ -79,12 +82,15 @@ fmi3Status shown_String(Front *self, const fmi2ValueReference scalars[], size_t 
                         fmi2String values[]);
 
 /* Events before and after what the component does, and variables of buses (`IS_OF_BUS`). */
+void events_reset(Front *self);
 fmi3Status events_begin(Front *self);
 fmi3Status events_before_step(Front *self);
 fmi3Status events_after_step(Front *self, fmi3Boolean *event);
 fmi3Status events_get_binary(Front *self, fmi3ValueReference reference, fmi3Binary *value,
                              size_t *size);
 fmi3Status events_set_binary(Front *self, fmi3ValueReference reference, fmi3Binary value, size_t size);
+fmi3Status events_get_number(Front *self, fmi3ValueReference reference, fmi3Float64 *value);
+fmi3Status events_set_number(Front *self, fmi3ValueReference reference, fmi3Float64 value);
 fmi3Status events_get_truth(Front *self, fmi3ValueReference reference, fmi3Boolean *value);
 
 /* Copies of events; `events_read` returns how many bytes it took, 0 for what is no copy. */

@@ -53,9 +53,9 @@ static int are(Front *self, const fmi3ValueReference references[], size_t count,
                                  size_t count, fmi3##Type values[], size_t n) {                 \
         BY_SCALARS(shown_##Type2(self, scalars, some, values + done))                           \
     }
-#define SET(Type, Type2)                                                                        \
-    fmi3Status fmi3Set##Type(fmi3Instance instance, const fmi3ValueReference references[],      \
-                             size_t count, const fmi3##Type values[], size_t n) {               \
+#define SET(name, Type, Type2)                                                                  \
+    name(fmi3Instance instance, const fmi3ValueReference references[], size_t count,            \
+         const fmi3##Type values[], size_t n) {                                                 \
         Front *self = instance;                                                                 \
         BY_SCALARS(passed(fmi2Set##Type2(self->inner, scalars, some, values + done)))     \
     }
@@ -63,22 +63,45 @@ static int are(Front *self, const fmi3ValueReference references[], size_t count,
 GET(Float64, Real)
 GET(Int32, Integer)
 GET(String, String)
-SET(Float64, Real)
-SET(Int32, Integer)
-SET(String, String)
+SET(static fmi3Status set_Float64, Float64, Real)
+SET(fmi3Status fmi3SetInt32, Int32, Integer)
+SET(fmi3Status fmi3SetString, String, String)
+
+/* Whether a variable is not the component's, but time or of a bus. */
+static int is_front(fmi3ValueReference reference) {
+    return reference == TIME || IS_OF_BUS(reference);
+}
 
 fmi3Status fmi3GetFloat64(fmi3Instance instance, const fmi3ValueReference references[],
                           size_t count, fmi3Float64 values[], size_t n) {
     Front *self = instance;
     size_t place = 0;
-    while (place < count && references[place] != TIME) place++;
+    while (place < count && !is_front(references[place])) place++;
     if (place == count) return get_Float64(self, references, count, values, n);
     if (!are(self, references, count, n)) return fmi3Error;
     for (size_t i = 0, size; i < count; i++, values += size) {
-        size = (references[i] >> MORE_THAN_ONE) + 1;
-        *values = self->time;
-        if (references[i] == TIME) continue;
-        const fmi3Status status = get_Float64(self, &references[i], 1, values, size);
+        fmi3Status status = fmi3OK;
+        size = elements_of(references[i]);
+        if (references[i] == TIME) *values = self->time;
+        else if (IS_OF_BUS(references[i])) status = events_get_number(self, references[i], values);
+        else status = get_Float64(self, &references[i], 1, values, size);
+        if (status > fmi3Warning) return status;
+    }
+    return fmi3OK;
+}
+
+fmi3Status fmi3SetFloat64(fmi3Instance instance, const fmi3ValueReference references[],
+                          size_t count, const fmi3Float64 values[], size_t n) {
+    Front *self = instance;
+    size_t place = 0;
+    while (place < count && !IS_OF_BUS(references[place])) place++;
+    if (place == count) return set_Float64(self, references, count, values, n);
+    if (!are(self, references, count, n)) return fmi3Error;
+    for (size_t i = 0, size; i < count; i++, values += size) {
+        size = elements_of(references[i]);
+        const fmi3Status status = IS_OF_BUS(references[i])
+                                      ? events_set_number(self, references[i], *values)
+                                      : set_Float64(self, &references[i], 1, values, size);
         if (status > fmi3Warning) return status;
     }
     return fmi3OK;
