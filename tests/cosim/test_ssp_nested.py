@@ -156,7 +156,11 @@ def test_what_is_nested_is_read_nested_and_written_again_the_same(
 @pytest.mark.interop
 def test_a_shipped_rig_of_rigs_survives_a_package(tmp_path: Path) -> None:
     choices = {"vehicle": "hydrone", "algorithm": "plain-jacobi"}
-    path, _ = export_ssp("sil", tmp_path / "sil.ssp", choices=choices)
+    path, _ = export_ssp(
+        "sil",
+        tmp_path / "sil.ssp",
+        changes={f"choices.{key}": value for key, value in choices.items()},
+    )
     read = read_ssp(path).rig.changed({"algorithm": "plain-jacobi"})
     assert rows(assemble(read), 20) == rows(assemble(load_rig("sil", choices=choices)), 20)
     again, _ = export_ssp(str(path), tmp_path / "again" / "sil.ssp")
@@ -165,7 +169,11 @@ def test_a_shipped_rig_of_rigs_survives_a_package(tmp_path: Path) -> None:
 
 def test_what_links_tune_stays_at_its_start_and_a_note_says_so(tmp_path: Path) -> None:
     choices = {"vehicle": "mariner", "autopilot": "mavlink"}
-    path, notes = export_ssp("sil", tmp_path / "x.ssp", choices=choices)
+    path, notes = export_ssp(
+        "sil",
+        tmp_path / "x.ssp",
+        changes={f"choices.{key}": value for key, value in choices.items()},
+    )
     said = "tunables of autopilot.mavlink cannot be said: the parameters that they set stay"
     assert sum(said in note for note in notes) == 1
     given = read_ssp(path).rig.components["autopilot.pilot.autopilot"].entry.set

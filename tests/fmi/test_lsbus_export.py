@@ -134,30 +134,30 @@ class Peer:
 End = tuple[Peer, str]
 
 
-def exchanged(wires: list[tuple[End, End]], t: float) -> list[tuple[float, str, bytes]]:
+def exchanged(connected: list[tuple[End, End]], t: float) -> list[tuple[float, str, bytes]]:
     """Pass on what all send in an event, and end it; return it with who has sent it."""
     passed = []
-    for one, other in [*wires, *((b, a) for a, b in wires)]:
+    for one, other in [*connected, *((b, a) for a, b in connected)]:
         (sender, of), (receiver, to) = one, other
         operations = sender.sent(of)
         if operations:
             receiver.receive(to, operations)
             passed.append((round(t, 9), of, operations))
-    for peer in {peer: None for wire in wires for peer, _ in wire}:
+    for peer in {peer: None for pair in connected for peer, _ in pair}:
         peer.fmu.updateDiscreteStates()
         peer.fmu.enterStepMode()
     return passed
 
 
-def run(wires: list[tuple[End, End]], steps: int, h: float) -> list[tuple[float, str, bytes]]:
-    peers = {peer: None for wire in wires for peer, _ in wire}
-    passed = exchanged(wires, 0.0)
+def run(connected: list[tuple[End, End]], steps: int, h: float) -> list[tuple[float, str, bytes]]:
+    peers = {peer: None for pair in connected for peer, _ in pair}
+    passed = exchanged(connected, 0.0)
     for k in range(steps):
         for peer in peers:
             peer.step(k * h, h)
         for peer in peers:
             peer.fmu.enterEventMode()
-        passed += exchanged(wires, (k + 1) * h)
+        passed += exchanged(connected, (k + 1) * h)
     return passed
 
 
@@ -290,10 +290,10 @@ def test_a_node_and_a_bus_run_on_the_bus_of_another_importer(fmus, dbc, tmp_path
         tmp_path / "3",
         {"database": str(dbc), "sends": "M.X", "receives": "R.Y"},
     )
-    wires = [((first, "can_bus"), (bus, "can_n1")), ((second, "can_bus"), (bus, "can_n2"))]
+    connected = [((first, "can_bus"), (bus, "can_n1")), ((second, "can_bus"), (bus, "can_n2"))]
     for peer, value in ((first, 1234.0), (second, 56.0)):
         peer.fmu.setFloat64([peer.reference["send"]], [value] + 15 * [0.0])
-    passed = run(wires, 50, 0.01)
+    passed = run(connected, 50, 0.01)
     r, m = transmit(2, struct.pack("<H", 1234)), transmit(1, bytes([56, 0, 0, 0]))
     # Both ask at once, and 1 wins; both frames are over within 10 ms.
     assert [one for one in passed if one[0] < 0.1] == [

@@ -1,4 +1,4 @@
-"""What a command line changes in a rig that no trial runs."""
+"""Changes of a command line in a rig that no trial runs."""
 
 from __future__ import annotations
 

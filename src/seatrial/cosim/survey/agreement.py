@@ -1,4 +1,4 @@
-"""How far two runs of an FMU are from each other."""
+"""Differences of two runs of an FMU, relative to the outputs."""
 
 from __future__ import annotations
 

@@ -19,17 +19,17 @@ enum { RX_DATA, RX_CLOCK, TX_DATA, TX_CLOCK, NOTIFIES, BIT_RATE, DATA_BIT_RATE }
 
 /* ------------------------------------------------------------------ bytes that grow */
 
-static int has_room(Bytes *to, size_t more) {
-    if (to->size + more <= to->room) return 1;
-    const size_t room = 2 * (to->size + more);
-    unsigned char *const content = realloc(to->content, room);
+static int has_capacity(Bytes *to, size_t more) {
+    if (to->size + more <= to->capacity) return 1;
+    const size_t capacity = 2 * (to->size + more);
+    unsigned char *const content = realloc(to->content, capacity);
     if (!content) return 0;
-    to->content = content, to->room = room;
+    to->content = content, to->capacity = capacity;
     return 1;
 }
 
 static int append(Bytes *to, const void *bytes, size_t size) {
-    if (!has_room(to, size + 1)) return 0;
+    if (!has_capacity(to, size + 1)) return 0;
     if (size) memcpy(to->content + to->size, bytes, size);
     to->size += size;
     return 1;

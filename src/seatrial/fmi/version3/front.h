@@ -21,7 +21,7 @@
 /* Bytes that grow. */
 typedef struct {
     unsigned char *content;
-    size_t size, room;
+    size_t size, capacity;
 } Bytes;
 
 #define USUAL_BIT_RATE 250000.0 /* that of our bus, if nobody says another, bit/s */

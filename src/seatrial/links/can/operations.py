@@ -115,7 +115,7 @@ Operation = (
 
 _HEADER = struct.Struct("<II")
 _MOST_SHOWN = 0xFFFF
-"""Bytes of an operation that a format error has room for."""
+"""Bytes of an operation that a format error quotes."""
 _CAN = struct.Struct("<IBBH")  # identifier, IDE, RTR, length
 _FD = struct.Struct("<IBBBH")  # identifier, IDE, BRS, ESI, length
 _ID = struct.Struct("<I")
