@@ -44,8 +44,6 @@ fmu_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
 _WIDEST_NAME = 40
 """Of the column of names, in characters, where a terminal has not the width for all columns."""
 
-fmu_app.command("survey")(survey_folder)
-
 Named = Annotated[str, typer.Argument(metavar="FMU", help="A shipped name, x.fmu or my.py:Class.")]
 
 
@@ -370,3 +368,6 @@ def _run_once(fmu: LoadedFmu) -> list[str]:
         except SimulationError as error:
             found.append(str(error))
     return found
+
+
+fmu_app.command("survey")(survey_folder)

@@ -30,7 +30,7 @@ def survey_folder(
 ) -> None:
     """Run every FMU of a folder in all ways that there are, and by FMPy, and compare the outputs.
 
-    Each run is in a process of its own: an FMU that crashes is a line of the table. Status 1 if
+    Each run is in a process of its own: an FMU that crashes is a line of the list. Status 1 if
     one does not load, fails, or differs.
     """
     if not timeout > 0.0:
