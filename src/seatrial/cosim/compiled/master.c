@@ -372,8 +372,9 @@ static int diverges(Pace *p, const double *signals, int64_t steps) {
 /* Carry out what is left of a step; return DONE at its end. */
 static int finish_step(Master *m) {
     int64_t begun = -1; /* when the call before ended, if a step was the operation before */
-    int64_t from_ns = -1, length = -1, constant = -1; /* what t and h are of: most steps share them */
-    double t = 0.0, h = 0.0;
+    /* Of a step that is as long as the master's, as most are. */
+    const double t_whole = (double)m->begin_ns / 1e9;
+    const double h_whole = (double)(m->begin_ns + m->step_ns) / 1e9 - t_whole;
     while (m->at < m->count) {
         Operation *o = m->operations + m->at++;
         if (o->kind == LOOP) {
@@ -391,10 +392,10 @@ static int finish_step(Master *m) {
             break;
         case STEP: {
             const int64_t at_ns = m->begin_ns + o->start;
-            if (at_ns != from_ns || o->length != length || o->constant != constant) {
-                from_ns = at_ns, length = o->length, constant = o->constant;
+            double t = t_whole, h = h_whole;
+            if (o->constant || o->start || o->length != m->step_ns) {
                 t = (double)at_ns / 1e9;
-                h = constant ? (double)length / 1e9 : (double)(at_ns + length) / 1e9 - t;
+                h = o->constant ? (double)o->length / 1e9 : (double)(at_ns + o->length) / 1e9 - t;
             }
             if (m->cells) m->times[2] = t, m->cells[1] = o->mark;
             if (begun < 0) begun = ticks();
