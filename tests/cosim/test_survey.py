@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 import shutil
 import time
+import zipfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -23,7 +25,7 @@ from seatrial.fmi.native.export import build_native_fmu
 from seatrial.fmi.source import named_sources
 from tests.command import seatrial
 from tests.fmi.models import build_model_fmu
-from tests.fmi.native import dying, without_events
+from tests.fmi.native import changed, dying, without_events
 
 TIMEOUT_S = 120.0
 EVERY = ("in Python", "in C", "isolated", "FMPy")
@@ -80,7 +82,7 @@ def test_fmus_that_cannot_be_are_lines_with_the_reason(
     assert done.returncode == 1
     result: dict[str, Any] = {one["fmu"]: one for one in json.loads(done.stdout)["result"]["fmus"]}
     assert [one["status"] for one in result.values()] == ["fails", "agrees", "not loaded"]
-    assert "not an FMU" in result["inner/text.fmu"]["problems"]["loads"]
+    assert "not an FMU" in result["inner/text.fmu"]["unfit"]
     assert "SIG" in result["dies.fmu"]["problems"]["in Python"]
     assert result["good.fmu"]["differences"]["in C"]["relative"] == 0.0
 
@@ -106,6 +108,48 @@ def test_a_difference_is_named_and_decides_the_status(
     assert ended.value.exit_code == 1
     assert said.startswith("differs  it.fmu\n")
     assert re.search(r"    in C: \S+ by 1e-06 at t = 0.0234375 s\n", said)
+
+
+def test_an_fmu_without_outputs_agrees_with_nobody(
+    native_fmu: Callable[[str], Path], tmp_path: Path
+) -> None:
+    with zipfile.ZipFile(native_fmu("fmi2")) as archive:
+        text = archive.read("modelDescription.xml").decode()
+    outputs = [(one, "") for one in re.findall("<Outputs>.*?</Outputs>", text, re.S)]
+    silent = ('causality="output"', 'causality="local"')
+    changed(native_fmu("fmi2"), tmp_path / "silent.fmu", silent, *outputs)
+    done = seatrial("fmu", "survey", str(tmp_path), "--json", cwd=tmp_path)
+    (one,) = json.loads(done.stdout)["result"]["fmus"]
+    assert (done.returncode, one["status"], one["differences"]) == (0, "runs, no outputs", {})
+    assert one["ways"] == list(EVERY)
+
+
+def test_a_run_that_ends_elsewhere_differs_without_bounds(
+    native_fmu: Callable[[str], Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def shorter(fmu: Any, experiment: Any) -> Any:
+        return {name: values[:-2] for name, values in WAYS["in Python"](fmu, experiment).items()}
+
+    shutil.copyfile(native_fmu("fmi2"), tmp_path / "it.fmu")
+    monkeypatch.setattr(surveying, "WAYS", {**WAYS, "in C": shorter})
+    (one,) = survey(fmus_in(tmp_path), TIMEOUT_S)
+    assert one.status == "differs"
+    assert {way: apart.value for way, apart in one.differing.items()} == {"in C": math.inf}
+
+
+def test_an_fmu_that_opens_links_is_not_run(tmp_path: Path) -> None:
+    build_fmu(named_sources()["mavlink"], tmp_path / "station.fmu")
+    (one,) = survey(fmus_in(tmp_path), TIMEOUT_S)
+    assert (one.status, one.ways) == ("not run", ())
+    assert one.unfit.startswith("it would open its links: ")
+
+
+def test_folders_of_any_name_do(native_fmu: Callable[[str], Path], tmp_path: Path) -> None:
+    folder = tmp_path / 'Bäu 🐳 {x} "50%"'
+    folder.mkdir()
+    shutil.copyfile(native_fmu("fmi2"), folder / "it.fmu")
+    (one,) = survey(fmus_in(folder), TIMEOUT_S)
+    assert (one.status, one.ways) == ("agrees", EVERY)
 
 
 def test_a_run_that_hangs_is_ended(

@@ -28,19 +28,23 @@ from .foreign import COLLECTIONS, collection
 
 pytestmark = [pytest.mark.interop, pytest.mark.long]
 PAGE = Path(__file__).parents[2] / "docs/how-to/use-other-fmus.md"
-ROW = re.compile(r"^\| `([^`]+\.fmu)`([^|]*)\| (not loaded|fails|differs) \| (.+?) \|$", re.M)
-EXPLAINED = {name: status for name, _, status, _ in ROW.findall(PAGE.read_text("utf-8"))}
+ROW = re.compile(
+    r"^\| `([^`]+\.fmu)`([^|]*)\| (not loaded|fails|differs|runs, no outputs) \| (.+?) \|$", re.M
+)
+EXPLAINED = {name: (status, why) for name, _, status, why in ROW.findall(PAGE.read_text("utf-8"))}
 TIMEOUT_S = 120.0
 
 
 def explained(one: Surveyed) -> bool:
     """Say if the table has an FMU as it was found, or it has nothing to run on this machine."""
-    if one.status in (
-        "agrees",
-        *[s for n, s in EXPLAINED.items() if fnmatchcase(one.path.name, n)],
-    ):
+    if one.status == "agrees":
         return True
-    if "cannot be loaded on this machine" not in one.problems.get("loads", ""):
+    for pattern, (status, why) in EXPLAINED.items():
+        if fnmatchcase(one.path.name, pattern) and one.status == status:
+            by = re.match(r"by (\S+):", why)
+            most = float(by[1]) if by else 0.0
+            return all(apart.value <= most for apart in one.differing.values())
+    if "cannot be loaded on this machine" not in one.unfit:
         return False
     with zipfile.ZipFile(one.path) as archive:
         members = archive.namelist()
@@ -52,7 +56,9 @@ def explained(one: Surveyed) -> bool:
 @pytest.mark.parametrize("name", COLLECTIONS)
 def test_fmus_of_others_agree_with_fmpy(name: str) -> None:
     found = list(survey(fmus_in(collection(name)), TIMEOUT_S))
-    assert [f"{one.status} {one.path} {one.problems}" for one in found if not explained(one)] == []
+    assert [
+        f"{one.status} {one.path} {one.unfit} {one.problems}" for one in found if not explained(one)
+    ] == []
     assert sum(one.status == "agrees" for one in found) >= 5
 
 
@@ -66,6 +72,8 @@ SYSTEMS = {
     ),
     "demo-cases": ("tutorial-fmus/OspSystemStructure.xml", "dp-ship/OspSystemStructure.xml"),
 }
+LAST_DIGITS = {"dp-ship/OspSystemStructure.xml": 1e-9}
+"""Where outputs differ in their last digits: 20-sim's FMUs of FMI 1.0, from the fifth step on."""
 STEPS = {"tests/data/fmi2/quarter_truck/OspSystemStructure.xml": 10_000}
 KINDS = {float: "real", int: "integer", bool: "boolean"}
 
@@ -88,9 +96,12 @@ def test_systems_of_others_run_as_in_libcosim(name: str, file: str, tmp_path: Pa
     assert len(theirs) == steps
     for column, (signal, values) in enumerate(ours.items()):
         others = [row[column] for row in theirs]
-        scale = max(map(abs, others))
-        worst = max(abs(a - b) for a, b in zip(values, others, strict=True))
-        assert worst <= 1e-9 * scale, signal
+        if file in LAST_DIGITS:
+            assert values == pytest.approx(
+                others, rel=0, abs=LAST_DIGITS[file] * max(map(abs, others))
+            )
+        else:
+            assert values == others, signal
 
 
 def _ours(structure: Path, steps: int) -> tuple[list[Any], dict[str, list[Any]]]:

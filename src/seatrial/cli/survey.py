@@ -15,7 +15,10 @@ from ..errors import InputError
 from .answer import answer
 from .show import console
 
-_COLOURS = {"agrees": "green", "runs, FMPy fails": "yellow"}
+_COLOURS = {"agrees": "green"} | dict.fromkeys(
+    ("runs, FMPy fails", "runs, no outputs", "not run"), "yellow"
+)
+"""Of those that let the status be 0; all others are red."""
 _LONGEST = 400
 """Characters of a problem in a line; --json has all of it."""
 
@@ -58,12 +61,19 @@ def _lines(one: Surveyed) -> Iterator[str]:
         if one.differences and not one.differing:
             worst = max(one.differences.values(), key=lambda each: each.value)
             said = f"at most {worst.value:.1g} apart" if worst.value else "equal"
-            line += f"; {one.outputs} outputs, {said}"
+            line += f"; {one.outputs} {'output' if one.outputs == 1 else 'outputs'}, {said}"
         yield line
+    if one.unfit:
+        yield _shortened(one.unfit)
     for way, why in one.problems.items():
-        yield f"{way}: {why}".removeprefix("loads: ")[:_LONGEST]
+        yield f"{way}: {_shortened(why)}"
     for way, apart in one.differing.items():
         yield f"{way}: {apart}"
+
+
+def _shortened(why: str) -> str:
+    """Return the first line of a problem."""
+    return why.partition("\n")[0][:_LONGEST]
 
 
 def _entry(one: Surveyed, folder: Path) -> dict[str, object]:
@@ -74,6 +84,7 @@ def _entry(one: Surveyed, folder: Path) -> dict[str, object]:
         "experiment": "" if one.experiment is None else str(one.experiment),
         "outputs": one.outputs,
         "ways": list(one.ways),
+        "unfit": one.unfit,
         "problems": dict(one.problems),
         "differences": {
             way: {"output": worst.output, "relative": worst.value, "time": worst.time}

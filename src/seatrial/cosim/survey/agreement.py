@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -33,25 +34,30 @@ class Difference:
 
 
 def difference(ours: Rows, theirs: Rows, experiment: Experiment, limit: float) -> Difference:
-    """Return the greatest difference of outputs, without output if there are none.
+    """Return the greatest difference of all outputs, of which there is one at least.
 
     Both end where the FMU asks for that, one of them perhaps a point later: the common points are
-    compared. Of runs whose ends lie further apart the difference has no bounds.
+    compared. Of runs whose ends lie further apart the difference is infinite.
     """
-    worst = Difference(0.0, "", math.nan)
-    for name, values in theirs.items():
-        found = ours[name]
-        scale = max((abs(v) for v in values if math.isfinite(v)), default=0.0)
-        scale = max(scale, _SMALLEST)
-        apart = [_apart(a, b) / scale for a, b in zip(found, values, strict=False)]
-        if abs(len(found) - len(values)) > 1:
-            apart.append(math.inf)
-        most = max(apart, default=0.0)
-        if most > worst.value or not worst.output:
-            at = next((i for i, value in enumerate(apart) if value > limit), apart.index(most))
-            time = (experiment.start_ns + at * experiment.step_ns) / NS
-            worst = Difference(most, name, time)
-    return worst
+    return max(
+        (
+            _of_output(name, ours[name], values, experiment, limit)
+            for name, values in theirs.items()
+        ),
+        key=lambda one: one.value,
+    )
+
+
+def _of_output(
+    name: str, found: Sequence[Any], values: Sequence[Any], experiment: Experiment, limit: float
+) -> Difference:
+    scale = max((abs(v) for v in values if math.isfinite(v)), default=0.0)
+    apart = [_apart(a, b) / max(scale, _SMALLEST) for a, b in zip(found, values, strict=False)]
+    if abs(len(found) - len(values)) > 1:
+        apart.append(math.inf)
+    worst = max(apart)
+    at = next((i for i, value in enumerate(apart) if value > limit), apart.index(worst))
+    return Difference(worst, name, (experiment.start_ns + at * experiment.step_ns) / NS)
 
 
 def _apart(a: Any, b: Any) -> float:

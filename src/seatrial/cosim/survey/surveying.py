@@ -30,8 +30,10 @@ class Surveyed:
     experiment: Experiment | None = None
     outputs: int = 0
     """How many outputs are compared."""
+    unfit: str = ""
+    """Why it is not loaded, or not run at all."""
     problems: Mapping[str, str] = field(default_factory=dict)
-    """Why it is not loaded ("loads"), or does not run, by way."""
+    """Why it does not run, by way."""
     ways: tuple[str, ...] = ()
     """Those in which it ran to the end."""
     differences: Mapping[str, Difference] = field(default_factory=dict)
@@ -46,13 +48,15 @@ class Surveyed:
     @property
     def status(self) -> str:
         """The state in a word or two."""
-        if "loads" in self.problems:
-            return "not loaded"
+        if self.unfit:
+            return "not run" if self.kind else "not loaded"
         if any(way in self.problems for way in WAYS if way != _REFERENCE):
             return "fails"
         if self.differing:
             return "differs"
-        return "runs, FMPy fails" if self.problems else "agrees"
+        if self.problems:
+            return "runs, FMPy fails"
+        return "agrees" if self.outputs else "runs, no outputs"
 
 
 def fmus_in(folder: Path) -> list[Path]:
@@ -83,8 +87,11 @@ def _surveyed(path: Path, timeout_s: float) -> Surveyed:
     except InputError as error:
         lacking = str(error).removeprefix(f"{path}: ").removeprefix(f"{path.resolve()}: ")
     if lacking:
-        return Surveyed(path, problems={"loads": lacking})
-    experiment = experiment_of(fmu)
+        return Surveyed(path, unfit=lacking)
+    kind = f"{fmu.description.fmiVersion} {fmu.interface}"
+    if addresses := fmu.variables.of_role("address"):
+        return Surveyed(path, kind, unfit=f"it would open its links: {', '.join(addresses)}")
+    experiment, outputs = experiment_of(fmu), compared(fmu)
     runs: dict[str, Rows] = {}
     problems = {}
     for name, way in WAYS.items():
@@ -95,19 +102,20 @@ def _surveyed(path: Path, timeout_s: float) -> Surveyed:
     ran = {name: rows for name, rows in runs.items() if rows is not None}
     limit = LIMITS[fmu.interface]
     reference = _REFERENCE if _REFERENCE in ran else next(iter(ran), "")
+    differences = {
+        name: difference(rows, ran[reference], experiment, limit)
+        for name, rows in ran.items()
+        if name != reference and outputs
+    }
     return Surveyed(
         path,
-        f"{fmu.description.fmiVersion} {fmu.interface}",
+        kind,
         experiment,
-        len(compared(fmu)),
-        problems,
-        tuple(ran),
-        {
-            name: difference(rows, ran[reference], experiment, limit)
-            for name, rows in ran.items()
-            if name != reference
-        },
-        limit,
+        len(outputs),
+        problems=problems,
+        ways=tuple(ran),
+        differences=differences,
+        limit=limit,
     )
 
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import json
 import shutil
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
+from itertools import takewhile
 from pathlib import Path
 from typing import Any
 
@@ -118,18 +118,21 @@ WAYS: Mapping[str, Way] = {
 
 def _in_a_rig(fmu: LoadedFmu, experiment: Experiment, *, isolated: bool) -> Rows:
     with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "survey.toml"
-        entry: dict[str, Any] = {"fmu": str(fmu.path), "isolated": isolated}
-        if seeds := {name: fmu.variables[name].start for name in fmu.variables.of_role("seed")}:
-            entry["set"] = seeds  # no one else derives them from a rig's
+        (Path(folder) / "it.fmu").symlink_to(fmu.path)
+        lines = [
+            f'step = "{experiment.step_ns} ns"',
+            'algorithm = "plain-jacobi"',
+            "[components.fmu]",
+            'fmu = "it.fmu"',
+            f"isolated = {str(isolated).lower()}",
+        ]
         if fmu.options.tolerance is not None:
-            entry["tolerance"] = fmu.options.tolerance
-        keys = ", ".join(f"{key} = {_inline(value)}" for key, value in entry.items())
-        file.write_text(
-            f'step = "{experiment.step_ns} ns"\nalgorithm = "plain-jacobi"\n[components]\n'
-            f"fmu = {{{keys}}}\n"
-        )
+            lines.append(f"tolerance = {fmu.options.tolerance!r}")
+        file = Path(folder) / "survey.toml"
+        file.write_text("\n".join(lines) + "\n", "utf-8")
         system = assemble(load_rig(str(file)))
+    for name in fmu.variables.of_role("seed"):
+        del system.parts["fmu"].given[name]  # its own, since nobody else derives one from a rig's
     try:
         master = Master(system, experiment.start_ns, experiment.stop_ns)
         master.initialise()
@@ -145,13 +148,6 @@ def _in_a_rig(fmu: LoadedFmu, experiment: Experiment, *, isolated: bool) -> Rows
     finally:
         system.free()
     return _by_name(names, rows)
-
-
-def _inline(value: Any) -> str:
-    """Return a value as TOML has it in a line: all but tables as in JSON."""
-    if isinstance(value, dict):
-        return "{" + ", ".join(f"{key} = {_inline(one)}" for key, one in value.items()) + "}"
-    return json.dumps(value)
 
 
 def _by_name(names: Sequence[str], rows: Sequence[Sequence[Any]]) -> Rows:
@@ -176,9 +172,10 @@ def _at_points(result: Any, names: Sequence[tuple[Variable, str]], experiment: E
         point = round((t - experiment.start_ns / NS) / h)
         if abs(t - experiment.start_ns / NS - point * h) < 1e-6 * h:
             last[point] = row
-    if not last:
-        raise SimulationError("FMPy has recorded no communication point")
-    rows = [last[point] for point in sorted(last)]
+    points = list(takewhile(last.__contains__, range(experiment.steps + 1)))
+    if not points:
+        raise SimulationError("FMPy has not recorded the start")
+    rows = [last[point] for point in points]
     found: Rows = {}
     for variable, name in names:
         column = result[name][rows].reshape(len(rows), -1)
