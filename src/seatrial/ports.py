@@ -16,6 +16,7 @@ Units = str | tuple[str, ...]
 """One unit for all elements of a port, or one per axis."""
 
 ROLES = {
+    "home": "latitude or longitude of the origin of {n}: that of the rig's profile or home",
     "seed": "seed of the component's noise: derived from the run's seed unless it is given",
     "run-folder": "folder of the run, for logs of its own: given once there is one",
     "address": "where programs outside connect to: shown when a run in real time begins",
@@ -41,6 +42,7 @@ BYTES = ("bytes", "can")
 """Roles of texts that are bytes with their times."""
 
 VIEWS = {
+    "estimate": ("place", "home", "error", "passed"),
     "landing-point": ("place", "phase"),
     "line": ("north", "east", "down"),
     "waypoints": ("count", "place"),
@@ -48,10 +50,13 @@ VIEWS = {
 }
 """Kinds of views and the ports that each names.
 
-landing-point: parameters, the place on a deck (x forward, y to starboard of the body origin, m)
-and the name of the manoeuvre. line: outputs with one axis per point, its coordinates in {n}, m.
-waypoints: parameters, how many there are and the port of each, whose name ends in ``_1`` and so
-on (north and east in {n}, m). wind: an output, velocity of the air (north and east in {n}, m/s).
+estimate: outputs, where an autopilot takes itself and its home to be (north, east and down in
+{n}, m), all 0 while it says neither, how far off the former is (m), and how many waypoints are
+passed. landing-point: parameters, the place on a deck (x forward, y to starboard of the body
+origin, m) and the name of the manoeuvre. line: outputs with one axis per point, its coordinates in
+{n}, m. waypoints: parameters, how many there are and the port of each, whose name ends in ``_1``
+and so on (north and east in {n}, m). wind: an output, velocity of the air (north and east in {n},
+m/s).
 """
 
 FRAMES = {"n": "{n}, north-east-down", "b": "{b}, body axes"}

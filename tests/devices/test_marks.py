@@ -70,3 +70,18 @@ def test_a_failsafe_is_remembered():
 def test_what_is_no_list_of_marks_is_refused(values, said):
     with pytest.raises(InputError, match=said):
         made(**values)
+
+
+def test_an_estimate_is_compared_with_the_truth_of_its_time():
+    marks = made()
+    for number in range(20):  # at 1 m/s to the north, the estimate half a second late
+        marks.set("position", (0.1 * number, 2.0, 0.0))
+        marks.set("estimated", number > 6)
+        marks.set("estimate", (0.1 * number - 0.5 + 0.3, 2.4, 0.0))
+        marks.set("estimate_time", 0.1 * number - 0.5)
+        marks.set("home", (3.0, -4.0, 0.0))
+        marks.advance(0.1 * number, 0.1)
+        if number < 6:
+            assert (marks.get("error"), marks.get("home_error")) == (0.0, 0.0)
+    assert marks.get("error") == pytest.approx(0.5)  # 0.3 north, 0.4 east
+    assert marks.get("home_error") == pytest.approx(5.0)

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from seatrial.trials.run import run_trial
+from seatrial.trials.run_folder import load_run
 from seatrial.trials.trial import load_trial
 from tests.command import seatrial
 from tests.interop.running import free_port
@@ -59,6 +60,32 @@ def test_a_firmware_is_sent_round_and_its_true_track_decides(sea: Path) -> None:
     manifest = json.loads((sea / "run" / "manifest.json").read_text())
     assert manifest["status"] == "complete"
     assert float(last["time"]) < 90.0  # it ends with the last waypoint
+
+
+@pytest.mark.parametrize(("stiffness", "home"), [("220 N/m", (0.0, 0.4)), ("0 N/m", (3.0, 6.0))])
+def test_in_a_current_its_mission_does_not_drift(
+    stiffness: str, home: tuple[float, float], sea: Path
+) -> None:
+    """The stand-in takes its home from where it is after 12 s: 5 m off, but for the mooring."""
+    port = free_port(socket.SOCK_STREAM)
+    done = seatrial(
+        "run", "square", "--autopilot", "ardupilot=ardurover", "--choose", "course=short.square",
+        "--choose", f"serial0=tcpclient:127.0.0.1:{port}",
+        "--set", f"mission.station.link=tcpin:127.0.0.1:{port}",
+        "--set", "autopilot.sitl.ardupilot.speedup=100", "--set", "stop=90 s",
+        "--set", "current.speed=0.4", "--set", "current.direction=90 deg",
+        "--set", f"autopilot.mooring.stiffness={stiffness}",
+        "--engine", "direct", "--out", "run", *ANY_PORT,
+        cwd=sea,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout + done.stderr
+    run = load_run(sea / "run")
+    least, most = home
+    assert least < run.signals["marks.home_error"][-1] < most
+    assert run.signals["marks.error"].max() < 0.05  # it knows where it is
+    page = (sea / "run" / "report.html").read_text("utf-8")
+    assert "home of the autopilot, from the origin" in page
+    assert "mark 2 (8 m north, 6 m east)" in page
 
 
 def test_a_firmware_that_says_nothing_ends_the_run(sea: Path) -> None:

@@ -27,6 +27,7 @@ def give_parameters(system: System, part: Part, profiles: Profiles) -> None:
     entry, where = placed.entry, placed.where
     part.home = _home(placed.scope, profiles)
     _give_seed(part, system.seed)
+    _give_origin(part)
     if entry.parameters:
         _give_parameter_set(part, _parameter_set(system, placed))
     if entry.profile is not None:
@@ -58,6 +59,15 @@ def _give_seed(part: Part, seed: int) -> None:
         owner = joined(part.name, inside) if inside else part.name
         own = zlib.crc32(f"{seed}/{owner}".encode())
         part.given[name] = Given(float(own), f"derived from seed {seed}")
+
+
+def _give_origin(part: Part) -> None:
+    """Give the origin of {n} to whoever places something in the world, as `Part.home` has it."""
+    if part.home is None:
+        return
+    place = dict(zip(("latitude", "longitude", "altitude"), part.home, strict=True))
+    for name in part.instance.variables.of_role("home"):
+        part.given[name] = Given(place[name.rpartition(".")[2]], "home of the rig")
 
 
 def _give_parameter_set(part: Part, values: ParameterSet) -> None:
@@ -114,6 +124,10 @@ def _parameter_set(system: System, placed: Placed) -> ParameterSet:
             scope.path == "" or system.variant in vehicle.file.variants
         ):
             variant = system.variant
+        if entry.parameters.endswith("?") and table not in vehicle.tables:
+            where = vehicle.read_from.path
+            system.notes.append(f"{where} has no table {table}: {placed.name} has its own values")
+            return ParameterSet()
         return vehicle.parameter_set(table, variant)
     except InputError as error:
         raise InputError(f"{placed.where}.parameters: {error}") from None

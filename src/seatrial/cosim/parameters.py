@@ -120,8 +120,10 @@ class Vehicle:
 def split_reference(written: str, fmu: str) -> tuple[str, str]:
     """Return (vehicle, table) of ``hydrone``, ``hydrone.TABLE``, ``x.toml`` or ``x.toml.TABLE``.
 
-    The table is by default the name of the FMU, or the class of ``my_boat.py:Class``.
+    The table is by default the name of the FMU, or the class of ``my_boat.py:Class``. A question
+    mark at the end, of a table that the file may lack, belongs to neither.
     """
+    written = written.removesuffix("?")
     table = fmu.rpartition(":")[2] if ".py:" in fmu else fmu
     path, toml, rest = written.partition(".toml")
     if toml and (not rest or rest.startswith(".")):

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple, cast
 
 import numpy as np
 
@@ -129,6 +129,13 @@ class Comparison:
         if known.all():
             return margin, margin
         return np.where(known, margin, -np.inf), np.where(known, margin, np.inf)
+
+    def holds_of(self, values: Mapping[str, float]) -> bool:
+        """Say if it holds of single values, both sides finite: `margins` is then positive."""
+        of_one = cast("ex.Values", values)  # NumPy's functions take a number for an array
+        left, right = (float(side.evaluate(of_one)) for side in (self.left, self.right))
+        known = math.isfinite(left) and math.isfinite(right)
+        return known and bool(_COMPARE[self.operator](left, right))
 
     def undefined(self, record: Record) -> FloatArray | None:
         """Return the values of a side that is not finite everywhere, if one is."""

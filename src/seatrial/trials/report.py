@@ -12,6 +12,7 @@ import numpy as np
 from ..cosim.paths import split_axis, split_path
 from ..whole_file import write_whole
 from .accuracy_section import accuracy_section
+from .autopilot_section import add_estimate, autopilot_rows
 from .convergence import load_convergence
 from .dark import DARK
 from .decks import deck, pads
@@ -126,6 +127,7 @@ def write_report(
         step_times=step_times(run.timing),
         pacing=pacing(run.timing),
         lost_links=lost_links(run.timing),
+        autopilot=autopilot_rows(run),
         accuracy=None if convergence is None else accuracy_section(convergence),
         happenings=happenings(run),
         diagram=_diagram(run.manifest),
@@ -191,6 +193,7 @@ def _sections(run: Run) -> Iterator[Section]:
     if tracks:
         figure = track_figure(tracks)
         add_wind_and_marks(figure, run)
+        add_estimate(figure, run)
         yield Section("Track from above", figure.json())
     for name, shape in tether_figures(run):
         yield Section(f"Shape of {name}", shape.json())

@@ -80,7 +80,8 @@ def has_ended(pid: int) -> bool:
 
 
 def test_a_program_is_started_in_the_run_folder_and_ended_with_it(program: Path) -> None:
-    folder = flown("hydrone", program, "run")
+    # The stand-in drives off at once, before any firmware could: no line holds it.
+    folder = flown("hydrone", program, "run", "--set", "autopilot.mooring.stiffness=0")
     own = folder / NAME
     assert (own / "eeprom.bin").read_bytes() == b"kept"
     pid, options = (own / "output.txt").read_text().splitlines()

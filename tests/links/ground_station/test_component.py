@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from seatrial.errors import InputError, SimulationError
 from seatrial.links.ground_station.component import GroundStation
 
-from .vehicle import AUTO, Px4Vehicle, Vehicle, placed
+from .vehicle import AUTO, HOME, Px4Vehicle, Vehicle, geodetic, placed
 
 PLACES = [(30.0, 0.0, 0.0), (30.0, -40.0, 0.0), (0.0, 0.0, 2.5)]
 
@@ -19,7 +21,9 @@ class Bench:
     def __init__(self, **values):
         self.station, self.t = GroundStation("station"), 0.0
         places = {f"waypoint_{number}": place for number, place in enumerate(PLACES, 1)}
-        settings = {"link": "tcpin:127.0.0.1:0", "count": 3.0, "radius": 2.0, **places, **values}
+        origin = dict(zip(("latitude", "longitude"), map(math.radians, HOME), strict=True))
+        settings = {"link": "tcpin:127.0.0.1:0", "count": 3.0, "radius": 2.0}
+        settings |= {**origin, **places, **values}
         for name, value in settings.items():
             self.station.set(name, value)
         self.station.setup(0.0)
@@ -70,6 +74,32 @@ def test_a_mission_is_uploaded_armed_and_started(bench):
     assert station.get("armed")
     assert (station.get("mode"), station.get("doing")) == (AUTO, "")
     assert not station.get("failsafe")
+
+
+def test_waypoints_do_not_depend_on_where_the_vehicle_takes_its_home_to_be(bench):
+    vehicle = bench.vehicle()
+    vehicle.home = geodetic(-3.0, 21.0)
+    bench.run(vehicle, 10.0)
+    for number, (north, east, _) in enumerate(PLACES, 1):
+        assert placed(vehicle.items[number]) == pytest.approx((north, east), abs=0.02)
+    assert bench.station.get("home") == pytest.approx((-3.0, 21.0, 0.0), abs=0.02)
+
+
+def test_a_vehicle_at_the_other_end_of_the_world(bench):
+    vehicle = bench.vehicle()
+    vehicle.home = (63.44, 10.40)
+    with pytest.raises(SimulationError, match=r"63.44.*10.40.* 50 km from latitude -31.78"):
+        bench.run(vehicle, 10.0)
+
+
+def test_where_the_vehicle_takes_itself_to_be(bench):
+    vehicle = bench.vehicle()
+    assert not bench.station.get("estimated")
+    vehicle.place, vehicle.ms = (12.0, -7.0), 1250
+    bench.run(vehicle, 10.0)
+    assert bench.station.get("estimated")
+    assert bench.station.get("estimate") == pytest.approx((12.0, -7.0, 0.0), abs=0.02)
+    assert bench.station.get("estimate_time") == 1.25
 
 
 def test_it_beats_as_a_ground_station_once_a_second(bench):

@@ -16,6 +16,8 @@ from tests.links.ardupilot.peer import Peer
 
 HOME = (-31.78, -52.26)
 AUTO = 10
+READY_S = 12.0
+"""Of the program: its estimator is ready then, and home is where it is then."""
 ACK = {"accepted": mavlink.MAV_RESULT_ACCEPTED, "denied": mavlink.MAV_RESULT_DENIED}
 
 
@@ -36,6 +38,8 @@ class Vehicle:
         self.items: dict[int, mavlink.MAVLink_message] = {}
         self.parameters: dict[str, float] = {}
         self.received: list[mavlink.MAVLink_message] = []
+        self.home, self.place, self.ms = HOME, (0.0, 0.0), 0
+        """Its home, degrees; where it takes itself to be, m north and east of HOME; its clock."""
         self._count, self._deaf = 0, list(deaf)
 
     def send(self, message: mavlink.MAVLink_message) -> None:
@@ -58,8 +62,10 @@ class Vehicle:
         health = mavlink.MAV_SYS_STATUS_PREARM_CHECK if self.healthy else 0
         self.send(mavlink.MAVLink_sys_status_message(0, 0, health, *(0,) * 10))
         self.estimate()
-        at = [round(angle * 1e7) for angle in HOME]
+        at = [round(angle * 1e7) for angle in self.home]
         self.send(mavlink.MAVLink_home_position_message(*at, 0, 0, 0, 0, [1, 0, 0, 0], 0, 0, 0))
+        here = [round(angle * 1e7) for angle in geodetic(*self.place)]
+        self.send(mavlink.MAVLink_global_position_int_message(self.ms, *here, 0, 0, 0, 0, 0, 0))
 
     def estimate(self) -> None:
         flags = mavlink.EKF_POS_HORIZ_ABS
@@ -135,15 +141,30 @@ class Px4Vehicle(Vehicle):
         return int(message.param2) << 16 | int(message.param3) << 24
 
 
-def placed(item: mavlink.MAVLink_message) -> tuple[float, float]:
-    """Return an item's place north and east of home, m, by the radii of curvature of WGS 84."""
+def radii() -> tuple[float, float]:
+    """Return metres per radian of latitude and of longitude at HOME, by the curvature of WGS 84."""
     a, f = 6378137.0, 1.0 / 298.257223563
     latitude, e2 = math.radians(HOME[0]), f * (2.0 - f)
     w = math.sqrt(1.0 - e2 * math.sin(latitude) ** 2)
+    return a * (1.0 - e2) / w**3, a / w * math.cos(latitude)
+
+
+def placed(item: mavlink.MAVLink_message) -> tuple[float, float]:
+    """Return an item's place north and east of HOME, m."""
     north, east = (
-        math.radians(x / 1e7 - home) for x, home in zip((item.x, item.y), HOME, strict=False)
+        math.radians(x / 1e7 - home) * radius
+        for x, home, radius in zip((item.x, item.y), HOME, radii(), strict=True)
     )
-    return north * a * (1.0 - e2) / w**3, east * a / w * math.cos(latitude)
+    return north, east
+
+
+def geodetic(north: float, east: float) -> tuple[float, float]:
+    """Return latitude and longitude, degrees, of a place from HOME, m."""
+    latitude, longitude = (
+        home + math.degrees(off / radius)
+        for home, off, radius in zip(HOME, (north, east), radii(), strict=True)
+    )
+    return latitude, longitude
 
 
 def steered(vehicle: Vehicle, north: float, east: float, heading: float, leg: int) -> list[int]:
@@ -168,6 +189,11 @@ def main() -> None:
         t = answer.number("timestamp")
         north, east, _ = answer.vector("position")
         vehicle.attend()
+        vehicle.place, vehicle.ms = (north, east), round(1e3 * t)
+        if t < READY_S:
+            vehicle.home, vehicle.healthy = geodetic(north, east), False
+        else:
+            vehicle.healthy = True
         if t - beaten >= 0.5:
             beaten = t
             vehicle.beat()

@@ -21,6 +21,8 @@ from .packet import MOST_CHANNELS
 from .ports import LOOP_HZ, ArduPilotPorts
 from .reply import RANGES, blows_from, read_fields, reply
 
+BOOTED_S = 10.0
+"""Pulses before are those of a firmware that boots: 1000 us for half a second, s."""
 LONGEST_STEP = 0.1
 """A firmware's time stands still while steps are as long as this, s."""
 
@@ -56,6 +58,11 @@ class ArduPilot(ArduPilotPorts):
 
     **No pulse.** A channel whose pulse is 0, disabled or not assigned, gives the neutral pulse of
     the actuator that ``actuators`` has on it, and 0 if there is none.
+
+    **Armed.** The interface does not say whether the firmware is armed. ``armed`` is true from the
+    first frame on in which the pulse of an actuator is not its neutral one, 10 s or more after
+    the start: a firmware that is disarmed commands nothing, but for some pulses while it boots,
+    when its estimator does not let it arm yet.
 
     Raises InputError at the start for a link, program, field or actuator that cannot be, and
     SimulationError in a step for one of 0.1 s or longer, in which the firmware's time stands
@@ -95,7 +102,8 @@ class ArduPilot(ArduPilotPorts):
         where = endpoint.url.partition(":")[2]
         whom = f"ArduPilot, which is to send to {where}"
         self._watchdog = Watchdog(self.name, whom, self.wait_limit)
-        self._has_begun = False
+        self._has_begun = self._armed = False
+        self._booted = t + BOOTED_S
 
     def step(self, t: float, h: float) -> None:
         """Answer with the motion at ``t``, and wait for the pulses of ``t + h``."""
@@ -110,13 +118,16 @@ class ArduPilot(ArduPilotPorts):
                 raise SimulationError(f"{self.name}: {error}") from None
             self._lockstep.answer(answer)
             self._wait()
+        if t >= self._booted:
+            commanded = zip(self._pulses, self._neutral, strict=True)
+            self._armed = self._armed or any(rest and pulse != rest for pulse, rest in commanded)
 
     def outputs(self, t: float) -> None:
         """Publish the pulses, and how the exchange goes."""
         lockstep = self._lockstep
         assert lockstep is not None
         frame = lockstep.frame
-        self.pulse = self._pulses
+        self.pulse, self.armed = self._pulses, self._armed
         self.connected = frame is not None
         self.frame_rate = 0.0 if frame is None else float(frame.rate)
         self.restarts, self.repeated = lockstep.restarts, lockstep.repeated

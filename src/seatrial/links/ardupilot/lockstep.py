@@ -14,6 +14,8 @@ from .packet import Frame, read_frame
 
 SILENT_S = 2.0
 """Wall time after which a firmware that sends nothing is replaced by another one that does."""
+REPEATED_S = 0.5
+"""Wall time within which a firmware repeats nothing: it does after a second."""
 SLICE_S = 0.05
 """Wall time of one wait: signals that request an end are noticed within it."""
 _AT_ONCE_S = 0.005
@@ -63,7 +65,8 @@ class Lockstep:
 
     def answer(self, data: bytes) -> None:
         """Answer the newest frame."""
-        self._take_in()  # what was repeated until now is answered with it
+        if self._clock() - self._received_at > REPEATED_S:
+            self._take_in()  # what was repeated until now is answered with it
         assert self._peer is not None
         self._answer = data
         self._peer.send(data)

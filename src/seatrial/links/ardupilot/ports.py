@@ -78,6 +78,7 @@ class ArduPilotPorts(Logging, Reachable, TrueMotion):
     current = Input("A", "current out of the battery", optional=True)
 
     pulse = Output("s", "servo pulses, 0 for none", axes=_CHANNELS)
+    armed = Output("1", "whether an actuator has been off its neutral pulse", type=bool)
     connected = Output("1", "whether a firmware has sent something", type=bool)
     frame_rate = Output("Hz", "frames per second that the firmware expects")
     restarts = Output("1", "times that the firmware began again", type=int)

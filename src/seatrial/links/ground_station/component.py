@@ -10,14 +10,15 @@ from pymavlink.dialects.v20 import all as mavlink
 from ...component import Component, Input, Output, Parameter, terminal
 from ...errors import InputError, SimulationError
 from ...sampled import Sampled
-from ...waypoints import Waypoints
+from ...waypoints import NED, Place, Waypoints
 from ..endpoints.budget import Budget
 from ..endpoints.endpoint import Channel, Endpoint
 from ..endpoints.url import check_urls, open_endpoints
+from ..geodesy import Origin
 from ..mavlink.codec import Codec, Message
 from .conversation import ASK_AGAIN_S, Conversation
 from .dialects import Dialect
-from .errand import Errand, mission
+from .errand import Errand, home_of, mission
 
 SYSTEM, COMPONENT = 255, mavlink.MAV_COMP_ID_MISSIONPLANNER
 HEARTBEAT_S = 1.0
@@ -25,6 +26,7 @@ _ALARMED = (mavlink.MAV_STATE_CRITICAL, mavlink.MAV_STATE_EMERGENCY)
 _STATION, _NO_AUTOPILOT = mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID
 _REAL = mavlink.MAV_PARAM_TYPE_REAL32
 _ARMED = mavlink.MAV_MODE_FLAG_SAFETY_ARMED
+_NOWHERE: Place = (0.0, 0.0, 0.0)
 FAILURES = {
     "gnss": (("SIM_GPS1_ENABLE", 0.0, 1.0),),
     "compass": tuple((f"SIM_MAG{number}_FAIL", 1.0, 0.0) for number in (1, 2, 3)),
@@ -50,8 +52,14 @@ class GroundStation(Waypoints, Sampled):
     """A person at a ground station, who sends a MAVLink vehicle round a list of waypoints.
 
     It waits for the vehicle, at ``link`` or else at ``address``, and for its estimator; uploads the
-    waypoints by the mission protocol, as NAV_WAYPOINT north and east of the vehicle's home and
-    ``down`` below it; arms, and starts the mission. Everything is repeated until it is answered.
+    waypoints by the mission protocol, as NAV_WAYPOINT north and east of ``latitude`` and
+    ``longitude``, the origin of {n}, and ``down`` below the vehicle's own home; arms, and starts
+    the mission. Everything is repeated until it is answered. What the vehicle takes for its home
+    is where it was when its estimator got ready: the waypoints do not depend on that.
+
+    ``estimate`` is where the vehicle says that it is (GLOBAL_POSITION_INT, at 2 Hz), ``home``
+    what it takes for its home, both in {n}, m; ``estimated`` whether it has said either.
+
     For boats and rovers of ArduPilot and PX4, for submarines of ArduPilot, and for vehicles that
     present themselves as such.
 
@@ -62,7 +70,8 @@ class GroundStation(Waypoints, Sampled):
     motion: GNSS (SIM_GPS1_ENABLE 0) or all compasses (SIM_MAG1_FAIL to SIM_MAG3_FAIL 1).
 
     Raises InputError at the start for a link that cannot be, and SimulationError in a step for
-    what the vehicle does not do in time, with what it said last. Times are simulated.
+    what the vehicle does not do in time, with what it said last, and for one whose home is more
+    than 50 km from the origin of {n}. Times are simulated.
 
     It cannot be rolled back: what was sent has been sent.
     """
@@ -72,6 +81,12 @@ class GroundStation(Waypoints, Sampled):
     exercised: ClassVar = {"link": "udpin:127.0.0.1:0"}
 
     period = Parameter(0.1, "s", "period of what it sends and takes in", min=1e-6)
+    latitude = Parameter(
+        0.0, "rad", "of the origin of {n}, WGS 84", min=-1.5707964, max=1.5707964, role="home"
+    )
+    longitude = Parameter(
+        0.0, "rad", "of the origin of {n}, WGS 84", min=-math.pi, max=math.pi, role="home"
+    )
     link = Parameter("", "1", "where the vehicle is; empty: at its address", check=_check_link)
 
     address = Input(
@@ -95,8 +110,15 @@ class GroundStation(Waypoints, Sampled):
     frames_refused = Output("1", "frames received that are no message", type=int)
     failsafe = Output("1", "whether the vehicle had a failsafe or left its mission", type=bool)
 
+    estimated = Output("1", "whether the vehicle has said where it is, and its home", type=bool)
+    estimate = Output("m", "where the vehicle says that it is, {n}", axes=NED)
+    estimate_time = Output("s", "time of the estimate by the vehicle's clock")
+    home = Output("m", "what the vehicle takes for its home, {n}", axes=NED)
+
     feedthrough: ClassVar = {}
-    terminals: ClassVar = {"report": terminal("failsafe")}
+    terminals: ClassVar = {
+        "report": terminal("failsafe", "estimated", "estimate", "estimate_time", "home")
+    }
 
     def __init__(self, name: str = "component") -> None:
         super().__init__(name)
@@ -108,6 +130,7 @@ class GroundStation(Waypoints, Sampled):
         """Open the link, if there is one."""
         self.close()
         self._places, self._refused = self.waypoints(), 0
+        self._origin = Origin(self.latitude, self.longitude)
         self._channel: Channel | None = None
         self._started: Dialect | None = None
         self._begin()
@@ -124,6 +147,9 @@ class GroundStation(Waypoints, Sampled):
         self.armed, self.mode = self._armed, self._mode
         self.reached, self.failsafe = self._reached, self._failsafe
         self.frames_refused = self._refused
+        self.estimated = self._estimate is not None and self._home is not None
+        self.estimate, self.home = self._estimate or _NOWHERE, self._home or _NOWHERE
+        self.estimate_time = self._estimate_time
 
     def update(self, t: float, k: int) -> None:
         """Take in what came, and go on."""
@@ -152,9 +178,12 @@ class GroundStation(Waypoints, Sampled):
     def _begin(self) -> None:
         self._codec = Codec(SYSTEM, COMPONENT)
         self._conversation = Conversation(self._send)
-        self._errand: Errand = mission(self._conversation, self._places, self.radius)
+        self._errand: Errand = mission(self._conversation, self._places, self.radius, self._origin)
         self._doing, self._started = "", None
         self._armed, self._mode, self._reached, self._failsafe = False, 0, 0, False
+        self._estimate: Place | None = None
+        self._estimate_time = 0.0
+        self._home: Place | None = None
         self._given = {name: usual for each in FAILURES.values() for name, _, usual in each}
         self._greeted_at = self._set_at = -math.inf
 
@@ -206,6 +235,12 @@ class GroundStation(Waypoints, Sampled):
             self._reached = max(self._reached, counted)
         if kind == "PARAM_VALUE":
             self._given[message.param_id] = message.param_value
+        if kind == "GLOBAL_POSITION_INT":
+            north, east, _ = self._origin.position(message.lat / 1e7, message.lon / 1e7, 0.0)
+            self._estimate = (north, east, -message.relative_alt / 1e3)
+            self._estimate_time = message.time_boot_ms / 1e3
+        if kind == "HOME_POSITION":
+            self._home = home_of(message, self._origin)
         if kind != "HEARTBEAT":
             return
         self._armed, self._mode = bool(message.base_mode & _ARMED), message.custom_mode

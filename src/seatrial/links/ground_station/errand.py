@@ -19,20 +19,23 @@ CONNECTED_S, READY_S, UPLOADED_S = 60.0, 180.0, 60.0
 _SET_MODE = mavlink.MAV_CMD_DO_SET_MODE
 _POSITION = mavlink.EKF_POS_HORIZ_ABS
 """Of ArduPilot's flags; ESTIMATOR_POS_HORIZ_ABS of PX4's is the same."""
-_NEEDED = {"SYS_STATUS": 1.0, "HOME_POSITION": 0.5}
+_NEEDED = {"SYS_STATUS": 1.0, "HOME_POSITION": 0.5, "GLOBAL_POSITION_INT": 2.0}
 """What is asked for beside the estimator's flags, Hz of simulated time."""
 _FLAGS_HZ = 1.0
+FURTHEST_M = 50e3
+"""Between the origin of {n} and the vehicle's home: further off, one of the two is wrong."""
 
 
 Errand = Generator[str, None, Dialect]
 """Yields what it waits for, and returns how the mission was started."""
 
 
-def mission(c: Conversation, places: Sequence[Place], radius: float) -> Errand:
-    """Wait for the vehicle, upload waypoints in {n} from its home, arm, and start the mission.
+def mission(c: Conversation, places: Sequence[Place], radius: float, origin: Origin) -> Errand:
+    """Wait for the vehicle, upload waypoints in {n}, arm, and start the mission.
 
-    ``radius`` in m goes with each waypoint; 0 is the vehicle's own. Raises SimulationError for
-    what it does not do in time, and for one that takes no missions (`dialect_of`).
+    ``origin`` is that of {n}; ``radius`` in m goes with each waypoint, 0 is the vehicle's own.
+    Raises SimulationError for what it does not do in time, for one that takes no missions
+    (`dialect_of`), and for one whose home is far from ``origin``.
     """
     yield from c.until(lambda: "HEARTBEAT" in c.newest, "heartbeat", CONNECTED_S)
     dialect = dialect_of(c.newest["HEARTBEAT"])
@@ -42,7 +45,8 @@ def mission(c: Conversation, places: Sequence[Place], radius: float) -> Errand:
         READY_S,
         lambda: _ask_for_state(c, dialect),
     )
-    yield from _upload(c, _items(c, places, radius, dialect))
+    require_near(c.newest["HOME_POSITION"], origin)
+    yield from _upload(c, _items(c, places, radius, dialect, origin))
     if dialect.arms_in is not None:
         yield from c.command(_SET_MODE, "mode to arm in", 1.0, dialect.arms_in)
     starts = [
@@ -52,6 +56,26 @@ def mission(c: Conversation, places: Sequence[Place], radius: float) -> Errand:
     for number, what, *parameters in reversed(starts) if dialect.mode_first else starts:
         yield from c.command(number, what, *parameters)
     return dialect
+
+
+def home_of(message: Message, origin: Origin) -> Place:
+    """Return a HOME_POSITION in {n}, on the surface: altitudes of missions count from it."""
+    north, east, _ = origin.position(message.latitude / 1e7, message.longitude / 1e7, 0.0)
+    return north, east, 0.0
+
+
+def require_near(home: Message, origin: Origin) -> None:
+    """Raise SimulationError for a HOME_POSITION that is far from the origin of {n}."""
+    if math.hypot(*home_of(home, origin)) > FURTHEST_M:
+        of_home = (
+            f"latitude {home.latitude / 1e7:.6f} deg, longitude {home.longitude / 1e7:.6f} deg"
+        )
+        latitude, longitude = math.degrees(origin.latitude), math.degrees(origin.longitude)
+        raise SimulationError(
+            f"the vehicle's home, {of_home}, is more than {FURTHEST_M / 1e3:g} km from latitude "
+            f"{latitude:.6f} deg, longitude {longitude:.6f} deg, from which the waypoints are "
+            "counted (parameters latitude and longitude)"
+        )
 
 
 def _ask_for_state(c: Conversation, dialect: Dialect) -> None:
@@ -70,11 +94,13 @@ def _is_ready(c: Conversation, dialect: Dialect) -> bool:
 
 
 def _items(
-    c: Conversation, places: Sequence[Place], radius: float, dialect: Dialect
+    c: Conversation,
+    places: Sequence[Place],
+    radius: float,
+    dialect: Dialect,
+    origin: Origin,
 ) -> list[Message]:
     """Return the mission, with home as item 0 where the firmware has it so."""
-    home = c.newest["HOME_POSITION"]
-    origin = Origin(math.radians(home.latitude / 1e7), math.radians(home.longitude / 1e7))
     frame, kind = mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT, mavlink.MAV_CMD_NAV_WAYPOINT
     items = []
     first = [(0.0, 0.0, 0.0)] if dialect.counts_home else []
