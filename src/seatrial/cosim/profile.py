@@ -7,6 +7,7 @@ that has a unit is written with it (``"1100 us"``, ``"0.3 deg"``) and read into 
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -67,6 +68,8 @@ class Profile:
         if group == "links":
             ports = component_class(kind).ports
             shared = {name: value for name, value in self._shared().items() if name in ports}
+            if "instruments" in ports:
+                shared["instruments"] = self._instruments()
             return {**shared, **values}
         return values
 
@@ -132,6 +135,15 @@ class Profile:
                 for name, each in self.file.actuators.items()
             ),
         }
+
+    def _instruments(self) -> str:
+        """Return all sensors as JSON: kind and parameters, SI; of the kind where none is given."""
+        found = {}
+        for name, table in self.tables("sensors").items():
+            ports = keys("sensors", table["kind"])
+            starts = {key: port.start for key, port in ports.items()}
+            found[name] = {"kind": table["kind"], **starts, **self.parameters(f"sensors.{name}")}
+        return json.dumps(found)
 
     def _section(self, section: str) -> Any:
         if section not in self.sections():

@@ -22,9 +22,9 @@ GROUPS = ("sensors", "links")
 
 SHARED = (
     *("system_id", "component_id", "vehicle_type", "autopilot_type", "firmware_version", "uid"),
-    *("latitude", "longitude", "altitude", "date", "actuators"),
+    *("latitude", "longitude", "altitude", "date", "actuators", "instruments"),
 )
-"""Parameters of links that the rest of the profile gives: identity, home and actuators."""
+"""Parameters of links that the rest of the profile gives: identity, home, actuators, sensors."""
 
 NAME = re.compile(r"[A-Za-z][\w-]*", re.ASCII)
 

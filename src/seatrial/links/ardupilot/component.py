@@ -13,6 +13,7 @@ from ..endpoints.udp import UdpListener
 from ..endpoints.url import open_endpoints, other_end
 from ..geodesy import Origin
 from ..mavlink.parameters_servo import read_servos
+from ..parameter_validation import start_us
 from ..program import Program, check_program
 from ..watchdog import Watchdog
 from .firmware import arguments, by_hand
@@ -20,6 +21,7 @@ from .lockstep import Lockstep
 from .packet import MOST_CHANNELS
 from .ports import LOOP_HZ, ArduPilotPorts
 from .reply import RANGES, blows_from, read_fields, reply
+from .simulated import read_instruments, simulated, write_parameters
 
 BOOTED_S = 10.0
 """Pulses before are those of a firmware that boots: 1000 us for half a second, s."""
@@ -37,8 +39,10 @@ class ArduPilot(ArduPilotPorts):
     time stands still; messages say who is being waited for and since when. After ``wait_limit`` of
     wall time it fails, so that no tool that it is an FMU in waits without end.
 
-    **The firmware** makes its own GNSS, compass, barometer and inertial units from the truth, so
-    their failures are ArduPilot's (SIM_* parameters). With ``program`` it is started beside the
+    **The firmware** makes its own GNSS, compass, barometer and inertial units from the truth, with
+    the errors, delays and places of the profile's sensors as far as ArduPilot has them
+    (``instruments``; `ardupilot.simulated`): a file of SIM_* parameters in the run folder, read
+    after ``defaults``. With ``program`` it is started beside the
     run, in a folder of the run folder with this component's name that keeps its parameters
     and logs, and ended with it. Without, a message says what to start by hand. One that is
     started again, from another port too, goes on with the motion as it is then (``restarts``). See
@@ -176,11 +180,22 @@ class ArduPilot(ArduPilotPorts):
             self.latitude, self.longitude, self.altitude
         ).geodetic((0.0, 0.0, 0.0))
         heading = math.degrees(self.true_attitude[2]) % 360.0
-        defaults = str(Path(self.defaults).resolve()) if self.defaults else ""
+        files = [Path(self.defaults).resolve()] if self.defaults else []
+        files += self._of_instruments()
+        defaults = ",".join(map(str, files))
         if self.firmware == "sub":
             altitude = 0.0  # above it, its simulated pressure sensor is in the air
         home = (latitude, longitude, altitude, heading)
         return arguments(port, home, h, self.speedup, defaults=defaults, serial0=self.serial0)
+
+    def _of_instruments(self) -> list[Path]:
+        """Write the file of parameters of the profile's sensors, if there is a run folder."""
+        home = self.latitude, self.longitude, self.altitude
+        sensors = read_instruments(self.instruments)
+        found = simulated(sensors, self.firmware, home, 1e-6 * start_us(self.date))
+        if not found or not self.run_folder:
+            return []
+        return [write_parameters(Path(self.run_folder, self.name), found)]
 
     def _wait(self) -> bool:
         """Wait for a frame and take its pulses; return whether one is there to be answered."""

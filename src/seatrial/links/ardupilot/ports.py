@@ -9,9 +9,11 @@ from ...component import Input, Logging, Output, Parameter, Reachable, Terminal,
 from ...errors import InputError
 from ..endpoints.url import check_urls
 from ..mavlink.parameters_servo import read_servos
+from ..parameter_validation import start_us
 from ..truth import MOTION, TrueMotion
 from .packet import MOST_CHANNELS
 from .reply import RANGES, read_fields
+from .simulated import read_instruments
 
 LOOP_HZ = {"rover": 50.0, "sub": 400.0}
 """Main loop of each firmware: it needs its sensors at least as often."""
@@ -52,6 +54,19 @@ class ArduPilotPorts(Logging, Reachable, TrueMotion):
         "1",
         "CHANNEL NAME MIN NEUTRAL MAX of each output channel, pulses in us; with ;",
         check=read_servos,
+    )
+    instruments = Parameter(
+        "",
+        "1",
+        "the vehicle's sensors, of which its simulated ones follow: JSON; empty: its own",
+        check=read_instruments,
+    )
+    date = Parameter(
+        "2026-01-01",
+        "1",
+        "UTC at the start of the run: a day, for its midnight, or an instant",
+        check=start_us,
+        role="start-time",
     )
     latitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-1.5707964, max=1.5707964)
     longitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-math.pi, max=math.pi)

@@ -67,7 +67,9 @@ class GroundStation(Waypoints, Sampled):
     the vehicle leaves the mission's mode or disarms before its last waypoint.
 
     ``without`` takes an instrument from ArduPilot's simulated ones, which it makes of the true
-    motion: GNSS (SIM_GPS1_ENABLE 0) or all compasses (SIM_MAG1_FAIL to SIM_MAG3_FAIL 1).
+    motion: GNSS (SIM_GPS1_ENABLE 0) or all compasses (SIM_MAG1_FAIL to SIM_MAG3_FAIL 1). So do
+    ``position_valid`` and ``heading_valid`` where they are false: an outage of the vehicle's own
+    sensors reaches the firmware.
 
     Raises InputError at the start for a link that cannot be, and SimulationError in a step for
     what the vehicle does not do in time, with what it said last, and for one whose home is more
@@ -101,6 +103,13 @@ class GroundStation(Waypoints, Sampled):
         optional=True,
     )
 
+    position_valid = Input(
+        "1", "whether the vehicle's GNSS has a fix", type=bool, start=True, optional=True
+    )
+    heading_valid = Input(
+        "1", "whether the vehicle's compass works", type=bool, start=True, optional=True
+    )
+
     connected = Output("1", "whether the vehicle has sent something", type=bool)
     doing = Output("1", "what it waits for", type=str)
     armed = Output("1", "whether the vehicle says that it is armed", type=bool)
@@ -117,7 +126,8 @@ class GroundStation(Waypoints, Sampled):
 
     feedthrough: ClassVar = {}
     terminals: ClassVar = {
-        "report": terminal("failsafe", "estimated", "estimate", "estimate_time", "home")
+        "sensors": terminal("position_valid", "heading_valid"),
+        "report": terminal("failsafe", "estimated", "estimate", "estimate_time", "home"),
     }
 
     def __init__(self, name: str = "component") -> None:
@@ -250,9 +260,13 @@ class GroundStation(Waypoints, Sampled):
 
     def _set_instruments(self, t: float) -> None:
         """Set the parameters of instruments that are not as they should be."""
+        if not self._conversation.system:
+            return
+        fails = (not self.position_valid, not self.heading_valid)
+        without = [gone or failed for gone, failed in zip(self.without, fails, strict=True)]
         wanted = {
             name: broken if gone else usual
-            for gone, settings in zip(self.without, FAILURES.values(), strict=True)
+            for gone, settings in zip(without, FAILURES.values(), strict=True)
             for name, broken, usual in settings
         }
         other = [name for name, value in wanted.items() if self._given[name] != value]
