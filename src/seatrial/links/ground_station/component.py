@@ -30,6 +30,7 @@ _NOWHERE: Place = (0.0, 0.0, 0.0)
 FAILURES = {
     "gnss": (("SIM_GPS1_ENABLE", 0.0, 1.0),),
     "compass": tuple((f"SIM_MAG{number}_FAIL", 1.0, 0.0) for number in (1, 2, 3)),
+    "battery": (("SIM_BATT_VOLTAGE", 9.6, 12.6),),
 }
 """ArduPilot's simulated instruments: parameter, its value without the instrument, and with it."""
 
@@ -67,9 +68,10 @@ class GroundStation(Waypoints, Sampled):
     the vehicle leaves the mission's mode or disarms before its last waypoint.
 
     ``without`` takes an instrument from ArduPilot's simulated ones, which it makes of the true
-    motion: GNSS (SIM_GPS1_ENABLE 0) or all compasses (SIM_MAG1_FAIL to SIM_MAG3_FAIL 1). So do
-    ``position_valid`` and ``heading_valid`` where they are false: an outage of the vehicle's own
-    sensors reaches the firmware.
+    motion: GNSS (SIM_GPS1_ENABLE 0), all compasses (SIM_MAG1_FAIL to SIM_MAG3_FAIL 1), or the
+    charge of the battery (SIM_BATT_VOLTAGE 9.6 V of 12.6 V). So do ``position_valid`` and
+    ``heading_valid`` where they are false: an outage of the vehicle's own sensors reaches the
+    firmware. While it is ``silent`` it sends nothing, as a station that is lost.
 
     Raises InputError at the start for a link that cannot be, and SimulationError in a step for
     what the vehicle does not do in time, with what it said last, and for one whose home is more
@@ -97,7 +99,7 @@ class GroundStation(Waypoints, Sampled):
 
     without = Input(
         "1",
-        "instruments that ArduPilot's simulation lacks",
+        "what ArduPilot's simulation lacks",
         axes=tuple(FAILURES),
         type=bool,
         optional=True,
@@ -109,6 +111,8 @@ class GroundStation(Waypoints, Sampled):
     heading_valid = Input(
         "1", "whether the vehicle's compass works", type=bool, start=True, optional=True
     )
+
+    silent = Input("1", "whether it sends nothing", type=bool, optional=True)
 
     connected = Output("1", "whether the vehicle has sent something", type=bool)
     doing = Output("1", "what it waits for", type=str)
@@ -198,6 +202,8 @@ class GroundStation(Waypoints, Sampled):
         self._greeted_at = self._set_at = -math.inf
 
     def _send(self, message: Message) -> None:
+        if self.silent:
+            return
         assert self._endpoint is not None
         data = self._codec.encode(message)
         for channel in self._endpoint.channels():
@@ -262,7 +268,7 @@ class GroundStation(Waypoints, Sampled):
         """Set the parameters of instruments that are not as they should be."""
         if not self._conversation.system:
             return
-        fails = (not self.position_valid, not self.heading_valid)
+        fails = (not self.position_valid, not self.heading_valid, False)
         without = [gone or failed for gone, failed in zip(self.without, fails, strict=True)]
         wanted = {
             name: broken if gone else usual
