@@ -12,7 +12,7 @@ NODE_TOOLS := tests/interop/node/node_modules/.installed
 # the environment says: hundreds of tests start processes.
 PYTEST := OPENBLAS_NUM_THREADS=1 PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -n auto --dist worksteal
 
-.PHONY: demo test test-interop test-long fuzz lint docs fmus benchmark release clean
+.PHONY: demo test test-interop test-long test-firmware fuzz lint docs fmus benchmark release clean
 
 $(INSTALLED): pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
@@ -52,6 +52,11 @@ test-interop: $(INSTALLED) $(NODE_TOOLS)
 
 test-long: $(INSTALLED) $(NODE_TOOLS)
 	$(PYTEST) -m long
+
+# Each vehicle in each sea with each fault under ArduPilot's own programs, which SEATRIAL_ARDUPILOT
+# names the folder of: an hour, once per release. The table goes into docs/autopilots.md.
+test-firmware: $(INSTALLED)
+	$(BIN)/python -m tests.interop.firmware_matrix --write
 
 # Every harness in tests/fuzz for long, guided by coverage: 10^6 executions or half an hour each.
 fuzz: $(FUZZ)

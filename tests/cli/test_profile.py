@@ -94,3 +94,11 @@ def test_describe_shows_what_a_ground_station_tunes(tmp_path: Path) -> None:
     ]
     link = [line.split() for line in rows(done.stdout, "links.ground: mavlink")]
     assert ["tunables", "11,", "below", "profile"] in [words[:4] for words in link]
+
+
+def test_describe_shows_which_sensor_reaches_a_firmware(tmp_path: Path) -> None:
+    done = seatrial("profile", "describe", "bluerov2", cwd=tmp_path)
+    rows = [line.split() for line in done.stdout.splitlines()]
+    # Uniform noise of a standard deviation of 2 mm; a fix every 0.2 s.
+    assert ["SIM_BARO_RND", "0.003464", "sensors.depth.depth_noise"] in rows
+    assert ["SIM_GPS1_HZ", "5", "sensors.positioning.period"] in rows

@@ -13,6 +13,7 @@ from ..cosim.profile import NO_SOURCE, Profile, check_profile
 from ..cosim.profile_file import Actuator, Home, Identity
 from ..cosim.profile_kinds import GROUPS, keys
 from ..cosim.tunables import Tunable
+from ..fmi.index import component_class
 from ..ports import Parameter
 from ..trials.readable import from_si, number, person_unit
 from .show import console, print_notes
@@ -47,8 +48,22 @@ def describe(name: Named) -> None:
             rows = _parameters(keys(group, kind), profile, section)
             no_source = NO_SOURCE if group == "sensors" else ""
             _print(f"{section}: {kind}", rows, entry.get("source", "") or no_source)
+            if reached := _simulated(kind, profile, section):
+                _print(f"what {section} gives the firmware for its simulated instruments", reached)
             if tunables := profile.tunables(section):
                 _print(f"tunables of {section}", _tunables(tunables))
+
+
+def _simulated(kind: str, profile: Profile, section: str) -> Rows:
+    """Return the parameters of a firmware's simulated instruments, and the sensor of each."""
+    made = component_class(kind)
+    if not hasattr(made, "simulated_instruments"):
+        return []
+    component: Any = made("component")
+    for key, value in profile.parameters(section).items():
+        component.set(key, value)
+    rows = [(one.name, number(one.value), one.source) for one in component.simulated_instruments()]
+    return [("parameter", "value", "from"), *rows]
 
 
 def _notes(profile: Profile) -> list[str]:

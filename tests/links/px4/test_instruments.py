@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import json
 import math
 
 import numpy as np
 import pytest
 from pymavlink.dialects.v20 import common as mavlink
 
-from seatrial.errors import SimulationError
+from seatrial.errors import InputError, SimulationError
 from seatrial.links.earth_field import earth_field
+from seatrial.links.px4.firmware import environment
 from seatrial.links.px4.instruments import air_pressure
 from tests.links.ground_station.vehicle import HOME, placed
 
@@ -173,3 +175,62 @@ def test_a_motion_that_cannot_be_is_not_sent():
     ):
         made.set("true_rates", (0.0, 1e3, 0.0))
         made.advance(0.0, 0.01)
+
+
+MEASURED = {
+    "gyro": [0.1, -0.2, 0.3],
+    "accelerometer": [0.5, 0.6, -9.7],
+    "imu_valid": True,
+    "position_n": [3.0, -4.0, -0.3],
+    "velocity_n": [0.3, -0.4, 0.1],
+    "position_valid": True,
+    "heading": math.pi / 2,
+    "heading_valid": True,
+}
+
+
+def test_what_the_vehicles_own_sensors_measure_is_sent():
+    messages = flown(
+        moves=still(**MEASURED, true_position=[100.0, 0.0, 0.0]), measured="imu gnss compass"
+    )
+    (sensor,), (fix,) = of(messages, "HIL_SENSOR"), of(messages, "HIL_GPS")
+    assert (sensor.xacc, sensor.yacc, sensor.zacc) == pytest.approx((0.5, 0.6, -9.7))
+    assert (sensor.xgyro, sensor.ygyro, sensor.zgyro) == pytest.approx((0.1, -0.2, 0.3))
+    north, east, down = earth_field(*PLACE.values(), 0.0, NOON_5_FEBRUARY_2026)
+    gauss = [1e4 * each for each in (east, -north, down)]  # with the bow to the east
+    assert (sensor.xmag, sensor.ymag, sensor.zmag) == pytest.approx(gauss, rel=1e-3)
+    assert sensor.fields_updated == sum(MASKS.values())
+    item = mavlink.MAVLink_mission_item_int_message(*(0,) * 11, fix.lat, fix.lon, 0)
+    assert placed(item) == pytest.approx((3.0, -4.0), abs=0.02)
+    assert (fix.vn, fix.ve, fix.vd, fix.vel) == (30, -40, 10, 50)
+
+
+@pytest.mark.parametrize(
+    ("flag", "gone"),
+    [
+        ("imu_valid", MASKS["accelerometer"] + MASKS["gyro"]),
+        ("heading_valid", MASKS["field"]),
+        ("position_valid", 0),
+    ],
+)
+def test_an_outage_of_a_vehicles_sensor_reaches_the_firmware(flag, gone):
+    moves = still(**{**MEASURED, flag: False})
+    messages = flown(moves=moves, measured="imu gnss compass")
+    (sensor,) = of(messages, "HIL_SENSOR")
+    assert sensor.fields_updated == sum(MASKS.values()) - gone
+    assert len(of(messages, "HIL_GPS")) == (flag != "position_valid")
+
+
+def test_the_firmware_is_told_of_the_vehicles_receiver():
+    gnss = {"kind": "gnss", "antenna": [0.1, 0.0, -0.5], "delay": [0.12]}
+    values = {"instruments": json.dumps({"rtk": gnss}), "antenna": [9.0, 9.0, 9.0]}
+    for measured, place, delay in (("gnss", "0.1", "120"), ("imu", "9", "0")):
+        with component(**values, measured=measured) as made:
+            variables = environment(made, {})
+        assert variables["PX4_PARAM_EKF2_GPS_POS_X"] == place
+        assert variables["PX4_PARAM_EKF2_GPS_DELAY"] == delay
+
+
+def test_an_instrument_of_another_name_is_refused():
+    with pytest.raises(InputError, match="unknown instrument 'gps'"), component(measured="gps"):
+        pass

@@ -15,13 +15,14 @@ from ..geodesy import Origin
 from ..mavlink.parameters_servo import read_servos
 from ..parameter_validation import start_us
 from ..program import Program, check_program
+from ..vehicle_sensors import read_instruments
 from ..watchdog import Watchdog
 from .firmware import arguments, by_hand
 from .lockstep import Lockstep
 from .packet import MOST_CHANNELS
 from .ports import LOOP_HZ, ArduPilotPorts
 from .reply import RANGES, blows_from, read_fields, reply
-from .simulated import read_instruments, simulated, write_parameters
+from .simulated import Simulated, simulated, write_parameters
 
 BOOTED_S = 10.0
 """Pulses before are those of a firmware that boots: 1000 us for half a second, s."""
@@ -188,11 +189,15 @@ class ArduPilot(ArduPilotPorts):
         home = (latitude, longitude, altitude, heading)
         return arguments(port, home, h, self.speedup, defaults=defaults, serial0=self.serial0)
 
-    def _of_instruments(self) -> list[Path]:
-        """Write the file of parameters of the profile's sensors, if there is a run folder."""
+    def simulated_instruments(self) -> list[Simulated]:
+        """Return the firmware's parameters that follow from the sensors of the profile."""
         home = self.latitude, self.longitude, self.altitude
         sensors = read_instruments(self.instruments)
-        found = simulated(sensors, self.firmware, home, 1e-6 * start_us(self.date))
+        return simulated(sensors, self.firmware, home, 1e-6 * start_us(self.date))
+
+    def _of_instruments(self) -> list[Path]:
+        """Write the file of parameters of the profile's sensors, if there is a run folder."""
+        found = self.simulated_instruments()
         if not found or not self.run_folder:
             return []
         return [write_parameters(Path(self.run_folder, self.name), found)]

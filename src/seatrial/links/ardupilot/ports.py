@@ -11,9 +11,9 @@ from ..endpoints.url import check_urls
 from ..mavlink.parameters_servo import read_servos
 from ..parameter_validation import start_us
 from ..truth import MOTION, TrueMotion
+from ..vehicle_sensors import read_instruments
 from .packet import MOST_CHANNELS
 from .reply import RANGES, read_fields
-from .simulated import read_instruments
 
 LOOP_HZ = {"rover": 50.0, "sub": 400.0}
 """Main loop of each firmware: it needs its sensors at least as often."""

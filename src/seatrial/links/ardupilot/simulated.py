@@ -23,14 +23,13 @@ the firmware while it runs, by the ground station (`GroundStation`).
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ...errors import InputError
 from ..earth_field import earth_field
+from ..vehicle_sensors import Sensors, axis, first_of, three
 
 FILE = "instruments.parm"
 _MILLIGAUSS = 1e7
@@ -47,20 +46,6 @@ class Simulated(NamedTuple):
 
 
 Home = tuple[float, float, float]
-Sensors = Mapping[str, Mapping[str, Any]]
-
-
-def read_instruments(text: str) -> Sensors:
-    """Return the sensors of a profile, by name: kind and values, SI. Raises InputError."""
-    try:
-        sensors: Sensors = json.loads(text or "{}")
-        if not all(isinstance(each["kind"], str) for each in sensors.values()):
-            raise TypeError
-    except (ValueError, TypeError, KeyError, AttributeError):
-        raise InputError(
-            f"instruments: a JSON object of sensors with their kinds is needed, not {text[:80]!r}"
-        ) from None
-    return sensors
 
 
 def simulated(sensors: Sensors, firmware: str, home: Home, unix_s: float) -> list[Simulated]:
@@ -73,11 +58,10 @@ def simulated(sensors: Sensors, firmware: str, home: Home, unix_s: float) -> lis
         ("gnss", _gnss),
         ("imu", _imu),
         ("compass", lambda s: _heading(s, "heading_noise", s["heading_noise"], home, unix_s)),
-        ("ahrs", lambda s: _heading(s, "euler_noise", _axis(s["euler_noise"], 2), home, unix_s)),
+        ("ahrs", lambda s: _heading(s, "euler_noise", axis(s["euler_noise"], 2), home, unix_s)),
         ("depth", _depth if firmware == "sub" else lambda _: iter(())),
     ):
-        of_kind = ((name, each) for name, each in sensors.items() if each["kind"] == kind)
-        name, sensor = next(of_kind, ("", None))
+        name, sensor = first_of(sensors, kind)
         if sensor is not None:
             found += [
                 Simulated(key, value, f"sensors.{name}.{source}")
@@ -96,47 +80,36 @@ def write_parameters(folder: Path, parameters: list[Simulated]) -> Path:
 
 
 def _gnss(sensor: Mapping[str, Any]) -> Iterator[Simulated]:
-    yield Simulated("SIM_GPS1_HZ", max(1.0, round(1.0 / _axis(sensor["period"]))), "period")
-    lag = round(1e3 * _axis(sensor["delay"]))
+    yield Simulated("SIM_GPS1_HZ", max(1.0, round(1.0 / axis(sensor["period"]))), "period")
+    lag = round(1e3 * axis(sensor["delay"]))
     yield Simulated("SIM_GPS1_LAG_MS", lag, "delay")
     yield Simulated("GPS1_DELAY_MS", max(lag, 1), "delay")  # 0 is that of the receiver's type
-    for axis, place, noise in zip(
-        "XYZ", _three(sensor["antenna"]), _three(sensor["velocity_n_noise"]), strict=True
+    for letter, place, noise in zip(
+        "XYZ", three(sensor["antenna"]), three(sensor["velocity_n_noise"]), strict=True
     ):
-        yield Simulated(f"SIM_GPS1_POS_{axis}", place, "antenna")
-        yield Simulated(f"GPS1_POS_{axis}", place, "antenna")
-        yield Simulated(f"SIM_GPS1_VERR_{axis}", _UNIFORM * noise, "velocity_n_noise")
-    parts = (_axis(sensor[f"position_n_{part}"], 0) for part in ("noise", "instability"))
+        yield Simulated(f"SIM_GPS1_POS_{letter}", place, "antenna")
+        yield Simulated(f"GPS1_POS_{letter}", place, "antenna")
+        yield Simulated(f"SIM_GPS1_VERR_{letter}", _UNIFORM * noise, "velocity_n_noise")
+    parts = (axis(sensor[f"position_n_{part}"], 0) for part in ("noise", "instability"))
     yield Simulated("SIM_GPS1_ACC", max(math.hypot(*parts), 0.01), "position_n_noise")
 
 
 def _imu(sensor: Mapping[str, Any]) -> Iterator[Simulated]:
     for of, key in (("GYR", "gyro_bias"), ("ACC", "accelerometer_bias")):
-        for axis, bias in zip("XYZ", _three(sensor[key]), strict=True):
+        for letter, bias in zip("XYZ", three(sensor[key]), strict=True):
             if bias:
-                yield from (Simulated(f"SIM_{of}{n}_BIAS_{axis}", bias, key) for n in (1, 2, 3))
+                yield from (Simulated(f"SIM_{of}{n}_BIAS_{letter}", bias, key) for n in (1, 2, 3))
 
 
 def _heading(
     sensor: Mapping[str, Any], key: str, noise: Any, home: Home, unix_s: float
 ) -> Iterator[Simulated]:
-    across = math.hypot(*earth_field(*home, unix_s)[:2]) * _axis(noise, 0)
+    across = math.hypot(*earth_field(*home, unix_s)[:2]) * axis(noise, 0)
     yield Simulated("SIM_MAG_RND", _UNIFORM * _MILLIGAUSS * across, key)
-    yield Simulated("SIM_MAG_DELAY", round(1e3 * _axis(sensor["delay"])), "delay")
+    yield Simulated("SIM_MAG_DELAY", round(1e3 * axis(sensor["delay"])), "delay")
 
 
 def _depth(sensor: Mapping[str, Any]) -> Iterator[Simulated]:
     for of in ("BARO", "BAR2", "BAR3"):
-        yield Simulated(f"SIM_{of}_RND", _UNIFORM * _axis(sensor["depth_noise"], 0), "depth_noise")
-        yield Simulated(f"SIM_{of}_DELAY", round(1e3 * _axis(sensor["delay"])), "delay")
-
-
-def _axis(value: Any, index: int = 0) -> float:
-    """Return one element: a file may give one value for all, a component's start is a list."""
-    if not isinstance(value, (list, tuple)):
-        return float(value)
-    return float(value[index if len(value) > 1 else 0])
-
-
-def _three(value: Any) -> list[float]:
-    return [_axis(value, index) for index in range(3)]
+        yield Simulated(f"SIM_{of}_RND", _UNIFORM * axis(sensor["depth_noise"], 0), "depth_noise")
+        yield Simulated(f"SIM_{of}_DELAY", round(1e3 * axis(sensor["delay"])), "delay")

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 import shlex
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from ...errors import InputError
 from ..program import check_program
-from .ports import Px4Ports
+from ..vehicle_sensors import axis, first_of, read_instruments, three
+from .ports import Px4Ports, read_measured
 
 PORT = 4560
 """Where the instance 0 connects to; each further one to the next."""
@@ -17,8 +18,7 @@ MOST_INSTANCES = 255
 _START = "etc/init.d-posix/rcS"
 _NAME = re.compile(r"[A-Z][A-Z0-9_]{0,15}")
 _OURS = {"SIM_GZ_EN": "0", "EKF2_GPS_DELAY": "0"}
-"""No Gazebo; and fixes here have no delay."""
-_PLACES = {"EKF2_IMU_POS": "imu", "EKF2_GPS_POS": "antenna"}
+"""No Gazebo; and fixes that are made here have no delay."""
 
 
 def check_build(program: str) -> tuple[Path, Path]:
@@ -68,14 +68,18 @@ def read_parameters(file: str) -> dict[str, str]:
 def environment(of: Px4Ports, parameters: Mapping[str, str]) -> dict[str, str]:
     """Return the variables by which PX4's start-up takes airframe and parameters.
 
-    It is given where inertial unit and antenna are; ``parameters`` may say otherwise.
+    It is given where inertial unit and antenna are, and the delay of a fix: where the fixes are
+    measured, those of the vehicle's receiver. ``parameters`` may say otherwise.
     """
-    places = {
-        f"{parameter}_{axis.upper()}": f"{value:g}"
-        for parameter, port in _PLACES.items()
-        for axis, value in zip("xyz", getattr(of, port), strict=True)
-    }
-    given = {**_OURS, **places, **parameters}
+    given = dict(_OURS)
+    places: dict[str, Sequence[float]] = {"EKF2_IMU_POS": of.imu, "EKF2_GPS_POS": of.antenna}
+    _, gnss = first_of(read_instruments(of.instruments), "gnss")
+    if gnss is not None and "gnss" in read_measured(of.measured):
+        places["EKF2_GPS_POS"] = three(gnss["antenna"])
+        given["EKF2_GPS_DELAY"] = f"{1e3 * axis(gnss['delay']):g}"
+    for parameter, place in places.items():
+        given |= {f"{parameter}_{letter}": f"{x:g}" for letter, x in zip("XYZ", place, strict=True)}
+    given |= parameters
     return {
         "PX4_SYS_AUTOSTART": f"{of.airframe:.0f}",
         "PX4_SIMULATOR": "none",

@@ -12,6 +12,10 @@ with r and a the places of inertial unit and antenna, f the specific force at th
 the altitude, of the International Standard Atmosphere (ISO 2533). Below the surface too: PX4
 takes heights from pressures as in air, so that it reads its depth right. d omega/dt is the change
 over the step before.
+
+Of the instruments that ``measured`` names the vehicle's own sensors have the errors, delays, and
+outages: rates and specific force are theirs, so are position and velocity of a fix, and B is
+turned by the measured heading in the place of the true one.
 """
 
 from __future__ import annotations
@@ -30,7 +34,7 @@ from ..mavlink.codec import Message
 from ..mavlink.scaling import compass_degrees, deg_e7, int16, int32, quaternion, uint16
 from ..parameter_validation import start_us
 from ..truth import Truth
-from .ports import Px4Ports
+from .ports import Px4Ports, read_measured
 
 ACCELEROMETER, GYRO, FIELD, PRESSURE = 0x7, 0x38, 0x1C0, 0x1A00
 """What a HIL_SENSOR has new, in its ``fields_updated``."""
@@ -68,6 +72,7 @@ class Instruments:
         self._of, self._start_ns = of, start_ns
         self._origin = Origin(of.latitude, of.longitude, of.altitude)
         self._start_us = start_us(of.date)
+        self._measured = read_measured(of.measured)
         place = of.latitude, of.longitude, of.altitude
         self._field_n = earth_field(*place, self._start_us * 1e-6)
         self._clocks = {
@@ -92,14 +97,20 @@ class Instruments:
 
     def _sensor(self, now_ns: int, us: int, truth: Truth, normal: Sequence[float]) -> Message:
         of, passed = self._of, now_ns - self._start_ns
-        updated = ACCELEROMETER | GYRO
-        if self._clocks[FIELD].take(passed) and not of.without[1]:
+        updated = 0 if "imu" in self._measured and not of.imu_valid else ACCELEROMETER | GYRO
+        works = of.heading_valid or "compass" not in self._measured
+        if self._clocks[FIELD].take(passed) and works and not of.without[1]:
             updated |= FIELD
         if self._clocks[PRESSURE].take(passed) and not of.without[2]:
             updated |= PRESSURE
-        force = _noisy(self._specific_force(now_ns, truth), of.accelerometer_noise, normal)
-        rates = _noisy(truth.rates, of.gyro_noise, normal[3:])
-        field = _noisy(to_body(truth.attitude, self._field_n), of.field_noise, normal[6:])
+        force, rates = of.accelerometer, of.gyro
+        if "imu" not in self._measured:
+            force = _noisy(self._specific_force(now_ns, truth), of.accelerometer_noise, normal)
+            rates = _noisy(truth.rates, of.gyro_noise, normal[3:])
+        if "compass" in self._measured:
+            field = to_body((*truth.attitude[:2], of.heading), self._field_n)
+        else:
+            field = _noisy(to_body(truth.attitude, self._field_n), of.field_noise, normal[6:])
         altitude = of.altitude - truth.position_n[2]
         pressure = air_pressure(altitude) + of.pressure_noise * normal[9]
         celsius = _SEA_LEVEL_K - _CELSIUS - _LAPSE * altitude
@@ -124,11 +135,15 @@ class Instruments:
     def _receives(self, truth: Truth) -> bool:
         if self._of.without[0]:
             return False
+        if "gnss" in self._measured:
+            return bool(self._of.position_valid)
         height = -truth.position_n[2] - to_ned(truth.attitude, self._of.antenna)[2]
         return self._of.reception == "everywhere" or height >= 0.0
 
     def _fix(self, now_ns: int, truth: Truth, normal: Sequence[float]) -> Message:
         of = self._of
+        if "gnss" in self._measured:
+            return self._located(now_ns, of.position_n, of.velocity_n)
         lever = to_ned(truth.attitude, of.antenna)
         swing = to_ned(truth.attitude, cross(truth.rates, of.antenna))
         north, east, down = (
@@ -141,7 +156,11 @@ class Instruments:
             v + extra + of.velocity_noise * w
             for v, extra, w in zip(truth.velocity_n, swing, normal[3:6], strict=True)
         ]
-        latitude, longitude, altitude = self._origin.geodetic((north, east, down))
+        return self._located(now_ns, (north, east, down), velocity)
+
+    def _located(self, now_ns: int, position: Ned, velocity: Sequence[float]) -> Message:
+        of = self._of
+        latitude, longitude, altitude = self._origin.geodetic(position)
         speed = math.hypot(velocity[0], velocity[1])
         course = round(100.0 * compass_degrees(math.atan2(velocity[1], velocity[0]))) % 36_000
         accuracy = math.hypot(*of.position_noise[:2]), of.position_noise[2]

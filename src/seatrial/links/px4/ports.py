@@ -13,18 +13,30 @@ from ...component import (
     Parameter,
     Reachable,
     Terminal,
+    terminal,
 )
-from ...errors import InputError
+from ...errors import InputError, unknown
 from ..endpoints.url import check_urls
 from ..mavlink.parameters_servo import read_servos
 from ..parameter_validation import start_us
 from ..truth import MOTION, TrueMotion
+from ..vehicle_sensors import read_instruments
 
 CHANNELS = 16
 """Of HIL_ACTUATOR_CONTROLS."""
+MEASURED = ("imu", "gnss", "compass")
 INSTRUMENTS = ("gnss", "compass", "barometer")
 
+_NED = ("north", "east", "down")
 _CHANNELS = tuple(f"ch{number}" for number in range(1, CHANNELS + 1))
+
+
+def read_measured(text: str) -> tuple[str, ...]:
+    """Return the instruments that are the vehicle's own. Raises InputError."""
+    for name in text.split():
+        if name not in MEASURED:
+            raise InputError(unknown("instrument", name, MEASURED))
+    return tuple(text.split())
 
 
 def _check_link(text: str) -> None:
@@ -90,6 +102,31 @@ class Px4Ports(Logging, Noise, Reachable, TrueMotion):
     velocity_noise = Parameter(0.05, "m/s", "of a fix, standard deviation per axis", min=0.0)
     satellites = Parameter(12.0, "1", "that a fix is of", min=4.0, max=254.0)
 
+    instruments = Parameter(
+        "", "1", "the vehicle's sensors: JSON; empty: unknown", check=read_instruments
+    )
+    measured = Parameter(
+        "",
+        "1",
+        "instruments that are the vehicle's own sensors: imu, gnss, compass; the others are made "
+        "of the true motion",
+        check=read_measured,
+    )
+
+    gyro = Input("rad/s", "rates as measured, body axes", axes="xyz", frame="b", optional=True)
+    accelerometer = Input(
+        "m/s2", "specific force as measured, body axes", axes="xyz", frame="b", optional=True
+    )
+    imu_valid = Input("1", "whether both are measured", type=bool, optional=True)
+    position_n = Input(
+        "m", "antenna's position as measured, {n}", axes=_NED, frame="n", optional=True
+    )
+    velocity_n = Input(
+        "m/s", "antenna's velocity as measured, {n}", axes=_NED, frame="n", optional=True
+    )
+    position_valid = Input("1", "whether both are measured", type=bool, optional=True)
+    heading = Input("rad", "heading as measured", optional=True)
+    heading_valid = Input("1", "whether the heading is measured", type=bool, optional=True)
     without = Input(
         "1", "instruments that send nothing", axes=INSTRUMENTS, type=bool, optional=True
     )
@@ -104,5 +141,9 @@ class Px4Ports(Logging, Noise, Reachable, TrueMotion):
 
     terminals: ClassVar = {
         "motion": MOTION,
+        "sensors": terminal(
+            *("gyro", "accelerometer", "imu_valid", "position_n", "velocity_n", "position_valid"),
+            *("heading", "heading_valid"),
+        ),
         "pulses": Terminal({channel: f"pulse.{channel}" for channel in _CHANNELS}),
     }
