@@ -47,7 +47,7 @@ _UNDER_WATER = {"compass": "vehicle.ahrs", "gnss": "vehicle.positioning"}
 VEHICLES = {
     "hydrone": Vehicle("rover", "10 ms", 100.0, 300.0, "vehicle.port_thruster"),
     "otter": Vehicle("rover", "10 ms", 80.0, 260.0, "vehicle.port_propeller"),
-    "mariner": Vehicle("rover", "100 ms", 700.0, 3600.0, "vehicle.machine", "stuck"),
+    "mariner": Vehicle("rover", "10 ms", 700.0, 3600.0, "vehicle.machine", "stuck"),
     "bluerov2": Vehicle("sub", "2.5 ms", 70.0, 220.0, "vehicle.thrusters.t1", **_UNDER_WATER),
     "videoray": Vehicle("sub", "2.5 ms", 70.0, 220.0, "vehicle.thrusters.port", **_UNDER_WATER),
 }

@@ -92,7 +92,7 @@ class Peer:
 
 
 def main() -> None:
-    """Send no pulses for a second of simulated time, then drive ahead."""
+    """Send no pulses for a second of simulated time, then drive ahead; keep all answers."""
     options = dict(zip(sys.argv[1::2], sys.argv[2::2], strict=True))
     print("pid", os.getpid())
     print("options:", *sys.argv[1:], flush=True)
@@ -102,9 +102,12 @@ def main() -> None:
     with open("eeprom.bin", "wb") as memory:
         memory.write(b"kept")
     t = 0.0
-    while True:
-        widths = (1700, 0, 1700) if t > 1.0 else ()
-        t = peer.exchange(*widths).number("timestamp")
+    with open("answers.jsonl", "wb", buffering=0) as answers:
+        while True:
+            widths = (1700, 0, 1700) if t > 1.0 else ()
+            answer = peer.exchange(*widths)
+            answers.write(answer.line + b"\n")
+            t = answer.number("timestamp")
 
 
 if __name__ == "__main__":

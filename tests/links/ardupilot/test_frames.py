@@ -1,0 +1,79 @@
+"""Frames and timing of each vehicle's answers to ArduPilot, in every sea, against its record."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from seatrial.trials.run_folder import load_run
+from tests.command import seatrial
+from tests.interop.firmware_matrix import NO_WIND, SEAS, VEHICLES
+
+NAME = "autopilot.sitl.ardupilot"
+TRIAL = """
+rig     = "sil"
+choices = {{ vehicle = "{vehicle}", autopilot = "ardupilot", program = "{program}", step = "{step}" }}
+stop    = "{stop} s"
+{sea}
+[record]
+signals = ["vehicle.motion.*"]
+"""
+GRAVITY = 9.81
+EVERY = "all"
+"""The sea of each vehicle; the others of the matrix are of one."""
+
+
+@pytest.mark.parametrize(
+    ("vehicle", "sea"),
+    [(vehicle, sea) for vehicle in VEHICLES for sea in SEAS if sea == EVERY or vehicle == "otter"],
+)
+def test_the_firmware_gets_the_truth_of_its_time(vehicle: str, sea: str, tmp_path: Path) -> None:
+    program, options = tmp_path / "firmware", VEHICLES[vehicle]
+    peer = Path(__file__).with_name("peer.py")
+    program.write_text(f'#!/bin/sh\nexec {sys.executable} {peer} "$@"\n')
+    program.chmod(0o755)
+    lines = [line for line in SEAS[sea] if vehicle not in NO_WIND or not line.startswith("wind")]
+    step = float(options.step.removesuffix(" ms")) * 1e-3
+    (tmp_path / "trial.toml").write_text(
+        TRIAL.format(
+            vehicle=vehicle, program=program, step=options.step, stop=200 * step,
+            sea="\n".join(lines),
+        )
+    )  # fmt: skip
+    done = seatrial(
+        "run", "trial.toml", "--engine", "direct", "--out", "run",
+        "--set", f"{NAME}.link=udpin:127.0.0.1:0", "--set", f"{NAME}.speedup=100",
+        cwd=tmp_path,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout + done.stderr
+    run = load_run(tmp_path / "run")
+    lines = (tmp_path / "run" / NAME / "answers.jsonl").read_text().splitlines()
+    answers = [json.loads(line) for line in lines]
+    assert len(answers) == 200
+    record = {
+        port: np.transpose([run.signals[n] for n in run.signals if f".{port}." in n], axes=None)[
+            :200
+        ]
+        for port in ("position", "velocity", "attitude", "rates", "acceleration")
+    }
+    got = {
+        key: np.array([answer[key] for answer in answers])
+        for key in ("timestamp", "position", "velocity", "attitude")
+    }
+    assert got["timestamp"] == pytest.approx(step * np.arange(200), abs=1e-12)
+    assert got["position"] == pytest.approx(record["position"])
+    assert got["attitude"] == pytest.approx(record["attitude"])
+    to_ned = Rotation.from_euler("ZYX", record["attitude"][:, ::-1])
+    assert got["velocity"] == pytest.approx(to_ned.apply(record["velocity"]), abs=1e-9)
+    imu = [answer["imu"] for answer in answers]
+    assert np.array([each["gyro"] for each in imu]) == pytest.approx(record["rates"])
+    fallen = to_ned.inv().apply([[0.0, 0.0, GRAVITY]] * 200)
+    force = np.array([each["accel_body"] for each in imu])
+    assert force == pytest.approx(record["acceleration"] - fallen, abs=1e-9)
+    if sea != "calm" and vehicle != "mariner":
+        assert np.ptp(record["velocity"], axis=0).max() > 1e-4  # something moved it
