@@ -1,30 +1,36 @@
-"""Speed of the Hydrone under ArduPilot's lockstep at 400 Hz: ``python -m benchmarks.ardupilot``.
+"""Speed of vehicles under ArduPilot's lockstep at 400 Hz: ``python -m benchmarks.ardupilot``.
 
-The stand-in for the firmware that the tests have, in a process of its own; the rig as a trial has
-it, in process, with steps of 2.5 ms and a record every 0.2 s. Real time is the unit: 4 is a run
-that takes a quarter of it. Processor time is this process's alone, without the stand-in's. The
-same vehicle with its pulses held says what lockstep costs. Medians over rounds, and ranges.
-``--write`` puts the table into docs/performance.md.
+The firmware is the stand-in that the tests have, in a process of its own; where SEATRIAL_ARDUPILOT
+names the folder of ArduPilot's ``ardusub``, that program too, which is sent round the square. It
+listens at every interface: ``unshare -rn sh -c "ip link set lo up && ..."`` gives it a network of
+its own. Steps of 2.5 ms, a record every 0.2 s. Real time is the unit: 4 is a run that takes a
+quarter of it. Processor time is this process's alone, without the firmware's. The same vehicle with
+its pulses held says what lockstep costs. Medians over rounds, and ranges. ``--write`` puts the
+table into docs/performance.md.
 """
 
 from __future__ import annotations
 
 import argparse
+import os
 import platform
 import statistics
 import sys
 import tempfile
-import time
 from pathlib import Path
+from typing import Literal
 
 from seatrial.trials.run import run_trial
+from seatrial.trials.run_folder import load_run
 from seatrial.trials.trial import load_trial
 
 from .pages import addition, write_measured
 
 ROOT = Path(__file__).parents[1]
+PROGRAMS = os.environ.get("SEATRIAL_ARDUPILOT", "")
+Engine = Literal["direct", "native"]
 _HELD = """
-rig  = "vehicles/hydrone"
+rig  = "vehicles/{vehicle}"
 stop = "{seconds} s"
 [record]
 signals = ["hull.*"]
@@ -32,37 +38,57 @@ every   = "200 ms"
 """
 
 
-def in_lockstep(seconds: float, folder: Path) -> tuple[float, float]:
-    """Return simulated time per wall time and per processor time, with a peer that answers."""
-    program = folder / "ardurover"
+def with_stand_in(vehicle: str, engine: Engine, seconds: float, folder: Path) -> float:
+    """Return simulated time per wall time, with a peer that answers."""
+    program = folder / "firmware"
     peer = ROOT / "tests" / "links" / "ardupilot" / "peer.py"
     program.write_text(f'#!/bin/sh\nexec {sys.executable} {peer} "$@"\n')
     program.chmod(0o755)
-    changes = {
+    changes = {"autopilot.sitl.ardupilot.link": "udpin:127.0.0.1:0"}
+    return _under("under-ardupilot", changes, program, vehicle, engine, seconds, folder)
+
+
+def with_firmware(vehicle: str, engine: Engine, seconds: float, folder: Path) -> float:
+    """Return the same of ArduPilot's own program, on its way round the square."""
+    return _under("square", {}, Path(PROGRAMS, "ardusub"), vehicle, engine, seconds, folder)
+
+
+def _under(
+    trial: str,
+    changes: dict[str, str],
+    program: Path,
+    vehicle: str,
+    engine: Engine,
+    seconds: float,
+    folder: Path,
+) -> float:
+    common = {
         "stop": f"{seconds} s",
+        "choices.vehicle": vehicle,
+        "choices.autopilot": "ardupilot",
         "choices.step": "2.5 ms",
-        "choices.program": str(program),
-        "autopilot.sitl.ardupilot.link": "udpin:127.0.0.1:0",
+        "choices.program": str(program.resolve()),
+        "autopilot.sitl.ardupilot.speedup": "1000",
     }
-    return timed("under-ardupilot", changes, seconds, folder / "lockstep")
+    return timed(trial, {**common, **changes}, engine, seconds, folder)
 
 
-def held(seconds: float, folder: Path) -> tuple[float, float]:
+def held(vehicle: str, engine: Engine, seconds: float, folder: Path) -> float:
     """Return the same of the vehicle alone."""
     trial = folder / "held.toml"
-    trial.write_text(_HELD.format(seconds=seconds))
-    return timed(str(trial), {"step": "2.5 ms"}, seconds, folder / "alone")
+    trial.write_text(_HELD.format(vehicle=vehicle, seconds=seconds))
+    return timed(str(trial), {"step": "2.5 ms"}, engine, seconds, folder)
 
 
-def timed(name: str, changes: dict[str, str], seconds: float, folder: Path) -> tuple[float, float]:
+def timed(
+    name: str, changes: dict[str, str], engine: Engine, seconds: float, folder: Path
+) -> float:
     """Run a trial."""
     trial = load_trial(name, changes=changes, origin="benchmark")
-    begun = time.process_time()
-    result = run_trial(trial, folder, engine="direct")
-    used = time.process_time() - begun - result.wall["assemble"] - result.wall["initialise"]
-    if result.status != "complete":
+    result = run_trial(trial, folder / "run", engine=engine)
+    if result.status not in ("complete", "ended"):  # an ROV whose pulses are a boat's capsizes
         raise RuntimeError(result.error)
-    return seconds / result.wall["run"], seconds / used
+    return float(load_run(folder / "run").time[-1]) / result.wall["run"]
 
 
 def shown(found: list[float]) -> str:
@@ -78,24 +104,35 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=20.0, help="of simulated time")
     parser.add_argument("--write", action="store_true", help="put it into docs/performance.md")
     options = parser.parse_args()
-    ways = {"in lockstep with the tests' peer": in_lockstep, "the vehicle alone, pulses held": held}
-    found: dict[str, list[tuple[float, float]]] = {way: [] for way in ways}
+    ways = {"the vehicle alone, pulses held": held, "with the tests' stand-in": with_stand_in}
+    if PROGRAMS:
+        ways["with ArduPilot's `ardusub`"] = with_firmware
+    cases = [
+        (vehicle, engine, way)
+        for vehicle in ("hydrone", "bluerov2", "videoray")
+        for engine in ("direct", "native")
+        for way in ways
+        if way != "with ArduPilot's `ardusub`" or vehicle != "hydrone"
+    ]
+    found: dict[tuple[str, str, str], list[float]] = {case: [] for case in cases}
     for _ in range(options.rounds):
-        for way, run in ways.items():
+        for vehicle, engine, way in cases:
             with tempfile.TemporaryDirectory(prefix="seatrial-") as folder:
-                found[way].append(run(options.seconds, Path(folder)))
+                run = ways[way](vehicle, engine, options.seconds, Path(folder))
+                found[vehicle, engine, way].append(run)
     rows = [
-        f"| {way} | {shown([wall for wall, _ in each])} | {shown([used for _, used in each])} |"
-        for way, each in found.items()
+        f"| `{vehicle}` | {way} | "
+        f"{shown(found[vehicle, 'direct', way])} | {shown(found[vehicle, 'native', way])} |"
+        for vehicle, engine, way in cases
+        if engine == "direct"
     ]
     text = "\n".join(
         [
             f"Python {platform.python_version()}, {options.rounds} rounds of "
             f"{options.seconds:g} s; one addition in a loop takes {1e9 * addition():.0f} ns.",
             "",
-            "| the Hydrone at 400 Hz, engine `direct` | simulated time per wall time "
-            "| per processor time |",
-            "| --- | --- | --- |",
+            "| simulated time per wall time, 400 Hz | | engine `direct` | engine `native` |",
+            "| --- | --- | --- | --- |",
             *rows,
         ]
     )

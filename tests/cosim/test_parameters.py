@@ -349,6 +349,19 @@ def test_a_rig_names_a_vehicle_file_beside_itself(direct, write, monkeypatch, tm
         direct.system(rig.format("mine", ""), top='step = "1 s"\nvariant = "heavy"')
 
 
+def test_a_table_with_a_question_mark_may_be_lacking(direct, write) -> None:
+    write("mine.toml", HEAD + TABLE)
+    rig = 'a = {{ fmu = "users.py:Scale", parameters = "mine.toml{}" }}'
+    assert bias(direct, rig.format("?")) == 0.3048
+    assert bias(direct, rig.format(".small?")) == pytest.approx(0.01, rel=1e-15)
+    system = direct.system(rig.format(".keel?"))
+    assert "bias" not in system.parts["a"].given
+    (note,) = system.notes
+    assert "mine.toml has no table keel: a has its own values" in note
+    with pytest.raises(InputError, match="unknown component table 'keel'"):
+        direct.system(rig.format(".keel"))
+
+
 # ---------------------------------------------------------------------- lists of like parts
 
 THRUSTERS = (

@@ -9,7 +9,6 @@ its own. Finished cases are kept in ``--folder`` and not run again.
 from __future__ import annotations
 
 import argparse
-import json
 import math
 import os
 import subprocess
@@ -22,6 +21,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.pages import write_measured
+from seatrial.cosim.parameters import load_vehicle
 from seatrial.trials.run_folder import Run, load_run
 from tests.command import SEATRIAL
 
@@ -170,6 +170,19 @@ def table(results: dict[tuple[str, str, str], str]) -> str:
     return "\n".join(lines)
 
 
+def times(runs: dict[tuple[str, str, str], Run]) -> str:
+    """Return the times of the squares in calm water as a table."""
+    lines = ["| vehicle | corners (north, east, depth; m) | back after, s |", "| --- | --- | --- |"]
+    for name in VEHICLES:
+        square = load_vehicle(name).parameter_set("square", None).values
+        last = 3 if VEHICLES[name].firmware == "sub" else 2
+        places = [entry.value for key, entry in square.items() if key.startswith("waypoint_")]
+        corners = "; ".join(", ".join(f"{x:g}" for x in place[:last]) for place in places)  # type: ignore[index]
+        run = runs[name, "calm", "none"]
+        lines.append(f"| `{name}` | {corners} | {run.time[-1]:.0f} |")
+    return "\n".join(lines)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--write", action="store_true")
@@ -182,21 +195,21 @@ def main() -> None:
         sys.exit("SEATRIAL_ARDUPILOT names no folder with ardurover and ardusub")
     if not can_be_alone():
         sys.exit("each run needs a network of its own: unshare and ip are not here, or may not")
+    runs: dict[tuple[str, str, str], Run] = {}
     results: dict[tuple[str, str, str], str] = {}
 
     def one(case: tuple[str, str, str]) -> None:
-        results[case] = found(run(case, programs, given.folder), case[0])
+        runs[case] = run(case, programs, given.folder)
+        results[case] = found(runs[case], case[0])
         print(f"{len(results)} of {len(wanted)}  {' / '.join(case)}: {results[case]}", flush=True)
 
     wanted = cases(given.only)
     with ThreadPoolExecutor(given.at_once) as pool:
         list(pool.map(one, wanted))
-    (given.folder / "found.json").write_text(
-        json.dumps({"/".join(case): text for case, text in results.items()}, indent=1), "utf-8"
-    )
     print(table(results))
     if given.write:
         write_measured("autopilots.md", table(results), "firmware")
+        write_measured("autopilots.md", times(runs), "times")
 
 
 if __name__ == "__main__":
