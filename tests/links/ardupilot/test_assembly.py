@@ -87,7 +87,10 @@ def test_a_program_is_started_in_the_run_folder_and_ended_with_it(program: Path)
     pid, options = (own / "output.txt").read_text().splitlines()
     assert has_ended(int(pid.split()[1]))
     defaults = options.partition("--defaults ")[2]
-    assert Path(defaults).name == "hydrone.parm"
+    files = [Path(name) for name in defaults.split(",")]
+    assert files[0].name == "hydrone.parm"
+    assert files[1:] == [own.resolve() / "instruments.parm"]
+    assert "SIM_GPS1_LAG_MS" in files[1].read_text()
     assert "--home -31.780000000,-52.260000000,0,0.000 --rate 100 --speedup 1" in options
     row = last_row(folder)
     assert row["vehicle.hull.position.x"] > 1.0  # it drove ahead when the pulses came

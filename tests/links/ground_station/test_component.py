@@ -255,13 +255,47 @@ def test_instruments_are_taken_and_given_back(bench):
     vehicle = bench.vehicle(deaf=("PARAM_SET",))
     bench.run(vehicle, 10.0)
     assert not vehicle.parameters
-    bench.station.set("without", (True, False))
+    bench.station.set("without", (True, False, False))
     bench.run(vehicle, 5.0)
     assert vehicle.parameters == {"SIM_GPS1_ENABLE": 0.0}
-    bench.station.set("without", (False, True))
+    bench.station.set("without", (False, True, False))
     bench.run(vehicle, 5.0)
     failed = dict.fromkeys(("SIM_MAG1_FAIL", "SIM_MAG2_FAIL", "SIM_MAG3_FAIL"), 1.0)
     assert vehicle.parameters == {"SIM_GPS1_ENABLE": 1.0, **failed}
+    bench.station.set("without", (False, False, True))
+    bench.run(vehicle, 5.0)
+    assert vehicle.parameters["SIM_BATT_VOLTAGE"] == pytest.approx(9.6)
+    assert not any(vehicle.parameters[name] for name in failed)
+    asked = [m for m in vehicle.received if m.get_type() == "PARAM_SET"]
+    bench.run(vehicle, 10.0)
+    assert [m for m in vehicle.received if m.get_type() == "PARAM_SET"] == asked
+
+
+def test_an_outage_of_the_vehicles_sensors_reaches_the_firmware(bench):
+    vehicle = bench.vehicle()
+    bench.station.set("position_valid", False)  # before anybody is there
+    bench.station.set("position_valid", True)
+    bench.run(vehicle, 10.0)
+    assert not vehicle.parameters
+    bench.station.set("position_valid", False)
+    bench.run(vehicle, 5.0)
+    assert vehicle.parameters == {"SIM_GPS1_ENABLE": 0.0}
+    bench.station.set("position_valid", True)
+    bench.station.set("heading_valid", False)
+    bench.run(vehicle, 5.0)
+    assert vehicle.parameters["SIM_GPS1_ENABLE"] == 1.0
+    assert vehicle.parameters["SIM_MAG2_FAIL"] == 1.0
+
+
+def test_a_station_that_is_silent_sends_nothing(bench):
+    vehicle = bench.vehicle()
+    bench.run(vehicle, 10.0)
+    bench.station.set("silent", True)
+    bench.run(vehicle, 0.2)
+    before = len(vehicle.received)
+    bench.run(vehicle, 10.0)
+    assert len(vehicle.received) == before
+    assert bench.station.get("armed")  # what comes is taken in
 
 
 def test_a_vehicle_that_comes_again_gets_its_mission_again(bench):

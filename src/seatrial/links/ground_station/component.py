@@ -275,7 +275,11 @@ class GroundStation(Waypoints, Sampled):
             for gone, settings in zip(without, FAILURES.values(), strict=True)
             for name, broken, usual in settings
         }
-        other = [name for name, value in wanted.items() if self._given[name] != value]
+        other = [  # a parameter comes back in single precision
+            name
+            for name, value in wanted.items()
+            if not math.isclose(self._given[name], value, rel_tol=1e-6)
+        ]
         if not other or t - self._set_at < ASK_AGAIN_S:
             return
         self._set_at = t
