@@ -10,7 +10,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from seatrial.errors import InputError, SimulationError
 from seatrial.links.ground_station.component import GroundStation
 
-from .vehicle import AUTO, HOME, Px4Vehicle, Vehicle, geodetic, placed
+from .vehicle import AUTO, HOME, Px4Vehicle, Vehicle, geodetic, placed, radii
 
 PLACES = [(30.0, 0.0, 0.0), (30.0, -40.0, 0.0), (0.0, 0.0, 2.5)]
 
@@ -100,6 +100,14 @@ def test_where_the_vehicle_takes_itself_to_be(bench):
     assert bench.station.get("estimated")
     assert bench.station.get("estimate") == pytest.approx((12.0, -7.0, 0.0), abs=0.02)
     assert bench.station.get("estimate_time") == 1.25
+
+
+def test_a_place_of_zeros_is_none(bench):
+    vehicle = bench.vehicle()
+    vehicle.place = tuple(-math.radians(x) * r for x, r in zip(HOME, radii(), strict=True))
+    bench.run(vehicle, 5.0)
+    assert bench.station.get("connected")
+    assert not bench.station.get("estimated")
 
 
 def test_it_beats_as_a_ground_station_once_a_second(bench):

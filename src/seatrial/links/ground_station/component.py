@@ -251,7 +251,7 @@ class GroundStation(Waypoints, Sampled):
             self._reached = max(self._reached, counted)
         if kind == "PARAM_VALUE":
             self._given[message.param_id] = message.param_value
-        if kind == "GLOBAL_POSITION_INT":
+        if kind == "GLOBAL_POSITION_INT" and (message.lat or message.lon):  # both 0: no fix yet
             north, east, _ = self._origin.position(message.lat / 1e7, message.lon / 1e7, 0.0)
             self._estimate = (north, east, -message.relative_alt / 1e3)
             self._estimate_time = message.time_boot_ms / 1e3
