@@ -8,6 +8,7 @@ from seatrial.component import Component
 from seatrial.control.guidance_orders import TARGETS
 from seatrial.control.sailing_guidance import SailingGuidance
 from seatrial.control.velocity_filter import VelocityFilter
+from seatrial.environment.mooring import Mooring
 from seatrial.faults.catalogue import FAILURES as FAULTS
 from seatrial.fmi.dependencies.found import feedthrough_of
 from seatrial.fmi.source import shipped_sources
@@ -24,6 +25,7 @@ CLASSES = [
 """Those of the index; each declares the values that bring everything in it to life."""
 TEXTS = {"fault": ("none", *FAULTS), "target_kind": TARGETS}
 SELDOM = {
+    Mooring: {"force": {"point", "velocity"}},  # from its first step on
     SailingGuidance: {
         "wearing": {"leg", "leg_from", "leg_to", "target_heading", "target_speed", "target_valid"},
         "cross_track": {"home", "velocity_n", *(f"target_{x}" for x in ("kind", "valid"))}

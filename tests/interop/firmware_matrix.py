@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 import math
 import os
+import shutil
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
@@ -112,6 +113,7 @@ def run(case: tuple[str, str, str], programs: Path, folder: Path) -> Run:
     vehicle = VEHICLES[name]
     own = folder / "-".join(case).replace(" ", "-")
     if not (own / "run" / "verdicts.json").is_file():
+        shutil.rmtree(own, ignore_errors=True)
         own.mkdir(parents=True, exist_ok=True)
         surroundings = "\n".join(
             line for line in SEAS[sea] if not (name in NO_WIND and line is _WIND)

@@ -221,7 +221,7 @@ def test_an_outage_of_a_vehicles_sensor_reaches_the_firmware(flag, gone):
     assert len(of(messages, "HIL_GPS")) == (flag != "position_valid")
 
 
-def test_the_firmware_is_told_of_the_vehicles_receiver():
+def test_the_firmware_knows_the_vehicles_receiver():
     gnss = {"kind": "gnss", "antenna": [0.1, 0.0, -0.5], "delay": [0.12]}
     values = {"instruments": json.dumps({"rtk": gnss}), "antenna": [9.0, 9.0, 9.0]}
     for measured, place, delay in (("gnss", "0.1", "120"), ("imu", "9", "0")):

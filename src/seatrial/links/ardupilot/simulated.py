@@ -5,8 +5,8 @@ between -a and a, so that a standard deviation s is a = sqrt(3) s. Of the sensor
 first of each kind:
 
 ==========================  =====================================================================
-gnss: period, delay         SIM_GPS1_HZ, SIM_GPS1_LAG_MS; the firmware is told by GPS1_DELAY_MS
-gnss: antenna               SIM_GPS1_POS_X, _Y, _Z, m; the firmware is told by GPS1_POS_X, _Y, _Z
+gnss: period, delay         SIM_GPS1_HZ, SIM_GPS1_LAG_MS; the firmware knows it by GPS1_DELAY_MS
+gnss: antenna               SIM_GPS1_POS_X, _Y, _Z, m; the firmware knows it by GPS1_POS_X, _Y, _Z
 gnss: velocity_n_noise      SIM_GPS1_VERR_X, _Y, _Z, m/s
 gnss: position_n_noise,     SIM_GPS1_ACC, m: the accuracy that the receiver states, the root of the
 position_n_instability      sum of both squares; ArduPilot has no noise of the horizontal position

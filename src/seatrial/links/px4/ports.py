@@ -142,8 +142,14 @@ class Px4Ports(Logging, Noise, Reachable, TrueMotion):
     terminals: ClassVar = {
         "motion": MOTION,
         "sensors": terminal(
-            *("gyro", "accelerometer", "imu_valid", "position_n", "velocity_n", "position_valid"),
-            *("heading", "heading_valid"),
+            "gyro",
+            "accelerometer",
+            "imu_valid",
+            "position_n",
+            "velocity_n",
+            "position_valid",
+            "heading",
+            "heading_valid",
         ),
         "pulses": Terminal({channel: f"pulse.{channel}" for channel in _CHANNELS}),
     }
