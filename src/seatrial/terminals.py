@@ -7,8 +7,8 @@ motion        truth of a craft: position, velocity, attitude, rates, acceleratio
 wrench        force, moment (N and N.m, body axes, at the body origin)
 attachment    point, velocity, force: of a tether or a tow, all in {n}
 reading       of a sensor: position_n, velocity_n, position_valid; heading, heading_valid; heel,
-              pitch, roll_pitch, roll_rate, yaw_rate, gyro, accelerometer, imu_valid; wind_speed,
-              wind_angle, wind_valid; depth, depth_valid, of the vehicle; water_depth,
+              pitch, roll_pitch, roll_rate, yaw_rate, gyro, gyro_valid, accelerometer, imu_valid;
+              wind_speed, wind_angle, wind_valid; depth, depth_valid, of the vehicle; water_depth,
               water_depth_valid, below a transducer; pressure; rudder
 sensors       the same members, of who reads them
 truth         members of motion, of who reads them

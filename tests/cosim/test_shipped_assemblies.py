@@ -33,16 +33,19 @@ LATER = {
     "hydrone": {
         "guidance.depth_wanted mavlink.nav_depth",
         "compass.valid heading_hold.heading_valid",
+        "imu.valid mavlink.gyro_valid",
         *(f"{side}_thruster.{what} mavlink.motor_{what}.m{n}" for n, side in enumerate(("port", "starboard"), 1) for what in ("speed", "current")),
     },
     "mariner": {
         "guidance.depth_wanted mavlink.nav_depth",
         "imu.valid mavlink.imu_valid",
+        "imu.valid mavlink.gyro_valid",
         "helm.rudder rudder.angle",
         "rudder.pulse mavlink.pulse.ch1",
     },
     "gloria": {
         "imu.valid mavlink.imu_valid",
+        "imu.valid mavlink.gyro_valid",
         "servos.sail.speed boat.sail_rate",
         *(f"{a} {n}.angle" for a, n in [("helm.rudder", "rudder"), ("trimmer.sail", "sail"), ("trimmer.flap", "flap")]),
         *(f"{n}.pulse mavlink.pulse.ch{i}" for i, n in enumerate(("rudder", "flap", "sail"), 1)),
@@ -50,6 +53,9 @@ LATER = {
     "videoray": {
         *(f"allocation.{n} mavlink.share.{n}" for n in ("port", "starboard", "vertical")),
         "ahrs.valid mavlink.imu_valid",
+        "imu.gyro mavlink.gyro",
+        "imu.valid mavlink.gyro_valid",
+        *(f"hull.{port} imu.{port}" for port in ("attitude", "rates", "acceleration")),
         "ahrs.valid mavlink.heading_valid",
         "ahrs.valid heading_hold.heading_valid",
         "ahrs.euler.psi mavlink.heading",

@@ -81,6 +81,7 @@ class Imu(Sensor):
             "accelerometer",
             "roll_pitch",
             imu_valid="valid",
+            gyro_valid="valid",
             heel="roll_pitch__phi",
             pitch="roll_pitch__theta",
             roll_rate="gyro__x",

@@ -46,6 +46,7 @@ _READING = {
     "roll_rate": ("rad/s", 1),
     "yaw_rate": ("rad/s", 1),
     "gyro": ("rad/s", 3),
+    "gyro_valid": (_FLAG, 1),
     "accelerometer": ("m/s2", 3),
     "imu_valid": (_FLAG, 1),
     "wind_speed": ("m/s", 1),

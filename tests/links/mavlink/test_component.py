@@ -19,9 +19,21 @@ WAIT_S = 10.0
 KEY = hashlib.sha256(b"correct horse").digest()
 
 
+MEASURED = {
+    "position_n": [0.0, 0.0, 0.0],
+    "velocity_n": [0.0, 0.0, 0.0],
+    "position_valid": True,
+    "heading": 0.0,
+    "roll_pitch": [0.0, 0.0],
+    "gyro": [0.0, 0.0, 0.0],
+    "accelerometer": [0.0, 0.0, -9.81],
+}
+"""Sensors of a boat, as they are connected in a rig."""
+
+
 def made(**values):
     component = Mavlink("link")
-    for name, value in {"position_valid": True, "links": "udpin:127.0.0.1:0", **values}.items():
+    for name, value in {**MEASURED, "links": "udpin:127.0.0.1:0", **values}.items():
         component.set(name, value)
     return component
 

@@ -134,6 +134,7 @@ def test_they_come_out_at_ports_and_back_in_telemetry(started, connect):  # noqa
         fix = mavlink.GPS_FIX_TYPE_3D_FIX if name == "none" else mavlink.GPS_FIX_TYPE_NO_FIX
         received(boat, station, "GPS_RAW_INT", lambda m, fix=fix: m.fix_type == fix)
     boat.set("imu_valid", False)
+    boat.set("gyro_valid", False)
     bits = mavlink.MAV_SYS_STATUS_SENSOR_3D_GYRO | mavlink.MAV_SYS_STATUS_SENSOR_3D_ACCEL
     status = received(
         boat, station, "SYS_STATUS", lambda m: not m.onboard_control_sensors_health & bits

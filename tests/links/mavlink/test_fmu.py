@@ -47,7 +47,9 @@ def station():
 
 
 def started(instance, **values):
-    instance.set_start({"position_valid": True, **values})
+    places = ("position_n.north", "position_n.east", "position_n.down")
+    measured = dict.fromkeys((*places, "heading", "roll_pitch.phi", "roll_pitch.theta"), 0.0)
+    instance.set_start({**measured, "position_valid": True, **values})
     instance.initialise(0.0, 1e6)
     instance.begin()
     return instance

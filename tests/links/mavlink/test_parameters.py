@@ -121,9 +121,9 @@ def test_arming_checks_are_a_mask() -> None:
 @pytest.mark.parametrize(
     ("name", "value", "error", "reason"),
     [
-        ("WP_RADIUS", -0.1, mavlink.MAV_PARAM_ERROR_VALUE_OUT_OF_RANGE, "at least 0"),
-        ("WP_RADIUS", math.nan, mavlink.MAV_PARAM_ERROR_VALUE_OUT_OF_RANGE, "at least 0"),
-        ("WP_RADIUS", math.inf, mavlink.MAV_PARAM_ERROR_VALUE_OUT_OF_RANGE, "at least 0"),
+        ("WP_RADIUS", -0.1, mavlink.MAV_PARAM_ERROR_VALUE_OUT_OF_RANGE, "0 to 10000"),
+        ("WP_RADIUS", math.nan, mavlink.MAV_PARAM_ERROR_VALUE_OUT_OF_RANGE, "0 to 10000"),
+        ("WP_RADIUS", math.inf, mavlink.MAV_PARAM_ERROR_VALUE_OUT_OF_RANGE, "0 to 10000"),
         ("FS_ACTION", 7.0, mavlink.MAV_PARAM_ERROR_VALUE_OUT_OF_RANGE, "one of 0, 1, 2, 3, 4, 5"),
         ("SYSID_THISMAV", 9.0, mavlink.MAV_PARAM_ERROR_READ_ONLY, "belongs to the trial"),
     ],
@@ -272,7 +272,7 @@ def test_a_file_may_have_commas_and_comments(tmp_path: Path) -> None:
         ("# a\nWP_RADIUS 3 4\n", r"line 2: a name and a value are needed"),
         ("WP_RADIUS three\n", r"line 1: WP_RADIUS: 'three' is no number"),
         ("WP_RADIUS inf\n", r"line 1: WP_RADIUS: 'inf' is no number"),
-        ("WP_RADIUS -3\n", r"line 1: WP_RADIUS is -3, at least 0 is allowed"),
+        ("WP_RADIUS -3\n", r"line 1: WP_RADIUS is -3, 0 to 10000 is allowed"),
         ("WP_RADIUS 3\nWP_RADIUS 3\n", r"line 2: WP_RADIUS is there twice"),
         ("SYSID_THISMAV 7\n", r"line 1: SYSID_THISMAV cannot be set"),
     ],
@@ -305,3 +305,30 @@ def test_what_cannot_be_kept_is_not_set(tmp_path: Path) -> None:
     assert refusal is not None
     assert "cannot be written: No such file" in refusal.reason
     assert (table["WP_RADIUS"], settings.waypoint_radius) == (3.0, 3.0)
+
+
+KINDS = {
+    "rover": (BOAT, ardupilot_parameters),
+    "sub": (SUBMARINE, ardupilot_parameters),
+    "px4": (BOAT, lambda identity, settings, _: px4_parameters(identity, settings)),
+}
+EXTREMES = (0.0, -0.0, 5e-324, 1e-30, 1e30, -1e30, 3.4e38, -3.4e38, math.inf, -math.inf, math.nan)
+MOST = {"cruise_speed": 100.0, "waypoint_speed": 100.0, "waypoint_radius": 1e4, "fence_depth": 12e3}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@given(value=st.one_of(st.sampled_from(EXTREMES), st.floats(width=32)))
+def test_no_parameter_takes_what_no_vehicle_means(kind: str, value: float) -> None:
+    identity, made = KINDS[kind]
+    settings = Settings()
+    definitions = made(identity, settings, {})
+    table = ParameterTable(definitions, settings)
+    for one in definitions:
+        before = table[one.name]
+        refusal = table.put(one.name, value)
+        assert math.isfinite(table[one.name])
+        assert refusal is None or table[one.name] == before
+        if not one.fixed and one.kind == REAL32:
+            assert one.high <= 1e6, one.name
+    for setting, most in MOST.items():
+        assert 0.0 <= getattr(settings, setting) <= most

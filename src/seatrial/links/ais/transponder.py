@@ -11,6 +11,7 @@ from ...errors import InputError
 from ..geodesy import Origin
 from ..parameter_validation import start_us, whole_number
 from ..text import Inbox, Outbox
+from ..unconnected import NOT_CONNECTED, is_connected
 from .codec import VDM, VDO, read, sentences, to_air
 from .reporting import Schedule
 from .station import (
@@ -94,7 +95,9 @@ class AisTransponder(Noise, Component):
     position_valid = Input("1", "whether position and velocity are valid", type=bool)
     heading = Input("rad", "true heading, clockwise from north", optional=True)
     heading_valid = Input("1", "whether the heading is valid", type=bool, optional=True)
-    rate_of_turn = Input("rad/s", "rate of turn, positive to starboard", optional=True)
+    rate_of_turn = Input(
+        "rad/s", "rate of turn, positive to starboard", start=NOT_CONNECTED, optional=True
+    )
     imu_valid = Input("1", "whether the rate of turn is valid", type=bool, optional=True)
     status = Input(
         "1",
@@ -217,7 +220,7 @@ class AisTransponder(Noise, Component):
             math.hypot(north, east) if there else None,
             math.atan2(east, north) if there else None,
             self.heading if self.heading_valid else None,
-            self.rate_of_turn if self.imu_valid else None,
+            self.rate_of_turn if self.imu_valid and is_connected(self.rate_of_turn) else None,
             status,
         )
 

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 from ..geodesy import Ned, Origin
+from ..unconnected import NOT_CONNECTED
 from .codec import equipment
 
 Fix2: Any = equipment.gnss.Fix2
@@ -14,8 +15,6 @@ Solution: Any = equipment.ahrs.Solution
 
 Vector = tuple[float, float, float]
 
-NOT_CONNECTED = 1e30
-"""Start value of inputs that not every rig has: it goes out as NaN, unknown."""
 _SCALE = 1e8  # of degrees
 _MM = 1e3
 _SATELLITES = 12  # assumed: what autopilots want to see before they trust a receiver

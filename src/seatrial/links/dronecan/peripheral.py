@@ -11,9 +11,10 @@ from ...component import NS, Input, Output, Parameter, Terminal, terminal
 from ...errors import InputError, unknown
 from ..geodesy import Origin
 from ..parameter_validation import start_us
+from ..unconnected import NOT_CONNECTED
 from .channels import AXES, MOST_CHANNELS, channels_of
 from .commands import ArrayCommand, RawCommand, RPMCommand, commanded
-from .navigation import NOT_CONNECTED, Motion, fix, solution
+from .navigation import Motion, fix, solution
 from .node import DroneCanNode, Task
 from .parameters import Setting
 from .telemetry import QUANTITIES, status

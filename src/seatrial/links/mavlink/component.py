@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from ...errors import InputError
 from ...sampled import Sampled
@@ -10,6 +12,7 @@ from ..endpoints.endpoint import report
 from ..endpoints.url import open_endpoints, other_end
 from ..geodesy import Origin
 from ..parameter_validation import serial_number, start_us, value_names, version, whole_number
+from ..unconnected import is_connected
 from .modes import MANUAL_MODES, dialect
 from .node import Node
 from .outputs import SHARED, Outputs
@@ -78,6 +81,9 @@ class Mavlink(MavlinkPorts):
     speed-up of 0 it stands still in its step, serves its links, and so keeps everything waiting
     (`stand_still`).
 
+    **Measurements**: what nothing is connected to, or was never valid, is not reported: not as a
+    message, or as the unknown value of a field (`Estimates`), nor as a sensor in SYS_STATUS.
+
     **Signatures**: with ``signing_key_file``, whose first line is the pass phrase, unsigned and
     repeated frames are refused, heartbeats too, and peers that come by themselves are sent nothing
     before their first signed frame; ``state_file`` keeps the newest timestamp.
@@ -128,6 +134,7 @@ class Mavlink(MavlinkPorts):
             self._outputs = Outputs(read_servos(self.actuators))
             self._value_names = value_names(self.names, NAMED_VALUES)
             self._begun = t
+            self._known: set[str] = set()
             self._log = TelemetryLog(identity.boot_unix_us)
             self._transport = self._opened(identity)
             plans = Path(self.plan_folder) if self.plan_folder else None
@@ -287,26 +294,50 @@ class Mavlink(MavlinkPorts):
             endpoints, identity.system, identity.component, signing, self._log, self.name
         )
 
+    def _measured(self) -> dict[str, tuple[Sequence[float], bool]]:
+        """Return each quantity that something feeds, and whether it is valid."""
+        quantities = {
+            "position": (self.position_n, self.position_valid),
+            "velocity": (self.velocity_n, self.position_valid),
+            "heading": ((self.heading,), self.heading_valid),
+            "tilt": (self.roll_pitch, self.imu_valid),
+            "gyro": (self.gyro, self.gyro_valid),
+            "accelerometer": (self.accelerometer, self.imu_valid),
+            "depth": ((self.depth,), self.depth_valid),
+        }
+        return {name: one for name, one in quantities.items() if is_connected(*one[0])}
+
     def _estimates(self) -> Estimates:
-        measured = self.voltage > 0.0
-        north, east, down = self.position_n
-        dives = self.depth_valid and self._vehicle.identity.submerged
+        found = self._measured()
+        valid = {name for name, (_, is_valid) in found.items() if is_valid}
+        self._known |= valid
+
+        def value(quantity: str, size: int = 3) -> Any:
+            return found[quantity][0] if quantity in found else (0.0,) * size
+
+        north, east, down = value("position")
+        dives = "depth" in valid and self._vehicle.identity.submerged
+        powered = self.voltage > 0.0
         pulses = self._outputs.pulses(self.pulse, dict(zip(SHARED, self.share, strict=True)))
         return Estimates(
+            connected=frozenset(found),
+            begun=frozenset(self._known),
             position_n=(north, east, self.depth if dives else down),
-            velocity_n=self.velocity_n,
-            position_valid=self.position_valid,
-            attitude=(*self.roll_pitch, self.heading),
-            heading_valid=self.heading_valid,
-            rates=self.gyro,
-            specific_force=self.accelerometer,
-            imu_valid=self.imu_valid,
+            velocity_n=value("velocity"),
+            position_valid="position" in valid,
+            attitude=(*value("tilt", 2), *value("heading", 1)),
+            heading_valid="heading" in valid,
+            tilt_valid="tilt" in valid,
+            rates=value("gyro"),
+            gyro_valid="gyro" in valid,
+            specific_force=value("accelerometer"),
+            accelerometer_valid="accelerometer" in valid,
             depth=self.depth if dives else None,
             ground_distance=self.ground_distance if self.ground_distance > 0.0 else None,
             apparent_wind=(self.wind_speed, self.wind_angle) if self.wind_valid else None,
-            voltage=self.voltage if measured else None,
-            current=self.current if measured else None,
-            charge=self.charge if measured else None,
+            voltage=self.voltage if powered else None,
+            current=self.current if powered and is_connected(self.current) else None,
+            charge=self.charge if powered and is_connected(self.charge) else None,
             motor_speeds=tuple(self.motor_speed),
             motor_currents=tuple(self.motor_current),
             pulses=pulses,

@@ -21,6 +21,16 @@ REAL32: int = mavlink.MAV_PARAM_TYPE_REAL32
 
 BELONGS_TO_TRIAL = "it belongs to the trial"
 
+HIGHEST = {
+    **dict.fromkeys(("cruise_speed", "waypoint_speed"), 100.0),
+    **dict.fromkeys(("waypoint_radius", "loiter_radius"), 1e4),
+    **dict.fromkeys(("manual_timeout", "station_timeout", "target_timeout"), 86_400.0),
+    "battery_low_voltage": 1000.0,
+    "battery_low_charge": 1.0,
+    "fence_depth": 12_000.0,
+}
+"""Largest values of settings that ground stations set: m/s, m, s, V, a share, m."""
+
 _LARGEST = float.fromhex("0x1.fffffep127")  # of 32 bits
 _NAME = re.compile(r"[A-Z][A-Z0-9_]{0,15}")
 
@@ -91,9 +101,12 @@ def fixed(name: str, kind: int, value: float, why: str = BELONGS_TO_TRIAL) -> De
 def real(
     name: str, setting: str, settings: Settings, low: float = 0.0, scale: float = 1.0
 ) -> Definition:
-    """Return a parameter for a setting that is a number; one unit of it is ``scale`` there."""
-    start = getattr(settings, setting) / scale
-    return Definition(name, REAL32, start, low, apply=_moves(setting, lambda v: v * scale))
+    """Return a parameter for a setting that is a number; one unit of it is ``scale`` there.
+
+    It has the limit of its setting: a value that no vehicle means reaches no pilot.
+    """
+    start, high = getattr(settings, setting) / scale, HIGHEST[setting] / scale
+    return Definition(name, REAL32, start, low, high, apply=_moves(setting, lambda v: v * scale))
 
 
 def whole(name: str, setting: str, settings: Settings, low: int, high: int) -> Definition:

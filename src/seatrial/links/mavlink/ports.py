@@ -9,10 +9,10 @@ from pymavlink.dialects.v20 import all as mavlink
 from ...component import Input, Logging, Output, Parameter, Reachable, Terminal, terminal
 from ...sampled import Sampled
 from ...terminals import ORDERED
-from ...unit_table import STANDARD_GRAVITY
 from ..endpoints.url import check_urls
 from ..parameter_validation import start_us
 from ..truth import MOTION, TrueMotion
+from ..unconnected import NOT_CONNECTED
 from .failsafe import ACTIONS
 from .outputs import SHARED
 from .parameters_simulation import FASTEST, SLOWEST
@@ -114,24 +114,34 @@ class MavlinkPorts(Logging, Reachable, TrueMotion, Sampled):
     signing_key_file = Parameter("", "1", "file with the pass phrase; empty: no signatures")
     state_file = Parameter("", "1", "file for what outlives the run; empty: none")
 
-    position_n = Input("m", "position, north-east-down", axes=_NED)
-    velocity_n = Input("m/s", "velocity over ground, north-east-down", axes=_NED)
+    position_n = Input("m", "position, north-east-down", axes=_NED, start=NOT_CONNECTED)
+    velocity_n = Input(
+        "m/s", "velocity over ground, north-east-down", axes=_NED, start=NOT_CONNECTED
+    )
     position_valid = Input("1", "whether position and velocity are valid", type=bool)
-    heading = Input("rad", "heading, clockwise from north")
+    heading = Input("rad", "heading, clockwise from north", start=NOT_CONNECTED)
     heading_valid = Input("1", "whether the heading is valid", type=bool, start=True)
-    roll_pitch = Input("rad", "roll and pitch, starboard side down, bow up", axes=("phi", "theta"))
-    gyro = Input("rad/s", "angular velocity, body axes", axes="xyz", frame="b")
+    roll_pitch = Input(
+        "rad",
+        "roll and pitch, starboard side down, bow up",
+        axes=("phi", "theta"),
+        start=NOT_CONNECTED,
+    )
+    gyro = Input("rad/s", "angular velocity, body axes", axes="xyz", frame="b", start=NOT_CONNECTED)
+    gyro_valid = Input(
+        "1", "whether the angular velocity is valid", type=bool, start=True, optional=True
+    )
     accelerometer = Input(
-        "m/s2",
-        "specific force, body axes",
-        axes="xyz",
-        frame="b",
-        start=(0.0, 0.0, -STANDARD_GRAVITY),
+        "m/s2", "specific force, body axes", axes="xyz", frame="b", start=NOT_CONNECTED
     )
     imu_valid = Input(
-        "1", "whether gyro and specific force are valid", type=bool, start=True, optional=True
+        "1",
+        "whether specific force, roll and pitch are valid",
+        type=bool,
+        start=True,
+        optional=True,
     )
-    depth = Input("m", "depth of a submarine, positive down", optional=True)
+    depth = Input("m", "depth of a submarine, positive down", start=NOT_CONNECTED, optional=True)
     depth_valid = Input("1", "whether the depth is measured", type=bool, optional=True)
     ground_distance = Input(
         "m", "distance to the ground below, 0 if it is not measured", optional=True
@@ -142,8 +152,10 @@ class MavlinkPorts(Logging, Reachable, TrueMotion, Sampled):
     )
     wind_valid = Input("1", "whether the wind is measured", type=bool, optional=True)
     voltage = Input("V", "voltage of the battery, 0 if it is not measured", optional=True)
-    current = Input("A", "current out of the battery", optional=True)
-    charge = Input("1", "share of the battery's charge that is left", start=1.0, optional=True)
+    current = Input("A", "current out of the battery", start=NOT_CONNECTED, optional=True)
+    charge = Input(
+        "1", "share of the battery's charge that is left", start=NOT_CONNECTED, optional=True
+    )
     motor_speed = Input("rad/s", "shaft speeds of motors", axes=MOTORS, optional=True)
     motor_current = Input("A", "currents of motors", axes=MOTORS, optional=True)
     pulse = Input(
@@ -217,6 +229,7 @@ class MavlinkPorts(Logging, Reachable, TrueMotion, Sampled):
             "heading_valid",
             "roll_pitch",
             "gyro",
+            "gyro_valid",
             "accelerometer",
             "imu_valid",
             "wind_speed",

@@ -8,10 +8,16 @@ from collections.abc import Sequence
 from ..geodesy import Ned
 
 UNKNOWN_U16 = 0xFFFF
+UNKNOWN_16 = 0x7FFF
 STANDARD_PRESSURE = 101_325.0
 """Of the air at the surface, Pa."""
 FRESH_WATER = 1000.0
 """Density, kg/m3."""
+
+
+def known_int16(value: float) -> int:
+    """Return the nearest int16 that does not mean unknown, which is that of NaN."""
+    return UNKNOWN_16 if math.isnan(value) else clamped(value, -(1 << 15), UNKNOWN_16 - 1)
 
 
 def clamped(value: float, low: int, high: int) -> int:

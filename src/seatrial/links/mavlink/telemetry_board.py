@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import ClassVar
 
 from pymavlink.dialects.v20 import all as mavlink
 
 from ...unit_table import STANDARD_GRAVITY
+from ..geodesy import Ned
 from .codec import Message
 from .scaling import deg_e7, int16, microseconds, milliseconds
 from .service import Builder, Service
@@ -40,7 +42,7 @@ class BoardTelemetry(Service):
 
     def __init__(self, vehicle: Vehicle, transport: Transport) -> None:
         super().__init__(vehicle, transport)
-        self._smooth = vehicle.estimates.specific_force
+        self._smooth: Ned | None = None
         self._vibration = (0.0, 0.0, 0.0)
         self._clipped = [0, 0, 0]
 
@@ -58,7 +60,11 @@ class BoardTelemetry(Service):
 
     def tick(self, now: float) -> None:
         """Take in the specific force."""
-        force = self.vehicle.estimates.specific_force
+        e = self.vehicle.estimates
+        if not e.accelerometer_valid:
+            return
+        force = e.specific_force
+        self._smooth = self._smooth or force
         x, y, z = (s + _SMOOTHING * (f - s) for f, s in zip(force, self._smooth, strict=True))
         self._smooth = x, y, z
         away = (abs(f - s) for f, s in zip(force, self._smooth, strict=True))
@@ -69,11 +75,15 @@ class BoardTelemetry(Service):
 
     def _imu(self, now: float) -> list[Message]:
         e = self.vehicle.estimates
+        if not (e.accelerometer_valid and e.gyro_valid):
+            return []
         force = (int16(a / STANDARD_GRAVITY * 1e3) for a in e.specific_force)
         rates = (int16(w * 1e3) for w in e.rates)
         return [mavlink.MAVLink_raw_imu_message(microseconds(now), *force, *rates, 0, 0, 0)]
 
     def _vibrations(self, now: float) -> list[Message]:
+        if not self.vehicle.estimates.has("accelerometer"):
+            return []
         return [
             mavlink.MAVLink_vibration_message(microseconds(now), *self._vibration, *self._clipped)
         ]
@@ -88,7 +98,7 @@ class BoardTelemetry(Service):
             return []
         latitude, longitude, altitude = self.vehicle.origin.geodetic(e.position_n)
         place = (altitude, deg_e7(latitude), deg_e7(longitude))
-        return [mavlink.MAVLink_ahrs2_message(*e.attitude, *place)]
+        return [mavlink.MAVLink_ahrs2_message(*e.shown_attitude, *place)]
 
     def _range(self, now: float) -> list[Message]:
         distance = self.vehicle.estimates.ground_distance
@@ -102,6 +112,6 @@ class BoardTelemetry(Service):
         place = (deg_e7(latitude), deg_e7(longitude), altitude)
         return [
             mavlink.MAVLink_water_depth_message(
-                milliseconds(now), 0, 1, *place, *e.attitude, e.ground_distance, 0.0
+                milliseconds(now), 0, 1, *place, *e.shown_attitude, e.ground_distance, math.nan
             )
         ]

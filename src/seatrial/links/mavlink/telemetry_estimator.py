@@ -24,6 +24,7 @@ _POSITION = (
     | mavlink.EKF_PRED_POS_HORIZ_REL
     | mavlink.EKF_PRED_POS_HORIZ_ABS
 )
+_VELOCITY = mavlink.EKF_VELOCITY_HORIZ | mavlink.EKF_VELOCITY_VERT
 
 
 class EstimatorTelemetry(Service):
@@ -58,7 +59,8 @@ class EstimatorTelemetry(Service):
         north, east, down = e.position_n
         fixed, dives = e.position_valid, e.depth is not None
         self._position.update(now, (north, east), e.velocity_n[:2], valid=fixed)
-        self._velocity.update(now, e.velocity_n[:2], (0.0, 0.0), valid=fixed)
+        moves = fixed and "velocity" in e.connected
+        self._velocity.update(now, e.velocity_n[:2], (0.0, 0.0), valid=moves)
         self._height.update(now, (down,), e.velocity_n[2:], valid=fixed or dives)
         self._heading.update(now, e.attitude[2:], e.rates[2:], valid=e.heading_valid)
 
@@ -71,8 +73,9 @@ class EstimatorTelemetry(Service):
     def _flags(self) -> int:
         e = self.vehicle.estimates
         surfaced = _DEPTH if e.position_valid or e.depth is not None else 0
-        flags = (_ATTITUDE if e.imu_valid and e.heading_valid else 0) | surfaced
-        return int(flags | (_POSITION if e.position_valid else mavlink.EKF_CONST_POS_MODE))
+        flags = (_ATTITUDE if e.tilt_valid and e.heading_valid else 0) | surfaced
+        flags |= _POSITION if e.position_valid else mavlink.EKF_CONST_POS_MODE
+        return int(flags if "velocity" in e.begun else flags & ~_VELOCITY)
 
     def _report(self, now: float) -> list[Message]:
         return [mavlink.MAVLink_ekf_status_report_message(self._flags(), *self._ratios, 0.0)]

@@ -11,10 +11,12 @@ from pymavlink.dialects.v20 import all as mavlink
 from .codec import Message
 from .modes import MANUAL_MODES
 from .scaling import (
+    UNKNOWN_16,
+    UNKNOWN_U16,
     compass_degrees,
     deg_e7,
-    int16,
     int32,
+    known_int16,
     microseconds,
     milliseconds,
     quaternion,
@@ -30,7 +32,9 @@ class MotionTelemetry(Service):
     and SIM_STATE, the truth beside the estimates, if it is known.
 
     A boat without a valid position sends none; a submarine gives its depth, as
-    negative altitude, at latitude and longitude 0, which ground stations take for none.
+    negative altitude, at latitude and longitude 0, which ground stations take for none. A field
+    that nothing measures is NaN, of an integer INT16_MAX; the airspeed is the apparent wind's, or
+    else, as an ArduPilot has it, the speed over ground.
     """
 
     streams: ClassVar = {
@@ -58,15 +62,21 @@ class MotionTelemetry(Service):
 
     def _attitude(self, now: float) -> list[Message]:
         e = self.vehicle.estimates
-        phi, theta, psi = e.attitude
+        if not e.has("tilt", "heading", "gyro"):
+            return []
+        phi, theta, psi = e.shown_attitude
         heading = math.remainder(psi, math.tau)
-        return [mavlink.MAVLink_attitude_message(milliseconds(now), phi, theta, heading, *e.rates)]
+        return [
+            mavlink.MAVLink_attitude_message(milliseconds(now), phi, theta, heading, *e.shown_rates)
+        ]
 
     def _attitude_quaternion(self, now: float) -> list[Message]:
         e = self.vehicle.estimates
+        if not (e.has("tilt") and e.has("heading") and e.has("tilt", "heading", "gyro")):
+            return []
         return [
             mavlink.MAVLink_attitude_quaternion_message(
-                milliseconds(now), *quaternion(e.attitude), *e.rates
+                milliseconds(now), *quaternion(e.attitude), *e.shown_rates
             )
         ]
 
@@ -74,9 +84,10 @@ class MotionTelemetry(Service):
         e = self.vehicle.estimates
         if not self._has_position():
             return []
+        place = e.position_n[:2] if e.has("position") else (math.nan, math.nan)
         return [
             mavlink.MAVLink_local_position_ned_message(
-                milliseconds(now), *e.position_n, *e.velocity_n
+                milliseconds(now), *place, e.position_n[2], *e.shown_velocity
             )
         ]
 
@@ -96,40 +107,46 @@ class MotionTelemetry(Service):
                 deg_e7(longitude),
                 int32(altitude * 1e3),
                 int32(above_home * 1e3),
-                *(int16(v * 100) for v in e.velocity_n),
-                heading if e.heading_valid else 0xFFFF,
+                *(known_int16(v * 100) for v in e.shown_velocity),
+                heading if e.heading_valid else UNKNOWN_U16,
             )
         ]
 
     def _hud(self, now: float) -> list[Message]:
         e = self.vehicle.estimates
-        wind = e.apparent_wind[0] if e.apparent_wind is not None else 0.0
+        north, east, down = e.shown_velocity
+        heading = e.shown_attitude[2]
+        over_ground = math.hypot(north, east)
+        wind = e.apparent_wind[0] if e.apparent_wind is not None else over_ground
         ordered = abs(self.vehicle.manual[0]) if self.vehicle.mode.name in MANUAL_MODES else 0.0
         throttle = ordered if e.throttle is None else e.throttle
         throttle = throttle if self.vehicle.armed else 0.0
         return [
             mavlink.MAVLink_vfr_hud_message(
                 wind,
-                math.hypot(*e.velocity_n[:2]),
-                round(compass_degrees(e.attitude[2])) % 360,
+                over_ground,
+                UNKNOWN_16 if math.isnan(heading) else round(compass_degrees(heading)) % 360,
                 uint16(throttle * 100),
-                self.vehicle.origin.altitude - e.position_n[2],
-                -e.velocity_n[2],
+                self.vehicle.origin.altitude - e.shown_down,
+                -down,
             )
         ]
 
     def _altitude(self, now: float) -> list[Message]:
         e = self.vehicle.estimates
-        above_sea = self.vehicle.origin.altitude - e.position_n[2]
+        down = e.shown_down
+        if math.isnan(down):
+            return []
+        above_sea = self.vehicle.origin.altitude - down
         return [
             mavlink.MAVLink_altitude_message(
                 microseconds(now),
                 above_sea,
                 above_sea,
-                -e.position_n[2],
-                self.vehicle.home_n[2] - e.position_n[2],
+                -down,
+                self.vehicle.home_n[2] - down,
                 math.nan,
-                math.nan,
+                math.nan if e.ground_distance is None else e.ground_distance,
             )
         ]
 
@@ -159,4 +176,6 @@ class MotionTelemetry(Service):
         ]
 
     def _has_position(self) -> bool:
-        return self.vehicle.estimates.position_valid or self.vehicle.identity.submerged
+        e = self.vehicle.estimates
+        dives = self.vehicle.identity.submerged and not math.isnan(e.shown_down)
+        return e.position_valid or dives

@@ -66,9 +66,10 @@ class NavigationTelemetry(Service):
         if way is None:
             return []
         north, east, down = e.position_n
-        goal, psi = self._goal(), e.attitude[2]
+        goal, psi = self._goal(), e.shown_attitude[2]
         bearing = way.heading if goal is None else math.atan2(goal[1] - east, goal[0] - north)
-        ahead = math.cos(psi) * e.velocity_n[0] + math.sin(psi) * e.velocity_n[1]
+        over_ground = e.shown_velocity
+        ahead = math.cos(psi) * over_ground[0] + math.sin(psi) * over_ground[1]
         return [
             mavlink.MAVLink_nav_controller_output_message(
                 0.0,

@@ -21,7 +21,7 @@ class OdometryTelemetry(Service):
     PX4's simulator sends it. No link gets them before it requests them.
 
     ODOMETRY has its pose in {n} from the origin, its velocity and rates along the body axes; its
-    covariances are not known. Without a valid position there is none.
+    covariances are not known. Without a valid position and an attitude there is none.
     """
 
     @property
@@ -34,8 +34,9 @@ class OdometryTelemetry(Service):
 
     def _odometry(self, now: float) -> list[Message]:
         e = self.vehicle.estimates
-        if not e.position_valid:
+        if not (e.position_valid and e.has("tilt") and e.has("heading")):
             return []
+        velocity = to_body(e.attitude, e.shown_velocity)
         return [
             mavlink.MAVLink_odometry_message(
                 microseconds(now),
@@ -43,8 +44,8 @@ class OdometryTelemetry(Service):
                 mavlink.MAV_FRAME_BODY_FRD,
                 *e.position_n,
                 quaternion(e.attitude),
-                *to_body(e.attitude, e.velocity_n),
-                *e.rates,
+                *velocity,
+                *e.shown_rates,
                 _UNKNOWN,
                 _UNKNOWN,
             )

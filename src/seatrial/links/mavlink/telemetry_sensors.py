@@ -13,6 +13,7 @@ from .codec import Message
 from .scaling import (
     FRESH_WATER,
     STANDARD_PRESSURE,
+    UNKNOWN_16,
     UNKNOWN_U16,
     compass_degrees,
     deg_e7,
@@ -26,8 +27,9 @@ from .scaling import (
 from .service import Builder, Service
 from .vehicle import NO_FIX
 
-_IMU, _PRESSURE = 0x7 | 0x38, 0x200
-"""Of HIGHRES_IMU's fields_updated: acceleration and rates; absolute pressure."""
+_ACCELERATION, _RATES, _PRESSURE = 0x7, 0x38, 0x200
+"""Of HIGHRES_IMU's fields_updated."""
+_NONE = (0.0, 0.0, 0.0)
 _FARTHEST_CM = 0xFFFF
 
 
@@ -36,7 +38,7 @@ class SensorTelemetry(Service):
     DISTANCE_SENSOR (downwards), WIND and WIND_COV, NAMED_VALUE_FLOAT.
 
     The true wind is the apparent one, which is measured in the horizontal plane here, turned
-    by the heading, plus the vehicle's velocity.
+    by the heading, plus the vehicle's velocity. A sensor that is lost sends nothing.
     """
 
     streams: ClassVar = {
@@ -66,11 +68,13 @@ class SensorTelemetry(Service):
 
     def _gps(self, now: float) -> list[Message]:
         e = self.vehicle.estimates
-        if self.vehicle.identity.submerged and not e.position_valid:
+        dives = self.vehicle.identity.submerged and not e.position_valid
+        if dives or "position" not in e.connected:
             return []
         latitude, longitude, altitude = self.vehicle.origin.geodetic(e.position_n)
         north, east, _ = e.velocity_n
         course = round(compass_degrees(math.atan2(east, north)) * 100) % 36000
+        moves = "velocity" in e.begun
         receiver = self.vehicle.receiver if e.position_valid else NO_FIX
         return [
             mavlink.MAVLink_gps_raw_int_message(
@@ -81,14 +85,16 @@ class SensorTelemetry(Service):
                 int32(altitude * 1e3),
                 UNKNOWN_U16 if receiver.hdop is None else uint16(receiver.hdop * 100),
                 UNKNOWN_U16,
-                uint16(math.hypot(north, east) * 100),
-                course,
+                uint16(math.hypot(north, east) * 100) if moves else UNKNOWN_U16,
+                course if moves else UNKNOWN_U16,
                 receiver.satellites,
             )
         ]
 
     def _scaled_imu(self, now: float) -> list[Message]:
         e = self.vehicle.estimates
+        if not (e.accelerometer_valid and e.gyro_valid):
+            return []
         return [
             mavlink.MAVLink_scaled_imu_message(
                 milliseconds(now),
@@ -102,11 +108,19 @@ class SensorTelemetry(Service):
 
     def _highres_imu(self, now: float) -> list[Message]:
         e, pressure = self.vehicle.estimates, self._pressure()
+        measured = (
+            (e.accelerometer_valid, _ACCELERATION),
+            (e.gyro_valid, _RATES),
+            (pressure is not None, _PRESSURE),
+        )
+        updated = sum(bits for is_there, bits in measured if is_there)
+        if not updated:
+            return []
         return [
             mavlink.MAVLink_highres_imu_message(
                 microseconds(now),
-                *e.specific_force,
-                *e.rates,
+                *(e.specific_force if e.accelerometer_valid else _NONE),
+                *(e.rates if e.gyro_valid else _NONE),
                 0.0,
                 0.0,
                 0.0,
@@ -114,7 +128,7 @@ class SensorTelemetry(Service):
                 0.0,
                 0.0,
                 0.0,
-                _IMU | (0 if pressure is None else _PRESSURE),
+                updated,
             )
         ]
 
@@ -123,7 +137,9 @@ class SensorTelemetry(Service):
         if pressure is None:
             return []
         return [
-            mavlink.MAVLink_scaled_pressure2_message(milliseconds(now), pressure / 100.0, 0.0, 0)
+            mavlink.MAVLink_scaled_pressure2_message(
+                milliseconds(now), pressure / 100.0, 0.0, UNKNOWN_16
+            )
         ]
 
     def _distance(self, now: float) -> list[Message]:
@@ -171,7 +187,7 @@ class SensorTelemetry(Service):
     def _true_wind(self) -> tuple[float, float] | None:
         """Return where the wind blows to, north and east, m/s."""
         e = self.vehicle.estimates
-        if e.apparent_wind is None:
+        if e.apparent_wind is None or not (e.heading_valid and e.has("velocity")):
             return None
         speed, angle = e.apparent_wind
         north, east = turned(e.attitude[2], speed * math.cos(angle), speed * math.sin(angle))

@@ -12,9 +12,6 @@ from .scaling import UNKNOWN_U16, clamped, int16, microseconds, milliseconds, ui
 from .service import Builder, Service
 from .service_manual_control import shown_channels
 
-_IMU = mavlink.MAV_SYS_STATUS_SENSOR_3D_GYRO | mavlink.MAV_SYS_STATUS_SENSOR_3D_ACCEL
-_HEADING = mavlink.MAV_SYS_STATUS_SENSOR_3D_MAG | mavlink.MAV_SYS_STATUS_AHRS
-
 
 class SystemTelemetry(Service):
     """SYS_STATUS, SYSTEM_TIME, EXTENDED_SYS_STATE, SERVO_OUTPUT_RAW and RC_CHANNELS.
@@ -46,23 +43,34 @@ class SystemTelemetry(Service):
         }
 
     def _status(self, now: float) -> list[Message]:
-        e = self.vehicle.estimates
-        present = _IMU | _HEADING | mavlink.MAV_SYS_STATUS_PREARM_CHECK
-        healthy = (_IMU if e.imu_valid else 0) | (_HEADING if e.heading_valid else 0)
-        present |= mavlink.MAV_SYS_STATUS_GEOFENCE  # or a ground station reports a breach
-        if not self.vehicle.fence_breached:
-            healthy |= mavlink.MAV_SYS_STATUS_GEOFENCE
-        if self.vehicle.healthy:
-            healthy |= mavlink.MAV_SYS_STATUS_PREARM_CHECK
-        if e.position_valid or not self.vehicle.identity.submerged:
-            present |= mavlink.MAV_SYS_STATUS_SENSOR_GPS
-        if e.position_valid:
-            healthy |= mavlink.MAV_SYS_STATUS_SENSOR_GPS
-        for there, bit in (
-            (e.voltage is not None, mavlink.MAV_SYS_STATUS_SENSOR_BATTERY),
-            (self.vehicle.identity.submerged, mavlink.MAV_SYS_STATUS_SENSOR_ABSOLUTE_PRESSURE),
-        ):
-            present, healthy = (present | bit, healthy | bit) if there else (present, healthy)
+        e, dives = self.vehicle.estimates, self.vehicle.identity.submerged
+        fixes = "position" in e.connected and (e.position_valid or not dives)
+        sensors = (
+            (mavlink.MAV_SYS_STATUS_SENSOR_3D_GYRO, "gyro" in e.connected, e.gyro_valid),
+            (
+                mavlink.MAV_SYS_STATUS_SENSOR_3D_ACCEL,
+                "accelerometer" in e.connected,
+                e.accelerometer_valid,
+            ),
+            (mavlink.MAV_SYS_STATUS_SENSOR_3D_MAG, "heading" in e.connected, e.heading_valid),
+            (
+                mavlink.MAV_SYS_STATUS_AHRS,
+                bool(e.connected & {"tilt", "heading"}),
+                e.tilt_valid and e.heading_valid,
+            ),
+            (mavlink.MAV_SYS_STATUS_SENSOR_GPS, fixes, e.position_valid),
+            (
+                mavlink.MAV_SYS_STATUS_SENSOR_ABSOLUTE_PRESSURE,
+                dives and "depth" in e.connected,
+                e.depth is not None,
+            ),
+            (mavlink.MAV_SYS_STATUS_SENSOR_BATTERY, e.voltage is not None, True),
+            # There always, or a ground station reports a breach.
+            (mavlink.MAV_SYS_STATUS_GEOFENCE, True, not self.vehicle.fence_breached),
+            (mavlink.MAV_SYS_STATUS_PREARM_CHECK, True, self.vehicle.healthy),
+        )
+        present = sum(bit for bit, is_there, _ in sensors if is_there)
+        healthy = sum(bit for bit, is_there, is_good in sensors if is_there and is_good)
         return [
             mavlink.MAVLink_sys_status_message(
                 present,

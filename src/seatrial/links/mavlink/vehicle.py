@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from pymavlink.dialects.v20 import all as mavlink
@@ -68,9 +70,22 @@ class Way:
     """Horizontal, to the end of the leg or the point to stay at."""
 
 
+QUANTITIES = frozenset(
+    {"position", "velocity", "heading", "tilt", "gyro", "accelerometer", "depth"}
+)
+"""Quantities that a vehicle may measure; the tilt is roll and pitch."""
+
+
 @dataclass(frozen=True)
 class Estimates:
-    """Estimates that the vehicle measures. SI, rad; {n} north-east-down, {b} bow-starboard-down."""
+    """Estimates that the vehicle measures. SI, rad; {n} north-east-down, {b} bow-starboard-down.
+
+    A quantity that is not ``connected`` is never measured; one that was valid at least once is
+    ``begun``. All numbers are finite: of a quantity that has not begun they mean nothing.
+    """
+
+    connected: frozenset[str] = QUANTITIES
+    begun: frozenset[str] = QUANTITIES
 
     position_n: Ned = (0.0, 0.0, 0.0)
     velocity_n: Ned = (0.0, 0.0, 0.0)
@@ -78,10 +93,11 @@ class Estimates:
     attitude: Ned = (0.0, 0.0, 0.0)
     """Euler angles ZYX: phi, theta, psi."""
     heading_valid: bool = True
+    tilt_valid: bool = True
     rates: Ned = (0.0, 0.0, 0.0)
+    gyro_valid: bool = True
     specific_force: Ned = (0.0, 0.0, -STANDARD_GRAVITY)
-    imu_valid: bool = True
-    """Whether rates and specific force are valid."""
+    accelerometer_valid: bool = True
     depth: float | None = None
     """Of a submarine, positive down."""
     ground_distance: float | None = None
@@ -102,6 +118,39 @@ class Estimates:
     named: tuple[tuple[str, float], ...] = ()
     way: Way | None = None
     """None while guidance neither stays somewhere nor goes anywhere."""
+
+    def has(self, *quantities: str) -> bool:
+        """Return whether one of the quantities has begun, and no connected one is still to."""
+        wanted = self.connected.intersection(quantities)
+        return bool(wanted) and wanted <= self.begun
+
+    @property
+    def shown_attitude(self) -> Ned:
+        """Euler angles, NaN where there is no measurement."""
+        phi, theta = self._shown("tilt", self.attitude[:2])
+        (psi,) = self._shown("heading", self.attitude[2:])
+        return phi, theta, psi
+
+    @property
+    def shown_rates(self) -> Ned:
+        """Rates, NaN where there is no measurement."""
+        p, q, r = self._shown("gyro", self.rates)
+        return p, q, r
+
+    @property
+    def shown_velocity(self) -> Ned:
+        """Velocity in {n}, NaN where there is no measurement."""
+        north, east, down = self._shown("velocity", self.velocity_n)
+        return north, east, down
+
+    @property
+    def shown_down(self) -> float:
+        """Position's down, of a submarine its depth; NaN where there is no measurement."""
+        there = self.depth is not None or "position" in self.begun
+        return self.position_n[2] if there else math.nan
+
+    def _shown(self, quantity: str, values: Sequence[float]) -> Sequence[float]:
+        return values if quantity in self.begun else (math.nan,) * len(values)
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,7 @@ from ..leg import LegStatus, leg_status
 from ..parameter_validation import start_us
 from ..satellites import sky
 from ..text import Inbox, Outbox
+from ..unconnected import is_connected
 from .codec import decode, encode
 from .lines import Lines
 from .orders import Order, heading_ordered, last_reported, read_order
@@ -175,14 +176,14 @@ class Nmea0183(Nmea0183Ports):
             place,
             (north, east) if there else None,
             self.heading if steered else None,
-            self.rate_of_turn if moved else None,
-            self.roll_pitch if moved else None,
+            self.rate_of_turn if moved and is_connected(self.rate_of_turn) else None,
+            self.roll_pitch if moved and is_connected(*self.roll_pitch) else None,
             (self.wind_speed, self.wind_angle + math.pi) if self.wind_valid else None,
             self._true_wind() if steered and self.true_wind_valid else None,
             self.water_speed if self.water_speed_valid else None,
             self.depth if self.depth_valid else None,
             self.water_temperature if self.water_temperature_valid else None,
-            self._rudder() if self.rudder_valid else None,
+            self._rudder() if self.rudder_valid and is_connected(self.rudder) else None,
             None if place is None else sky(time.timestamp(), *place[:2]),
             leg,
             None if leg is None else (self._waypoint(leg.begin), self._waypoint(leg.end)),

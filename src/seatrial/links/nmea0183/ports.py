@@ -8,6 +8,7 @@ from ...component import Input, Output, Parameter, Reachable, terminal
 from ...sampled import Sampled
 from ..endpoints.url import check_urls
 from ..parameter_validation import start_us
+from ..unconnected import NOT_CONNECTED
 from .schedule import schedule
 
 _NED = ("north", "east", "down")
@@ -60,9 +61,15 @@ class Nmea0183Ports(Reachable, Sampled):
     position_valid = Input("1", "whether position and velocity are valid", type=bool)
     heading = Input("rad", "true heading, clockwise from north")
     heading_valid = Input("1", "whether the heading is valid", type=bool)
-    rate_of_turn = Input("rad/s", "rate of turn, positive to starboard", optional=True)
+    rate_of_turn = Input(
+        "rad/s", "rate of turn, positive to starboard", start=NOT_CONNECTED, optional=True
+    )
     roll_pitch = Input(
-        "rad", "roll and pitch, starboard side down, bow up", axes=("phi", "theta"), optional=True
+        "rad",
+        "roll and pitch, starboard side down, bow up",
+        axes=("phi", "theta"),
+        start=NOT_CONNECTED,
+        optional=True,
     )
     imu_valid = Input(
         "1", "whether rate of turn, roll and pitch are valid", type=bool, optional=True
@@ -85,7 +92,12 @@ class Nmea0183Ports(Reachable, Sampled):
     depth_valid = Input("1", "whether it is valid", type=bool, optional=True)
     water_temperature = Input("K", "temperature of the water", start=273.15, optional=True)
     water_temperature_valid = Input("1", "whether it is valid", type=bool, optional=True)
-    rudder = Input("rad", "angle of the rudder, in the sense of rudder_positive", optional=True)
+    rudder = Input(
+        "rad",
+        "angle of the rudder, in the sense of rudder_positive",
+        start=NOT_CONNECTED,
+        optional=True,
+    )
     rudder_valid = Input("1", "whether it is valid", type=bool, optional=True)
     leg = Input("1", "number of the leg that is followed, 0: none", type=int, optional=True)
     leg_from = Input("m", "begin of the leg, north-east-down", axes=_NED, optional=True)

@@ -9,8 +9,9 @@ from ...component import NS, seconds
 from ..geodesy import Origin
 from ..leg import LegStatus, leg_status
 from ..satellites import Sky, sky
+from ..unconnected import NOT_CONNECTED
 from .codec import Fields
-from .ports import NOT_CONNECTED, Nmea2000Ports
+from .ports import Nmea2000Ports
 
 _DAY_S = 86400
 ANGLE_DIGITS = 4

@@ -6,11 +6,10 @@ from typing import Any, ClassVar
 
 from ...component import Component, Input, Noise, Output, Parameter, terminal
 from ..parameter_validation import start_us
+from ..unconnected import NOT_CONNECTED
 from .address_claim import HIGHEST
 from .catalogue import check_intervals, check_sends
 
-NOT_CONNECTED = 1e30
-"""Start value of the inputs: nothing measures this, and it goes out as not available."""
 ENGINES = 4
 """Most engines of a node."""
 
