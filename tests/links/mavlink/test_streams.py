@@ -6,7 +6,7 @@ from .bench import OTHER_STATION, STATION, Bench
 SET, GET = mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, mavlink.MAV_CMD_GET_MESSAGE_INTERVAL
 ATTITUDE = mavlink.MAVLINK_MSG_ID_ATTITUDE
 OK, DENIED = mavlink.MAV_RESULT_ACCEPTED, mavlink.MAV_RESULT_DENIED
-UNSUPPORTED = mavlink.MAV_RESULT_UNSUPPORTED
+UNSUPPORTED, FAILED = mavlink.MAV_RESULT_UNSUPPORTED, mavlink.MAV_RESULT_FAILED
 
 
 def count(bench, seconds, kind="ATTITUDE", link=STATION.link):
@@ -15,8 +15,8 @@ def count(bench, seconds, kind="ATTITUDE", link=STATION.link):
     return len(bench.transport.take(kind, link))
 
 
-def interval_of(bench, number):
-    assert bench.command(GET, number) == OK
+def interval_of(bench, number, result=OK):
+    assert bench.command(GET, number) == result
     (reported,) = bench.transport.take("MESSAGE_INTERVAL", STATION.link)
     assert reported.message_id == number
     return reported.interval_us
@@ -78,14 +78,21 @@ def test_a_stream_is_stopped_and_restored():
 
 def test_a_message_that_is_not_there_has_no_interval():
     bench = Bench()
-    assert bench.command(SET, 300, 1e6) == UNSUPPORTED
-    assert interval_of(bench, 300) == 0
+    assert bench.command(SET, 300, 1e6) == DENIED
+    assert interval_of(bench, 300, FAILED) == 0
 
 
 @pytest.mark.parametrize(
     "parameters",
-    [(ATTITUDE, -2), (ATTITUDE, float("nan")), (float("inf"), 1e5), (0, 1e5)],
-    ids=["negative", "no interval", "no message", "heartbeat"],
+    [
+        (ATTITUDE, -2),
+        (ATTITUDE, 999),
+        (ATTITUDE, 1e10),
+        (ATTITUDE, float("nan")),
+        (float("inf"), 1e5),
+        (0, 1e5),
+    ],
+    ids=["negative", "below 1 ms", "no 32 bits", "no interval", "no message", "heartbeat"],
 )
 def test_intervals_that_cannot_be_are_denied(parameters):
     bench = Bench()
@@ -95,8 +102,10 @@ def test_intervals_that_cannot_be_are_denied(parameters):
 
 def test_an_interval_below_the_period_is_one_per_instant():
     bench = Bench()
-    assert bench.command(SET, ATTITUDE, 1) == OK
+    assert bench.command(SET, ATTITUDE, 1000) == OK
     assert count(bench, 1.0) == 100
+    assert bench.command(SET, ATTITUDE, 1e9) == OK
+    assert interval_of(bench, ATTITUDE) == 60_000_000  # at most, as an ArduPilot has it
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ from .codec import Message
 from .service import (
     ACCEPTED,
     DENIED,
+    FAILED,
     UNSUPPORTED,
     Builder,
     Command,
@@ -22,6 +23,8 @@ from .service import (
 from .transport import Sender, Transport
 from .vehicle import Vehicle
 
+_SHORTEST_US, _LONGEST_US = 1_000, 60_000_000
+"""Of an interval: below it is refused, above it is this."""
 _FIXED = (mavlink.MAVLINK_MSG_ID_HEARTBEAT,)
 """Messages whose rate cannot be changed: presence depends on them."""
 
@@ -157,25 +160,28 @@ class StreamService(Service):
 
     def _set_interval(self, command: Command, sender: Sender, now: float) -> int:
         number, interval_us = whole(command.parameters[0]), whole(command.parameters[1])
-        if number is None or interval_us is None or interval_us < -1 or number in _FIXED:
+        if number is None or interval_us is None:
             return DENIED
-        if number not in self._builders:
-            return UNSUPPORTED
+        if number not in self._builders or number in _FIXED:
+            return DENIED
+        if interval_us not in (-1, 0) and not _SHORTEST_US <= interval_us < 1 << 31:
+            return DENIED
+        interval_us = min(interval_us, _LONGEST_US)
         interval = self._defaults.get(number, 0.0) if interval_us == 0 else interval_us * 1e-6
         self._change(sender.link, number, interval)
         return ACCEPTED
 
     def _send_interval(self, command: Command, sender: Sender, now: float) -> int:
         number = whole(command.parameters[0])
-        if number is None or not 0 <= number <= 0xFFFF:
+        if number is None:
             return DENIED
         interval = self._schedule(sender.link).intervals.get(number)
         stopped = -1 if number in self._builders else 0
         interval_us = stopped if interval is None else round(interval * 1e6)
         self.transport.send(
-            sender.link, mavlink.MAVLink_message_interval_message(number, interval_us)
+            sender.link, mavlink.MAVLink_message_interval_message(number & 0xFFFF, interval_us)
         )
-        return ACCEPTED
+        return ACCEPTED if number in self._builders else FAILED
 
     def _send_once(self, command: Command, sender: Sender, now: float) -> int:
         number, index = whole(command.parameters[0]), whole(command.parameters[1]) or 0
