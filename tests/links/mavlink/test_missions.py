@@ -1,4 +1,7 @@
+import json
 import math
+import re
+from pathlib import Path
 
 import pytest
 from pymavlink.dialects.v20 import all as mavlink
@@ -27,6 +30,7 @@ from .ground import (
     upload,
 )
 
+REFERENCE = Path(__file__).parents[2] / "reference"
 OK, DENIED, FAILED = (
     mavlink.MAV_RESULT_ACCEPTED,
     mavlink.MAV_RESULT_DENIED,
@@ -325,8 +329,8 @@ DELAYED, SET_MODE, FENCE_ENABLE = 112, 176, 207
 @pytest.mark.parametrize(
     ("item", "result"),
     [
-        ((one(206, 10.0, **DO)), mavlink.MAV_MISSION_UNSUPPORTED),  # DO_SET_CAM_TRIGG_DIST
-        ((one(115, 90.0, **DO)), mavlink.MAV_MISSION_UNSUPPORTED),  # CONDITION_YAW
+        ((one(180, 10.0, **DO)), mavlink.MAV_MISSION_UNSUPPORTED),  # DO_SET_PARAMETER
+        ((one(113, 90.0, **DO)), mavlink.MAV_MISSION_UNSUPPORTED),  # CONDITION_CHANGE_ALT
         ((one(DELAYED, math.nan, **DO)), mavlink.MAV_MISSION_INVALID_PARAM1),
         ((one(SET_MODE, 1.0, 99.0, **DO)), mavlink.MAV_MISSION_INVALID_PARAM2),
         ((one(SET_MODE, 0.0, 4.0, **DO)), mavlink.MAV_MISSION_INVALID_PARAM1),
@@ -337,6 +341,37 @@ def test_what_is_not_carried_out_is_refused_at_upload(item, result):
     boat = Bench()
     assert upload(boat, listed(one(at=north_of(9)), item)) == result
     assert any("item 2" in text for text in boat.texts())
+
+
+def answers_of_a_rover():
+    """Return the items that ArduPilot Rover was given alone, and whether it stored each."""
+    recorded = json.loads((REFERENCE / "ardupilot_answers_rover.json").read_text("utf-8"))
+    asked = (REFERENCE / "ardupilot_requests.jsonl").read_text("utf-8").splitlines()
+    for request in map(json.loads, asked):
+        name = request["name"]
+        if re.fullmatch(r"item [A-Z_0-9]+", name) and name in recorded:
+            (given,) = request["do"][0]["items"]
+            stored = recorded[name]["answers"][0] == "MISSION_ACK type=0 mission_type=0"
+            yield pytest.param(given["command"], stored, id=name.removeprefix("item "))
+
+
+@pytest.mark.parametrize(("command", "stored"), answers_of_a_rover())
+def test_what_a_rover_stores_is_stored(command, stored):
+    boat = Bench()
+    parameters = (0.0, 4.0) if command == SET_MODE else ()
+    item = one(command, *parameters, at=north_of(9))
+    accepted = upload(boat, listed(item)) == mavlink.MAV_MISSION_ACCEPTED
+    # It has modes as items too, which a Rover of 4.7 refuses, and no value that it cannot mean.
+    assert accepted == stored or command in (SET_MODE, JUMP)
+
+
+@pytest.mark.parametrize("command", [21, 22, 115, 181, 183, 194, 195, 201, 206, 211, 600])
+def test_what_nothing_is_there_for_is_skipped_with_a_text(command):
+    boat = Mission(listed(one(at=north_of(9)), one(command, **DO), one(at=north_of(18))))
+    boat.go()
+    assert boat.ends() == [(9, 0), (18, 0)]
+    assert boat.current()[1] == COMPLETE
+    assert any("skipped" in text for text in boat.texts())
 
 
 def test_what_follows_a_condition_waits_while_the_boat_goes_on():

@@ -156,8 +156,10 @@ def test_a_node_uses_its_folder(tmp_path):
 
 
 def test_a_list_that_the_vehicle_does_not_take_is_refused(tmp_path):
-    save(listed(one(), one(22)), tmp_path / "mission.waypoints")
-    with pytest.raises(InputError, match=r"mission\.waypoints: item 2, NAV_TAKEOFF: is not supp"):
+    save(listed(one(), one(180)), tmp_path / "mission.waypoints")
+    with pytest.raises(
+        InputError, match=r"mission\.waypoints: item 2, DO_SET_PARAMETER: is not supp"
+    ):
         plans(tmp_path)
 
 

@@ -217,7 +217,7 @@ def test_duplicates_are_ignored(bench):
 
 
 def test_a_refusal_that_was_missed_is_repeated_too(bench):
-    wrong = listed(one(22))
+    wrong = listed(one(180))
     assert upload(bench, wrong) == UNSUPPORTED
     bench.receive(wrong[-1])
     assert acks(bench) == [UNSUPPORTED]
@@ -361,9 +361,8 @@ def test_too_many_items(bench):
 @pytest.mark.parametrize(
     ("kind", "items", "result"),
     [
-        (MISSION, [one(22)], UNSUPPORTED),  # take-off
-        (MISSION, [one(21)], UNSUPPORTED),  # landing
-        (MISSION, [one(82)], UNSUPPORTED),  # splines
+        (MISSION, [one(23)], UNSUPPORTED),  # landing, in local coordinates
+        (MISSION, [one(180)], UNSUPPORTED),  # parameters
         (MISSION, [one(4711)], UNSUPPORTED),  # nothing
         (MISSION, [one(frame=TERRAIN)], BAD_FRAME),
         (MISSION, [one(frame=LOCAL)], BAD_FRAME),

@@ -66,6 +66,7 @@ class MissionRunner:
                             since the mission began; always if that is negative
     DO_CHANGE_SPEED         parameter 2 is the speed of the legs from here on; -2 is the
                             vehicle's own, others below 0 change nothing
+    NAV_SPLINE_WAYPOINT     a leg; parameter 1 is the time to stay
     CONDITION_DELAY         what follows up to the next item that leads somewhere waits for the
                             time in parameter 1, while the vehicle goes on (`DelayedItems`)
     others                  are carried out as the command of that number (``carry_out``)
@@ -238,6 +239,8 @@ class MissionRunner:
         match item.command:
             case mavlink.MAV_CMD_NAV_WAYPOINT:
                 return self._leads(item, radius=item.number(2), wait=item.number(1))
+            case mavlink.MAV_CMD_NAV_SPLINE_WAYPOINT:
+                return self._leads(item, wait=item.number(1))
             case mavlink.MAV_CMD_NAV_LOITER_UNLIM:
                 return self._leads(item, circle=item.number(3))
             case mavlink.MAV_CMD_NAV_LOITER_TURNS:

@@ -14,6 +14,7 @@ from .vehicle import Vehicle
 
 _AT_A_PLACE = (
     mavlink.MAV_CMD_NAV_WAYPOINT,
+    mavlink.MAV_CMD_NAV_SPLINE_WAYPOINT,
     mavlink.MAV_CMD_NAV_LOITER_UNLIM,
     mavlink.MAV_CMD_NAV_LOITER_TURNS,
     mavlink.MAV_CMD_NAV_LOITER_TIME,
@@ -32,6 +33,26 @@ _ACTIONS = (
     mavlink.MAV_CMD_DO_SET_HOME,
     mavlink.MAV_CMD_DO_FENCE_ENABLE,
 )
+STORED = frozenset(
+    getattr(mavlink, f"MAV_CMD_{name}")
+    for name in (
+        "NAV_LAND", "NAV_TAKEOFF", "NAV_CONTINUE_AND_CHANGE_ALT", "NAV_LOITER_TO_ALT",
+        "NAV_SPLINE_WAYPOINT", "NAV_ALTITUDE_WAIT", "NAV_VTOL_TAKEOFF", "NAV_VTOL_LAND",
+        "NAV_GUIDED_ENABLE", "NAV_PAYLOAD_PLACE", "NAV_SCRIPT_TIME", "NAV_ATTITUDE_TIME",
+        "CONDITION_DISTANCE", "CONDITION_YAW", "DO_SET_RELAY", "DO_REPEAT_RELAY",
+        "DO_SET_SERVO", "DO_REPEAT_SERVO", "DO_RETURN_PATH_START", "DO_LAND_START",
+        "DO_GO_AROUND", "DO_PAUSE_CONTINUE", "DO_SET_REVERSE", "DO_SET_ROI_LOCATION",
+        "DO_SET_ROI_NONE", "DO_SET_ROI", "DO_DIGICAM_CONFIGURE", "DO_DIGICAM_CONTROL",
+        "DO_MOUNT_CONTROL", "DO_SET_CAM_TRIGG_DIST", "DO_PARACHUTE", "DO_INVERTED_FLIGHT",
+        "DO_GRIPPER", "DO_AUTOTUNE_ENABLE", "DO_SET_RESUME_REPEAT_DIST", "DO_SPRAYER",
+        "DO_SEND_SCRIPT_MESSAGE", "DO_AUX_FUNCTION", "DO_GUIDED_LIMITS", "DO_ENGINE_CONTROL",
+        "SET_CAMERA_ZOOM", "SET_CAMERA_FOCUS", "SET_CAMERA_SOURCE", "JUMP_TAG", "DO_JUMP_TAG",
+        "DO_GIMBAL_MANAGER_PITCHYAW", "IMAGE_START_CAPTURE", "IMAGE_STOP_CAPTURE",
+        "VIDEO_START_CAPTURE", "VIDEO_STOP_CAPTURE", "DO_VTOL_TRANSITION", "DO_WINCH",
+    )
+)  # fmt: skip
+"""Commands that an ArduPilot stores, of cameras, grippers, servos, relays, heights: a mission skips
+them here, with a text, as nothing of that kind is on board (NAV_SPLINE_WAYPOINT: a waypoint)."""
 _DELAYS = (mavlink.MAV_CMD_NAV_DELAY, mavlink.MAV_CMD_CONDITION_DELAY)
 
 
@@ -97,7 +118,8 @@ def of_item(sequence: int, item: Item, refusal: Refusal) -> Refusal:
 
 
 def _check_command(item: Item, vehicle: Vehicle, sequences: range) -> Refusal | None:
-    if item.command not in (*NAVIGATION, *_ACTIONS):
+    stored = STORED if vehicle.dialect.home_is_item_0 else ()
+    if item.command not in (*NAVIGATION, *_ACTIONS, *stored):
         return Refusal(mavlink.MAV_MISSION_UNSUPPORTED, "is not supported")
     if item.command in _AT_A_PLACE:
         return check_place(item, item.destination(vehicle))

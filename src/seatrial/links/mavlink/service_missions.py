@@ -13,7 +13,7 @@ from .codec import Message
 from .mission_runner import Leg, MissionRunner
 from .modes import Mode
 from .plan import Plan
-from .plan_checks import check_place
+from .plan_checks import STORED, check_place
 from .plan_items import Item, from_message
 from .service import (
     ACCEPTED,
@@ -192,6 +192,9 @@ class MissionService(Service):
 
     def _carry_out(self, item: Item, now: float) -> None:
         """Carry an item of the mission out as a command of a station would be."""
+        if item.command in STORED:
+            self.vehicle.report(WARNING, f"Mission: {item.name} skipped: nothing is there for it")
+            return
         command = Command(item.command, (*item.parameters, *item.coordinates(), item.z), item.frame)
         ourselves = Sender(self.vehicle.identity.system, self.vehicle.identity.component, -1)
         if self._handlers[item.command](command, ourselves, now) != ACCEPTED:
