@@ -199,7 +199,7 @@ class Dialogue:
             beats = step.get("beats", STATION)
             return self._vehicle.wait(step["wait"], beats=beats and tuple(beats))
         if "upload" in step:
-            return self._upload(step["upload"], step["items"], sender)
+            return self.upload(step["upload"], step["items"], sender)
         if "download" in step:
             return self._download(step["download"], sender)
         self._vehicle.send(self._built(step), sender)
@@ -230,7 +230,10 @@ class Dialogue:
         came += self._vehicle.wait(seconds)
         return [m for m in came if m.get_type() != "TIMESYNC" or m.ts1 > 0]
 
-    def _upload(self, kind: int, items: list[dict[str, Any]], sender: Sender) -> list[Message]:
+    def upload(
+        self, kind: int, items: list[dict[str, Any]], sender: Sender = STATION
+    ) -> list[Message]:
+        """Upload a list, and return what it ended with."""
         given = [{"x": HOME[0], "y": HOME[1], "frame": 0}] if kind == 0 else []
         given += [{"x": HOME[0] + 900, "y": HOME[1], **item} for item in items]
         count = message("MISSION_COUNT", self._system, count=len(given), mission_type=kind)

@@ -369,7 +369,12 @@ def test_too_many_items(bench):
         (MISSION, [one(frame=MISSION_FRAME)], BAD_FRAME),
         (MISSION, [one(frame=99)], BAD_FRAME),
         (MISSION, [one(at=(91, 0))], BAD_X),
-        (MISSION, [one(at=(0, 181))], BAD_X),
+        (MISSION, [one(at=(0, 181))], BAD_Y),
+        (MISSION, [one(WAYPOINT, NAN)], BAD_P1),
+        (MISSION, [one(WAYPOINT, 0.0, NAN)], BAD_P2),
+        (MISSION, [one(WAYPOINT, 0.0, 0.0, NAN)], BAD_P3),
+        (MISSION, [one(z=NAN)], BAD_Z),
+        (MISSION, [one(z=83_000.0)], BAD_Z),
         (MISSION, [one(at=(30, 60))], BAD_X),  # another ocean
         (MISSION, [one(WAYPOINT, INFINITE)], BAD_P1),
         (MISSION, [one(WAYPOINT, 0.0, -INFINITE)], BAD_P2),
@@ -378,21 +383,21 @@ def test_too_many_items(bench):
         (MISSION, [one(SPEED, z=INFINITE)], BAD_Z),
         (MISSION, [one(DELAY, -1.0)], BAD_P1),
         (MISSION, [one(DELAY, NAN)], BAD_P1),
-        (MISSION, [one(), one(JUMP, 0.0)], BAD_P1),
-        (MISSION, [one(), one(JUMP, 3.0)], BAD_P1),
-        (MISSION, [one(), one(JUMP, 1.5)], BAD_P1),
+        (MISSION, [one(), one(JUMP, 0.0)], ERROR),
+        (MISSION, [one(), one(JUMP, 3.0)], ERROR),
+        (MISSION, [one(), one(JUMP, 1.5)], ERROR),
         (MISSION, [one(), one(JUMP, NAN)], BAD_P1),
         (FENCE, [one()], UNSUPPORTED),
-        (FENCE, [one(5003, 0.0)], BAD_P1),
-        (FENCE, [one(5004, NAN)], BAD_P1),
+        (FENCE, [one(5003, 0.0)], ERROR),
+        (FENCE, [one(5004, NAN)], ERROR),
         (FENCE, [one(5003, 5.0, frame=LOCAL)], BAD_FRAME),
-        (FENCE, [one(5001, 3.0)] * 2, BAD_P1),
-        (FENCE, [one(5001, 2.0)] * 2, BAD_P1),
-        (FENCE, [one(5001, 3.0)] * 4, BAD_P1),
-        (FENCE, [one(5001, 3.0), one(5001, 3.0), one(5002, 3.0)], BAD_P1),
-        (FENCE, [one(5001, 3.0), one(5001, 4.0), one(5001, 3.0)], BAD_P1),
-        (FENCE, [one(5001, 3.0, 1.0), one(5001, 3.0, 1.0), one(5001, 3.0, 2.0)], BAD_P1),
-        (FENCE, [one(5001, 3.5)] * 4, BAD_P1),
+        (FENCE, [one(5001, 3.0)] * 2, ERROR),
+        (FENCE, [one(5001, 2.0)] * 2, ERROR),
+        (FENCE, [one(5001, 3.0)] * 4, ERROR),
+        (FENCE, [one(5001, 3.0), one(5001, 3.0), one(5002, 3.0)], ERROR),
+        (FENCE, [one(5001, 3.0), one(5001, 4.0), one(5001, 3.0)], ERROR),
+        (FENCE, [one(5001, 3.0, 1.0), one(5001, 3.0, 1.0), one(5001, 3.0, 2.0)], ERROR),
+        (FENCE, [one(5001, 3.5)] * 4, ERROR),
         (RALLY, [one()], UNSUPPORTED),
         (RALLY, [one(5100, at=(95, 0))], BAD_X),
         (RALLY, [one(5100, frame=TERRAIN)], BAD_FRAME),
@@ -407,9 +412,9 @@ def test_bad_lists_are_refused_with_the_item_and_the_old_one_stays(bench, kind, 
 
 def test_frames_of_submarines():
     bench = Bench(submerged=True)
-    deep = listed(one(z=-20.0), one(z=-20.0, frame=GLOBAL), one(z=NAN), one(z=-20.0, frame=5))
+    deep = listed(one(z=-20.0), one(z=-20.0, frame=GLOBAL), one(z=-20.0, frame=5))
     assert upload(bench, deep) == ACCEPTED
-    assert upload(bench, listed(one(z=-2e6))) == BAD_X
+    assert upload(bench, listed(one(z=-2e6))) == BAD_Z
 
 
 # ---------------------------------------------------------------------- bad transport

@@ -15,6 +15,7 @@ from .plan_items import Item, home_item
 from .vehicle import Vehicle
 
 MOST_ITEMS = 1000
+_PARAMETERS = range(mavlink.MAV_MISSION_INVALID_PARAM1, mavlink.MAV_MISSION_INVALID_PARAM7 + 1)
 
 
 class Plan:
@@ -45,7 +46,7 @@ class Plan:
     def as_sent(self) -> tuple[Item, ...]:
         """Return the items as they are sent: item 0 of ArduPilot's missions is home as it is."""
         home_first = self.kind == mavlink.MAV_MISSION_TYPE_MISSION
-        if self._items and home_first and self._vehicle.dialect.home_is_item_0:
+        if self._items and home_first and self._is_ardupilots:
             return (home_item(self._vehicle), *self._items[1:])
         return self._items
 
@@ -67,7 +68,15 @@ class Plan:
             return Refusal(
                 mavlink.MAV_MISSION_NO_SPACE, f"{len(items)} items, at most {MOST_ITEMS} fit"
             )
-        return self._check(items, self._vehicle)
+        refusal = self._check(items, self._vehicle)
+        is_fence = self.kind == mavlink.MAV_MISSION_TYPE_FENCE
+        if refusal and refusal.result in _PARAMETERS and is_fence and self._is_ardupilots:
+            return Refusal(mavlink.MAV_MISSION_ERROR, refusal.text)  # it checks a fence as a whole
+        return refusal
+
+    @property
+    def _is_ardupilots(self) -> bool:
+        return self._vehicle.dialect.home_is_item_0
 
 
 class Plans:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from pymavlink.dialects.v20 import all as mavlink
 
 from .frames import GLOBAL_FRAMES
-from .plan_items import Item
+from .plan_items import NOT_GIVEN, Item
 from .vehicle import Vehicle
 
 _AT_A_PLACE = (
@@ -33,6 +33,8 @@ _ACTIONS = (
     mavlink.MAV_CMD_DO_SET_HOME,
     mavlink.MAV_CMD_DO_FENCE_ENABLE,
 )
+_HIGHEST = 83_000.0
+"""Heights and depths of ArduPilot's missions are below, m."""
 STORED = frozenset(
     getattr(mavlink, f"MAV_CMD_{name}")
     for name in (
@@ -102,7 +104,11 @@ def check_place(item: Item, place: object) -> Refusal | None:
         frame = entry.name if entry else f"frame {item.frame}"
         return Refusal(mavlink.MAV_MISSION_UNSUPPORTED_FRAME, f"{frame} is not supported")
     if place is None:
-        return Refusal(mavlink.MAV_MISSION_INVALID_PARAM5_X, "is no place, or too far away")
+        latitude, longitude = item.coordinates()
+        north = abs(latitude) <= 90.0 and not abs(longitude) <= 180.0
+        which = mavlink.MAV_MISSION_INVALID_PARAM5_X
+        which = mavlink.MAV_MISSION_INVALID_PARAM6_Y if north else which
+        return Refusal(which, "is no place, or too far away")
     return _check_numbers(item)
 
 
@@ -121,10 +127,17 @@ def _check_command(item: Item, vehicle: Vehicle, sequences: range) -> Refusal | 
     stored = STORED if vehicle.dialect.home_is_item_0 else ()
     if item.command not in (*NAVIGATION, *_ACTIONS, *stored):
         return Refusal(mavlink.MAV_MISSION_UNSUPPORTED, "is not supported")
+    if vehicle.dialect.home_is_item_0 and (refusal := _check_given(item)) is not None:
+        return refusal
     if item.command in _AT_A_PLACE:
-        return check_place(item, item.destination(vehicle))
+        is_given = NOT_GIVEN not in (item.x, item.y) or not vehicle.dialect.home_is_item_0
+        return check_place(item, item.destination(vehicle) if is_given else None)
     if item.command == mavlink.MAV_CMD_DO_JUMP and item.parameters[0] not in sequences:
-        return bad_parameter(1, item.parameters[0], f"an item, {sequences[0]} to {sequences[-1]},")
+        needed = f"an item, {sequences[0]} to {sequences[-1]},"
+        refusal = bad_parameter(1, item.parameters[0], needed)
+        if vehicle.dialect.home_is_item_0:  # an ArduPilot checks jumps when the list is whole
+            return Refusal(mavlink.MAV_MISSION_ERROR, refusal.text)
+        return refusal
     if item.command in _DELAYS and not item.parameters[0] >= 0.0:
         return bad_parameter(1, item.parameters[0], "a number of seconds, not a time of day,")
     if item.command == mavlink.MAV_CMD_DO_FENCE_ENABLE and item.parameters[0] not in (0.0, 1.0):
@@ -132,6 +145,16 @@ def _check_command(item: Item, vehicle: Vehicle, sequences: range) -> Refusal | 
     if item.command == mavlink.MAV_CMD_DO_SET_MODE:
         return _check_mode(item, vehicle)
     return _check_numbers(item)
+
+
+def _check_given(item: Item) -> Refusal | None:
+    """Refuse what an ArduPilot does: no number but for a heading, and heights beyond 83 km."""
+    for index, value in enumerate(item.parameters[:3], 1):
+        if math.isnan(value):
+            return bad_parameter(index, value, "a number")
+    if not abs(item.z) < _HIGHEST:
+        return bad_parameter(7, item.z, f"a height or depth below {_HIGHEST:g} m")
+    return None
 
 
 def _check_mode(item: Item, vehicle: Vehicle) -> Refusal | None:

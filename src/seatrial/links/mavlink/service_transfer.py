@@ -168,6 +168,7 @@ class TransferService(Service):
         self.transport.send(upload.sender.link, message)
 
     def _replace(self, plan: Plan, items: list[Item], sender: Sender) -> None:
+        self._offers.pop((sender, plan.kind), None)  # it asks for what it has sent
         result = self._replaced(plan, items)
         self._ended = ((sender, plan.kind, len(items) - 1), result)
         self._answer(sender, plan.kind, result)
