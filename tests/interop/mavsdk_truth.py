@@ -191,7 +191,7 @@ ALWAYS: dict[str, Values] = {
     "landed_state": {"value": 1},
     "vtol_state": {"value": 0},
     "gps_info": {"fix_type": 6, "num_satellites": 20},
-    "battery": {"voltage_v": 16.0, "remaining_percent": 100.0},
+    "battery": {"voltage_v": 16.0},  # nothing measures its current, nor its charge
     "rc_status": {"is_available": False},
 }
 """Fields that are the same all the time."""
