@@ -15,11 +15,8 @@ from .plan import Plan
 from .plan_checks import first_item
 from .plan_items import Item
 from .service import INFO, WARNING
-from .settings import Settings
+from .settings import FASTEST, Settings
 from .vehicle import Vehicle
-
-FASTEST = 100.0
-"""Speeds beyond, m/s, are not obeyed."""
 
 _MOST_AT_ONCE = 2000
 """Items that take no time, one after the other: more are jumps without an end."""
