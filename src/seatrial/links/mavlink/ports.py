@@ -228,6 +228,9 @@ class MavlinkPorts(Logging, Reachable, TrueMotion, Sampled):
         role="tunable",
     )
     failure = Output("1", "failure of each unit, none without", axes=UNITS, type=str, start="none")
+    order = Output(
+        "1", "simulated time and text of the last order of a station", type=str, role="order"
+    )
     speedup = Output("1", "simulated time per wall time that is wanted", start=1.0)
     paused = Output("s", "wall time that it stood still")
     frames_refused = Output("1", "frames received that are no message, or not signed", type=int)

@@ -104,6 +104,7 @@ class GuidedService(Service):
         target = read(message)
         if target is not None and _is_sane(target):
             self.vehicle.target = replace(target, expires=now + self._settings.target_timeout)
+            self.vehicle.ordered(message.get_type(), target)
 
     def tick(self, now: float) -> None:
         """Turn a heading that has a rate, and forget a set-point that has expired."""

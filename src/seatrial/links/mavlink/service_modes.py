@@ -88,6 +88,7 @@ class ModeService(Service):
         if message.base_mode & mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED:
             mode = self.vehicle.dialect.by_custom_mode(message.custom_mode)
             self._entered(mode, message.custom_mode)
+            self.vehicle.ordered("SET_MODE", message.custom_mode)
 
     def _set_mode(self, command: Command, sender: Sender, now: float) -> int:
         base, main, sub = command.parameters[:3]
