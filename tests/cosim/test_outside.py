@@ -89,7 +89,9 @@ def test_nothing_is_named_where_nothing_was_changed(rig: Path) -> None:
 
 def test_an_order_over_a_link_is_named(rig: Path) -> None:
     with Simulation(rig) as sim:
-        station = mavutil.mavlink_connection("udpout:" + sim.get("link.reached_at").split(":", 1)[1])
+        station = mavutil.mavlink_connection(
+            "udpout:" + sim.get("link.reached_at").split(":", 1)[1]
+        )
         station.mav.heartbeat_send(6, 8, 0, 0, 4)
         station.mav.param_set_send(1, 1, b"GROWTH", 5e5, 9)
         deadline = time.monotonic() + 30.0
