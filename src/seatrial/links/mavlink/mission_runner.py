@@ -156,6 +156,7 @@ class MissionRunner:
         """Go on at simulated time ``now``, s; ``reached`` is the number of the leg that is done."""
         if self._plan.items is not self._items:
             self.restart()
+            self._vehicle.ordered("mission of items", len(self._items))
         in_auto = self._vehicle.mode.name == "auto"
         self.paused = self.paused and in_auto
         acts = in_auto and self._vehicle.armed and not self.paused and not self.is_empty
