@@ -129,7 +129,7 @@ class Node:
             StreamService(vehicle, transport, builders, intervals),
         ]
         self._neighbours: set[int] = set()
-        """Other components of its system that were heard."""
+        """Other components of its system that were received."""
         self._receivers: dict[int, list[Receiver]] = {}
         """By number, in the order of the services."""
         for service in self.services:

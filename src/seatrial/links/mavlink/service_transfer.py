@@ -62,7 +62,7 @@ class TransferService(Service):
     when all of them are there and good. Until then the vehicle keeps the one it has. An item
     that does not come is requested again every `RETRY_S`; of a station that never answers
     MISSION_REQUEST_INT, by MISSION_REQUEST, whose answer is exact to half a metre only. After
-    `GIVE_UP_S` of silence the upload is over, which its sender is told. An item after the
+    `GIVE_UP_S` of silence the upload is over, which is reported. An item after the
     requested one is answered by INVALID_SEQUENCE, one before it ignored: its frame was doubled, or
     late. Who repeats the last one missed the acknowledgement, and gets it again. While one station
     uploads a list, others are denied to upload or clear it; each kind of list has its own upload. A
