@@ -111,6 +111,17 @@ def test_all_mistakes_are_reported(load):
     assert len(str(caught.value).splitlines()) == 2
 
 
+RIG_OF_A_PILOT = """
+step = "10 ms"
+profile = "wide.toml"
+[components]
+mavlink = { fmu = "mavlink", profile = "links.ground", set = { links = "udpin:127.0.0.1:0" } }
+pilot = { rig = "pilots/bluerov2" }
+[connections]
+"mavlink.orders" = "pilot.orders"
+"""
+
+
 def test_a_value_of_the_vehicle_s_file_stays_where_its_tunable_starts():
     """What something else is set later must not bring back the start value of the component."""
     rig = load_rig("sil", choices={"vehicle": "mariner", "autopilot": "mavlink"})
@@ -122,6 +133,20 @@ def test_a_value_of_the_vehicle_s_file_stays_where_its_tunable_starts():
     assert f"HDG_D {given!r} " in link.given[system.tunings[0].text].value
     assert gain in system.tuned
     system.free()
+
+
+def test_limits_beyond_those_of_what_it_sets_are_refused(tmp_path):
+    """In the unit of the tunable: cm/s, of a speed that must not be below 0."""
+    text = (Path(__file__).parents[2] / "hil_profiles/bluerov2.toml").read_text()
+    wide = text.replace(
+        'guidance.surface_depth", unit = "cm", min = 0',
+        'guidance.surface_depth", unit = "cm", min = -1',
+    )
+    assert wide != text
+    (tmp_path / "wide.toml").write_text(wide)
+    (tmp_path / "rig.toml").write_text(RIG_OF_A_PILOT)
+    with pytest.raises(InputError, match=r"SURFACE_DEPTH: -1\.0 cm is beyond the limit .*, 0\.0 m"):
+        assemble(load_rig(str(tmp_path / "rig.toml")), "direct")
 
 
 def test_every_shipped_profile_is_here():

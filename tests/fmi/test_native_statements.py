@@ -71,6 +71,7 @@ class Pair:
             built(name, folder, values, version), folder
         )
         self.faults = faults_of(type(self.python))
+        self.values = values
         fmu = self.slave.fmu
         self.setters = {
             float: fmu.setReal,
@@ -105,7 +106,8 @@ class Pair:
         if kind is int:
             return self.drawn.randrange(3)
         if kind is bool:
-            return k < 40 or self.drawn.random() < 0.7
+            first = self.values.get(port.name, True)
+            return first if k < 40 else self.drawn.random() < 0.7
         return self.drawn.choice(self.faults if port.role == "fault" else port.choices)
 
     def step(self, h: float) -> None:

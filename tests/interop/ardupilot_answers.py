@@ -28,8 +28,9 @@ HOME = (round(LATITUDE * 1e7), round(LONGITUDE * 1e7))
 THERE = (HOME[0] + 9000, HOME[1])
 """Where requests send it in guided mode."""
 STATION = (255, 190)
-SETTLES_S = 0.4
-"""Simulated time for which answers are waited for."""
+SETTLES_S, LATE_S = 0.4, 6.0
+"""Simulated time for which answers are waited for, and those that the firmware's second thread gives."""
+LATE = ("PARAM_REQUEST_READ", "FILE_TRANSFER_PROTOCOL", "LOG_REQUEST_LIST", "LOG_REQUEST_DATA")
 BASE_MODE = {"rover": 4, "sub": 19}
 KINDS = (0, 1, 2)
 """Missions, fences, rally points."""
@@ -59,7 +60,7 @@ WANTED: dict[str, tuple[str, ...]] = {
     "POSITION_TARGET_GLOBAL_INT": ("type_mask", "lat_int"),
     "POSITION_TARGET_LOCAL_NED": ("type_mask", "vx", "vy"),
 }
-UNASKED = ("MIS_TOTAL", "STAT_", "BARO")
+UNASKED = ("MIS_TOTAL", "FENCE_TOTAL", "RALLY_TOTAL", "STAT_", "BARO", "MOT_THST")
 """Parameters that come by themselves when they change."""
 _STREAMED_MS = 100
 _ITEM_DEFAULTS = {"frame": 3, "command": 16, "autocontinue": 1, "z": 0.0}
@@ -162,10 +163,13 @@ class Dialogue:
         self._answers(SETTLES_S)
         answers: list[str] = []
         for step in request["do"]:
-            for came in self._do(step):
+            answered = self._do(step)
+            for came in answered:
                 text = shown(came, request.get("wants", ()))
                 if text is not None and text not in answers[-1:] and _was_asked(came, request):
                     answers.append(text)
+            if "upload" in step and [m.type for m in answered] != [0]:
+                break  # a list that is refused ends the request
         state = self._state()
         for step in request.get("then", ()):
             self._do(step)
@@ -189,6 +193,8 @@ class Dialogue:
         newest = {m.get_type(): m for m in came}
         beat, current = newest["HEARTBEAT"], newest["MISSION_CURRENT"]
         counts = {m.mission_type: m.count for m in came if m.get_type() == "MISSION_COUNT"}
+        if counts.get(0) == 1:
+            counts[0] = 0  # home alone, which an ArduPilot writes when it moves
         of_kinds = "/".join(str(counts.get(kind, "-")) for kind in KINDS)
         armed = "armed" if beat.base_mode & 128 else "disarmed"
         return f"mode {beat.custom_mode}, {armed}, lists {of_kinds}, current {current.seq}"
@@ -203,7 +209,7 @@ class Dialogue:
         if "download" in step:
             return self._download(step["download"], sender)
         self._vehicle.send(self._built(step), sender)
-        return self._answers(settles)
+        return self._answers(LATE_S if step.get("send") in LATE else settles)
 
     def _built(self, step: Step) -> Message:
         given = {k: v for k, v in step.items() if k not in ("send", "long", "int", "from")}
@@ -337,7 +343,7 @@ _FIRMWARES = {
               "SERVO1_MIN 1000\nSERVO1_MAX 2000\nSERVO3_MIN 1000\nSERVO3_MAX 2000\n"
               "ATC_STR_RAT_FF 0.75\nCRUISE_SPEED 3\nCRUISE_THROTTLE 30\nWP_SPEED 3\n"
               "WP_RADIUS 3\nBATT_MONITOR 4\n" + _CALIBRATED),
-    "sub": ("vectored", "SIM_FLOAT_EXCEPT 0\nBARO_EXT_BUS 1\nBATT_MONITOR 4\n" + "".join(
+    "sub": ("vectored", "SIM_FLOAT_EXCEPT 0\nFS_PILOT_INPUT 0\nBARO_EXT_BUS 1\nBATT_MONITOR 4\n" + "".join(
         f"COMPASS_OFS{which}_{axis} {value}\n"
         for which in ("", "2", "3") for axis, value in (("X", 5), ("Y", 13), ("Z", -18)))
         + _CALIBRATED),

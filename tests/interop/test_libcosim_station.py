@@ -40,7 +40,11 @@ class Libcosim:
         fmu = load_fmu(cached_fmu(source, script))
         number = {v.name: v.reference for v in fmu.variables.values()}
         self._names = {number[name]: name for names in WATCHED.values() for name in names}
-        slave: dict[str, Any] = {"name": "link", "path": str(fmu.path), "real": {}, "integer": {}}
+        measured = [
+            v for v in number if v.startswith(("position_n.", "velocity_n.")) or v == "heading"
+        ]
+        slave: dict[str, Any] = {"name": "link", "path": str(fmu.path), "integer": {}}
+        slave |= {"real": dict.fromkeys((number[name] for name in measured), 0.0)}
         slave |= {"boolean": {number["position_valid"]: True}}
         slave |= {"string": {number["links"]: f"udpin:{HOST}:{port}"}}
         watch = {kind: [["link", number[n]] for n in names] for kind, names in WATCHED.items()}

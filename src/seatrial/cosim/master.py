@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from ..component import NS
-from ..errors import InputError
+from ..errors import InputError, SimulationError
 from ..faults.operators import Fixed
 from .algorithms import Algorithm
 from .compiled.choice import is_compiled, lost_by_algorithm
@@ -24,6 +24,7 @@ from .feedthrough import Feedthrough
 from .injected import Acting
 from .network import Name, Network
 from .node import Node
+from .outside import LastChange
 from .part import Part
 from .registry import ALGORITHMS
 from .rollback import Checkpoint, Rollback
@@ -73,6 +74,7 @@ class Master:
         self.steps = 0
         self._network = Network(system)
         self._network.time_ns = start_ns
+        self._outside = LastChange(self._network)
         self._instances = [(name, part.instance) for name, part in system.parts.items()]
         self._ends = False
         """Whether a component has asked for the end."""
@@ -153,14 +155,11 @@ class Master:
         It goes on until somebody must look: a component asks for the end, in compiled steps a fault
         begins or ends. ``rows`` gets the points in between. Raises SimulationError.
         """
-        compiled = self._compiled
-        if compiled is None:
-            return self._advance_in_python(most, rows)
-        if self._network.is_disturbed or self._ends:
-            return self._advance_in_python(1, rows)
-        taken = self._advance_compiled(compiled, most, rows)
-        self.faults.act(self)
-        return taken
+        try:
+            return self._advance(most, rows)
+        except SimulationError as error:
+            self._outside.tell(error)
+            raise
 
     @property
     def is_compiled(self) -> bool:
@@ -186,12 +185,15 @@ class Master:
         With an algorithm such as plain Jacobi they follow after the next step. Raises
         SimulationError.
         """
+        self._outside.note_set(self.time_ns, component, names, values)
         self._network.set(component, names, values)
         self._follow(component)
         self._changed()
 
     def inject(self, component: str, name: str, fault: Acting) -> None:
         """Let a fault act from now on: on an output for all its readers, or on one input."""
+        what = f"{fault.key}, {fault.operator}, on {component}.{name}"
+        self._outside.note(self.time_ns, what)
         self._network.inject(component, name, fault)
         self._follow(component)
         self._changed()
@@ -315,6 +317,16 @@ class Master:
         begins["steps"] = len(program.operations)
         begins["visits"] = program.add_step(self._algorithm)
         return self._network, program, begins
+
+    def _advance(self, most: int, rows: Rows | None) -> int:
+        compiled = self._compiled
+        if compiled is None:
+            return self._advance_in_python(most, rows)
+        if self._network.is_disturbed or self._ends:
+            return self._advance_in_python(1, rows)
+        taken = self._advance_compiled(compiled, most, rows)
+        self.faults.act(self)
+        return taken
 
     def _compiled_steps(self) -> CompiledSteps:
         from .compiled.steps import CompiledSteps

@@ -54,6 +54,7 @@ class Tuning:
 def connect_tunables(system: System, part: Part, profiles: Profiles) -> None:
     """Connect the tunables of a link's profile to the pilot beside it. Raises InputError.
 
+    A limit beyond that of what it sets is refused: a value in between would end the run.
     Where the link stands beside no pilot and beside none of the components that they set, or
     the rig gives it tunables of its own, there are none.
     """
@@ -127,6 +128,16 @@ def _feed(
         factor, offset = conversion(tunable.unit or variable.measure, variable.measure)
     except InputError as error:
         raise InputError(f"{where}.{tunable.name}.unit: {error}") from None
+    for limit, own, way in (
+        (tunable.min, variable.minimum, -1),
+        (tunable.max, variable.maximum, 1),
+    ):
+        beyond = 0.0 if own is None else way * (factor * limit + offset - own)
+        if beyond > 1e-9 * abs(own or 1.0):  # what conversion leaves
+            raise InputError(
+                f"{where}.{tunable.name}: {limit!r} {tunable.unit or variable.unit} is beyond the "
+                f"limit of {'.'.join(target)}, {own!r} {variable.unit}"
+            )
     system.joints.append(Joint(".".join(source), ".".join(target), factor, offset))
     system.connections.append(Connection(source, target, factor, offset))
 

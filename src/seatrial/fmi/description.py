@@ -69,12 +69,16 @@ def describe(cls: type[Component], name: str, start_values: Mapping[str, Any]) -
 
 
 def _insert_views(root: Element, cls: type[Component]) -> None:
-    """Write the views as annotations of the vendor, where `variables` reads them."""
+    """Write the views as an annotation of the vendor, where `variables` reads them.
+
+    In one element: FMI 2.0's schema allows a tool one.
+    """
     if cls.views:
         annotations = Element("VendorAnnotations")
         tool = SubElement(annotations, "Tool", {"name": "seatrial"})
+        views = SubElement(tool, "views")
         for kind, ports in cls.views.items():
-            SubElement(tool, "view", {"kind": kind, **ports})
+            SubElement(views, "view", {"kind": kind, **ports})
         places = [child.tag for child in root]
         root.insert(places.index("ModelVariables"), annotations)
 

@@ -303,7 +303,7 @@ def views_of(root: Any) -> dict[str, dict[str, str]]:
         "VendorAnnotations/Tool[@name='seatrial']",
         "Annotations/Annotation[@type='seatrial']",
     )
-    for element in (view for place in places for view in root.iterfind(f"{place}/view")):
+    for element in (view for place in places for view in root.iterfind(f"{place}/views/view")):
         ports = {str(key): str(value) for key, value in element.attrib.items()}
         kind = ports.pop("kind", "")
         if set(ports) == set(VIEWS.get(kind, ())):

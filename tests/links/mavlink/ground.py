@@ -91,9 +91,11 @@ def upload(bench, items, kind=MISSION, sender=STATION, sends=None):
 def download(
     bench, kind=MISSION, sender=STATION, request=mavlink.MAVLink_mission_request_int_message
 ):
-    """Download a list over a transport that loses nothing; return its items."""
+    """Download a list over a transport that loses nothing; return its items, none if denied."""
     bench.transport.take()
     bench.receive(mavlink.MAVLink_mission_request_list_message(7, 1, kind), sender)
+    if bench.transport.take("MISSION_ACK", sender.link):
+        return []  # denied: it is being uploaded
     (count,) = bench.transport.take("MISSION_COUNT", sender.link)
     items = []
     for sequence in range(count.count):

@@ -26,13 +26,21 @@ def test_an_unknown_command_is_answered(number):
 
 @pytest.mark.parametrize(
     ("system", "component", "answered"),
-    [(7, 1, True), (7, 0, True), (0, 0, True), (8, 1, False), (8, 0, False), (7, 2, False)],
+    [(7, 1, True), (7, 0, True), (0, 0, True), (8, 1, False), (8, 0, False), (7, 2, True)],
 )
 def test_only_what_is_meant_for_us_is_answered(system, component, answered):
     bench = Bench()
     result = bench.command(ARM, 1, system=system, component=component)
     assert (result == OK) is answered
     assert bench.vehicle.armed is answered
+
+
+def test_components_that_are_there_answer_for_themselves():
+    bench = Bench()
+    bench.heartbeat(Sender(7, 2, 0), mavlink.MAV_TYPE_CAMERA)
+    assert bench.command(ARM, 1, system=7, component=2) is None
+    assert bench.command(ARM, 1, system=7, component=3) == OK  # as an ArduPilot
+    assert Bench(autopilot="px4").command(ARM, 1, system=7, component=3) is None
 
 
 def test_the_answer_goes_over_the_link_of_the_command():
@@ -92,7 +100,7 @@ def test_force_arms_against_all_reasons_and_says_so():
 def test_neither_arming_nor_disarming_is_denied(wanted):
     bench = Bench()
     bench.arm()
-    assert bench.command(ARM, wanted) == DENIED
+    assert bench.command(ARM, wanted) == UNSUPPORTED
     assert bench.vehicle.armed
 
 
@@ -131,8 +139,6 @@ def test_the_health_bit_follows_the_checks():
     [
         (mavlink.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, "simulated"),
         (mavlink.MAV_CMD_PREFLIGHT_CALIBRATION, "belong to the trial"),
-        (mavlink.MAV_CMD_DO_SET_SERVO, "autopilot's"),
-        (mavlink.MAV_CMD_DO_REPEAT_SERVO, "autopilot's"),
         (mavlink.MAV_CMD_DO_SET_RELAY, "no relays"),
         (mavlink.MAV_CMD_DO_REPEAT_RELAY, "no relays"),
     ],
@@ -144,6 +150,21 @@ def test_what_it_cannot_do_is_refused_with_the_reason(number, why):
     assert why in "".join(m.text for m in bench.transport.take("STATUSTEXT"))
 
 
+@pytest.mark.parametrize(
+    ("number", "result"),
+    [
+        (mavlink.MAV_CMD_DO_SET_SERVO, FAILED),
+        (mavlink.MAV_CMD_DO_GRIPPER, FAILED),
+        (mavlink.MAV_CMD_PREFLIGHT_STORAGE, DENIED),
+    ],
+)
+def test_equipment_that_is_not_there_fails_as_with_an_ardupilot(number, result):
+    bench = Bench()
+    assert bench.command(number, 1, 1500) == result
+    bench.tick()
+    assert bench.transport.take("STATUSTEXT")
+
+
 def test_no_key_is_taken_over_a_link():
     bench = Bench()
     bench.receive(mavlink.MAVLink_setup_signing_message(7, 1, [1] * 32, 1))
@@ -153,7 +174,9 @@ def test_no_key_is_taken_over_a_link():
 
 @pytest.mark.parametrize("number", [395, 397])  # COMPONENT_INFORMATION, COMPONENT_METADATA
 def test_descriptions_of_components_are_refused_at_once(number):
-    assert Bench().command(mavlink.MAV_CMD_REQUEST_MESSAGE, number) == UNSUPPORTED
+    assert Bench().command(mavlink.MAV_CMD_REQUEST_MESSAGE, number) == FAILED
+    px4 = Bench(autopilot="px4")
+    assert px4.command(mavlink.MAV_CMD_REQUEST_MESSAGE, number) == UNSUPPORTED
 
 
 # ------------------------------------------------------------------ modes
@@ -180,9 +203,10 @@ def test_modes_by_command(options, parameters, name):
 
 
 @pytest.mark.parametrize("parameters", [(1, 99), (0, 15), (NAN, 15), (1, NAN), (1, -1), (-1, 15)])
-def test_what_is_no_mode_is_denied(parameters):
+def test_what_is_no_mode_is_refused(parameters):
+    assert Bench(autopilot="px4").command(MODE, *parameters) == DENIED
     bench = Bench()
-    assert bench.command(MODE, *parameters) == DENIED
+    assert bench.command(MODE, *parameters) == (FAILED if parameters[0] == 1 else DENIED)
     assert bench.vehicle.mode.name == "hold"
 
 

@@ -34,7 +34,8 @@ MEASURED = {
 def made(**values):
     component = Mavlink("link")
     for name, value in {**MEASURED, "links": "udpin:127.0.0.1:0", **values}.items():
-        component.set(name, value)
+        if value is not None:
+            component.set(name, value)
     return component
 
 
@@ -204,6 +205,53 @@ def test_attitude_is_roll_pitch_and_heading(started, connect):
     m = received(boat, connect(boat.urls[0]), "ATTITUDE")
     assert (m.roll, m.pitch, m.yaw) == pytest.approx((0.1, -0.2, 1.5))
     assert (m.rollspeed, m.pitchspeed, m.yawspeed) == pytest.approx((0.3, 0.4, 0.5))
+
+
+BIT = {
+    name: getattr(mavlink, f"MAV_SYS_STATUS_{name}")
+    for name in ("SENSOR_3D_GYRO", "SENSOR_3D_ACCEL", "SENSOR_3D_MAG", "SENSOR_GPS")
+}
+ABSENT = [
+    ("gyro", "SENSOR_3D_GYRO", {"RAW_IMU", "SCALED_IMU"}, {"ATTITUDE": ("rollspeed", "pitchspeed", "yawspeed")}),
+    ("accelerometer", "SENSOR_3D_ACCEL", {"RAW_IMU", "SCALED_IMU", "VIBRATION"}, {}),
+    ("heading", "SENSOR_3D_MAG", {"ATTITUDE_QUATERNION"}, {"ATTITUDE": ("yaw",), "AHRS2": ("yaw",)}),
+    ("roll_pitch", None, {"ATTITUDE_QUATERNION"}, {"ATTITUDE": ("roll", "pitch")}),
+    ("velocity_n", None, set(), {"LOCAL_POSITION_NED": ("vx", "vy", "vz"), "VFR_HUD": ("groundspeed", "climb", "airspeed")}),
+    ("position_n", "SENSOR_GPS", {"GPS_RAW_INT", "GLOBAL_POSITION_INT", "LOCAL_POSITION_NED", "AHRS2", "ALTITUDE"}, {"VFR_HUD": ("alt",)}),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("lacking", "bit", "silent", "unknown"), ABSENT)
+def test_what_nothing_is_connected_to_is_no_measurement(
+    lacking, bit, silent, unknown, started, connect
+):
+    """Flags of validity are those that a rig has which connects them and not the value."""
+    values = {name: value for name, value in MEASURED.items() if name != lacking}
+    boat = started(**{lacking: None}, **values)
+    station, last = connect(boat.urls[0]), {}
+
+    def all_came():
+        while (message := station.recv_match()) is not None:
+            last[message.get_type()] = message
+        return {"SYS_STATUS", "VFR_HUD", "ATTITUDE", "SYSTEM_TIME"} <= set(last) and boat.now > 2.0
+
+    until(boat, all_came)
+    status = last["SYS_STATUS"]
+    for name, one in BIT.items():
+        for field in ("present", "enabled", "health"):
+            assert bool(getattr(status, f"onboard_control_sensors_{field}") & one) == (name != bit)
+    assert not silent & set(last)
+    for kind, fields in unknown.items():
+        message = last[kind]
+        for field in message.get_fieldnames():
+            given = getattr(message, field)
+            assert (isinstance(given, float) and math.isnan(given)) == (field in fields), field
+    if lacking == "velocity_n":
+        assert (last["GPS_RAW_INT"].vel, last["GLOBAL_POSITION_INT"].vx) == (0xFFFF, 0x7FFF)
+    if lacking == "heading":
+        assert (last["GLOBAL_POSITION_INT"].hdg, last["VFR_HUD"].heading) == (0xFFFF, 0x7FFF)
+    measured = {"gyro": 0x7, "accelerometer": 0x38}.get(lacking, 0x3F)
+    assert last["HIGHRES_IMU"].fields_updated == measured
 
 
 def test_truth_goes_out_beside_the_estimates(started, connect):

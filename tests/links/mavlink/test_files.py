@@ -91,7 +91,7 @@ def test_single_reads_and_the_end_of_a_session():
     ((_, _, at, _, tail),) = ask(bench, READ, session=session, size=239, offset=size - 3)
     assert (at, len(tail)) == (size - 3, 3)
     assert ask(bench, TERMINATE, session=session)[0][0] == ACK
-    refused = (NAK, session, 0, False, bytes([INVALID_SESSION]))
+    refused = (NAK, session, 0, False, bytes([NOT_FOUND]))
     assert ask(bench, READ, session=session, size=6) == [refused]
 
 
@@ -108,7 +108,7 @@ def test_sessions_are_few_and_all_closed_by_a_reset():
 @pytest.mark.parametrize("opcode", [6, WRITE, 8, 9, 14, 77])
 def test_what_is_not_reading_is_refused(opcode):
     expected = [(NAK, 0, 0, False, bytes([UNKNOWN_COMMAND]))]
-    assert ask(Bench(), opcode, b"@PARAM/param.pck") == expected
+    assert ask(Bench(autopilot="px4"), opcode, b"@PARAM/param.pck") == expected
 
 
 def test_a_file_that_there_is_not():

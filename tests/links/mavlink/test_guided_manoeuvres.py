@@ -11,6 +11,7 @@ BODY = mavlink.MAV_FRAME_BODY_NED
 VELOCITY_AND_RATE = 0x5C7  # as MAVSDK sends it: all ignored but the velocity and the yaw rate
 CHANGE_SPEED, REPOSITION = mavlink.MAV_CMD_DO_CHANGE_SPEED, mavlink.MAV_CMD_DO_REPOSITION
 OK, DENIED = mavlink.MAV_RESULT_ACCEPTED, mavlink.MAV_RESULT_DENIED
+FAILED = mavlink.MAV_RESULT_FAILED
 EAST = math.pi / 2
 
 
@@ -104,7 +105,7 @@ def test_a_speed_applies_to_places_until_the_mode_ends():
     assert boat.vehicle.target.speed == 0.0
     assert boat.command(CHANGE_SPEED, 1, 0.3, -1) == OK
     boat.enter("hold")
-    assert boat.command(CHANGE_SPEED, 1, 0.2, -1) == DENIED
+    assert boat.command(CHANGE_SPEED, 1, 0.2, -1) == FAILED
     boat.enter("guided")
     assert boat.command_int(REPOSITION, -1.0, 0, **place()) == OK
     assert boat.vehicle.target.speed == 0.0

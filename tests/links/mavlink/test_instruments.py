@@ -177,7 +177,7 @@ def test_where_it_goes_is_a_position_target():
     assert bench.request(number)[0] == mavlink.MAV_RESULT_DENIED
     bench.enter("return")
     m = bench.one(number)
-    assert (m.lat_int, m.lon_int, m.type_mask) == (-317800000, -522600000, 0xDF8)
+    assert (m.lat_int, m.lon_int, m.type_mask) == (-317800000, -522600000, 0xFDF8)
 
 
 def test_speed_controllers_report_speed_current_and_charge():

@@ -14,9 +14,21 @@ def test_before_the_first_ground_station_nothing_happens():
     assert (bench.vehicle.armed, bench.vehicle.failsafe) == (True, False)
 
 
+def test_only_the_station_that_steers_an_ardupilot_is_missed():
+    for autopilot, lost in [("ardupilotmega", True), ("px4", False)]:
+        bench = Bench(station_timeout=5.0, autopilot=autopilot)
+        bench.heartbeat(STATION)
+        for _ in range(10):
+            bench.wait(1.0)
+            bench.heartbeat(OTHER_STATION)
+        assert bench.vehicle.failsafe is lost
+        bench.heartbeat(STATION)
+        assert not bench.vehicle.failsafe
+
+
 @pytest.mark.parametrize("armed", [False, True])
 def test_losing_the_last_one_is_what_matters(armed):
-    bench = Bench(station_timeout=5.0)
+    bench = Bench(station_timeout=5.0, pilot_system=OTHER_STATION.system)
     bench.enter("guided")
     if armed:
         bench.arm()

@@ -105,7 +105,7 @@ def test_a_list_is_the_old_one_or_the_new_one(order, noise):
             sent.insert(order.randint(0, len(sent)), (message, OTHER_STATION))
     for message, sender in sent:
         bench.receive(message, sender)
-        found = download(bench, sender=Sender(240, 190, 0))
+        found = download(bench, sender=Sender(240, 190, 0))  # none while it is uploaded
         whole = [content(m) for m in found[1:]]
         assert whole in ([content(m) for m in old[1:]], [content(m) for m in new[1:]], [])
 

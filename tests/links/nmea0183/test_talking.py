@@ -151,6 +151,17 @@ def test_what_is_not_valid_is_empty_and_says_so():
         assert not getattr(sent[name], field), name
 
 
+def test_what_nothing_is_connected_to_is_empty_whatever_its_flag_says():
+    """An AHRS without a gyro says that it is valid, and a rig gives rudder_valid to all vehicles."""
+    bench = Bench(**HOME)
+    lacking = ("rate_of_turn", "roll_pitch", "rudder")
+    bench.set(**{name: value for name, value in VALID.items() if name not in lacking})
+    sent = read(bench.run(0.1))
+    assert (sent["TIROT"].status, sent["AGRSA"].rsa_starboard_status) == ("V", "V")
+    assert not sent["TIROT"].rate_of_turn
+    assert not sent["AGRSA"].rsa_starboard
+
+
 def test_a_reading_that_fails_and_comes_back():
     bench = Bench(**HOME, sentences="GPRMC 0.1")
     bench.set(**VALID)

@@ -180,6 +180,7 @@ class Mavlink(MavlinkPorts):
             self._failing = dict(failing)
             self.failure = [failing.get(unit, "none") for unit in UNITS]
         self.speedup = self._settings.speedup
+        self.order = vehicle.order
         self.failsafe_active, self.ground_stations = vehicle.failsafe, vehicle.stations
         self.reached_at = " ".join(other_end(url) for url in self.urls)
         assert self._transport is not None
@@ -194,7 +195,7 @@ class Mavlink(MavlinkPorts):
         if self.run_folder and not self._log.is_open:
             self._log.open(Path(self.run_folder, f"{self.name}.tlog"))
         self._node.missions.reached = self.leg_reached
-        self._vehicle.estimates = self._estimates()
+        self._vehicle.estimates, self._vehicle.now = self._estimates(), t
         self._vehicle.truth = self.true_motion() if self.truth == "on" else None
         self._exchange(now)
         if self._settings.paused:

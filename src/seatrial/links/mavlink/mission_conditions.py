@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 
 from pymavlink.dialects.v20 import all as mavlink
 
-from .plan_checks import NAVIGATION
+from .plan_checks import JUMPS, NAVIGATION
 from .plan_items import Item
 
 
@@ -49,4 +49,4 @@ class DelayedItems:
 
 
 def _ends(item: Item) -> bool:
-    return item.command in NAVIGATION or item.command == mavlink.MAV_CMD_DO_JUMP
+    return item.command in NAVIGATION or item.command in JUMPS

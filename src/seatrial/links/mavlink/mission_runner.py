@@ -12,14 +12,11 @@ from pymavlink.dialects.v20 import all as mavlink
 from ..geodesy import Ned
 from .mission_conditions import DelayedItems
 from .plan import Plan
-from .plan_checks import first_item
+from .plan_checks import JUMPS, first_item
 from .plan_items import Item
 from .service import INFO, WARNING
-from .settings import Settings
+from .settings import FASTEST, Settings
 from .vehicle import Vehicle
-
-FASTEST = 100.0
-"""Speeds beyond, m/s, are not obeyed."""
 
 _MOST_AT_ONCE = 2000
 """Items that take no time, one after the other: more are jumps without an end."""
@@ -64,6 +61,7 @@ class MissionRunner:
     NAV_DELAY               stays for the time in parameter 1
     DO_JUMP                 goes on at the item in parameter 1, parameter 2 times
                             since the mission began; always if that is negative
+    DO_JUMP_TAG             the same at the JUMP_TAG of that number; without one it is the end
     DO_CHANGE_SPEED         parameter 2 is the speed of the legs from here on; -2 is the
                             vehicle's own, others below 0 change nothing
     NAV_SPLINE_WAYPOINT     a leg; parameter 1 is the time to stay
@@ -121,6 +119,8 @@ class MissionRunner:
         self._items = self._plan.items
         self.current, self.state = self.first, _NOT_STARTED
         """Number of the item that is carried out, and MISSION_STATE."""
+        self.is_chosen = False
+        """Whether a station chose the item; else a mission that has not begun is at none."""
         self.leg = Leg()
         self._speed: float | None = None
         self._jumps: Counter[int] = Counter()
@@ -133,7 +133,7 @@ class MissionRunner:
         sequence = sequence or self.first
         if not self.first <= sequence < len(self._plan.items):
             return False
-        self.current, self.leg = sequence, Leg()
+        self.current, self.leg, self.is_chosen = sequence, Leg(), True
         self._delayed.drop()
         self._at_end = False  # of the list, while something still waits
         self.state = _NOT_STARTED if self.state == _NOT_STARTED else _PAUSED
@@ -159,6 +159,7 @@ class MissionRunner:
         """Go on at simulated time ``now``, s; ``reached`` is the number of the leg that is done."""
         if self._plan.items is not self._items:
             self.restart()
+            self._vehicle.ordered("mission of items", len(self._items))
         in_auto = self._vehicle.mode.name == "auto"
         self.paused = self.paused and in_auto
         acts = in_auto and self._vehicle.armed and not self.paused and not self.is_empty
@@ -200,7 +201,7 @@ class MissionRunner:
                 return
             self.current = sequence
             item = self._items[sequence]
-            if item.command == mavlink.MAV_CMD_DO_JUMP:
+            if item.command in JUMPS:
                 sequence = self._after_jump(item)
                 continue
             if item.command == mavlink.MAV_CMD_CONDITION_DELAY:
@@ -232,7 +233,11 @@ class MissionRunner:
         if 0.0 <= times <= self._jumps[self.current]:
             return self.current + 1
         self._jumps[self.current] += 1
-        return round(item.number(1))
+        target = round(item.number(1))
+        if item.command == mavlink.MAV_CMD_DO_JUMP:
+            return target
+        tags = (n for n, other in enumerate(self._items) if _is_tag(other, target))
+        return next(tags, len(self._items))
 
     def _starts(self, item: Item, now: float) -> bool:
         """Start an item; return whether it takes time."""
@@ -263,8 +268,8 @@ class MissionRunner:
         match item.command:
             case mavlink.MAV_CMD_DO_CHANGE_SPEED:
                 self.change_speed(item.number(2))
-            case mavlink.MAV_CMD_CONDITION_DELAY:
-                pass  # what it waits for begins
+            case mavlink.MAV_CMD_CONDITION_DELAY | mavlink.MAV_CMD_JUMP_TAG:
+                pass  # what it waits for begins; a place to jump to
             case _:
                 self._carry_out(item, now)
 
@@ -323,3 +328,7 @@ class MissionRunner:
 
     def _leg_speed(self) -> float:
         return self._settings.leg_speed if self._speed is None else self._speed
+
+
+def _is_tag(item: Item, number: int) -> bool:
+    return item.command == mavlink.MAV_CMD_JUMP_TAG and item.number(1) == number

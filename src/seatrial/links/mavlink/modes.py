@@ -92,6 +92,11 @@ class Dialect:
     reposition: Mode | None
     """Mode in which it goes where DO_REPOSITION sends it, None for guided mode."""
 
+    @property
+    def is_ardupilot(self) -> bool:
+        """Whether it answers as an ArduPilot, else as a PX4."""
+        return self.name == "ardupilot"
+
     def mode(self, name: str) -> Mode | None:
         """Return a mode by our name, None if this kind of vehicle has none such."""
         return next((mode for mode in self.modes if mode.name == name), None)

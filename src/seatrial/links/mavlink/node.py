@@ -128,6 +128,8 @@ class Node:
             self.presence,
             StreamService(vehicle, transport, builders, intervals),
         ]
+        self._neighbours: set[int] = set()
+        """Other components of its system that were received."""
         self._receivers: dict[int, list[Receiver]] = {}
         """By number, in the order of the services."""
         for service in self.services:
@@ -153,6 +155,8 @@ class Node:
 
     def receive(self, message: Message, sender: Sender, now: float) -> None:
         """Give a message to the services that take it in, at simulated time ``now``, s."""
+        if sender.system == self.vehicle.identity.system:
+            self._neighbours.add(sender.component)
         receivers = self._receivers.get(message.get_msgId(), ())
         if receivers and self._is_for_us(message, sender):
             for receive in receivers:
@@ -170,7 +174,10 @@ class Node:
         # MANUAL_CONTROL has another name for it.
         system = getattr(message, "target_system", getattr(message, "target", 0))
         component = getattr(message, "target_component", 0)
-        return system in (0, identity.system) and component in (0, identity.component)
+        # An ArduPilot answers for components of its system that it does not know.
+        known = {*self._neighbours, identity.component} if self.vehicle.dialect.is_ardupilot else ()
+        is_ours = component in (0, identity.component) or (known and component not in known)
+        return system in (0, identity.system) and bool(is_ours)
 
 
 def files_on_board(parameters: ParameterTable) -> Files:

@@ -12,7 +12,7 @@ from typing import Any
 from pymavlink.dialects.v20 import all as mavlink
 
 from ...errors import InputError, unknown
-from .settings import Settings
+from .settings import LIMITS, Settings
 
 INT8: int = mavlink.MAV_PARAM_TYPE_INT8
 INT16: int = mavlink.MAV_PARAM_TYPE_INT16
@@ -20,16 +20,6 @@ INT32: int = mavlink.MAV_PARAM_TYPE_INT32
 REAL32: int = mavlink.MAV_PARAM_TYPE_REAL32
 
 BELONGS_TO_TRIAL = "it belongs to the trial"
-
-HIGHEST = {
-    **dict.fromkeys(("cruise_speed", "waypoint_speed"), 100.0),
-    **dict.fromkeys(("waypoint_radius", "loiter_radius"), 1e4),
-    **dict.fromkeys(("manual_timeout", "station_timeout", "target_timeout"), 86_400.0),
-    "battery_low_voltage": 1000.0,
-    "battery_low_charge": 1.0,
-    "fence_depth": 12_000.0,
-}
-"""Largest values of settings that ground stations set: m/s, m, s, V, a share, m."""
 
 _LARGEST = float.fromhex("0x1.fffffep127")  # of 32 bits
 _NAME = re.compile(r"[A-Z][A-Z0-9_]{0,15}")
@@ -98,14 +88,10 @@ def fixed(name: str, kind: int, value: float, why: str = BELONGS_TO_TRIAL) -> De
     return Definition(name, kind, value, fixed=why)
 
 
-def real(
-    name: str, setting: str, settings: Settings, low: float = 0.0, scale: float = 1.0
-) -> Definition:
-    """Return a parameter for a setting that is a number; one unit of it is ``scale`` there.
-
-    It has the limit of its setting: a value that no vehicle means reaches no pilot.
-    """
-    start, high = getattr(settings, setting) / scale, HIGHEST[setting] / scale
+def real(name: str, setting: str, settings: Settings, scale: float = 1.0) -> Definition:
+    """Return a parameter for a setting that is a number; one unit of it is ``scale`` there."""
+    start = getattr(settings, setting) / scale
+    low, high = (shortest(limit / scale) for limit in LIMITS[setting])
     return Definition(name, REAL32, start, low, high, apply=_moves(setting, lambda v: v * scale))
 
 

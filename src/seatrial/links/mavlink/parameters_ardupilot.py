@@ -128,7 +128,7 @@ def _rover(settings: Settings) -> list[Definition]:
         choice("FS_GCS_ENABLE", "watches_stations", settings, _SWITCH),
         real("FS_GCS_TIMEOUT", "station_timeout", settings),
         real("GUID_TIMEOUT", "target_timeout", settings),
-        real("CIRC_RADIUS", "loiter_radius", settings, 0.1),
+        real("CIRC_RADIUS", "loiter_radius", settings),
         choice("FENCE_ACTION", "fence_action", settings, _ROVER_ACTIONS),
     ]
 
@@ -141,7 +141,7 @@ def _sub(settings: Settings) -> list[Definition]:
         real("FS_GCS_TIMEOUT", "station_timeout", settings),
         real("FS_PILOT_TIMEOUT", "manual_timeout", settings),
         choice("FS_PILOT_INPUT", "manual_failsafe", settings, _SUB_PILOT_ACTIONS),
-        real("CIRCLE_RADIUS", "loiter_radius", settings, 10.0, scale=0.01),
+        real("CIRCLE_RADIUS", "loiter_radius", settings, scale=0.01),
         choice("FENCE_ACTION", "fence_action", settings, _SUB_FENCE_ACTIONS),
         real("FENCE_DEPTH_MAX", "fence_depth", settings),
         *joystick_parameters(settings),

@@ -36,7 +36,7 @@ def px4_parameters(identity: Identity, settings: Settings) -> list[Definition]:
         choice("GF_ACTION", "fence_action", settings, fence_actions, INT32),
         choice("COM_LOW_BAT_ACT", "battery_action", settings, battery_actions, INT32),
         real("BAT_LOW_THR", "battery_low_charge", settings),
-        real("NAV_LOITER_RAD", "loiter_radius", settings, 0.1),
+        real("NAV_LOITER_RAD", "loiter_radius", settings),
         real("NAV_ACC_RAD", "waypoint_radius", settings),
         real("GND_SPEED_TRIM", "cruise_speed", settings),
         *px4_listed(submerged=identity.submerged),

@@ -74,6 +74,17 @@ class Plan:
             return Refusal(mavlink.MAV_MISSION_ERROR, refusal.text)  # it checks a fence as a whole
         return refusal
 
+    def is_wrong(self, sequence: int, item: Item) -> bool:
+        """Return whether an item is bad whatever the others are; home is not looked at.
+
+        Jumps and polygons are ERRORs of the whole list.
+        """
+        if sequence == 0 and self.kind == mavlink.MAV_MISSION_TYPE_MISSION and self._is_ardupilots:
+            return False
+        alone = (item, item) if self.kind == mavlink.MAV_MISSION_TYPE_MISSION else (item,)
+        refusal = self._refusal(alone)
+        return refusal is not None and refusal.result != mavlink.MAV_MISSION_ERROR
+
     @property
     def _is_ardupilots(self) -> bool:
         return self._vehicle.dialect.home_is_item_0

@@ -55,6 +55,7 @@ STORED = frozenset(
 )  # fmt: skip
 """Commands that an ArduPilot stores, of cameras, grippers, servos, relays, heights: a mission skips
 them here, with a text, as nothing of that kind is on board (NAV_SPLINE_WAYPOINT: a waypoint)."""
+JUMPS = (mavlink.MAV_CMD_DO_JUMP, mavlink.MAV_CMD_DO_JUMP_TAG)
 _DELAYS = (mavlink.MAV_CMD_NAV_DELAY, mavlink.MAV_CMD_CONDITION_DELAY)
 
 

@@ -18,6 +18,7 @@ from .outputs import SHARED
 from .parameters_simulation import FASTEST, SLOWEST
 from .parameters_tunable import MOST_TUNABLES, tunable_parameters
 from .service_failures import UNITS, failing_units
+from .settings import LIMITS
 from .vehicle import CHANNELS, FIXES
 
 VEHICLE_TYPES = {
@@ -37,6 +38,12 @@ _MANUAL = ("surge", "sway", "yaw", "heave")
 _CHANNELS = tuple(f"ch{number}" for number in range(1, CHANNELS + 1))
 MOTORS = ("m1", "m2", "m3", "m4")
 _NAMED = tuple(f"n{number}" for number in range(1, NAMED_VALUES + 1))
+
+
+def _limited(start: float, unit: str, description: str, setting: str) -> Parameter:
+    """Return the parameter of a setting, within its limits."""
+    low, high = LIMITS[setting]
+    return Parameter(start, unit, description, min=low, max=high)
 
 
 class MavlinkPorts(Logging, Reachable, TrueMotion, Sampled):
@@ -71,20 +78,26 @@ class MavlinkPorts(Logging, Reachable, TrueMotion, Sampled):
     mode_start = Parameter("hold", "1", "mode at the start", choices=START_MODES)
     armed_start = Parameter("off", "1", "whether it is armed at the start", choices=("off", "on"))
     failsafe = Parameter("hold", "1", "what it does when left alone", choices=ACTIONS)
-    station_timeout = Parameter(5.0, "s", "silence after which a ground station is lost", min=0.0)
-    manual_timeout = Parameter(3.0, "s", "time for which manual control is valid", min=0.0)
-    target_timeout = Parameter(3.0, "s", "time for which a set-point is valid", min=0.0)
-    full_speed = Parameter(1.0, "m/s", "speed of full thrust in an attitude set-point", min=0.0)
+    station_timeout = _limited(
+        5.0, "s", "silence after which a ground station is lost", "station_timeout"
+    )
+    manual_timeout = _limited(3.0, "s", "time for which manual control is valid", "manual_timeout")
+    target_timeout = _limited(3.0, "s", "time for which a set-point is valid", "target_timeout")
+    full_speed = _limited(1.0, "m/s", "speed of full thrust in an attitude set-point", "full_speed")
     truth = Parameter("off", "1", "whether the truth is sent", choices=("off", "on"))
-    waypoint_radius = Parameter(3.0, "m", "distance at which a waypoint is reached", min=0.0)
-    cruise_speed = Parameter(1.0, "m/s", "speed of legs that name none", min=0.0)
-    loiter_radius = Parameter(10.0, "m", "radius of turns that name none", min=0.1)
+    waypoint_radius = _limited(
+        3.0, "m", "distance at which a waypoint is reached", "waypoint_radius"
+    )
+    cruise_speed = _limited(1.0, "m/s", "speed of legs that name none", "cruise_speed")
+    loiter_radius = _limited(10.0, "m", "radius of turns that name none", "loiter_radius")
     fence_action = Parameter("hold", "1", "what it does outside its fence", choices=ACTIONS)
-    fence_depth = Parameter(0.0, "m", "depth of the fence's floor, 0 for none", min=0.0)
+    fence_depth = _limited(0.0, "m", "depth of the fence's floor, 0 for none", "fence_depth")
     battery_capacity = Parameter(0.0, "A.s", "charge of a full battery, 0 if unknown", min=0.0)
-    battery_low_voltage = Parameter(0.0, "V", "voltage of a low battery, 0 for none", min=0.0)
-    battery_low_charge = Parameter(
-        0.0, "1", "share of the charge of a low battery, 0 for none", min=0.0, max=1.0
+    battery_low_voltage = _limited(
+        0.0, "V", "voltage of a low battery, 0 for none", "battery_low_voltage"
+    )
+    battery_low_charge = _limited(
+        0.0, "1", "share of the charge of a low battery, 0 for none", "battery_low_charge"
     )
     battery_action = Parameter("none", "1", "what it does with a low battery", choices=ACTIONS)
     gnss_fix = Parameter("3d", "1", "fix of the receiver with a position", choices=tuple(FIXES))
@@ -215,6 +228,9 @@ class MavlinkPorts(Logging, Reachable, TrueMotion, Sampled):
         role="tunable",
     )
     failure = Output("1", "failure of each unit, none without", axes=UNITS, type=str, start="none")
+    order = Output(
+        "1", "simulated time and text of the last order of a station", type=str, role="order"
+    )
     speedup = Output("1", "simulated time per wall time that is wanted", start=1.0)
     paused = Output("s", "wall time that it stood still")
     frames_refused = Output("1", "frames received that are no message, or not signed", type=int)

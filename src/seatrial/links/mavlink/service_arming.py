@@ -6,7 +6,17 @@ from collections.abc import Callable, Mapping
 
 from pymavlink.dialects.v20 import all as mavlink
 
-from .service import ACCEPTED, CRITICAL, DENIED, FAILED, INFO, WARNING, Command, Handler, Service
+from .service import (
+    ACCEPTED,
+    CRITICAL,
+    FAILED,
+    INFO,
+    UNSUPPORTED,
+    WARNING,
+    Command,
+    Handler,
+    Service,
+)
 from .settings import COMPASS_CHECK, GPS_CHECK, Settings
 from .transport import Sender, Transport
 from .vehicle import Vehicle
@@ -30,7 +40,7 @@ class ArmingService(Service):
     def __init__(self, vehicle: Vehicle, transport: Transport, settings: Settings) -> None:
         super().__init__(vehicle, transport)
         self._settings = settings
-        self.checks: list[Check] = [self._needs_position, self._needs_heading]
+        self.checks: list[Check] = [self._needs_position, self._needs_heading, self._needs_mode]
         self.lasting: dict[str, None] = {}
         """Reasons of failsafes that last."""
 
@@ -64,7 +74,7 @@ class ArmingService(Service):
             self.disarm()
             return ACCEPTED
         if wanted != 1.0:
-            return DENIED
+            return UNSUPPORTED
         reasons = [] if self.vehicle.armed else self._reasons()
         if reasons and how != FORCE:
             self._report(reasons)
@@ -77,7 +87,7 @@ class ArmingService(Service):
 
     def _run_checks(self, command: Command, sender: Sender, now: float) -> int:
         if self.vehicle.armed:
-            return FAILED
+            return int(mavlink.MAV_RESULT_TEMPORARILY_REJECTED)
         reasons = self._reasons()
         self._report(reasons)
         if not reasons:
@@ -95,3 +105,7 @@ class ArmingService(Service):
     def _needs_heading(self) -> str | None:
         needed = self._settings.checks(COMPASS_CHECK)
         return "no heading" if needed and not self.vehicle.estimates.heading_valid else None
+
+    def _needs_mode(self) -> str | None:
+        mode, is_ardupilot = self.vehicle.mode, self.vehicle.dialect.is_ardupilot
+        return f"not in mode {mode.shown}" if is_ardupilot and mode.name == "return" else None

@@ -8,12 +8,20 @@ from pymavlink.dialects.v20 import all as mavlink
 
 from .codec import Message
 from .frames import GLOBAL_FRAMES, LOCAL_FRAMES
-from .service import UNSUPPORTED, Command, Handler, Receiver, Service
+from .service import ACCEPTED, UNSUPPORTED, Command, Handler, Receiver, Service
 from .transport import Sender, Transport
 from .vehicle import Vehicle
 
 _NOT_GIVEN = 0x7FFFFFFF
 """An integer coordinate that stands for not a number."""
+_ASKING = (
+    mavlink.MAV_CMD_REQUEST_MESSAGE,
+    mavlink.MAV_CMD_SET_MESSAGE_INTERVAL,
+    mavlink.MAV_CMD_GET_MESSAGE_INTERVAL,
+    mavlink.MAV_CMD_GET_HOME_POSITION,
+    mavlink.MAV_CMD_RUN_PREARM_CHECKS,
+)
+"""Commands that change nothing of the vehicle."""
 
 
 class CommandService(Service):
@@ -48,6 +56,9 @@ class CommandService(Service):
     def _carry_out(self, command: Command, sender: Sender, now: float) -> None:
         handler = self._handlers.get(command.number)
         result = UNSUPPORTED if handler is None else handler(command, sender, now)
+        if result == ACCEPTED and command.number not in _ASKING:
+            name = mavlink.enums["MAV_CMD"][command.number].name
+            self.vehicle.ordered(name, command.parameters)
         answer = mavlink.MAVLink_command_ack_message(
             command.number, result, 0, 0, sender.system, sender.component
         )

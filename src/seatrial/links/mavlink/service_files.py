@@ -18,7 +18,7 @@ _HEADER = struct.Struct("<HBBBBBxI")
 _PAYLOAD_BYTES, MOST_DATA = 251, 239
 _TERMINATE, _RESET, _LIST, _OPEN, _READ, _BURST = 1, 2, 3, 4, 5, 15
 _ACK, _NAK = 128, 129
-_INVALID_SESSION, _END_OF_FILE, _UNKNOWN_COMMAND, _NOT_FOUND = 4, 6, 7, 10
+_FAIL, _BAD_SIZE, _INVALID_SESSION, _END_OF_FILE, _UNKNOWN_COMMAND, _NOT_FOUND = 1, 3, 4, 6, 7, 10
 _SESSIONS = 8
 """Files that are open at once; the oldest is closed for another one."""
 _BURST_PACKETS = 20
@@ -55,6 +55,7 @@ class FileService(Service):
     def __init__(self, vehicle: Vehicle, transport: Transport, files: Files) -> None:
         super().__init__(vehicle, transport)
         self._files = files
+        self._is_ardupilot = vehicle.dialect.is_ardupilot
         self._sessions: dict[_Session, bytes] = {}
         """By station and its number: MAVProxy numbers them itself, and wants its number back."""
 
@@ -70,7 +71,9 @@ class FileService(Service):
         sequence, session, opcode, size, _, _, offset = _HEADER.unpack_from(payload)
         data = payload[_HEADER.size :][: min(size, MOST_DATA)]
         request = _Request(sequence, session, opcode, size, offset, data)
-        if opcode in (0, _TERMINATE, _RESET):
+        if opcode in (_LIST, _OPEN) and not request.text and not data:
+            self._refuse(request, sender, _BAD_SIZE)
+        elif opcode in (0, _TERMINATE, _RESET):
             self._close(request, sender)
             self._answer(request, sender)
         elif opcode == _LIST:
@@ -80,7 +83,7 @@ class FileService(Service):
         elif opcode in (_READ, _BURST):
             self._read(request, sender)
         elif opcode < _ACK:
-            self._refuse(request, sender, _UNKNOWN_COMMAND)
+            self._refuse(request, sender, _FAIL if self._is_ardupilot else _UNKNOWN_COMMAND)
 
     def _close(self, request: _Request, sender: Sender) -> None:
         station = (sender.system, sender.component)
@@ -130,9 +133,13 @@ class FileService(Service):
     def _read(self, request: _Request, sender: Sender) -> None:
         content = self._sessions.get((sender.system, sender.component, request.session))
         if content is None:
-            self._refuse(request, sender, _INVALID_SESSION)
+            self._refuse(request, sender, _NOT_FOUND if self._is_ardupilot else _INVALID_SESSION)
             return
-        if request.offset >= len(content):
+        if request.size > MOST_DATA:
+            self._refuse(request, sender, _BAD_SIZE)
+            return
+        nothing = request.opcode == _READ and not request.size and self._is_ardupilot
+        if request.offset >= len(content) or nothing:
             self._refuse(request, sender, _END_OF_FILE)
             return
         most = min(request.size or MOST_DATA, MOST_DATA)

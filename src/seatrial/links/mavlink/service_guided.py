@@ -12,7 +12,7 @@ from pymavlink.dialects.v20 import all as mavlink
 from ..geodesy import Ned
 from .codec import Message
 from .frames import GLOBAL_FRAMES, LOCAL_FRAMES, global_position, is_near
-from .mission_runner import FASTEST, OWN_SPEED
+from .mission_runner import OWN_SPEED
 from .scaling import milliseconds, turned, yaw
 from .service import (
     ACCEPTED,
@@ -27,7 +27,7 @@ from .service import (
     whole,
 )
 from .service_modes import ModeService
-from .settings import Settings
+from .settings import FASTEST, Settings
 from .transport import Sender, Transport
 from .vehicle import Target, Vehicle
 
@@ -104,6 +104,7 @@ class GuidedService(Service):
         target = read(message)
         if target is not None and _is_sane(target):
             self.vehicle.target = replace(target, expires=now + self._settings.target_timeout)
+            self.vehicle.ordered(message.get_type(), target)
 
     def tick(self, now: float) -> None:
         """Turn a heading that has a rate, and forget a set-point that has expired."""
@@ -162,7 +163,7 @@ class GuidedService(Service):
 
     def _attitude(self, m: Message) -> Target | None:
         heading = None if m.type_mask & _IGNORE_ATTITUDE else yaw(m.q)
-        thrust = 0.0 if m.type_mask & _IGNORE_THRUST else m.thrust
+        thrust = 0.0 if m.type_mask & _IGNORE_THRUST else min(max(m.thrust, -1.0), 1.0)
         return (
             None if heading is None else self._steering(heading, thrust * self._settings.full_speed)
         )

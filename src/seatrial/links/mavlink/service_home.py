@@ -58,7 +58,10 @@ class HomeService(Service):
         self.transport.send(sender.link, self._origin(now)[0])
 
     def _set_home(self, command: Command, sender: Sender, now: float) -> int:
-        if command.parameters[0] == 1.0:
+        how = command.parameters[0]
+        if how not in (0.0, 1.0):
+            return FAILED
+        if how == 1.0:
             if not self.vehicle.estimates.position_valid:
                 return FAILED
             self._moved(self.vehicle.estimates.position_n, now)
@@ -66,7 +69,7 @@ class HomeService(Service):
         if command.frame not in GLOBAL_FRAMES:
             return DENIED
         latitude, longitude, altitude = command.parameters[4:]
-        return ACCEPTED if self._move(latitude, longitude, altitude, now) else DENIED
+        return ACCEPTED if self._move(latitude, longitude, altitude, now) else FAILED
 
     def _move(self, latitude: float, longitude: float, altitude: float, now: float) -> bool:
         """Move home to degrees and m above the sea; return whether that is a place near enough."""

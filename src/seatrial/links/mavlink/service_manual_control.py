@@ -75,6 +75,7 @@ class ManualControlService(Service):
             return
         surge, sway, yaw, heave = (self._gain() * axis for axis in self._axes(message))
         self.vehicle.manual = surge, sway, yaw, heave
+        self.vehicle.ordered(message.get_type(), self.vehicle.manual)
         self._hold(now)
 
     def _take_channels(self, message: Message, sender: Sender, now: float) -> None:
@@ -86,6 +87,7 @@ class ManualControlService(Service):
             self._found("Manual control was released")
             return
         self.vehicle.manual = self._from_channels()
+        self.vehicle.ordered(message.get_type(), self.vehicle.manual)
         self._hold(now)
 
     def _steers(self, sender: Sender) -> bool:

@@ -121,7 +121,7 @@ class MissionService(Service):
     def tick(self, now: float) -> None:
         """Go on with the mission, and report what has changed."""
         self._runner.tick(now, self.reached)
-        for sequence in self._runner.passed:
+        for sequence in filter(self._is_reported, self._runner.passed):
             self.transport.broadcast(mavlink.MAVLink_mission_item_reached_message(sequence))
         self._runner.passed.clear()
         current = self._current(now)[0]
@@ -157,8 +157,9 @@ class MissionService(Service):
 
     def _set_current(self, command: Command, sender: Sender, now: float) -> int:
         sequence, resets = (whole(p) for p in command.parameters[:2])
-        if sequence is None or (sequence >= 0 and not self._runner.set_current(sequence)):
-            return FAILED
+        is_kept = sequence == -1 and not self.vehicle.dialect.is_ardupilot
+        if sequence is None or not (is_kept or self._runner.set_current(sequence)):
+            return DENIED
         if resets == 1:
             self._runner.forget_jumps()
         self._requested = True
@@ -167,7 +168,7 @@ class MissionService(Service):
     def _change_speed(self, command: Command, sender: Sender, now: float) -> int:
         if self.vehicle.mode.name not in ("auto", "guided"):
             self.vehicle.report(WARNING, "Speeds change in a mission and in guided mode only")
-            return DENIED
+            return FAILED
         in_auto = self.vehicle.mode.name == "auto"
         change = self._runner.change_speed if in_auto else self._change_guided_speed
         change(command.parameters[1])
@@ -182,7 +183,8 @@ class MissionService(Service):
         """Go to an item's place; return MAV_MISSION_RESULT."""
         if self.vehicle.mode.name != "guided":
             self.vehicle.report(WARNING, "Not in guided mode")
-            return int(mavlink.MAV_MISSION_DENIED)
+            is_ardupilot = self.vehicle.dialect.is_ardupilot
+            return int(mavlink.MAV_MISSION_ERROR if is_ardupilot else mavlink.MAV_MISSION_DENIED)
         place = item.place(self.vehicle)
         refusal = check_place(item, place)
         if place is None or refusal is not None:
@@ -200,6 +202,12 @@ class MissionService(Service):
         if self._handlers[item.command](command, ourselves, now) != ACCEPTED:
             self.vehicle.report(WARNING, f"Mission: {item.name} failed")
 
+    def _is_reported(self, sequence: int) -> bool:
+        """Return whether an item that is done is reported: not what was skipped or switched."""
+        items = self._plan.items
+        done = items[sequence].command if sequence < len(items) else None
+        return done not in (*STORED, mavlink.MAV_CMD_DO_FENCE_ENABLE)
+
     def _current(self, now: float) -> list[Message]:
         runner = self._runner
         in_auto = self.vehicle.mode.name == "auto"
@@ -207,6 +215,9 @@ class MissionService(Service):
             state, sequence, total = mavlink.MISSION_STATE_NO_MISSION, 0, _NO_MISSION
         else:
             state, sequence = runner.state, runner.current
+            begun = in_auto or runner.is_chosen or state != mavlink.MISSION_STATE_NOT_STARTED
+            if self.vehicle.dialect.is_ardupilot and not begun:
+                sequence = 0
             total = len(self._plan.items) - runner.first  # without home
         return [
             mavlink.MAVLink_mission_current_message(sequence, total, state, 1 if in_auto else 2)

@@ -55,6 +55,7 @@ class ModeService(Service):
             mavlink.MAV_CMD_DO_SET_STANDARD_MODE: self._set_standard_mode,
             mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH: self._return,
             mavlink.MAV_CMD_NAV_LAND: self._surface,
+            mavlink.MAV_CMD_NAV_LOITER_UNLIM: self._hold,
         }
 
     @property
@@ -88,6 +89,7 @@ class ModeService(Service):
         if message.base_mode & mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED:
             mode = self.vehicle.dialect.by_custom_mode(message.custom_mode)
             self._entered(mode, message.custom_mode)
+            self.vehicle.ordered("SET_MODE", message.custom_mode)
 
     def _set_mode(self, command: Command, sender: Sender, now: float) -> int:
         base, main, sub = command.parameters[:3]
@@ -97,6 +99,8 @@ class ModeService(Service):
         return self._entered(self.vehicle.dialect.by_command(main, sub), main)
 
     def _set_standard_mode(self, command: Command, sender: Sender, now: float) -> int:
+        if self.vehicle.dialect.is_ardupilot:
+            return UNSUPPORTED  # its modes are standard ones to nobody
         standard = whole(command.parameters[0])
         mode = None if standard is None else self.vehicle.dialect.by_standard(standard)
         return self._entered(mode, command.parameters[0])
@@ -107,6 +111,11 @@ class ModeService(Service):
     def _surface(self, command: Command, sender: Sender, now: float) -> int:
         return self._entered_if_any("surface")
 
+    def _hold(self, command: Command, sender: Sender, now: float) -> int:
+        """Stay, as an ArduPilot's submarine does; others do not know the command."""
+        known = self.vehicle.dialect.is_ardupilot and self.vehicle.identity.submerged
+        return self._entered_if_any("hold") if known else UNSUPPORTED
+
     def _entered_if_any(self, name: str) -> int:
         mode = self.vehicle.dialect.mode(name)
         return UNSUPPORTED if mode is None else self._entered(mode, mode.custom_mode)
@@ -114,7 +123,7 @@ class ModeService(Service):
     def _entered(self, mode: Mode | None, number: float) -> int:
         if mode is None:
             self.vehicle.report(WARNING, f"There is no mode {number:g}")
-            return DENIED
+            return FAILED if self.vehicle.dialect.is_ardupilot else DENIED
         reason = self.enter(mode)
         if reason is None:
             return ACCEPTED

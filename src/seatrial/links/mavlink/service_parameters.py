@@ -125,6 +125,7 @@ class ParameterService(Service):
         else:
             refusal = self.table.put(name, self._decoded(message.param_value, kind))
             if refusal is None:
+                self.vehicle.ordered(f"PARAM_SET {name}", f"{self.table[name]:g}")
                 self.transport.broadcast(self._value(name))
                 return
             error, reason = refusal.error, refusal.reason

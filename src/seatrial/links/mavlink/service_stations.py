@@ -49,7 +49,8 @@ class StationService(Service):
     its own too, by wall time (``clock``, s), or for that time-out: in a trial that is much faster
     stations would be lost between two beats.
 
-    When the last one is lost the failsafe acts, unless it is set not to watch them, and again on
+    When the last one is lost (of an ArduPilot: the last of the system that steers it,
+    ``settings.pilot_system``) the failsafe acts, unless it is set not to watch them, and again on
     whoever takes over without being one; before the first one was seen nothing happens. A vehicle
     that needs one to arm (``settings.station_to_arm``) does not arm before that either.
     """
@@ -80,7 +81,11 @@ class StationService(Service):
         settings = self._settings
         watches = settings.watches_stations and settings.failsafe != "none"
         needed = settings.station_to_arm and watches
-        return "no ground station" if needed and not self._there else None
+        return "no ground station" if needed and not any(map(self._counts, self._there)) else None
+
+    def _counts(self, who: tuple[int, int]) -> bool:
+        """Return whether the failsafe misses a station: an ArduPilot that of one system alone."""
+        return not self.vehicle.dialect.one_pilot or who[0] == self._settings.pilot_system
 
     def _note(self, message: Message, sender: Sender, now: float) -> None:
         if message.type != mavlink.MAV_TYPE_GCS:
@@ -93,7 +98,7 @@ class StationService(Service):
             self.vehicle.report(INFO, f"Ground station {sender.system}:{sender.component}")
         else:
             return
-        if self._left_alone:
+        if self._left_alone and self._counts(who):
             self._left_alone = False
             self._failsafe.end(_LOST, "Ground station is back")
 
@@ -101,9 +106,10 @@ class StationService(Service):
         """Lose those that have been silent too long."""
         timeout, wall = self._settings.station_timeout, self._clock()
         there = {who: one for who, one in self._there.items() if one.is_there(now, wall, timeout)}
-        lost, self._there = len(there) < len(self._there), there
+        missed = {*filter(self._counts, self._there)}
+        self._there = there
         self.vehicle.stations = len(there)
-        if lost and not there and self._settings.watches_stations:
+        if missed and not missed & there.keys() and self._settings.watches_stations:
             self._left_alone = True
             self._failsafe.act(_LOST)
         elif self._left_alone and self._settings.watches_stations:

@@ -186,7 +186,7 @@ class StreamService(Service):
     def _send_once(self, command: Command, sender: Sender, now: float) -> int:
         number, index = whole(command.parameters[0]), whole(command.parameters[1]) or 0
         if number is None or number not in self._builders:
-            return UNSUPPORTED
+            return FAILED if self.vehicle.dialect.is_ardupilot else UNSUPPORTED
         built = self._builders[number](now)
         if number in _NUMBERED and index != 0:
             built = built[index - 1 : index] if index > 0 else []

@@ -6,6 +6,23 @@ from dataclasses import dataclass, field
 
 ALL_CHECKS, COMPASS_CHECK, GPS_CHECK = 1 << 0, 1 << 2, 1 << 3
 """Bits of `Settings.arming_check`, as ArduPilot's ARMING_CHECK has them."""
+FASTEST = 100.0
+"""Greatest speed that an order may name, m/s, as ArduPilot documents it for CRUISE_SPEED."""
+_DAY = 86_400.0
+LIMITS = {
+    "station_timeout": (0.0, _DAY),
+    "manual_timeout": (0.0, _DAY),
+    "target_timeout": (0.0, _DAY),
+    "full_speed": (0.0, FASTEST),
+    "cruise_speed": (0.0, FASTEST),
+    "waypoint_speed": (0.0, FASTEST),
+    "waypoint_radius": (0.0, 1e4),
+    "loiter_radius": (0.1, 1e4),
+    "fence_depth": (0.0, 1.2e4),
+    "battery_low_voltage": (0.0, 1e3),
+    "battery_low_charge": (0.0, 1.0),
+}
+"""Least and greatest value of settings that are numbers, wherever they come from; SI."""
 
 
 @dataclass

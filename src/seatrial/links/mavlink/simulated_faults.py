@@ -21,6 +21,14 @@ _SWITCHES = {
     "SIM_BARO_FREEZE": ("baro", 1, "stuck"),
 }
 """Parameters that are 0 or 1: unit, value with which it fails, how."""
+_NUMBERS = {
+    **dict.fromkeys(_GLITCH[:2], ("gps", -1.0, 1.0, REAL32)),
+    _GLITCH[2]: ("gps", -1e4, 1e4, REAL32),
+    "SIM_BARO_GLITCH": ("baro", -1e4, 1e4, REAL32),
+    **dict.fromkeys(_GYRO, ("gyro", -35.0, 35.0, REAL32)),
+    "SIM_ENGINE_FAIL": ("motor1", 0.0, 255.0, INT32),
+}
+"""Parameters that are numbers: unit, least, most, type. Gyros measure up to 2000 deg/s."""
 _FACTOR = "a thruster fails wholly: seatrial's faults can leave it a share"
 
 
@@ -31,14 +39,10 @@ def fault_parameters(settings: Settings, units: Collection[str]) -> list[Definit
         for name, (unit, value, _) in _SWITCHES.items()
         if unit in units
     ]
-    if "gps" in units:
-        found += [_definition(name, 0.0, settings) for name in _GLITCH]
-    if "baro" in units:
-        found.append(_definition("SIM_BARO_GLITCH", 0.0, settings))
-    if "gyro" in units:
-        found += [_definition(name, 0.0, settings) for name in _GYRO]
+    for name, (unit, least, most, kind) in _NUMBERS.items():
+        if unit in units:
+            found.append(_definition(name, 0.0, settings, kind, between=(least, most)))
     if "motor1" in units:
-        found.append(_definition("SIM_ENGINE_FAIL", 0.0, settings, INT32))
         found.append(fixed("SIM_ENGINE_MUL", REAL32, 0.0, _FACTOR))
     return found
 
@@ -82,11 +86,10 @@ def _definition(
     settings: Settings,
     kind: int = REAL32,
     numbers: tuple[int, ...] = (),
+    between: tuple[float, float] = (0.0, 1.0),
 ) -> Definition:
     def apply(kept: Settings, value: float) -> None:
         kept.simulated[name] = value
 
     why = "it ends with the run"
-    if name == "SIM_ENGINE_FAIL":
-        return Definition(name, kind, default, 0, 255, apply=apply, passing=why)
-    return Definition(name, kind, default, numbers=numbers, apply=apply, passing=why)
+    return Definition(name, kind, default, *between, numbers, apply, passing=why)

@@ -15,7 +15,7 @@ from .service import Builder, Service
 from .transport import Transport
 from .vehicle import Vehicle
 
-_POSITION_ALONE = 0xDF8
+_POSITION_ALONE, _UPPER_BITS = 0xDF8, 0xF000
 """POSITION_TARGET_TYPEMASK: velocities, accelerations and yaw are not given."""
 
 
@@ -55,9 +55,10 @@ class NavigationTelemetry(Service):
         latitude, longitude, altitude = self.vehicle.origin.geodetic(goal)
         place = (deg_e7(latitude), deg_e7(longitude), altitude)
         unused = (0.0,) * 8
+        mask = _POSITION_ALONE | (_UPPER_BITS if self.vehicle.dialect.is_ardupilot else 0)
         return [
             mavlink.MAVLink_position_target_global_int_message(
-                milliseconds(now), mavlink.MAV_FRAME_GLOBAL, _POSITION_ALONE, *place, *unused
+                milliseconds(now), mavlink.MAV_FRAME_GLOBAL, mask, *place, *unused
             )
         ]
 

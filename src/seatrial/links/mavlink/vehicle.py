@@ -210,12 +210,22 @@ class Vehicle:
     """MAV_PROTOCOL_CAPABILITY, of all services together."""
     paused_s: float = 0.0
     """Wall time that it stood still, s."""
+    now: float = 0.0
+    """Time of the simulation, s."""
+    order: str = ""
+    """Time of the last order that changed something, then the order."""
     texts: list[StatusText] = field(default_factory=list)
     """Status texts still to be sent."""
 
     def report(self, severity: int, text: str) -> None:
         """Send a status text to all ground stations, at the end of this instant."""
         self.texts.append(StatusText(severity, text))
+
+    def ordered(self, what: str, content: object) -> None:
+        """Note an order of a station, unless it repeats the one before."""
+        order = f"{what} {content}"
+        if self.order.partition(" ")[2] != order:
+            self.order = f"{self.now!r} {order}"
 
     def link_time(self, now: float) -> float:
         """Return the time that protocols live by, s: simulated, and in pauses wall time."""
