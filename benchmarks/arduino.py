@@ -18,8 +18,8 @@ from pathlib import Path
 from seatrial.cosim.assembly import assemble
 from seatrial.cosim.flattening import load_rig
 from seatrial.cosim.master import Master
-from seatrial.links.arduino.component import Arduino
 from seatrial.links.text import encode
+from seatrial_kits.arduino.component import Arduino
 
 from .pages import addition, write_measured
 

@@ -65,14 +65,14 @@ LONG = {HOW_TO / "identification.md", DOCS / "vehicles/guidance.md"}
 """Pages whose examples take minutes."""
 ELSEWHERE = {
     LINKS / "arduino.md",  # a fixture of the sketch's own tests
-    DOCS / "autopilots.md",  # tests/links/ardupilot: time stands still until a firmware comes
-    DOCS / "px4.md",  # tests/links/px4: the same
+    DOCS / "autopilots.md",  # tests/kits/ardupilot: time stands still until a firmware comes
+    DOCS / "px4.md",  # tests/kits/px4: the same
     LINKS / "ground-stations.md",  # sessions of MAVSDK and MAVProxy, in tests/interop
     HOW_TO / "test-with-pytest.md",  # tests/testing
     DOCS / "tutorials/ci.md",  # tests/testing: a project of its own
     REFERENCE / "cli.md",  # made from the commands' own help
     DOCS / "performance.md",  # a benchmark
-    HOW_TO / "watch-a-run.md",  # tests/live: pages that wait for a browser
+    HOW_TO / "watch-a-run.md",  # tests/kits/live: pages that wait for a browser
 }
 """Pages whose examples other tests run, or none."""
 MADE = {HOW_TO / "panel-codes.md": ("barge_capytaine.nc", "vehicles/barge.nc")}

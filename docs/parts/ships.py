@@ -9,13 +9,13 @@ from parts import elsewhere, part
 from parts.markdown import table
 from seatrial.shipped import shipped_folder
 from seatrial.trials.campaign import load_campaign, run_campaign
-from seatrial.trials.heading_design import design_heading
-from seatrial.trials.heading_design_page import rows as design_rows
-from seatrial.trials.heading_design_page import stability
 from seatrial.trials.readable import number
 from seatrial.trials.run import run_trial
 from seatrial.trials.run_folder import load_run
 from seatrial.trials.trial import load_trial
+from seatrial_kits.design.heading import design_heading
+from seatrial_kits.design.heading_page import rows as design_rows
+from seatrial_kits.design.heading_page import stability
 
 
 def verdicts(rig: str) -> str:

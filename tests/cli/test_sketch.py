@@ -9,7 +9,7 @@ import serial
 
 from seatrial.shipped import shipped_folder
 from tests.command import seatrial
-from tests.links.arduino.bench import need, write_sketch
+from tests.kits.arduino.bench import need, write_sketch
 
 MAIN = "from seatrial.cli import main; main()"
 GLORIA = shipped_folder("harness") / "firmware" / "gloria_autopilot"

@@ -14,14 +14,14 @@ import seatrial
 from seatrial.component import Component, Input, Noise, Output, Parameter
 from seatrial.errors import InputError, SimulationError
 from seatrial.faults.text import FAILURES, fault_text
+from seatrial.fmi.compiler import HERE, library_here
 from seatrial.fmi.index import component_class, components
-from seatrial.fmi.native.carriers import why_python
-from seatrial.fmi.native.compiler import HERE, library_here
-from seatrial.fmi.native.export import build_native_fmu
-from seatrial.fmi.native.tables import is_built_in
 from seatrial.fmi.source import find_source
 from seatrial.plant import Plant
 from seatrial.sampled import Sampled
+from seatrial_kits.native.carriers import why_python
+from seatrial_kits.native.export import build_native_fmu
+from seatrial_kits.native.tables import is_built_in
 from tests.fmi.native_slave import Slave
 from tests.fmi.native_slave3 import Slave3
 from tests.interop.native_fmus import moved, start_values

@@ -22,14 +22,14 @@ from pymavlink import mavutil
 
 from seatrial.component import Component, Input, Output
 from seatrial.errors import InputError, SimulationError
+from seatrial.fmi.compiler import HERE, checked_platforms, library_here
 from seatrial.fmi.export import build_fmu
 from seatrial.fmi.load import load_fmu, open_instance
-from seatrial.fmi.native.compiler import HERE, checked_platforms, library_here
-from seatrial.fmi.native.export import build_native_fmu
 from seatrial.fmi.source import ComponentSource, find_source
-from seatrial.fmi.standalone.export import build_standalone_fmu
 from seatrial.fmi.version3.sources import front_sources
 from seatrial.links.text import encode, packed, unpacked
+from seatrial_kits.native.export import build_native_fmu
+from seatrial_kits.native.standalone.export import build_standalone_fmu
 from tests.command import seatrial
 from tests.fmi.native_slave3 import Slave3
 from tests.interop.running import free_port

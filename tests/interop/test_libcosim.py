@@ -14,9 +14,9 @@ from seatrial.component import seconds
 from seatrial.cosim.assembly import assemble
 from seatrial.cosim.flattening import load_rig
 from seatrial.cosim.master import Master
-from seatrial.cosim.native_carriers import carry_natively
 from seatrial.cosim.system import Engine, System
 from seatrial.shipped import shipped_folder
+from seatrial_kits.native.engine import carry_natively
 
 _KINDS = {float: "real", int: "integer", bool: "boolean", str: "string"}
 

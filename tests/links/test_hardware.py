@@ -17,8 +17,6 @@ import seatrial
 from seatrial.component import Reachable
 from seatrial.errors import InputError
 from seatrial.fmi.index import component_class, components
-from seatrial.links.can.gateway_url import FORMS as GATEWAYS
-from seatrial.links.can.gateway_url import open_gateway
 from seatrial.links.endpoints.url import TRANSPORTS, open_endpoint
 from seatrial.links.hardware import (
     ALLOWED,
@@ -30,6 +28,8 @@ from seatrial.links.hardware import (
     is_virtual_can,
 )
 from seatrial.links.own_terminals import is_own
+from seatrial_kits.can.gateway_url import FORMS as GATEWAYS
+from seatrial_kits.can.gateway_url import open_gateway
 from tests.command import SEATRIAL
 
 RIG = """\
@@ -186,7 +186,7 @@ def test_nothing_else_opens_sockets_or_ports():
     }
     opened_before = {"links/safe_state_keeper.py", "links/can/safe_state.py"}
     of_tests = {"testing/mavlink_vehicle.py"}  # the other end, on the loopback only
-    # On the loopback, with a token: tests/live/test_server.py. The stage only wakes its loop.
+    # On the loopback, with a token: tests/kits/live/test_server.py. The stage only wakes its loop.
     pages = {"live/server.py", "live/stage.py", "live/gate.py"}
     assert found - between_processes - opened_before - of_tests - pages == {
         "links/hardware.py",

@@ -13,7 +13,7 @@ from seatrial.cosim.files import available
 from seatrial.shipped import shipped_folder
 from seatrial.trials.run import Hooks, run_trial
 from seatrial.trials.trial import load_trial
-from tests.links.arduino.bench import need
+from tests.kits.arduino.bench import need
 
 FILES = {
     path.stem: tomllib.loads(path.read_text("utf-8"))

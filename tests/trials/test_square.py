@@ -35,7 +35,7 @@ def sea(tmp_path: Path) -> Path:
     (tmp_path / "vehicles").mkdir()
     (tmp_path / "vehicles" / "short.toml").write_text(SHORT)
     program = tmp_path / "ardurover"
-    module = f"{sys.executable} -m tests.links.ground_station.vehicle"
+    module = f"{sys.executable} -m tests.kits.mavlink.ground_station.vehicle"
     program.write_text(f'#!/bin/sh\nPYTHONPATH="{ROOT}:$PYTHONPATH" exec {module} "$@"\n')
     program.chmod(0o755)
     return tmp_path

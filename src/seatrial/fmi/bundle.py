@@ -25,6 +25,7 @@ from functools import cache, cached_property, lru_cache
 from pathlib import Path
 
 from ..errors import InputError
+from ..kits import OURS
 from .source import ComponentSource
 
 _COOKIE = re.compile(r"^[ \t\f]*#.*?coding[:=]")
@@ -104,7 +105,7 @@ class _Local:
 
     def __init__(self, folder: Path | None, package: str | None) -> None:
         self.folder = folder
-        self.ours = {"seatrial": Path(__file__).parents[1], "pythonfmu": _package("pythonfmu")}
+        self.ours = {name: _package(name) for name in (*OURS, "pythonfmu")}
         self.roots = self.ours if package is None else {**self.ours, package: _package(package)}
         self.find = cache(self._find)  # most modules import the same few others
 
