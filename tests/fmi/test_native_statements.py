@@ -30,11 +30,18 @@ pytestmark = pytest.mark.skipif(HERE != "linux64", reason="loads libraries of Li
 
 QUICK = ("gnss", "station-keeping", "thruster")
 IN_FMI_3 = (*QUICK, "guidance", "imu", "wind")
+LINKS = (
+    "seatrial.links.",
+    *(
+        f"seatrial_kits.{kit}."
+        for kit in ("arduino", "ardupilot", "can", "gprs", "mavlink", "nmea", "px4", "videoray")
+    ),
+)
 CANDIDATES = [
     name
     for name in components().names()
     if not issubclass(component_class(name), Plant)
-    and not component_class(name).__module__.startswith("seatrial.links")
+    and not component_class(name).__module__.startswith(LINKS)
 ]
 STEPS = (0.01, 0.025, 0.004, 0.1)
 

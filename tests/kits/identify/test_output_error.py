@@ -22,7 +22,7 @@ from seatrial_kits.identify.output_error import (
 )
 from seatrial_kits.identify.prediction import UNKNOWNS, delayed, predict
 
-DATA = Path(__file__).parents[1] / "reference" / "videoray_ident_errors.csv"
+DATA = Path(__file__).parents[2] / "reference" / "videoray_ident_errors.csv"
 NAMES = {
     "table7.1 pool 7.9 cm/s2": "surge, 7.9 cm/s²",
     "gravity-compensated 2.4 cm/s2": "surge, 2.4 cm/s²",

@@ -79,7 +79,7 @@ def test_numbers_beyond_any_bus_are_refused_within_seconds_and_a_gigabyte(tmp_pa
         (tmp_path / f"{name}.dbc").write_text(HEAD + text, "utf-8")
     done = subprocess.run(
         [sys.executable, "-m", "tests.kits.can.signals.test_bounds", str(tmp_path)],
-        cwd=Path(__file__).parents[3],
+        cwd=Path(__file__).parents[4],
         capture_output=True,
         text=True,
     )
