@@ -17,6 +17,7 @@ from seatrial.component import Component
 from seatrial.fmi.cache import write_named
 from seatrial.fmi.compiler import HERE, SEMANTICS, TARGETS, TUPLES, library
 from seatrial.fmi.description import describe
+from seatrial.fmi.forwarding.sources import SEAL
 from seatrial.fmi.packing import described_files, zipped
 from seatrial.fmi.source import ComponentSource
 from seatrial.fmi.version3.description import build_description
@@ -99,10 +100,10 @@ def _sources(made: Callable[[], Component], name: str) -> tuple[dict[str, bytes]
         translation = Translation(component)
         checked(made(), name)
         text, own, parts = translation.model(), translation.header(), translation.parts()
-    ours = ("component.h", "fmi2.c", "seal.h", *parts)
+    ours = [*(_OWN / each for each in ("component.h", "fmi2.c", *parts)), SEAL]
     return {
         "model.c": text.encode(),
-        **{each: _OWN.joinpath(each).read_bytes() for each in ours},
+        **{each.name: each.read_bytes() for each in ours},
         **{each: (folder / each).read_bytes() for each in _HEADERS},
     }, own
 

@@ -28,7 +28,7 @@ from .face import Face, face_of
 from .tables import RigTables
 
 _OWN = Path(__file__).parent
-_MASTER = _OWN.parent / "compiled" / "master.c"
+_MASTER = Path(master_library.__file__).with_name("master.c")
 _COMPONENT = """\
 /* A component of a rig: its sources under names of their own, as others have the same. */
 #include "fmi2Functions.h"
