@@ -10,6 +10,7 @@ from typing import cast
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from seatrial.cosim.compiled import choice
+from seatrial.cosim.compiled import library as master_library
 from seatrial.cosim.compiled.structures import CALL
 from seatrial.cosim.master import Master
 from seatrial.cosim.part import Part
