@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..cosim.paths import split_axis, split_path
+from ..plugins import Registry
 from ..whole_file import write_whole
 from .accuracy_section import accuracy_section
 from .autopilot_section import add_estimate, autopilot_rows
@@ -94,6 +95,8 @@ class Port:
         return signal.removeprefix(f"{self.component}.{self.name}").lstrip(".") or self.name
 
 
+SECTIONS = Registry("seatrial.sections", "section of reports", {})
+"""Functions of kits: of a run, title and figure (JSON for Plotly) of each further section."""
 _OWN_TABLES = ("step_times", "lost_links")
 """What ``timing.json`` has that is shown apart."""
 
@@ -204,6 +207,8 @@ def _sections(run: Run) -> Iterator[Section]:
             [_panel(run, p, p.signals) for p in forces if units[p] == u] for u in _FORCE_UNITS
         ]
         yield Section("Forces and moments", _over_time(run, [c for c in columns if c]))
+    for name in SECTIONS.names():
+        yield from (Section(title, figure) for title, figure in SECTIONS.load(name)(run))
     shown = {*motion, *speeds, *forces}
     yield from _rest(run, [p for p in ports if p not in shown])
 
