@@ -12,7 +12,7 @@ from typing import NamedTuple
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-PLACES = ("src", "tests", "docs", "harness", "hil_profiles", "fmus", "benchmarks")
+PLACES = ("src", "tests", "docs", "examples", "harness", "hil_profiles", "fmus", "benchmarks")
 PAGES = ("README.md", "CONTRIBUTING.md", "Makefile", "pyproject.toml")
 SUFFIXES = {".py", ".md", ".toml", ".j2", ".c", ".cpp", ".h", ".ino", ".js", ".sh", ".yml"}
 LEFT_OUT = ("__pycache__", "node_modules", "tests/test_words.py")
@@ -65,8 +65,8 @@ BY_RIGHT = (
     Right("pin", "*gprs*", "", "of a SIM card"),
     Right("pin", "docs/reference/link-keys.md", "SIM card", "of a SIM card"),
     Right("room", "src/seatrial_kits/arduino/*", "", "free space of a buffer"),
-    Right("wire", "*harness/firmware/*", r"\bWire\b", "Arduino's library"),
-    Right("pin, pins", "*harness/firmware/*", "", "of a board"),
+    Right("wire", "*harness/*firmware/*", r"\bWire\b", "Arduino's library"),
+    Right("pin, pins", "*harness/*firmware/*", "", "of a board"),
     Right("pin, pins, wire, wires, wiring", "*sketch*", "", "of a board"),
     Right("pin, wires, wired", "*test-with-pytest*", "", "of a board"),
     Right("pin, wires", "*tutorials/ci.md*", "", "of a board"),

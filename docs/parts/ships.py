@@ -7,7 +7,7 @@ from functools import partial
 
 from parts import elsewhere, part
 from parts.markdown import table
-from seatrial.shipped import shipped_folder
+from seatrial.shipped import available
 from seatrial.trials.campaign import load_campaign, run_campaign
 from seatrial.trials.readable import number
 from seatrial.trials.run import run_trial
@@ -24,8 +24,8 @@ def verdicts(rig: str) -> str:
     Trials in real time are for whoever connects.
     """
     rows = []
-    for path in sorted((shipped_folder("harness") / "trials").glob(f"{rig}-*.toml")):
-        trial = load_trial(path.stem)
+    for name in (name for name in available("harness/trials") if name.startswith(f"{rig}-")):
+        trial = load_trial(name)
         if trial.file.real_time:
             continue
         with elsewhere() as folder:
@@ -33,7 +33,7 @@ def verdicts(rig: str) -> str:
         for verdict in run.verdicts:
             found = verdict["detail"].partition("; ")[0].replace("-", "−")
             holds = "yes" if verdict["passed"] else "**no**"
-            rows.append((f"`{path.stem}`", verdict["name"], holds, found))
+            rows.append((f"`{name}`", verdict["name"], holds, found))
     return table(("trial", "criterion", "holds", "found"), rows)
 
 

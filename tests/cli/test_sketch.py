@@ -12,7 +12,7 @@ from tests.command import seatrial
 from tests.kits.arduino.bench import need, write_sketch
 
 MAIN = "from seatrial.cli import main; main()"
-GLORIA = shipped_folder("harness") / "firmware" / "gloria_autopilot"
+GLORIA = shipped_folder("harness") / "kits/arduino/firmware" / "gloria_autopilot"
 
 
 def test_check_says_what_it_is_made_of(tmp_path):

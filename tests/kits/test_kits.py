@@ -104,7 +104,9 @@ def test_a_name_of_two_kits_is_refused(kit: Callable[..., Path]) -> None:
 
 def test_a_command_of_two_is_refused(kit: Callable[..., Path]) -> None:
     kit("sonar", SONAR + '[commands]\nrun = { call = "a:b", help = "Run." }\n')
-    with pytest.raises(InputError, match=r"the command 'run' is seatrial\.cli\.run:run and, of the"):
+    with pytest.raises(
+        InputError, match=r"the command 'run' is seatrial\.cli\.run:run and, of the"
+    ):
         commands()
 
 

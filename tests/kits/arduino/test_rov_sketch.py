@@ -14,7 +14,7 @@ from seatrial_kits.videoray.replies import FIELDS, read, read_memory
 from ..videoray.bench import PACKETS
 from .bench import Bench
 
-SKETCH = Path(__file__).parents[3] / "harness" / "firmware" / "rov_controller"
+SKETCH = Path(__file__).parents[3] / "harness/kits/arduino/firmware" / "rov_controller"
 WIRES = "5 servo 1; 6 servo 2; 7 servo 3; 0x68 mpu6050; 0x1E hmc5883l; 0x76 ms5837"
 BACKENDS = ["host", pytest.param("simavr", marks=pytest.mark.interop)]
 PRIMARY = next(packet for packet in PACKETS if packet.hex().startswith("faaf0105000f"))

@@ -8,8 +8,8 @@ import pymap3d
 import pynmea2
 import pytest
 
+from seatrial.cosim.files import find_file
 from seatrial.links.text import decode
-from seatrial.shipped import shipped_folder
 from seatrial.trials.run import run_trial
 from seatrial.trials.trial import load_trial
 
@@ -67,7 +67,7 @@ every = "20 ms"
 
 
 def test_what_plotters_read_and_send(tmp_path):
-    feed = (shipped_folder("harness") / "rigs" / "autopilots/nmea0183.toml").read_text("utf-8")
+    feed = find_file("harness/rigs", "autopilots/nmea0183").read_text("utf-8")
     feed = feed.replace("[components]", '[components]\nplotter = { fmu = "plotter.py:Plotter" }')
     feed = feed.replace("[connections]", '[connections]\n"plotter.tx" = "instruments.rx"')
     (tmp_path / "feed.toml").write_text(feed, "utf-8")
