@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from ..component import Component, Input, Parameter, terminal
@@ -26,6 +27,8 @@ _LIMITS = {
     "specific_force": (160.0, "m/s2"),
 }
 """Beyond these no boat moves, and inertial units of 2000 deg/s and 16 g measure nothing."""
+_TURNS = 1e6
+"""Angles that count turns, rad: more no craft makes in a run."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +68,8 @@ class TrueMotion(Component):
 
     def true_motion(self) -> Truth:
         """Return the inputs as what instruments without errors would measure."""
-        attitude = self.true_attitude
+        phi, theta, psi = self.true_attitude
+        attitude = _within_a_turn(phi), theta, _within_a_turn(psi)
         return Truth(
             self.true_position,
             to_ned(attitude, self.true_velocity),
@@ -73,3 +77,8 @@ class TrueMotion(Component):
             self.true_rates,
             specific_force(attitude, self.true_acceleration, self.gravity),
         )
+
+
+def _within_a_turn(angle: float) -> float:
+    """Return an angle within half a turn of 0: that of a craft that circles counts its turns."""
+    return math.remainder(angle, math.tau) if abs(angle) <= _TURNS else angle

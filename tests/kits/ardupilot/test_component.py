@@ -81,6 +81,13 @@ def test_the_required_fields_are_what_the_firmware_reads(made):
     assert answer.vector("velocity") == pytest.approx((-0.5, 1.0, 0.0))
 
 
+def test_a_craft_that_circles_is_sent_its_heading(made):
+    """Its yaw counts turns: a ship whose rudder is stuck went beyond 10 rad."""
+    component = made()
+    component.set("true_attitude", (0.1, -0.2, 7 * math.pi / 2))
+    assert one_answer(component).vector("attitude") == pytest.approx((0.1, -0.2, -math.pi / 2))
+
+
 def test_nothing_else_is_sent_unless_it_is_named(made):
     answer = one_answer(made())
     assert not any(answer.has(name) for name in FIELDS)
