@@ -89,7 +89,7 @@ def test_in_a_current_its_mission_does_not_drift(
 
 
 def test_a_firmware_that_says_nothing_ends_the_run(sea: Path) -> None:
-    peer = ROOT / "tests" / "links" / "ardupilot" / "peer.py"
+    peer = ROOT / "tests" / "kits" / "ardupilot" / "peer.py"
     (sea / "ardurover").write_text(f'#!/bin/sh\nexec {sys.executable} {peer} "$@"\n')
     port = free_port(socket.SOCK_STREAM)
     done = seatrial(

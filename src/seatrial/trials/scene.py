@@ -9,11 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from seatrial.craft.kinematics import specific_force
-from seatrial.links.geodesy import Origin
-from seatrial.trials.run_folder import Run, viewed
-
+from ..craft.kinematics import specific_force
+from ..links.geodesy import Origin
 from . import quaternions
+from .run_folder import Run, viewed
 
 WORLD = "map"
 """The frame of the world: the origin of {n} of the first craft, x east, y north, z up."""
