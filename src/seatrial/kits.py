@@ -49,7 +49,7 @@ them. sections: functions that return further sections of a run's report. servic
 the core calls if they are there. terms: of the hydrodynamics of a vehicle. transports: kinds of
 links.
 """
-_TOP = ("api", "needs", "title")
+_TOP = ("api", "examples", "needs", "title")
 
 
 @dataclass(frozen=True)
@@ -74,6 +74,8 @@ class Kit:
     needs: tuple[str, ...]
     entries: Mapping[str, tuple[Entry, ...]]
     """Parts by kind."""
+    examples: Mapping[str, str]
+    """Examples of its commands, for the end of their help, by command."""
 
     @property
     def content(self) -> Path:
@@ -163,7 +165,10 @@ def read_kit(name: str, folder: Path) -> Kit:
         for kind, table in content.items()
         if kind in KINDS
     }
-    return Kit(name, title, folder, tuple(needs), entries)
+    examples = content.get("examples", {})
+    if not all(isinstance(text, str) for text in examples.values()):
+        raise InputError(f"{path}: examples: texts by command are needed, found {examples!r}")
+    return Kit(name, title, folder, tuple(needs), entries, examples)
 
 
 def _entry(path: Path, kit: str, kind: str, name: str, value: Any) -> Entry:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pkgutil import resolve_name
 from typing import Any, NamedTuple
 
@@ -100,14 +101,26 @@ class LazyGroup(TyperGroup):
 
 def loaded(name: str) -> Any:
     """Return the command ``name`` with its options, imported."""
-    command = commands()[name]
+    entry = commands()[name]
     with ending_at_once():
-        found = resolve_name(command.place)
+        found = resolve_name(entry.place)
     parent = typer.Typer(rich_markup_mode=None)
     if isinstance(found, typer.Typer):
-        parent.add_typer(found, name=name, help=command.help)
+        parent.add_typer(found, name=name, help=entry.help)
     else:
         parent.command(name)(found)
     from .answer import with_options
+    from .examples import examples
 
-    return with_options(typer.main.get_group(parent).commands[name])
+    return _with_examples(
+        with_options(typer.main.get_group(parent).commands[name]), name, examples()
+    )
+
+
+def _with_examples(command: Any, path: str, examples: Mapping[str, str]) -> Any:
+    """Return a command whose help, and that of those below, ends with an example."""
+    if path in examples:
+        command.epilog = f"Example: {examples[path]}"
+    for name, below in getattr(command, "commands", {}).items():
+        _with_examples(below, f"{path} {name}", examples)
+    return command

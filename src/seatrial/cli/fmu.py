@@ -59,7 +59,9 @@ def build(
             metavar="FMU...", help="Shipped names or my.py:Class; default: all shipped."
         ),
     ] = None,
-    out: Annotated[Path, typer.Option(help="Folder for the .fmu files.")] = Path("."),
+    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for the .fmu files.")] = Path(
+        "."
+    ),
     parameters: Annotated[
         str | None, typer.Option(help="Bake in a vehicle's parameters: VEHICLE or VEHICLE.TABLE.")
     ] = None,

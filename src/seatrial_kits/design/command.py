@@ -34,7 +34,7 @@ def design(
         float, typer.Option(help="Damping ratio that the slowest poles should have.")
     ] = math.sqrt(0.5),
     out: Annotated[
-        Path | None, typer.Option("--out", help="Folder of the page (default: runs/...).")
+        Path | None, typer.Option("--out", "-o", help="Folder of the page (default: runs/...).")
     ] = None,
 ) -> None:
     """Design a heading autopilot: poles over the gain, gains for a damping ratio, stability."""

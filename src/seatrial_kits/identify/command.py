@@ -34,7 +34,7 @@ def identify(
         typer.Option("--log", help="CSV file or run folder, instead of the file's."),
     ] = None,
     out: Annotated[
-        Path | None, typer.Option("--out", help="Folder of the result (default: runs/...).")
+        Path | None, typer.Option("--out", "-o", help="Folder of the result (default: runs/...).")
     ] = None,
 ) -> None:
     """Identify an axis of a vehicle from a log; status 1 if the model is to be rejected."""

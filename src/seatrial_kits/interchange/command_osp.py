@@ -26,7 +26,8 @@ def export(
         str, typer.Argument(metavar="NAME", help="A trial or rig: a name, a file or a package.")
     ],
     out: Annotated[
-        Path | None, typer.Option(help="The folder (default: NAME-osp in this folder).")
+        Path | None,
+        typer.Option("--out", "-o", help="The folder (default: NAME-osp in this folder)."),
     ] = None,
     settings: Settings = None,
     variant: Variant = None,

@@ -30,7 +30,8 @@ def export(
         str, typer.Argument(metavar="NAME", help="A trial or rig: a name or a .toml file.")
     ],
     out: Annotated[
-        Path | None, typer.Option(help="The package (default: NAME.ssp in this folder).")
+        Path | None,
+        typer.Option("--out", "-o", help="The package (default: NAME.ssp in this folder)."),
     ] = None,
     settings: Settings = None,
     variant: Variant = None,

@@ -27,7 +27,8 @@ def export(
         bool, typer.Option("--ros2", help="A ROS 2 bag, with MCAP inside; needs rosbags.")
     ] = False,
     out: Annotated[
-        Path | None, typer.Option(help="The file, or the bag (default: in the run's folder).")
+        Path | None,
+        typer.Option("--out", "-o", help="The file, or the bag (default: in the run's)."),
     ] = None,
 ) -> None:
     """Write the record of a run as MCAP, Parquet or a ROS 2 bag."""

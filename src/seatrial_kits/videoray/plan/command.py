@@ -47,7 +47,7 @@ def plan(
         str | None, typer.Option(help="Variant of the vehicle (default: its own default).")
     ] = None,
     out: Annotated[
-        Path | None, typer.Option("--out", help="Folder of the plan (default: runs/...).")
+        Path | None, typer.Option("--out", "-o", help="Folder of the plan (default: runs/...).")
     ] = None,
 ) -> None:
     """Plan a vessel's motion from wanted speeds; status 1 if its thrusters cannot do it."""
