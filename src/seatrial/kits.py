@@ -33,6 +33,13 @@ MANIFEST = "kit.toml"
 CONTENT = "content"
 """Folder beside the manifest with the kit's vehicles, rigs, trials, campaigns and profiles."""
 
+LIBRARIES = {
+    "pydoe": "seatrial[design]",
+    "pygraphviz": "seatrial[diagrams]",
+    "yaml": "seatrial[interchange]",
+}
+"""What pip installs for libraries of the core that few need, by the name that is imported."""
+
 KINDS: Mapping[str, tuple[str, ...]] = {
     "algorithms": (),
     "commands": ("call", "help"),
@@ -49,7 +56,7 @@ them. sections: functions that return further sections of a run's report. servic
 the core calls if they are there. terms: of the hydrodynamics of a vehicle. transports: kinds of
 links.
 """
-_TOP = ("api", "examples", "needs", "title")
+_TOP = ("api", "examples", "libraries", "needs", "title")
 
 
 @dataclass(frozen=True)
@@ -76,6 +83,8 @@ class Kit:
     """Parts by kind."""
     examples: Mapping[str, str]
     """Examples of its commands, for the end of their help, by command."""
+    libraries: Mapping[str, str]
+    """What pip installs for a library that may not be there, by the name that is imported."""
 
     @property
     def content(self) -> Path:
@@ -165,10 +174,11 @@ def read_kit(name: str, folder: Path) -> Kit:
         for kind, table in content.items()
         if kind in KINDS
     }
-    examples = content.get("examples", {})
-    if not all(isinstance(text, str) for text in examples.values()):
-        raise InputError(f"{path}: examples: texts by command are needed, found {examples!r}")
-    return Kit(name, title, folder, tuple(needs), entries, examples)
+    texts = {key: content.get(key, {}) for key in ("examples", "libraries")}
+    for key, table in texts.items():
+        if not (isinstance(table, dict) and all(isinstance(text, str) for text in table.values())):
+            raise InputError(f"{path}: {key}: a table of texts is needed, found {table!r}")
+    return Kit(name, title, folder, tuple(needs), entries, **texts)
 
 
 def _entry(path: Path, kit: str, kind: str, name: str, value: Any) -> Entry:
@@ -184,6 +194,16 @@ def _entry(path: Path, kit: str, kind: str, name: str, value: Any) -> Entry:
     if not (isinstance(target, str) and isinstance(text, str) and is_target(target)):
         raise InputError(f"{place}: 'module:attribute' is needed, found {target!r}")
     return Entry(kit, name, target, text)
+
+
+def lacking(error: Exception) -> str | None:
+    """Return what to install for a library that is not there; None for any other error."""
+    if not isinstance(error, ModuleNotFoundError):
+        return None
+    library = (error.name or "").partition(".")[0]
+    known = {name: text for kit in kits().found for name, text in kit.libraries.items()}
+    requirement = {**known, **LIBRARIES}.get(library)
+    return requirement and f'{library} is not installed: pip install "{requirement}"'
 
 
 def is_ours(module: str) -> bool:

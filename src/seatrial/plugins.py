@@ -17,7 +17,11 @@ from pkgutil import resolve_name
 from typing import Any
 
 from .errors import InputError, unknown
-from .kits import kits
+from .kits import kits, lacking
+
+
+class LibraryError(InputError):
+    """A library is not installed that what somebody named needs."""
 
 
 @dataclass(frozen=True)
@@ -76,6 +80,8 @@ class Registry:
         try:
             return resolve_name(target)
         except Exception as error:  # whatever somebody else's module does when it is imported
+            if said := lacking(error):
+                raise LibraryError(f"{self.noun} {name!r}: {said}") from None
             raise InputError(
                 f"{self.noun} {name!r}: cannot load {target!r} of the entry-point group "
                 f"{self.group!r}: {type(error).__name__}: {error}"
@@ -112,13 +118,20 @@ def service(name: str) -> Any:
 
     Raises InputError, naming the kit, where it is not there.
     """
-    found = offered(name)
-    if found is None:
+    if name not in _SERVICES.names():
         kit = name.partition(".")[0]
         raise InputError(f"this needs the kit {kit!r}, which is not installed{kits().hint()}")
-    return found
+    return _SERVICES.load(name)
 
 
 def offered(name: str) -> Any | None:
-    """Return what a kit does for the core, or None without that kit. See `service`."""
-    return _SERVICES.load(name) if name in _SERVICES.names() else None
+    """Return what a kit does for the core; None without the kit, or a library that it needs.
+
+    See `service`.
+    """
+    if name not in _SERVICES.names():
+        return None
+    try:
+        return _SERVICES.load(name)
+    except LibraryError:
+        return None

@@ -364,10 +364,18 @@ def _requirement(package: str) -> str:
     return bounds.get(distribution.lower(), distribution)
 
 
+_OF_DEVELOPERS = ("dev", "docs", "fuzz")
+"""Extras whose bounds are none of seatrial's own."""
+
+
 @cache
 def _bounds() -> dict[str, str]:
     """Return seatrial's own requirements by the names of the distributions."""
-    lines = [line for line in importlib.metadata.requires("seatrial") or [] if ";" not in line]
+    lines = [
+        line.partition(";")[0].strip()
+        for line in importlib.metadata.requires("seatrial") or []
+        if not any(f'extra == "{extra}"' in line for extra in _OF_DEVELOPERS)
+    ]
     return {found[0].lower(): line for line in lines if (found := re.match(r"[\w.-]+", line))}
 
 

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from html import escape
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ..cosim.paths import split_axis, split_path
+from ..kits import lacking
 from ..plugins import Registry
 from ..whole_file import write_whole
 from .accuracy_section import accuracy_section
@@ -142,7 +144,12 @@ def write_report(
 
 def _diagram(manifest: Mapping[str, Any]) -> str | None:
     components = {name: entry["fmu"] for name, entry in manifest["components"].items()}
-    return diagram(components, [(row[0], row[1]) for row in manifest["connections"]])
+    try:
+        return diagram(components, [(row[0], row[1]) for row in manifest["connections"]])
+    except ModuleNotFoundError as error:
+        if (said := lacking(error)) is None:
+            raise
+        return f"<p>No diagram: {escape(said)}</p>"
 
 
 def render(template: str, library: str | None = None, **content: Any) -> str:
