@@ -18,6 +18,7 @@ from seatrial.links.vehicle_sensors import read_instruments
 from seatrial.links.watchdog import Watchdog
 from seatrial_kits.mavlink.parameters_servo import read_servos
 
+from .earth import Earth
 from .firmware import arguments, by_hand
 from .lockstep import Lockstep
 from .packet import MOST_CHANNELS
@@ -105,6 +106,7 @@ class ArduPilot(ArduPilotPorts):
         self._pulses = self._neutral
         self._given: tuple[int, ...] = ()
         self._lockstep = Lockstep(endpoint)
+        self._earth = Earth(self.latitude)
         where = endpoint.url.partition(":")[2]
         whom = f"ArduPilot, which is to send to {where}"
         self._watchdog = Watchdog(self.name, whom, self.wait_limit)
@@ -119,7 +121,7 @@ class ArduPilot(ArduPilotPorts):
         # The first time, and after an interruption, nothing waits for an answer yet.
         if self._wait():
             try:
-                answer = reply(t, self.true_motion(), self._others())
+                answer = reply(t, self.true_motion(), self._earth, self._others())
             except SimulationError as error:
                 raise SimulationError(f"{self.name}: {error}") from None
             self._lockstep.answer(answer)

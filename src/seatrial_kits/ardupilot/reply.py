@@ -10,6 +10,8 @@ from typing import Any
 from seatrial.errors import InputError, unknown
 from seatrial.links.truth import Truth, require_possible
 
+from .earth import Earth
+
 RANGES = tuple(f"rng_{number}" for number in range(1, 7))
 FIELDS = ("windvane", "velocity_wind", "airspeed", *RANGES, "rc", "battery")
 """What may be sent beside the motion, in the order in which it is sent.
@@ -35,7 +37,7 @@ def blows_from(wind_angle: float) -> float:
     return (wind_angle + math.pi) % (2.0 * math.pi)
 
 
-def reply(t: float, truth: Truth, others: Mapping[str, Any]) -> bytes:
+def reply(t: float, truth: Truth, earth: Earth, others: Mapping[str, Any]) -> bytes:
     """Return the line for the physics at ``t`` (s); ``others`` are fields of `FIELDS`.
 
     Raises SimulationError for a motion that cannot be, which would upset the firmware's estimator.
@@ -44,7 +46,7 @@ def reply(t: float, truth: Truth, others: Mapping[str, Any]) -> bytes:
     content = {
         "timestamp": t,
         "imu": {"gyro": truth.rates, "accel_body": truth.specific_force},
-        "position": truth.position_n,
+        "position": earth.on_its_sphere(truth.position_n),
         "attitude": truth.attitude,
         "velocity": truth.velocity_n,
         **others,

@@ -7,6 +7,7 @@ import signal
 import threading
 import time
 
+import pymap3d
 import pytest
 
 from seatrial.errors import InputError, SimulationError
@@ -75,10 +76,30 @@ def test_the_required_fields_are_what_the_firmware_reads(made):
     assert answer.number("timestamp") == 0.0
     assert answer.vector("gyro", "imu") == (0.01, 1e-7, 0.03)
     assert answer.vector("accel_body", "imu") == pytest.approx((0.0, 0.0, -9.81))
-    assert answer.vector("position") == (1.5, -2.0, 0.25)
+    assert answer.vector("position") == pytest.approx((1.5, -2.0, 0.25), rel=0.01)
     assert answer.vector("attitude") == pytest.approx((0.0, 0.0, math.pi / 2))
     # Heading east: ahead is east, starboard is south.
     assert answer.vector("velocity") == pytest.approx((-0.5, 1.0, 0.0))
+
+
+@pytest.mark.parametrize("latitude", [0.0, -22.8, 59.0])
+@pytest.mark.parametrize("place", [(5000.0, 5000.0), (-3000.0, 4000.0), (40.0, -40.0)])
+def test_the_firmware_is_where_everybody_else_takes_the_vehicle_to_be(made, latitude, place):
+    """ArduPilot's arithmetic on what it is sent, and WGS 84."""
+    component = made(latitude=math.radians(latitude), longitude=math.radians(10.0))
+    component.set("true_position", (*place, 0.25))
+    north, east, down = one_answer(component).vector("position")
+    lat = latitude + north / 1.1131884502145034e-2 * 1e-7
+    middle = math.cos(math.radians((latitude + lat) / 2.0))
+    lon = 10.0 + east / 1.1131884502145034e-2 * 1e-7 / middle
+    expected = pymap3d.ned2geodetic(*place, 0.0, latitude, 10.0, 0.0)
+    metres = 111_000.0
+    third_order = (
+        math.hypot(*place) ** 3 / 6.37e6**2 * (1 + 3 * math.tan(math.radians(latitude)) ** 2)
+    )
+    assert (lat - expected[0]) * metres == pytest.approx(0.0, abs=1e-4 + third_order)
+    assert (lon - expected[1]) * metres * middle == pytest.approx(0.0, abs=1e-4 + third_order)
+    assert down == 0.25
 
 
 def test_a_craft_that_circles_is_sent_its_heading(made):
