@@ -95,7 +95,7 @@ def test_the_firmware_is_where_everybody_else_takes_the_vehicle_to_be(made, lati
     expected = pymap3d.ned2geodetic(*place, 0.0, latitude, 10.0, 0.0)
     metres = 111_000.0
     third_order = (
-        math.hypot(*place) ** 3 / 6.37e6**2 * (1 + 3 * math.tan(math.radians(latitude)) ** 2)
+        2 * math.hypot(*place) ** 3 / 6.37e6**2 * (1 + 3 * math.tan(math.radians(latitude)) ** 2)
     )
     assert (lat - expected[0]) * metres == pytest.approx(0.0, abs=1e-4 + third_order)
     assert (lon - expected[1]) * metres * middle == pytest.approx(0.0, abs=1e-4 + third_order)
