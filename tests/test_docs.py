@@ -508,7 +508,7 @@ def test_a_block_diagram_is_up_to_date(vehicle: str, tmp_path: Path) -> None:
 def test_a_table_of_verdicts_has_every_criterion(page: Path, name: str) -> None:
     begin = f"{name.removesuffix(VERDICTS)}-"
     trials = (trial for trial in available("harness/trials") if trial.startswith(begin))
-    loaded = {trial: load_trial(trial) for trial in trials}
+    loaded = {trial: load_trial(trial) for trial in sorted(trials, key=lambda name: f"{name}.toml")}
     expected = [
         [f"`{trial}`", criterion]
         for trial, found in loaded.items()

@@ -24,7 +24,8 @@ def verdicts(rig: str) -> str:
     Trials in real time are for whoever connects.
     """
     rows = []
-    for name in (name for name in available("harness/trials") if name.startswith(f"{rig}-")):
+    names = (name for name in available("harness/trials") if name.startswith(f"{rig}-"))
+    for name in sorted(names, key=lambda name: f"{name}.toml"):  # as files are listed
         trial = load_trial(name)
         if trial.file.real_time:
             continue
