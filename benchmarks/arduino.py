@@ -18,12 +18,12 @@ from pathlib import Path
 from seatrial.cosim.assembly import assemble
 from seatrial.cosim.flattening import load_rig
 from seatrial.cosim.master import Master
-from seatrial.links.arduino.component import Arduino
 from seatrial.links.text import encode
+from seatrial_kits.arduino.component import Arduino
 
 from .pages import addition, write_measured
 
-SKETCH = Path(__file__).parents[1] / "harness" / "firmware" / "gloria_autopilot"
+SKETCH = Path(__file__).parents[1] / "harness/kits/arduino/firmware" / "gloria_autopilot"
 STEP_NS = 20_000_000
 HEADING = b"$HEHDT,100.0,T*2E\r\n"
 FIX = b"$GPRMC,120000.00,A,2251.7200,S,04313.3800,W,3.00,100.0,010126,,,A*6B\r\n"

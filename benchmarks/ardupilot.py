@@ -41,7 +41,7 @@ every   = "200 ms"
 def with_stand_in(vehicle: str, engine: Engine, seconds: float, folder: Path) -> float:
     """Return simulated time per wall time, with a peer that answers."""
     program = folder / "firmware"
-    peer = ROOT / "tests" / "links" / "ardupilot" / "peer.py"
+    peer = ROOT / "tests" / "kits" / "ardupilot" / "peer.py"
     program.write_text(f'#!/bin/sh\nexec {sys.executable} {peer} "$@"\n')
     program.chmod(0o755)
     changes = {"autopilot.sitl.ardupilot.link": "udpin:127.0.0.1:0"}

@@ -20,11 +20,11 @@ from pathlib import Path
 from seatrial.cosim.assembly import assemble
 from seatrial.cosim.flattening import load_rig
 from seatrial.cosim.master import Master
-from seatrial.links.can.component import NODES, CanBus
-from seatrial.links.can.controller import Controller
-from seatrial.links.can.frame import Frame
-from seatrial.links.can.node import CanNode
-from seatrial.links.can.simulated_bus import SimulatedBus
+from seatrial_kits.can.component import NODES, CanBus
+from seatrial_kits.can.controller import Controller
+from seatrial_kits.can.frame import Frame
+from seatrial_kits.can.node import CanNode
+from seatrial_kits.can.simulated_bus import SimulatedBus
 
 from .pages import addition, write_measured
 

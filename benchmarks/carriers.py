@@ -48,8 +48,8 @@ def assembled(carrier: str, rig: Rig) -> System:
     system = assemble(rig, "fmu" if carrier == FMUS else "direct")
     if carrier in (NATIVE, COMPILED):
         from seatrial.fmi.load import load_fmu, open_instance
-        from seatrial.fmi.native.cached import native_fmu
         from seatrial.fmi.source import find_source
+        from seatrial_kits.native.cached import native_fmu
 
         for name, part in system.parts.items():
             source = find_source(part.fmu, Path())
@@ -61,10 +61,10 @@ def assembled(carrier: str, rig: Rig) -> System:
 
 def built(folder: Path) -> Path:
     """Return the rig as one FMU."""
-    from seatrial.cosim.native_carriers import carry_natively
-    from seatrial.cosim.rig_fmu.native import build_native_rig
-    from seatrial.fmi.native.compiler import HERE as PLATFORM
-    from seatrial.fmi.native.compiler import library_here
+    from seatrial.fmi.compiler import HERE as PLATFORM
+    from seatrial.fmi.compiler import library_here
+    from seatrial_kits.interchange.rig_fmu.native import build_native_rig
+    from seatrial_kits.native.engine import carry_natively
 
     system = assemble(load_rig("landing"), "native")
     carry_natively(system)

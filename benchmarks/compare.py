@@ -25,8 +25,8 @@ import fmpy
 
 from seatrial.cosim.assembly import assemble
 from seatrial.cosim.flattening import load_rig
-from seatrial.cosim.ssp.describing import Experiment
-from seatrial.cosim.ssp.writing import write_ssp
+from seatrial_kits.interchange.ssp.describing import Experiment
+from seatrial_kits.interchange.ssp.writing import write_ssp
 
 from .history import noted
 from .pages import write_measured

@@ -18,8 +18,8 @@ import fmpy
 
 from seatrial.component import Component
 from seatrial.fmi.index import component_class
-from seatrial.fmi.native.cached import native_fmu
 from seatrial.fmi.source import find_source
+from seatrial_kits.native.cached import native_fmu
 
 from .pages import write_measured
 

@@ -38,7 +38,7 @@ def _parted(name: str) -> tuple[str, str]:
 def ours(ssp: Path, steps: int, algorithm: str, watch: list[str], *, python: bool) -> Result:
     from seatrial.cosim import master as module
     from seatrial.cosim.assembly import assemble
-    from seatrial.cosim.ssp.reading import read_ssp
+    from seatrial_kits.interchange.ssp.reading import read_ssp
 
     if python:
         module.is_compiled = lambda _system: False
@@ -57,7 +57,7 @@ def ours(ssp: Path, steps: int, algorithm: str, watch: list[str], *, python: boo
 def fmpy_arrays(ssp: Path, steps: int, step: float, watch: list[str]) -> Result:
     """A loop written by hand for real numbers: FMI's functions, in arrays allocated once."""
     from seatrial.cosim.assembly import assemble
-    from seatrial.cosim.ssp.reading import read_ssp
+    from seatrial_kits.interchange.ssp.reading import read_ssp
 
     system = assemble(read_ssp(ssp).rig)
     places: dict[tuple[str, str], int] = {}
@@ -133,7 +133,7 @@ def fmpy_lists(ssp: Path, steps: int, step: float, watch: list[str]) -> Result:
     from fmpy.fmi2 import FMU2Slave
 
     from seatrial.cosim.assembly import assemble
-    from seatrial.cosim.ssp.reading import read_ssp
+    from seatrial_kits.interchange.ssp.reading import read_ssp
 
     system = assemble(read_ssp(ssp).rig)
     gets: list[tuple[Any, list[int], list[str]]] = []

@@ -18,12 +18,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from seatrial.identification.output_error import AxisLog, Estimate, output_error
-from seatrial.identification.source_method import (
-    integrated,
-    least_squares_axis,
-    source_method,
-)
+from seatrial_kits.identify.output_error import AxisLog, Estimate, output_error
+from seatrial_kits.identify.source_method import integrated, least_squares_axis, source_method
 
 PAGE = Path(__file__).parents[1] / "docs" / "how-to" / "identification.md"
 MARK = re.compile(r"(<!-- made by benchmarks/identification\.py -->\n).*?(<!-- end -->)", re.DOTALL)

@@ -22,10 +22,10 @@ import msgspec
 import viser
 from websockets.sync.client import ClientConnection, connect
 
-from seatrial.live.session import Session
 from seatrial.trials.hooks import Hooks
 from seatrial.trials.supervision import run_supervised
 from seatrial.trials.trial import load_trial
+from seatrial_kits.live.session import Session
 
 _CAMERA = {
     "type": "ViewerCameraMessage", "wxyz": [1, 0, 0, 0], "position": [-3, -3, 2], "fov": 1.0,

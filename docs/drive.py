@@ -8,11 +8,11 @@ import math
 from drawing import draw
 from rich.console import Console
 
-from seatrial.cli.drive_pilot import Pilot
-from seatrial.cli.drive_screen import picture
 from seatrial.component import Component
-from seatrial.links.videoray.rov import Pro4Rov
-from seatrial.links.videoray.topside import Pro4Topside
+from seatrial_kits.videoray.driving.pilot import Pilot
+from seatrial_kits.videoray.driving.screen import picture
+from seatrial_kits.videoray.rov import Pro4Rov
+from seatrial_kits.videoray.topside import Pro4Topside
 
 STEP = 0.01
 MANUAL_AXES = (0.3, -0.2, 0.0)

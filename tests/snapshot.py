@@ -15,7 +15,7 @@ _OPAQUE = (type, types.ModuleType, types.BuiltinFunctionType)
 def snapshot(root: Any, but: frozenset[str] = frozenset()) -> dict[str, Any]:
     """Return copies of all values below ``root`` by path, attributes named in ``but`` left out.
 
-    Of what is not from seatrial or tests (compiled functions, parsers of libraries) only the type.
+    Of what is not from seatrial, its kits or tests (compiled functions, parsers of libraries) only the type.
     """
     found: dict[str, Any] = {}
     above: set[int] = set()
@@ -46,7 +46,7 @@ def _parts(value: Any) -> list[tuple[str, Any]]:
         return [("length", len(value)), *((str(i), part) for i, part in enumerate(value))]
     if isinstance(value, set | frozenset):
         return [("members", sorted(map(repr, value)))]
-    if type(value).__module__.split(".")[0] in ("seatrial", "tests"):
+    if type(value).__module__.split(".")[0] in ("seatrial", "seatrial_kits", "tests"):
         slots = {s: getattr(value, s) for s in getattr(value, "__slots__", ()) if hasattr(value, s)}
         return [*slots.items(), *getattr(value, "__dict__", {}).items()]
     if hasattr(value, "popleft"):  # a deque

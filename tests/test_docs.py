@@ -27,6 +27,7 @@ from seatrial.cosim.files import FileModel
 from seatrial.cosim.parameters import load_vehicle
 from seatrial.craft.marine_craft import MarineCraft
 from seatrial.environment.downwash import Downwash
+from seatrial.shipped import available, provided_folders
 from seatrial.trials.criteria import parse
 from seatrial.trials.run import run_trial
 from seatrial.trials.run_folder import load_run
@@ -65,14 +66,14 @@ LONG = {HOW_TO / "identification.md", DOCS / "vehicles/guidance.md"}
 """Pages whose examples take minutes."""
 ELSEWHERE = {
     LINKS / "arduino.md",  # a fixture of the sketch's own tests
-    DOCS / "autopilots.md",  # tests/links/ardupilot: time stands still until a firmware comes
-    DOCS / "px4.md",  # tests/links/px4: the same
+    DOCS / "autopilots.md",  # tests/kits/ardupilot: time stands still until a firmware comes
+    DOCS / "px4.md",  # tests/kits/px4: the same
     LINKS / "ground-stations.md",  # sessions of MAVSDK and MAVProxy, in tests/interop
     HOW_TO / "test-with-pytest.md",  # tests/testing
     DOCS / "tutorials/ci.md",  # tests/testing: a project of its own
     REFERENCE / "cli.md",  # made from the commands' own help
     DOCS / "performance.md",  # a benchmark
-    HOW_TO / "watch-a-run.md",  # tests/live: pages that wait for a browser
+    HOW_TO / "watch-a-run.md",  # tests/kits/live: pages that wait for a browser
 }
 """Pages whose examples other tests run, or none."""
 MADE = {HOW_TO / "panel-codes.md": ("barge_capytaine.nc", "vehicles/barge.nc")}
@@ -290,9 +291,9 @@ def test_every_top_level_key_of_the_shipped_files_is_in_its_page() -> None:
         "harness/trials": "run-a-trial",
         "harness/campaigns": "run-a-campaign",
     }
-    for folder, name in pages.items():
+    for kind, name in pages.items():
         text = (HOW_TO / f"{name}.md").read_text("utf-8")
-        for path in (ROOT / folder).glob("*.toml"):
+        for path in [p for folder in provided_folders(kind) for p in folder.glob("*.toml")]:
             for key in tomllib.loads(path.read_text("utf-8")):
                 assert f"`{key}`" in text, f"{path}: {key}"
     text = (REFERENCE / "profile-keys.md").read_text("utf-8")
@@ -505,8 +506,9 @@ def test_a_block_diagram_is_up_to_date(vehicle: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("page", "name"), made_parts(verdicts=True))
 def test_a_table_of_verdicts_has_every_criterion(page: Path, name: str) -> None:
-    trials = (ROOT / "harness/trials").glob(f"{name.removesuffix(VERDICTS)}-*.toml")
-    loaded = {path.stem: load_trial(path.stem) for path in sorted(trials)}
+    begin = f"{name.removesuffix(VERDICTS)}-"
+    trials = (trial for trial in available("harness/trials") if trial.startswith(begin))
+    loaded = {trial: load_trial(trial) for trial in sorted(trials, key=lambda name: f"{name}.toml")}
     expected = [
         [f"`{trial}`", criterion]
         for trial, found in loaded.items()
@@ -612,7 +614,7 @@ def test_a_decision_is_whole_and_names_tests_that_exist(record: Path) -> None:
 
 def test_layers_of_the_page_are_those_of_the_contract() -> None:
     config = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["tool"]["importlinter"]
-    layers, forbidden, _ = config["contracts"]
+    layers, forbidden, *_ = config["contracts"]
     text = DESIGN.read_text("utf-8")
     diagram = re.search(r"```\n(cli .*?)```", text, re.DOTALL)
     assert diagram is not None

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-PLACES = ("src", "tests", "docs", "harness", "hil_profiles", "fmus", "benchmarks")
+PLACES = ("src", "tests", "docs", "examples", "harness", "hil_profiles", "fmus", "benchmarks")
 PAGES = ("README.md", "CONTRIBUTING.md", "Makefile", "pyproject.toml")
 SUFFIXES = {".py", ".md", ".toml", ".j2", ".c", ".cpp", ".h", ".ino", ".js", ".sh", ".yml"}
 LEFT_OUT = ("__pycache__", "node_modules", "tests/test_words.py")
@@ -64,16 +64,21 @@ BY_RIGHT = (
     Right("pins", "docs/vehicles/gloria.md", "", "of a board"),
     Right("pin", "*gprs*", "", "of a SIM card"),
     Right("pin", "docs/reference/link-keys.md", "SIM card", "of a SIM card"),
-    Right("room", "src/seatrial/links/arduino/*", "", "free space of a buffer"),
-    Right("wire", "*harness/firmware/*", r"\bWire\b", "Arduino's library"),
-    Right("pin, pins", "*harness/firmware/*", "", "of a board"),
+    Right("room", "src/seatrial_kits/arduino/*", "", "free space of a buffer"),
+    Right("wire", "*harness/*firmware/*", r"\bWire\b", "Arduino's library"),
+    Right("pin, pins", "*harness/*firmware/*", "", "of a board"),
     Right("pin, pins, wire, wires, wiring", "*sketch*", "", "of a board"),
     Right("pin, wires, wired", "*test-with-pytest*", "", "of a board"),
     Right("pin, wires", "*tutorials/ci.md*", "", "of a board"),
     Right("pin", "*mavlink/*", "LEAK1_PIN", "of ArduPilot's parameters"),
     Right("pin, wires", "docs/reference/*", r"PIN KIND|PROFILE:LINK", "of a board"),
     Right("wires, pin, pins", "*hil_profiles/*", "", "of a board"),
-    Right("stick", "src/seatrial/cli/drive_keys.py", r"[Ll]eft stick|stick's way", "of a gamepad"),
+    Right(
+        "stick",
+        "src/seatrial_kits/videoray/driving/keys.py",
+        r"[Ll]eft stick|stick's way",
+        "of a gamepad",
+    ),
     Right("stick", "docs/links/videoray-stream.md", r"left stick|stick down", "of a gamepad"),
 )
 
@@ -175,10 +180,10 @@ def test_a_phrase_is_found(text: str) -> None:
 @pytest.mark.parametrize(
     ("file", "text"),
     [
-        ("src/seatrial/links/arduino/wiring.py", "wire.place is a pin"),
+        ("src/seatrial_kits/arduino/wiring.py", "wire.place is a pin"),
         ("harness/firmware/x/x.ino", "#include <Wire.h>"),
         ("src/seatrial/model.py", "air density, counts of turns, warehouse, spinning, pint"),
-        ("src/seatrial/links/mavlink/x.py", "a radio link; the radio's channels count from 1"),
+        ("src/seatrial_kits/mavlink/x.py", "a radio link; the radio's channels count from 1"),
     ],
 )
 def test_what_is_right_is_not_found(file: str, text: str) -> None:

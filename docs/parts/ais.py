@@ -6,8 +6,8 @@ from functools import partial
 
 from parts import part
 from parts.can import ports
-from seatrial.links.ais.transponder import AisTransponder
-from seatrial.links.ais.vhf_channel import VhfChannel
+from seatrial_kits.nmea.ais.transponder import AisTransponder
+from seatrial_kits.nmea.ais.vhf_channel import VhfChannel
 
 part("ais-transponder-ports")(partial(ports, AisTransponder))
 part("vhf-channel-ports")(partial(ports, VhfChannel))

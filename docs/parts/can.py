@@ -7,10 +7,10 @@ from functools import partial
 from parts import part
 from parts.markdown import shown_unit, table
 from seatrial.component import Component
-from seatrial.links.can.component import CanBus
-from seatrial.links.can.component_gateway import CanGateway
-from seatrial.links.can.traffic import CanTraffic
 from seatrial.ports import Parameter, Port
+from seatrial_kits.can.component import CanBus
+from seatrial_kits.can.component_gateway import CanGateway
+from seatrial_kits.can.traffic import CanTraffic
 
 _HIDDEN = ("seed", "run-folder")
 """Roles: the master gives these."""

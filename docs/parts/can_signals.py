@@ -9,8 +9,8 @@ import cantools
 from parts import part
 from parts.can import ports
 from parts.markdown import table
-from seatrial.links.can_signals.component import CanSignals
 from seatrial.shipped import shipped_folder
+from seatrial_kits.can.signals.component import CanSignals
 
 part("can-signals-ports")(partial(ports, CanSignals))
 

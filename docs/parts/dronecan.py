@@ -8,12 +8,12 @@ from typing import Any
 from parts import part
 from parts.can import ports
 from parts.markdown import table
-from seatrial.links.dronecan.allocation import Allocation
-from seatrial.links.dronecan.autopilot import DroneCanAutopilot
-from seatrial.links.dronecan.navigation import NOT_CONNECTED
-from seatrial.links.dronecan.node import GetNodeInfo, NodeStatus, RestartNode
-from seatrial.links.dronecan.parameters import ExecuteOpcode, GetSet
-from seatrial.links.dronecan.peripheral import DroneCanPeripheral
+from seatrial_kits.can.dronecan.allocation import Allocation
+from seatrial_kits.can.dronecan.autopilot import DroneCanAutopilot
+from seatrial_kits.can.dronecan.navigation import NOT_CONNECTED
+from seatrial_kits.can.dronecan.node import GetNodeInfo, NodeStatus, RestartNode
+from seatrial_kits.can.dronecan.parameters import ExecuteOpcode, GetSet
+from seatrial_kits.can.dronecan.peripheral import DroneCanPeripheral
 
 
 @part("dronecan-peripheral-ports")

@@ -12,12 +12,12 @@ from parts import elsewhere, part
 from parts.markdown import fixed, shown_number, table
 from seatrial.cosim.parameters import load_vehicle
 from seatrial.craft.marine_craft import MarineCraft
-from seatrial.identification.damping import HullForm, damping
 from seatrial.trials.campaign import load_campaign, run_campaign
-from seatrial.trials.hull_file import estimate_damping
 from seatrial.trials.run import run_trial
 from seatrial.trials.run_folder import Run, load_run
 from seatrial.trials.trial import load_trial
+from seatrial_kits.identify.damping import HullForm, damping
+from seatrial_kits.identify.hull_file import estimate_damping
 
 PADS = ("nominal", "longitudinal", "transversal", "diagonal-aft", "diagonal-fore")
 PHASES = ("landing", "takeoff")

@@ -6,9 +6,9 @@ from pymavlink.dialects.v20 import all as mavlink
 
 from parts import part
 from parts.markdown import shown_number, table
-from seatrial.links.mavlink import node  # noqa: F401  brings all services
-from seatrial.links.mavlink.modes import dialect
-from seatrial.links.mavlink.service import Service
+from seatrial_kits.mavlink import node  # noqa: F401  brings all services
+from seatrial_kits.mavlink.modes import dialect
+from seatrial_kits.mavlink.service import Service
 
 
 @part("mavlink-streams")

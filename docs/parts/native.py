@@ -7,8 +7,8 @@ import re
 from parts import part
 from parts.markdown import table
 from seatrial.fmi.index import component_class, components
-from seatrial.fmi.native.carriers import why_python
 from seatrial.plant import Plant
+from seatrial_kits.native.carriers import why_python
 
 
 @part("native-components")

@@ -8,10 +8,10 @@ from nmea2000.native_units import NATIVE_UNITS
 from parts import part
 from parts.can import ports
 from parts.markdown import shown_number, table
-from seatrial.links.nmea2000.catalogue import DATA, Pgn
-from seatrial.links.nmea2000.codec import is_fast
-from seatrial.links.nmea2000.component import Nmea2000
-from seatrial.links.nmea2000.ports import NOT_CONNECTED
+from seatrial_kits.nmea.nmea2000.catalogue import DATA, Pgn
+from seatrial_kits.nmea.nmea2000.codec import is_fast
+from seatrial_kits.nmea.nmea2000.component import Nmea2000
+from seatrial_kits.nmea.nmea2000.ports import NOT_CONNECTED
 
 
 def _field(pgn: Pgn, name: str) -> tuple[str, str]:

@@ -14,7 +14,9 @@ from seatrial.ports import Parameter
 from seatrial.shipped import shipped_folder
 
 _SENSORS = ("ahrs", "anemometer", "compass", "depth", "gnss", "imu")
-_LINKS = [n for n, s in shipped_sources().items() if s.module.startswith("seatrial.links.")]
+_OF_LINKS = ("arduino", "ardupilot", "can", "gprs", "mavlink", "nmea", "px4", "videoray")
+_PACKAGES = ("seatrial.links.", *(f"seatrial_kits.{kit}." for kit in _OF_LINKS))
+_LINKS = [n for n, s in shipped_sources().items() if s.module.startswith(_PACKAGES)]
 
 
 @part("sensor-keys")

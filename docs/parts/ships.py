@@ -7,15 +7,15 @@ from functools import partial
 
 from parts import elsewhere, part
 from parts.markdown import table
-from seatrial.shipped import shipped_folder
+from seatrial.shipped import available
 from seatrial.trials.campaign import load_campaign, run_campaign
-from seatrial.trials.heading_design import design_heading
-from seatrial.trials.heading_design_page import rows as design_rows
-from seatrial.trials.heading_design_page import stability
 from seatrial.trials.readable import number
 from seatrial.trials.run import run_trial
 from seatrial.trials.run_folder import load_run
 from seatrial.trials.trial import load_trial
+from seatrial_kits.design.heading import design_heading
+from seatrial_kits.design.heading_page import rows as design_rows
+from seatrial_kits.design.heading_page import stability
 
 
 def verdicts(rig: str) -> str:
@@ -24,8 +24,9 @@ def verdicts(rig: str) -> str:
     Trials in real time are for whoever connects.
     """
     rows = []
-    for path in sorted((shipped_folder("harness") / "trials").glob(f"{rig}-*.toml")):
-        trial = load_trial(path.stem)
+    names = (name for name in available("harness/trials") if name.startswith(f"{rig}-"))
+    for name in sorted(names, key=lambda name: f"{name}.toml"):  # as files are listed
+        trial = load_trial(name)
         if trial.file.real_time:
             continue
         with elsewhere() as folder:
@@ -33,7 +34,7 @@ def verdicts(rig: str) -> str:
         for verdict in run.verdicts:
             found = verdict["detail"].partition("; ")[0].replace("-", "−")
             holds = "yes" if verdict["passed"] else "**no**"
-            rows.append((f"`{path.stem}`", verdict["name"], holds, found))
+            rows.append((f"`{name}`", verdict["name"], holds, found))
     return table(("trial", "criterion", "holds", "found"), rows)
 
 

@@ -9,16 +9,16 @@ import numpy as np
 
 from parts import elsewhere, part
 from parts.markdown import table
-from seatrial.identification.prediction import delayed
-from seatrial.identification.source_method import (
+from seatrial.trials.run import run_trial
+from seatrial.trials.run_folder import Run, load_run
+from seatrial.trials.trial import load_trial
+from seatrial_kits.identify.prediction import delayed
+from seatrial_kits.identify.source_method import (
     correlation_delay,
     differences,
     integrated,
     least_squares_axis,
 )
-from seatrial.trials.run import run_trial
-from seatrial.trials.run_folder import Run, load_run
-from seatrial.trials.trial import load_trial
 
 _PERIOD, _LONGEST = 0.1, 40
 _GRAVITY = 9.81

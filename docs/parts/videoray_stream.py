@@ -8,12 +8,12 @@ from parts import part
 from parts.can import ports
 from parts.markdown import table
 from seatrial.links.serial_gateway import SerialGateway
-from seatrial.links.videoray.gains import GAINS
-from seatrial.links.videoray.m5_thrusters import M5Thrusters
-from seatrial.links.videoray.player import StreamPlayer
-from seatrial.links.videoray.registers import BY_NAME, REGISTERS
-from seatrial.links.videoray.rov import Pro4Rov
-from seatrial.links.videoray.topside import Pro4Topside
+from seatrial_kits.videoray.gains import GAINS
+from seatrial_kits.videoray.m5_thrusters import M5Thrusters
+from seatrial_kits.videoray.player import StreamPlayer
+from seatrial_kits.videoray.registers import BY_NAME, REGISTERS
+from seatrial_kits.videoray.rov import Pro4Rov
+from seatrial_kits.videoray.topside import Pro4Topside
 
 
 @part("videoray-registers")

@@ -10,6 +10,8 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
+from .moved import find_moved
+
 if TYPE_CHECKING:
     from .api.campaigns import (
         CampaignResult,
@@ -22,6 +24,8 @@ if TYPE_CHECKING:
     from .errors import InputError, SeatrialError, SimulationError
 
 __version__ = "0.1.0"
+
+find_moved()
 
 __all__ = [
     "CampaignResult",

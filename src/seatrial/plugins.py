@@ -1,7 +1,7 @@
-"""Registries: what is shipped under a name, and what installed packages add by entry points.
+"""Registries: what the core has under a name, what kits add, and what packages add alone.
 
-A package adds a name in its own ``pyproject.toml``; nothing of it is imported before somebody
-asks for that name::
+Kits are described in `kits`. A package that adds a single name needs none: it writes the name in
+its own ``pyproject.toml``. Nothing of it is imported before somebody asks for that name::
 
     [project.entry-points."seatrial.algorithms"]
     "my-algorithm" = "my_package.coupling:MyAlgorithm"
@@ -17,13 +17,18 @@ from pkgutil import resolve_name
 from typing import Any
 
 from .errors import InputError, unknown
+from .kits import kits, lacking
+
+
+class LibraryError(InputError):
+    """A library is not installed that what somebody named needs."""
 
 
 @dataclass(frozen=True)
 class _Entry:
-    """One name that a package adds."""
+    """One name that a kit or a package adds."""
 
-    package: str
+    origin: str
     name: str
     target: str
 
@@ -51,17 +56,17 @@ class Registry:
     def target(self, name: str) -> str:
         """Return the ``module:attribute`` of a name. Raises InputError for none, or several."""
         entries = [entry for entry in self._added() if entry.name == name]
-        found = [f"the package {entry.package} ({entry.target})" for entry in entries]
+        found = [f"{entry.origin} ({entry.target})" for entry in entries]
         targets = [entry.target for entry in entries]
         if name in self.shipped:
             found.insert(0, f"seatrial itself ({self.shipped[name]})")
             targets.insert(0, self.shipped[name])
         if not found:
-            raise InputError(unknown(self.noun, name, self.names()))
+            raise InputError(unknown(self.noun, name, self.names()) + kits().hint())
         if len(found) > 1:
             raise InputError(
                 f"{self.noun} {name!r} comes from {' and from '.join(found)}; "
-                f"one of them must give up the name in the entry-point group {self.group!r}"
+                f"one of them must give up the name in its kit or entry-point group {self.group!r}"
             )
         return targets[0]
 
@@ -75,13 +80,22 @@ class Registry:
         try:
             return resolve_name(target)
         except Exception as error:  # whatever somebody else's module does when it is imported
+            if said := lacking(error):
+                raise LibraryError(f"{self.noun} {name!r}: {said}") from None
             raise InputError(
                 f"{self.noun} {name!r}: cannot load {target!r} of the entry-point group "
                 f"{self.group!r}: {type(error).__name__}: {error}"
             ) from error
 
     def _added(self) -> tuple[_Entry, ...]:
-        return _entries(self.group, tuple(sys.path))
+        return (*self._of_kits(), *_entries(self.group, tuple(sys.path)))
+
+    def _of_kits(self) -> tuple[_Entry, ...]:
+        kind = self.group.removeprefix("seatrial.")
+        return tuple(
+            _Entry(f"the kit {entry.kit}", entry.name, entry.target)
+            for entry in kits().entries(kind)
+        )
 
 
 @cache
@@ -90,7 +104,34 @@ def _entries(group: str, path: tuple[str, ...]) -> tuple[_Entry, ...]:
     from importlib.metadata import entry_points  # imports much, and not every run comes here
 
     found = [
-        _Entry(point.dist.name if point.dist else "?", point.name, point.value)
+        _Entry(f"the package {point.dist.name if point.dist else '?'}", point.name, point.value)
         for point in entry_points(group=group)
     ]
-    return tuple(sorted(found, key=lambda entry: (entry.name, entry.package)))
+    return tuple(sorted(found, key=lambda entry: (entry.name, entry.origin)))
+
+
+_SERVICES = Registry("seatrial.services", "service", {})
+
+
+def service(name: str) -> Any:
+    """Return what a kit does for the core: ``KIT.FUNCTION`` of the ``services`` of its manifest.
+
+    Raises InputError, naming the kit, where it is not there.
+    """
+    if name not in _SERVICES.names():
+        kit = name.partition(".")[0]
+        raise InputError(f"this needs the kit {kit!r}, which is not installed{kits().hint()}")
+    return _SERVICES.load(name)
+
+
+def offered(name: str) -> Any | None:
+    """Return what a kit does for the core; None without the kit, or a library that it needs.
+
+    See `service`.
+    """
+    if name not in _SERVICES.names():
+        return None
+    try:
+        return _SERVICES.load(name)
+    except LibraryError:
+        return None

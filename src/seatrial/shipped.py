@@ -1,15 +1,20 @@
-"""Folders shipped with the library: fmus, harness, hil_profiles, vehicles."""
+"""Folders of content: what the core ships, what kits bring, and the user's own."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
+from .errors import InputError
+from .kits import OURS, Kit, kits
+
 _PACKAGE = Path(__file__).parent
 _CHECKOUT = _PACKAGE.parents[1]
+_IN_KITS = {"hil_profiles": "profiles"}
+"""Folders at the top that kits call otherwise."""
 
 
 def shipped_folder(name: str) -> Path:
-    """Return the shipped folder ``name``: in the wheel, or at the top of a checkout."""
+    """Return the core's folder ``name``: in the wheel, or at the top of a checkout."""
     installed = _PACKAGE / "_shipped" / name
     if installed.is_dir():
         return installed
@@ -18,11 +23,38 @@ def shipped_folder(name: str) -> Path:
     return _CHECKOUT / name
 
 
-def searched_folders(kind: str) -> list[Path]:
-    """Return the folders where files of ``kind`` are looked for, in order."""
+def content_of(kit: Kit) -> Path:
+    """Return the folder of a kit's content; of those of this distribution, below ``harness``."""
+    if kit.folder.parent.name in OURS:
+        return shipped_folder("harness") / "kits" / kit.name
+    return kit.content
+
+
+def provided_folders(kind: str) -> list[Path]:
+    """Return the folders with files of ``kind``, such as ``harness/rigs``, of the core and kits."""
     top, _, below = kind.partition("/")
     shipped = shipped_folder(top) / below if below else shipped_folder(top)
-    return [p for p in dict.fromkeys([Path.cwd() / kind, shipped]) if p.is_dir()]
+    inside = below or _IN_KITS.get(top, top)
+    folders = [shipped, *(content_of(kit) / inside for kit in kits().found)]
+    return [folder for folder in folders if folder.is_dir()]
+
+
+def searched_folders(kind: str) -> list[Path]:
+    """Return the folders where files of ``kind`` are looked for, in order."""
+    folders = [Path.cwd() / kind, *provided_folders(kind)]
+    return [folder for folder in dict.fromkeys(folders) if folder.is_dir()]
+
+
+def provided_file(kind: str, name: str) -> Path | None:
+    """Return the file of a name that the core or a kit brings; None if there is none.
+
+    Raises InputError for a name that two of them have.
+    """
+    files = [folder / f"{name}.toml" for folder in provided_folders(kind)]
+    found = [file for file in files if file.is_file()]
+    if len(found) > 1:
+        raise InputError(f"{name!r} is ambiguous: {' and '.join(map(str, found))}; give a path")
+    return found[0] if found else None
 
 
 def available(kind: str) -> dict[str, Path]:

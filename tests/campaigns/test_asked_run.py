@@ -8,11 +8,11 @@ import subprocess
 import pandas as pd
 import pytest
 
-from seatrial.campaigns.ask import ask
-from seatrial.campaigns.asked_run import asked_run
 from seatrial.campaigns.page import write_table_page
 from seatrial.campaigns.sweep import How
 from seatrial.errors import InputError
+from seatrial_kits.search.ask import ask
+from seatrial_kits.search.asked_run import asked_run
 from tests.cli.test_stop import SEATRIAL
 
 VARIED = (

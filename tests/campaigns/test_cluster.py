@@ -12,11 +12,11 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from seatrial.campaigns.ask import ask
 from seatrial.campaigns.shipment import packed, unpacked
 from seatrial.campaigns.sweep import How, run_sweep
 from seatrial.errors import InputError
 from seatrial.trials.campaign import load_campaign
+from seatrial_kits.search.ask import ask
 
 pytestmark = [
     pytest.mark.interop,

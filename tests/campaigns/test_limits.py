@@ -9,12 +9,12 @@ import pandas as pd
 import pytest
 from scipy.interpolate import RegularGridInterpolator
 
-from seatrial.campaigns.ask import ask
-from seatrial.campaigns.limits import SURE, find_boundary
 from seatrial.campaigns.page import write_table_page
 from seatrial.campaigns.sweep import How
 from seatrial.errors import InputError, SimulationError
 from seatrial.trials.hooks import Hooks
+from seatrial_kits.search.ask import ask
+from seatrial_kits.search.limits import SURE, find_boundary
 
 ELLIPSE = '[ask.vary]\n"form.a" = { uniform = ["0 m", "4 m"] }\n"form.b" = { uniform = ["10 kg", "50 kg"] }\n'
 

@@ -9,7 +9,7 @@ import pytest
 from seatrial.campaigns.page import write_table_page
 from seatrial.campaigns.sweep import run_sweep
 from seatrial.trials.campaign_report import write_case_report
-from tests.live.browser import chromium, opened
+from tests.kits.live.browser import chromium, opened
 
 from .test_table import direct
 

@@ -7,10 +7,10 @@ import pandas as pd
 import pytest
 from scipy.stats import chi2, norm
 
-from seatrial.campaigns.ask import ask
-from seatrial.campaigns.subset import subset_simulation
 from seatrial.campaigns.sweep import How
 from seatrial.errors import InputError, SimulationError
+from seatrial_kits.search.ask import ask
+from seatrial_kits.search.subset import subset_simulation
 
 
 def beyond_plane(probability, dimensions):

@@ -6,10 +6,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from seatrial.campaigns.ask import ask
-from seatrial.campaigns.indices import morris, sobol
 from seatrial.campaigns.sweep import How
 from seatrial.errors import InputError
+from seatrial_kits.search.ask import ask
+from seatrial_kits.search.indices import morris, sobol
 
 A, B = 7.0, 0.1
 VARIANCE = A**2 / 8.0 + B * math.pi**4 / 5.0 + B**2 * math.pi**8 / 18.0 + 0.5

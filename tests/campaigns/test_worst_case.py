@@ -7,13 +7,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from seatrial.campaigns.ask import ask
-from seatrial.campaigns.searches import search
-from seatrial.campaigns.shrinking import Shrinking
 from seatrial.campaigns.sweep import How
 from seatrial.errors import InputError
 from seatrial.trials.run import run_trial
 from seatrial.trials.trial import load_trial
+from seatrial_kits.search.ask import ask
+from seatrial_kits.search.searches import search
+from seatrial_kits.search.shrinking import Shrinking
 
 SUM = '[ask.vary]\n"form.a" = { uniform = ["-10 m", "10 m"] }\n"form.b" = { uniform = ["-20 kg", "20 kg"] }\n"form.c" = { uniform = [-10, 10] }\n'
 

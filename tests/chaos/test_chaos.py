@@ -16,7 +16,7 @@ from pathlib import Path
 
 import pytest
 
-from ..links.arduino.bench import need
+from ..kits.arduino.bench import need
 from .disturbances import LAST, MILD
 from .rig import SAFE, WAIT_S, Episode, prepare
 

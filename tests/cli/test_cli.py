@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 import json
+import shlex
 import subprocess
+import sys
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from seatrial.cli.commands import commands, loaded
+from seatrial.cli.examples import examples
 from seatrial.errors import unknown
 from tests.command import SEATRIAL, seatrial
 
@@ -232,3 +238,46 @@ def test_near_misses() -> None:
     assert unknown("port", "atitude", ["attitude", "force"]) == (
         "unknown port 'atitude'; did you mean 'attitude'? (known: attitude, force)"
     )
+
+
+def test_a_word_lists_what_begins_with_it_by_vehicle(tmp_path: Path) -> None:
+    done = seatrial("list", "otter", cwd=tmp_path)
+    assert done.returncode == 0
+    lines = done.stdout.splitlines()
+    assert lines[0] == "trials"
+    assert "  otter" in lines
+    assert any(line.startswith("    otter-straight ") for line in lines)
+    assert "mariner-chart-plotter" not in done.stdout
+    done = seatrial("list", "xyzzy", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "no name or title matches 'xyzzy'" in done.stderr
+
+
+def test_it_runs_as_a_module(tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "seatrial", "--version"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout.split()[0]) == (0, "seatrial")
+
+
+def leaves(command: Any, path: str) -> Iterator[tuple[str, Any]]:
+    """Yield every command that has none below, with its path."""
+    below = getattr(command, "commands", {})
+    if not below:
+        yield path, command
+    for name, one in below.items():
+        yield from leaves(one, f"{path} {name}")
+
+
+def test_every_help_ends_with_an_example_of_its_options() -> None:
+    known = examples()
+    seen = set()
+    for name in commands():
+        for path, command in leaves(loaded(name), name):
+            seen |= {path, name}
+            assert command.epilog == f"Example: {known[path]}"
+            words = shlex.split(known[path])
+            assert words[0] == "seatrial"
+            assert words[1 : 1 + len(path.split())] == path.split() or "CAMPAIGN" in path
+            options = {option for one in command.params for option in one.opts}
+            assert {word for word in words if word.startswith("-")} <= options, path
+    assert set(known) == seen

@@ -14,11 +14,11 @@ from termios import TIOCSWINSZ
 
 import pytest
 
-from seatrial.cli.drive_keys import Gamepad, split_keys
-from seatrial.cli.drive_pilot import HELP, KEY_LASTS, TURNS, Pilot
 from seatrial.errors import InputError
+from seatrial_kits.videoray.driving.keys import Gamepad, split_keys
+from seatrial_kits.videoray.driving.pilot import HELP, KEY_LASTS, TURNS, Pilot
 
-from ..links.videoray.live import LiveRov
+from ..kits.videoray.live import LiveRov
 
 pyte = pytest.importorskip("pyte")
 WAIT_S = 60.0

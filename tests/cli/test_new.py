@@ -8,7 +8,7 @@ import pytest
 from seatrial import Simulation
 from seatrial.cli.new import KINDS
 from tests.command import seatrial
-from tests.links.arduino.bench import need
+from tests.kits.arduino.bench import need
 
 NAME = "my-boat_2"
 WRITTEN = {

@@ -9,10 +9,10 @@ import serial
 
 from seatrial.shipped import shipped_folder
 from tests.command import seatrial
-from tests.links.arduino.bench import need, write_sketch
+from tests.kits.arduino.bench import need, write_sketch
 
 MAIN = "from seatrial.cli import main; main()"
-GLORIA = shipped_folder("harness") / "firmware" / "gloria_autopilot"
+GLORIA = shipped_folder("harness") / "kits/arduino/firmware" / "gloria_autopilot"
 
 
 def test_check_says_what_it_is_made_of(tmp_path):

@@ -16,7 +16,7 @@ from seatrial.shipped import shipped_folder
 
 from ..command import seatrial
 
-GLORIA = str(shipped_folder("harness") / "firmware" / "gloria_autopilot")
+GLORIA = str(shipped_folder("harness") / "kits/arduino/firmware" / "gloria_autopilot")
 COMMANDS = [
     (["--version"], 0),
     (["--help"], 0),

@@ -9,12 +9,12 @@ from typing import Any
 import pytest
 
 from seatrial.cosim.master import Master
-from seatrial.cosim.osp.reading import read_osp
-from seatrial.cosim.rig_fmu.face import face_of
-from seatrial.cosim.rig_fmu.frozen import rig_source
 from seatrial.errors import InputError
-from seatrial.trials.export import export_osp
 from seatrial.trials.trial import load_trial
+from seatrial_kits.interchange.export import export_osp
+from seatrial_kits.interchange.osp.reading import read_osp
+from seatrial_kits.interchange.rig_fmu.face import face_of
+from seatrial_kits.interchange.rig_fmu.frozen import rig_source
 from tests.cosim.osp_files import write_osp
 
 from .conftest import Bench, value

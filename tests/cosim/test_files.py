@@ -15,7 +15,7 @@ from seatrial.cosim.files import FileModel, available, find_file, read_toml, val
 from seatrial.cosim.flattening import load_rig
 from seatrial.cosim.parameters import load_vehicle
 from seatrial.errors import InputError
-from seatrial.shipped import shipped_folder
+from seatrial.shipped import provided_folders, shipped_folder
 
 RIG = 'title = "{}"\nstep = "20 ms"\n[components]\n'
 
@@ -36,9 +36,8 @@ KINDS = ["harness/rigs", "harness/trials", "harness/campaigns", "hil_profiles", 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_in_an_empty_folder_the_shipped_files_are_found(kind: str) -> None:
-    top, _, below = kind.partition("/")
-    folder = shipped_folder(top) / below
-    on_disk = {path.stem: path for path in folder.iterdir() if path.suffix == ".toml"}
+    files = [path for folder in provided_folders(kind) for path in folder.glob("*.toml")]
+    on_disk = {path.stem: path for path in files}
     assert on_disk
     assert available(kind) == on_disk
     assert {name: find_file(kind, name) for name in on_disk} == on_disk

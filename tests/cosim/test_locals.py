@@ -11,11 +11,11 @@ import pytest
 from lxml import etree
 
 from seatrial import Simulation
-from seatrial.cosim.ssp.reading import read_ssp
 from seatrial.errors import InputError
-from seatrial.trials.export import export_osp, export_ssp
 from seatrial.trials.run import run_trial
 from seatrial.trials.trial import load_trial
+from seatrial_kits.interchange.export import export_osp, export_ssp
+from seatrial_kits.interchange.ssp.reading import read_ssp
 
 from ..fmi.models import build_model_fmu
 from .ssp_natives import component, connection, connector, elements, package, ssd

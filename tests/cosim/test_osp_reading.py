@@ -8,9 +8,9 @@ import pytest
 
 from seatrial.cosim.assembly import assemble
 from seatrial.cosim.master import Master
-from seatrial.cosim.osp.reading import read_osp
 from seatrial.cosim.packages import is_package
 from seatrial.errors import InputError
+from seatrial_kits.interchange.osp.reading import read_osp
 from tests.cosim.osp_files import GROUPS, write_osp
 
 

@@ -8,9 +8,9 @@ import pytest
 
 from seatrial.cosim.assembly import assemble
 from seatrial.cosim.master import Master
-from seatrial.cosim.osp.reading import read_osp
 from seatrial.errors import InputError
-from seatrial.trials.export import export_osp, export_ssp
+from seatrial_kits.interchange.export import export_osp, export_ssp
+from seatrial_kits.interchange.osp.reading import read_osp
 from tests.cosim.osp_files import write_osp
 
 

@@ -87,6 +87,14 @@ def test_nothing_is_named_where_nothing_was_changed(rig: Path) -> None:
     assert LAST not in str(caught.value)
 
 
+def test_where_a_run_leaves_its_files_is_no_change(rig: Path, tmp_path: Path) -> None:
+    path = tmp_path / "trial.toml"
+    path.write_text('rig = "rig.toml"\nstop = "60 s"\n[set]\n"a.gain" = 1e6\n')
+    result = run_trial(load_trial(str(path)), out=tmp_path / "run", engine="direct")
+    assert result.status == "failed"
+    assert LAST not in result.error
+
+
 def test_an_order_over_a_link_is_named(rig: Path) -> None:
     with Simulation(rig) as sim:
         station = mavutil.mavlink_connection(

@@ -13,11 +13,11 @@ from pymavlink import mavutil
 from seatrial import Simulation
 from seatrial.cosim.assembly import assemble
 from seatrial.cosim.flattening import load_rig
-from seatrial.cosim.rig_fmu.face import face_of
-from seatrial.cosim.rig_fmu.frozen import rig_source
-from seatrial.cosim.rig_fmu.python import build_python_rig
 from seatrial.errors import InputError
 from seatrial.fmi.load import load_fmu, open_instance
+from seatrial_kits.interchange.rig_fmu.face import face_of
+from seatrial_kits.interchange.rig_fmu.frozen import rig_source
+from seatrial_kits.interchange.rig_fmu.python import build_python_rig
 from tests.command import seatrial
 from tests.cosim.test_rig_fmu import RIG, TEXT, bits
 from tests.fmi.test_standalone import RESOURCES, image_of, needs_bwrap

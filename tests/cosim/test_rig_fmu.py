@@ -20,10 +20,10 @@ import seatrial.cosim.master
 from seatrial import Simulation
 from seatrial.cosim.assembly import assemble
 from seatrial.cosim.flattening import load_rig
-from seatrial.cosim.native_carriers import carry_natively
-from seatrial.cosim.rig_fmu.native import build_native_rig, why_not_native
+from seatrial.fmi.compiler import HERE, library_here
 from seatrial.fmi.load import load_fmu, open_instance
-from seatrial.fmi.native.compiler import HERE, library_here
+from seatrial_kits.interchange.rig_fmu.native import build_native_rig, why_not_native
+from seatrial_kits.native.engine import carry_natively
 from tests.command import seatrial as command
 from tests.fmi.native_slave import Slave
 from tests.fmi.test_standalone import RESOURCES, image_of, needs_bwrap

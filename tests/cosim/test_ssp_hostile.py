@@ -12,9 +12,9 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from seatrial.cosim.ssp.reading import read_ssp
-from seatrial.cosim.ssp.tools import findings
 from seatrial.errors import InputError
+from seatrial_kits.interchange.ssp.reading import read_ssp
+from seatrial_kits.interchange.ssp.tools import findings
 
 from .ssp_files import (
     BINDING,

@@ -11,9 +11,9 @@ from lxml import etree
 
 from seatrial.cosim.assembly import assemble
 from seatrial.cosim.flattening import load_rig
-from seatrial.cosim.ssp.reading import read_ssp
-from seatrial.cosim.ssp.tools import findings
-from seatrial.trials.export import export_ssp
+from seatrial_kits.interchange.export import export_ssp
+from seatrial_kits.interchange.ssp.reading import read_ssp
+from seatrial_kits.interchange.ssp.tools import findings
 
 from ..interop.ssp_tools import run
 from .ssp_files import BOATS, rows

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from seatrial.cosim.assembly import assemble
-from seatrial.cosim.ssp.reading import read_ssp
 from seatrial.errors import InputError
 from seatrial.trials.trial import load_trial
+from seatrial_kits.interchange.ssp.reading import read_ssp
 
 from .ssp_files import (
     BACK,

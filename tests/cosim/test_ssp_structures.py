@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.cosim.ssp.reading import read_ssp
 from seatrial.errors import InputError
+from seatrial_kits.interchange.ssp.reading import read_ssp
 
 from ..fmi.models import build_model_fmu
 from .ssp_files import run

@@ -9,8 +9,8 @@ import pytest
 
 from seatrial.cosim.assembly import assemble
 from seatrial.cosim.master import Master
-from seatrial.cosim.ssp.reading import read_ssp
 from seatrial.errors import InputError
+from seatrial_kits.interchange.ssp.reading import read_ssp
 
 from .ssp_natives import (
     bound,

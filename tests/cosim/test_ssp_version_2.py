@@ -11,11 +11,11 @@ from lxml import etree
 
 from seatrial.cosim.assembly import assemble
 from seatrial.cosim.flattening import load_rig
-from seatrial.cosim.ssp.reading import read_ssp
-from seatrial.cosim.ssp.shapes import Enumeration, Shapes
 from seatrial.errors import InputError
 from seatrial.fmi.load import load_fmu
-from seatrial.trials.export import export_ssp
+from seatrial_kits.interchange.export import export_ssp
+from seatrial_kits.interchange.ssp.reading import read_ssp
+from seatrial_kits.interchange.ssp.shapes import Enumeration, Shapes
 
 from ..command import seatrial
 from ..fmi.native import changed

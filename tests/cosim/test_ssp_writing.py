@@ -11,13 +11,13 @@ from lxml import etree
 
 from seatrial.cosim.assembly import assemble
 from seatrial.cosim.flattening import load_rig
-from seatrial.cosim.ssp.reading import read_ssp
-from seatrial.cosim.ssp.tools import findings
 from seatrial.errors import InputError
 from seatrial.fmi.export import build_fmu
 from seatrial.fmi.source import ComponentSource, find_source
-from seatrial.trials.export import export_ssp
 from seatrial.trials.trial import load_trial
+from seatrial_kits.interchange.export import export_ssp
+from seatrial_kits.interchange.ssp.reading import read_ssp
+from seatrial_kits.interchange.ssp.tools import findings
 
 from ..fmi.native import changed
 from . import users

@@ -21,8 +21,8 @@ from seatrial.cosim.survey.surveying import Surveyed, fmus_in, survey
 from seatrial.cosim.survey.ways import WAYS
 from seatrial.errors import InputError
 from seatrial.fmi.export import build_fmu
-from seatrial.fmi.native.export import build_native_fmu
 from seatrial.fmi.source import named_sources
+from seatrial_kits.native.export import build_native_fmu
 from tests.command import seatrial
 from tests.fmi.models import build_model_fmu
 from tests.fmi.native import changed, dying, without_events

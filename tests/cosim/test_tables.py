@@ -9,11 +9,11 @@ import pytest
 
 from seatrial.cosim.assembly import assemble
 from seatrial.cosim.flattening import load_rig
-from seatrial.cosim.native_carriers import carry_natively
-from seatrial.cosim.ssp.reading import read_ssp
 from seatrial.cosim.system import Engine
 from seatrial.errors import InputError
 from seatrial.fmi.load import load_fmu, open_instance
+from seatrial_kits.interchange.ssp.reading import read_ssp
+from seatrial_kits.native.engine import carry_natively
 
 from .ssp_files import BINDING, HULL, Yard, description, rows, system
 

@@ -9,7 +9,7 @@ from seatrial.cosim.flattening import load_rig
 from seatrial.cosim.profile import check_profile
 from seatrial.cosim.tunables import Tunable, carried
 from seatrial.errors import InputError
-from seatrial.links.mavlink.component import Mavlink
+from seatrial_kits.mavlink.component import Mavlink
 from tests.cosim.test_profile import GOOD
 
 TABLE = """

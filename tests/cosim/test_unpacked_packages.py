@@ -8,11 +8,11 @@ import pytest
 
 from seatrial.cosim.assembly import assemble
 from seatrial.cosim.master import Master
-from seatrial.cosim.osp.reading import read_osp
 from seatrial.cosim.packages import is_package, read_package
-from seatrial.cosim.ssp.reading import read_ssp
-from seatrial.cosim.ssp.tools import findings
 from seatrial.errors import InputError
+from seatrial_kits.interchange.osp.reading import read_osp
+from seatrial_kits.interchange.ssp.reading import read_ssp
+from seatrial_kits.interchange.ssp.tools import findings
 
 from .osp_files import write_osp
 from .ssp_natives import bound, build, component, elements, package, ssd, value, values

@@ -17,10 +17,10 @@ import pytest
 from typer.testing import CliRunner
 
 from seatrial.cli.fmu import fmu_app
+from seatrial.fmi.compiler import HERE, library_here
 from seatrial.fmi.export import build_fmu
-from seatrial.fmi.native.compiler import HERE, library_here
-from seatrial.fmi.native.export import build_native_fmu
-from seatrial.fmi.standalone.export import build_standalone_fmu
+from seatrial_kits.native.export import build_native_fmu
+from seatrial_kits.native.standalone.export import build_standalone_fmu
 from tests.command import seatrial
 
 from .conftest import source

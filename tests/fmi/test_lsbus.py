@@ -10,16 +10,16 @@ import pytest
 from typer.testing import CliRunner
 
 from seatrial import Simulation
-from seatrial.cli.osp import osp_app
-from seatrial.cli.ssp import ssp_app
-from seatrial.cosim.ssp.reading import read_ssp
 from seatrial.errors import InputError, SimulationError
 from seatrial.fmi.load import load_fmu
 from seatrial.fmi.terminals import PLACE
-from seatrial.links.can.frame import Frame
 from seatrial.trials.run import run_trial
 from seatrial.trials.trial import load_trial
-from tests.links.can.reference_bits import classic
+from seatrial_kits.can.frame import Frame
+from seatrial_kits.interchange.command_osp import osp_app
+from seatrial_kits.interchange.command_ssp import ssp_app
+from seatrial_kits.interchange.ssp.reading import read_ssp
+from tests.kits.can.reference_bits import classic
 
 from ..command import seatrial
 from ..cosim.ssp_natives import component, connection, elements, package, ssd

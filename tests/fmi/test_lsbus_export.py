@@ -23,10 +23,10 @@ from lxml import etree
 from seatrial import Simulation
 from seatrial.component import Component, Input, Output, terminal
 from seatrial.errors import InputError
+from seatrial.fmi.compiler import HERE, library_here
 from seatrial.fmi.export import build_fmu
 from seatrial.fmi.index import components
 from seatrial.fmi.load import load_fmu
-from seatrial.fmi.native.compiler import HERE, library_here
 from seatrial.fmi.source import ComponentSource, find_source
 from seatrial.fmi.terminals import PLACE
 from seatrial.fmi.version3.buses import can_terminals
@@ -214,7 +214,7 @@ def test_files_say_what_the_layered_standard_asks(fmus, name, terminals, is_bus)
 
 
 def test_all_components_on_a_can_bus_are_on_those_of_others_too() -> None:
-    """All that exchange operations of `seatrial.links.can`: they say so by the role of their ports."""
+    """All that exchange operations of `seatrial_kits.can`: they say so by the role of their ports."""
     found = {}
     for name in components().names():
         source = find_source(name, Path.cwd())

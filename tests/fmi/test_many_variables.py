@@ -13,7 +13,6 @@ from typer.testing import CliRunner
 from benchmarks.big_models import RIG, TRIAL, description, write_fmu
 from seatrial.cli.fmu import fmu_app
 from seatrial.cli.main import app
-from seatrial.cosim.osp.groups import Groups
 from seatrial.errors import InputError
 from seatrial.fmi.conformance import problems
 from seatrial.fmi.instance import Variables
@@ -22,6 +21,7 @@ from seatrial.fmi.osp import osp_file
 from seatrial.fmi.terminals import MemberReader
 from seatrial.trials.run import run_trial
 from seatrial.trials.trial import load_trial
+from seatrial_kits.interchange.osp.groups import Groups
 
 from .native import SLAVES, described_fmu
 

@@ -17,12 +17,12 @@ from fmpy.validation import validate_fmu
 
 from seatrial.component import Component, Input, Parameter
 from seatrial.errors import InputError
+from seatrial.fmi.compiler import HERE, library_here
 from seatrial.fmi.index import component_class, components
-from seatrial.fmi.native.carriers import why_python
-from seatrial.fmi.native.compiler import HERE, library_here
-from seatrial.fmi.native.export import build_native_fmu
 from seatrial.fmi.source import find_source
 from seatrial.plant import Plant, State
+from seatrial_kits.native.carriers import why_python
+from seatrial_kits.native.export import build_native_fmu
 from tests.command import seatrial
 from tests.fmi.native_slave import Slave
 

@@ -14,11 +14,11 @@ import pytest
 
 from seatrial.component import Component
 from seatrial.errors import InputError
-from seatrial.fmi.native.compiler import HERE, SEMANTICS
-from seatrial.fmi.native.export import build_native_fmu
-from seatrial.fmi.native.translation.domain import TranslationError
-from seatrial.fmi.native.translation.unit import Unit
+from seatrial.fmi.compiler import HERE, SEMANTICS
 from seatrial.fmi.source import ComponentSource
+from seatrial_kits.native.export import build_native_fmu
+from seatrial_kits.native.translation.domain import TranslationError
+from seatrial_kits.native.translation.unit import Unit
 from tests.fmi.native_programs import HEADER, Program, component, shorter, smaller, written
 
 pytestmark = pytest.mark.skipif(HERE != "linux64", reason="loads libraries of Linux")

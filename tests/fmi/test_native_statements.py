@@ -14,14 +14,14 @@ import seatrial
 from seatrial.component import Component, Input, Noise, Output, Parameter
 from seatrial.errors import InputError, SimulationError
 from seatrial.faults.text import FAILURES, fault_text
+from seatrial.fmi.compiler import HERE, library_here
 from seatrial.fmi.index import component_class, components
-from seatrial.fmi.native.carriers import why_python
-from seatrial.fmi.native.compiler import HERE, library_here
-from seatrial.fmi.native.export import build_native_fmu
-from seatrial.fmi.native.tables import is_built_in
 from seatrial.fmi.source import find_source
 from seatrial.plant import Plant
 from seatrial.sampled import Sampled
+from seatrial_kits.native.carriers import why_python
+from seatrial_kits.native.export import build_native_fmu
+from seatrial_kits.native.tables import is_built_in
 from tests.fmi.native_slave import Slave
 from tests.fmi.native_slave3 import Slave3
 from tests.interop.native_fmus import moved, start_values
@@ -30,11 +30,18 @@ pytestmark = pytest.mark.skipif(HERE != "linux64", reason="loads libraries of Li
 
 QUICK = ("gnss", "station-keeping", "thruster")
 IN_FMI_3 = (*QUICK, "guidance", "imu", "wind")
+LINKS = (
+    "seatrial.links.",
+    *(
+        f"seatrial_kits.{kit}."
+        for kit in ("arduino", "ardupilot", "can", "gprs", "mavlink", "nmea", "px4", "videoray")
+    ),
+)
 CANDIDATES = [
     name
     for name in components().names()
     if not issubclass(component_class(name), Plant)
-    and not component_class(name).__module__.startswith("seatrial.links")
+    and not component_class(name).__module__.startswith(LINKS)
 ]
 STEPS = (0.01, 0.025, 0.004, 0.1)
 

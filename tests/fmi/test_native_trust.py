@@ -10,11 +10,11 @@ from typing import Any
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.fmi.native import cached, export, selfcheck
-from seatrial.fmi.native.carriers import why_python
-from seatrial.fmi.native.compiler import HERE, library_here
-from seatrial.fmi.native.translation.constants import fingerprint
+from seatrial.fmi.compiler import HERE, library_here
 from seatrial.fmi.source import ComponentSource, find_source
+from seatrial_kits.native import cached, export, selfcheck
+from seatrial_kits.native.carriers import why_python
+from seatrial_kits.native.translation.constants import fingerprint
 from tests.fmi import odd_components
 from tests.fmi.native_programs import BEYOND, HEADER, ODD, Program, Writer, component
 from tests.fmi.test_native_programs import differs, loaded
@@ -69,7 +69,7 @@ def test_what_lies_just_beyond(part: int) -> None:
 
 def test_a_mistake_of_the_translator_is_a_refusal(monkeypatch: pytest.MonkeyPatch) -> None:
     """Whatever goes wrong inside, the component stays Python, with the line where it went wrong."""
-    from seatrial.fmi.native.translation import expressions
+    from seatrial_kits.native.translation import expressions
 
     def broken(*_: Any) -> Any:
         raise KeyError("inside")
@@ -92,7 +92,7 @@ def test_c_that_differs_is_refused_with_both_values(
     own_cache: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Even where the translation is wrong, its numbers are never used; the refusal is kept."""
-    from seatrial.fmi.native.translation import operations
+    from seatrial_kits.native.translation import operations
 
     monkeypatch.setitem(operations._C, operations.ast.Mult, "+")
     monkeypatch.setattr(selfcheck, "_STEPS", 40)

@@ -14,9 +14,9 @@ import pytest
 
 from seatrial import Simulation
 from seatrial.cosim.assembly import assemble
-from seatrial.cosim.osp.reading import read_osp
-from seatrial.cosim.ssp.reading import read_ssp
 from seatrial.fmi.isolated import IsolatedInstance
+from seatrial_kits.interchange.osp.reading import read_osp
+from seatrial_kits.interchange.ssp.reading import read_ssp
 
 from ..cosim.osp_files import HEAD
 from ..cosim.ssp_natives import component, elements, package, ssd

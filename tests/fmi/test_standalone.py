@@ -14,9 +14,9 @@ from pymavlink import mavutil
 from seatrial.errors import InputError
 from seatrial.fmi.export import build_fmu
 from seatrial.fmi.source import ComponentSource, find_source
-from seatrial.fmi.standalone.distribution import distributions, files_of
-from seatrial.fmi.standalone.export import build_standalone_fmu
-from seatrial.fmi.standalone.shared_objects import least_glibc
+from seatrial_kits.native.standalone.distribution import distributions, files_of
+from seatrial_kits.native.standalone.export import build_standalone_fmu
+from seatrial_kits.native.standalone.shared_objects import least_glibc
 from tests.command import seatrial
 from tests.interop.running import free_port
 

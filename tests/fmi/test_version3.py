@@ -21,15 +21,16 @@ from lxml import etree
 from pymavlink import mavutil
 
 from seatrial.component import Component, Input, Output
+from seatrial.cosim.files import find_file
 from seatrial.errors import InputError, SimulationError
+from seatrial.fmi.compiler import HERE, checked_platforms, library_here
 from seatrial.fmi.export import build_fmu
 from seatrial.fmi.load import load_fmu, open_instance
-from seatrial.fmi.native.compiler import HERE, checked_platforms, library_here
-from seatrial.fmi.native.export import build_native_fmu
 from seatrial.fmi.source import ComponentSource, find_source
-from seatrial.fmi.standalone.export import build_standalone_fmu
 from seatrial.fmi.version3.sources import front_sources
 from seatrial.links.text import encode, packed, unpacked
+from seatrial_kits.native.export import build_native_fmu
+from seatrial_kits.native.standalone.export import build_standalone_fmu
 from tests.command import seatrial
 from tests.fmi.native_slave3 import Slave3
 from tests.interop.running import free_port
@@ -38,7 +39,6 @@ pytestmark = pytest.mark.skipif(HERE != "linux64", reason="loads libraries of Li
 
 HEADERS = Path(fmpy.__file__).parent / "c-code"
 SCHEMAS = Path(fmpy.__file__).parent / "schema" / "fmi3"
-HARNESS = Path(__file__).parents[2] / "harness"
 HOST = Path(__file__).parent / "slaves" / "host3.c"
 
 
@@ -134,7 +134,7 @@ def test_a_rig_of_python_fmus_has_the_same_record(tmp_path: Path) -> None:
 
 
 def _same_record(folder: Path, rig: str, trial: str, parameters: str = "") -> None:
-    text = (HARNESS / "rigs" / f"{rig}.toml").read_text("utf-8")
+    text = find_file("harness/rigs", rig).read_text("utf-8")
     for name in (path.stem for path in folder.glob("*.fmu")):
         assert f'fmu = "{name}"' in text
         text = text.replace(
@@ -142,7 +142,7 @@ def _same_record(folder: Path, rig: str, trial: str, parameters: str = "") -> No
         )
         text = text.replace(f'fmu = "{name}"', f'fmu = "{name}.fmu"')
     (folder / "rig.toml").write_text(text, "utf-8")
-    own = (HARNESS / "trials" / f"{trial}.toml").read_text("utf-8")
+    own = find_file("harness/trials", trial).read_text("utf-8")
     own = re.sub(r'^rig( *)= "[\w-]+"', r'rig\1= "rig.toml"', own, flags=re.MULTILINE)
     (folder / "trial.toml").write_text(own, "utf-8")
     records = []

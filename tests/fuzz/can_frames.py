@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from seatrial.links.can.frame import Frame
-from seatrial.links.can.operations import Transmit, encode
 from seatrial.links.text import Outbox
+from seatrial_kits.can.frame import Frame
+from seatrial_kits.can.operations import Transmit, encode
 
 
 def frames_of(data: bytes) -> list[Frame]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pynmea2
 
-from seatrial.links.ais.codec import Assembly, read, sentences, to_air
+from seatrial_kits.nmea.ais.codec import Assembly, read, sentences, to_air
 
 _PARTS, _NUMBERS = 9, 10
 """Most parts of one message, and numbers that tell messages in parts (IEC 61162-1)."""

@@ -8,10 +8,10 @@ import tempfile
 import zipfile
 from pathlib import Path
 
-from seatrial.cosim.ssp.reading import read_ssp
 from seatrial.errors import InputError
 from seatrial.fmi import load
 from seatrial.fmi.sources import read_build
+from seatrial_kits.interchange.ssp.reading import read_ssp
 
 _DESCRIPTION, _STRUCTURE = "modelDescription.xml", "SystemStructure.ssd"
 

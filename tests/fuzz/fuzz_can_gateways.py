@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from seatrial.links.can import gateway_slcan, gateway_socketcand, gateway_yd_raw
-from seatrial.links.can.operations import Transmit, decode, encode
+from seatrial_kits.can import gateway_slcan, gateway_socketcand, gateway_yd_raw
+from seatrial_kits.can.operations import Transmit, decode, encode
 
 CLIENTS = (
     gateway_slcan._Adapter,

@@ -8,10 +8,10 @@ import tempfile
 from pathlib import Path
 
 from seatrial.errors import InputError
-from seatrial.links.can.frame import Frame
-from seatrial.links.can.node import CanNode
-from seatrial.links.can_signals.component import SIGNALS, CanSignals
-from seatrial.links.can_signals.database import database_of
+from seatrial_kits.can.frame import Frame
+from seatrial_kits.can.node import CanNode
+from seatrial_kits.can.signals.component import SIGNALS, CanSignals
+from seatrial_kits.can.signals.database import database_of
 
 VALUES = (0.0, 1.0, -1e300, 1e300)
 

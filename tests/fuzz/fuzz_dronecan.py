@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dronecan import uavcan
 
-from seatrial.links.can.node import CanNode
-from seatrial.links.can.operations import Transmit, encode
-from seatrial.links.dronecan.autopilot import DroneCanAutopilot
-from seatrial.links.dronecan.codec import MOST_FRAMES
-from seatrial.links.dronecan.peripheral import DroneCanPeripheral
-from seatrial.links.dronecan.transfers import Transfers
 from seatrial.links.text import Outbox
+from seatrial_kits.can.dronecan.autopilot import DroneCanAutopilot
+from seatrial_kits.can.dronecan.codec import MOST_FRAMES
+from seatrial_kits.can.dronecan.peripheral import DroneCanPeripheral
+from seatrial_kits.can.dronecan.transfers import Transfers
+from seatrial_kits.can.node import CanNode
+from seatrial_kits.can.operations import Transmit, encode
 
 from .can_frames import frames_of, receive
 

@@ -6,12 +6,12 @@ import contextlib
 
 from seatrial.component import Component
 from seatrial.errors import InputError
-from seatrial.links.gprs.at_commands import LONGEST, Line, read_line
-from seatrial.links.gprs.component import GprsModem
-from seatrial.links.gprs.segments import decode, encode
-from seatrial.links.gprs.sentences import decode as read_sentence
-from seatrial.links.gprs.sentences import encode as write_sentence
 from seatrial.links.text import Outbox
+from seatrial_kits.gprs.at_commands import LONGEST, Line, read_line
+from seatrial_kits.gprs.component import GprsModem
+from seatrial_kits.gprs.segments import decode, encode
+from seatrial_kits.gprs.sentences import decode as read_sentence
+from seatrial_kits.gprs.sentences import encode as write_sentence
 
 
 def one(data: bytes) -> None:

@@ -8,12 +8,12 @@ import tempfile
 from pathlib import Path
 
 from seatrial.errors import InputError
-from seatrial.links.mavlink.parameter_file import ParameterFile
-from seatrial.links.mavlink.plan_file import read_items, write_items
-from seatrial.links.mavlink.signing import Signing
-from seatrial.links.mavlink.state_file import StateFile
-from seatrial.links.videoray.decode import describe_stream
-from seatrial.links.videoray.stream_file import read_stream
+from seatrial_kits.mavlink.parameter_file import ParameterFile
+from seatrial_kits.mavlink.plan_file import read_items, write_items
+from seatrial_kits.mavlink.signing import Signing
+from seatrial_kits.mavlink.state_file import StateFile
+from seatrial_kits.videoray.decode import describe_stream
+from seatrial_kits.videoray.stream_file import read_stream
 
 
 def one(data: bytes) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pymavlink.dialects.v20 import all as mavlink
 
-from seatrial.links.mavlink.codec import Codec
+from seatrial_kits.mavlink.codec import Codec
 
 _MOST_BYTES = 1 << 14
 

@@ -6,9 +6,9 @@ import math
 
 import pynmea2
 
-from seatrial.links.nmea0183.codec import decode
-from seatrial.links.nmea0183.lines import Lines
-from seatrial.links.nmea0183.orders import read_order
+from seatrial_kits.nmea.nmea0183.codec import decode
+from seatrial_kits.nmea.nmea0183.lines import Lines
+from seatrial_kits.nmea.nmea0183.orders import read_order
 
 _LONGEST = 1024
 

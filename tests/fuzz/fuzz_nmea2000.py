@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from seatrial.links.nmea2000.codec import Decoder
-from seatrial.links.nmea2000.component import Nmea2000
-from seatrial.links.nmea2000.received import Received
+from seatrial_kits.nmea.nmea2000.codec import Decoder
+from seatrial_kits.nmea.nmea2000.component import Nmea2000
+from seatrial_kits.nmea.nmea2000.received import Received
 
 from .can_frames import frames_of, receive
 

@@ -8,10 +8,10 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-from seatrial.cosim.osp.groups import Groups
-from seatrial.cosim.osp.structure import read_structure
 from seatrial.errors import InputError
 from seatrial.trials.scenario import read_scenario
+from seatrial_kits.interchange.osp.groups import Groups
+from seatrial_kits.interchange.osp.structure import read_structure
 
 _GROUPS = "x_OspModelDescription.xml"
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from seatrial.links.videoray import registers as csr
-from seatrial.links.videoray.decode import describe, describe_stream
-from seatrial.links.videoray.frame import PRO4, ROV, VRCSR, Frame, encode
-from seatrial.links.videoray.identity import Identity
-from seatrial.links.videoray.node import RovNode
-from seatrial.links.videoray.parser import Parser
-from seatrial.links.videoray.stream_file import Piece
+from seatrial_kits.videoray import registers as csr
+from seatrial_kits.videoray.decode import describe, describe_stream
+from seatrial_kits.videoray.frame import PRO4, ROV, VRCSR, Frame, encode
+from seatrial_kits.videoray.identity import Identity
+from seatrial_kits.videoray.node import RovNode
+from seatrial_kits.videoray.parser import Parser
+from seatrial_kits.videoray.stream_file import Piece
 
 _IDENTITY = Identity(
     "123456",

@@ -11,8 +11,8 @@ from seatrial.cosim.parameters import load_vehicle
 from seatrial.cosim.profile import load_profile
 from seatrial.errors import InputError
 from seatrial.trials.campaign import load_campaign
-from seatrial.trials.identify.planar_experiment import read_experiment
 from seatrial.trials.trial import load_trial
+from seatrial_kits.identify.studies.planar_experiment import read_experiment
 
 READERS = (load_trial, load_rig, load_profile, load_vehicle, load_campaign, read_experiment)
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from seatrial.links.can.frame import Frame
+from seatrial_kits.can.frame import Frame
 
 NODE = Path(__file__).with_name("node")
 needed = pytest.mark.skipif(

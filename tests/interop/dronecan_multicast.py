@@ -7,10 +7,10 @@ import time
 import dronecan
 from dronecan import uavcan
 
-from seatrial.links.can.component import CanBus
-from seatrial.links.can.component_gateway import CanGateway
-from seatrial.links.dronecan.peripheral import DroneCanPeripheral
-from tests.links.dronecan.bench import made
+from seatrial_kits.can.component import CanBus
+from seatrial_kits.can.component_gateway import CanGateway
+from seatrial_kits.can.dronecan.peripheral import DroneCanPeripheral
+from tests.kits.can.dronecan.bench import made
 
 STEP = 0.002
 DEADLINE_S = 60.0

@@ -23,7 +23,7 @@ from mavsdk.plugins.telemetry.telemetry import FlightMode
 
 from tests.interop import mavsdk_stages as stages
 from tests.interop.mavsdk_station import Station, answered, connected, refused
-from tests.links.mavlink.ground import north_of
+from tests.kits.mavlink.ground import north_of
 
 COURSE = ((20.0, 0.0), (20.0, 20.0), (0.0, 20.0), (0.0, 0.0))
 """Waypoints, m north and east of the origin."""

@@ -27,7 +27,7 @@ from mavsdk.plugins.offboard.offboard import (
 from mavsdk.plugins.telemetry.telemetry import FlightMode, Health
 
 from tests.interop.mavsdk_station import ANSWER_S, MANOEUVRE_S, Station, answered, flat, refused
-from tests.links.mavlink.ground import north_of
+from tests.kits.mavlink.ground import north_of
 
 NAN = math.nan
 DO_SET_MODE, REQUEST_MESSAGE, CUSTOM_MODE = 176, 512, 1

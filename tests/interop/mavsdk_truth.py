@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from seatrial.trials.run_folder import Run
-from tests.links.mavlink.ground import north_of
+from tests.kits.mavlink.ground import north_of
 
 Values = dict[str, Any]
 Array = NDArray[np.float64]

@@ -14,12 +14,12 @@ import fmpy
 from seatrial.component import Component
 from seatrial.faults.text import FAILURES, fault_text
 from seatrial.fmi.cache import cache_folder
+from seatrial.fmi.compiler import library_here
 from seatrial.fmi.index import component_class, components
-from seatrial.fmi.native.carriers import why_python
-from seatrial.fmi.native.compiler import library_here
-from seatrial.fmi.native.export import build_native_fmu
 from seatrial.fmi.source import find_source
 from seatrial.plant import Plant
+from seatrial_kits.native.carriers import why_python
+from seatrial_kits.native.export import build_native_fmu
 
 H, STEPS = 0.05, 40
 CHANGES = (5, 15, 30)

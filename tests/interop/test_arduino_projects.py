@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.links.arduino.bench import Bench
+from tests.kits.arduino.bench import Bench
 
 pytestmark = [pytest.mark.interop, pytest.mark.long]
 FOLDER = Path(os.environ.get("SEATRIAL_ARDUINO_PROJECTS", ""))

@@ -11,12 +11,12 @@ import can
 import pytest
 from nmea2000 import NMEA2000Decoder
 
-from seatrial.links.can.messages import frame_of
-from seatrial.links.nmea2000.codec import Message
 from seatrial.trials.run import run_trial
 from seatrial.trials.trial import load_trial
+from seatrial_kits.can.messages import frame_of
+from seatrial_kits.nmea.nmea2000.codec import Message
 from tests.interop import canboat
-from tests.links.nmea2000.network import Network
+from tests.kits.nmea.nmea2000.network import Network
 
 pytestmark = canboat.needed
 

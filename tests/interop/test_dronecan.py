@@ -9,9 +9,9 @@ from dronecan.app.dynamic_node_id import CentralizedServer
 from dronecan.app.node_monitor import NodeMonitor
 from dronecan.transport import get_active_union_field
 
-from seatrial.links.dronecan.autopilot import DroneCanAutopilot
-from seatrial.links.dronecan.peripheral import DroneCanPeripheral
-from tests.links.dronecan.bench import bench, made
+from seatrial_kits.can.dronecan.autopilot import DroneCanAutopilot
+from seatrial_kits.can.dronecan.peripheral import DroneCanPeripheral
+from tests.kits.can.dronecan.bench import bench, made
 
 RPM = math.tau / 60.0
 

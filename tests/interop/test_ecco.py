@@ -13,9 +13,9 @@ import pytest
 
 from seatrial.cosim.assembly import assemble
 from seatrial.cosim.master import Master
-from seatrial.cosim.osp.reading import read_osp
 from seatrial.fmi.load import load_fmu
-from seatrial.trials.export import export_osp
+from seatrial_kits.interchange.export import export_osp
+from seatrial_kits.interchange.osp.reading import read_osp
 from tests.cosim.bodies import TEXT
 
 from .test_osp_system import run

@@ -19,10 +19,10 @@ import pytest
 
 from seatrial.cosim.assembly import assemble
 from seatrial.cosim.master import Master
-from seatrial.cosim.osp.reading import read_osp
-from seatrial.cosim.osp.structure import read_structure
 from seatrial.cosim.rig import duration_ns
 from seatrial.cosim.survey.surveying import Surveyed, fmus_in, survey
+from seatrial_kits.interchange.osp.reading import read_osp
+from seatrial_kits.interchange.osp.structure import read_structure
 
 from .foreign import COLLECTIONS, collection
 

@@ -12,18 +12,18 @@ import pytest
 
 from seatrial.component import seconds
 from seatrial.cosim.assembly import assemble
+from seatrial.cosim.files import find_file
 from seatrial.cosim.flattening import load_rig
 from seatrial.cosim.master import Master
-from seatrial.cosim.native_carriers import carry_natively
 from seatrial.cosim.system import Engine, System
-from seatrial.shipped import shipped_folder
+from seatrial_kits.native.engine import carry_natively
 
 _KINDS = {float: "real", int: "integer", bool: "boolean", str: "string"}
 
 
 def plain(name: str, folder: Path) -> Path:
     """Return a copy of a shipped rig that couples as libcosim does."""
-    text = (shipped_folder("harness") / "rigs" / f"{name}.toml").read_text("utf-8")
+    text = find_file("harness/rigs", name).read_text("utf-8")
     path = folder / f"{name}.toml"
     path.write_text(f'algorithm = "plain-jacobi"\n{text}', "utf-8")
     return path

@@ -13,7 +13,7 @@ import pytest
 from pymavlink import mavutil
 from pymavlink.dialects.v20 import all as mavlink
 
-from tests.links.mavlink.ground import MISSION, Client, content, item, north_of
+from tests.kits.mavlink.ground import MISSION, Client, content, item, north_of
 
 from .bad_link import bad_link
 from .mavproxy import mavproxy

@@ -12,7 +12,7 @@ import pytest
 from pymavlink import mavftp, mavparm, mavutil
 from pymavlink.dialects.v20 import all as mavlink
 
-from tests.links.mavlink.ground import north_of
+from tests.kits.mavlink.ground import north_of
 
 from .running import HOST, free_port, running, wait_for
 

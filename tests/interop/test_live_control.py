@@ -145,7 +145,7 @@ def test_a_station_changes_the_pace_pauses_and_breaks_things(
     assert "off" in run.signals["autopilot.mavlink.failure.gps"]
 
 
-@pytest.mark.long  # tests/links/mavlink/test_pause.py has it in simulated wall time
+@pytest.mark.long  # tests/kits/mavlink/test_pause.py has it in simulated wall time
 def test_a_pause_that_nobody_can_end_is_over(station: Station, tmp_path: Path) -> None:
     links = f"udpout:{HOST}:{station.port}"
     sets = {"autopilot__mavlink__links": links, "autopilot__mavlink__station_timeout": "2 s"}

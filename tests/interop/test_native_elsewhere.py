@@ -17,7 +17,7 @@ from pathlib import Path
 import pytest
 
 from seatrial.fmi.cache import cache_folder
-from seatrial.fmi.native.compiler import HERE, TARGETS, library
+from seatrial.fmi.compiler import HERE, TARGETS, library
 
 from .native_fmus import DRIVER, HEADERS, STEPS, Case, native_names
 

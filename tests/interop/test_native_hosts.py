@@ -21,7 +21,7 @@ from fmpy.validation import validate_fmu
 from fmu_manipulation_toolbox.checker import OperationGenericCheck, OperationSemanticCheck
 from fmu_manipulation_toolbox.operations import FMU
 
-from seatrial.fmi.native.compiler import HERE
+from seatrial.fmi.compiler import HERE
 
 from .native_fmus import CHANGES, DRIVER, HEADERS, STEPS, Case, H, native_names
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import fmpy
 import pytest
 
-from seatrial.fmi.native.compiler import FLAGS, HERE
+from seatrial.fmi.compiler import FLAGS, HERE
 
 from .native_fmus import DRIVER, HEADERS, STEPS, Case, native_names
 

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 import pymap3d
 import pytest
 
-from seatrial.links.nmea0183.component import Nmea0183
+from seatrial_kits.nmea.nmea0183.component import Nmea0183
 
 DEG = math.pi / 180.0
 WAIT_S = 60.0

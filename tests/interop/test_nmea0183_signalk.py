@@ -9,7 +9,7 @@ from pathlib import Path
 import pymap3d
 import pytest
 
-from tests.links.nmea0183.bench import DEG, VALID, Bench
+from tests.kits.nmea.nmea0183.bench import DEG, VALID, Bench
 
 NODE = Path(__file__).with_name("node")
 WAIT_S = 120.0

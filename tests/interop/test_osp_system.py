@@ -12,9 +12,9 @@ from typing import Any
 import pytest
 
 from seatrial import run_trial
-from seatrial.cosim.osp.reading import read_osp
 from seatrial.fmi.load import load_fmu
-from seatrial.trials.export import export_osp
+from seatrial_kits.interchange.export import export_osp
+from seatrial_kits.interchange.osp.reading import read_osp
 from tests.cosim.osp_files import write_osp
 from tests.fmi.models import build_model_fmu
 

@@ -9,9 +9,9 @@ import pytest
 
 from seatrial.cosim.assembly import assemble
 from seatrial.cosim.flattening import load_rig
-from seatrial.cosim.ssp.reading import read_ssp
 from seatrial.cosim.system import System
-from seatrial.trials.export import export_ssp
+from seatrial_kits.interchange.export import export_ssp
+from seatrial_kits.interchange.ssp.reading import read_ssp
 
 from .ssp_tools import run
 from .test_libcosim import ours, plain

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.cosim.ssp.tools import findings
+from seatrial_kits.interchange.ssp.tools import findings
 from tests.cosim.ssp_natives import (
     bound,
     build,

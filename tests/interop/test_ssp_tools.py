@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.cosim.ssp.tools import FACTS, TOOLS, findings
+from seatrial_kits.interchange.ssp.tools import FACTS, TOOLS, findings
 from tests.cosim.ssp_files import (
     BACK,
     BINDING,

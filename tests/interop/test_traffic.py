@@ -4,22 +4,13 @@ import math
 
 import pytest
 
-from seatrial.links.ais.codec import sentences, to_air
-from seatrial.links.ais.station import position_report, static_reports
+from seatrial_kits.nmea.ais.codec import sentences, to_air
+from seatrial_kits.nmea.ais.station import position_report, static_reports
 from tests.interop import canboat
 from tests.interop.test_nmea0183_signalk import understood
-from tests.links.nmea0183.bench import DEG, VALID, Bench
-from tests.links.nmea2000.network import Network
-from tests.links.nmea2000.test_navigation import (
-    HERE,
-    LEG,
-    MOTION,
-    NODE,
-    A,
-    B,
-    at,
-    received,
-)
+from tests.kits.nmea.nmea0183.bench import DEG, VALID, Bench
+from tests.kits.nmea.nmea2000.network import Network
+from tests.kits.nmea.nmea2000.test_navigation import HERE, LEG, MOTION, NODE, A, B, at, received
 
 pytestmark = canboat.needed
 

@@ -5,9 +5,9 @@ import pytest
 from seatrial.cosim.assembly import assemble
 from seatrial.cosim.files import read_toml
 from seatrial.cosim.flattening import load_rig
-from seatrial.shipped import shipped_folder
+from seatrial.shipped import provided_folders
 
-RIGS = sorted((shipped_folder("harness") / "rigs").rglob("*.toml"))
+RIGS = [p for folder in provided_folders("harness/rigs") for p in sorted(folder.rglob("*.toml"))]
 
 
 def feeders(rig, **choices):

@@ -8,11 +8,11 @@ import pytest
 
 from seatrial.component import Component
 from seatrial.fmi.index import component_class, components
-from seatrial.links.can.frame import Frame
-from seatrial.links.can.operations import Transmit, encode
-from seatrial.links.gprs import segments
-from seatrial.links.gprs.base_station import BaseStation
 from seatrial.links.text import Outbox
+from seatrial_kits.can.frame import Frame
+from seatrial_kits.can.operations import Transmit, encode
+from seatrial_kits.gprs import segments
+from seatrial_kits.gprs.base_station import BaseStation
 
 
 def readers() -> list[str]:

@@ -16,9 +16,8 @@ import pytest
 import seatrial
 from seatrial.component import Reachable
 from seatrial.errors import InputError
-from seatrial.fmi.index import component_class, components
-from seatrial.links.can.gateway_url import FORMS as GATEWAYS
-from seatrial.links.can.gateway_url import open_gateway
+from seatrial.fmi.index import component_class, shipped_names
+from seatrial.kits import OURS
 from seatrial.links.endpoints.url import TRANSPORTS, open_endpoint
 from seatrial.links.hardware import (
     ALLOWED,
@@ -30,6 +29,8 @@ from seatrial.links.hardware import (
     is_virtual_can,
 )
 from seatrial.links.own_terminals import is_own
+from seatrial_kits.can.gateway_url import FORMS as GATEWAYS
+from seatrial_kits.can.gateway_url import open_gateway
 from tests.command import SEATRIAL
 
 RIG = """\
@@ -144,7 +145,7 @@ COMPONENTS = {
 
 
 def test_every_component_that_opens_something_is_here():
-    found = {n for n in components().shipped if issubclass(component_class(n), Reachable)}
+    found = {n for n in shipped_names() if issubclass(component_class(n), Reachable)}
     assert found == set(COMPONENTS)
 
 
@@ -165,10 +166,10 @@ def test_every_component_says_which_key_it_is(name, given):
 
 def test_nothing_else_opens_sockets_or_ports():
     """Modules that could: one that is new must ask `hardware`, and be in a test above."""
-    folder = Path(seatrial.__file__).parent
+    folder = Path(seatrial.__file__).parents[1]
     opening = {"socket", "serial", "can", "asyncio", "http", "urllib", "ssl", "socketserver", "pty"}
     found = set()
-    for path in folder.rglob("*.py"):
+    for path in [p for top in OURS for p in (folder / top).rglob("*.py")]:
         for node in ast.walk(ast.parse(path.read_text("utf-8"))):
             names = [a.name for a in node.names] if isinstance(node, ast.Import) else []
             if isinstance(node, ast.ImportFrom) and not node.level:
@@ -178,26 +179,30 @@ def test_nothing_else_opens_sockets_or_ports():
             if {n.partition(".")[0] for n in names if n != "urllib.parse"} & opening:
                 found.add(path.relative_to(folder).as_posix())
     between_processes = {  # sockets that no program outside can reach
-        "links/own_terminals.py",
-        "links/safe_state.py",
-        "trials/forked.py",
-        "trials/keeper.py",
-        "trials/link.py",
+        "seatrial/links/own_terminals.py",
+        "seatrial/links/safe_state.py",
+        "seatrial/trials/forked.py",
+        "seatrial/trials/keeper.py",
+        "seatrial/trials/link.py",
     }
-    opened_before = {"links/safe_state_keeper.py", "links/can/safe_state.py"}
-    of_tests = {"testing/mavlink_vehicle.py"}  # the other end, on the loopback only
-    # On the loopback, with a token: tests/live/test_server.py. The stage only wakes its loop.
-    pages = {"live/server.py", "live/stage.py", "live/gate.py"}
+    opened_before = {"seatrial/links/safe_state_keeper.py", "seatrial_kits/can/safe_state.py"}
+    of_tests = {"seatrial_kits/mavlink/testing.py"}  # the other end, on the loopback only
+    # On the loopback, with a token: tests/kits/live/test_server.py. The stage only wakes its loop.
+    pages = {
+        "seatrial_kits/live/server.py",
+        "seatrial_kits/live/stage.py",
+        "seatrial_kits/live/gate.py",
+    }
     assert found - between_processes - opened_before - of_tests - pages == {
-        "links/hardware.py",
-        "links/endpoints/pseudo_terminal.py",
-        "links/endpoints/serial_port.py",
-        "links/endpoints/tcp.py",
-        "links/endpoints/udp.py",
-        "links/can/dronecan_multicast.py",
-        "links/can/gateway_python_can.py",
-        "links/can/bus_log.py",
-        "links/can/messages.py",
+        "seatrial/links/hardware.py",
+        "seatrial/links/endpoints/pseudo_terminal.py",
+        "seatrial/links/endpoints/serial_port.py",
+        "seatrial/links/endpoints/tcp.py",
+        "seatrial/links/endpoints/udp.py",
+        "seatrial_kits/can/dronecan_multicast.py",
+        "seatrial_kits/can/gateway_python_can.py",
+        "seatrial_kits/can/bus_log.py",
+        "seatrial_kits/can/messages.py",
     }
 
 

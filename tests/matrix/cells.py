@@ -7,8 +7,8 @@ from itertools import product
 from typing import NamedTuple
 
 from seatrial.fmi.index import component_class, components
-from seatrial.links.can.gateway_url import FORMS
 from seatrial.links.endpoints.url import TRANSPORTS
+from seatrial_kits.can.gateway_url import FORMS
 
 from .kinds import Kind
 

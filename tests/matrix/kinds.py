@@ -14,7 +14,7 @@ COME_AND_GO = "programs come and go: that one has left is no loss of the link"
 NO_PORT = "the link takes nothing that another program could have"
 RAW = "bytes are passed on as they are: none of them is garbage to the link"
 ALONE = "python-can's virtual bus ends at this process: nobody is at its other end"
-NAMESPACE = "multicast needs a network namespace of its own: tests/links/can has the gateway in one"
+NAMESPACE = "multicast needs a network namespace of its own: tests/kits/can has the gateway in one"
 
 NOISE = b"\xff\xfe\x00garbage\r\n>\r<\x80\r\n" * 3
 LINES = b"t12\rT0000zzzz8\rt1239\r\xff\xfe\rr\r" + NOISE

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import pytest
 
-import seatrial.live.session  # noqa: F401  every copy of this process has it then
+import seatrial_kits.live.session  # noqa: F401  every copy of this process has it then
 from seatrial.cli import run_options
 
 from . import kinds as reasons

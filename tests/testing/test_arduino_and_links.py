@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.testing.arduino_board import sketch_rig
 from seatrial.testing.bench import Bench
+from seatrial_kits.arduino.testing import sketch_rig
 
 SKETCH = Path(__file__).parent / "sketches/rudder/rudder.ino"
 DBC = """VERSION ""

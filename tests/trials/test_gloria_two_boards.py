@@ -10,7 +10,7 @@ import pytest
 from seatrial.trials.run import run_trial
 from seatrial.trials.run_folder import Run, load_run
 from seatrial.trials.trial import load_trial
-from tests.links.arduino.bench import need
+from tests.kits.arduino.bench import need
 
 WHOLE = (
     "gloria-lookout",

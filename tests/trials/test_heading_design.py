@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.trials.heading_design import closed_loop, design_heading, least_damping
-from seatrial.trials.heading_design_page import stability, write_design
+from seatrial_kits.design.heading import closed_loop, design_heading, least_damping
+from seatrial_kits.design.heading_page import stability, write_design
 
 DATA = Path(__file__).parents[1] / "reference"
 A = np.array([[-0.76944, -0.33442], [-3.38925, -2.09400]])

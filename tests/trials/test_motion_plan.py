@@ -8,11 +8,11 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import minimize_scalar
 
 from seatrial.errors import InputError
-from seatrial.trials.motion_plan import plan_motion
-from seatrial.trials.motion_plan_page import settings, write_plan
 from seatrial.trials.run import run_trial
 from seatrial.trials.run_folder import load_run
 from seatrial.trials.trial import load_trial
+from seatrial_kits.videoray.plan.motion import plan_motion
+from seatrial_kits.videoray.plan.page import settings, write_plan
 
 M11, M22, M33, D11, D22, D33, E, ARM = 8.44, 12.55, 0.133, 0.95, 5.87, 0.023, 46.7, 0.1
 """The variant physical of videoray-surface."""

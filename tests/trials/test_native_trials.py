@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from seatrial.cosim.native_carriers import in_python
 from seatrial.shipped import available
 from seatrial.trials.hooks import Hooks
 from seatrial.trials.preparation import prepare
 from seatrial.trials.trial import load_trial
+from seatrial_kits.native.engine import in_python
 
 NATIVE = [
     "bluerov2-attitude",

@@ -10,14 +10,15 @@ import pytest
 
 from seatrial.component import NS
 from seatrial.cosim.files import available
-from seatrial.shipped import shipped_folder
+from seatrial.shipped import provided_folders
 from seatrial.trials.run import Hooks, run_trial
 from seatrial.trials.trial import load_trial
-from tests.links.arduino.bench import need
+from tests.kits.arduino.bench import need
 
 FILES = {
     path.stem: tomllib.loads(path.read_text("utf-8"))
-    for path in sorted((shipped_folder("harness") / "trials").glob("*.toml"))
+    for folder in provided_folders("harness/trials")
+    for path in sorted(folder.glob("*.toml"))
 }
 NAMES = list(FILES)
 PACED = [name for name, file in FILES.items() if "real_time" in file]
@@ -55,7 +56,8 @@ def test_every_shipped_trial_can_be_named() -> None:
 
 
 def test_no_campaign_hides_behind_a_trial() -> None:
-    campaigns = {path.stem for path in (shipped_folder("harness") / "campaigns").glob("*.toml")}
+    folders = provided_folders("harness/campaigns")
+    campaigns = {path.stem for folder in folders for path in folder.glob("*.toml")}
     assert campaigns
     assert campaigns.isdisjoint(NAMES)
 

@@ -35,7 +35,7 @@ def sea(tmp_path: Path) -> Path:
     (tmp_path / "vehicles").mkdir()
     (tmp_path / "vehicles" / "short.toml").write_text(SHORT)
     program = tmp_path / "ardurover"
-    module = f"{sys.executable} -m tests.links.ground_station.vehicle"
+    module = f"{sys.executable} -m tests.kits.mavlink.ground_station.vehicle"
     program.write_text(f'#!/bin/sh\nPYTHONPATH="{ROOT}:$PYTHONPATH" exec {module} "$@"\n')
     program.chmod(0o755)
     return tmp_path
@@ -89,7 +89,7 @@ def test_in_a_current_its_mission_does_not_drift(
 
 
 def test_a_firmware_that_says_nothing_ends_the_run(sea: Path) -> None:
-    peer = ROOT / "tests" / "links" / "ardupilot" / "peer.py"
+    peer = ROOT / "tests" / "kits" / "ardupilot" / "peer.py"
     (sea / "ardurover").write_text(f'#!/bin/sh\nexec {sys.executable} {peer} "$@"\n')
     port = free_port(socket.SOCK_STREAM)
     done = seatrial(

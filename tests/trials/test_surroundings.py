@@ -7,13 +7,13 @@ from seatrial.cosim.packages import read_package
 from seatrial.errors import InputError
 from seatrial.sea.seastate import SeaState
 from seatrial.sea.spectra import Jonswap
-from seatrial.trials.export import export_ssp
 from seatrial.trials.hooks import Hooks
 from seatrial.trials.preparation import prepare
 from seatrial.trials.run import run_trial
 from seatrial.trials.run_folder import load_run
 from seatrial.trials.sea_section import sea_figures
 from seatrial.trials.trial import load_trial
+from seatrial_kits.interchange.export import export_ssp
 
 RIG = """
 step = "20 ms"

@@ -13,12 +13,12 @@ from nmea2000 import NMEA2000Decoder
 from pymavlink import mavutil
 
 from seatrial.errors import InputError
-from seatrial.links.can import operations
-from seatrial.links.can.messages import message
 from seatrial.links.text import decode
 from seatrial.trials.run import run_trial
 from seatrial.trials.run_folder import load_run
 from seatrial.trials.trial import load_trial
+from seatrial_kits.can import operations
+from seatrial_kits.can.messages import message
 
 FEED = """
 step = "50 ms"

@@ -11,10 +11,10 @@ import pytest
 from pymavlink import mavutil
 
 from seatrial.links.serial_gateway import SerialGateway
-from seatrial.links.videoray.topside import Pro4Topside
 from seatrial.trials.run import Hooks, run_trial
 from seatrial.trials.run_folder import load_run
 from seatrial.trials.trial import load_trial
+from seatrial_kits.videoray.topside import Pro4Topside
 from tests.interop.running import running, wait_for
 
 pytestmark = pytest.mark.interop

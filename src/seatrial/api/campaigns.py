@@ -225,10 +225,10 @@ def ask_campaign(
     `run_campaign`; ``progress`` is called after each run with how many are done. Raises InputError
     for bad input before the first run, and for a library that is not installed.
     """
-    from ..campaigns.ask import ask
     from ..campaigns.ended import Ended
     from ..campaigns.sweep import How
     from ..links.hardware import confined
+    from ..plugins import service
     from ..trials.campaign import load_campaign
     from ..trials.cases import Case
 
@@ -243,6 +243,7 @@ def ask_campaign(
     with confined():
         target = None if out is None else Path(out)
         how = How(as_engine(engine), jobs)
+        ask = service("search.ask")
         finding, folder = ask(load_campaign(str(campaign)), question, target, how, done=done)
     return {**finding.content(), "folder": folder}
 

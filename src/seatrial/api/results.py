@@ -117,10 +117,10 @@ class TrialResult:
 
     def report(self) -> Path:
         """Write ``report.html`` into the folder and return its path."""
-        from ..live.stage import played
+        from ..trials.playing import play
         from ..trials.report import write_report
 
-        return write_report(self.folder, play=played)
+        return write_report(self.folder, play=play)
 
     @cached_property
     def _run(self) -> Run:

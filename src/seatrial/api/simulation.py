@@ -420,9 +420,10 @@ def _loaded_rig(name: str, step: Any, choices: Mapping[str, str] | None) -> Rig:
 
 def _started(system: System) -> Master:
     from ..cosim.master import Master
-    from ..cosim.native_carriers import carry_natively
+    from ..plugins import service
 
-    carry_natively(system)
+    if system.engine == "native":
+        service("native.carry")(system)
     master = Master(system)
     try:
         master.initialise()

@@ -10,7 +10,8 @@ from typing import Any
 from ..cosim.files import find_file, read_toml
 from ..cosim.parameters import split_reference
 from ..cosim.rig import Rig
-from ..shipped import shipped_folder
+from ..kits import kits
+from ..shipped import content_of, shipped_folder
 from ..trials.campaign import Campaign
 
 _SHIPPED = ("fmus", "harness", "hil_profiles", "vehicles")
@@ -28,6 +29,7 @@ def needed_files(campaign: Campaign) -> list[Path]:
     choose in them.
     """
     ours = [shipped_folder(each).resolve() for each in _SHIPPED]
+    ours += [content_of(kit).resolve() for kit in kits().found]
     sources = [campaign.read_from]
     pending: list[Path] = []
     for trial in campaign.trials:

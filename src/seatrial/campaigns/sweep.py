@@ -18,6 +18,7 @@ from typing import Any, get_args
 from .. import __version__
 from ..cosim.system import Engine
 from ..errors import InputError, unknown
+from ..shipped import provided_folders
 from ..trials.campaign import INDEX, Campaign
 from ..trials.case_list import Cases
 from ..trials.cases import Case
@@ -284,7 +285,8 @@ def index_of(
 
 def _called(path: Path) -> str:
     """Return what a command calls a campaign by, in the folder of its file or of its harness."""
-    is_named = path.parent.name == "campaigns" and path.parent.parent.name == "harness"
+    of_user = path.parent.name == "campaigns" and path.parent.parent.name == "harness"
+    is_named = of_user or path.parent in provided_folders("harness/campaigns")
     return path.stem if is_named else path.name
 
 

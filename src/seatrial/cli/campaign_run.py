@@ -14,10 +14,10 @@ from ..trials.campaign import Campaign, load_campaign, run_campaign
 from ..trials.campaign_report import write_campaign_report, write_case_report
 from ..trials.cases import Case
 from ..trials.hooks import Hooks
+from ..trials.playing import play
 from ..trials.run import Result
 from .answer import answer
 from .leaves import Leaves, exit_with
-from .looked_at import play
 from .show import console, print_case, print_notes, run_entry
 from .stopping import stoppable
 from .table_run import run_table

@@ -1,14 +1,16 @@
-"""The commands by name: where each is, and its line in the listing. No module is imported."""
+"""The commands by name, the core's and those of kits. No module of one is imported."""
 
 from __future__ import annotations
 
-from importlib import import_module
+from collections.abc import Mapping
+from pkgutil import resolve_name
 from typing import Any, NamedTuple
 
 import typer
 from typer.core import TyperCommand, TyperGroup
 
-from ..errors import SimulationError
+from ..errors import InputError, SimulationError
+from ..kits import kits
 from .starting import ending_at_once
 
 
@@ -16,71 +18,63 @@ class Command(NamedTuple):
     """A command, or a group of commands."""
 
     place: str
-    """``module:object`` in this package; the object is a function or a Typer application."""
+    """``module:object``; the object is a function or a Typer application."""
     help: str
     """The first line of the function's docstring."""
 
 
 COMMANDS = {
-    "run": Command("run:run", "Run a trial, or a campaign of trials, and say what holds."),
-    "campaign": Command(
-        "campaign:campaign_app", "Ask a campaign a question, or run one of its cases again."
+    "run": Command(
+        "seatrial.cli.run:run", "Run a trial, or a campaign of trials, and say what holds."
     ),
     "convergence": Command(
-        "convergence:convergence",
+        "seatrial.cli.convergence:convergence",
         "Halve a trial's communication step: order and error of each output; status 1 if erratic.",
     ),
     "list": Command(
-        "listing:list_all",
+        "seatrial.cli.listing:list_all",
         "List trials, campaigns, rigs, vehicles, profiles, experiments and FMUs by name.",
     ),
     "describe": Command(
-        "describe:describe",
+        "seatrial.cli.describe:describe",
         "Show a rig's components, rigs inside it, every connection, and what is left open.",
     ),
-    "new": Command("new:new_app", "Write the files of a vehicle of your own."),
-    "report": Command("report:report", "Write the report of a run again."),
+    "new": Command("seatrial.cli.new:new_app", "Write the files of a vehicle of your own."),
+    "report": Command("seatrial.cli.report:report", "Write the report of a run again."),
     "compare": Command(
-        "compare:compare", "Compare two runs signal by signal; status 1 if their signals differ."
-    ),
-    "design": Command(
-        "design:design",
-        "Design a heading autopilot: poles over the gain, gains for a damping ratio, stability.",
+        "seatrial.cli.compare:compare",
+        "Compare two runs signal by signal; status 1 if their signals differ.",
     ),
     "doctor": Command(
-        "doctor:doctor",
+        "seatrial.cli.doctor:doctor",
         "Show what works on this machine, what is missing, and how to fix it.",
     ),
-    "drive": Command(
-        "drive:drive",
-        "Drive a VideoRay Pro 4 with keys or a gamepad, and see its heading, depth and attitude.",
+    "fmu": Command("seatrial.cli.fmu:fmu_app", "List, build, check, describe and survey FMUs."),
+    "profile": Command(
+        "seatrial.cli.profile:profile_app", "Check and describe profiles of electronics."
     ),
-    "estimate": Command(
-        "estimate:estimate",
-        "Estimate the damping of a hull from its dimensions, as lines of a vehicle file too.",
-    ),
-    "export": Command(
-        "export:export", "Write the record of a run as MCAP, Parquet or a ROS 2 bag."
-    ),
-    "identify": Command(
-        "identify:identify",
-        "Identify an axis of a vehicle from a log; status 1 if the model is to be rejected.",
-    ),
-    "plan": Command(
-        "plan:plan",
-        "Plan a vessel's motion from wanted speeds; status 1 if its thrusters cannot do it.",
-    ),
-    "play": Command("play:play", "Play a run back in three dimensions, in a browser."),
-    "live": Command(
-        "live:live", "Run a rig in real time and show it in three dimensions, in a browser."
-    ),
-    "fmu": Command("fmu:fmu_app", "List, build, check, describe and survey FMUs."),
-    "profile": Command("profile:profile_app", "Check and describe profiles of electronics."),
-    "decode": Command("decode:decode_app", "Show recorded streams as text."),
-    "sketch": Command("sketch:sketch_app", "Begin, check, build and run Arduino sketches."),
-    "osp": Command("osp:osp_app", "Export system structures of OSP-IS, for libcosim."),
-    "ssp": Command("ssp:ssp_app", "Export and check SSP packages."),
 }
+
+
+def commands() -> dict[str, Command]:
+    """Return every command by name. Raises InputError for a name that two kits have."""
+    found = dict(COMMANDS)
+    for entry in kits().entries("commands"):
+        if entry.name in found:
+            other = found[entry.name].place
+            raise InputError(
+                f"the command {entry.name!r} is {other} and, of the kit {entry.kit}, {entry.target}"
+            )
+        found[entry.name] = Command(entry.target, entry.text)
+    return {name: found[name] for name in sorted(found, key=_place)}
+
+
+_FIRST = ("run", "campaign", "convergence", "list", "describe", "new", "report", "compare")
+
+
+def _place(name: str) -> tuple[int, str]:
+    """Return where a command stands in the listing: those that everybody needs come first."""
+    return (_FIRST.index(name) if name in _FIRST else len(_FIRST), name)
 
 
 class LazyGroup(TyperGroup):
@@ -89,7 +83,7 @@ class LazyGroup(TyperGroup):
     def __init__(self, **attributes: Any) -> None:
         super().__init__(**attributes)
         self.commands.update(
-            {name: TyperCommand(name, help=command.help) for name, command in COMMANDS.items()}
+            {name: TyperCommand(name, help=command.help) for name, command in commands().items()}
         )
 
     def invoke(self, ctx: Any) -> Any:
@@ -107,14 +101,26 @@ class LazyGroup(TyperGroup):
 
 def loaded(name: str) -> Any:
     """Return the command ``name`` with its options, imported."""
-    module, _, attribute = COMMANDS[name].place.partition(":")
+    entry = commands()[name]
     with ending_at_once():
-        found = getattr(import_module(f".{module}", __package__), attribute)
+        found = resolve_name(entry.place)
     parent = typer.Typer(rich_markup_mode=None)
     if isinstance(found, typer.Typer):
-        parent.add_typer(found, name=name, help=COMMANDS[name].help)
+        parent.add_typer(found, name=name, help=entry.help)
     else:
         parent.command(name)(found)
     from .answer import with_options
+    from .examples import examples
 
-    return with_options(typer.main.get_group(parent).commands[name])
+    return _with_examples(
+        with_options(typer.main.get_group(parent).commands[name]), name, examples()
+    )
+
+
+def _with_examples(command: Any, path: str, examples: Mapping[str, str]) -> Any:
+    """Return a command whose help, and that of those below, ends with an example."""
+    if path in examples:
+        command.epilog = f"Example: {examples[path]}"
+    for name, below in getattr(command, "commands", {}).items():
+        _with_examples(below, f"{path} {name}", examples)
+    return command

@@ -14,12 +14,12 @@ from ..errors import InputError
 from ..trials.accuracy import Accuracy, by_port, order_text, spread_text
 from ..trials.convergence import Convergence, run_convergence
 from ..trials.hooks import Hooks
+from ..trials.playing import play
 from ..trials.readable import number, person_scale
 from ..trials.report import write_report
 from ..trials.run import Result
 from ..trials.trial import load_trial
 from .answer import answer
-from .looked_at import play
 from .options import (
     Autopilot,
     Choices,

@@ -12,13 +12,13 @@ from rich.markup import escape
 from ..cosim.assembly import assemble
 from ..cosim.flattening import load_rig
 from ..cosim.forgotten import forgotten
-from ..cosim.native_carriers import in_python
 from ..cosim.packages import is_package, read_package
 from ..cosim.paths import joined
 from ..cosim.rig import Rig, Scope
 from ..cosim.system import Joint, System
 from ..cosim.unread import leave_out_unread
 from ..errors import InputError, unmatched
+from ..plugins import offered
 from ..trials.diagram import MOST_DRAWN, diagram
 from ..trials.naming import by_path, named_components
 from ..trials.trial import choices_in, is_trial, load_trial
@@ -94,7 +94,8 @@ def _print_rig(system: System, pattern: str, every: bool) -> None:
         console.print(f"  {escape(name)} = {escape(value)}", soft_wrap=True)
     _print_components(top, "", system.left_out)
     joints = [one for one in system.joints if _matches(pattern, one.source, one.target)]
-    python = in_python(system)
+    in_python = offered("native.in_python")
+    python = {} if pattern or in_python is None else in_python(system)
     width = max((len(joint.source) for joint in joints), default=0)
     lines = [f"{joint.source:{width}} -> {joint.target}{_transformed(joint)}" for joint in joints]
     alone = forgotten(system)
@@ -111,7 +112,7 @@ def _print_rig(system: System, pattern: str, every: bool) -> None:
             name for name in system.unconnected_inputs(optional=True) if _matches(pattern, name)
         ],
         "in Python, also with --engine native": [
-            f"{', '.join(names)}: {why}" for why, names in ({} if pattern else python).items()
+            f"{', '.join(names)}: {why}" for why, names in python.items()
         ],
         "shows": [
             f"{name} = {value!r}"

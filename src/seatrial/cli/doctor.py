@@ -7,6 +7,7 @@ import platform
 import sys
 import sysconfig
 from collections.abc import Callable
+from pathlib import Path
 
 import typer
 from rich.markup import escape
@@ -14,9 +15,11 @@ from rich.markup import escape
 from ..errors import InputError
 from ..fmi.cache import cache_folder, is_safe
 from ..fmi.libpython import find_libpython
+from ..kits import MANIFEST, OURS, kits
 from .answer import answer
 from .show import console
 
+_TOP = Path(__file__).parents[2]
 _PLATFORMS = {("Linux", "x86_64"), ("Windows", "AMD64")}
 
 
@@ -26,6 +29,7 @@ def doctor() -> None:
         ("Python", _python),
         ("platform", _platform),
         ("packages", _packages),
+        ("kits", kits_here),
         ("FMU cache", _cache),
         ("libpython", _libpython),
     ]
@@ -73,6 +77,19 @@ def _packages() -> tuple[bool, str]:
     if lacking:
         return False, f"install with  {sys.executable} -m pip install {' '.join(lacking)}"
     return True, ", ".join(found)
+
+
+def kits_here() -> tuple[bool, str]:
+    """Return if all kits can be used, and which there are, or what is wrong with others."""
+    installed = kits()
+    unwritten = sorted(
+        {path.parent.name for path in _TOP.glob(f"{OURS[1]}/*/{MANIFEST}")}
+        - {kit.name for kit in installed.found}
+        - set(installed.left_out)
+    )
+    wrong = [f"{name} is left out: {why}" for name, why in installed.left_out.items()]
+    wrong += [f"{name} is new: install seatrial again for its entry point" for name in unwritten]
+    return not wrong, "; ".join(wrong) or ", ".join(kit.name for kit in installed.found)
 
 
 def _cache() -> tuple[bool, str]:

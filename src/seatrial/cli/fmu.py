@@ -19,6 +19,7 @@ from ..cosim.values import from_entry
 from ..errors import InputError, unknown, unmatched
 from ..fmi.built import build_needed, compiler_of
 from ..fmi.cache import write_named
+from ..fmi.compiler import TARGETS, checked_platforms
 from ..fmi.description import summary
 from ..fmi.direct import DirectInstance
 from ..fmi.export import build_fmu
@@ -26,15 +27,11 @@ from ..fmi.forwarding.libraries import why_unchecked
 from ..fmi.instance import Value, Variable
 from ..fmi.load import load_fmu, open_instance
 from ..fmi.loaded import LoadedFmu
-from ..fmi.native.carriers import why_python
-from ..fmi.native.compiler import TARGETS, checked_platforms
-from ..fmi.native.export import build_native_fmu
 from ..fmi.osp import osp_file, osp_xml
 from ..fmi.source import ComponentSource, find_source, named_sources, shipped_sources
-from ..fmi.standalone.export import build_standalone_fmu
+from ..plugins import service
 from .answer import answer
 from .options import Autopilot, Choices, Every, Match, Settings, Variant, Vehicle, changes_of
-from .rig_fmu import RigBuild
 from .show import MOST_SHOWN, console, print_more, print_notes, print_table
 from .survey import survey_folder
 from .terminals import print_proposals, print_terminals
@@ -62,7 +59,9 @@ def build(
             metavar="FMU...", help="Shipped names or my.py:Class; default: all shipped."
         ),
     ] = None,
-    out: Annotated[Path, typer.Option(help="Folder for the .fmu files.")] = Path("."),
+    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for the .fmu files.")] = Path(
+        "."
+    ),
     parameters: Annotated[
         str | None, typer.Option(help="Bake in a vehicle's parameters: VEHICLE or VEHICLE.TABLE.")
     ] = None,
@@ -109,7 +108,9 @@ def build(
             if given:
                 raise InputError(f"--rig: a rig has no {option} of its own")
         wanted = checked_platforms(platforms) if platforms else []
-        whole = RigBuild(rig, changes, variant, 1 if seed is None else seed, version)
+        whole = service("interchange.rig_build")(
+            rig, changes, variant, 1 if seed is None else seed, version
+        )
         answer.result["files"] = [str(whole.build(out, carrier, wanted))]
         return
     if changes or seed is not None:
@@ -143,9 +144,9 @@ def _write_fmu(
     values: dict[str, Value] | None,
 ) -> None:
     if carrier == "native":
-        build_native_fmu(source, path, targets, values, version=version)
+        service("native.build_native_fmu")(source, path, targets, values, version=version)
     elif carrier == "standalone":
-        glibc = build_standalone_fmu(source, path, values, version)
+        glibc = service("native.build_standalone_fmu")(source, path, values, version)
         print_notes([f"{path} runs on Linux on x86-64 with glibc {glibc} or newer"])
     else:
         build_fmu(source, path, values, version, targets)
@@ -162,7 +163,10 @@ def _version(text: str) -> int:
 def _default_names(native: bool) -> list[str]:
     """Return the shipped components that can be built."""
     sources = shipped_sources()
-    return [n for n, s in sources.items() if not native or not why_python(s.component_class())]
+    if not native:
+        return list(sources)
+    why_python = service("native.why_python")
+    return [name for name, of in sources.items() if not why_python(of.component_class())]
 
 
 def _write_osp(source: ComponentSource, folder: Path) -> None:

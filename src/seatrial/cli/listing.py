@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import Annotated
 
+import typer
 from rich.markup import escape
 
-from ..errors import InputError
+from ..errors import InputError, unmatched
 from ..fmi.source import named_sources
 from ..reading import toml_content
 from ..shipped import available
@@ -32,24 +36,57 @@ _KEYS = {
     "FMUs": "fmus",
 }
 """How the kinds are called for programs, where that differs."""
+_BY_VEHICLE = ("trials", "campaigns", "rigs")
+_ANY = "any vehicle"
 
 
-def list_all() -> None:
+def list_all(
+    word: Annotated[
+        str,
+        typer.Argument(
+            metavar="[WORD]", help="Only what has a word that begins so in its name or title."
+        ),
+    ] = "",
+) -> None:
     """List trials, campaigns, rigs, vehicles, profiles, experiments and FMUs by name."""
     listed = {
         kind: {name: _title(path) for name, path in available(folder).items()}
         for kind, folder in _KINDS.items()
     }
     listed["FMUs"] = {name: source.title for name, source in named_sources().items()}
-    answer.result = {_KEYS.get(kind, kind): titles for kind, titles in listed.items()}
-    for kind, titles in listed.items():
-        _print(kind, titles)
+    vehicles = [*listed["parameters of vehicles"]]
+    begins = re.compile(rf"(?<![^\W_]){re.escape(word)}", re.IGNORECASE)  # no "plotter" for "otter"
+    found = {
+        kind: {n: title for n, title in titles.items() if begins.search(f"{n} {title}")}
+        for kind, titles in listed.items()
+    }
+    if not any(found.values()):
+        names = sorted({name for titles in listed.values() for name in titles})
+        raise InputError(unmatched("name or title", word, names))
+    answer.result = {_KEYS.get(kind, kind): titles for kind, titles in found.items()}
+    for kind, titles in found.items():
+        if titles:
+            console.print(f"[bold]{kind}[/bold]")
+            _print(titles, vehicles if kind in _BY_VEHICLE else [])
 
 
-def _print(kind: str, titles: dict[str, str]) -> None:
-    console.print(f"[bold]{kind}[/bold]")
+def _print(titles: Mapping[str, str], vehicles: Iterable[str]) -> None:
+    """Print names with titles, those of one vehicle together."""
+    groups: dict[str, dict[str, str]] = {}
     for name, title in titles.items():
-        console.print(f"  {name:28} [dim]{escape(title)}[/dim]", soft_wrap=True)
+        groups.setdefault(_vehicle_of(name, vehicles), {})[name] = title
+    for vehicle in sorted(groups, key=lambda vehicle: (vehicle == _ANY, vehicle)):
+        if vehicle != _ANY or len(groups) > 1:
+            console.print(f"  {vehicle}")
+        indent = "    " if len(groups) > 1 or vehicle != _ANY else "  "
+        for name, title in groups[vehicle].items():
+            console.print(f"{indent}{name:28} [dim]{escape(title)}[/dim]", soft_wrap=True)
+
+
+def _vehicle_of(name: str, vehicles: Iterable[str]) -> str:
+    """Return the vehicle that a name begins with, the longest if there are several."""
+    begun = [each for each in vehicles if name == each or name.startswith(f"{each}-")]
+    return max(begun, key=len, default=_ANY)
 
 
 def _title(path: Path) -> str:

@@ -12,6 +12,7 @@ import typer
 
 from .. import __version__
 from ..errors import InputError, SeatrialError, SimulationError
+from ..kits import lacking
 from ..printable import PrintableFormatter, printable
 from .answer import answer, renewed
 from .commands import LazyGroup
@@ -69,6 +70,8 @@ def _run() -> None:
         answer.end(status, _MISUSED if status == BAD_INPUT else None)
         raise
     except Exception as error:  # Python's own status 1 would say that a criterion failed
+        if said := lacking(error):
+            _complain(InputError(said), BAD_INPUT)
         if _comes_of_interruption(error):
             _complain(SimulationError("stopped"), BROKEN)
         print(printable(traceback.format_exc()), file=sys.stderr)

@@ -51,7 +51,8 @@ EngineName = Annotated[
     ),
 ]
 Out = Annotated[
-    Path | None, typer.Option("--out", help="Folder of the run (default: runs/NAME-DATE-TIME).")
+    Path | None,
+    typer.Option("--out", "-o", help="Folder of the run (default: runs/NAME-DATE-TIME)."),
 ]
 Hardware = Annotated[
     bool, typer.Option("--hardware", help="Allow devices; what is behind them may move.")

@@ -9,9 +9,9 @@ import typer
 
 from ..campaigns.page import has_table, write_table_page
 from ..trials.campaign_report import CAMPAIGN, write_campaign_report
+from ..trials.playing import play
 from ..trials.report import write_report
 from .answer import answer
-from .looked_at import play
 from .show import console
 
 

@@ -11,15 +11,15 @@ from ..cosim.fault_entry import read_fault
 from ..cosim.system import Engine
 from ..errors import InputError
 from ..links.hardware import allow_devices, allow_network
+from ..plugins import service
 from ..trials.hooks import Hooks
+from ..trials.playing import play
 from ..trials.report import write_report
 from ..trials.supervision import run_supervised
 from ..trials.trial import Trial, load_trial
 from .answer import answer
 from .campaign_run import How, run_cases
 from .leaves import Leaves, exit_with
-from .live import LiveControl, Page, page_of, run_watched
-from .looked_at import play
 from .named import refuse_rig, runnable
 from .options import (
     Autopilot,
@@ -35,7 +35,6 @@ from .options import (
     engine_named,
     is_campaign,
 )
-from .play import Open, Port
 from .run_options import (
     Cluster,
     HangAfter,
@@ -44,8 +43,11 @@ from .run_options import (
     KeepGoing,
     KeepName,
     Live,
+    LiveControl,
     NoReport,
+    Open,
     Overrun,
+    Port,
     RealTime,
     Record,
     Resume,
@@ -93,7 +95,7 @@ def run(
     changes = changes_of(settings, choices, vehicle, autopilot)
     pace = {"factor": real_time, "overrun": overrun}
     pace = {key: value for key, value in pace.items() if value is not None}
-    page = page_of(port, open_, hardware, live_control) if live else None
+    page = service("live.page_of")(port, open_, hardware, live_control) if live else None
     if page is None and (port or open_ or live_control):
         raise InputError("--port, --open and --live-control go with --live")
     leaves = Leaves(junit, not no_report)
@@ -140,7 +142,7 @@ def _run_trial(
     trial: Trial,
     out: Path | None,
     engine: Engine,
-    page: Page | None,
+    page: Any | None,
     leaves: Leaves,
     hang_after: float | None,
     keep_going: bool,
@@ -160,7 +162,7 @@ def _run_trial(
             if page is None:
                 result = run_supervised(trial, out, engine=engine, hooks=hooks)
             else:
-                result = run_watched(trial, out, engine, hooks, page)
+                result = service("live.run_watched")(trial, out, engine, hooks, page)
         print_verdicts(result)
         answer.result = {"trial": trial.name, "runs": [run_entry(result)]}
         leaves.write_junit([(trial.name, result)])

@@ -40,6 +40,16 @@ Live = Annotated[
     bool,
     typer.Option("--live", help="Show the run in three dimensions, in a browser, as it goes."),
 ]
+Port = Annotated[
+    int, typer.Option("--port", metavar="N", min=0, max=65535, help="Port (0: any that is free).")
+]
+Open = Annotated[bool, typer.Option("--open", help="Open the page in a browser.")]
+LiveControl = Annotated[
+    bool,
+    typer.Option(
+        "--live-control", help="With --hardware: the page may command, too, and not only watch."
+    ),
+]
 HangAfter = Annotated[
     float | None,
     typer.Option(

@@ -8,7 +8,7 @@ from pathlib import Path
 from rich.markup import escape
 
 from ..errors import InputError
-from ..shipped import shipped_folder
+from ..shipped import provided_folders
 from .answer import answer
 from .show import console
 
@@ -52,7 +52,7 @@ def write(files: dict[Path, str], about: str, steps: list[tuple[str, str]]) -> N
     there += [folder for folder in folders if folder.exists() and not folder.is_dir()]
     if there:
         raise InputError(f"nothing is written, for there is already {_listed(there)}")
-    hidden = [path for path in files if _shipped(path).exists()]
+    hidden = [path for path in files if _is_shipped(path)]
     if hidden:
         raise InputError(
             f"nothing is written: seatrial ships {_listed(hidden)}, which yours would hide: take "
@@ -71,8 +71,9 @@ def write(files: dict[Path, str], about: str, steps: list[tuple[str, str]]) -> N
         console.print(f"  {escape(command.ljust(width))}  {purpose}", soft_wrap=True)
 
 
-def _shipped(path: Path) -> Path:
-    return shipped_folder(path.parts[0]).joinpath(*path.parts[1:])
+def _is_shipped(path: Path) -> bool:
+    folders = provided_folders(path.parent.as_posix())
+    return any((folder / path.name).exists() for folder in folders)
 
 
 def _listed(paths: list[Path]) -> str:

@@ -11,8 +11,9 @@ from typing import Any, TypeVar
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from ..errors import InputError, unknown
+from ..kits import kits
 from ..reading import toml_content
-from ..shipped import available, searched_folders, shipped_folder
+from ..shipped import available, provided_file, shipped_folder
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -37,23 +38,26 @@ def find_file(kind: str, name: str, relative_to: Path | None = None) -> Path:
 
     A path (with ``.toml``) wins, relative to ``relative_to`` or the current folder. A bare name
     is looked for in ``KIND`` (such as ``harness/rigs``) beside the user's file that says it,
-    then below the current folder, then among the shipped files. Raises InputError with near
-    misses.
+    then below the current folder, then among the files of the core and of kits. Raises InputError
+    with near misses, and for a name that two of the latter have.
     """
     if name.endswith(".toml"):
         path = ((relative_to or Path.cwd()) / name).resolve()
         if not path.is_file():
             raise InputError(f"there is no file {path}")
         return path
-    folders = [*_beside(kind, relative_to), *searched_folders(kind)]
-    for folder in folders:
+    for folder in (*_beside(kind, relative_to), Path.cwd() / kind):
         path = folder / f"{name}.toml"
         if path.is_file():
             return path
+    if (provided := provided_file(kind, name)) is not None:
+        return provided
     what = kind.rpartition("/")[2].rstrip("s") if "/" in kind else kind.rstrip("s")
     inside, slash, _ = name.rpartition("/")
     known = [f"{inside}{slash}{each}" for each in available(f"{kind}{slash}{inside}")]
-    raise InputError(unknown(what, name, known) + "; or give a path ending in .toml")
+    raise InputError(
+        unknown(what, name, known) + "; or give a path ending in .toml" + kits().hint()
+    )
 
 
 def _beside(kind: str, naming: Path | None) -> list[Path]:

@@ -25,9 +25,11 @@ class LastChange:
         self._at, self._what = t_ns / NS, what
 
     def note_set(self, t_ns: int, component: str, names: Sequence[str], values: Any) -> None:
-        """Note the values that ports were set to."""
-        ports = ", ".join(f"{component}.{name}" for name in names)
-        self.note(t_ns, f"{ports} set to {', '.join(map(repr, values))}")
+        """Note the values that ports were set to; where the run's folder is changes nothing."""
+        variables = self._network.system.parts[component].instance.variables
+        if any(variables[name].role != "run-folder" for name in names):
+            ports = ", ".join(f"{component}.{name}" for name in names)
+            self.note(t_ns, f"{ports} set to {', '.join(map(repr, values))}")
 
     def tell(self, error: SimulationError) -> None:
         """Add the last change, if there was one, to an error's message."""

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+from ..plugins import service
 from .packaged import OSP_FILE, SSP_FILE, PackagedSystem
 
 
@@ -23,12 +24,8 @@ def read_package(path: Path, changes: Mapping[str, Any]) -> PackagedSystem:
     A folder with both descriptions is OSP's, as libcosim has it. Raises InputError naming file
     and line.
     """
-    # Both need an XML library and FMPy.
     is_osp = path.suffix == ".xml" or (path / OSP_FILE).is_file()
-    if is_osp:
-        from .osp.reading import read_osp
-
-        return read_osp(path, changes.get("step"))
-    from .ssp.reading import read_ssp
-
-    return read_ssp(path, changes.get("step"))
+    read: Callable[[Path, Any], PackagedSystem] = service(
+        "interchange.read_osp" if is_osp else "interchange.read_ssp"
+    )
+    return read(path, changes.get("step"))

@@ -7,8 +7,9 @@ body origin, N.m, in body axes, on the right-hand side of
 
 Its coefficients are the craft's parameters. A vehicle's file names the terms that it takes
 (parameter ``terms``) and fills their coefficients. To add a term, write its function, enter it
-in `TERMS` and declare its parameters in `six_dof.SixDofCraft`. Source numbers are those of the
-vehicles' pages.
+in `TERMS` and declare its parameters in `six_dof.SixDofCraft`. A kit adds terms in the table
+``terms`` of its manifest; those with parameters of their own come with a craft of the kit, which
+declares them. Source numbers are those of the vehicles' pages.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from typing import Any
 import casadi as ca
 
 from ..errors import InputError, unknown
+from ..plugins import Registry
 from .context import Context
 from .coupled_damping import coupled_damping
 from .hull_lift import hull_lift
@@ -168,21 +170,25 @@ TERMS: dict[str, Term] = {
     WIND: wind_loads,
 }
 """Terms by the name that a vehicle's file writes."""
+OF_KITS = Registry("seatrial.terms", "term", {})
+"""Terms that kits add."""
 
 
 def read_terms(text: str, known: Mapping[str, Term] = TERMS) -> list[Term]:
     """Return the terms that ``text`` names, separated by spaces, in the order of the ``known``.
 
-    The order of the text does not matter, so that the same terms give the same bits. Raises
-    InputError for a name that is unknown or stands twice.
+    Terms of kits follow, by name: the order of the text does not matter, so that the same terms
+    give the same bits. Raises InputError for a name that is unknown or stands twice.
     """
     names = text.split()
+    added = sorted({name for name in names if name not in known})
     for name in names:
-        if name not in known:
-            raise InputError(f"terms: {unknown('term', name, known)}")
+        if name in added and name not in OF_KITS.names():
+            raise InputError(f"terms: {unknown('term', name, [*known, *OF_KITS.names()])}")
         if names.count(name) > 1:
             raise InputError(f"terms: {name!r} stands twice in {text!r}; each acts once")
-    return [term for name, term in known.items() if name in names]
+    own = [term for name, term in known.items() if name in names]
+    return [*own, *(OF_KITS.load(name) for name in added)]
 
 
 def symmetric(elements: Any) -> Any:

@@ -25,6 +25,7 @@ from functools import cache, cached_property, lru_cache
 from pathlib import Path
 
 from ..errors import InputError
+from ..kits import OURS
 from .source import ComponentSource
 
 _COOKIE = re.compile(r"^[ \t\f]*#.*?coding[:=]")
@@ -104,7 +105,7 @@ class _Local:
 
     def __init__(self, folder: Path | None, package: str | None) -> None:
         self.folder = folder
-        self.ours = {"seatrial": Path(__file__).parents[1], "pythonfmu": _package("pythonfmu")}
+        self.ours = {name: _package(name) for name in (*OURS, "pythonfmu")}
         self.roots = self.ours if package is None else {**self.ours, package: _package(package)}
         self.find = cache(self._find)  # most modules import the same few others
 
@@ -363,10 +364,18 @@ def _requirement(package: str) -> str:
     return bounds.get(distribution.lower(), distribution)
 
 
+_OF_DEVELOPERS = ("dev", "docs", "fuzz")
+"""Extras whose bounds are none of seatrial's own."""
+
+
 @cache
 def _bounds() -> dict[str, str]:
     """Return seatrial's own requirements by the names of the distributions."""
-    lines = [line for line in importlib.metadata.requires("seatrial") or [] if ";" not in line]
+    lines = [
+        line.partition(";")[0].strip()
+        for line in importlib.metadata.requires("seatrial") or []
+        if not any(f'extra == "{extra}"' in line for extra in _OF_DEVELOPERS)
+    ]
     return {found[0].lower(): line for line in lines if (found := re.match(r"[\w.-]+", line))}
 
 

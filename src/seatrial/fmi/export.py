@@ -17,10 +17,10 @@ from .. import __version__
 from ..errors import InputError
 from .bundle import bundled
 from .cache import cache_folder, write_named
+from .compiler import HERE
 from .dependencies.checked import refuse_mistakes
 from .description import describe
 from .forwarding.libraries import Compiler, bare_libraries, checked_libraries
-from .native.compiler import HERE
 from .packing import described_files, zipped
 from .slave import START_VALUES
 from .source import ComponentSource

@@ -1,7 +1,7 @@
-"""Index of components: those shipped (``fmus/index.toml``) and those of installed packages.
+"""Index of components: the core's (``fmus/index.toml``), those of kits and of installed packages.
 
-A package adds components by the entry-point group ``seatrial.components``; see
-`seatrial.plugins`.
+A kit lists components in its manifest (`kits`); a package adds single ones by the entry-point group
+``seatrial.components`` (`plugins`).
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from functools import cache
 
 from ..component import Component
 from ..errors import InputError
+from ..kits import is_target, kits
 from ..plugins import Registry
 from ..reading import toml_content
 from ..shipped import shipped_folder
@@ -28,7 +29,15 @@ def components() -> Registry:
 def title(name: str) -> str:
     """Return what a component is, for listings, without importing it."""
     entry = _index().get(name)
-    return entry["title"] if entry is not None else components().target(name)
+    if entry is not None:
+        return entry["title"]
+    of_kits = {entry.name: entry.text for entry in kits().entries("components")}
+    return of_kits.get(name) or components().target(name)
+
+
+def shipped_names() -> list[str]:
+    """Return the components of the core and of kits, in alphabetical order."""
+    return sorted({*_index(), *(entry.name for entry in kits().entries("components"))})
 
 
 def component_class(name: str) -> type[Component]:
@@ -50,7 +59,8 @@ def _index() -> Mapping[str, Mapping[str, str]]:
     for name, entry in content.items():
         if not (isinstance(entry, dict) and set(entry) == _KEYS):
             raise InputError(f'{path}: {name}: {{ class = "module:Class", title = "..." }} needed')
-        module, colon, cls = str(entry["class"]).partition(":")
-        if not (colon and cls.isidentifier() and all(p.isidentifier() for p in module.split("."))):
-            raise InputError(f"{path}: {name}.class: 'module:Class' needed, found {module!r}")
+        if not is_target(str(entry["class"])):
+            raise InputError(
+                f"{path}: {name}.class: 'module:Class' needed, found {entry['class']!r}"
+            )
     return content

@@ -5,10 +5,11 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from ..kits import OURS
 from .loaded import LoadedFmu
 
 _COPY = re.compile(r'(?<=File ")([^"\n]*[/\\]resources[/\\]bundle_[0-9a-f]+)[/\\]([^"\n]+)(?=")')
-_OURS = Path(__file__).parents[1]
+_TOP = Path(__file__).parents[2]
 
 
 def with_origins(text: str, fmu: LoadedFmu) -> str:
@@ -20,7 +21,7 @@ def with_origins(text: str, fmu: LoadedFmu) -> str:
     def original(found: re.Match[str]) -> str:
         place = Path(found[2])
         own = fmu.origin / place if fmu.origin is not None else place
-        ours = _OURS.parent / place if place.parts[0] == _OURS.name else own
+        ours = _TOP / place if place.parts[0] in OURS else own
         shown = ours if ours.is_file() else own
         return str(shown) if fmu.origin is not None and shown.is_file() else found[0]
 

@@ -12,6 +12,7 @@ from functools import cache
 from pathlib import Path
 
 from ..errors import InputError
+from ..kits import OURS
 from .loaded import LoadedFmu
 
 PARENT = 1
@@ -108,9 +109,14 @@ def _system() -> Iterator[str]:
             yield from ("--ro-bind", name, name)
 
 
+def _ours() -> list[Path]:
+    top = Path(__file__).resolve().parents[2]
+    return [top / name for name in OURS]
+
+
 def _python() -> list[Path]:
     """Return the folders of the interpreter, of installed packages and of seatrial."""
     user = [site.getusersitepackages()] if site.ENABLE_USER_SITE else []
     folders = [sys.prefix, sys.base_prefix, *site.getsitepackages(), *user]
-    wanted = [*map(Path, folders), Path(__file__).resolve().parents[1]]
+    wanted = [*map(Path, folders), *_ours()]
     return [path for path in dict.fromkeys(wanted) if path.is_dir() and path != Path("/usr")]

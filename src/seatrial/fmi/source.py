@@ -17,7 +17,8 @@ from typing import Any
 
 from ..component import Component
 from ..errors import InputError, unknown
-from .index import component_class, components, title
+from ..kits import OURS
+from .index import component_class, components, shipped_names, title
 from .table import table_component
 from .table_file import SUFFIXES, frozen_table
 
@@ -68,7 +69,7 @@ class ComponentSource:
     def package(self) -> str | None:
         """Top-level package of somebody else that has to travel in the FMU."""
         top = self.module.partition(".")[0]
-        return None if self.folder is not None or top == "seatrial" else top
+        return None if self.folder is not None or top in OURS else top
 
     @property
     def title(self) -> str:
@@ -205,7 +206,7 @@ def named_sources() -> dict[str, ComponentSource]:
 
 def shipped_sources() -> dict[str, ComponentSource]:
     """Return the shipped components by FMU name."""
-    return {name: _indexed(name) for name in components().shipped}
+    return {name: _indexed(name) for name in shipped_names()}
 
 
 def _indexed(name: str) -> ComponentSource:
@@ -218,7 +219,7 @@ def _user_source(path: Path, class_name: str, written: str) -> ComponentSource:
         raise InputError(f"{written}: there is no file {path}")
     if not (path.stem.isidentifier() and class_name.isidentifier()):
         raise InputError(f"{written}: file and class must be Python identifiers: my_boat.py:Class")
-    if path.stem in ("seatrial", "pythonfmu") or path.stem in sys.stdlib_module_names:
+    if path.stem in (*OURS, "pythonfmu") or path.stem in sys.stdlib_module_names:
         raise InputError(f"{written}: a file called {path.name} would hide a library; rename it")
     stem = f"{path.stem}_{class_name}"
     return ComponentSource(class_name, stem, path.stem, class_name, str(path), path.parent)

@@ -245,9 +245,9 @@ def _bus(message: dict[str, Any]) -> int:
     if not pid:
         status = 1
         try:
-            from .can.safe_state import send_to_bus  # python-can, where there is a bus
+            from ..plugins import service  # python-can, where there is a bus
 
-            send_to_bus(message["bus"], message["frames"])
+            service("can.send_to_bus")(message["bus"], message["frames"])
             status = 0
         finally:
             os._exit(status)

@@ -7,11 +7,8 @@ from typing import Any
 
 from ..api.simulation import Simulation
 from ..errors import InputError
-from .arduino_board import Board
-from .can_bus import Bus
+from ..plugins import service
 from .holding import During, hold_or_fail
-from .mavlink_vehicle import MavlinkVehicle, Station
-from .pro4 import Pro4
 
 
 class Bench(Simulation):
@@ -23,7 +20,7 @@ class Bench(Simulation):
 
     def __init__(self, rig: str | Path, *, mavlink: str = "", **settings: Any) -> None:
         self.properties = [("seatrial_rig", str(rig))]
-        self._station = Station() if mavlink else None
+        self._station = service("mavlink.station")() if mavlink else None
         if self._station is not None:
             url = {f"{mavlink}.links": self._station.url}
             settings["set"] = {**(settings.get("set") or {}), **url}
@@ -35,22 +32,22 @@ class Bench(Simulation):
         self.recording = self.record()
         self._vehicle = None
         if self._station is not None:
-            self._vehicle = MavlinkVehicle(self, self._station)
+            self._vehicle = service("mavlink.vehicle")(self, self._station)
 
-    def board(self, name: str) -> Board:
-        """Return the Arduino board that is the component ``name``."""
-        return Board(self, name)
+    def board(self, name: str) -> Any:
+        """Return the Arduino board that is the component ``name``, of the kit ``arduino``."""
+        return service("arduino.board")(self, name)
 
-    def bus(self, name: str, database: str | Path | None = None) -> Bus:
+    def bus(self, name: str, database: str | Path | None = None) -> Any:
         """Return the CAN bus that is the component ``name``; ``database`` is a DBC file."""
-        return Bus(self, name, database)
+        return service("can.bus")(self, name, database)
 
-    def pro4(self, name: str) -> Pro4:
+    def pro4(self, name: str) -> Any:
         """Return the device with a Pro 4 line that is the component ``name``."""
-        return Pro4(self, name)
+        return service("videoray.pro4")(self, name)
 
     @property
-    def vehicle(self) -> MavlinkVehicle:
+    def vehicle(self) -> Any:
         """The MAVLink vehicle that ``mavlink`` named. Raises InputError."""
         if self._vehicle is None:
             raise InputError("a vehicle needs simulation(RIG, mavlink=COMPONENT)")

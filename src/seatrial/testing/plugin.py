@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 if TYPE_CHECKING:
-    from .arduino_board import Board
     from .bench import Bench
     from .trial_run import TrialRun
 
@@ -130,12 +129,12 @@ def simulation(request: pytest.FixtureRequest) -> Iterator[Callable[..., Bench]]
 @pytest.fixture
 def sketch(
     request: pytest.FixtureRequest, simulation: Callable[..., Bench], tmp_path: Path
-) -> Callable[..., Board]:
+) -> Callable[..., Any]:
     """A function that runs an Arduino sketch alone, and returns its board."""
-    from .arduino_board import sketch_rig
+    from ..plugins import service
 
-    def run(path: str | Path, **settings: Any) -> Board:
-        rig = sketch_rig(request.path.parent / path, tmp_path, settings)
+    def run(path: str | Path, **settings: Any) -> Any:
+        rig = service("arduino.sketch_rig")(request.path.parent / path, tmp_path, settings)
         return simulation(rig).board("board")
 
     return run

@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import Any, ClassVar, NoReturn
 
 from ..fmi.exit_status import how_ended
+from ..kits import OURS
 from ..links.safe_state import ENVIRONMENT
 from ..links.safe_state_keeper import SafeStates
 from .call_trace import CallTrace
@@ -38,7 +39,7 @@ _LAST_STREAM = 2
 _SHOWN_FRAMES = 3
 _FRAME = re.compile(r'^  File "(.+)", line (\d+) in (.+)$', re.MULTILINE)
 _LOGGER = logging.getLogger("seatrial.trials.forked")
-_OWN = str(Path(__file__).parents[1])
+_OWN = tuple(str(Path(__file__).parents[2] / name) for name in OURS)
 
 
 class Forked:

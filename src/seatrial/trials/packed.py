@@ -5,7 +5,7 @@ from __future__ import annotations
 import base64
 import zlib
 
-_LESS = b","
+LESS = b","
 """For ``<``, which would begin a tag; Python's alphabet has no comma."""
 
 
@@ -15,4 +15,4 @@ def packed(content: str | bytes) -> str:
     Letters are those of `base64.b85encode`, with a comma for ``<``; below is zlib's format.
     """
     data = content.encode() if isinstance(content, str) else content
-    return base64.b85encode(zlib.compress(data, 9)).replace(b"<", _LESS).decode("ascii")
+    return base64.b85encode(zlib.compress(data, 9)).replace(b"<", LESS).decode("ascii")

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from ..cosim.system import Engine
 from ..errors import InputError
 from ..fmi.source import ComponentSource, find_source
+from ..kits import is_ours
 from .trial import Trial
 
 _OF_FMUS = ("seatrial.fmi.export", "seatrial.fmi.load")
@@ -24,7 +25,7 @@ def preload(trials: Sequence[Trial], engine: Engine) -> None:
         for placed in (p for p in trial.rig.components.values() if p.entry.fmu):
             with contextlib.suppress(InputError):  # it will be said when it is loaded
                 source = find_source(placed.entry.fmu, placed.scope.folder)
-                if isinstance(source, ComponentSource) and source.module.startswith("seatrial."):
+                if isinstance(source, ComponentSource) and is_ours(source.module):
                     modules.add(source.module)
     for module in sorted(modules):
         importlib.import_module(module)

@@ -9,10 +9,10 @@ from typing import Any
 from ..cosim.assembly import assemble
 from ..cosim.forgotten import forgotten
 from ..cosim.master import Master
-from ..cosim.native_carriers import carry_natively
 from ..cosim.system import Engine, System
 from ..cosim.unread import leave_out_unread
 from ..errors import InputError, SimulationError, listed
+from ..plugins import service
 from .checks import (
     check_criteria,
     check_events,
@@ -109,7 +109,8 @@ def prepare(trial: Trial, engine: Engine, hooks: Hooks) -> Prepared:
         trial_faults(trial, system)
         check_real_time(trial, system)
         leave_out_unread(system, named_components(trial, system))
-        carry_natively(system, building)
+        if system.engine == "native":
+            service("native.carry")(system, building)
         recorded = recorded_signals(trial, system, is_asked=is_asked)
     except BaseException:
         system.discard()

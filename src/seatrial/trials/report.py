@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from html import escape
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ..cosim.paths import split_axis, split_path
+from ..kits import lacking
+from ..plugins import Registry
 from ..whole_file import write_whole
 from .accuracy_section import accuracy_section
 from .autopilot_section import add_estimate, autopilot_rows
@@ -94,6 +97,8 @@ class Port:
         return signal.removeprefix(f"{self.component}.{self.name}").lstrip(".") or self.name
 
 
+SECTIONS = Registry("seatrial.sections", "section of reports", {})
+"""Functions of kits: of a run, title and figure (JSON for Plotly) of each further section."""
 _OWN_TABLES = ("step_times", "lost_links")
 """What ``timing.json`` has that is shown apart."""
 
@@ -139,7 +144,12 @@ def write_report(
 
 def _diagram(manifest: Mapping[str, Any]) -> str | None:
     components = {name: entry["fmu"] for name, entry in manifest["components"].items()}
-    return diagram(components, [(row[0], row[1]) for row in manifest["connections"]])
+    try:
+        return diagram(components, [(row[0], row[1]) for row in manifest["connections"]])
+    except ModuleNotFoundError as error:
+        if (said := lacking(error)) is None:
+            raise
+        return f"<p>No diagram: {escape(said)}</p>"
 
 
 def render(template: str, library: str | None = None, **content: Any) -> str:
@@ -204,6 +214,8 @@ def _sections(run: Run) -> Iterator[Section]:
             [_panel(run, p, p.signals) for p in forces if units[p] == u] for u in _FORCE_UNITS
         ]
         yield Section("Forces and moments", _over_time(run, [c for c in columns if c]))
+    for name in SECTIONS.names():
+        yield from (Section(title, figure) for title, figure in SECTIONS.load(name)(run))
     shown = {*motion, *speeds, *forces}
     yield from _rest(run, [p for p in ports if p not in shown])
 

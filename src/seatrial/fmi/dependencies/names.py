@@ -9,13 +9,13 @@ from pathlib import Path
 
 from ...component import Component
 from ...errors import InputError
+from ...kits import is_ours
 from ...plant import Plant
 from ...ports import Output
 from .text import first_argument, methods, self_names, tree_of
 from .values import UndecidedError
 
 _NEAR = 0.8
-_OURS = "seatrial."
 _NAMED = ("getattr", "hasattr", "setattr")
 _PLAIN = ("isinstance", "super", "type", "id")
 _ZERO = ([0], [0.0], [""], [False])
@@ -31,7 +31,7 @@ def refuse_mistyped(cls: type[Component]) -> None:
     have nothing to say, and a class without a method does nothing on purpose.
     """
     try:
-        own = [function for function in methods(cls) if not function.__module__.startswith(_OURS)]
+        own = [function for function in methods(cls) if not is_ours(function.__module__)]
         if any(_hands_on(tree_of(function)) for function in own):
             return
         named = self_names(cls)
@@ -62,7 +62,7 @@ def _set_by_text(cls: type[Component]) -> Iterator[str]:
     if issubclass(cls, Plant):  # its equations give every output, or are refused
         return
     for base in cls.__mro__:
-        if base.__module__.startswith(_OURS):
+        if is_ours(base.__module__):
             continue
         for name in vars(base).get("_declared", ()):
             port = cls.ports[name]

@@ -12,7 +12,7 @@ import pythonfmu
 from ...component import Component
 from ...errors import InputError, unknown
 from ..cache import cache_folder, write_named
-from ..native.compiler import FLAGS, HERE, TARGETS, TUPLES, library, library_here
+from ..compiler import FLAGS, HERE, TARGETS, TUPLES, library, library_here
 from .sources import forwarding_sources
 
 Compiler = Callable[[Mapping[str, bytes], str, Sequence[str]], bytes]

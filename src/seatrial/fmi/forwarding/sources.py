@@ -10,10 +10,9 @@ from ...component import Component
 from ..version3.sources import front_sources
 
 _OWN = Path(__file__).parent
-_SOURCES = (
-    *("checked.c", "folder.c", "folder.h", "forwarded.h", "retired.h"),
-    "../native/seal.h",
-)
+SEAL = _OWN / "seal.h"
+"""C that native FMUs have, too."""
+_SOURCES = ("checked.c", "folder.c", "folder.h", "forwarded.h", "retired.h", SEAL.name)
 _HEADERS = ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h")
 """FMI's own (2-clause BSD, as they say), from FMPy."""
 

@@ -12,7 +12,7 @@ from .buses import events_header
 _OWN = Path(__file__).parent
 _SOURCES = (
     *("absent.c", "chunks.c", "events.c", "fmi3.c", "fmi2Functions.h", "front.h", "values.c"),
-    *("../forwarding/retired.h", "../native/seal.h"),
+    *("../forwarding/retired.h", "../forwarding/seal.h"),
 )
 _HEADERS = (
     *("fmi2FunctionTypes.h", "fmi2TypesPlatform.h"),

@@ -1,0 +1,1 @@
+"""A kit for seatrial: craft with a skeg, and an inclinometer."""

@@ -1,0 +1,219 @@
+"""``seatrial sketch``: begin, check, build and run Arduino sketches."""
+
+from __future__ import annotations
+
+import re
+import time
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from seatrial.cli.templates import checked_name, texts, write
+from seatrial.cosim.profile import load_profile
+from seatrial.errors import InputError
+from seatrial.printable import printable
+
+from .build import build_host
+from .component import Arduino
+from .dialect import LIMITS
+from .emulator import build_emulator, build_firmware
+from .libraries import read_source
+from .mcus import MCUS
+from .sketch import Sketch, find_sketch
+from .unsupported import unsupported
+from .wiring import PARTS, read_uarts, read_wires
+
+sketch_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
+
+_STEP = 0.02
+_SOFT_SERIAL = re.compile(r"\bSoftwareSerial\s+\w+\s*[({]\s*(\d+)\s*,\s*(\d+)")
+_SERIAL = re.compile(r"\bSerial([123]?)\s*\.\s*begin\s*\(\s*(\d*)")
+_FOLDER = Annotated[str, typer.Argument(metavar="SKETCH", help="A sketch's folder or .ino.")]
+_BACKEND = Annotated[str, typer.Option(help="'host' or 'simavr'.")]
+_MCU = Annotated[str, typer.Option(help="atmega2560 or atmega328p.")]
+_PROFILE = Annotated[str, typer.Option(help="PROFILE:LINK whose parameters to use: gloria:mega.")]
+_LIBRARIES = Annotated[str, typer.Option(help="Folders of libraries, from the sketch's on; with ;")]
+_FLAGS = Annotated[str, typer.Option(help="Options of the compiler, as '-DNAME=VALUE'.")]
+
+
+@sketch_app.callback()
+def _options() -> None:
+    """Begin, check, build and run Arduino sketches."""
+
+
+@sketch_app.command()
+def new(
+    name: Annotated[
+        str, typer.Argument(metavar="NAME", help="Letters, digits, '-' and '_', 40 at most.")
+    ],
+) -> None:
+    """Write a sketch with its profile, rig and trial that run at once, below the current folder."""
+    sketch = texts(checked_name(name), "usv", "harness/firmware")
+    steps = [
+        (f"seatrial run {name}", "on the shipped catamaran"),
+        (f"seatrial run {name} --set autopilot.mega.backend=simavr", "its firmware"),
+        (f"seatrial sketch check harness/firmware/{name} --profile {name}:mega", "its lines"),
+        (f"seatrial sketch run harness/firmware/{name} --profile {name}:mega", "with a terminal"),
+        (f"seatrial describe sil --autopilot {name}", "what is connected to it"),
+    ]
+    write({**sketch, **texts(name, "sketch")}, "replace the sketch by yours", steps)
+
+
+@sketch_app.command()
+def check(
+    sketch: _FOLDER,
+    profile: _PROFILE = "",
+    backend: _BACKEND = "host",
+    mcu: _MCU = "",
+    libraries: _LIBRARIES = "",
+    flags: _FLAGS = "",
+) -> None:
+    """Say what a sketch is made of, what of it is unsupported, and if its lines fit a profile."""
+    values = _values(profile, mcu=mcu, libraries=libraries, flags=flags)
+    found = _found(sketch, values)
+    board = MCUS[values["mcu"]]
+    print(printable(f"{found.name} on the {board.board} ({board.name})"))
+    for kind, files in (
+        ("tab", found.tabs),
+        ("source", found.others),
+        ("library", found.libraries),
+    ):
+        for file in files:
+            print(printable(f"  {kind} {file}"))
+    for wire in read_wires(values.get("wires", ""), board):
+        place = f"0x{wire.place:02x}" if wire.kind in PARTS else f"pin {wire.place}"
+        print(printable(f"  {place}: {wire.kind} {wire.number or ''}".rstrip()))
+    problems = _lines(found, values)
+    if _checked_backend(backend) == "host":
+        print("what the back end 'host' does not show:")
+        for limit in LIMITS:
+            print(printable(f"  {limit}"))
+        problems = [*unsupported(found), *problems]
+    if problems:
+        raise InputError("\n".join(problems))
+    print("nothing is unsupported")
+
+
+@sketch_app.command()
+def build(
+    sketch: _FOLDER,
+    profile: _PROFILE = "",
+    backend: _BACKEND = "host",
+    mcu: _MCU = "",
+    libraries: _LIBRARIES = "",
+    flags: _FLAGS = "",
+) -> None:
+    """Build a sketch, and say where the program or the firmware is."""
+    values = _values(profile, mcu=mcu, libraries=libraries, flags=flags)
+    board = MCUS[values["mcu"]]
+    found = _found(sketch, values)
+    if _checked_backend(backend) == "host":
+        print(build_host(found, board))
+    else:
+        build_emulator(board)
+        print(build_firmware(found, board))
+
+
+@sketch_app.command()
+def run(
+    sketch: _FOLDER,
+    profile: _PROFILE = "",
+    backend: _BACKEND = "host",
+    mcu: _MCU = "",
+    libraries: _LIBRARIES = "",
+    flags: _FLAGS = "",
+    seconds: Annotated[float, typer.Option(help="How long.")] = float("inf"),
+) -> None:
+    """Run a sketch in real time, each UART at a pseudo-terminal that any terminal program opens.
+
+    Its sensors rest: for a boat around it, run a rig. Ends with Ctrl-C.
+    """
+    board = Arduino(Path(sketch).stem)
+    values = _values(profile, mcu=mcu, libraries=libraries, flags=flags)
+    values |= {"backend": _checked_backend(backend), "sketch": sketch}
+    if not profile and (opened := _opened(_found(sketch, values))):
+        values["uarts"] = opened
+    for name, value in values.items():
+        board.set(name, value)
+    listened = read_uarts(board.uarts)
+    board.set("monitors", " ".join(f"{uart}=pty" for uart in listened))
+    board.initialise()
+    board.begin()
+    try:
+        for uart, place in zip(listened, board.get("reached_at").split(), strict=True):
+            print(f"UART {uart}: {place}", flush=True)
+        begun, steps = time.monotonic(), 0
+        while steps * _STEP < seconds:
+            board.advance(steps * _STEP, _STEP)
+            steps += 1
+            time.sleep(max(0.0, begun + steps * _STEP - time.monotonic()))
+    except KeyboardInterrupt:
+        print("ended")
+    finally:
+        board.close()
+
+
+def _opened(sketch: Sketch) -> str:
+    """Return the UARTs that a sketch opens at rates written as numbers, as `uarts` has it."""
+    found = {
+        int(match[1] or 0): match[2]
+        for tab in sketch.tabs
+        for match in _SERIAL.finditer(read_source(tab))
+        if match[2]
+    }
+    return "; ".join(f"{uart} {rate}" for uart, rate in sorted(found.items()))
+
+
+def _checked_backend(backend: str) -> str:
+    if backend not in ("host", "simavr"):
+        raise InputError(f"back end {backend!r}: 'host' or 'simavr' is needed")
+    return backend
+
+
+def _found(sketch: str, values: dict[str, Any]) -> Sketch:
+    return find_sketch(sketch, values.get("libraries", ""), values.get("flags", ""))
+
+
+def _values(profile: str, **given: str) -> dict[str, Any]:
+    """Return the parameters of a profile's board, as PROFILE:LINK says, with those given."""
+    values: dict[str, Any] = {}
+    if profile:
+        name, _, link = profile.rpartition(":")
+        if not name:
+            raise InputError(f"--profile {profile!r} is not PROFILE:LINK, as gloria:mega")
+        values = load_profile(name).parameters(f"links.{link}")
+        if not values.keys() <= Arduino.ports.keys():
+            raise InputError(f"{profile} is not a link of the kind 'arduino'")
+    values = {"mcu": "atmega2560", **values, **{k: v for k, v in given.items() if v}}
+    if values["mcu"] not in MCUS:
+        raise InputError(f"mcu {values['mcu']!r}: {' or '.join(MCUS)} is needed")
+    return values
+
+
+def _lines(sketch: Sketch, values: dict[str, Any]) -> list[str]:
+    """Return the lines that the sketch opens and the board or the profile has not."""
+    wires = read_wires(values.get("wires", ""), MCUS[values["mcu"]])
+    pins = {wire.place for wire in wires if wire.kind in ("soft_rx", "soft_tx")}
+    problems = []
+    for file in sketch.tabs:
+        for number, line in enumerate(read_source(file).splitlines(), 1):
+            code, place = line.split("//")[0], f"{file}:{number}"
+            for match in _SERIAL.finditer(code):
+                problems += [f"{place}: {each}" for each in _no_uart(int(match[1] or 0), values)]
+            for match in _SOFT_SERIAL.finditer(code) if "uarts" in values else ():
+                rx, tx = int(match[1]), int(match[2])
+                if not pins & {rx, tx}:
+                    problems.append(
+                        f"{place}: the profile has no line at pins {rx} and {tx}: "
+                        f"wires of '{rx} soft_rx 1; {tx} soft_tx 1' bring that of UART 1 there"
+                    )
+    return problems
+
+
+def _no_uart(uart: int, values: dict[str, Any]) -> list[str]:
+    if uart >= MCUS[values["mcu"]].uarts:
+        return [f"this board has no UART {uart}"]
+    if "uarts" in values and uart not in read_uarts(values["uarts"]):
+        return [f"the profile has no line at UART {uart}"]
+    return []

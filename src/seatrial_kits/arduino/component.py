@@ -1,0 +1,336 @@
+"""An Arduino board as a component: a sketch's pins and serial ports on ports of a rig."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, ClassVar
+
+from seatrial.component import NS, Component
+from seatrial.craft.kinematics import to_body
+from seatrial.errors import InputError
+from seatrial.links.earth_field import earth_field
+from seatrial.links.endpoints.endpoint import Endpoint, report
+from seatrial.links.endpoints.url import other_end
+from seatrial.links.parameter_validation import start_us
+from seatrial.links.text import Inbox, Outbox
+
+from .board import DUTY, EDGE, EEPROM, RESET, UART, WIDTH, Board, Event, Inputs
+from .build import build_host
+from .eeprom import ERASED, read_eeprom, write_eeprom
+from .emulator import build_emulator, build_firmware, firmware_file
+from .mcus import CLOCK, MCUS, Mcu
+from .ports import ArduinoPorts
+from .pulses import Pulses
+from .real_board import RealBoard
+from .sketch import find_sketch
+from .uart_links import open_links
+from .wiring import PARTS, STEPPERS, UARTS, Wire, read_uarts, read_wires
+
+_GYRO, _FORCE, _FIELD, _PRESSURE, _TEMPERATURE, _FRAME = 0, 3, 6, 9, 10, 11
+_PIXELS = 320
+_ATMOSPHERE = 101325.0
+_WATCHED = ("servo", "pwm", "output", "step", "direction")
+_SOFT = {"soft_rx": "r", "soft_tx": "t"}
+
+
+class Arduino(ArduinoPorts):
+    """An Arduino Mega or Uno with a sketch, in lockstep with the rest, by CPU cycles at 16 MHz.
+
+    **Back ends.** ``host``: the unmodified sketch, compiled by the system's C++ compiler with an
+    Arduino API in simulated time; int has 16 bits. ``simavr``: the firmware, compiled by
+    avr-gcc with the Arduino core, or ``firmware`` as it is, on an emulated microcontroller.
+    ``board``: a real board at serial ports, on the wall clock: nothing but its UARTs, and in runs
+    in real time alone. Without a
+    sketch or firmware the board is there and does nothing.
+
+    **Wires**: what is connected where. ``PIN servo N`` gives pulse N, ``pwm`` duty, ``output`` and
+    ``input`` levels, ``voltage`` an ADC channel (5 V full scale), ``receiver`` a channel of an RC
+    receiver (pulses every 20 ms). ``PIN anemometer F``: a square wave of F Hz per m/s of
+    ``wind_speed``. ``PIN vane V``: a potentiometer, V volts a full turn, that points to where the
+    wind comes from, clockwise from the bow: V (wind_angle + pi) / 2 pi. ``ADDRESS mpu6050`` has
+    ``gyro`` and ``accelerometer``, ``hmc5883l`` the ``magnetic_field`` in body axes by
+    ``attitude`` (if 0, that of the World Magnetic Model at the home, at the start), ``ms5837``
+    (30BA) the pressure at ``depth`` under one atmosphere, ``pixy`` what a camera detects, in pixels
+    of 320 over ``view_width``. ``PIN step N`` counts the pulses to the driver of a stepper motor N,
+    down while ``PIN direction N`` is low. ``PIN soft_rx N`` and ``PIN soft_tx N``:
+    the line of UART N is at these pins, for SoftwareSerial.
+
+    **Time.** Inputs apply from the beginning of the step on. What happens on pins and lines is
+    stamped with its cycle; an output at t has what happened before t. Bytes that arrive on
+    ``rx`` are put on the line one after the other at the baud rate of ``uarts``, not before
+    their time and not before the step that has them; those that a UART sends are on ``tx`` when
+    their stop bit is over. A monitor receives what its UART sends, and its input goes to the UART
+    with the next step, besides what is on ``rx``. Bytes that come or go while a line is ``cut``
+    are lost.
+
+    **Supply.** Below ``supply_min`` the board is off: pins low, lines silent, what arrives lost.
+    When it is enough again the sketch begins anew, with the EEPROM as it was.
+
+    The sketch runs in a process of its own. If it crashes, overruns its stack, runs for
+    ``patience`` without returning or calling anything, or opens a UART at another rate than
+    its line has, the step raises SimulationError that says where. It cannot be rolled back.
+
+    Raises InputError at the start for wires that cannot be, tools that are not installed, and a
+    sketch that does not compile or uses what the back end has not.
+    """
+
+    feedthrough: ClassVar = {}
+    discrete = True
+    rolls_back = False
+    transient = Component.transient | {"_board", "_eeprom", "_monitors", "_pulses", "_wires"}
+
+    def __init__(self, name: str = "component") -> None:
+        super().__init__(name)
+        self._board: Board | RealBoard | None = None
+        self._off = False
+        self._monitors: dict[int, Endpoint] = {}
+
+    # ------------------------------------------------------------------ running
+
+    def start(self, t: float) -> None:
+        """Build what is to run, and connect the wires."""
+        self.close()
+        mcu = MCUS[self.mcu]
+        try:
+            self._wires = read_wires(self.wires, mcu)
+            there = {*range(mcu.uarts), *(w.number for w in self._wires if w.kind in _SOFT)}
+            self._rates = {k: v for k, v in read_uarts(self.uarts).items() if k in there}
+            self._eeprom = read_eeprom(self.eeprom, mcu)
+            self._field_n = self._field()
+            self._begin()
+            self._monitors = open_links(self.monitors, "monitors")
+        except InputError as error:
+            self.close()
+            raise InputError(f"{self.name}: {error}") from None
+        self._rx: list[dict[str, Any]] = [{} for _ in range(UARTS)]
+        self._tx: list[dict[str, Any]] = [{} for _ in range(UARTS)]
+        self._sent = self._received = self._resets = 0
+        self._steps = [0] * STEPPERS
+        self._power_on()
+
+    def step(self, t: float, h: float) -> None:
+        """Let the board run from ``t`` to ``t + h``."""
+        inputs = Inputs()
+        if self._without_supply():
+            self._put_bytes(Inputs())  # nobody reads them
+            return
+        if not self._last:
+            self._connect(inputs)
+        self._put_bytes(inputs)
+        self._put_signals(inputs)
+        end_ns = round((t + h) * NS) - self._begun_ns
+        self._cycle = end_ns * (CLOCK // 1_000_000) // 1000
+        if self._board is not None:
+            self._take(self._board.run(self._cycle, inputs))
+
+    def outputs(self, t: float) -> None:
+        """Publish pulses, levels and bytes."""
+        self.tx = [Outbox(memory).text for memory in self._tx]
+        self.reached_at = " ".join(other_end(each.url) for each in self._monitors.values())
+        real = self._board if isinstance(self._board, RealBoard) else None
+        report(self, [*self._monitors.values(), *(real.endpoints if real is not None else ())])
+        self.on_wall_clock, self.connected = real is not None, real is None or real.connected
+        self.resets, self.powered, self.steps = self._resets, not self._off, self._steps
+        self.bytes_sent, self.bytes_received = self._sent, self._received
+        widths, shares, levels = [0.0] * 12, [0.0] * 8, [False] * 8
+        for wire in self._wires:
+            if wire.kind == "servo":
+                widths[wire.number - 1] = self._pulses[wire.place].width(self._cycle)
+            elif wire.kind == "pwm":
+                shares[wire.number - 1] = self._pulses[wire.place].share(self._cycle)
+            elif wire.kind == "output":
+                levels[wire.number - 1] = bool(self._pulses[wire.place].level)
+        self.pulse, self.duty, self.output = widths, shares, levels
+
+    def close(self) -> None:
+        """End what runs."""
+        if self._board is not None or self._off:
+            self._end_board()
+            self._off = False
+            if self.eeprom_after:
+                write_eeprom(self.eeprom_after, self._eeprom)
+        for monitor in self._monitors.values():
+            monitor.close()
+        self._monitors = {}
+
+    # ------------------------------------------------------------------ inside
+
+    def _begin(self) -> None:
+        mcu = MCUS[self.mcu]
+        if self.backend == "board":
+            self._board = RealBoard(
+                self.name, self.links, self.safe_state, self.timeout, self._wires
+            )
+            return
+        if not self.sketch and not self.firmware:
+            return
+        if self.backend == "host":
+            if self.firmware:
+                raise InputError("firmware needs the back end 'simavr'; 'host' runs a sketch")
+            sketch = find_sketch(self.sketch, self.libraries, self.flags)
+            self._board = Board(self.name, build_host(sketch, mcu), str(self.patience))
+            return
+        firmware = firmware_file(self.firmware) if self.firmware else self._built(mcu)
+        pins = ",".join(mcu.ports)
+        self._board = Board(
+            self.name,
+            build_emulator(mcu),
+            str(self.patience),
+            str(firmware),
+            mcu.name,
+            pins,
+            source=firmware,
+        )
+
+    def _power_on(self) -> None:
+        """Let cycles count from now on, with nothing on pins and wires yet."""
+        self._begun_ns, self._cycle = self.now_ns, 0
+        self._last: dict[tuple[str, int], float] = {}
+        self._pulses = {w.place: Pulses() for w in self._wires if w.kind in _WATCHED}
+        drivers = {w.number: w.place for w in self._wires if w.kind == "direction"}
+        self._step_pins = {
+            w.place: (w.number - 1, drivers.get(w.number)) for w in self._wires if w.kind == "step"
+        }
+
+    def _without_supply(self) -> bool:
+        """Follow the supply of a simulated board; return whether it is off."""
+        off = bool(self.supply < self.supply_min and self.backend != "board")
+        if off and not self._off:
+            self._end_board()
+            self._power_on()
+        elif self._off and not off:
+            self._begin()
+            self._power_on()
+            self._resets += 1
+        self._off = off
+        return off
+
+    def _end_board(self) -> None:
+        if self._board is not None:
+            self._board.close()
+            self._board = None
+
+    def _built(self, mcu: Mcu) -> Path:
+        return build_firmware(find_sketch(self.sketch, self.libraries, self.flags), mcu)
+
+    def _connect(self, inputs: Inputs) -> None:
+        for address, byte in enumerate(self._eeprom):
+            if byte != ERASED:
+                inputs.put("E", 0, byte, address)
+        for wire in self._wires:
+            if wire.kind in PARTS:
+                inputs.put("I", wire.place, value=PARTS[wire.kind])
+            elif wire.kind in _WATCHED:
+                inputs.put("W", wire.place)
+            elif wire.kind in _SOFT:
+                inputs.put(_SOFT[wire.kind], wire.number, value=wire.place)
+        for uart, rate in self._rates.items():  # at the pins where it is connected
+            inputs.put("S", uart, rate)
+
+    def _put_bytes(self, inputs: Inputs) -> None:
+        for uart, text in enumerate(self.rx):
+            for time_ns, data in Inbox(self._rx[uart]).take(text):
+                if self.cut[uart]:
+                    continue
+                cycle = max(0, time_ns - self._begun_ns) * (CLOCK // 1_000_000) // 1000
+                self._received += len(data)
+                for byte in data:
+                    inputs.put("U", uart, cycle, byte)
+        for uart, monitor in self._monitors.items():
+            for _, data in monitor.poll():
+                for byte in data:
+                    inputs.put("U", uart, self._cycle, byte)
+
+    def _put_signals(self, inputs: Inputs) -> None:
+        for wire in self._wires:
+            for key, value in self._signals(wire):
+                if self._last.get(key) != value:
+                    self._last[key] = value
+                    inputs.put(*key, value)
+        self._last[("", 0)] = 0.0  # connected
+
+    def _signals(self, wire: Wire) -> list[tuple[tuple[str, int], float]]:
+        """Return the records that a wire's signals give: kind and index, value."""
+        kind, n = wire.kind, wire.number - 1
+        if kind == "voltage":
+            return [(("A", self._channel(wire)), self.voltage[n])]
+        if kind == "input":
+            return [(("L", wire.place), float(self.level[n]))]
+        if kind == "receiver":
+            return [(("R", wire.place), self.receiver[n])]
+        if kind == "anemometer":
+            return [(("F", wire.place), max(0.0, wire.factor * self.wind_speed))]
+        if kind == "vane":
+            turn = (self.wind_angle + math.pi) / math.tau % 1.0
+            return [(("A", self._channel(wire)), wire.factor * turn)]
+        if kind == "mpu6050":
+            motion = [*self.gyro, *self.accelerometer]
+            return [(("V", _GYRO + i), value) for i, value in enumerate(motion)]
+        if kind == "hmc5883l":
+            field = to_body(self.attitude, self._field_n)
+            return [(("V", _FIELD + i), value) for i, value in enumerate(field)]
+        if kind == "pixy":
+            return self._blocks()
+        if kind == "ms5837":
+            pressure = _ATMOSPHERE + self.water_density * self.gravity * self.depth
+            return [
+                (("V", _PRESSURE), pressure),
+                (("V", _TEMPERATURE), self.water_temperature),
+            ]
+        return []
+
+    def _blocks(self) -> list[tuple[tuple[str, int], float]]:
+        """Return what a pixy has of a frame: number, blocks, signature, x and width of each."""
+        focal = _PIXELS / 2.0 / math.tan(0.5 * self.view_width)
+        values: list[float] = [self.sight_frame, self.sight_count]
+        sights = zip(self.sight_kind, self.sight_bearing, self.sight_size, strict=True)
+        for signature, bearing, size in sights:
+            ahead = min(max(bearing, -1.5), 1.5)
+            width = 2.0 * focal * math.tan(0.5 * min(max(size, 0.0), 3.0))
+            values += [signature, _PIXELS / 2.0 + focal * math.tan(ahead), width]
+        return [(("V", _FRAME + i), float(value)) for i, value in enumerate(values)]
+
+    def _field(self) -> Sequence[float]:
+        given: Sequence[float] = self.magnetic_field
+        if any(given):
+            return given
+        home = self.latitude, self.longitude, self.altitude
+        return earth_field(*home, start_us(self.date) * 1e-6)
+
+    def _channel(self, wire: Wire) -> int:
+        return wire.place - MCUS[self.mcu].first_analog
+
+    def _count_step(self, motor: int, direction: int | None) -> None:
+        up = direction is None or self._pulses[direction].level
+        self._steps[motor] += 1 if up else -1
+
+    def _take(self, events: list[Event]) -> None:
+        received: list[list[Event]] = [[] for _ in range(UARTS)]
+        for event in events:
+            kind, index, value, cycle = event
+            if kind == EDGE:
+                if value and index in self._step_pins and not self._pulses[index].level:
+                    self._count_step(*self._step_pins[index])
+                self._pulses[index].edge(value, cycle)
+            elif kind == DUTY:
+                self._pulses[index].modulated(value / 65535.0)
+            elif kind == WIDTH:
+                self._pulses[index].high_for(value / 1e6)
+            elif kind == EEPROM:
+                self._eeprom[value] = index
+            elif kind == RESET:
+                self._resets += 1
+            elif kind == UART and not self.cut[index]:
+                received[index].append(event)
+        for uart, events_of_it in enumerate(received):
+            if events_of_it:
+                data = bytes(event[2] for event in events_of_it)
+                box = Outbox(self._tx[uart])
+                time_ns = self._begun_ns + events_of_it[0][3] * 1000 // (CLOCK // 1_000_000)
+                box.put(time_ns, data)
+                box.flush()
+                self._sent += len(data)
+                for channel in self._monitors[uart].channels() if uart in self._monitors else ():
+                    channel.send(data)

@@ -1,0 +1,119 @@
+"""Arduino sketches: their files, and the one C++ file that the Arduino IDE would make of them."""
+
+from __future__ import annotations
+
+import json
+import shlex
+from dataclasses import dataclass
+from pathlib import Path
+
+from seatrial.errors import InputError
+
+from .libraries import SOURCES, compiled, files_of, find_libraries, read_source
+from .prototypes import with_prototypes
+
+_INOS = (".ino", ".pde")
+_FLAGS = ("-D", "-U", "-f", "-std=", "-W")
+
+
+@dataclass(frozen=True)
+class Sketch:
+    """A folder with ``NAME/NAME.ino``, more tabs, its ``src``, and ``libraries`` beside or in it.
+
+    ``tabs`` begin with the main one, then in alphabetical order, as the IDE joins them.
+    """
+
+    name: str
+    folder: Path
+    tabs: tuple[Path, ...]
+    others: tuple[Path, ...]
+    """Sources that are compiled by themselves: ``.cpp`` and ``.c``, and those of ``src``."""
+    libraries: tuple[Path, ...]
+    """Folders with the headers of the libraries that it includes."""
+    flags: tuple[str, ...] = ()
+    """Options of the compiler, for the sketch, its libraries and the core."""
+
+    def merged(self) -> str:
+        """Return the C++ file of all tabs, with prototypes; errors name the tabs' lines."""
+        text = "".join(f"#line 1 {json.dumps(str(tab))}\n{read_source(tab)}\n" for tab in self.tabs)
+        return f"#include <Arduino.h>\n{with_prototypes(text)}"
+
+    def library_sources(self) -> list[Path]:
+        """Return the sources of the libraries."""
+        return [file for folder in self.libraries for file in compiled(folder)]
+
+    def own_files(self) -> list[Path]:
+        """Return the sources and headers in its folder and its ``src``, besides the tabs."""
+        return files_of(self.folder)
+
+    def files(self) -> list[Path]:
+        """Return every file that goes into it."""
+        theirs = [file for folder in self.libraries for file in files_of(folder)]
+        return [*self.tabs, *self.own_files(), *theirs]
+
+
+def find_sketch(place: str | Path, libraries: str = "", flags: str = "") -> Sketch:
+    """Return the sketch of a folder, of its ``.ino``, or of the ``.cpp`` with its ``setup()``.
+
+    Libraries are searched in the folders of ``libraries`` (see `read_library_folders`), then in
+    ``libraries`` in the sketch's folder and beside it. Raises InputError if there is no sketch,
+    and for files that cannot be read.
+    """
+    path = Path(place).expanduser()
+    folder = (path if path.is_dir() else path.parent).resolve()
+    main = path.resolve() if path.is_file() else _main(folder)
+    if main is None or main.suffix not in (*_INOS, *SOURCES):
+        raise InputError(f"{place}: no sketch there (a folder NAME with NAME.ino is needed)")
+    joined = main.suffix in _INOS
+    named = folder / f"{folder.name}.ino"
+    if joined and main != named and named.is_file():
+        raise InputError(f"{path} is a tab of the sketch {named}: give that, or its folder")
+    more = sorted(f for f in folder.iterdir() if f.suffix in _INOS and f.stem != main.stem)
+    tabs = (main, *more) if joined else ()
+    sources = [f for f in sorted(folder.iterdir()) if f.suffix in SOURCES]
+    if (folder / "src").is_dir():
+        sources += compiled(folder / "src")
+    shelves = [*read_library_folders(libraries, folder)]
+    shelves += [folder / "libraries", folder.parent / "libraries"]
+    headers = [f for f in files_of(folder) if f.parent == folder or folder / "src" in f.parents]
+    try:
+        found = find_libraries([*tabs, *headers], shelves)
+    except OSError as error:
+        raise InputError(f"{place}: cannot be read: {error}") from None
+    return Sketch(main.stem, folder, tabs, tuple(sources), found, read_flags(flags))
+
+
+def read_library_folders(text: str, folder: Path) -> tuple[Path, ...]:
+    """Return the folders of libraries that ``text`` names, with ``;`` between them.
+
+    They are relative to ``folder``, the sketch's. Raises InputError for one that is not there.
+    """
+    found = []
+    for part in filter(None, (each.strip() for each in text.split(";"))):
+        shelf = folder / Path(part).expanduser()
+        if not shelf.is_dir():
+            raise InputError(f"libraries: {part!r}: there is no folder {shelf}")
+        found.append(shelf.resolve())
+    return tuple(found)
+
+
+def read_flags(text: str) -> tuple[str, ...]:
+    """Return the options of ``-DNAME=VALUE -UNAME -fOPTION``. Raises InputError for others."""
+    try:
+        found = tuple(shlex.split(text))
+    except ValueError as error:
+        raise InputError(f"flags: {text!r}: {error}") from None
+    for flag in found:
+        if not flag.startswith(_FLAGS) or flag in ("-D", "-U"):
+            raise InputError(
+                f"flags: {flag!r} is not allowed: options that begin with {', '.join(_FLAGS)} "
+                "are, their values in the same word; folders of headers are for 'libraries'"
+            )
+    return found
+
+
+def _main(folder: Path) -> Path | None:
+    """Return the ``.ino`` of a folder's own name, or the only one there."""
+    found = sorted(f for f in folder.iterdir() if f.suffix in _INOS) if folder.is_dir() else []
+    named = [f for f in found if f.stem == folder.name]
+    return named[0] if named else found[0] if len(found) == 1 else None

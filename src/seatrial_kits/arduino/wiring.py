@@ -1,0 +1,91 @@
+"""Wiring of a board: pins, I2C devices and UARTs, as a profile writes it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from seatrial.errors import InputError, unknown
+
+from .mcus import MCUS, Mcu
+
+UARTS, SERVOS, OTHERS, STEPPERS, BLOCKS = 4, 12, 8, 4, 6
+PARTS = {"mpu6050": 1, "hmc5883l": 2, "ms5837": 3, "pixy": 4}
+"""I2C devices, by the numbers of ``shared/parts.h``."""
+
+_NUMBERED = {
+    "servo": SERVOS,
+    "pwm": OTHERS,
+    "output": OTHERS,
+    "input": OTHERS,
+    "voltage": OTHERS,
+    "receiver": OTHERS,
+    "step": STEPPERS,
+    "direction": STEPPERS,
+    "soft_rx": UARTS - 1,
+    "soft_tx": UARTS - 1,
+}
+_FACTORS = {"anemometer": 1.0, "vane": 5.0}
+"""Kinds with a factor, and its default: Hz per m/s; volts of a full circle."""
+
+
+@dataclass(frozen=True)
+class Wire:
+    """A pin's or an address's ``kind``, which of its kind, and its factor."""
+
+    kind: str
+    place: int
+    number: int = 0
+    factor: float = 1.0
+
+
+def read_wires(text: str, mcu: Mcu = MCUS["atmega2560"]) -> list[Wire]:
+    """Return the wires of ``9 servo 1; A0 vane 5; 2 anemometer 0.9; 0x68 mpu6050``.
+
+    Raises InputError for a kind, pin, address or number that cannot be, or a pin used twice.
+    """
+    wires: list[Wire] = []
+    for part in filter(None, (each.strip() for each in text.split(";"))):
+        wire = _wire(part, mcu)
+        if any((w.place, w.kind in PARTS) == (wire.place, wire.kind in PARTS) for w in wires):
+            raise InputError(f"wires: {part!r}: this place is used twice")
+        if any((w.kind, w.number) == (wire.kind, wire.number) for w in wires):
+            raise InputError(f"wires: {part!r}: there is a {wire.kind} {wire.number or ''} already")
+        wires.append(wire)
+    return wires
+
+
+def _wire(part: str, mcu: Mcu) -> Wire:
+    place, kind, *more = part.split() if " " in part else (part, "")
+    if kind not in (*_NUMBERED, *_FACTORS, *PARTS):
+        raise InputError(
+            f"wires: {part!r}: {unknown('kind', kind, [*_NUMBERED, *_FACTORS, *PARTS])}"
+        )
+    if len(more) > 1:
+        raise InputError(f"wires: {part!r} has too many words: PLACE KIND NUMBER is needed")
+    try:
+        if kind in PARTS:
+            return Wire(kind, _within(int(place, 16), 0x08, 0x77))
+        at = mcu.pin(place)
+        if kind in _FACTORS:
+            return Wire(kind, at, 0, float(more[0]) if more else _FACTORS[kind])
+        return Wire(kind, at, _within(int(more[0]), 1, _NUMBERED[kind]))
+    except (ValueError, IndexError) as error:
+        raise InputError(f"wires: {part!r} is not 'PLACE {kind} NUMBER': {error}") from None
+
+
+def _within(value: int, least: int, most: int) -> int:
+    if not least <= value <= most:
+        raise ValueError(f"{value} is not in {least} to {most}")
+    return value
+
+
+def read_uarts(text: str) -> dict[int, int]:
+    """Return the baud rates of ``0 115200; 1 38400``, by UART. Raises InputError."""
+    rates: dict[int, int] = {}
+    for part in filter(None, (each.strip() for each in text.split(";"))):
+        try:
+            uart, rate = (int(word) for word in part.split())
+            rates[_within(uart, 0, UARTS - 1)] = _within(rate, 300, 2_000_000)
+        except ValueError:
+            raise InputError(f"uarts: {part!r} is not 'UART BAUD', such as '1 38400'") from None
+    return rates

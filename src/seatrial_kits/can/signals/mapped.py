@@ -1,0 +1,131 @@
+"""DBC signal of a port: its unit, limits and start value."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from cantools.database.can import Database, Message, Signal
+
+from seatrial.errors import InputError
+from seatrial.units import conversion, unit
+
+from .database import find_signal, raw_range
+
+_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_ENTRY = re.compile(
+    rf"(?P<name>\w+\.\w+)(?:\s+(?P<low>{_NUMBER})\s+(?P<high>{_NUMBER})(?:\s+(?P<unit>\S+))?)?"
+)
+_EXAMPLE = "'ThrusterCommand.PortPulse' or 'ThrusterCommand.PortPulse 1100 1900 us'"
+LONGEST_SIGNAL = 64
+"""Bits."""
+_MARGIN = 1e-9
+"""Share of a step of the scaling by which decimal numbers may seem to be beyond a limit."""
+
+
+@dataclass(frozen=True)
+class Mapped:
+    """A signal whose value a port has in SI: value in SI = factor * physical value + offset."""
+
+    message: Message
+    signal: Signal
+    factor: float
+    offset: float
+    low: float
+    """Least physical value that the signal can have, and is allowed to."""
+    high: float
+
+    @property
+    def start(self) -> float:
+        """Its GenSigStartValue in SI; physical 0, or what is nearest to it, without."""
+        raw = self.signal.raw_initial
+        physical = 0.0 if raw is None else float(self.signal.raw_to_scaled(raw, False))  # type: ignore[arg-type]
+        return self.to_si(min(max(physical, self.low), self.high))
+
+    def to_si(self, physical: float) -> float:
+        """Return a physical value, as the DBC has it, in SI."""
+        return self.factor * physical + self.offset
+
+    def to_physical(self, value: float) -> tuple[float, bool]:
+        """Return a value in SI as the DBC has it, within the limits; and whether it was beyond."""
+        physical = (value - self.offset) / self.factor
+        limited = min(max(physical, self.low), self.high)
+        return limited, abs(physical - limited) > _MARGIN * abs(self.signal.scale)
+
+    def to_raw(self, physical: float) -> float:
+        """Return the number that the signal's bits have for a physical value within the limits."""
+        least, most = raw_range(self.signal)  # the limits are rounded to doubles
+        return min(max(self.signal.scaled_to_raw(physical), least), most)
+
+
+def mapped_signals(path: Path, database: Database, written: str) -> list[Mapped]:
+    """Return the signals that ``MESSAGE.SIGNAL [LOW HIGH UNIT]; ...`` names, one per port.
+
+    LOW to HIGH is what the port will have, which the signal must be able to carry.
+
+    Raises InputError, with the file, for a text of another form, a message or signal that the
+    DBC does not have (near misses), one that is named twice, a unit that is none, limits that
+    the signal's bits and scaling cannot hold, and a range beyond its limits.
+    """
+    found: list[Mapped] = []
+    for text in filter(None, (part.strip() for part in written.split(";"))):
+        match = _ENTRY.fullmatch(text)
+        if match is None:
+            raise InputError(f"{text!r} is not MESSAGE.SIGNAL [LOW HIGH UNIT], such as {_EXAMPLE}")
+        message, signal = find_signal(path, database, match["name"])
+        if any(signal is other.signal for other in found):
+            raise InputError(f"{match['name']} is named twice")
+        mapped = _mapped(path, message, signal)
+        if match["low"]:
+            _check_range(path, mapped, float(match["low"]), float(match["high"]), match["unit"])
+        found.append(mapped)
+    return found
+
+
+def _mapped(path: Path, message: Message, signal: Signal) -> Mapped:
+    name = f"{path}: signal {message.name}.{signal.name}"
+    try:
+        measure = unit(signal.unit or "1")
+    except InputError as error:
+        raise InputError(f"{name}: {error}") from None
+    if signal.length > LONGEST_SIGNAL:
+        raise InputError(f"{name} has {signal.length} bits, at most {LONGEST_SIGNAL} make a number")
+    if not 1e-30 <= abs(signal.scale) <= 1e30 or not abs(signal.offset) <= 1e30:
+        raise InputError(
+            f"{name} has the scaling ({signal.scale:g},{signal.offset:g}); allowed are factors of "
+            "1e-30 to 1e30 and offsets up to 1e30"
+        )
+    lowest, highest = _representable(signal)
+    low = lowest if signal.minimum is None else max(lowest, float(signal.minimum))
+    high = highest if signal.maximum is None else min(highest, float(signal.maximum))
+    if low > high:
+        raise InputError(
+            f"{name} has limits {signal.minimum:g} to {signal.maximum:g} {signal.unit or ''}, but "
+            f"{signal.length} bits of {signal.scale:g} hold {lowest:g} to {highest:g}"
+        )
+    return Mapped(message, signal, measure.factor, measure.offset, low, high)
+
+
+def _representable(signal: Signal) -> tuple[float, float]:
+    """Return the least and greatest physical value that the bits of a signal can have."""
+    raw = raw_range(signal)
+    # Rounded as decimals are written: 3 * 0.1 is no 0.30000000000000004 in a DBC.
+    ends = sorted(float(f"{end * signal.scale + signal.offset:.12g}") for end in raw)
+    return ends[0], ends[1]
+
+
+def _check_range(path: Path, mapped: Mapped, low: float, high: float, written: str | None) -> None:
+    signal = mapped.signal
+    name = f"{path}: signal {mapped.message.name}.{signal.name}"
+    try:
+        factor, offset = conversion(written or "1", signal.unit or "1")
+    except InputError as error:
+        raise InputError(f"{name}: {error}") from None
+    margin = _MARGIN * abs(signal.scale)
+    ends = factor * low + offset, factor * high + offset
+    if not mapped.low - margin <= ends[0] <= ends[1] <= mapped.high + margin:
+        raise InputError(
+            f"{name} carries {mapped.low:g} to {mapped.high:g} {signal.unit or ''}, and is to "
+            f"carry {low:g} to {high:g} {written or ''}"
+        )

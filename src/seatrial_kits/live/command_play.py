@@ -1,0 +1,56 @@
+"""``seatrial play``: a run in three dimensions, played back in a browser."""
+
+from __future__ import annotations
+
+import webbrowser
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from seatrial.cli.answer import answer
+from seatrial.cli.run_options import Open, Port
+from seatrial.cli.show import console
+from seatrial.cli.stopping import stoppable
+from seatrial.trials.run_folder import load_run
+
+
+def play(
+    folder: Annotated[Path, typer.Argument(metavar="RUN", help="Folder of a run.")],
+    ghost: Annotated[
+        Path | None, typer.Argument(metavar="[RUN2]", help="A second run, shown as a ghost.")
+    ] = None,
+    port: Port = 0,
+    open_: Open = False,
+) -> None:
+    """Play a run back in three dimensions, in a browser."""
+    from .playback import Playback
+    from .server import PageServer
+
+    run = load_run(folder)
+    other = None if ghost is None else load_run(ghost)
+    server = PageServer(port)
+    try:
+        playback = Playback(server, run, other)
+        show_address(server.address, open_)
+        with stoppable() as stop:
+            playback.run(stop.requested)
+    finally:
+        server.stop()
+    show_refused(server.gate.refused)
+
+
+def show_address(address: str, open_: bool) -> None:
+    """Say where a page is, and open it if that is wanted."""
+    answer.result = {"page": address}
+    console.print(f"page: {address}  (Ctrl-C ends it)", soft_wrap=True)
+    if open_:
+        webbrowser.open(address)
+
+
+def show_refused(counts: Mapping[str, int]) -> None:
+    """Say how much was sent to a page that is not of its viewers, or that no widget sends."""
+    if counts:
+        said = ", ".join(f"{count} {what}" for what, count in sorted(counts.items()))
+        console.print(f"page: refused {said}")

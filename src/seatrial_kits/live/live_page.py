@@ -1,0 +1,162 @@
+"""The page of a run under way: the scene, charts, criteria, and a person's hands on it."""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from collections.abc import Callable, Sequence
+from html import escape
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from seatrial.errors import InputError
+from seatrial.trials.expressions import FloatArray
+from seatrial.trials.readable import number
+from seatrial.trials.run_folder import load_run
+
+from .by_hand import ByHand
+from .cameras import Cameras
+from .charts import Charts
+from .controls import Controls
+from .helm import Helm
+from .history import History
+from .lights import Lights, html_of
+from .map_view import Map
+from .motion import Frame, Motion
+from .pilot import Pilot
+from .scene import Scene
+from .server import PageServer, look
+
+_PANEL_S = 0.5
+_MOST_LINES = 100
+
+
+class LivePage:
+    """What viewers of a run see; ``command`` sends the run what they do."""
+
+    def __init__(
+        self,
+        server: PageServer,
+        described: dict[str, Any],
+        command: Callable[..., None],
+        done: ByHand,
+        may_command: bool,
+    ) -> None:
+        self._server, self._described = server, described
+        self._manifest, self._folder = described["manifest"], Path(described["folder"])
+        self._history = History(self._manifest, self._folder, described["signals"])
+        self._lights = Lights(self._manifest)
+        self._scene: Scene | None = None
+        self._lines: list[str] = []
+        self._has_missed = True
+        self._panel_at, self._rate_at = 0.0, (time.monotonic(), 0.0)
+        gui = server.gui
+        look(gui)
+        gui.set_panel_label(f"{self._manifest['trial']['name']}, live")
+        title = self._manifest["trial"].get("title") or self._manifest["trial"]["name"]
+        gui.add_html(f'<div style="padding:0 .8em">{escape(str(title))}</div>')
+        self._state = gui.add_html("")
+        self._lost = gui.add_html("")
+        self.helm = Helm(server, may_command)
+        if may_command:
+            self._controls = Controls(gui, self.helm, command, described, done)
+            self._pilot = Pilot(gui, self.helm, command, described["orders"])
+        with gui.add_folder("Criteria"):
+            self._lights_html = gui.add_html("")
+        with gui.add_folder("Map"):
+            self._map_html = gui.add_html("")
+        self._charts = Charts(gui, self._manifest)
+        with gui.add_folder("Log", expand_by_default=False):
+            self._log_html = gui.add_html("")
+
+    def show(self, now: float, values: FloatArray) -> None:
+        """Show a frame: the time, s, and the numbers in the order of the signals."""
+        run = self._history.add(now, values)
+        if not self._server.get_clients():
+            return
+        motion = Motion(run)
+        frame = motion.at(now)
+        if self._scene is None and motion.crafts:
+            self._scene = Scene(self._server.scene, motion, self._folder)
+            self._scene.forces.add_switch(self._server.gui)
+            self._cameras = Cameras(self._server, self._scene)
+            self._map = Map(motion, self._scene.size)
+        if self._scene is not None:
+            self._scene.motion = motion
+            with self._server.atomic():
+                self._scene.show(frame)
+            self._cameras.follow(frame)
+        if time.monotonic() - self._panel_at > _PANEL_S or self._charts.changed:
+            self._panel_at = time.monotonic()
+            self._show_panel(now, frame)
+
+    def watched_by(self, viewers: int) -> None:
+        """Note how many look. What nobody saw is read from the record, for who comes now."""
+        if not viewers:
+            self._has_missed = True
+        elif self._has_missed:
+            self._has_missed = False
+            with contextlib.suppress(InputError):  # nothing is recorded yet
+                self._history.fill(load_run(self._folder))
+
+    def log(self, now: float, what: str, key: Any, written: Any) -> None:
+        """Note what the run has done."""
+        said = {
+            "set": lambda: f"{key} = {written}",
+            "fault": lambda: f"{written['what']} on {written['where']}",
+            "clear": lambda: f"fault {key} ended",
+        }[what]()
+        self._add_line(f"{number(now, 6)} s: {said}")
+
+    def lost(self, now: float, components: Sequence[str]) -> None:
+        """Show which components have lost a link; there may be none any more."""
+        said = f"link lost: {', '.join(components)}" if components else ""
+        self._add_line(f"{number(now, 6)} s: {said or 'no link is lost'}")
+        style = "padding:0 .8em;font-weight:bold;color:#c62f24"
+        self._lost.content = said and f'<div class="lost" style="{style}">{escape(said)}</div>'
+
+    def refused(self, why: str) -> None:
+        """Say that a command was refused, and why."""
+        self._add_line(f"refused: {why}")
+        for client in self._server.get_clients().values():
+            client.add_notification("refused", why, color="red", auto_close_seconds=8.0)
+
+    # ------------------------------------------------------------------ inside
+
+    def _add_line(self, line: str) -> None:
+        self._lines = [*self._lines, line][-_MOST_LINES:]
+        rows = "".join(f"<div>{escape(row)}</div>" for row in reversed(self._lines))
+        self._log_html.content = f'<div style="font-size:.8em;padding:0 .8em">{rows}</div>'
+
+    def _show_panel(self, now: float, frame: Frame) -> None:
+        wall, before = self._rate_at
+        passed = time.monotonic() - wall
+        if passed > 1.0:
+            self._rate = (now - before) / passed
+            self._rate_at = time.monotonic(), now
+        rate = getattr(self, "_rate", 0.0)
+        self._state.content = (
+            f'<div class="state" data-time="{now!r}" style="padding:0 .8em;font-size:1.1em">'
+            f"<b>{number(now, 6)} s</b> of {number(self._manifest['stop'])} s, "
+            f"{number(rate, 2)} &times; real time</div>"
+        )
+        names = {*self._charts.shown, *self._lights.signals, *self._places()}
+        times, columns = self._history.columns(names)
+        self._lights_html.content = html_of(self._lights.states(times, columns, is_over=False))
+        self._charts.update(times, columns)
+        if self._scene is not None:
+            tracks = self._tracks(columns)
+            self._map_html.content = self._map.html(frame, tracks)
+            self._scene.draw_tracks(tracks)
+
+    def _places(self) -> list[str]:
+        crafts = self._scene.motion.crafts if self._scene is not None else []
+        return [f"{craft.component}.position.{axis}" for craft in crafts for axis in "xyz"]
+
+    def _tracks(self, columns: dict[str, Any]) -> list[FloatArray]:
+        """Return the tracks in the world, (east, north, up)."""
+        assert self._scene is not None
+        tracks = self._scene.motion.tracks(columns)
+        return [track[np.isfinite(track).all(axis=1)] for track in tracks]  # a record may lack it

@@ -1,0 +1,78 @@
+"""Components of a rig carried by FMUs in C, where there are any."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from seatrial.cosim.part import Part
+from seatrial.cosim.system import System
+from seatrial.errors import InputError
+from seatrial.fmi.direct import DirectInstance
+from seatrial.fmi.source import ComponentSource, find_source
+
+
+def carry_natively(
+    system: System, progress: Callable[[str], None] = lambda _: None
+) -> dict[str, list[str]]:
+    """Let native FMUs carry the components of a system whose engine is "native".
+
+    To be called when all parameters are given: texts among them, and waves, current and wind, are
+    built in. They come from the user's cache, and are built if they are not there. What has no C
+    stays in process; there it is noted why, and returned, components by reason. Raises InputError
+    without a compiler.
+    """
+    if system.engine != "native":
+        return {}
+    stay: dict[str, list[str]] = {}
+    for part in system.parts.values():
+        if isinstance(part.instance, DirectInstance):
+            progress(f"{part.name} ({part.fmu}, in C)")
+            why = _carry(system, part)
+            if why:
+                stay.setdefault(why, []).append(part.name)
+    system.notes += [f"in Python: {', '.join(names)}: {why}" for why, names in stay.items()]
+    return stay
+
+
+def in_python(system: System) -> dict[str, list[str]]:
+    """Return the components in process that no C can carry, by reason; nothing is compiled.
+
+    What stands in an FMU has a carrier of its own, and is left out.
+    """
+    from .carriers import why_python
+    from .tables import is_built_in
+
+    found: dict[str, list[str]] = {}
+    for part in system.parts.values():
+        if not isinstance(part.instance, DirectInstance):
+            continue
+        cls = type(part.instance.component)
+        scalars = {name: cls.scalar_by_name[name].port for name in part.given}
+        built_in = {
+            name: given.value
+            for name, given in part.given.items()
+            if is_built_in(cls, scalars[name])
+        }
+        if why := why_python(cls, built_in):
+            found.setdefault(why, []).append(part.name)
+    return found
+
+
+def _carry(system: System, part: Part) -> str:
+    """Let a native FMU carry a component; return why if there is none."""
+    from seatrial.fmi.compiler import require_compiler
+    from seatrial.fmi.load import load_fmu, open_instance
+
+    from .cached import native_fmu
+
+    source = find_source(part.fmu, system.rig.components[part.name].scope.folder)
+    assert isinstance(source, ComponentSource)
+    require_compiler()
+    values = {name: given.value for name, given in part.given.items()}
+    try:
+        fmu = load_fmu(native_fmu(source, values))
+    except InputError as error:
+        return str(error)
+    part.instance.free()
+    part.instance, part.sha256 = open_instance(fmu, part.name), fmu.sha256
+    return ""

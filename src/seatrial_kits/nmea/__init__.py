@@ -1,0 +1,1 @@
+"""NMEA 0183, NMEA 2000 and AIS."""

@@ -1,0 +1,107 @@
+"""``seatrial campaign NAME --ask QUESTION``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.box import SIMPLE
+from rich.markup import escape
+from rich.table import Table
+
+from seatrial.campaigns.ended import Ended
+from seatrial.campaigns.finding import Finding, Shown
+from seatrial.campaigns.page import write_table_page
+from seatrial.campaigns.sweep import How, keep_named
+from seatrial.cli.answer import answer
+from seatrial.cli.options import EngineName, Network, Out, engine_named
+from seatrial.cli.run_options import Cluster, Jobs, KeepName, NoReport, Resume
+from seatrial.cli.show import console, print_notes, print_table
+from seatrial.cli.stopping import stoppable
+from seatrial.cli.watch import Watch
+from seatrial.errors import InputError
+from seatrial.links.hardware import allow_network
+from seatrial.trials.campaign import load_campaign
+from seatrial.trials.cases import Case
+from seatrial.trials.hooks import Hooks
+
+from .ask import ask as ask_campaign
+
+
+def ask(
+    name: Annotated[str, typer.Argument(metavar="CAMPAIGN", hidden=True)],
+    question: Annotated[
+        str,
+        typer.Option(
+            "--ask",
+            metavar="QUESTION",
+            help="'limits': the boundary of what passes; 'worst-case': the least robustness, and "
+            "the smallest change that fails; 'sensitivity': how much each key matters; 'rare': how "
+            "likely a failure is.",
+        ),
+    ],
+    engine: EngineName = "fmu",
+    out: Out = None,
+    jobs: Jobs = None,
+    cluster: Cluster = None,
+    network: Network = False,
+    keep: KeepName = None,
+    resume: Resume = False,
+    no_report: NoReport = False,
+) -> None:
+    """Ask a campaign a question: it runs the trials that the answer needs."""
+    if resume and out is None:
+        raise InputError("--resume needs the question's folder, --out FOLDER")
+    if network:
+        allow_network()
+    campaign = load_campaign(name)
+    how = How(engine_named(engine), jobs, cluster, keep_named(keep, "--keep"), resume)
+    with stoppable() as stop, Watch(campaign.read_from.name) as watch:
+        ended_count = failed = 0
+        expected = 1
+
+        def expect(runs: int) -> None:
+            nonlocal expected
+            expected = runs
+
+        def done(_case: Case, ended: Ended) -> None:
+            nonlocal ended_count, failed
+            ended_count += 1
+            failed += not ended.measured.passed
+            watch.expect(max(expected, ended_count))
+            watch.cases(ended_count, failed)
+
+        hooks = Hooks(
+            stop_requested=stop.requested,
+            interruptible=stop.interruptible,
+            note=lambda text: print_notes([text]),
+        )
+        finding, folder = ask_campaign(campaign, question, out, how, hooks, done, expect)
+    _say(finding, folder, None if no_report else write_table_page(folder))
+
+
+def _say(finding: Finding, folder: Path, page: Path | None) -> None:
+    console.print(f"{finding.question}: {finding.runs} runs")
+    for line in finding.lines:
+        console.print(f"  {escape(line)}", soft_wrap=True)
+    for shown in finding.tables:
+        print_table(_table(shown))
+    answer.result = {**finding.content(), "folder": str(folder)}
+    console.print(f"answer: {folder}", soft_wrap=True)
+    if page is not None:
+        console.print(f"report: {page}", soft_wrap=True)
+
+
+def _table(shown: Shown) -> Table:
+    table = Table(title=escape(shown.title), title_justify="left", box=SIMPLE, padding=(0, 1, 0, 0))
+    for place, column in enumerate(shown.columns):
+        is_number = all(isinstance(row[place], (int, float)) for row in shown.rows)
+        table.add_column(escape(column), justify="right" if is_number else "left")
+    for row in shown.rows:
+        table.add_row(*(escape(_written(each)) for each in row))
+    return table
+
+
+def _written(value: object) -> str:
+    return f"{value:.4g}" if isinstance(value, float) else str(value)

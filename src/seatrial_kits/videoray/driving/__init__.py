@@ -1,0 +1,1 @@
+"""A VideoRay driven with keys or a gamepad."""

@@ -1,0 +1,199 @@
+"""Topside of a VideoRay Pro 4 as a component: manual control in, the vehicle's telemetry out."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from seatrial.component import NS, Component
+from seatrial.links.text import Inbox, Outbox
+
+from .frame import encode
+from .half_duplex import HalfDuplex
+from .nmea import sentences
+from .parser import Parser
+from .station import PHASES, Commands, Station, manipulator_request
+from .stream_file import FROM_DEVICE, TO_DEVICE, StreamLog
+from .topside_ports import Pro4TopsidePorts
+
+_MBAR = 100.0
+_CELSIUS = 273.15
+
+
+class Pro4Topside(Pro4TopsidePorts):
+    """Sends the command block every ``period``, and decodes the replies.
+
+    It finds the vehicle, reads its configuration and memory, and drives it (`Station`); 10 Hz is
+    what the vehicle's maker and source 000 have. ``rx`` and ``tx`` are bytes with their times
+    (`seatrial.links.text`), at ``baud``: join them to `Pro4Rov`, or by `SerialGateway` to a real
+    vehicle.
+
+    **Manual control**, -1 to 1, times ``manual_limit``, and 0 unless ``armed``: port = surge + yaw,
+    starboard = surge - yaw, held within +-1, vertical = heave, positive downwards, whatever
+    ``vertical_ahead`` is on the line. They apply for the whole cycle. ``hold_depth`` and
+    ``hold_heading`` request the vehicle to hold ``depth_wanted`` (as its pressure sensor has it,
+    surface_pressure + density gravity depth) and ``heading_wanted`` (whole degrees), if armed.
+
+    **Readings** hold their last value. ``attitude`` has psi from 0 to 2 pi, whether the vehicle
+    counts to 360 degrees or in halves. Depth is positive down, below ``surface_pressure``.
+    ``round_trip`` is from a request's first byte to the end of its answer; ``missed`` counts
+    cycles without an answer before the next; after ``timeout`` without one ``connected`` is
+    false, and the vehicle is looked for, which commands nothing.
+
+    A change of ``manipulator`` is sent after the command block, which is not answered. With
+    ``nmea`` on, ``nmea_tx`` has the sentences of VideoRay's export each second (`nmea`).
+
+    It records its stream in ``run_folder``, ``NAME.stream`` (`StreamLog`).
+    """
+
+    discrete = True
+    transient = Component.transient | {"_station", "_parser", "_line", "_log"}
+
+    def __init__(self, name: str = "component") -> None:
+        super().__init__(name)
+        self._log = StreamLog()
+
+    # ------------------------------------------------------------------ running
+
+    def start(self, t: float) -> None:
+        """Start with no vehicle."""
+        self._log.close()
+        self._log = StreamLog()
+        self._build()
+        self._begun_ns = self._next_ns = self.now_ns
+        self._next_nmea_ns = self.now_ns + NS
+        self._manipulated = 0
+        self._waiting: list[list[Any]] = []
+        self._text = ""
+        self._rx: dict[str, Any] = {}
+        self._tx: dict[str, Any] = {}
+        self._nmea: dict[str, Any] = {}
+        self._errors = 0
+        self._changes, self._published = 0, -1
+
+    def step(self, t: float, h: float) -> None:
+        """Receive answers, and send what is due before ``t + h``, in the order of time."""
+        self._log.open(self.run_folder, self.name)
+        end, before = self.now_ns + round(h * NS), self._changes
+        found = self._parser.expire(self.now_ns)
+        text = self.rx
+        chunks = Inbox(self._rx).take(text) if text != self._text else []
+        self._text = text
+        for when, data in chunks:
+            self._log.write(when, FROM_DEVICE, data)
+            self._line.received(when, len(data))
+            found += self._parser.feed(data, when, self._line.byte_ns)
+        for when, frame in found:
+            self._station.receive(when, frame)
+        errors = self._parser.checksum_errors + self._parser.broken_off
+        if found or errors != self._errors:
+            self._errors = errors
+            self._changes += 1
+        while self._next_ns < end:
+            self._cycle(self._next_ns)
+            self._next_ns += self._period_ns
+        while self._next_nmea_ns < end:
+            if self.nmea == "on" and self._station.connected:
+                self._send_nmea(self._next_nmea_ns)
+            self._next_nmea_ns += NS
+        if self._changes != before:
+            Outbox(self._tx).flush()
+            Outbox(self._nmea).flush()
+
+    def outputs(self, t: float) -> None:
+        """Publish bytes and readings, if anything has happened."""
+        if self._published == self._changes:
+            return
+        self._published = self._changes
+        station, readings = self._station, self._station.readings
+        self.tx, self.nmea_tx = Outbox(self._tx).text, Outbox(self._nmea).text
+        self.connected, self.phase = station.connected, PHASES[station.phase]
+        self.serial_number = station.serial_number
+        self.cycles, self.missed = station.cycles, station.missed
+        self.round_trip = station.round_trip_ns / NS
+        self.errors = self._errors
+        if not readings:
+            return
+        angles = [math.radians(readings[name]) for name in ("roll", "pitch", "heading")]
+        self.attitude = (angles[0], angles[1], angles[2] % math.tau)
+        self.depth = self._depth_of(readings["pressure"])
+        if "surge_acceleration" in readings:
+            names = ("surge", "sway", "heave")
+            self.specific_force = tuple(readings[f"{name}_acceleration"] for name in names)
+            self.magnetometer = tuple(readings[f"magnetometer_{axis}"] for axis in "xyz")
+            self.water_temperature = readings["water_temperature"] + _CELSIUS
+            self.humidity, self.power = readings["humidity"], readings["total_power"]
+
+    def close(self) -> None:
+        """End the record of the stream."""
+        self._log.close()
+
+    def get_state(self) -> dict[str, Any]:
+        """Return a copy of the whole state, the station's included, as plain data."""
+        parts = {
+            "station": self._station.saved(),
+            "parser": self._parser.saved(),
+            "free_ns": self._line.free_ns,
+        }
+        return {**super().get_state(), "parts": parts}
+
+    def set_state(self, state: Mapping[str, Any]) -> None:
+        """Restore what `get_state` returned."""
+        super().set_state({name: value for name, value in state.items() if name != "parts"})
+        self._build()
+        self._station.restore(state["parts"]["station"])
+        self._parser.restore(state["parts"]["parser"])
+        self._line.free_ns = state["parts"]["free_ns"]
+
+    # ------------------------------------------------------------------ inside
+
+    def _build(self) -> None:
+        self._station = Station(round(self.timeout * NS), int(self.node_id))
+        self._parser = Parser(round(self.byte_timeout * NS))
+        self._line = HalfDuplex(self.baud, 0)
+        self._period_ns = max(1, round(self.period * NS))
+
+    def _cycle(self, now_ns: int) -> None:
+        commands = self._commands()
+        self._send(now_ns, encode(self._station.request(now_ns, commands)))
+        if self.manipulator != self._manipulated and self._station.connected:
+            self._manipulated = self.manipulator
+            direction = (self.manipulator > 0) - (self.manipulator < 0)
+            self._send(now_ns, encode(manipulator_request(direction)))
+
+    def _send(self, now_ns: int, data: bytes) -> None:
+        begin = self._line.transmit(now_ns, len(data))
+        self._changes += 1
+        self._log.write(begin, TO_DEVICE, data)
+        Outbox(self._tx).put(begin, data)
+
+    def _commands(self) -> Commands:
+        commands = Commands(
+            lights=self.lights,
+            camera_tilt=math.degrees(self.camera_tilt),
+            camera_focus=self.camera_focus,
+            camera_control=2 * self.camera_select,
+            camera_buttons=self.camera_buttons,
+        )
+        if not self.armed:
+            return commands
+        surge, yaw, heave = (self.manual_limit * min(max(x, -1.0), 1.0) for x in self.manual)
+        down = -1.0 if self.vertical_ahead == "up" else 1.0
+        commands.thrust = (surge + yaw, surge - yaw, down * heave)
+        if self.hold_depth:
+            water = self.density * self.gravity * self.depth_wanted
+            commands.auto_depth = (self.surface_pressure + water) / _MBAR
+        if self.hold_heading:
+            commands.auto_heading = math.degrees(self.heading_wanted)
+        return commands
+
+    def _depth_of(self, pressure: float) -> float:
+        weight = self.density * self.gravity
+        return (pressure * _MBAR - self.surface_pressure) / weight if weight else 0.0
+
+    def _send_nmea(self, now_ns: int) -> None:
+        readings = self._station.readings
+        text = sentences((now_ns - self._begun_ns) / NS, readings, self._depth_of)
+        Outbox(self._nmea).put(now_ns, text)
+        self._changes += 1
