@@ -16,7 +16,6 @@ from seatrial.campaigns.shipment import packed, unpacked
 from seatrial.campaigns.sweep import How, run_sweep
 from seatrial.errors import InputError
 from seatrial.trials.campaign import load_campaign
-from seatrial_kits.search.ask import ask
 
 pytestmark = [
     pytest.mark.interop,
@@ -115,22 +114,6 @@ def test_a_worker_that_is_killed_loses_no_case(cluster, campaign, tmp_path):
     run_sweep(campaign, tmp_path / "here", How("direct", jobs=2))
     assert content(tmp_path / "here") == content(tmp_path / "there")
     assert list(pd.read_parquet(tmp_path / "there/results.parquet")["case"]) == [*range(1, 25)]
-
-
-def test_a_question_has_the_same_answer_there(cluster, asked, tmp_path):
-    address, _ = cluster
-    varied = '[ask.vary]\n"form.a" = { uniform = ["0 m", "9 m"] }\n"form.b" = { uniform = ["0 kg", "9 kg"] }\n'
-    settings = "[ask.limits]\nruns = 24\n[ask.worst-case]\nruns = 24\n"
-    campaign = asked("sum", "form.y < 5 m", varied + settings)
-    for question, names in (
-        ("limits", ("results.parquet", "boundary.parquet", "answer.json")),
-        ("worst-case", ("results.parquet", "worst-case.toml", "answer.json")),
-    ):
-        here, there = tmp_path / f"{question}-here", tmp_path / f"{question}-there"
-        ask(campaign, question, here, How("direct", jobs=2))
-        ask(campaign, question, there, How("direct", cluster=address))
-        for name in names:
-            assert (here / name).read_bytes() == (there / name).read_bytes(), name
 
 
 def test_files_of_a_user_s_own_travel(cluster, campaign, tmp_path):

@@ -12,7 +12,8 @@ from seatrial.cosim.flattening import load_rig
 from seatrial.cosim.master import Master
 from seatrial.cosim.system import System
 
-from . import bodies, users
+from ..kits.interchange import users
+from . import bodies
 
 
 class Bench:

@@ -15,7 +15,7 @@ from seatrial_kits.interchange.export import export_osp
 from seatrial_kits.interchange.osp.reading import read_osp
 from seatrial_kits.interchange.rig_fmu.face import face_of
 from seatrial_kits.interchange.rig_fmu.frozen import rig_source
-from tests.cosim.osp_files import write_osp
+from tests.kits.interchange.osp_files import write_osp
 
 from .conftest import Bench, value
 from .test_algorithms import BODY_CONNECTIONS, TWO_BODIES, exact_two_bodies

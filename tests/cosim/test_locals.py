@@ -18,7 +18,7 @@ from seatrial_kits.interchange.export import export_osp, export_ssp
 from seatrial_kits.interchange.ssp.reading import read_ssp
 
 from ..fmi.models import build_model_fmu
-from .ssp_natives import component, connection, connector, elements, package, ssd
+from ..kits.interchange.ssp_natives import component, connection, connector, elements, package, ssd
 
 RIG = """
 step = "0.1 s"

@@ -15,7 +15,7 @@ from seatrial.fmi.load import load_fmu, open_instance
 from seatrial_kits.interchange.ssp.reading import read_ssp
 from seatrial_kits.native.engine import carry_natively
 
-from .ssp_files import BINDING, HULL, Yard, description, rows, system
+from ..kits.interchange.ssp_files import BINDING, HULL, Yard, description, rows, system
 
 FORCES = "time,force [kN],turn [deg],on,count [integer]\n0,0,0,false,1\n1,0.004,90,true,2\n2,0.004,90,true,3\n"
 """A force that grows to 4 N within a second."""
@@ -37,7 +37,7 @@ def yard(tmp_path_factory: pytest.TempPathFactory) -> Yard:
 
 
 def rig(folder: Path, text: str = RIG, forces: str = FORCES) -> Path:
-    from .ssp_files import BOATS
+    from ..kits.interchange.ssp_files import BOATS
 
     (folder / "boats.py").write_text(BOATS, "utf-8")
     (folder / "inputs.csv").write_text(forces, "utf-8")

@@ -22,7 +22,7 @@ from seatrial_kits.interchange.ssp.reading import read_ssp
 from tests.kits.can.reference_bits import classic
 
 from ..command import seatrial
-from ..cosim.ssp_natives import component, connection, elements, package, ssd
+from ..kits.interchange.ssp_natives import component, connection, elements, package, ssd
 from .native import changed
 
 CLASSIC, EXTENDED, REMOTE, FD, WAKEUP, NONSENSE = range(6)

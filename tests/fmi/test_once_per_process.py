@@ -18,8 +18,8 @@ from seatrial.fmi.isolated import IsolatedInstance
 from seatrial_kits.interchange.osp.reading import read_osp
 from seatrial_kits.interchange.ssp.reading import read_ssp
 
-from ..cosim.osp_files import HEAD
-from ..cosim.ssp_natives import component, elements, package, ssd
+from ..kits.interchange.osp_files import HEAD
+from ..kits.interchange.ssp_natives import component, elements, package, ssd
 from .models import build_model_fmu
 from .native import sharing
 

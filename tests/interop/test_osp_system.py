@@ -15,8 +15,8 @@ from seatrial import run_trial
 from seatrial.fmi.load import load_fmu
 from seatrial_kits.interchange.export import export_osp
 from seatrial_kits.interchange.osp.reading import read_osp
-from tests.cosim.osp_files import write_osp
 from tests.fmi.models import build_model_fmu
+from tests.kits.interchange.osp_files import write_osp
 
 from .test_libcosim import plain
 

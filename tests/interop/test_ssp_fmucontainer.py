@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from seatrial_kits.interchange.ssp.tools import findings
-from tests.cosim.ssp_natives import (
+from tests.kits.interchange.ssp_natives import (
     bound,
     build,
     component,

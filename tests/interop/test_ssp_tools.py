@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from seatrial_kits.interchange.ssp.tools import FACTS, TOOLS, findings
-from tests.cosim.ssp_files import (
+from tests.kits.interchange.ssp_files import (
     BACK,
     BINDING,
     DAMPER,

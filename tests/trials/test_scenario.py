@@ -15,7 +15,7 @@ from seatrial.errors import InputError
 from seatrial.trials.scenario import read_scenario
 from seatrial.trials.trial import load_trial
 from seatrial.units import quantity
-from tests.cosim.osp_files import write_osp
+from tests.kits.interchange.osp_files import write_osp
 
 JSON = {
     "description": "a test",

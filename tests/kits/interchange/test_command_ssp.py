@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.command import seatrial
-from tests.cosim.ssp_files import BOATS, MINIMAL, Yard, speed
+from tests.kits.interchange.ssp_files import BOATS, MINIMAL, Yard, speed
 
 RIG = """step = "10 ms"
 [components]

@@ -10,7 +10,7 @@ from seatrial.errors import InputError
 from seatrial.testing.bench import Bench
 from seatrial_kits.arduino.testing import sketch_rig
 
-SKETCH = Path(__file__).parent / "sketches/rudder/rudder.ino"
+SKETCH = Path(__file__).parents[2] / "testing/sketches/rudder/rudder.ino"
 DBC = """VERSION ""
 
 NS_ :

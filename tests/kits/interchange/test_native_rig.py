@@ -15,7 +15,7 @@ from seatrial.cosim.flattening import load_rig
 from seatrial.cosim.master import Master
 from seatrial.errors import InputError
 
-from ..fmi.native import SLAVES
+from ...fmi.native import SLAVES
 from .ssp_natives import build
 
 RIG = """

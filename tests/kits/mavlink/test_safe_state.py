@@ -18,7 +18,7 @@ from pymavlink.dialects.v20 import all as mavlink
 
 from tests.command import SEATRIAL
 
-from .test_stop import child_of
+from ...cli.test_stop import child_of
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="processes are not copied there")
 

@@ -20,7 +20,7 @@ from seatrial_kits.native.standalone.shared_objects import least_glibc
 from tests.command import seatrial
 from tests.interop.running import free_port
 
-HOST = Path(__file__).parent / "slaves" / "paced_host.c"
+HOST = Path(__file__).parents[2] / "fmi" / "slaves" / "paced_host.c"
 HEADERS = Path(fmpy.__file__).parent / "c-code"
 needs_bwrap = pytest.mark.skipif(shutil.which("bwrap") is None, reason="bubblewrap is missing")
 

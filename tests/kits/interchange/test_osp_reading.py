@@ -11,7 +11,7 @@ from seatrial.cosim.master import Master
 from seatrial.cosim.packages import is_package
 from seatrial.errors import InputError
 from seatrial_kits.interchange.osp.reading import read_osp
-from tests.cosim.osp_files import GROUPS, write_osp
+from tests.kits.interchange.osp_files import GROUPS, write_osp
 
 
 @pytest.fixture(scope="module")

@@ -10,7 +10,7 @@ import pytest
 from seatrial.errors import InputError
 from seatrial_kits.interchange.ssp.reading import read_ssp
 
-from ..fmi.models import build_model_fmu
+from ...fmi.models import build_model_fmu
 from .ssp_files import run
 from .ssp_natives import (
     NAMESPACES,

@@ -18,7 +18,7 @@ from seatrial.errors import InputError
 from seatrial_kits.videoray.driving.keys import Gamepad, split_keys
 from seatrial_kits.videoray.driving.pilot import HELP, KEY_LASTS, TURNS, Pilot
 
-from ..kits.videoray.live import LiveRov
+from .live import LiveRov
 
 pyte = pytest.importorskip("pyte")
 WAIT_S = 60.0

@@ -11,7 +11,7 @@ from seatrial.cosim.master import Master
 from seatrial.errors import InputError
 from seatrial_kits.interchange.export import export_osp, export_ssp
 from seatrial_kits.interchange.osp.reading import read_osp
-from tests.cosim.osp_files import write_osp
+from tests.kits.interchange.osp_files import write_osp
 
 
 def stepped(path: Path, steps: int = 12) -> dict[str, list[object]]:

@@ -28,7 +28,7 @@ from tests.fmi.native_slave import Slave
 
 pytest.importorskip("ziglang")
 
-HOST = Path(__file__).parent / "slaves" / "host.c"
+HOST = Path(__file__).parents[2] / "fmi" / "slaves" / "host.c"
 NATIVE = [
     name
     for name in components().names()
@@ -102,7 +102,7 @@ def test_same_numbers_to_the_bit(name: str, tmp_path: Path) -> None:
 
 def test_a_shipped_trial_has_the_same_record(tmp_path: Path) -> None:
     """A drone lands on a native hull, the rest of the rig in process, parameters by the rig."""
-    harness = Path(__file__).parents[2] / "harness"
+    harness = Path(__file__).parents[3] / "harness"
     build = ["fmu", "build", "marine-craft", "--native", "--parameters", "hydrone"]
     assert seatrial(*build, cwd=tmp_path).returncode == 0
     rig = (harness / "rigs" / "hydrone-open-loop.toml").read_text("utf-8")

@@ -26,11 +26,11 @@ from seatrial_kits.interchange.rig_fmu.native import build_native_rig, why_not_n
 from seatrial_kits.native.engine import carry_natively
 from tests.command import seatrial as command
 from tests.fmi.native_slave import Slave
-from tests.fmi.test_standalone import RESOURCES, image_of, needs_bwrap
+from tests.kits.native.test_standalone import RESOURCES, image_of, needs_bwrap
 
 pytestmark = pytest.mark.skipif(HERE != "linux64", reason="loads libraries of Linux")
 
-HOSTS = Path(__file__).parents[1] / "interop" / "native_host_run.py"
+HOSTS = Path(__file__).parents[2] / "interop" / "native_host_run.py"
 SHIPPED = (
     *("landing", "deck-landing", "deck-limits", "collision", "hydrone-battery", "mariner-source"),
     *("hydrone-open-loop", "gloria-fixed", "thruster-ship", "thruster-ship-open-loop"),

@@ -19,7 +19,7 @@ from seatrial_kits.interchange.export import export_ssp
 from seatrial_kits.interchange.ssp.reading import read_ssp
 from seatrial_kits.interchange.ssp.tools import findings
 
-from ..fmi.native import changed
+from ...fmi.native import changed
 from . import users
 from .ssp_files import BOATS, rows
 

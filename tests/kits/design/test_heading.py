@@ -14,7 +14,7 @@ from seatrial.errors import InputError
 from seatrial_kits.design.heading import closed_loop, design_heading, least_damping
 from seatrial_kits.design.heading_page import stability, write_design
 
-DATA = Path(__file__).parents[1] / "reference"
+DATA = Path(__file__).parents[2] / "reference"
 A = np.array([[-0.76944, -0.33442], [-3.38925, -2.09400]])
 B = np.array([4.3247, -41.235])
 TIMES = (0.0, -1.3427, 1.25379)

@@ -6,8 +6,8 @@ import csv
 from pathlib import Path
 
 from tests.command import seatrial
-from tests.cosim.osp_files import write_osp
-from tests.cosim.ssp_files import BOATS
+from tests.kits.interchange.osp_files import write_osp
+from tests.kits.interchange.ssp_files import BOATS
 
 RIG = """step = "10 ms"
 [components]

@@ -15,7 +15,7 @@ from seatrial_kits.interchange.export import export_ssp
 from seatrial_kits.interchange.ssp.reading import read_ssp
 from seatrial_kits.interchange.ssp.tools import findings
 
-from ..interop.ssp_tools import run
+from ...interop.ssp_tools import run
 from .ssp_files import BOATS, rows
 
 # Values that cross systems up, down and both; one goes to two targets, as it is and transformed.

@@ -16,8 +16,8 @@ from seatrial_kits.native import cached, export, selfcheck
 from seatrial_kits.native.carriers import why_python
 from seatrial_kits.native.translation.constants import fingerprint
 from tests.fmi import odd_components
-from tests.fmi.native_programs import BEYOND, HEADER, ODD, Program, Writer, component
-from tests.fmi.test_native_programs import differs, loaded
+from tests.kits.native.programs import BEYOND, HEADER, ODD, Program, Writer, component
+from tests.kits.native.test_programs import differs, loaded
 
 pytestmark = pytest.mark.skipif(HERE != "linux64", reason="loads libraries of Linux")
 

@@ -17,9 +17,9 @@ if sys.platform == "win32":
 
 from tests.command import SEATRIAL
 
+from ...cli.test_safe_state import SAFE, Vehicle
+from ...cli.test_stop import child_of, wait_for
 from .test_drive import WAIT_S, Terminal
-from .test_safe_state import SAFE, Vehicle
-from .test_stop import child_of, wait_for
 
 OF_NODE_5 = bytes.fromhex("FAAF0500000F5F0000000000000000000000FFFFFFFF00")
 """As `SAFE`; the header's check, the sixth byte's next, is the XOR of those before."""

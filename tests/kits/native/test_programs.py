@@ -19,7 +19,7 @@ from seatrial.fmi.source import ComponentSource
 from seatrial_kits.native.export import build_native_fmu
 from seatrial_kits.native.translation.domain import TranslationError
 from seatrial_kits.native.translation.unit import Unit
-from tests.fmi.native_programs import HEADER, Program, component, shorter, smaller, written
+from tests.kits.native.programs import HEADER, Program, component, shorter, smaller, written
 
 pytestmark = pytest.mark.skipif(HERE != "linux64", reason="loads libraries of Linux")
 

@@ -17,8 +17,8 @@ from seatrial_kits.interchange.export import export_ssp
 from seatrial_kits.interchange.ssp.reading import read_ssp
 from seatrial_kits.interchange.ssp.shapes import Enumeration, Shapes
 
-from ..command import seatrial
-from ..fmi.native import changed
+from ...command import seatrial
+from ...fmi.native import changed
 from .ssp_files import rows
 from .ssp_natives import build
 
