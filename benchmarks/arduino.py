@@ -15,10 +15,10 @@ import statistics
 from collections.abc import Callable
 from pathlib import Path
 
-from seatrial.cosim.assembly import assemble
-from seatrial.cosim.flattening import load_rig
-from seatrial.cosim.master import Master
 from seatrial.links.text import encode
+from seatrial.sim.master import Master
+from seatrial.system.assembly import assemble
+from seatrial.system.flattening import load_rig
 from seatrial_kits.arduino.component import Arduino
 
 from .pages import addition, write_measured

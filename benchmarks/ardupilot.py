@@ -20,9 +20,9 @@ import tempfile
 from pathlib import Path
 from typing import Literal
 
-from seatrial.trials.run import run_trial
-from seatrial.trials.run_folder import load_run
-from seatrial.trials.trial import load_trial
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.records.run_folder import load_run
+from seatrial.trial.running.run import run_trial
 
 from .pages import addition, write_measured
 

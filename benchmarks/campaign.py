@@ -39,9 +39,9 @@ count = {count}
 """
 _BARE = """
 import json, sys, time
-from seatrial.trials.campaign import load_campaign
-from seatrial.trials.hooks import Hooks
-from seatrial.trials.preparation import prepare
+from seatrial.trial.files.campaign import load_campaign
+from seatrial.trial.running.hooks import Hooks
+from seatrial.trial.running.preparation import prepare
 
 cases = load_campaign(sys.argv[1]).cases()
 number = int(sys.argv[2])

@@ -23,12 +23,12 @@ from pathlib import Path
 from time import process_time
 from typing import Any
 
-from seatrial.cosim import master as master_module
-from seatrial.cosim.assembly import assemble
-from seatrial.cosim.flattening import load_rig
-from seatrial.cosim.master import Master
-from seatrial.cosim.rig import Rig
-from seatrial.cosim.system import System
+from seatrial.sim import master as master_module
+from seatrial.sim.master import Master
+from seatrial.system.assembly import assemble
+from seatrial.system.flattening import load_rig
+from seatrial.system.rig import Rig
+from seatrial.system.system import System
 
 from .history import noted
 from .pages import peak_memory, write_measured
@@ -47,8 +47,8 @@ def assembled(carrier: str, rig: Rig) -> System:
     """Return a rig with all components on one carrier."""
     system = assemble(rig, "fmu" if carrier == FMUS else "direct")
     if carrier in (NATIVE, COMPILED):
-        from seatrial.fmi.load import load_fmu, open_instance
-        from seatrial.fmi.source import find_source
+        from seatrial.fmi.building.source import find_source
+        from seatrial.fmi.loading.load import load_fmu, open_instance
         from seatrial_kits.native.cached import native_fmu
 
         for name, part in system.parts.items():

@@ -23,8 +23,8 @@ from typing import Any
 
 import fmpy
 
-from seatrial.cosim.assembly import assemble
-from seatrial.cosim.flattening import load_rig
+from seatrial.system.assembly import assemble
+from seatrial.system.flattening import load_rig
 from seatrial_kits.interchange.ssp.describing import Experiment
 from seatrial_kits.interchange.ssp.writing import write_ssp
 

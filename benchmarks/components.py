@@ -16,9 +16,9 @@ from time import process_time
 
 import fmpy
 
-from seatrial.component import Component
-from seatrial.fmi.index import component_class
-from seatrial.fmi.source import find_source
+from seatrial.fmi.building.index import component_class
+from seatrial.fmi.building.source import find_source
+from seatrial.model.component import Component
 from seatrial_kits.native.cached import native_fmu
 
 from .pages import write_measured

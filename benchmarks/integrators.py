@@ -20,10 +20,10 @@ import casadi as ca
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from seatrial.cosim.assembly import assemble
-from seatrial.cosim.flattening import load_rig
 from seatrial.fmi.compiled_functions import compiled_function
-from seatrial.model import bind
+from seatrial.model.expressions import bind
+from seatrial.system.assembly import assemble
+from seatrial.system.flattening import load_rig
 
 from .history import noted
 from .pages import write_measured

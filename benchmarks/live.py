@@ -22,9 +22,9 @@ import msgspec
 import viser
 from websockets.sync.client import ClientConnection, connect
 
-from seatrial.trials.hooks import Hooks
-from seatrial.trials.supervision import run_supervised
-from seatrial.trials.trial import load_trial
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.running.hooks import Hooks
+from seatrial.trial.running.supervision import run_supervised
 from seatrial_kits.live.session import Session
 
 _CAMERA = {

@@ -24,10 +24,10 @@ from typing import Any
 
 import numpy as np
 
-from seatrial.cosim import master as master_module
-from seatrial.cosim.files import Source
-from seatrial.cosim.flattening import rig_of
-from seatrial.cosim.master import Master
+from seatrial.sim import master as master_module
+from seatrial.sim.master import Master
+from seatrial.system.files import Source
+from seatrial.system.flattening import rig_of
 
 from .carriers import COMPILED, DIRECT, NATIVE, assembled
 from .history import noted

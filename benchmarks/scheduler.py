@@ -29,16 +29,16 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from seatrial.campaigns import sweep
-from seatrial.campaigns.ended import Ended
-from seatrial.trials.campaign import load_campaign
-from seatrial.trials.measuring import Measured
+from seatrial.trial.campaigns import sweep
+from seatrial.trial.campaigns.ended import Ended
+from seatrial.trial.files.campaign import load_campaign
+from seatrial.trial.running.measuring import Measured
 
 from .campaign import CAMPAIGN
 from .pages import write_measured
 
 TASK_S = 2.0
-"""Wall time of a task of short cases, as `seatrial.campaigns.cluster` has it."""
+"""Wall time of a task of short cases, as `seatrial.trial.campaigns.cluster` has it."""
 WAITING = 4
 """Tasks under way for each place, as there."""
 _VERDICT = {

@@ -5,10 +5,10 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
-from seatrial.cosim.parameters import load_vehicle
-from seatrial.craft.marine_craft import MarineCraft
-from seatrial.craft.rov import Rov
-from seatrial.plant import Plant
+from seatrial.model.plant import Plant
+from seatrial.physics.craft.marine_craft import MarineCraft
+from seatrial.physics.craft.rov import Rov
+from seatrial.system.parameters import load_vehicle
 
 SEA = {
     "sea_spectrum": "jonswap",

@@ -20,8 +20,8 @@ ROOT = Path(__file__).parents[1]
 SOURCE = ROOT / "src"
 LOADED = """
 import sys
-from seatrial.trials.run import run_trial
-from seatrial.trials.trial import load_trial
+from seatrial.trial.running.run import run_trial
+from seatrial.trial.files.trial import load_trial
 run_trial(load_trial("hydrone-landing"), sys.argv[1] + "/run", engine="direct")
 ours = ("seatrial", "seatrial_kits")
 print(*[m.__file__ for n, m in sys.modules.items() if n.split(".")[0] in ours

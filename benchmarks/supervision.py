@@ -22,20 +22,20 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from seatrial.cosim.system import Engine
-from seatrial.trials.hooks import Hooks
-from seatrial.trials.run import run_trial
-from seatrial.trials.supervision import run_supervised
-from seatrial.trials.trial import load_trial
+from seatrial.system.system import Engine
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.running.hooks import Hooks
+from seatrial.trial.running.run import run_trial
+from seatrial.trial.running.supervision import run_supervised
 
 from .pages import write_measured
 
 _IMPORT = """
 import gc, time
 gc.set_threshold(200_000)  # as the command line has it
-import seatrial.trials.run, seatrial.cosim.assembly, seatrial.fmi.load
+import seatrial.trial.running.run, seatrial.system.assembly, seatrial.fmi.loading.load
 begun = time.perf_counter()
-import seatrial.trials.supervision
+import seatrial.trial.running.supervision
 print(time.perf_counter() - begun)
 """
 _TRIAL = "hydrone-landing"

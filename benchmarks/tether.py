@@ -15,11 +15,11 @@ from collections.abc import Callable
 
 import numpy as np
 
-from seatrial.cosim.parameters import load_vehicle
-from seatrial.craft.cable import Cable
-from seatrial.craft.cable_shape import static_shape
-from seatrial.craft.cable_solver import Chain, implicit_step
-from seatrial.craft.tether import Tether
+from seatrial.physics.craft.cable import Cable
+from seatrial.physics.craft.cable_shape import static_shape
+from seatrial.physics.craft.cable_solver import Chain, implicit_step
+from seatrial.physics.craft.tether import Tether
+from seatrial.system.parameters import load_vehicle
 
 from .pages import write_measured
 

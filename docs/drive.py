@@ -8,7 +8,7 @@ import math
 from drawing import draw
 from rich.console import Console
 
-from seatrial.component import Component
+from seatrial.model.component import Component
 from seatrial_kits.videoray.driving.pilot import Pilot
 from seatrial_kits.videoray.driving.screen import picture
 from seatrial_kits.videoray.rov import Pro4Rov

@@ -12,9 +12,9 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
-from seatrial.fmi.bundle import bundled
-from seatrial.fmi.source import shipped_sources
-from seatrial.units import unit
+from seatrial.fmi.building.bundle import bundled
+from seatrial.fmi.building.source import shipped_sources
+from seatrial.model.units import unit
 from tests.fmi.native import build_native_fmu
 
 if hasattr(signal, "SIGHUP"):

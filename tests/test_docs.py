@@ -23,16 +23,16 @@ import pytest
 from pydantic import BaseModel
 from pydantic_core import PydanticUndefined
 
-from seatrial.cosim.files import FileModel
-from seatrial.cosim.parameters import load_vehicle
-from seatrial.craft.marine_craft import MarineCraft
-from seatrial.environment.downwash import Downwash
+from seatrial.model.units import quantity
+from seatrial.physics.craft.marine_craft import MarineCraft
+from seatrial.physics.environment.downwash import Downwash
 from seatrial.shipped import available, provided_folders
-from seatrial.trials.criteria import parse
-from seatrial.trials.run import run_trial
-from seatrial.trials.run_folder import load_run
-from seatrial.trials.trial import load_trial
-from seatrial.units import quantity
+from seatrial.system.files import FileModel
+from seatrial.system.parameters import load_vehicle
+from seatrial.trial.criteria.criteria import parse
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.records.run_folder import load_run
+from seatrial.trial.running.run import run_trial
 from tests.command import seatrial
 from tests.interop.running import HOST, free_port, running, wait_for
 
@@ -374,7 +374,7 @@ def test_units_of_the_page() -> None:
     section = re.search(r"customary units are\s+known\s+\((.*?)\)", FILES.read_text("utf-8"), re.S)
     assert section is not None
     for name in re.findall(r"`([^`]+)`", section[1]):
-        importlib.import_module("seatrial.units").unit(name)
+        importlib.import_module("seatrial.model.units").unit(name)
 
 
 def test_values_come_from_where_the_page_says(write: Any, tmp_path: Path) -> None:

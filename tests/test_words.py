@@ -161,7 +161,7 @@ def test_a_word_is_found_in_names_and_prose(word: str) -> None:
         f"{word.upper()}_S = 3",
     )
     for text in texts:
-        (found,) = found_in("src/seatrial/model.py", text)
+        (found,) = found_in("src/seatrial/model/expressions.py", text)
         assert (found.word, found.better) == (word, WORDS[word])
 
 
@@ -174,7 +174,7 @@ def test_a_word_is_found_in_names_and_prose(word: str) -> None:
     ],
 )  # fmt: skip
 def test_a_phrase_is_found(text: str) -> None:
-    assert found_in("src/seatrial/model.py", text)
+    assert found_in("src/seatrial/model/expressions.py", text)
 
 
 @pytest.mark.parametrize(
@@ -182,7 +182,10 @@ def test_a_phrase_is_found(text: str) -> None:
     [
         ("src/seatrial_kits/arduino/wiring.py", "wire.place is a pin"),
         ("harness/firmware/x/x.ino", "#include <Wire.h>"),
-        ("src/seatrial/model.py", "air density, counts of turns, warehouse, spinning, pint"),
+        (
+            "src/seatrial/model/expressions.py",
+            "air density, counts of turns, warehouse, spinning, pint",
+        ),
         ("src/seatrial_kits/mavlink/x.py", "a radio link; the radio's channels count from 1"),
     ],
 )

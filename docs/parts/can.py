@@ -6,8 +6,8 @@ from functools import partial
 
 from parts import part
 from parts.markdown import shown_unit, table
-from seatrial.component import Component
-from seatrial.ports import Parameter, Port
+from seatrial.model.component import Component
+from seatrial.model.ports import Parameter, Port
 from seatrial_kits.can.component import CanBus
 from seatrial_kits.can.component_gateway import CanGateway
 from seatrial_kits.can.traffic import CanTraffic

@@ -8,11 +8,19 @@ from parts import elsewhere, part
 from parts.fault_plots import Line, drawn
 from parts.markdown import table
 from seatrial import Simulation
-from seatrial.cosim.fault_entry import FaultEntry
-from seatrial.cosim.streams import Stream
-from seatrial.faults.catalogue import COMPONENTS, DEVICES, KINDS, SIGNALS, STREAMS, Kind, Setting
-from seatrial.faults.operators import Moment, drawing
 from seatrial.links import text
+from seatrial.model.faults.catalogue import (
+    COMPONENTS,
+    DEVICES,
+    KINDS,
+    SIGNALS,
+    STREAMS,
+    Kind,
+    Setting,
+)
+from seatrial.model.faults.operators import Moment, drawing
+from seatrial.sim.streams import Stream
+from seatrial.system.fault_entry import FaultEntry
 
 BEGIN, END, STOP = 2.0, 7.0, 10.0
 _ON = {
@@ -61,7 +69,7 @@ EXAMPLES: dict[str, dict[str, Any]] = {
 _BUS = {"off": "sent.n2", "babbling": "load", "defective": "tec.n2"}
 _SOURCE = '''
 import math
-from seatrial.component import Component, Input, Output
+from seatrial.model.component import Component, Input, Output
 
 class Wave(Component):
     """y = sin t."""

@@ -10,12 +10,12 @@ import numpy as np
 
 from parts import elsewhere, part
 from parts.markdown import fixed, shown_number, table
-from seatrial.cosim.parameters import load_vehicle
-from seatrial.craft.marine_craft import MarineCraft
-from seatrial.trials.campaign import load_campaign, run_campaign
-from seatrial.trials.run import run_trial
-from seatrial.trials.run_folder import Run, load_run
-from seatrial.trials.trial import load_trial
+from seatrial.physics.craft.marine_craft import MarineCraft
+from seatrial.system.parameters import load_vehicle
+from seatrial.trial.files.campaign import load_campaign, run_campaign
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.records.run_folder import Run, load_run
+from seatrial.trial.running.run import run_trial
 from seatrial_kits.identify.damping import HullForm, damping
 from seatrial_kits.identify.hull_file import estimate_damping
 

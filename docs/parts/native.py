@@ -6,8 +6,8 @@ import re
 
 from parts import part
 from parts.markdown import table
-from seatrial.fmi.index import component_class, components
-from seatrial.plant import Plant
+from seatrial.fmi.building.index import component_class, components
+from seatrial.model.plant import Plant
 from seatrial_kits.native.carriers import why_python
 
 

@@ -13,7 +13,7 @@ from pydantic_core import PydanticUndefined
 
 from parts import part
 from parts.markdown import table
-from seatrial.cosim.profile_file import Actuator, Home, Identity, ProfileFile
+from seatrial.system.profile.file import Actuator, Home, Identity, ProfileFile
 
 MODELS: dict[str, tuple[type[BaseModel], str]] = {
     "profile": (ProfileFile, "key"),

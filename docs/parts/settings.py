@@ -7,11 +7,11 @@ from functools import partial
 
 from parts import part
 from parts.markdown import shown_unit, shown_value, table
-from seatrial.cosim.parameters import Entry, load_vehicle
-from seatrial.cosim.profile_kinds import keys
-from seatrial.fmi.source import shipped_sources
-from seatrial.ports import Parameter
+from seatrial.fmi.building.source import shipped_sources
+from seatrial.model.ports import Parameter
 from seatrial.shipped import shipped_folder
+from seatrial.system.parameters import Entry, load_vehicle
+from seatrial.system.profile.kinds import keys
 
 _SENSORS = ("ahrs", "anemometer", "compass", "depth", "gnss", "imu")
 _OF_LINKS = ("arduino", "ardupilot", "can", "gprs", "mavlink", "nmea", "px4", "videoray")

@@ -8,11 +8,11 @@ from functools import partial
 from parts import elsewhere, part
 from parts.markdown import table
 from seatrial.shipped import available
-from seatrial.trials.campaign import load_campaign, run_campaign
-from seatrial.trials.readable import number
-from seatrial.trials.run import run_trial
-from seatrial.trials.run_folder import load_run
-from seatrial.trials.trial import load_trial
+from seatrial.trial.files.campaign import load_campaign, run_campaign
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.records.run_folder import load_run
+from seatrial.trial.reports.readable import number
+from seatrial.trial.running.run import run_trial
 from seatrial_kits.design.heading import design_heading
 from seatrial_kits.design.heading_page import rows as design_rows
 from seatrial_kits.design.heading_page import stability

@@ -15,12 +15,12 @@ from parts import part
 from parts.markdown import table
 from parts.settings import parameters
 from parts.ships import verdicts
-from seatrial.cosim.parameters import load_vehicle
-from seatrial.craft.cable import Cable
-from seatrial.craft.cable_shape import hanging_shape, static_shape
-from seatrial.craft.cable_solver import Chain, implicit_step
-from seatrial.craft.tether import Tether
-from seatrial.units import quantity
+from seatrial.model.units import quantity
+from seatrial.physics.craft.cable import Cable
+from seatrial.physics.craft.cable_shape import hanging_shape, static_shape
+from seatrial.physics.craft.cable_solver import Chain, implicit_step
+from seatrial.physics.craft.tether import Tether
+from seatrial.system.parameters import load_vehicle
 
 part("tether-parameters")(partial(parameters, "tether"))
 part("tether-trials")(partial(verdicts, "tether"))

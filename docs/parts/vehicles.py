@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from parts import elsewhere, part
 from parts.markdown import table
-from seatrial.trials.campaign import Case, load_campaign, run_campaign
-from seatrial.trials.run import Result
+from seatrial.trial.files.campaign import Case, load_campaign, run_campaign
+from seatrial.trial.running.run import Result
 
 
 @part("vehicles-campaign")

@@ -9,9 +9,9 @@ import numpy as np
 
 from parts import elsewhere, part
 from parts.markdown import table
-from seatrial.trials.run import run_trial
-from seatrial.trials.run_folder import Run, load_run
-from seatrial.trials.trial import load_trial
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.records.run_folder import Run, load_run
+from seatrial.trial.running.run import run_trial
 from seatrial_kits.identify.prediction import delayed
 from seatrial_kits.identify.source_method import (
     correlation_delay,

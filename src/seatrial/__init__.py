@@ -1,8 +1,8 @@
 """seatrial: sea trials before the water.
 
 FMI co-simulation components and a software-in-the-loop harness for marine robots. What is named
-here is the Python API; ``docs/python.md`` shows it. To write components: `seatrial.component`
-and `seatrial.plant`.
+here is the Python API; ``docs/python.md`` shows it. To write components: `seatrial.model.component`
+and `seatrial.model.plant`.
 """
 
 from __future__ import annotations

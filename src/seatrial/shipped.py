@@ -58,7 +58,7 @@ def provided_file(kind: str, name: str) -> Path | None:
 
 
 def available(kind: str) -> dict[str, Path]:
-    """Return the files of ``kind`` by name, the ones that `find_file` of `cosim.files` returns."""
+    """Return the files of ``kind`` by name, the ones that `find_file` of `system.files` returns."""
     found: dict[str, Path] = {}
     for folder in searched_folders(kind):
         for path in sorted(folder.glob("*.toml")):

@@ -11,8 +11,8 @@ COMPONENTS = '''
 """Small components."""
 import math
 
-from seatrial.component import Component, Input, Output, Parameter
-from seatrial.plant import Plant, State
+from seatrial.model.component import Component, Input, Output, Parameter
+from seatrial.model.plant import Plant, State
 
 
 class Source(Component):

@@ -310,7 +310,7 @@ PROCESS = '''
 """Says in which process it is."""
 import os
 
-from seatrial.component import Component, Output
+from seatrial.model.component import Component, Output
 
 
 class Process(Component):

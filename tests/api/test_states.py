@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from seatrial import InputError, Simulation, SimulationError
-from seatrial.cosim.master import Master
+from seatrial.sim.master import Master
 
 Rig = Callable[..., str]
 

@@ -15,9 +15,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
-from seatrial.component import NS, Component, Input, Noise, Output, Parameter, seconds
 from seatrial.errors import InputError, SimulationError
-from seatrial.sampled import Sampled
+from seatrial.model.component import (
+    NS,
+    Component,
+    Input,
+    Noise,
+    Output,
+    Parameter,
+    seconds,
+)
+from seatrial.model.sampled import Sampled
 
 
 class Lag(Component):

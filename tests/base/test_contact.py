@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from seatrial.contact import Bristle, friction, hunt_crossley, kelvin_voigt, restitution
+from seatrial.physics.contact import Bristle, friction, hunt_crossley, kelvin_voigt, restitution
 
 REFERENCE = Path(__file__).parents[1] / "reference"
 G, MASS, STIFFNESS = 9.81, 10.0, 24525.0

@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 from scipy import integrate, linalg
 
-from seatrial.component import Input, Output, Parameter
 from seatrial.errors import InputError, SimulationError
 from seatrial.fmi.dependencies.found import feedthrough_of
-from seatrial.plant import Plant, State
+from seatrial.model.component import Input, Output, Parameter
+from seatrial.model.plant import Plant, State
 
 
 class Logistic(Plant):

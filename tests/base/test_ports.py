@@ -11,11 +11,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from seatrial.component import Component, Input, Noise, Output, Parameter
 from seatrial.errors import InputError
-from seatrial.plant import Plant
-from seatrial.ports import lay_out
-from seatrial.sampled import Sampled
+from seatrial.model.component import Component, Input, Noise, Output, Parameter
+from seatrial.model.plant import Plant
+from seatrial.model.ports import lay_out
+from seatrial.model.sampled import Sampled
 
 
 class Hull(Component):

@@ -14,9 +14,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import signal
 
-from seatrial.component import NS, Input, Output, Parameter
 from seatrial.errors import InputError
-from seatrial.sampled import Sampled
+from seatrial.model.component import NS, Input, Output, Parameter
+from seatrial.model.sampled import Sampled
 
 
 class Diary(Sampled):

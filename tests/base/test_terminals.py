@@ -4,7 +4,7 @@ from typing import ClassVar
 
 import pytest
 
-from seatrial.component import Component, Output, Parameter, terminal
+from seatrial.model.component import Component, Output, Parameter, terminal
 
 
 def test_a_terminal_may_be_called_as_a_parameter_that_stays():

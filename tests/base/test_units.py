@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from seatrial.errors import InputError
-from seatrial.units import Unit, conversion, defined_unit, quantity, unit
+from seatrial.model.units import Unit, conversion, defined_unit, quantity, unit
 
 BASE = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 FORCE, ENERGY = {"kg": 1, "m": 1, "s": -2}, {"kg": 1, "m": 2, "s": -2}

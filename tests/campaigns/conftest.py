@@ -2,12 +2,12 @@
 
 import pytest
 
-from seatrial.trials.campaign import load_campaign
+from seatrial.trial.files.campaign import load_campaign
 
 COMPONENT = '''
 import os, time
 from pathlib import Path
-from seatrial.component import Component, Output, Parameter
+from seatrial.model.component import Component, Output, Parameter
 
 
 class Case(Component):

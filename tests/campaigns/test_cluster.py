@@ -12,10 +12,10 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from seatrial.campaigns.shipment import packed, unpacked
-from seatrial.campaigns.sweep import How, run_sweep
 from seatrial.errors import InputError
-from seatrial.trials.campaign import load_campaign
+from seatrial.trial.campaigns.shipment import packed, unpacked
+from seatrial.trial.campaigns.sweep import How, run_sweep
+from seatrial.trial.files.campaign import load_campaign
 
 pytestmark = [
     pytest.mark.interop,
@@ -136,7 +136,7 @@ def test_files_of_a_user_s_own_travel(cluster, campaign, tmp_path):
 
 
 def test_an_address_without_a_scheduler_is_said(campaign, tmp_path, monkeypatch):
-    monkeypatch.setattr("seatrial.campaigns.cluster._WAIT_S", 1)
+    monkeypatch.setattr("seatrial.trial.campaigns.cluster._WAIT_S", 1)
     how = How("direct", cluster=f"tcp://127.0.0.1:{free_port()}")
     with pytest.raises(InputError, match="there is no scheduler"):
         run_sweep(campaign, tmp_path / "out", how)
@@ -175,8 +175,8 @@ def test_tls_with_certificates_of_one_authority(campaign, tmp_path):
 @pytest.mark.parametrize("answer", [b"", b"\xff" * 64, None])
 def test_a_peer_that_is_no_scheduler_is_said(campaign, tmp_path, monkeypatch, answer):
     """Closes at once, sends lengths that nobody has, or waits for more, as a web server does."""
-    monkeypatch.setattr("seatrial.campaigns.cluster._WAIT_S", 2)
-    monkeypatch.setattr("seatrial.campaigns.cluster._LATE_S", 2)
+    monkeypatch.setattr("seatrial.trial.campaigns.cluster._WAIT_S", 2)
+    monkeypatch.setattr("seatrial.trial.campaigns.cluster._LATE_S", 2)
     with socket.create_server(("127.0.0.1", 0)) as server:
         taken = []
 

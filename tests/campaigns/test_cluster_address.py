@@ -5,8 +5,8 @@ import subprocess
 import pytest
 
 import seatrial
-from seatrial.campaigns.cluster import check_address
 from seatrial.errors import InputError
+from seatrial.trial.campaigns.cluster import check_address
 from tests.command import SEATRIAL
 
 HERE = ("127.0.0.1:8786", "localhost:8786", "tcp://127.1.2.3:1", "tls://[::1]:8786")

@@ -7,12 +7,12 @@ import subprocess
 import pandas as pd
 import pytest
 
-from seatrial.campaigns.ended import Ended
-from seatrial.campaigns.sweep import How, run_sweep
 from seatrial.errors import InputError
-from seatrial.trials.campaign import run_campaign
-from seatrial.trials.hooks import Hooks
-from seatrial.trials.measuring import Measured
+from seatrial.trial.campaigns.ended import Ended
+from seatrial.trial.campaigns.sweep import How, run_sweep
+from seatrial.trial.files.campaign import run_campaign
+from seatrial.trial.running.hooks import Hooks
+from seatrial.trial.running.measuring import Measured
 from tests.cli.test_stop import SEATRIAL
 
 GRID = 'keep = "failed"\n[grid]\n"case.number" = ["1 m", "2 m", "3 m", "4 m"]\n'

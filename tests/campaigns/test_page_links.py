@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.campaigns.page import write_table_page
-from seatrial.campaigns.sweep import run_sweep
-from seatrial.trials.campaign_report import write_case_report
+from seatrial.trial.campaigns.page import write_table_page
+from seatrial.trial.campaigns.sweep import run_sweep
+from seatrial.trial.reports.campaign_report import write_case_report
 from tests.kits.live.browser import chromium, opened
 
 from .test_table import direct

@@ -2,15 +2,15 @@
 
 import pytest
 
-from seatrial.campaigns.evaluator import Evaluator, Plan
-from seatrial.campaigns.needed import needed_files
-from seatrial.campaigns.shipment import packed, unpacked
-from seatrial.cosim.parameters import load_vehicle
 from seatrial.errors import InputError
-from seatrial.trials.campaign import load_campaign
+from seatrial.system.parameters import load_vehicle
+from seatrial.trial.campaigns.evaluator import Evaluator, Plan
+from seatrial.trial.campaigns.needed import needed_files
+from seatrial.trial.campaigns.shipment import packed, unpacked
+from seatrial.trial.files.campaign import load_campaign
 
 COMPONENT = """
-from seatrial.component import Component, Output, Parameter
+from seatrial.model.component import Component, Output, Parameter
 
 
 class Boat(Component):
@@ -107,6 +107,6 @@ def test_a_project_too_large_to_travel_is_refused(write, monkeypatch):
         write(f"project/{name}", text)
     path = write("project/inside/readme", "x" * 20_000).parent
     monkeypatch.chdir(path)
-    monkeypatch.setattr("seatrial.campaigns.shipment.MOST_BYTES", 10_000)
+    monkeypatch.setattr("seatrial.trial.campaigns.shipment.MOST_BYTES", 10_000)
     with pytest.raises(InputError, match="put it and what it needs in a folder apart"):
         packed(load_campaign("c.toml"))

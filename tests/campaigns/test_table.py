@@ -12,12 +12,12 @@ import pytest
 from scipy.stats import beta
 
 import seatrial
-from seatrial.campaigns.page import write_table_page
-from seatrial.campaigns.sweep import How, run_sweep
 from seatrial.errors import InputError
-from seatrial.trials.campaign import load_campaign
-from seatrial.trials.stopping_rule import StoppingRule, failure_interval
-from seatrial.trials.trial import load_trial
+from seatrial.trial.campaigns.page import write_table_page
+from seatrial.trial.campaigns.sweep import How, run_sweep
+from seatrial.trial.files.campaign import load_campaign
+from seatrial.trial.files.stopping_rule import StoppingRule, failure_interval
+from seatrial.trial.files.trial import load_trial
 from tests.cli.test_stop import SEATRIAL, wait_for
 
 GRID = (

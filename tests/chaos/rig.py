@@ -23,7 +23,7 @@ MARK = "SEATRIAL_CHAOS_MARK"
 WAIT_S = 90.0
 TALKER = '''
 """Sends a byte in every step, which says full ahead."""
-from seatrial.component import Component, Output
+from seatrial.model.component import Component, Output
 from seatrial.links.text import Outbox
 
 

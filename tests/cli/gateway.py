@@ -16,7 +16,7 @@ TALKER = '''
 """Sends, and may be slow to start."""
 import time
 
-from seatrial.component import Component, Output, Parameter
+from seatrial.model.component import Component, Output, Parameter
 from seatrial.links.text import Outbox
 
 

@@ -127,7 +127,7 @@ def test_a_junit_file_has_a_case_for_each_criterion(folder: Path) -> None:
 
 def test_a_run_that_fails_is_an_error_of_the_junit_file(folder: Path) -> None:
     (folder / "dies.py").write_text(
-        "from seatrial.component import Component, Output\n\n\nclass Dies(Component):\n"
+        "from seatrial.model.component import Component, Output\n\n\nclass Dies(Component):\n"
         '    """Dies."""\n\n    x = Output("1", "x")\n\n'
         "    def step(self, t, h):\n        raise RuntimeError('it is dead')\n\n"
         "    def outputs(self, t):\n        self.x = 0.0\n"
@@ -179,7 +179,7 @@ def test_a_shell_completes_commands_options_and_trials(folder: Path) -> None:
 
 def test_what_an_fmu_prints_is_not_in_the_document(folder: Path) -> None:
     (folder / "talks.py").write_text(
-        "import os\n\nfrom seatrial.component import Component, Output\n\n\n"
+        "import os\n\nfrom seatrial.model.component import Component, Output\n\n\n"
         'class Talks(Component):\n    """Talks."""\n\n    x = Output("1", "x")\n\n'
         "    def step(self, t, h):\n        os.write(1, b'chatter\\n')\n\n"
         "    def outputs(self, t):\n        self.x = 0.0\n"

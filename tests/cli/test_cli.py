@@ -19,7 +19,7 @@ from tests.command import SEATRIAL, seatrial
 
 BAD = '''
 """Fails."""
-from seatrial.component import Component, Output, Parameter
+from seatrial.model.component import Component, Output, Parameter
 
 
 class Bad(Component):

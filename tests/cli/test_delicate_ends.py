@@ -22,7 +22,7 @@ import signal
 import sys
 import time
 
-from seatrial.component import Component, Output, Parameter
+from seatrial.model.component import Component, Output, Parameter
 
 
 def interrupt(frame, event, arg):

@@ -12,8 +12,8 @@ import pytest
 from typer.testing import CliRunner
 
 from seatrial.cli.fmu import fmu_app
-from seatrial.cosim.assembly import assemble
-from seatrial.cosim.flattening import load_rig
+from seatrial.system.assembly import assemble
+from seatrial.system.flattening import load_rig
 from tests.command import seatrial
 from tests.fmi.boats import BARGE
 from tests.fmi.native import changed

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.trials import report
+from seatrial.trial.reports import report
 from tests.command import seatrial
 from tests.trials.conftest import write_run_folder
 

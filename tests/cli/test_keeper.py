@@ -31,7 +31,7 @@ import re
 import time
 from pathlib import Path
 
-from seatrial.component import Component, Output, Parameter
+from seatrial.model.component import Component, Output, Parameter
 
 
 class Hanger(Component):

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.cosim.files import available
-from seatrial.cosim.profile import load_profile
-from seatrial.cosim.profile_kinds import GROUPS, keys
+from seatrial.system.files import available
+from seatrial.system.profile.kinds import GROUPS, keys
+from seatrial.system.profile.profile import load_profile
 from tests.command import seatrial
 from tests.cosim.test_profile import GOOD
 

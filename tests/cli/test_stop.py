@@ -20,7 +20,7 @@ COMPONENT = '''
 import time
 from pathlib import Path
 
-from seatrial.component import Component, Output, Parameter
+from seatrial.model.component import Component, Output, Parameter
 
 
 class Slow(Component):

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.campaigns.shipment import pack_folder, unpack_folder
+from seatrial.trial.campaigns.shipment import pack_folder, unpack_folder
 
 SEATRIAL = str(Path(sys.executable).with_name("seatrial"))
 RIG = 'step = "100 ms"\n[components]\nsail = { fmu = "sail-control" }\n'

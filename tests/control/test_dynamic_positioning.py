@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from seatrial.control.dynamic_positioning import DynamicPositioning
-from seatrial.cosim.parameters import load_vehicle
-from seatrial.craft.thruster_ship import ThrusterShip
 from seatrial.devices.force_actuator import ForceActuator
+from seatrial.physics.craft.thruster_ship import ThrusterShip
+from seatrial.system.parameters import load_vehicle
 from tests.devices.running import started
 
 MASS = np.array([7.88e6, 1.364e7, 4.31e9])

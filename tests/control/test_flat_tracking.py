@@ -14,8 +14,8 @@ from seatrial.control.flat_outputs import (
     tracking_gain,
 )
 from seatrial.control.flat_tracking import FlatTracking, vessel_flat_output, vessel_jacobians
-from seatrial.craft.surface_vessel import SurfaceVessel
 from seatrial.errors import InputError
+from seatrial.physics.craft.surface_vessel import SurfaceVessel
 
 from .vessel_loop import (
     CASES,

@@ -5,8 +5,8 @@ import pytest
 
 from seatrial.control.nominal_trajectory import NominalTrajectory
 from seatrial.control.vessel_nominal import Profile
-from seatrial.craft.surface_vessel import SurfaceVessel
 from seatrial.errors import InputError
+from seatrial.physics.craft.surface_vessel import SurfaceVessel
 
 from .vessel_loop import CASES, STEPS, build, profile, started, table
 

@@ -4,7 +4,7 @@ import pytest
 
 from seatrial.control.sail_control import SailControl
 from seatrial.errors import InputError
-from seatrial.foils import sail_naca0015
+from seatrial.physics.foils import sail_naca0015
 from tests.devices.running import started
 
 DEG = math.radians(1.0)

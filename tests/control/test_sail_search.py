@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from seatrial.control.sail_search import best_setting, setting
-from seatrial.foils import sail_naca0015
+from seatrial.physics.foils import sail_naca0015
 
 TABLE = sail_naca0015("verbatim", "table")
-PRINTED = np.loadtxt(files("seatrial") / "sail_naca0015.csv", delimiter=",", skiprows=1)
+PRINTED = np.loadtxt(files("seatrial") / "physics/sail_naca0015.csv", delimiter=",", skiprows=1)
 LIFT, DRAG = (PRINTED[:, column].reshape(7, 37) for column in (2, 3))
 DEG = math.radians(1.0)
 WINDS = [-10, -33, -52, -71, -88, -95, -104]

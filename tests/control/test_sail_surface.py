@@ -10,7 +10,7 @@ from seatrial.control.sail_control import SailControl
 from seatrial.control.sail_search import best_setting
 from seatrial.control.sail_surface import smooth_setting
 from seatrial.errors import InputError
-from seatrial.foils import sail_naca0015
+from seatrial.physics.foils import sail_naca0015
 
 TABLE = sail_naca0015("patched", "physical")
 WINDS = [-10, -30, -50, -70, -90, -104]

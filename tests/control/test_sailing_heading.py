@@ -13,7 +13,7 @@ import pytest
 
 from seatrial.control.sailing_heading_backstepping import SailingHeadingBackstepping
 from seatrial.control.sailing_heading_pid import SailingHeadingPid
-from seatrial.units import conversion
+from seatrial.model.units import conversion
 from tests.devices.running import started
 
 GLORIA = tomllib.loads((files("seatrial") / "vehicles/gloria.toml").read_text("utf-8"))

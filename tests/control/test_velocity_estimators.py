@@ -7,7 +7,7 @@ import pytest
 
 from seatrial.control.integrated_velocity import IntegratedVelocity
 from seatrial.control.velocity_filter import VelocityFilter
-from seatrial.craft.kinematics import to_body
+from seatrial.physics.craft.kinematics import to_body
 
 T, GRAVITY = 0.1, 9.81
 LEVEL = (0.0, 0.0, -GRAVITY)

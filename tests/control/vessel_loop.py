@@ -4,8 +4,8 @@ from pathlib import Path
 
 import numpy as np
 
-from seatrial.cosim.parameters import load_vehicle
-from seatrial.craft.surface_vessel import SurfaceVessel
+from seatrial.physics.craft.surface_vessel import SurfaceVessel
+from seatrial.system.parameters import load_vehicle
 
 REFERENCE = Path(__file__).parents[1] / "reference"
 CASES = {

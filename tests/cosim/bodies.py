@@ -5,9 +5,9 @@ TEXT = '''
 import math
 import random
 
-from seatrial.component import Component, Input, Output, Parameter
-from seatrial.plant import Plant, State
-from seatrial.sampled import Sampled
+from seatrial.model.component import Component, Input, Output, Parameter
+from seatrial.model.plant import Plant, State
+from seatrial.model.sampled import Sampled
 
 
 class Counter(Component):

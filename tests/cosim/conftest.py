@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.cosim.assembly import assemble
-from seatrial.cosim.flattening import load_rig
-from seatrial.cosim.master import Master
-from seatrial.cosim.system import System
+from seatrial.sim.master import Master
+from seatrial.system.assembly import assemble
+from seatrial.system.flattening import load_rig
+from seatrial.system.system import System
 
 from ..kits.interchange import users
 from . import bodies

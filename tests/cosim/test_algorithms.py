@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from seatrial.cosim import rollback
-from seatrial.cosim.master import Master
 from seatrial.errors import InputError, SimulationError
+from seatrial.sim import rollback
+from seatrial.sim.master import Master
 
 from .conftest import Bench, value
 

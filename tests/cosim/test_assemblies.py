@@ -8,17 +8,17 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.cosim.assembly import assemble
-from seatrial.cosim.flattening import load_rig
-from seatrial.cosim.master import Master
-from seatrial.cosim.system import System
 from seatrial.errors import InputError
-from seatrial.trials.run import run_trial
-from seatrial.trials.trial import load_trial
+from seatrial.sim.master import Master
+from seatrial.system.assembly import assemble
+from seatrial.system.flattening import load_rig
+from seatrial.system.system import System
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.running.run import run_trial
 
 USERS = '''
 """A body on which forces add up, what pushes it, who reads it."""
-from seatrial.component import Component, Input, Output, Parameter, Terms, terminal
+from seatrial.model.component import Component, Input, Output, Parameter, Terms, terminal
 
 
 class Push(Component):

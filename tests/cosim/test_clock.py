@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from seatrial.cosim.clock import SLICE_NS, OverrunPolicy, Pacer
+from seatrial.sim.clock import SLICE_NS, OverrunPolicy, Pacer
 
 MS = 1_000_000
 STEP = 10 * MS

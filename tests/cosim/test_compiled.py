@@ -10,14 +10,14 @@ from typing import Any
 
 import pytest
 
-import seatrial.cosim.master
-from seatrial.cosim.assembly import assemble
-from seatrial.cosim.compiled import library
-from seatrial.cosim.compiled.rows import Rows
-from seatrial.cosim.flattening import load_rig
-from seatrial.cosim.master import Master
+import seatrial.sim.master
 from seatrial.errors import SimulationError
 from seatrial.fmi import on_demand
+from seatrial.sim.compiled import library
+from seatrial.sim.compiled.rows import Rows
+from seatrial.sim.master import Master
+from seatrial.system.assembly import assemble
+from seatrial.system.flattening import load_rig
 
 from ..fmi.native import build_native_fmu, changed
 from . import bodies
@@ -103,7 +103,7 @@ def run(path: Path, *, compiled: bool, block: int = 1000, steps: int = STEPS) ->
     """Return all that is seen of a run: every point, how it ended, what was said."""
     with pytest.MonkeyPatch.context() as patch:
         if not compiled:
-            patch.setattr(seatrial.cosim.master, "is_compiled", lambda _system: False)
+            patch.setattr(seatrial.sim.master, "is_compiled", lambda _system: False)
         system = assemble(load_rig(str(path)))
         seen: dict[str, Any] = {"points": [], "error": None}
         try:
@@ -320,7 +320,7 @@ def test_changes_from_outside_count_at_once_and_states_come_back(fmus: Path) -> 
     def signals(compiled: bool) -> list[list[Any]]:
         with pytest.MonkeyPatch.context() as patch:
             if not compiled:
-                patch.setattr(seatrial.cosim.master, "is_compiled", lambda _system: False)
+                patch.setattr(seatrial.sim.master, "is_compiled", lambda _system: False)
             system = assemble(load_rig(str(fmus / "set.toml")))
             try:
                 master, found = Master(system), []

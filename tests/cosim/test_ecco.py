@@ -8,9 +8,9 @@ from typing import Any
 
 import pytest
 
-from seatrial.cosim.master import Master
 from seatrial.errors import InputError
-from seatrial.trials.trial import load_trial
+from seatrial.sim.master import Master
+from seatrial.trial.files.trial import load_trial
 from seatrial_kits.interchange.export import export_osp
 from seatrial_kits.interchange.osp.reading import read_osp
 from seatrial_kits.interchange.rig_fmu.face import face_of

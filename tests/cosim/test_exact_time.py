@@ -9,12 +9,12 @@ from typing import Any
 
 import pytest
 
-import seatrial.cosim.master
-from seatrial.component import NS
-from seatrial.cosim.assembly import assemble
-from seatrial.cosim.flattening import load_rig
-from seatrial.cosim.instants import interval
-from seatrial.cosim.master import Master
+import seatrial.sim.master
+from seatrial.model.component import NS
+from seatrial.sim.instants import interval
+from seatrial.sim.master import Master
+from seatrial.system.assembly import assemble
+from seatrial.system.flattening import load_rig
 
 from ..fmi.native import build_native_fmu, changed, variant
 
@@ -40,7 +40,7 @@ def running(path: Path, text: str, *, carrier: str, stop_ns: int | None = None) 
     path.write_text(text)
     with pytest.MonkeyPatch.context() as patch:
         if carrier == "python":
-            patch.setattr(seatrial.cosim.master, "is_compiled", lambda _system: False)
+            patch.setattr(seatrial.sim.master, "is_compiled", lambda _system: False)
         system = assemble(load_rig(str(path)))
         try:
             master = Master(system, stop_ns=stop_ns)

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 import scipy.stats
 
-from seatrial.cosim.fault_entry import FaultEntry, read_fault
-from seatrial.cosim.faults import resolved
-from seatrial.cosim.master import Master
 from seatrial.errors import InputError, SimulationError
-from seatrial.faults.catalogue import SIGNALS
+from seatrial.model.faults.catalogue import SIGNALS
+from seatrial.sim.faults import resolved
+from seatrial.sim.master import Master
+from seatrial.system.fault_entry import FaultEntry, read_fault
 
 from .conftest import Bench, value
 

@@ -11,11 +11,11 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from pydantic import BaseModel, Field
 
-from seatrial.cosim.files import FileModel, available, find_file, read_toml, validated
-from seatrial.cosim.flattening import load_rig
-from seatrial.cosim.parameters import load_vehicle
 from seatrial.errors import InputError
 from seatrial.shipped import provided_folders, shipped_folder
+from seatrial.system.files import FileModel, available, find_file, read_toml, validated
+from seatrial.system.flattening import load_rig
+from seatrial.system.parameters import load_vehicle
 
 RIG = 'title = "{}"\nstep = "20 ms"\n[components]\n'
 

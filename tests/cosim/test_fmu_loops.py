@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.cosim.assembly import assemble
-from seatrial.cosim.flattening import load_rig
-from seatrial.cosim.master import Master
 from seatrial.errors import SimulationError
+from seatrial.sim.master import Master
+from seatrial.system.assembly import assemble
+from seatrial.system.flattening import load_rig
 from tests.fmi.models import build_model_fmu
 
 PORTS = {1: ("y", "u"), 2: ("y", "u"), 3: ("out_Float64[1]", "in_Float64[1]")}

@@ -15,12 +15,12 @@ from typing import Any
 
 import pytest
 
-from seatrial.cosim.assembly import assemble
-from seatrial.cosim.flattening import load_rig
 from seatrial.errors import InputError
-from seatrial.fmi.isolated import IsolatedInstance
-from seatrial.trials.run import run_trial
-from seatrial.trials.trial import load_trial
+from seatrial.fmi.isolation.isolated import IsolatedInstance
+from seatrial.system.assembly import assemble
+from seatrial.system.flattening import load_rig
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.running.run import run_trial
 from tests.command import SEATRIAL
 
 from ..fmi import crashing
@@ -123,7 +123,7 @@ def test_a_discarded_step_is_repeated_from_a_restored_state(write, tmp_path: Pat
     write(
         "coy.py",
         '"""Takes short steps only."""\n'
-        "from seatrial.component import Component, Output\n\n\n"
+        "from seatrial.model.component import Component, Output\n\n\n"
         "class Coy(Component):\n"
         '    """Integrates time, in steps of 30 ms at most."""\n\n'
         '    y = Output("s", "time")\n\n'

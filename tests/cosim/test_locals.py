@@ -12,8 +12,8 @@ from lxml import etree
 
 from seatrial import Simulation
 from seatrial.errors import InputError
-from seatrial.trials.run import run_trial
-from seatrial.trials.trial import load_trial
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.running.run import run_trial
 from seatrial_kits.interchange.export import export_osp, export_ssp
 from seatrial_kits.interchange.ssp.reading import read_ssp
 

@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from seatrial.cosim.compiled.rows import Rows
-from seatrial.cosim.fault_schedule import Fault
-from seatrial.cosim.injected import Acting
 from seatrial.errors import InputError, SimulationError
-from seatrial.faults.operators import Bias, Operator
+from seatrial.model.faults.operators import Bias, Operator
+from seatrial.sim.compiled.rows import Rows
+from seatrial.sim.fault_schedule import Fault
+from seatrial.sim.injected import Acting
 
 from .conftest import Bench, value
 

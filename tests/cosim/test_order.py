@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.sparse.csgraph import connected_components
 
-from seatrial.cosim.order import loops_on_itself, ordered_groups
+from seatrial.sim.order import loops_on_itself, ordered_groups
 
 Graph = dict[str, list[str]]
 
@@ -90,7 +90,7 @@ def test_a_long_chain_and_a_long_loop_need_no_recursion() -> None:
 
 def test_order_is_the_same_whatever_the_hash_seed() -> None:
     code = (
-        "from seatrial.cosim.order import ordered_groups\n"
+        "from seatrial.sim.order import ordered_groups\n"
         "g = {f'p{i}.y{i % 3}': [f'p{(i * 7 + j) % 40}.y{(i + j) % 3}' for j in range(i % 4)] for i in range(40)}\n"
         "print(ordered_groups(g))"
     )

@@ -8,11 +8,11 @@ from pymavlink import mavutil
 
 from seatrial import Simulation
 from seatrial.errors import SimulationError
-from seatrial.trials.run import run_trial
-from seatrial.trials.trial import load_trial
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.running.run import run_trial
 
 GROWING = '''
-from seatrial.component import Component, Input, Output, Parameter
+from seatrial.model.component import Component, Input, Output, Parameter
 
 
 class Growing(Component):

@@ -6,13 +6,13 @@ import tomllib
 
 import pytest
 
-from seatrial.component import Component, Input, Output, Parameter
-from seatrial.cosim.files import available
-from seatrial.cosim.parameters import Entry, Vehicle, load_vehicle
-from seatrial.cosim.values import Given, from_entry, from_written, port_scalars
 from seatrial.errors import InputError
 from seatrial.fmi.direct import DirectInstance
-from seatrial.units import conversion
+from seatrial.model.component import Component, Input, Output, Parameter
+from seatrial.model.units import conversion
+from seatrial.system.files import available
+from seatrial.system.parameters import Entry, Vehicle, load_vehicle
+from seatrial.system.values import Given, from_entry, from_written, port_scalars
 
 HEAD = 'title = "Boat"\nsource = "drawing 7"\n'
 BOAT = (

@@ -2,7 +2,7 @@
 
 import pytest
 
-from seatrial.cosim.paths import split_axis
+from seatrial.system.paths import split_axis
 
 
 @pytest.mark.parametrize(

@@ -9,15 +9,15 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.cosim.flattening import load_rig
 from seatrial.errors import InputError
 from seatrial.links.endpoints.url import check_urls, open_endpoint
+from seatrial.system.flattening import load_rig
 from tests.packages import installed
 
 MODULE = '''
 from pathlib import Path
 
-from seatrial.cosim.algorithms import Algorithm, arrive
+from seatrial.sim.algorithms import Algorithm, arrive
 from seatrial.links.endpoints.endpoint import Channel, Endpoint
 
 
@@ -75,9 +75,9 @@ talker = {{ fmu = "nmea0183", set = {{ links = "tape:{tape}" }} }}
 """
 PROGRAM = """
 import sys
-from seatrial.cosim.master import Master
-from seatrial.cosim.flattening import load_rig
-from seatrial.cosim.assembly import assemble
+from seatrial.sim.master import Master
+from seatrial.system.flattening import load_rig
+from seatrial.system.assembly import assemble
 
 system = assemble(load_rig(sys.argv[1]), "direct")
 master = Master(system)

@@ -3,11 +3,11 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.cosim.profile import Profiles, check_profile, load_profile
 from seatrial.devices.servo import Servo
 from seatrial.devices.thruster import Thruster
 from seatrial.errors import InputError
-from seatrial.fmi.index import component_class
+from seatrial.fmi.building.index import component_class
+from seatrial.system.profile.profile import Profiles, check_profile, load_profile
 
 GOOD = """\
 title = "A boat"

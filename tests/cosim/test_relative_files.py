@@ -2,11 +2,11 @@
 
 import pytest
 
-from seatrial.cosim.assembly import assemble
-from seatrial.cosim.flattening import load_rig
-from seatrial.trials.preparation import prepare
-from seatrial.trials.run import Hooks
-from seatrial.trials.trial import load_trial
+from seatrial.system.assembly import assemble
+from seatrial.system.flattening import load_rig
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.running.preparation import prepare
+from seatrial.trial.running.run import Hooks
 
 GRID = "north,east,depth\n0,0,5\n0,9,5\n9,0,5\n9,9,5\n"
 RIG = 'step = "10 ms"\n[components]\nsounder = {{ fmu = "echo-sounder"{} }}\n'

@@ -14,10 +14,10 @@ from pathlib import Path
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.fmi import sandbox
-from seatrial.fmi.pipe import FAILURE, RESULT, frame
-from seatrial.trials.run import run_trial
-from seatrial.trials.trial import load_trial
+from seatrial.fmi.isolation import sandbox
+from seatrial.fmi.isolation.pipe import FAILURE, RESULT, frame
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.running.run import run_trial
 
 from ..command import seatrial
 
@@ -27,7 +27,7 @@ import os
 import socket
 from pathlib import Path
 
-from seatrial.component import Component, Input, Output
+from seatrial.model.component import Component, Input, Output
 
 
 class Curious(Component):
@@ -140,7 +140,7 @@ import ctypes
 
 import numpy
 
-from seatrial.component import Component, Output
+from seatrial.model.component import Component, Output
 
 
 class Greedy(Component):
@@ -227,7 +227,7 @@ LIAR = """
 import os
 import sys
 
-from seatrial.component import Component, Output
+from seatrial.model.component import Component, Output
 
 
 class Liar(Component):

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.cosim.assembly import assemble
-from seatrial.cosim.flattening import load_rig
-from seatrial.cosim.system import System
-from seatrial.cosim.values import port_scalars
 from seatrial.errors import InputError
-from seatrial.fmi.index import component_class
+from seatrial.fmi.building.index import component_class
+from seatrial.system.assembly import assemble
+from seatrial.system.flattening import load_rig
+from seatrial.system.system import System
+from seatrial.system.values import port_scalars
 
 BY_HAND = Path(__file__).parents[1] / "reference" / "connections"
 RENAMED = {

@@ -8,19 +8,19 @@ from typing import Any
 
 import pytest
 
-from seatrial.cosim.assembly import assemble
-from seatrial.cosim.compiled import choice
-from seatrial.cosim.flattening import load_rig
-from seatrial.cosim.forgotten import forgotten
 from seatrial.errors import InputError
-from seatrial.trials.preparation import prepare
-from seatrial.trials.run import Hooks, run_trial
-from seatrial.trials.trial import load_trial
+from seatrial.sim.compiled import choice
+from seatrial.system.assembly import assemble
+from seatrial.system.flattening import load_rig
+from seatrial.system.forgotten import forgotten
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.running.preparation import prepare
+from seatrial.trial.running.run import Hooks, run_trial
 
 PARTS = '''
 import math
-from seatrial.component import Component, Input, Output, Terms
-from seatrial.plant import Plant, State
+from seatrial.model.component import Component, Input, Output, Terms
+from seatrial.model.plant import Plant, State
 from helping import inverse
 
 
@@ -211,7 +211,7 @@ def test_an_algorithm_that_loses_the_compiled_master_says_so(
     system = assemble(load_rig(str(tmp_path / "rig.toml")), "direct")
     assert choice.lost_by_algorithm(system) == ""  # there was none to lose
     monkeypatch.setattr(system.parts["ramp"].instance, "is_native", True, raising=False)
-    monkeypatch.setattr("seatrial.cosim.compiled.library.library", lambda: object())
+    monkeypatch.setattr("seatrial.sim.compiled.library.library", lambda: object())
     assert choice.lost_by_algorithm(system).startswith(
         "the master's steps are taken in Python, not in C: the algorithm 'iterated' is none of"
     )

@@ -7,16 +7,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from seatrial.cosim.master import Master
 from seatrial.errors import SimulationError
-from seatrial.faults.catalogue import STREAMS
 from seatrial.links import text
+from seatrial.model.faults.catalogue import STREAMS
+from seatrial.sim.master import Master
 
 from .conftest import Bench, value
 from .test_faults import inject
 
 SENDER = '''
-from seatrial.component import Component, Input, Output
+from seatrial.model.component import Component, Input, Output
 from seatrial.links.text import Inbox, Outbox
 
 class Sender(Component):

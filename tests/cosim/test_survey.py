@@ -16,12 +16,12 @@ import pytest
 import typer
 
 from seatrial.cli.survey import survey_folder
-from seatrial.cosim.survey import surveying
-from seatrial.cosim.survey.surveying import Surveyed, fmus_in, survey
-from seatrial.cosim.survey.ways import WAYS
 from seatrial.errors import InputError
-from seatrial.fmi.export import build_fmu
-from seatrial.fmi.source import named_sources
+from seatrial.fmi.building.export import build_fmu
+from seatrial.fmi.building.source import named_sources
+from seatrial.sim.survey import surveying
+from seatrial.sim.survey.surveying import Surveyed, fmus_in, survey
+from seatrial.sim.survey.ways import WAYS
 from seatrial_kits.native.export import build_native_fmu
 from tests.command import seatrial
 from tests.fmi.models import build_model_fmu

@@ -7,11 +7,11 @@ from typing import Any
 
 import pytest
 
-from seatrial.cosim.assembly import assemble
-from seatrial.cosim.flattening import load_rig
-from seatrial.cosim.system import Engine
 from seatrial.errors import InputError
-from seatrial.fmi.load import load_fmu, open_instance
+from seatrial.fmi.loading.load import load_fmu, open_instance
+from seatrial.system.assembly import assemble
+from seatrial.system.flattening import load_rig
+from seatrial.system.system import Engine
 from seatrial_kits.interchange.ssp.reading import read_ssp
 from seatrial_kits.native.engine import carry_natively
 

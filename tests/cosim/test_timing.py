@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from seatrial.cosim.timing import StepTimes
+from seatrial.sim.timing import StepTimes
 
 
 def test_bins_are_those_of_a_histogram_with_edges_at_powers_of_two() -> None:

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.cosim.assembly import assemble
-from seatrial.cosim.flattening import load_rig
-from seatrial.cosim.master import Master
 from seatrial.errors import InputError
+from seatrial.sim.master import Master
+from seatrial.system.assembly import assemble
+from seatrial.system.flattening import load_rig
 
 from ..fmi.models import build_model_fmu
 from ..fmi.native import build_native_fmu, changed, variant

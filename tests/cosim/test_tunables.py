@@ -4,11 +4,11 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.cosim.assembly import assemble
-from seatrial.cosim.flattening import load_rig
-from seatrial.cosim.profile import check_profile
-from seatrial.cosim.tunables import Tunable, carried
 from seatrial.errors import InputError
+from seatrial.system.assembly import assemble
+from seatrial.system.flattening import load_rig
+from seatrial.system.profile.profile import check_profile
+from seatrial.system.tunables import Tunable, carried
 from seatrial_kits.mavlink.component import Mavlink
 from tests.cosim.test_profile import GOOD
 

@@ -7,8 +7,8 @@ from importlib.resources import files
 import numpy as np
 import pytest
 
-from seatrial.craft.marine_craft import MarineCraft
-from seatrial.environment.downwash import Downwash
+from seatrial.physics.craft.marine_craft import MarineCraft
+from seatrial.physics.environment.downwash import Downwash
 
 PARAMETERS = tomllib.loads((files("seatrial") / "vehicles/hydrone.toml").read_text())
 DAMPING = (

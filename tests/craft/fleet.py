@@ -2,15 +2,15 @@
 
 import numpy as np
 
-from seatrial.cosim.parameters import load_vehicle
-from seatrial.cosim.values import from_entry, port_scalars
-from seatrial.craft.manoeuvring_ship import ManoeuvringShip
-from seatrial.craft.marine_craft import MarineCraft
-from seatrial.craft.rov import Rov
-from seatrial.craft.sailboat import Sailboat
-from seatrial.craft.surface_vessel import SurfaceVessel
-from seatrial.craft.thruster_ship import ThrusterShip
 from seatrial.fmi.direct import DirectInstance
+from seatrial.physics.craft.manoeuvring_ship import ManoeuvringShip
+from seatrial.physics.craft.marine_craft import MarineCraft
+from seatrial.physics.craft.rov import Rov
+from seatrial.physics.craft.sailboat import Sailboat
+from seatrial.physics.craft.surface_vessel import SurfaceVessel
+from seatrial.physics.craft.thruster_ship import ThrusterShip
+from seatrial.system.parameters import load_vehicle
+from seatrial.system.values import from_entry, port_scalars
 
 FLEET = {
     "hydrone": ("marine-craft", MarineCraft),

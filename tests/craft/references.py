@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from seatrial.cosim.parameters import load_vehicle
-from seatrial.fmi.index import component_class
+from seatrial.fmi.building.index import component_class
+from seatrial.system.parameters import load_vehicle
 
 DATA = Path(__file__).parents[1] / "reference"
 STATES = ("x", "y", "z", "phi", "theta", "psi", "u", "v", "w", "p", "q", "r")

@@ -5,13 +5,13 @@ import copy
 import numpy as np
 import pytest
 
-from seatrial.component import Component, Output
-from seatrial.craft.manoeuvring_ship import ManoeuvringShip
-from seatrial.craft.marine_craft import MarineCraft
-from seatrial.craft.sailboat import Sailboat
-from seatrial.craft.surface_vessel import SurfaceVessel
-from seatrial.craft.thruster_ship import ThrusterShip
-from seatrial.fmi.index import component_class, components
+from seatrial.fmi.building.index import component_class, components
+from seatrial.model.component import Component, Output
+from seatrial.physics.craft.manoeuvring_ship import ManoeuvringShip
+from seatrial.physics.craft.marine_craft import MarineCraft
+from seatrial.physics.craft.sailboat import Sailboat
+from seatrial.physics.craft.surface_vessel import SurfaceVessel
+from seatrial.physics.craft.thruster_ship import ThrusterShip
 
 PLACE, PULL = (-1.2, 0.4, -0.7), (3.0, -5.0, 2.0)
 SHIP = {"mass": 40.0, "inertia": 9.0, "center_of_gravity": 0.1, "X_udot": -4.0, "Y_vdot": -30.0}
@@ -139,7 +139,7 @@ def gives_motion(cls: type[Component]) -> bool:
 
 def test_every_craft_has_an_attachment():
     classes = [component_class(name) for name in components().names()]
-    craft = [cls for cls in classes if cls.__module__.startswith("seatrial.craft.")]
+    craft = [cls for cls in classes if cls.__module__.startswith("seatrial.physics.craft.")]
     craft = [cls for cls in craft if "motion" in cls.terminals and gives_motion(cls)]
     assert len(craft) >= 6
     assert all("attachment" in cls.terminals for cls in craft)

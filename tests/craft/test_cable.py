@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from seatrial.craft.cable_solver import linearised
+from seatrial.physics.craft.cable_solver import linearised
 
 from .cables import NEUTRAL, STILL, cable
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from seatrial.craft.cable_shape import static_shape
-from seatrial.craft.cable_solver import Chain, implicit_step
+from seatrial.physics.craft.cable_shape import static_shape
+from seatrial.physics.craft.cable_solver import Chain, implicit_step
 
 from .cables import NEUTRAL, STILL, STREAM, cable
 
@@ -166,8 +166,8 @@ def test_any_stiffness_is_stable_at_10_ms(stiffness):
 RUN = """
 import hashlib, itertools, sys
 from pathlib import Path
-from seatrial.trials.run import Hooks, run_trial
-from seatrial.trials.trial import load_trial
+from seatrial.trial.running.run import Hooks, run_trial
+from seatrial.trial.files.trial import load_trial
 polls = itertools.count()
 hooks = Hooks(stop_requested=lambda: next(polls) > 1000)
 folder = run_trial(load_trial(sys.argv[2]), Path(sys.argv[1]), engine="direct", hooks=hooks).folder

@@ -11,9 +11,9 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from seatrial.craft.foils import coefficients, flow_at, foil_load
 from seatrial.errors import InputError
-from seatrial.foils import foil_naca63010, sail_naca0015
+from seatrial.physics.craft.foils import coefficients, flow_at, foil_load
+from seatrial.physics.foils import foil_naca63010, sail_naca0015
 
 ANGLES = st.floats(-math.pi, math.pi)
 FLAPS = st.floats(0.0, math.radians(30.0))
@@ -35,7 +35,7 @@ FOIL_PROBES = [
 
 
 def published(name):
-    with (files("seatrial") / name).open(encoding="ascii", newline="") as file:
+    with (files("seatrial") / "physics" / name).open(encoding="ascii", newline="") as file:
         return [{k: float(v) for k, v in row.items()} for row in csv.DictReader(file)]
 
 
@@ -61,7 +61,7 @@ def looked_up(table, alpha, flap=0.0):
     ],
 )
 def test_the_printed_digits_are_untouched(name, digest):
-    assert hashlib.sha256((files("seatrial") / name).read_bytes()).hexdigest() == digest
+    assert hashlib.sha256((files("seatrial") / "physics" / name).read_bytes()).hexdigest() == digest
 
 
 @pytest.mark.parametrize("look_up", [lambda t, *at: t.coefficients(*at), looked_up])

@@ -8,11 +8,11 @@ import pytest
 from scipy.linalg import expm
 from scipy.optimize import root
 
-from seatrial.component import Parameter
-from seatrial.craft.kinematics import rotation
-from seatrial.craft.marine_craft import MarineCraft
 from seatrial.errors import SimulationError
-from seatrial.units import conversion
+from seatrial.model.component import Parameter
+from seatrial.model.units import conversion
+from seatrial.physics.craft.kinematics import rotation
+from seatrial.physics.craft.marine_craft import MarineCraft
 
 WEIGHT = 10 * 9.81  # N, of the HUAUV
 HEAVE = 1025 * 9.81 * 0.5  # N/m

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from seatrial.craft import kinematics, symbolic
+from seatrial.physics.craft import kinematics, symbolic
 
 ATTITUDES = [(0.3, -0.5, 2.0), (-2.0, 1.2, -3.0), (0.0, 0.0, 0.0), (3.0, -1.4, 0.1)]
 

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import pytest
 
-from seatrial.craft.legged_drone import LeggedDrone
+from seatrial.physics.craft.legged_drone import LeggedDrone
 
 G, MASS, LEG, STIFFNESS = 9.81, 10.0, 0.25, 6131.0
 WEIGHT = MASS * G

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from seatrial.craft.linear_manoeuvring import LinearDerivatives, linear_coefficients
+from seatrial.physics.craft.linear_manoeuvring import LinearDerivatives, linear_coefficients
 
 from .mariner import T_D, A, B, K, dimensionless, rudder_effect, ship
 

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from seatrial.craft.manoeuvring_ship import ManoeuvringShip
 from seatrial.errors import InputError
+from seatrial.physics.craft.manoeuvring_ship import ManoeuvringShip
 
 from .mariner import FEET, T_D, A, B, K, L, U, dimensionless, machine, rudder_effect, ship, slope_at
 

@@ -6,10 +6,10 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from seatrial.craft.hydrodynamics import coriolis_load
-from seatrial.craft.kinematics import rotation
-from seatrial.craft.marine_craft import MarineCraft
 from seatrial.errors import InputError
+from seatrial.physics.craft.hydrodynamics import coriolis_load
+from seatrial.physics.craft.kinematics import rotation
+from seatrial.physics.craft.marine_craft import MarineCraft
 
 INERTIAL = {
     "mass": 12.0,

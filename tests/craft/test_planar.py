@@ -4,8 +4,8 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from seatrial.craft.kinematics import rotation, to_ned
-from seatrial.craft.planar import (
+from seatrial.physics.craft.kinematics import rotation, to_ned
+from seatrial.physics.craft.planar import (
     horizontal_rotation,
     kinematics,
     motion_outputs,

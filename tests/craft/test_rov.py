@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from seatrial.craft.rov import Rov
-from seatrial.craft.symbolic import euler_rate_matrix, rotation_matrix
 from seatrial.errors import InputError
+from seatrial.physics.craft.rov import Rov
+from seatrial.physics.craft.symbolic import euler_rate_matrix, rotation_matrix
 
 from .rov_runs import ran
 

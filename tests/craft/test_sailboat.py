@@ -13,10 +13,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from seatrial.craft.kinematics import to_ned
-from seatrial.craft.sailboat import Sailboat
 from seatrial.errors import InputError
-from seatrial.units import conversion
+from seatrial.model.units import conversion
+from seatrial.physics.craft.kinematics import to_ned
+from seatrial.physics.craft.sailboat import Sailboat
 
 GLORIA = tomllib.loads((files("seatrial") / "vehicles/gloria.toml").read_text())
 REFERENCE = Path(__file__).parents[1] / "reference"

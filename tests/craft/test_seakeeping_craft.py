@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from seatrial.craft.marine_craft import MarineCraft
-from seatrial.craft.seakeeping_craft import SeakeepingCraft
 from seatrial.errors import InputError
-from seatrial.sea.panel_files import read_panels
+from seatrial.physics.craft.marine_craft import MarineCraft
+from seatrial.physics.craft.seakeeping_craft import SeakeepingCraft
+from seatrial.physics.sea.panel_files import read_panels
 
 from .fleet import states
 from .test_seaway import amplitude

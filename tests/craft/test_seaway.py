@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from seatrial.craft.marine_craft import MarineCraft
-from seatrial.craft.rov import Rov
 from seatrial.errors import InputError
+from seatrial.physics.craft.marine_craft import MarineCraft
+from seatrial.physics.craft.rov import Rov
 from tests.sea.references import content, table
 
 from .fleet import FLEET, craft, states

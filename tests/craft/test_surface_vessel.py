@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from seatrial.craft.surface_vessel import SurfaceVessel
 from seatrial.errors import InputError
+from seatrial.physics.craft.surface_vessel import SurfaceVessel
 from tests.control.vessel_loop import build, profile
 
 FREE = {"damping": 0.0, "eta_start": (0.0, 0.0, 0.3), "nu_start": (0.5, 0.2, 0.4)}

@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from seatrial.cosim.assembly import assemble
-from seatrial.cosim.flattening import load_rig
-from seatrial.cosim.master import Master
-from seatrial.cosim.parameters import load_vehicle
-from seatrial.craft.cable_shape import hanging_shape
-from seatrial.craft.tether import Tether
 from seatrial.errors import InputError
 from seatrial.fmi.dependencies.found import feedthrough_of
-from seatrial.units import unit
+from seatrial.model.units import unit
+from seatrial.physics.craft.cable_shape import hanging_shape
+from seatrial.physics.craft.tether import Tether
+from seatrial.sim.master import Master
+from seatrial.system.assembly import assemble
+from seatrial.system.flattening import load_rig
+from seatrial.system.parameters import load_vehicle
 from tests.devices.running import started
 
 from .cables import END_FORCE, NEUTRAL, STILL, STREAM, arc_in_current, cable
@@ -263,7 +263,7 @@ def test_parameters_of_the_shipped_file_fit():
 
 
 WEIGHT = '''
-from seatrial.component import Component, Input, Output, Parameter
+from seatrial.model.component import Component, Input, Output, Parameter
 
 
 class Weight(Component):

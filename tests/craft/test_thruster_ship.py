@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from seatrial.cosim.parameters import load_vehicle
-from seatrial.craft.thruster_ship import ThrusterShip
 from seatrial.errors import InputError
+from seatrial.physics.craft.thruster_ship import ThrusterShip
+from seatrial.system.parameters import load_vehicle
 
 DATA = Path(__file__).parents[1] / "reference"
 A1, A2, A6, c = 7.88e6, 1.364e7, 4.31e9, 7.9e6

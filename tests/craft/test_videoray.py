@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from seatrial.cosim.parameters import load_vehicle
-from seatrial.craft.rov import Rov
+from seatrial.physics.craft.rov import Rov
+from seatrial.system.parameters import load_vehicle
 
 from .rov_runs import ran
 

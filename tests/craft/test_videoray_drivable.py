@@ -18,12 +18,12 @@ from scipy.optimize import brentq
 from seatrial.control.depth_hold import DepthHold
 from seatrial.control.heading_hold import HeadingHold
 from seatrial.control.thruster_allocation import ThrusterAllocation
-from seatrial.cosim.parameters import load_vehicle
-from seatrial.craft.context import Context
-from seatrial.craft.hull_lift import hull_lift
-from seatrial.craft.kinematics import rotation_rows
-from seatrial.craft.rov import Rov
-from seatrial.units import quantity
+from seatrial.model.units import quantity
+from seatrial.physics.craft.context import Context
+from seatrial.physics.craft.hull_lift import hull_lift
+from seatrial.physics.craft.kinematics import rotation_rows
+from seatrial.physics.craft.rov import Rov
+from seatrial.system.parameters import load_vehicle
 from tests.devices.running import started
 
 RIGS = Path(__file__).parents[2] / "harness" / "rigs"

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
-from seatrial.component import Component
+from seatrial.model.component import Component
 
 C = TypeVar("C", bound=Component)
 

@@ -13,7 +13,7 @@ from seatrial.devices.rudder_machine import RudderMachine
 from seatrial.devices.servo import Servo
 from seatrial.devices.thruster import Thruster
 from seatrial.errors import InputError, SimulationError
-from seatrial.faults.catalogue import FAILURES as FAULTS
+from seatrial.model.faults.catalogue import FAILURES as FAULTS
 
 from .running import run, started
 

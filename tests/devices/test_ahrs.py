@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from seatrial.cosim.profile import load_profile
 from seatrial.devices.ahrs import Ahrs
 from seatrial.devices.depth import Depth
+from seatrial.system.profile.profile import load_profile
 
 from .running import run, started
 

@@ -4,15 +4,15 @@ import random
 
 import pytest
 
-from seatrial.component import Component
 from seatrial.control.guidance_orders import TARGETS
 from seatrial.control.sailing_guidance import SailingGuidance
 from seatrial.control.velocity_filter import VelocityFilter
-from seatrial.environment.mooring import Mooring
-from seatrial.faults.catalogue import FAILURES as FAULTS
+from seatrial.fmi.building.source import shipped_sources
 from seatrial.fmi.dependencies.found import feedthrough_of
-from seatrial.fmi.source import shipped_sources
-from seatrial.units import unit
+from seatrial.model.component import Component
+from seatrial.model.faults.catalogue import FAILURES as FAULTS
+from seatrial.model.units import unit
+from seatrial.physics.environment.mooring import Mooring
 from tests.snapshot import changed, snapshot
 
 from .running import run, started

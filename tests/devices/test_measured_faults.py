@@ -8,7 +8,7 @@ import pytest
 from seatrial.devices.compass import Compass
 from seatrial.devices.gnss import Gnss
 from seatrial.errors import InputError
-from seatrial.faults.text import MEASURED, fault_text, read_text
+from seatrial.model.faults.text import MEASURED, fault_text, read_text
 
 from .running import started
 

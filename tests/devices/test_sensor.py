@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from seatrial.component import Input
 from seatrial.devices.sensor import Measured, Sensor
+from seatrial.model.component import Input
 
 from .running import run, started
 

@@ -7,7 +7,7 @@ import pytest
 
 from seatrial.devices.compass import Compass
 from seatrial.errors import InputError
-from seatrial.faults.catalogue import FAILURES as FAULTS
+from seatrial.model.faults.catalogue import FAILURES as FAULTS
 
 from .running import run, started
 from .test_sensor import ROUGH, SIGMAS, Probe

@@ -9,9 +9,9 @@ import math
 import numpy as np
 import pytest
 
-from seatrial.cosim.parameters import load_vehicle
-from seatrial.cosim.profile import load_profile
-from seatrial.fmi.index import component_class
+from seatrial.fmi.building.index import component_class
+from seatrial.system.parameters import load_vehicle
+from seatrial.system.profile.profile import load_profile
 
 from .running import started
 

@@ -4,14 +4,6 @@ import itertools
 
 import pytest
 
-from seatrial.component import Component
-from seatrial.craft.manoeuvring_ship import ManoeuvringShip
-from seatrial.craft.marine_craft import MarineCraft
-from seatrial.craft.rov import Rov
-from seatrial.craft.sailboat import Sailboat
-from seatrial.craft.surface_vessel import SurfaceVessel
-from seatrial.craft.tether import Tether
-from seatrial.craft.thruster_ship import ThrusterShip
 from seatrial.devices.ahrs import Ahrs
 from seatrial.devices.anemometer import Anemometer
 from seatrial.devices.compass import Compass
@@ -25,8 +17,16 @@ from seatrial.devices.imu import Imu
 from seatrial.devices.lbl import Lbl
 from seatrial.devices.propulsion import Propulsion
 from seatrial.devices.usbl import Usbl
-from seatrial.environment.downwash import Downwash
-from seatrial.environment.step_disturbance import StepDisturbance
+from seatrial.model.component import Component
+from seatrial.physics.craft.manoeuvring_ship import ManoeuvringShip
+from seatrial.physics.craft.marine_craft import MarineCraft
+from seatrial.physics.craft.rov import Rov
+from seatrial.physics.craft.sailboat import Sailboat
+from seatrial.physics.craft.surface_vessel import SurfaceVessel
+from seatrial.physics.craft.tether import Tether
+from seatrial.physics.craft.thruster_ship import ThrusterShip
+from seatrial.physics.environment.downwash import Downwash
+from seatrial.physics.environment.step_disturbance import StepDisturbance
 
 CRAFT = (MarineCraft, Rov, Sailboat, ManoeuvringShip, ThrusterShip, SurfaceVessel)
 SENSORS = (Ahrs, Altimeter, Anemometer, Compass, Ctd, Depth, Dvl, EchoSounder, Gnss, Imu, Lbl, Usbl)

@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from seatrial.contact import restitution
-from seatrial.environment.collision import Collision, nearest_points
 from seatrial.errors import InputError
+from seatrial.physics.contact import restitution
+from seatrial.physics.environment.collision import Collision, nearest_points
 
 M1, M2, I1, I2 = 55.0, 22.0, 20.0, 5.0  # kg, kg.m2
 

@@ -5,8 +5,8 @@ from itertools import pairwise
 
 import pytest
 
-from seatrial.contact import restitution
-from seatrial.environment.contact import Contact
+from seatrial.physics.contact import restitution
+from seatrial.physics.environment.contact import Contact
 
 G = 9.81
 DEPTH, HALF_HEIGHT = 10.0, 0.25  # m

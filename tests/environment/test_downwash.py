@@ -3,9 +3,9 @@ import math
 import numpy as np
 import pytest
 
-from seatrial.craft.kinematics import to_ned
-from seatrial.environment.downwash import Downwash
 from seatrial.errors import InputError
+from seatrial.physics.craft.kinematics import to_ned
+from seatrial.physics.environment.downwash import Downwash
 
 WEIGHT = 10 * 9.81  # N
 STEP = 1e-9  # s, the grain of time

@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from seatrial.environment.floating import Buoy, MovingObstacle
 from seatrial.errors import InputError
+from seatrial.physics.environment.floating import Buoy, MovingObstacle
 from tests.devices.running import started
 
 

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from seatrial.environment.mooring import Mooring
+from seatrial.physics.environment.mooring import Mooring
 from tests.devices.running import started
 
 MASS, STIFFNESS, DAMPING, STEP = 20.0, 50.0, 12.0, 1e-3

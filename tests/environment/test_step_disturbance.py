@@ -2,8 +2,8 @@
 
 import pytest
 
-from seatrial.environment.step_disturbance import StepDisturbance
 from seatrial.errors import InputError
+from seatrial.physics.environment.step_disturbance import StepDisturbance
 from tests.devices.running import run, started
 
 SIZE = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]

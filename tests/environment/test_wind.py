@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from seatrial.environment.wind import Wind
+from seatrial.physics.environment.wind import Wind
 from tests.devices.running import run, started
 
 GUSTS = {"intensity": 0.15, "direction_deviation": 0.14, "period": 0.1, "correlation_time": 8.0}

@@ -2,7 +2,7 @@
 
 COUNTER = '''
 """A user's file."""
-from seatrial.component import Component, Input, Output, Parameter
+from seatrial.model.component import Component, Input, Output, Parameter
 
 
 class Counter(Component):
@@ -50,7 +50,7 @@ class Counter(Component):
 USES_HELPER = '''
 import constants
 from constants import NUMBER as number
-from seatrial.component import Component, Output
+from seatrial.model.component import Component, Output
 
 
 class Boat(Component):
@@ -64,9 +64,9 @@ class Boat(Component):
 
 BARGE = '''
 """A user's craft with terminals."""
-from seatrial.component import Component, Input, Output
-from seatrial.terminals import terminal
-from seatrial.terms import Terms
+from seatrial.model.component import Component, Input, Output
+from seatrial.model.terminals import terminal
+from seatrial.model.terms import Terms
 
 
 class Barge(Component):

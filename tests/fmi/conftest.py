@@ -11,9 +11,9 @@ import pytest
 from fmpy import extract, read_model_description
 from fmpy.fmi2 import FMU2Slave
 
-from seatrial.fmi.bundle import bundle
-from seatrial.fmi.export import cached_fmu
-from seatrial.fmi.source import ComponentSource, find_source
+from seatrial.fmi.building.bundle import bundle
+from seatrial.fmi.building.export import cached_fmu
+from seatrial.fmi.building.source import ComponentSource, find_source
 
 from . import boats
 

@@ -13,7 +13,7 @@ import signal
 import sys
 import time
 
-from seatrial.component import Component, Input, Output, Parameter
+from seatrial.model.component import Component, Input, Output, Parameter
 
 
 class Crashing(Component):

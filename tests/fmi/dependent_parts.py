@@ -15,8 +15,8 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from seatrial.component import Component, Input, Output, Parameter, Terms
-from seatrial.sampled import Sampled
+from seatrial.model.component import Component, Input, Output, Parameter, Terms
+from seatrial.model.sampled import Sampled
 
 SHELF: dict[str, Any] = {}
 

@@ -8,7 +8,7 @@ import random
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from seatrial.component import Component, Input, Output
+from seatrial.model.component import Component, Input, Output
 
 COUNT = 0
 NOTED: list[float] = []

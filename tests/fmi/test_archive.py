@@ -15,9 +15,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from seatrial.errors import InputError
-from seatrial.fmi import archive
-from seatrial.fmi.archive import content_hash, unpacked
-from seatrial.fmi.load import load_fmu
+from seatrial.fmi.loading import archive
+from seatrial.fmi.loading.archive import content_hash, unpacked
+from seatrial.fmi.loading.load import load_fmu
 
 
 @pytest.fixture

@@ -14,10 +14,10 @@ from types import ModuleType
 import pytest
 
 from seatrial.errors import InputError, SimulationError
-from seatrial.fmi.bundle import bundle, bundled
-from seatrial.fmi.export import build_fmu, fmu_bytes
-from seatrial.fmi.load import load_fmu, open_instance
-from seatrial.fmi.source import find_source, shipped_sources
+from seatrial.fmi.building.bundle import bundle, bundled
+from seatrial.fmi.building.export import build_fmu, fmu_bytes
+from seatrial.fmi.building.source import find_source, shipped_sources
+from seatrial.fmi.loading.load import load_fmu, open_instance
 
 from . import boats
 from .conftest import Raw, source
@@ -70,8 +70,8 @@ def test_builds_are_identical_whatever_the_folder_process_and_hash_seed(
     own = fmu_bytes(source(here, "Counter"))
     assert fmu_bytes(source(there, "Counter")) == own
     code = (
-        "import sys; from pathlib import Path; from seatrial.fmi.source import find_source; "
-        "from seatrial.fmi.export import build_fmu; "
+        "import sys; from pathlib import Path; from seatrial.fmi.building.source import find_source; "
+        "from seatrial.fmi.building.export import build_fmu; "
         "build_fmu(find_source('counter.py:Counter', Path(sys.argv[1])), Path(sys.argv[2]))"
     )
     target = tmp_path / "elsewhere.fmu"
@@ -116,12 +116,12 @@ def test_a_missing_package_is_named_with_its_cure(write, tmp_path: Path) -> None
     write("packages/only_here/__init__.py", "X = 1\n")
     file = write(
         "boat.py",
-        "import only_here\nfrom seatrial.component import Component\n\n\n"
+        "import only_here\nfrom seatrial.model.component import Component\n\n\n"
         'class Boat(Component):\n    """Needs a package."""\n',
     )
     build = (
-        "import sys; from pathlib import Path; from seatrial.fmi.source import find_source; "
-        "from seatrial.fmi.export import build_fmu; "
+        "import sys; from pathlib import Path; from seatrial.fmi.building.source import find_source; "
+        "from seatrial.fmi.building.export import build_fmu; "
         "build_fmu(find_source('boat.py:Boat', Path(sys.argv[1])), Path(sys.argv[2]))"
     )
     fmu = tmp_path / "boat.fmu"
@@ -130,7 +130,7 @@ def test_a_missing_package_is_named_with_its_cure(write, tmp_path: Path) -> None
         [sys.executable, "-c", build, str(file.parent), str(fmu)], check=True, env=with_package
     )
     load = (
-        "import sys; from pathlib import Path; from seatrial.fmi.load import *; "
+        "import sys; from pathlib import Path; from seatrial.fmi.loading.load import *; "
         "open_instance(load_fmu(Path(sys.argv[1])), 'b')"
     )
     done = subprocess.run(
@@ -142,7 +142,7 @@ def test_a_missing_package_is_named_with_its_cure(write, tmp_path: Path) -> None
 
 
 PLAIN = (
-    "from seatrial.component import Component, Output\n\n\n"
+    "from seatrial.model.component import Component, Output\n\n\n"
     'class Boat(Component):\n    """Says a number."""\n\n    value = Output("1", "n")\n\n'
     "    def outputs(self, t):\n        self.value = NUMBER\n"
 )
@@ -160,7 +160,7 @@ PLAIN = (
         ("import constants; " + PLAIN.replace("NUMBER", "constants.NUMBER")).encode(),
         PLAIN.replace("NUMBER", "__import__('math').floor(7.5)").encode(),
         PLAIN.replace("        self", "        import constants as c\n        self").replace("NUMBER", "c.NUMBER").encode(),
-        PLAIN.replace("        self", "        from seatrial.units import quantity\n        self").replace("NUMBER", "quantity('7', '1')").encode(),
+        PLAIN.replace("        self", "        from seatrial.model.units import quantity\n        self").replace("NUMBER", "quantity('7', '1')").encode(),
         ("try:\n    import nowhere_at_all\nexcept ImportError:\n    nowhere_at_all = None\n" + PLAIN.replace("NUMBER", "7.0")).encode(),
         ("from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    import nowhere_at_all\nelse:\n    from constants import NUMBER\n" + PLAIN).encode(),
         ("from typing import TYPE_CHECKING\nif not TYPE_CHECKING:\n    from constants import NUMBER\n" + PLAIN).encode(),
@@ -183,7 +183,7 @@ def test_python_as_people_write_it(data: bytes, write, tmp_path: Path) -> None:
 
 def test_a_component_needs_no_docstring(write, tmp_path: Path) -> None:
     for number, doc in enumerate(("", '    """   """\n')):
-        text = f"from seatrial.component import Component\nclass Boat(Component):\n{doc}    pass\n"
+        text = f"from seatrial.model.component import Component\nclass Boat(Component):\n{doc}    pass\n"
         build_fmu(source(write(f"{number}/boat.py", text), "Boat"), tmp_path / "boat.fmu")
     assert oct((tmp_path / "boat.fmu").stat().st_mode)[-3:] == "644"
 
@@ -237,7 +237,7 @@ def test_sources_that_do_not_exist(named: str, message: str, write, tmp_path: Pa
 
 READS = (
     "from pathlib import Path\n\n"
-    "from seatrial.component import Component, Output\n"
+    "from seatrial.model.component import Component, Output\n"
     'DATA_FILES = ("polar.csv",)\n\n\n'
     'class Boat(Component):\n    """Says a number from a file."""\n\n'
     '    value = Output("1", "n")\n\n'

@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 
 from seatrial.cli.fmu import fmu_app
 from seatrial.errors import InputError, SimulationError
-from seatrial.fmi.load import load_fmu, open_instance
+from seatrial.fmi.loading.load import load_fmu, open_instance
 
 from .native import changed, read, started
 

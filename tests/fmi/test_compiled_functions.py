@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from seatrial.fmi.building.index import component_class, components
 from seatrial.fmi.compiled_functions import compiled_function
 from seatrial.fmi.direct import DirectInstance
-from seatrial.fmi.index import component_class, components
-from seatrial.plant import Plant
+from seatrial.model.plant import Plant
 
 QUICK = ("surface-vessel", "manoeuvring-ship")
 PLANTS = [

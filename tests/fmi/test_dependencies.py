@@ -5,8 +5,8 @@ from typing import Any
 
 import pytest
 
-from seatrial.component import Component
 from seatrial.fmi.dependencies.found import found
+from seatrial.model.component import Component
 from tests.fmi import dependent_parts
 
 PARTS = [one for one in vars(dependent_parts).values() if getattr(one, "truth", None)]

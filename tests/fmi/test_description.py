@@ -10,8 +10,8 @@ from fmpy import read_model_description, simulate_fmu
 from fmpy.validation import validate_fmu
 
 from seatrial.errors import InputError
-from seatrial.fmi.export import build_fmu
-from seatrial.fmi.source import shipped_sources
+from seatrial.fmi.building.export import build_fmu
+from seatrial.fmi.building.source import shipped_sources
 
 from .conftest import built_once, source
 
@@ -72,7 +72,7 @@ def test_dependencies_say_direct_feedthrough_only(counter_fmu: Path) -> None:
 def test_no_empty_unit_definitions_and_no_outputs(write, tmp_path: Path) -> None:
     file = write(
         "mute.py",
-        "from seatrial.component import Component, Parameter\n\n\n"
+        "from seatrial.model.component import Component, Parameter\n\n\n"
         "class Mute(Component):\n"
         '    """Says nothing."""\n\n'
         '    text = Parameter("a<&b", "1", "t")\n',
@@ -95,7 +95,7 @@ def test_what_cannot_be_described_is_refused(
 ) -> None:
     file = write(
         "odd.py",
-        "from seatrial.component import Component, Output, Parameter\n\n\n"
+        "from seatrial.model.component import Component, Output, Parameter\n\n\n"
         f'class Odd(Component):\n    """Odd."""\n\n    {declaration}\n',
     )
     with pytest.raises(InputError, match=message):

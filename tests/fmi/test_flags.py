@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.fmi.isolated import IsolatedInstance
-from seatrial.fmi.load import load_fmu, open_instance
+from seatrial.fmi.isolation.isolated import IsolatedInstance
+from seatrial.fmi.loading.load import load_fmu, open_instance
 
 from .native import changed, read, started, variant
 

@@ -12,8 +12,8 @@ import pytest
 
 from seatrial import Simulation
 from seatrial.errors import InputError, SimulationError
-from seatrial.fmi.isolated import IsolatedInstance
-from seatrial.fmi.load import load_fmu, open_instance
+from seatrial.fmi.isolation.isolated import IsolatedInstance
+from seatrial.fmi.loading.load import load_fmu, open_instance
 
 from .models import build_model_fmu
 from .native import changed, read, started

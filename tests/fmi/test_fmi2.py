@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from seatrial.errors import DiscardError, FatalError, InputError, SimulationError
-from seatrial.fmi.load import load_fmu, open_instance
+from seatrial.fmi.loading.load import load_fmu, open_instance
 
 from .native import changed, lacking, read, started
 

@@ -17,8 +17,8 @@ import pytest
 from typer.testing import CliRunner
 
 from seatrial.cli.fmu import fmu_app
+from seatrial.fmi.building.export import build_fmu
 from seatrial.fmi.compiler import HERE, library_here
-from seatrial.fmi.export import build_fmu
 from seatrial_kits.native.export import build_native_fmu
 from seatrial_kits.native.standalone.export import build_standalone_fmu
 from tests.command import seatrial
@@ -31,7 +31,7 @@ HOST = Path(__file__).with_name("misbehaving_host.py")
 ODD = "Bäu (β) 50% #1 + x"
 TANK = '''
 """A tank."""
-from seatrial.component import Component, Input, Output, Parameter
+from seatrial.model.component import Component, Input, Output, Parameter
 
 
 class Tank(Component):

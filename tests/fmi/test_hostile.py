@@ -15,8 +15,8 @@ from lxml import etree
 
 from benchmarks.big_models import description
 from seatrial.errors import InputError
-from seatrial.fmi import xmlfile
-from seatrial.fmi.load import load_fmu, open_instance
+from seatrial.fmi.loading import xmlfile
+from seatrial.fmi.loading.load import load_fmu, open_instance
 
 from .native import SLAVES, changed, described_fmu, read, started
 

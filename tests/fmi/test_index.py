@@ -8,18 +8,18 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.component import Component
 from seatrial.errors import InputError
-from seatrial.fmi import index
-from seatrial.fmi.index import component_class, components
-from seatrial.fmi.source import shipped_sources
+from seatrial.fmi.building import index
+from seatrial.fmi.building.index import component_class, components
+from seatrial.fmi.building.source import shipped_sources
+from seatrial.model.component import Component
 from tests.packages import installed
 
 SENSOR = '''
 """Echo sounders of a maker."""
 
 from acme_scale import SCALE
-from seatrial.component import Component, Input, Output, Parameter
+from seatrial.model.component import Component, Input, Output, Parameter
 
 
 class Sounder(Component):

@@ -13,10 +13,10 @@ from pathlib import Path
 import pytest
 
 from seatrial.errors import DiscardError, InputError, SimulationError
-from seatrial.fmi.export import build_fmu
-from seatrial.fmi.isolated import IsolatedInstance
-from seatrial.fmi.load import load_fmu, open_instance
-from seatrial.fmi.loaded import LoadedFmu
+from seatrial.fmi.building.export import build_fmu
+from seatrial.fmi.isolation.isolated import IsolatedInstance
+from seatrial.fmi.loading.load import load_fmu, open_instance
+from seatrial.fmi.loading.loaded import LoadedFmu
 
 from . import crashing
 from .conftest import source
@@ -337,6 +337,6 @@ def test_nothing_is_left_of_instances(cycles: int, crash_fmu, tmp_path, monkeypa
 
 
 def test_other_systems_are_refused(crash_fmu, monkeypatch) -> None:
-    monkeypatch.setattr("seatrial.fmi.isolated.os.name", "nt")
+    monkeypatch.setattr("seatrial.fmi.isolation.isolated.os.name", "nt")
     with pytest.raises(InputError, match="POSIX"):
         IsolatedInstance(crash_fmu, "boat", 60.0)

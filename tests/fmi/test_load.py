@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 
 from seatrial.errors import InputError, SimulationError
+from seatrial.fmi.building.source import ComponentSource
 from seatrial.fmi.direct import DirectInstance
-from seatrial.fmi.load import load_fmu, open_instance
-from seatrial.fmi.source import ComponentSource
+from seatrial.fmi.loading.load import load_fmu, open_instance
 
 OUTPUTS = ["total", "through", "steps", "was_on", "said"]
 
@@ -78,7 +78,7 @@ def test_unsafe_cache_folder_is_refused(counter_fmu: Path, tmp_path: Path, monke
 def test_unsafe_home_falls_back_to_a_temporary_folder(counter_fmu: Path, tmp_path: Path) -> None:
     """A home with an accent would crash pythonfmu's binary: the whole run, in a process."""
     code = (
-        "import sys; from pathlib import Path; from seatrial.fmi.load import *; "
+        "import sys; from pathlib import Path; from seatrial.fmi.loading.load import *; "
         "f = load_fmu(Path(sys.argv[1])); print(f.folder); i = open_instance(f, 'b'); "
         "i.initialise(0.0, 1.0); i.begin(); i.step(0.0, 0.1); i.free()"
     )

@@ -11,10 +11,10 @@ from typer.testing import CliRunner
 
 from seatrial import Simulation
 from seatrial.errors import InputError, SimulationError
-from seatrial.fmi.load import load_fmu
+from seatrial.fmi.loading.load import load_fmu
 from seatrial.fmi.terminals import PLACE
-from seatrial.trials.run import run_trial
-from seatrial.trials.trial import load_trial
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.running.run import run_trial
 from seatrial_kits.can.frame import Frame
 from seatrial_kits.interchange.command_osp import osp_app
 from seatrial_kits.interchange.command_ssp import ssp_app

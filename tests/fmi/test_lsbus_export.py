@@ -21,16 +21,16 @@ from fmpy.validation import validate_fmu
 from lxml import etree
 
 from seatrial import Simulation
-from seatrial.component import Component, Input, Output, terminal
 from seatrial.errors import InputError
+from seatrial.fmi.building.export import build_fmu
+from seatrial.fmi.building.index import components
+from seatrial.fmi.building.source import ComponentSource, find_source
 from seatrial.fmi.compiler import HERE, library_here
-from seatrial.fmi.export import build_fmu
-from seatrial.fmi.index import components
-from seatrial.fmi.load import load_fmu
-from seatrial.fmi.source import ComponentSource, find_source
+from seatrial.fmi.loading.load import load_fmu
 from seatrial.fmi.terminals import PLACE
 from seatrial.fmi.version3.buses import can_terminals
 from seatrial.fmi.version3.sources import front_sources
+from seatrial.model.component import Component, Input, Output, terminal
 from tests.fmi.native import changed
 
 pytestmark = pytest.mark.skipif(HERE != "linux64", reason="loads libraries of Linux")
@@ -232,7 +232,7 @@ def test_all_components_on_a_can_bus_are_on_those_of_others_too() -> None:
 
 
 SILENT = """
-from seatrial.component import Component, Input, Output, terminal
+from seatrial.model.component import Component, Input, Output, terminal
 
 
 class Silent(Component):

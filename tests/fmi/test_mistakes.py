@@ -6,11 +6,11 @@ from typing import Any, ClassVar
 
 import pytest
 
-from seatrial.component import Component, Input, Output, Parameter
 from seatrial.errors import InputError
+from seatrial.fmi.building.index import component_class, components
 from seatrial.fmi.dependencies.checked import check
 from seatrial.fmi.dependencies.perturbation import refuse_dependent
-from seatrial.fmi.index import component_class, components
+from seatrial.model.component import Component, Input, Output, Parameter
 
 
 class Base(Component):

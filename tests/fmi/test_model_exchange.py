@@ -9,9 +9,9 @@ import pytest
 
 from seatrial.errors import InputError, SimulationError
 from seatrial.fmi.instance import Instance
-from seatrial.fmi.isolated import IsolatedInstance
-from seatrial.fmi.load import load_fmu, open_instance
-from seatrial.fmi.options import FmuOptions
+from seatrial.fmi.isolation.isolated import IsolatedInstance
+from seatrial.fmi.loading.load import load_fmu, open_instance
+from seatrial.fmi.loading.options import FmuOptions
 
 from .models import build_model_fmu
 from .native import changed, read, started

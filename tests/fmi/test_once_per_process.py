@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 
 from seatrial import Simulation
-from seatrial.cosim.assembly import assemble
-from seatrial.fmi.isolated import IsolatedInstance
+from seatrial.fmi.isolation.isolated import IsolatedInstance
+from seatrial.system.assembly import assemble
 from seatrial_kits.interchange.osp.reading import read_osp
 from seatrial_kits.interchange.ssp.reading import read_ssp
 

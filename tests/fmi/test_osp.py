@@ -10,9 +10,9 @@ from lxml import etree
 
 from seatrial.errors import InputError
 from seatrial.fmi.direct import DirectInstance
-from seatrial.fmi.load import load_fmu
-from seatrial.fmi.osp import osp_xml
-from seatrial.terminals import Terminal
+from seatrial.fmi.loading.load import load_fmu
+from seatrial.fmi.loading.osp import osp_xml
+from seatrial.model.terminals import Terminal
 
 from . import boats
 from .conftest import source

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.fmi.load import load_fmu
+from seatrial.fmi.loading.load import load_fmu
 
 WAVES = """
 from math import sin
@@ -53,7 +53,7 @@ HOST = """
 import json, sys
 from pathlib import Path
 from seatrial.errors import SimulationError
-from seatrial.fmi.load import load_fmu, open_instance
+from seatrial.fmi.loading.load import load_fmu, open_instance
 
 instance = open_instance(load_fmu(Path(sys.argv[1])), "waves")
 instance.set_start({"height": 3.0, "label": "océan", "u[2]": 7.0})

@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 from fmpy.fmi1 import FMICallException
 
-from seatrial.fmi.export import build_fmu
-from seatrial.fmi.source import ComponentSource
+from seatrial.fmi.building.export import build_fmu
+from seatrial.fmi.building.source import ComponentSource
 
 from .conftest import Raw
 
@@ -128,7 +128,7 @@ def test_time_is_snapped_to_the_grid(write, tmp_path: Path) -> None:
 
     file = write(
         "clock.py",
-        "from seatrial.component import Component, Output\n\n\n"
+        "from seatrial.model.component import Component, Output\n\n\n"
         "class Clock(Component):\n"
         '    """Shows the time it was given."""\n\n'
         '    t = Output("s", "time")\n\n'

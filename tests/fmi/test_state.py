@@ -7,16 +7,16 @@ from pathlib import Path
 import pytest
 
 from seatrial.errors import SimulationError
+from seatrial.fmi.building.export import build_fmu
 from seatrial.fmi.direct import DirectInstance
-from seatrial.fmi.export import build_fmu
-from seatrial.fmi.load import load_fmu, open_instance
+from seatrial.fmi.loading.load import load_fmu, open_instance
 
 from .conftest import Raw, source
 from .native import read, started
 
 STUBBORN = '''
 """Components whose state cannot be saved."""
-from seatrial.component import Component, Output
+from seatrial.model.component import Component, Output
 
 
 class Counting(Component):

@@ -12,13 +12,13 @@ import pytest
 from pyarrow import parquet
 
 from seatrial.errors import InputError, SimulationError
-from seatrial.fmi.conformance import problems
+from seatrial.fmi.building.export import build_fmu
+from seatrial.fmi.building.source import TableSource, find_source
+from seatrial.fmi.building.table_file import frozen_table
 from seatrial.fmi.direct import DirectInstance
-from seatrial.fmi.export import build_fmu
 from seatrial.fmi.instance import Instance
-from seatrial.fmi.load import load_fmu, open_instance
-from seatrial.fmi.source import TableSource, find_source
-from seatrial.fmi.table_file import frozen_table
+from seatrial.fmi.loading.conformance import problems
+from seatrial.fmi.loading.load import load_fmu, open_instance
 
 CONOPS = """time,Alt [m],Mach,heatLoad,gear [integer],on_ground,phase
 0,0,0.2,500,1,true,taxi

@@ -12,12 +12,12 @@ from fmpy.validation import validate_fmu
 from lxml import etree
 
 from seatrial.errors import InputError
+from seatrial.fmi.building.export import build_fmu
+from seatrial.fmi.building.source import ComponentSource, shipped_sources
 from seatrial.fmi.direct import DirectInstance
-from seatrial.fmi.export import build_fmu
-from seatrial.fmi.load import load_fmu
-from seatrial.fmi.source import ComponentSource, shipped_sources
+from seatrial.fmi.loading.load import load_fmu
 from seatrial.fmi.terminals import PLACE
-from seatrial.terminals import Terminal
+from seatrial.model.terminals import Terminal
 
 from . import boats
 from .conftest import built_once, source

@@ -10,7 +10,7 @@ import fmpy
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.fmi.load import load_fmu, open_instance
+from seatrial.fmi.loading.load import load_fmu, open_instance
 
 from .native import SLAVES
 

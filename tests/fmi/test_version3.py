@@ -20,15 +20,15 @@ from fmpy.validation import validate_fmu
 from lxml import etree
 from pymavlink import mavutil
 
-from seatrial.component import Component, Input, Output
-from seatrial.cosim.files import find_file
 from seatrial.errors import InputError, SimulationError
+from seatrial.fmi.building.export import build_fmu
+from seatrial.fmi.building.source import ComponentSource, find_source
 from seatrial.fmi.compiler import HERE, checked_platforms, library_here
-from seatrial.fmi.export import build_fmu
-from seatrial.fmi.load import load_fmu, open_instance
-from seatrial.fmi.source import ComponentSource, find_source
+from seatrial.fmi.loading.load import load_fmu, open_instance
 from seatrial.fmi.version3.sources import front_sources
 from seatrial.links.text import encode, packed, unpacked
+from seatrial.model.component import Component, Input, Output
+from seatrial.system.files import find_file
 from seatrial_kits.native.export import build_native_fmu
 from seatrial_kits.native.standalone.export import build_standalone_fmu
 from tests.command import seatrial

@@ -18,8 +18,8 @@ from .native import build_native_fmu
 PARENT = """
 import os, signal, sys, threading
 from pathlib import Path
-from seatrial.fmi.isolated import IsolatedInstance
-from seatrial.fmi.load import load_fmu
+from seatrial.fmi.isolation.isolated import IsolatedInstance
+from seatrial.fmi.loading.load import load_fmu
 
 # A shell that runs the tests in the background has interrupts ignored.
 signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -9,8 +9,8 @@ import zipfile
 from pathlib import Path
 
 from seatrial.errors import InputError
-from seatrial.fmi import load
-from seatrial.fmi.sources import read_build
+from seatrial.fmi.loading import load
+from seatrial.fmi.loading.sources import read_build
 from seatrial_kits.interchange.ssp.reading import read_ssp
 
 _DESCRIPTION, _STRUCTURE = "modelDescription.xml", "SystemStructure.ssd"

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import contextlib
 
-from seatrial.component import Component
 from seatrial.errors import InputError
 from seatrial.links.text import Outbox
+from seatrial.model.component import Component
 from seatrial_kits.gprs.at_commands import LONGEST, Line, read_line
 from seatrial_kits.gprs.component import GprsModem
 from seatrial_kits.gprs.segments import decode, encode

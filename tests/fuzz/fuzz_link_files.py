@@ -8,8 +8,8 @@ import tempfile
 from pathlib import Path
 
 from seatrial.errors import InputError
-from seatrial_kits.mavlink.parameter_file import ParameterFile
-from seatrial_kits.mavlink.plan_file import read_items, write_items
+from seatrial_kits.mavlink.missions.plan_file import read_items, write_items
+from seatrial_kits.mavlink.parameters.file import ParameterFile
 from seatrial_kits.mavlink.signing import Signing
 from seatrial_kits.mavlink.state_file import StateFile
 from seatrial_kits.videoray.decode import describe_stream

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from seatrial.errors import InputError
-from seatrial.trials.scenario import read_scenario
+from seatrial.trial.files.scenario import read_scenario
 from seatrial_kits.interchange.osp.groups import Groups
 from seatrial_kits.interchange.osp.structure import read_structure
 

@@ -12,9 +12,9 @@ from pathlib import Path
 from seatrial.api.campaigns import CampaignResult
 from seatrial.api.results import load_result
 from seatrial.errors import InputError
-from seatrial.trials.campaign_report import write_campaign_report
-from seatrial.trials.compare import compare
-from seatrial.trials.report import write_report
+from seatrial.trial.records.compare import compare
+from seatrial.trial.reports.campaign_report import write_campaign_report
+from seatrial.trial.reports.report import write_report
 
 from ..trials.conftest import write_run_folder
 from .documents import changed

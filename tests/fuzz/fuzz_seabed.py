@@ -8,9 +8,9 @@ import tempfile
 from pathlib import Path
 
 from seatrial.errors import InputError
-from seatrial.seabed.grid_file import read_grid
-from seatrial.seabed.obstacles import read_obstacles
-from seatrial.seabed.scene import Scene
+from seatrial.physics.seabed.grid_file import read_grid
+from seatrial.physics.seabed.obstacles import read_obstacles
+from seatrial.physics.seabed.scene import Scene
 
 
 def one(data: bytes) -> None:

@@ -6,12 +6,12 @@ import contextlib
 import tempfile
 from pathlib import Path
 
-from seatrial.cosim.flattening import load_rig
-from seatrial.cosim.parameters import load_vehicle
-from seatrial.cosim.profile import load_profile
 from seatrial.errors import InputError
-from seatrial.trials.campaign import load_campaign
-from seatrial.trials.trial import load_trial
+from seatrial.system.flattening import load_rig
+from seatrial.system.parameters import load_vehicle
+from seatrial.system.profile.profile import load_profile
+from seatrial.trial.files.campaign import load_campaign
+from seatrial.trial.files.trial import load_trial
 from seatrial_kits.identify.studies.planar_experiment import read_experiment
 
 READERS = (load_trial, load_rig, load_profile, load_vehicle, load_campaign, read_experiment)

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 from pydantic import ValidationError
 
-from seatrial.trials.run_schema import CAMPAIGN, CONVERGENCE, MANIFEST, TIMING, VERDICTS
+from seatrial.trial.records.run_schema import CAMPAIGN, CONVERGENCE, MANIFEST, TIMING, VERDICTS
 
 from . import fuzz_run_folder as harness
 

@@ -22,8 +22,8 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.pages import write_measured
-from seatrial.cosim.parameters import load_vehicle
-from seatrial.trials.run_folder import Run, load_run
+from seatrial.system.parameters import load_vehicle
+from seatrial.trial.records.run_folder import Run, load_run
 from tests.command import SEATRIAL
 
 from .test_dronecan_multicast import ROOT, alone, can_be_alone

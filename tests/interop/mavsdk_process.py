@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from seatrial.trials.run_folder import Run
+from seatrial.trial.records.run_folder import Run
 
 from .running import HOST, free_port, running, wait_for
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from seatrial.trials.run_folder import Run
+from seatrial.trial.records.run_folder import Run
 from tests.kits.mavlink.ground import north_of
 
 Values = dict[str, Any]

@@ -11,13 +11,13 @@ from typing import Any
 
 import fmpy
 
-from seatrial.component import Component
-from seatrial.faults.text import FAILURES, fault_text
+from seatrial.fmi.building.index import component_class, components
+from seatrial.fmi.building.source import find_source
 from seatrial.fmi.cache import cache_folder
 from seatrial.fmi.compiler import library_here
-from seatrial.fmi.index import component_class, components
-from seatrial.fmi.source import find_source
-from seatrial.plant import Plant
+from seatrial.model.component import Component
+from seatrial.model.faults.text import FAILURES, fault_text
+from seatrial.model.plant import Plant
 from seatrial_kits.native.carriers import why_python
 from seatrial_kits.native.export import build_native_fmu
 

@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from seatrial.trials.run_folder import Run, load_run
+from seatrial.trial.records.run_folder import Run, load_run
 from tests.command import SEATRIAL
 
 HOST = "127.0.0.1"

@@ -19,7 +19,7 @@ import numpy as np
 import pytest
 from pymavlink import mavutil
 
-from seatrial.trials.run_folder import Run, load_run
+from seatrial.trial.records.run_folder import Run, load_run
 from tests.command import SEATRIAL, seatrial
 
 from .test_dronecan_multicast import ROOT, alone, can_be_alone

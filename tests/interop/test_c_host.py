@@ -13,9 +13,9 @@ import pytest
 from fmpy import extract, read_model_description
 
 from seatrial.cli.doctor import preload_line
+from seatrial.fmi.building.export import build_fmu
+from seatrial.fmi.building.source import shipped_sources
 from seatrial.fmi.direct import DirectInstance
-from seatrial.fmi.export import build_fmu
-from seatrial.fmi.source import shipped_sources
 
 STEPS, H, FORCE = 50, 0.01, 40.0
 

@@ -11,8 +11,8 @@ import can
 import pytest
 from nmea2000 import NMEA2000Decoder
 
-from seatrial.trials.run import run_trial
-from seatrial.trials.trial import load_trial
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.running.run import run_trial
 from seatrial_kits.can.messages import frame_of
 from seatrial_kits.nmea.nmea2000.codec import Message
 from tests.interop import canboat

@@ -11,9 +11,9 @@ from typing import Any
 
 import pytest
 
-from seatrial.cosim.assembly import assemble
-from seatrial.cosim.master import Master
-from seatrial.fmi.load import load_fmu
+from seatrial.fmi.loading.load import load_fmu
+from seatrial.sim.master import Master
+from seatrial.system.assembly import assemble
 from seatrial_kits.interchange.export import export_osp
 from seatrial_kits.interchange.osp.reading import read_osp
 from tests.cosim.bodies import TEXT

@@ -17,10 +17,10 @@ from typing import Any
 
 import pytest
 
-from seatrial.cosim.assembly import assemble
-from seatrial.cosim.master import Master
-from seatrial.cosim.rig import duration_ns
-from seatrial.cosim.survey.surveying import Surveyed, fmus_in, survey
+from seatrial.sim.master import Master
+from seatrial.sim.survey.surveying import Surveyed, fmus_in, survey
+from seatrial.system.assembly import assemble
+from seatrial.system.rig import duration_ns
 from seatrial_kits.interchange.osp.reading import read_osp
 from seatrial_kits.interchange.osp.structure import read_structure
 

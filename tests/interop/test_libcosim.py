@@ -10,12 +10,12 @@ from typing import Any
 
 import pytest
 
-from seatrial.component import seconds
-from seatrial.cosim.assembly import assemble
-from seatrial.cosim.files import find_file
-from seatrial.cosim.flattening import load_rig
-from seatrial.cosim.master import Master
-from seatrial.cosim.system import Engine, System
+from seatrial.model.component import seconds
+from seatrial.sim.master import Master
+from seatrial.system.assembly import assemble
+from seatrial.system.files import find_file
+from seatrial.system.flattening import load_rig
+from seatrial.system.system import Engine, System
 from seatrial_kits.native.engine import carry_natively
 
 _KINDS = {float: "real", int: "integer", bool: "boolean", str: "string"}

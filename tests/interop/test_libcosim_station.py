@@ -14,10 +14,10 @@ from typing import Any
 from pymavlink import mavutil
 from pymavlink.dialects.v20 import all as mavlink
 
-from seatrial.fmi.bundle import bundled
-from seatrial.fmi.export import cached_fmu
-from seatrial.fmi.load import load_fmu
-from seatrial.fmi.source import find_source
+from seatrial.fmi.building.bundle import bundled
+from seatrial.fmi.building.export import cached_fmu
+from seatrial.fmi.building.source import find_source
+from seatrial.fmi.loading.load import load_fmu
 
 from .running import HOST, free_port
 

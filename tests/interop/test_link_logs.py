@@ -18,9 +18,9 @@ import pytest
 from mcap.reader import make_reader
 from pymavlink import mavutil
 
-from seatrial.trials.run import run_trial
-from seatrial.trials.run_folder import Run, load_run
-from seatrial.trials.trial import load_trial
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.records.run_folder import Run, load_run
+from seatrial.trial.running.run import run_trial
 from tests.command import SEATRIAL
 
 from .running import free_port

@@ -68,7 +68,7 @@ def test_valgrind_finds_nothing(tmp_path: Path) -> None:
 MASTER = f"""\
 import sys
 import pytest
-import seatrial.cosim.compiled.library as own
+import seatrial.sim.compiled.library as own
 
 plain = own.shared_library
 own.shared_library = lambda kind, source, flags: plain(kind, source, (*flags, *{CHECKS!r}))

@@ -11,13 +11,13 @@ import pytest
 from typer.testing import CliRunner
 
 from seatrial.cli.fmu import fmu_app
-from seatrial.fmi.load import load_fmu
+from seatrial.fmi.loading.load import load_fmu
 from tests.fmi.boats import BARGE
 
 TUG = '''
 """A user's tug."""
-from seatrial.component import Component, Output
-from seatrial.terminals import terminal
+from seatrial.model.component import Component, Output
+from seatrial.model.terminals import terminal
 
 
 class Tug(Component):

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from seatrial import run_trial
-from seatrial.fmi.load import load_fmu
+from seatrial.fmi.loading.load import load_fmu
 from seatrial_kits.interchange.export import export_osp
 from seatrial_kits.interchange.osp.reading import read_osp
 from tests.fmi.models import build_model_fmu

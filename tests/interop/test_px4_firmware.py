@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from seatrial.trials.run_folder import Run, load_run
+from seatrial.trial.records.run_folder import Run, load_run
 from tests.command import SEATRIAL
 
 from .test_dronecan_multicast import ROOT, alone, can_be_alone

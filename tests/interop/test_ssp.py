@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.cosim.assembly import assemble
-from seatrial.cosim.flattening import load_rig
-from seatrial.cosim.system import System
+from seatrial.system.assembly import assemble
+from seatrial.system.flattening import load_rig
+from seatrial.system.system import System
 from seatrial_kits.interchange.export import export_ssp
 from seatrial_kits.interchange.ssp.reading import read_ssp
 

@@ -2,10 +2,10 @@
 
 import pytest
 
-from seatrial.cosim.assembly import assemble
-from seatrial.cosim.files import read_toml
-from seatrial.cosim.flattening import load_rig
 from seatrial.shipped import provided_folders
+from seatrial.system.assembly import assemble
+from seatrial.system.files import read_toml
+from seatrial.system.flattening import load_rig
 
 RIGS = [p for folder in provided_folders("harness/rigs") for p in sorted(folder.rglob("*.toml"))]
 

@@ -3,8 +3,8 @@
 import socket
 import threading
 
-from seatrial.trials.run import run_trial
-from seatrial.trials.trial import load_trial
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.running.run import run_trial
 
 RIG = """\
 step = "10 ms"

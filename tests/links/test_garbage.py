@@ -6,9 +6,9 @@ import random
 
 import pytest
 
-from seatrial.component import Component
-from seatrial.fmi.index import component_class, components
+from seatrial.fmi.building.index import component_class, components
 from seatrial.links.text import Outbox
+from seatrial.model.component import Component
 from seatrial_kits.can.frame import Frame
 from seatrial_kits.can.operations import Transmit, encode
 from seatrial_kits.gprs import segments

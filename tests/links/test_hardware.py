@@ -14,9 +14,8 @@ import can
 import pytest
 
 import seatrial
-from seatrial.component import Reachable
 from seatrial.errors import InputError
-from seatrial.fmi.index import component_class, shipped_names
+from seatrial.fmi.building.index import component_class, shipped_names
 from seatrial.kits import OURS
 from seatrial.links.endpoints.url import TRANSPORTS, open_endpoint
 from seatrial.links.hardware import (
@@ -29,6 +28,7 @@ from seatrial.links.hardware import (
     is_virtual_can,
 )
 from seatrial.links.own_terminals import is_own
+from seatrial.model.component import Reachable
 from seatrial_kits.can.gateway_url import FORMS as GATEWAYS
 from seatrial_kits.can.gateway_url import open_gateway
 from tests.command import SEATRIAL

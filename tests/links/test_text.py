@@ -4,9 +4,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from seatrial.component import Component, Input, Output
 from seatrial.errors import InputError, SimulationError
 from seatrial.links.text import Inbox, Outbox, decode, encode
+from seatrial.model.component import Component, Input, Output
 
 numbers = st.integers(0, 2**63)
 chunks = st.lists(st.tuples(numbers, st.binary(max_size=40)), max_size=8)

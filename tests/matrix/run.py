@@ -24,7 +24,7 @@ TALKER = '''
 """Bytes in every step; and a step that never ends, if that is wanted."""
 import time
 
-from seatrial.component import Component, Output, Parameter
+from seatrial.model.component import Component, Output, Parameter
 from seatrial.links.text import Outbox
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.sea.dispersion import group_speed, phase_speed, wave_number
+from seatrial.physics.sea.dispersion import group_speed, phase_speed, wave_number
 
 from .references import table
 

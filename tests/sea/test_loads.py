@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.sea.dispersion import wave_number
-from seatrial.sea.loads import WaveLoads, tabulated
-from seatrial.sea.spectra import Jonswap
-from seatrial.sea.strips import Strips
-from seatrial.sea.waves import irregular, regular
+from seatrial.physics.sea.dispersion import wave_number
+from seatrial.physics.sea.loads import WaveLoads, tabulated
+from seatrial.physics.sea.spectra import Jonswap
+from seatrial.physics.sea.strips import Strips
+from seatrial.physics.sea.waves import irregular, regular
 
 from .references import content, table
 

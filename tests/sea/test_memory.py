@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.sea.memory import GROUPS, memories
+from seatrial.physics.sea.memory import GROUPS, memories
 
 from .references import table
 

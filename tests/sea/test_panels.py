@@ -8,7 +8,7 @@ import pytest
 import xarray
 
 from seatrial.errors import InputError
-from seatrial.sea.panel_files import read_panels
+from seatrial.physics.sea.panel_files import read_panels
 
 from .references import REFERENCE, table
 from .test_memory import panels

@@ -7,7 +7,7 @@ import pytest
 from scipy.special import gamma as gamma_function
 
 from seatrial.errors import InputError
-from seatrial.sea.spectra import (
+from seatrial.physics.sea.spectra import (
     Bretschneider,
     Jonswap,
     Tma,

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.sea.lattice import upper_frequency
-from seatrial.sea.spectra import Jonswap, Torsethaugen, moment
-from seatrial.sea.spreading import cos_2s, cos_n
-from seatrial.sea.waves import Waves, irregular, regular
+from seatrial.physics.sea.lattice import upper_frequency
+from seatrial.physics.sea.spectra import Jonswap, Torsethaugen, moment
+from seatrial.physics.sea.spreading import cos_2s, cos_n
+from seatrial.physics.sea.waves import Waves, irregular, regular
 
 from .references import content, table
 

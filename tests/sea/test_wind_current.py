@@ -7,7 +7,7 @@ import pytest
 from scipy.special import beta
 
 from seatrial.errors import InputError
-from seatrial.sea.current import (
+from seatrial.physics.sea.current import (
     GaussMarkov,
     Layers,
     Tide,
@@ -17,9 +17,9 @@ from seatrial.sea.current import (
     towards,
     wind_driven,
 )
-from seatrial.sea.drift import mean_drift, slow_drift
-from seatrial.sea.quadrature import integrals
-from seatrial.sea.wind_loads import (
+from seatrial.physics.sea.drift import mean_drift, slow_drift
+from seatrial.physics.sea.quadrature import integrals
+from seatrial.physics.sea.wind_loads import (
     BLENDERMANN,
     Areas,
     Blendermann,
@@ -27,7 +27,7 @@ from seatrial.sea.wind_loads import (
     Silhouette,
     angle_of_attack,
 )
-from seatrial.sea.wind_spectra import davenport, froya, gusts, harris, norsok
+from seatrial.physics.sea.wind_spectra import davenport, froya, gusts, harris, norsok
 
 from .references import content, table
 

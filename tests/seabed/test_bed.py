@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from scipy.interpolate import RegularGridInterpolator
 from scipy.optimize import brentq
 
-from seatrial.seabed.grid import Grid
-from seatrial.seabed.plane import Plane
-from seatrial.seabed.scene import Scene
+from seatrial.physics.seabed.grid import Grid
+from seatrial.physics.seabed.plane import Plane
+from seatrial.physics.seabed.scene import Scene
 
 angle = st.floats(-7.0, 7.0)
 DOWN = (0.0, 0.0, 1.0)

@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from seatrial.seabed.cone import first_return
-from seatrial.seabed.plane import Plane
-from seatrial.seabed.scene import Scene
-from seatrial.seabed.shapes import Sphere
+from seatrial.physics.seabed.cone import first_return
+from seatrial.physics.seabed.plane import Plane
+from seatrial.physics.seabed.scene import Scene
+from seatrial.physics.seabed.shapes import Sphere
 
 DOWN = (0.0, 0.0, 1.0)
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from seatrial.component import Component
 from seatrial.errors import InputError
-from seatrial.seabed.grid_file import read_grid
-from seatrial.seabed.parameters import OverSeabed
+from seatrial.model.component import Component
+from seatrial.physics.seabed.grid_file import read_grid
+from seatrial.physics.seabed.parameters import OverSeabed
 
 ASC = """ncols 3
 nrows 2

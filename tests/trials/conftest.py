@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from seatrial.trials.criteria import parse
+from seatrial.trial.criteria.criteria import parse
 
 REFERENCE = Path(__file__).parents[1] / "reference"
 PADS = {

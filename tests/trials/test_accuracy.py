@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from seatrial.trials.accuracy import accuracy, by_port, ranked
+from seatrial.trial.records.accuracy import accuracy, by_port, ranked
 
 T = np.linspace(0.0, 2.0, 101)
 TRUE = np.sin(3.0 * T)

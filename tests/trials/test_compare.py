@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from seatrial.trials.compare import compare
+from seatrial.trial.records.compare import compare
 
 
 def both(write_run, one, other):

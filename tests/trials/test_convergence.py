@@ -10,11 +10,11 @@ import pytest
 from scipy.linalg import expm
 
 from seatrial.errors import InputError, SimulationError
-from seatrial.trials.convergence import Convergence, load_convergence, run_convergence
-from seatrial.trials.report import write_report
-from seatrial.trials.run import Hooks
-from seatrial.trials.run_folder import load_run
-from seatrial.trials.trial import Trial, load_trial
+from seatrial.trial.files.trial import Trial, load_trial
+from seatrial.trial.records.convergence import Convergence, load_convergence, run_convergence
+from seatrial.trial.records.run_folder import load_run
+from seatrial.trial.reports.report import write_report
+from seatrial.trial.running.run import Hooks
 
 from ..cosim.bodies import TEXT as BODIES
 from .conftest import figures_of
@@ -34,8 +34,8 @@ appendage = {{ fmu = "bodies.py:Appendage", set = {{ max_step = "1 ms" }} }}
 TRIAL = 'rig = "rig.toml"\nstop = "2 s"\n'
 EXTRAS = '''
 """A clock of steps, noise, and a switch."""
-from seatrial.component import Component, Noise, Output
-from seatrial.sampled import Sampled
+from seatrial.model.component import Component, Noise, Output
+from seatrial.model.sampled import Sampled
 
 
 class Extras(Component):

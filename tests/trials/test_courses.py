@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from seatrial.shipped import shipped_folder
-from seatrial.trials.run import run_trial
-from seatrial.trials.run_folder import load_run
-from seatrial.trials.trial import load_trial
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.records.run_folder import load_run
+from seatrial.trial.running.run import run_trial
 
 pytestmark = pytest.mark.interop
 

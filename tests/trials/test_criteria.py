@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.trials.criteria import parse
+from seatrial.trial.criteria.criteria import parse
 
 from .conftest import COLUMNS, REFERENCE, reference
 

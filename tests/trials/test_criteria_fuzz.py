@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from seatrial.errors import InputError
-from seatrial.trials.criteria import parse
+from seatrial.trial.criteria.criteria import parse
 
 UNITS = {"a.x": "m", "a.y": "m", "b-c.k.z": "1", "d.phi": "rad"}
 VALUES = st.floats(allow_nan=True, allow_infinity=True, width=64)

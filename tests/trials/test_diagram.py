@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 from lxml import etree
 
-from seatrial.cosim.flattening import load_rig
-from seatrial.trials.diagram import MOST_BOXES, MOST_DRAWN, diagram
+from seatrial.system.flattening import load_rig
+from seatrial.trial.reports.diagram import MOST_BOXES, MOST_DRAWN, diagram
 from tests.command import seatrial
 
 EVIL = '</title><script>alert("x")</script>'

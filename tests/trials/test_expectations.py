@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 import seatrial
 from seatrial.cli.main import app
 from seatrial.errors import InputError
-from seatrial.trials.trial import load_trial
+from seatrial.trial.files.trial import load_trial
 
 Write = Callable[[str, str], Path]
 BOARD = '''
@@ -20,10 +20,10 @@ BOARD = '''
 
 from typing import ClassVar
 
-from seatrial.component import Output
+from seatrial.model.component import Output
 from seatrial.links.text import Outbox
-from seatrial.sampled import Sampled
-from seatrial.terminals import terminal
+from seatrial.model.sampled import Sampled
+from seatrial.model.terminals import terminal
 
 
 class Board(Sampled):

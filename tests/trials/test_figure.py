@@ -10,8 +10,17 @@ import plotly.graph_objects as go
 import pytest
 from plotly.subplots import make_subplots
 
-from seatrial.trials.figure import Figure
-from seatrial.trials.plots import Deck, Event, Line, Mark, PadPoint, Panel, deck_figure, time_figure
+from seatrial.trial.reports.figure import Figure
+from seatrial.trial.reports.plots import (
+    Deck,
+    Event,
+    Line,
+    Mark,
+    PadPoint,
+    Panel,
+    deck_figure,
+    time_figure,
+)
 
 
 def decoded(figure: Figure):

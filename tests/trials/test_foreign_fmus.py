@@ -14,9 +14,9 @@ from typer.testing import CliRunner
 from seatrial import Simulation
 from seatrial.cli.main import app
 from seatrial.errors import InputError, SimulationError
-from seatrial.trials.run import run_trial
-from seatrial.trials.run_folder import load_run
-from seatrial.trials.trial import load_trial
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.records.run_folder import load_run
+from seatrial.trial.running.run import run_trial
 from tests.fmi.models import build_model_fmu
 
 TRIAL = """

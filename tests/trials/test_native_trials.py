@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from seatrial.shipped import available
-from seatrial.trials.hooks import Hooks
-from seatrial.trials.preparation import prepare
-from seatrial.trials.trial import load_trial
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.running.hooks import Hooks
+from seatrial.trial.running.preparation import prepare
 from seatrial_kits.native.engine import in_python
 
 NATIVE = [

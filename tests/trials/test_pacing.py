@@ -8,15 +8,15 @@ from pathlib import Path
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.trials.report import write_report
-from seatrial.trials.run import Result, run_trial
-from seatrial.trials.trial import Trial, load_trial
+from seatrial.trial.files.trial import Trial, load_trial
+from seatrial.trial.reports.report import write_report
+from seatrial.trial.running.run import Result, run_trial
 
 BOAT = '''
 """Boats, one of which takes its time."""
 import time
 
-from seatrial.component import Component, Output, Parameter
+from seatrial.model.component import Component, Output, Parameter
 
 
 class Pace(Component):

@@ -12,17 +12,17 @@ from pathlib import Path
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.trials import campaign as campaigns
-from seatrial.trials.campaign import load_campaign, run_campaign
-from seatrial.trials.cases import case_folders, changed_cases, run_cases
-from seatrial.trials.pool import Pool
-from seatrial.trials.run import Result
+from seatrial.trial.files import campaign as campaigns
+from seatrial.trial.files.campaign import load_campaign, run_campaign
+from seatrial.trial.files.cases import case_folders, changed_cases, run_cases
+from seatrial.trial.running.pool import Pool
+from seatrial.trial.running.run import Result
 from tests.cli.test_stop import SEATRIAL, wait_for
 
 COMPONENT = '''
 import os, time
 from pathlib import Path
-from seatrial.component import Component, Output, Parameter
+from seatrial.model.component import Component, Output, Parameter
 
 
 class Case(Component):

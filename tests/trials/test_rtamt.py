@@ -13,9 +13,9 @@ import typing
 import numpy as np
 import pytest
 
-from seatrial.trials.grammar import tree
-from seatrial.trials.predicates import TINY, Record
-from seatrial.trials.robustness import Evaluation
+from seatrial.trial.criteria.grammar import tree
+from seatrial.trial.criteria.predicates import TINY, Record
+from seatrial.trial.criteria.robustness import Evaluation
 
 # Its parser imports a module that is leaving Python: the names are those of typing. It is not to be
 # had for 3.13.

@@ -10,19 +10,19 @@ from pathlib import Path
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.trials.campaign import load_campaign, run_campaign
-from seatrial.trials.output import claim_folder
-from seatrial.trials.report import write_report
-from seatrial.trials.run import Hooks, StoppedError, run_trial
-from seatrial.trials.run_folder import load_run
-from seatrial.trials.trial import load_trial
+from seatrial.trial.files.campaign import load_campaign, run_campaign
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.records.run_folder import load_run
+from seatrial.trial.reports.report import write_report
+from seatrial.trial.running.output import claim_folder
+from seatrial.trial.running.run import Hooks, StoppedError, run_trial
 
 from .test_sailing import figure_below
 
 BOAT = '''
 """A boat for trials."""
-from seatrial.component import Component, Input, Noise, Output, Parameter
-from seatrial.sampled import Sampled
+from seatrial.model.component import Component, Input, Noise, Output, Parameter
+from seatrial.model.sampled import Sampled
 
 
 class Boat(Noise, Sampled):

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.trials import run_folder
-from seatrial.trials.run_folder import load_run
+from seatrial.trial.records import run_folder
+from seatrial.trial.records.run_folder import load_run
 
 from .conftest import COLUMNS, reference
 

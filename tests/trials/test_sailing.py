@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from seatrial.trials.campaign import load_campaign, run_campaign
-from seatrial.trials.campaign_report import write_campaign_report
-from seatrial.trials.report import write_report
-from seatrial.trials.run import run_trial
-from seatrial.trials.run_folder import load_run
-from seatrial.trials.sailing import PolarPoint, polar_figure, polar_point
-from seatrial.trials.trial import load_trial
+from seatrial.trial.files.campaign import load_campaign, run_campaign
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.records.run_folder import load_run
+from seatrial.trial.reports.campaign_report import write_campaign_report
+from seatrial.trial.reports.report import write_report
+from seatrial.trial.reports.sailing import PolarPoint, polar_figure, polar_point
+from seatrial.trial.running.run import run_trial
 
 from .conftest import figures_of
 

@@ -10,11 +10,11 @@ from typing import Any
 import pytest
 
 from seatrial import run_trial
-from seatrial.cosim.assembly import assemble
 from seatrial.errors import InputError
-from seatrial.trials.scenario import read_scenario
-from seatrial.trials.trial import load_trial
-from seatrial.units import quantity
+from seatrial.model.units import quantity
+from seatrial.system.assembly import assemble
+from seatrial.trial.files.scenario import read_scenario
+from seatrial.trial.files.trial import load_trial
 from tests.kits.interchange.osp_files import write_osp
 
 JSON = {

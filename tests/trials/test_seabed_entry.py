@@ -5,9 +5,9 @@ import re
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.trials.hooks import Hooks
-from seatrial.trials.preparation import prepare
-from seatrial.trials.trial import load_trial
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.running.hooks import Hooks
+from seatrial.trial.running.preparation import prepare
 
 RIG = """
 step = "10 ms"

@@ -8,11 +8,11 @@ from typing import Any
 
 import pytest
 
-from seatrial.component import NS
-from seatrial.cosim.files import available
+from seatrial.model.component import NS
 from seatrial.shipped import provided_folders
-from seatrial.trials.run import Hooks, run_trial
-from seatrial.trials.trial import load_trial
+from seatrial.system.files import available
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.running.run import Hooks, run_trial
 from tests.kits.arduino.bench import need
 
 FILES = {

@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from seatrial.trials.campaign import load_campaign, run_campaign
-from seatrial.trials.report import write_report
-from seatrial.trials.run import run_trial
-from seatrial.trials.run_folder import load_run
-from seatrial.trials.trial import load_trial
+from seatrial.trial.files.campaign import load_campaign, run_campaign
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.records.run_folder import load_run
+from seatrial.trial.reports.report import write_report
+from seatrial.trial.running.run import run_trial
 
 from .conftest import figures_of
 from .test_shipped_trials import TRIALS

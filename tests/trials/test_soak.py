@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.trials.run import Hooks, run_trial
-from seatrial.trials.trial import load_trial
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.running.run import Hooks, run_trial
 
 pytestmark = pytest.mark.interop
 

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.trials.run import run_trial
-from seatrial.trials.run_folder import load_run
-from seatrial.trials.trial import load_trial
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.records.run_folder import load_run
+from seatrial.trial.running.run import run_trial
 from tests.command import seatrial
 from tests.interop.running import free_port
 

@@ -17,10 +17,10 @@ import pytest
 
 import seatrial as api
 from seatrial.errors import InputError, SimulationError
-from seatrial.trials.hooks import Hooks
-from seatrial.trials.measuring import measure_trial
-from seatrial.trials.supervision import Supervisor, run_supervised
-from seatrial.trials.trial import load_trial
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.running.hooks import Hooks
+from seatrial.trial.running.measuring import measure_trial
+from seatrial.trial.running.supervision import Supervisor, run_supervised
 
 from ..command import seatrial, seatrial_process
 from ..fmi import crashing
@@ -37,7 +37,7 @@ import signal
 import sys
 from pathlib import Path
 
-from seatrial.component import Component, Output, Parameter
+from seatrial.model.component import Component, Output, Parameter
 
 
 class Deadly(Component):

@@ -3,16 +3,16 @@
 import numpy as np
 import pytest
 
-from seatrial.cosim.packages import read_package
 from seatrial.errors import InputError
-from seatrial.sea.seastate import SeaState
-from seatrial.sea.spectra import Jonswap
-from seatrial.trials.hooks import Hooks
-from seatrial.trials.preparation import prepare
-from seatrial.trials.run import run_trial
-from seatrial.trials.run_folder import load_run
-from seatrial.trials.sea_section import sea_figures
-from seatrial.trials.trial import load_trial
+from seatrial.physics.sea.seastate import SeaState
+from seatrial.physics.sea.spectra import Jonswap
+from seatrial.system.packages import read_package
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.records.run_folder import load_run
+from seatrial.trial.reports.sea_section import sea_figures
+from seatrial.trial.running.hooks import Hooks
+from seatrial.trial.running.preparation import prepare
+from seatrial.trial.running.run import run_trial
 from seatrial_kits.interchange.export import export_ssp
 
 RIG = """
@@ -179,7 +179,7 @@ def test_a_package_for_other_tools_has_the_same_sea(trial, tmp_path):
 
 
 DRIFTER = """
-from seatrial.component import Component, Input
+from seatrial.model.component import Component, Input
 
 
 class Drifter(Component):

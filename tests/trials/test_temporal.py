@@ -9,7 +9,7 @@ import pytest
 
 from seatrial.errors import InputError
 from seatrial.links.text import encode
-from seatrial.trials.criteria import parse
+from seatrial.trial.criteria.criteria import parse
 
 TIME = np.arange(11.0)
 UNITS = {"a.x": "m", "a.y": "m", "a.on": "1", "a.mode": "1", "a.tx": "1"}

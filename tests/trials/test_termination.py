@@ -11,9 +11,9 @@ from typer.testing import CliRunner
 
 from seatrial.cli.main import app
 from seatrial.errors import InputError
-from seatrial.trials.run import Result, run_trial
-from seatrial.trials.run_folder import load_run
-from seatrial.trials.trial import load_trial
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.records.run_folder import load_run
+from seatrial.trial.running.run import Result, run_trial
 
 Write = Callable[[str, str], Path]
 RIG = """

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from seatrial.trials.report import write_report
-from seatrial.trials.tethers import shape_figure
+from seatrial.trial.reports.report import write_report
+from seatrial.trial.reports.tethers import shape_figure
 
 from .test_sailing import figure_below
 

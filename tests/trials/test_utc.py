@@ -14,9 +14,9 @@ from pymavlink import mavutil
 
 from seatrial.errors import InputError
 from seatrial.links.text import decode
-from seatrial.trials.run import run_trial
-from seatrial.trials.run_folder import load_run
-from seatrial.trials.trial import load_trial
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.records.run_folder import load_run
+from seatrial.trial.running.run import run_trial
 from seatrial_kits.can import operations
 from seatrial_kits.can.messages import message
 

@@ -16,9 +16,9 @@ from .written import as_engine
 if TYPE_CHECKING:
     import pandas
 
-    from ..campaigns.sweep import How
-    from ..trials.campaign import Campaign
-    from ..trials.hooks import Hooks
+    from ..trial.campaigns.sweep import How
+    from ..trial.files.campaign import Campaign
+    from ..trial.running.hooks import Hooks
 
 Done = Callable[[object, object], None]
 
@@ -48,7 +48,7 @@ class CampaignResult:
     """The cases of a campaign: a view of its folder. Raises InputError for another folder."""
 
     def __init__(self, folder: Path | str) -> None:
-        from ..trials import run_schema
+        from ..trial.records import run_schema
 
         self.folder = Path(folder)
         """The campaign's folder: ``campaign.json``, and the run folder of each case."""
@@ -72,15 +72,15 @@ class CampaignResult:
         """How many cases passed, and of how many."""
         if self.table is None:
             return sum(case.passed for case in self.cases), len(self.cases)
-        from ..campaigns.table import read_rows
+        from ..trial.campaigns.table import read_rows
 
         found = [row["passed"] for row in read_rows(self.table, ["passed"])]
         return sum(found), len(found)
 
     def report(self) -> Path:
         """Write the pages of all cases and of the campaign; return the path of the latter."""
-        from ..campaigns.page import write_table_page
-        from ..trials.campaign_report import write_campaign_report
+        from ..trial.campaigns.page import write_table_page
+        from ..trial.reports.campaign_report import write_campaign_report
 
         if self.table is not None:
             return write_table_page(self.folder)
@@ -154,9 +154,9 @@ def run_campaign(
     a campaign that was interrupted: its folder holds the cases so far, for
     `load_campaign_result`.
     """
-    from ..campaigns.sweep import How, keep_named
     from ..links.hardware import confined
-    from ..trials.campaign import load_campaign
+    from ..trial.campaigns.sweep import How, keep_named
+    from ..trial.files.campaign import load_campaign
 
     loaded, kept = load_campaign(str(campaign)), keep_named(keep, "keep")
     target = None if out is None else Path(out)
@@ -176,7 +176,7 @@ def run_campaign(
 
 
 def _swept(campaign: Campaign, out: Path | None, how: How, done: Done) -> Path:
-    from ..campaigns.sweep import run_sweep
+    from ..trial.campaigns.sweep import run_sweep
 
     summary = run_sweep(campaign, out, how, _warning(), done)
     if not summary.whole:
@@ -185,7 +185,7 @@ def _swept(campaign: Campaign, out: Path | None, how: How, done: Done) -> Path:
 
 
 def _warning() -> Hooks:
-    from ..trials.hooks import Hooks
+    from ..trial.running.hooks import Hooks
 
     return Hooks(note=lambda text: warnings.warn(text, stacklevel=2))
 
@@ -193,7 +193,7 @@ def _warning() -> Hooks:
 def _run(
     campaign: Campaign, out: Path | None, engine: str, jobs: int | None, resume: bool, done: Done
 ) -> Path:
-    from ..trials.campaign import run_campaign as run
+    from ..trial.files.campaign import run_campaign as run
 
     folder, results = run(
         campaign,
@@ -225,12 +225,12 @@ def ask_campaign(
     `run_campaign`; ``progress`` is called after each run with how many are done. Raises InputError
     for bad input before the first run, and for a library that is not installed.
     """
-    from ..campaigns.ended import Ended
-    from ..campaigns.sweep import How
     from ..links.hardware import confined
     from ..plugins import service
-    from ..trials.campaign import load_campaign
-    from ..trials.cases import Case
+    from ..trial.campaigns.ended import Ended
+    from ..trial.campaigns.sweep import How
+    from ..trial.files.campaign import load_campaign
+    from ..trial.files.cases import Case
 
     finished = 0
 

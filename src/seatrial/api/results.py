@@ -12,9 +12,9 @@ from ..errors import InputError, SimulationError
 from .written import as_engine, as_settings
 
 if TYPE_CHECKING:
-    from ..cosim.system import Engine
-    from ..trials.run_folder import Run
-    from ..trials.trial import Trial
+    from ..system.system import Engine
+    from ..trial.files.trial import Trial
+    from ..trial.records.run_folder import Run
     from .signals import Signals
 
 
@@ -51,7 +51,7 @@ class TrialResult:
     """
 
     def __init__(self, folder: Path | str, notes: tuple[str, ...] = ()) -> None:
-        from ..trials.run_folder import read_manifest, read_verdicts
+        from ..trial.records.run_folder import read_manifest, read_verdicts
 
         self.folder = Path(folder)
         """The run folder: signals, manifest, verdicts and timing."""
@@ -82,8 +82,8 @@ class TrialResult:
     @property
     def passed(self) -> bool:
         """True if the run came to its end and every criterion is as expected: exit status 0."""
-        from ..trials.ending import is_whole
-        from ..trials.run_folder import is_as_expected
+        from ..trial.records.run_folder import is_as_expected
+        from ..trial.running.ending import is_whole
 
         counted = len(self.verdicts) == len(self.manifest["criteria"])
         return (
@@ -117,14 +117,14 @@ class TrialResult:
 
     def report(self) -> Path:
         """Write ``report.html`` into the folder and return its path."""
-        from ..trials.playing import play
-        from ..trials.report import write_report
+        from ..trial.reports.playing import play
+        from ..trial.reports.report import write_report
 
         return write_report(self.folder, play=play)
 
     @cached_property
     def _run(self) -> Run:
-        from ..trials.run_folder import load_run
+        from ..trial.records.run_folder import load_run
 
         return load_run(self.folder)
 
@@ -172,7 +172,7 @@ def run_trial(
     what was recorded so far, for `load_result`.
     """
     from ..shipped import available
-    from ..trials.trial import load_trial
+    from ..trial.files.trial import load_trial
 
     try:
         loaded = load_trial(str(trial), changes=as_settings(set), origin="set")
@@ -192,8 +192,8 @@ def run_loaded(
 ) -> TrialResult:
     """Run a trial that was read; see `run_trial`, which raises the same."""
     from ..links.hardware import confined
-    from ..trials.hooks import Hooks
-    from ..trials.supervision import run_supervised
+    from ..trial.running.hooks import Hooks
+    from ..trial.running.supervision import run_supervised
 
     hooks = Hooks() if progress is None else Hooks(progress=progress)
     with confined():

@@ -15,12 +15,12 @@ from .signal import Signal
 from .written import as_duration, as_engine, as_settings, as_written
 
 if TYPE_CHECKING:
-    from ..cosim.actions import ActionKind
-    from ..cosim.fault_schedule import Fault
-    from ..cosim.master import Master, Snapshot
-    from ..cosim.rig import Rig
-    from ..cosim.system import System
     from ..fmi.instance import Variable
+    from ..sim.actions import ActionKind
+    from ..sim.fault_schedule import Fault
+    from ..sim.master import Master, Snapshot
+    from ..system.rig import Rig
+    from ..system.system import System
     from .recording import Recording
 
 Observer = TypeVar("Observer", bound=Callable[..., object])
@@ -83,9 +83,9 @@ class Simulation:
         step: float | str | None = None,
         choices: Mapping[str, str] | None = None,
     ) -> None:
-        from ..cosim.assembly import assemble
-        from ..cosim.isolation import KEY_END, isolated_in, isolating
         from ..links.hardware import confined
+        from ..system.assembly import assemble
+        from ..system.isolation import KEY_END, isolated_in, isolating
 
         self._observers: list[Callable[[Simulation], object]] = []
         self._error = ""
@@ -141,7 +141,7 @@ class Simulation:
         Raises InputError for a time that has passed or is not a whole number of communication
         steps away; SimulationError as `step` does.
         """
-        from ..cosim.rig import duration_ns
+        from ..system.rig import duration_ns
 
         ahead = duration_ns(str(as_duration(until)), "run") - self._master.time_ns
         count, rest = divmod(ahead, self._master.step_ns)
@@ -202,9 +202,9 @@ class Simulation:
         s: ``inject("bias", "gnss.position_n.x", value=5.0, grows_over=10)``. ``for_`` says how
         long, ``at`` when, if not now. Raises InputError.
         """
-        from ..cosim.fault_entry import FaultEntry
-        from ..cosim.faults import resolved
-        from ..cosim.files import validated
+        from ..sim.faults import resolved
+        from ..system.fault_entry import FaultEntry
+        from ..system.files import validated
 
         self._refuse_ended()
         places = where if isinstance(where, str) else list(where)
@@ -339,7 +339,7 @@ class Simulation:
             raise SimulationError("; ".join(ended))
 
     def _act(self, kind: ActionKind, name: str, value: Any) -> None:
-        from ..cosim.actions import action
+        from ..sim.actions import action
 
         self._refuse_ended()
         action(self._master.system, kind, name, as_written(value), kind).apply(self._master)
@@ -351,7 +351,7 @@ class Simulation:
 
     def _variables(self, name: str) -> tuple[str, Sequence[Variable]]:
         """Return the component and the scalars that a name means."""
-        from ..cosim.values import port_names, port_scalars
+        from ..system.values import port_names, port_scalars
 
         part, port = self._master.system.located(name, name)[0]
         component = part.name
@@ -363,7 +363,7 @@ class Simulation:
 
     def _matching(self, pattern: str) -> list[str]:
         """Return the outputs that a pattern or the name of a port means."""
-        from ..cosim.recorder import matching
+        from ..sim.recorder import matching
 
         if "*" in pattern or "?" in pattern:
             return matching(list(self.signals), [pattern])
@@ -400,9 +400,9 @@ def _signal(name: str, variable: Variable, feeder: str) -> Signal:
 
 
 def _loaded_rig(name: str, step: Any, choices: Mapping[str, str] | None) -> Rig:
-    from ..cosim.flattening import load_rig
-    from ..cosim.packages import is_package, read_package
     from ..shipped import available
+    from ..system.flattening import load_rig
+    from ..system.packages import is_package, read_package
 
     if is_package(name):
         if choices:
@@ -419,8 +419,8 @@ def _loaded_rig(name: str, step: Any, choices: Mapping[str, str] | None) -> Rig:
 
 
 def _started(system: System) -> Master:
-    from ..cosim.master import Master
     from ..plugins import service
+    from ..sim.master import Master
 
     if system.engine == "native":
         service("native.carry")(system)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ..errors import InputError, unknown
 
 if TYPE_CHECKING:
-    from ..cosim.system import Engine
+    from ..system.system import Engine
 
 _DURATIONS = ("start", "stop", "step")
 
@@ -38,7 +38,7 @@ def as_duration(written: Any) -> Any:
 
 def as_engine(name: str) -> Engine:
     """Return the engine ``name``. Raises InputError."""
-    from ..cosim.system import ENGINES
+    from ..system.system import ENGINES
 
     for engine in ENGINES:
         if name == engine:

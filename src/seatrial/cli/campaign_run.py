@@ -6,16 +6,16 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from ..campaigns.sweep import How as SweepHow
-from ..campaigns.sweep import keep_named
-from ..cosim.system import Engine
 from ..errors import InputError, SimulationError
-from ..trials.campaign import Campaign, load_campaign, run_campaign
-from ..trials.campaign_report import write_campaign_report, write_case_report
-from ..trials.cases import Case
-from ..trials.hooks import Hooks
-from ..trials.playing import play
-from ..trials.run import Result
+from ..system.system import Engine
+from ..trial.campaigns.sweep import How as SweepHow
+from ..trial.campaigns.sweep import keep_named
+from ..trial.files.campaign import Campaign, load_campaign, run_campaign
+from ..trial.files.cases import Case
+from ..trial.reports.campaign_report import write_campaign_report, write_case_report
+from ..trial.reports.playing import play
+from ..trial.running.hooks import Hooks
+from ..trial.running.run import Result
 from .answer import answer
 from .leaves import Leaves, exit_with
 from .show import console, print_case, print_notes, run_entry

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from ..trials.compare import compare as compare_runs
+from ..trial.records.compare import compare as compare_runs
 from .answer import answer
 from .show import console, print_table
 from .statuses import FAILED

@@ -11,14 +11,14 @@ from rich.markup import escape
 from rich.table import Table
 
 from ..errors import InputError
-from ..trials.accuracy import Accuracy, by_port, order_text, spread_text
-from ..trials.convergence import Convergence, run_convergence
-from ..trials.hooks import Hooks
-from ..trials.playing import play
-from ..trials.readable import number, person_scale
-from ..trials.report import write_report
-from ..trials.run import Result
-from ..trials.trial import load_trial
+from ..trial.files.trial import load_trial
+from ..trial.records.accuracy import Accuracy, by_port, order_text, spread_text
+from ..trial.records.convergence import Convergence, run_convergence
+from ..trial.reports.playing import play
+from ..trial.reports.readable import number, person_scale
+from ..trial.reports.report import write_report
+from ..trial.running.hooks import Hooks
+from ..trial.running.run import Result
 from .answer import answer
 from .options import (
     Autopilot,

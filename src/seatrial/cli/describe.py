@@ -9,19 +9,19 @@ from typing import Annotated
 import typer
 from rich.markup import escape
 
-from ..cosim.assembly import assemble
-from ..cosim.flattening import load_rig
-from ..cosim.forgotten import forgotten
-from ..cosim.packages import is_package, read_package
-from ..cosim.paths import joined
-from ..cosim.rig import Rig, Scope
-from ..cosim.system import Joint, System
-from ..cosim.unread import leave_out_unread
 from ..errors import InputError, unmatched
 from ..plugins import offered
-from ..trials.diagram import MOST_DRAWN, diagram
-from ..trials.naming import by_path, named_components
-from ..trials.trial import choices_in, is_trial, load_trial
+from ..system.assembly import assemble
+from ..system.flattening import load_rig
+from ..system.forgotten import forgotten
+from ..system.packages import is_package, read_package
+from ..system.paths import joined
+from ..system.rig import Rig, Scope
+from ..system.system import Joint, System
+from ..system.unread import leave_out_unread
+from ..trial.files.naming import by_path, named_components
+from ..trial.files.trial import choices_in, is_trial, load_trial
+from ..trial.reports.diagram import MOST_DRAWN, diagram
 from ..whole_file import write_whole
 from .answer import answer
 from .options import Autopilot, Choices, Every, Match, Vehicle, changes_of

@@ -13,23 +13,23 @@ import typer
 from rich.markup import escape
 from rich.table import Table
 
-from ..cosim.parameters import load_vehicle, split_reference
-from ..cosim.system import settable
-from ..cosim.values import from_entry
 from ..errors import InputError, unknown, unmatched
-from ..fmi.built import build_needed, compiler_of
+from ..fmi.building.description import summary
+from ..fmi.building.export import build_fmu
+from ..fmi.building.source import ComponentSource, find_source, named_sources, shipped_sources
 from ..fmi.cache import write_named
 from ..fmi.compiler import TARGETS, checked_platforms
-from ..fmi.description import summary
 from ..fmi.direct import DirectInstance
-from ..fmi.export import build_fmu
 from ..fmi.forwarding.libraries import why_unchecked
 from ..fmi.instance import Value, Variable
-from ..fmi.load import load_fmu, open_instance
-from ..fmi.loaded import LoadedFmu
-from ..fmi.osp import osp_file, osp_xml
-from ..fmi.source import ComponentSource, find_source, named_sources, shipped_sources
+from ..fmi.loading.built import build_needed, compiler_of
+from ..fmi.loading.load import load_fmu, open_instance
+from ..fmi.loading.loaded import LoadedFmu
+from ..fmi.loading.osp import osp_file, osp_xml
 from ..plugins import service
+from ..system.parameters import load_vehicle, split_reference
+from ..system.system import settable
+from ..system.values import from_entry
 from .answer import answer
 from .options import Autopilot, Choices, Every, Match, Settings, Variant, Vehicle, changes_of
 from .show import MOST_SHOWN, console, print_more, print_notes, print_table
@@ -319,7 +319,7 @@ def _start_values(
 
 
 def _problems(name: str) -> list[str]:
-    from ..fmi.conformance import LARGEST_CHECKED, is_whole, problems
+    from ..fmi.loading.conformance import LARGEST_CHECKED, is_whole, problems
 
     with tempfile.TemporaryDirectory() as folder:
         source = find_source(name, Path.cwd())

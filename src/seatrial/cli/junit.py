@@ -7,8 +7,8 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from ..printable import printable
-from ..trials.ending import is_whole
-from ..trials.run import Result
+from ..trial.running.ending import is_whole
+from ..trial.running.run import Result
 from ..whole_file import write_whole
 
 

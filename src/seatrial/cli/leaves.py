@@ -9,7 +9,7 @@ from pathlib import Path
 import typer
 
 from ..errors import InputError, SimulationError
-from ..trials.run import Result
+from ..trial.running.run import Result
 from .junit import write_junit
 from .show import console, print_notes
 from .statuses import FAILED

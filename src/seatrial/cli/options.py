@@ -13,7 +13,7 @@ from ..shipped import available
 from .show import MOST_SHOWN
 
 if TYPE_CHECKING:
-    from ..cosim.system import Engine
+    from ..system.system import Engine
 
 Settings = Annotated[
     list[str] | None,
@@ -71,7 +71,7 @@ Every = Annotated[
 
 def engine_named(name: str) -> Engine:
     """Return the engine that ``--engine`` names. Raises InputError."""
-    from ..cosim.system import ENGINES
+    from ..system.system import ENGINES
 
     for engine in ENGINES:
         if name == engine:

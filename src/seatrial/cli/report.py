@@ -7,10 +7,10 @@ from typing import Annotated
 
 import typer
 
-from ..campaigns.page import has_table, write_table_page
-from ..trials.campaign_report import CAMPAIGN, write_campaign_report
-from ..trials.playing import play
-from ..trials.report import write_report
+from ..trial.campaigns.page import has_table, write_table_page
+from ..trial.reports.campaign_report import CAMPAIGN, write_campaign_report
+from ..trial.reports.playing import play
+from ..trial.reports.report import write_report
 from .answer import answer
 from .show import console
 

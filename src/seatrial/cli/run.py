@@ -7,16 +7,16 @@ from typing import Annotated, Any
 
 import typer
 
-from ..cosim.fault_entry import read_fault
-from ..cosim.system import Engine
 from ..errors import InputError
 from ..links.hardware import allow_devices, allow_network
 from ..plugins import service
-from ..trials.hooks import Hooks
-from ..trials.playing import play
-from ..trials.report import write_report
-from ..trials.supervision import run_supervised
-from ..trials.trial import Trial, load_trial
+from ..system.fault_entry import read_fault
+from ..system.system import Engine
+from ..trial.files.trial import Trial, load_trial
+from ..trial.reports.playing import play
+from ..trial.reports.report import write_report
+from ..trial.running.hooks import Hooks
+from ..trial.running.supervision import run_supervised
 from .answer import answer
 from .campaign_run import How, run_cases
 from .leaves import Leaves, exit_with

@@ -12,14 +12,14 @@ from rich.segment import Segment
 from rich.table import Table
 
 from ..printable import printable
-from ..trials.ending import is_whole
-from ..trials.readable import number
+from ..trial.reports.readable import number
+from ..trial.running.ending import is_whole
 from .answer import answer
 
 if TYPE_CHECKING:
-    from ..trials.cases import Case
-    from ..trials.run import Result
-    from ..trials.verdict import Verdict
+    from ..trial.criteria.verdict import Verdict
+    from ..trial.files.cases import Case
+    from ..trial.running.run import Result
 
 
 MOST_SHOWN = 200

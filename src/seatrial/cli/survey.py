@@ -10,8 +10,8 @@ from typing import Annotated
 import typer
 from rich.markup import escape
 
-from ..cosim.survey.surveying import Surveyed, fmus_in, survey
 from ..errors import InputError
+from ..sim.survey.surveying import Surveyed, fmus_in, survey
 from .answer import answer
 from .show import console
 

@@ -7,13 +7,13 @@ from pathlib import Path
 import typer
 from rich.markup import escape
 
-from ..campaigns.ended import Ended
-from ..campaigns.page import write_table_page
-from ..campaigns.sweep import How, Summary, run_sweep
 from ..errors import InputError, SimulationError
-from ..trials.campaign import Campaign
-from ..trials.cases import Case
-from ..trials.hooks import Hooks
+from ..trial.campaigns.ended import Ended
+from ..trial.campaigns.page import write_table_page
+from ..trial.campaigns.sweep import How, Summary, run_sweep
+from ..trial.files.campaign import Campaign
+from ..trial.files.cases import Case
+from ..trial.running.hooks import Hooks
 from .answer import answer
 from .show import console, print_notes
 from .statuses import FAILED

@@ -11,9 +11,9 @@ from rich.markup import escape
 from rich.table import Table
 
 from ..fmi.instance import Variables
-from ..fmi.proposals import proposed_terminals
+from ..fmi.loading.proposals import proposed_terminals
 from ..fmi.terminals import scalars_of
-from ..terminals import Terminal
+from ..model.terminals import Terminal
 from .show import console, print_table
 
 

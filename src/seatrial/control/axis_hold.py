@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from ..component import Input, Parameter
-from ..sampled import Sampled
+from ..model.component import Input, Parameter
+from ..model.sampled import Sampled
 
 
 class AxisHold(Sampled):

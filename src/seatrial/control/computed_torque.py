@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from ..component import Parameter
+from ..model.component import Parameter
 from .vessel_tracking import VesselTracking
 
 

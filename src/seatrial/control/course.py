@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from ..component import Input, Output, Parameter, terminal
 from ..errors import InputError
-from ..sampled import Sampled
-from ..waypoints import NED, Place, Waypoints
+from ..model.component import Input, Output, Parameter, terminal
+from ..model.sampled import Sampled
+from ..model.waypoints import NED, Place, Waypoints
 from .rounding import read_sides, rounded
 
 

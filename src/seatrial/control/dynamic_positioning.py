@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from ..component import Input, Output, Parameter, terminal
-from ..sampled import Sampled
+from ..model.component import Input, Output, Parameter, terminal
+from ..model.sampled import Sampled
 from .wave_filter import WaveFiltered, unwrapped
 
 _UNITS = ("N", "N", "N.m")

@@ -13,7 +13,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..model import Vector
+from ..model.expressions import Vector
 
 Derivative = Callable[[Any], Any]
 

@@ -10,8 +10,8 @@ from typing import Any, ClassVar
 import casadi as ca
 import numpy as np
 
-from ..component import Parameter
 from ..errors import InputError
+from ..model.component import Parameter
 from .flat_outputs import Derivative, controllability_matrix, flat_output, tracking_gain
 from .vessel_tracking import VesselTracking
 

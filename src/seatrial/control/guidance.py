@@ -6,8 +6,8 @@ import math
 from types import MappingProxyType
 from typing import ClassVar, NamedTuple
 
-from ..component import Input, Output, Parameter, Terminal, terminal
 from ..errors import InputError
+from ..model.component import Input, Output, Parameter, Terminal, terminal
 from .guidance_motion import MANUAL, NEUTRAL, STEER, Command, Goal, Law
 from .guidance_orders import MANUAL_AXES, ORDERS, SENSED, Decision, GuidanceOrders, Task
 from .guidance_path import Point

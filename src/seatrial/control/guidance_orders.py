@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from typing import ClassVar, NamedTuple
 
-from ..component import Input, Output, Parameter, terminal
 from ..errors import InputError, unknown
-from ..sampled import Sampled
-from ..terminals import ORDERED
+from ..model.component import Input, Output, Parameter, terminal
+from ..model.sampled import Sampled
+from ..model.terminals import ORDERED
 from .estimates import is_lost
 from .guidance_motion import FOLLOW, STAY, STEER, Command, Goal, Law, Past, command
 from .guidance_path import Point

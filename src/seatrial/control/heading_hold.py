@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from ..component import Input, Output, Parameter, terminal
+from ..model.component import Input, Output, Parameter, terminal
 from .axis_hold import AxisHold
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from ..component import Component, Input, Output, Parameter, terminal
+from ..model.component import Component, Input, Output, Parameter, terminal
 
 
 class Helm(Component):

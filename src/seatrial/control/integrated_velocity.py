@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from ..component import Input, Output, Parameter, terminal
-from ..craft.kinematics import to_body
-from ..sampled import Sampled
+from ..model.component import Input, Output, Parameter, terminal
+from ..model.sampled import Sampled
+from ..physics.craft.kinematics import to_body
 
 
 class IntegratedVelocity(Sampled):

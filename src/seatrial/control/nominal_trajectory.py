@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar
 
-from ..component import Output, Parameter
 from ..errors import InputError
-from ..sampled import Sampled
+from ..model.component import Output, Parameter
+from ..model.sampled import Sampled
 from .vessel_nominal import Nominal, Profile, VesselModel, nominal_motion
 
 _UVR = ("m/s", "m/s", "rad/s")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from ..component import Input, terminal
+from ..model.component import Input, terminal
 from .twin_thrusters import TwinThrusters
 
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 
 from ..errors import InputError
-from ..waypoints import Place
+from ..model.waypoints import Place
 
 SIDES = {"port": 1, "starboard": -1, "any": 0}
 """The side on which a mark is left, and on which hand the course goes past it: 1 to its right."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from ..component import Component, Input, Output, Parameter, terminal
+from ..model.component import Component, Input, Output, Parameter, terminal
 
 
 class RudderHelm(Component):

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from ..component import Input, Output, Parameter, terminal
 from ..errors import InputError
-from ..foils import HIGH_ALPHA, SAIL_ENTRIES, sail_naca0015
-from ..sampled import Sampled
+from ..model.component import Input, Output, Parameter, terminal
+from ..model.sampled import Sampled
+from ..physics.foils import HIGH_ALPHA, SAIL_ENTRIES, sail_naca0015
 from .sail_search import Setting, best_setting, setting
 from .sail_surface import smooth_setting
 

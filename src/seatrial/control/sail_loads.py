@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from ..foils import FoilTable
+from ..physics.foils import FoilTable
 
 
 def foil_load(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ..foils import STEP, FoilTable
+from ..physics.foils import STEP, FoilTable
 
 _ROUNDING = 1e-12
 """rad: an angle at the edge of the range is inside."""

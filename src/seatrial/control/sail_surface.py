@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 from scipy.interpolate import RectBivariateSpline
 
-from ..foils import STEP, FoilTable
+from ..physics.foils import STEP, FoilTable
 from .sail_search import Setting, setting
 
 _FINE = math.radians(1.0)

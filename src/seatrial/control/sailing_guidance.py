@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import ClassVar, NamedTuple
 
-from ..component import Input, Output, Parameter, terminal
+from ..model.component import Input, Output, Parameter, terminal
 from .guidance_motion import BEAT, FOLLOW, MANUAL, NEUTRAL, Command
 from .guidance_orders import Decision, GuidanceOrders
 from .guidance_path import Point, bearing

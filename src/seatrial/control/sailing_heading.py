@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from ..component import Input, Output, Parameter, terminal
-from ..sampled import Sampled
+from ..model.component import Input, Output, Parameter, terminal
+from ..model.sampled import Sampled
 
 _LEAST_SPEED = 0.1  # m/s: below it the direction of the flow at the rudder means nothing
 _LEAST_EFFECT = 0.01  # m2/s2: V^2 cos(beta) that the inversion divides by at least

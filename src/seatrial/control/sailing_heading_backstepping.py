@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from ..component import Input, Output, Parameter, terminal
-from ..foils import HIGH_ALPHA, SAIL_ENTRIES, foil_naca63010, sail_naca0015
+from ..model.component import Input, Output, Parameter, terminal
+from ..physics.foils import HIGH_ALPHA, SAIL_ENTRIES, foil_naca63010, sail_naca0015
 from .sail_loads import foil_load, sail_place
 from .sailing_heading import SailingHeading
 

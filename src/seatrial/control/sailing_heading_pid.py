@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from ..component import Input, Parameter, terminal
+from ..model.component import Input, Parameter, terminal
 from .sailing_heading import SailingHeading
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from ..component import Input, Output, Parameter, terminal
-from ..sampled import Sampled
+from ..model.component import Input, Output, Parameter, terminal
+from ..model.sampled import Sampled
 
 _NED = ("north", "east", "down")
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from ..component import Input, Output, Parameter, terminal
-from ..sampled import Sampled
+from ..model.component import Input, Output, Parameter, terminal
+from ..model.sampled import Sampled
 
 
 class SpeedHold(Sampled):

@@ -6,9 +6,9 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from ..component import Input, Output, Parameter, terminal
 from ..errors import InputError
-from ..sampled import Sampled
+from ..model.component import Input, Output, Parameter, terminal
+from ..model.sampled import Sampled
 from .estimates import is_lost
 from .guidance_orders import SENSED
 from .twin_thrusters import TwinThrusters

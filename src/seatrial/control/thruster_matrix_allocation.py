@@ -6,10 +6,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..component import Input, Output, Parameter, Terminal, terminal
 from ..errors import InputError
-from ..thrust_curve import ThrustCurve
-from ..thrusters import COUNT, FixedThrusters
+from ..model.component import Input, Output, Parameter, Terminal, terminal
+from ..physics.thrust_curve import ThrustCurve
+from ..physics.thrusters import COUNT, FixedThrusters
 from .thruster_pulses import ThrusterPulses
 
 _CHANNELS = tuple(f"ch{number}" for number in range(1, COUNT + 1))

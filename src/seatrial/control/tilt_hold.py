@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from ..component import Input, Output, Parameter, terminal
+from ..model.component import Input, Output, Parameter, terminal
 from .axis_hold import AxisHold
 
 

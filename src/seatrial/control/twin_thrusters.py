@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from ..component import Output, Parameter, terminal
+from ..model.component import Output, Parameter, terminal
 from .thruster_pulses import ThrusterPulses
 
 

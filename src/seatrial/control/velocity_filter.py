@@ -8,9 +8,9 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..component import Input, Output, Parameter, terminal
-from ..craft.kinematics import rotation
-from ..sampled import Sampled
+from ..model.component import Input, Output, Parameter, terminal
+from ..model.sampled import Sampled
+from ..physics.craft.kinematics import rotation
 
 _Array = NDArray[np.float64]
 _V, _Z, _PSI, _BA, _BG = slice(0, 3), 3, 4, slice(5, 8), 8

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from ..component import Component, Parameter
+from ..model.component import Component, Parameter
 
 
 class WaveFiltered(Component):

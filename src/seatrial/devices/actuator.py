@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from ..component import NS, Noise
+from ..model.component import NS, Noise
 from .delays import last_due
 from .fault import SLOWER, Fallible
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from ..component import Input, Parameter, terminal
-from ..craft.kinematics import cross, to_body
+from ..model.component import Input, Parameter, terminal
+from ..physics.craft.kinematics import cross, to_body
 from .sensor import ALWAYS_THERE, Measured, Sensor, half_circle
 
 _DEG = math.radians(1.0)

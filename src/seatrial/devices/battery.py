@@ -8,8 +8,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..component import Component, Output, Parameter, Terms, terminal
 from ..errors import InputError
+from ..model.component import Component, Output, Parameter, Terms, terminal
 
 LOADS, POWERS = 16, 4
 _TENTHS = tuple(f"c{tenths}" for tenths in range(11))

@@ -6,9 +6,9 @@ import math
 from collections.abc import Sequence
 from typing import Any, ClassVar, NamedTuple
 
-from ..component import Input, Parameter, terminal
-from ..craft.kinematics import to_body, to_ned
-from ..waypoints import NED
+from ..model.component import Input, Parameter, terminal
+from ..model.waypoints import NED
+from ..physics.craft.kinematics import to_body, to_ned
 from .sensor import ALWAYS_THERE, Derived, Measured, Sensor, Value, half_circle
 
 TARGETS = SLOTS = 6

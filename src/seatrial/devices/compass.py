@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from ..component import Input, Parameter, terminal
+from ..model.component import Input, Parameter, terminal
 from .sensor import ALWAYS_THERE, Measured, Sensor, full_circle
 
 _DEG = math.radians(1.0)

@@ -8,9 +8,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..component import Input, Parameter, terminal
-from ..craft.kinematics import to_ned
 from ..errors import InputError
+from ..model.component import Input, Parameter, terminal
+from ..physics.craft.kinematics import to_ned
 from .seawater import CELSIUS, conductivity, salinity, sound_speed
 from .sensor import Derived, Measured, Sensor, Value
 

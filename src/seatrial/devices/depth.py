@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
-from ..component import Input, Parameter, seconds, terminal
-from ..craft.kinematics import to_ned
-from ..sea.parameters import MeetsWaves
+from ..model.component import Input, Parameter, seconds, terminal
+from ..physics.craft.kinematics import to_ned
+from ..physics.sea.parameters import MeetsWaves
 from .sensor import ALWAYS_THERE, Measured, Sensor
 
 

@@ -8,10 +8,10 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from ..component import Input, Parameter, seconds, terminal
-from ..craft.kinematics import Vector3, cross, to_body, to_ned
-from ..sea.parameters import MeetsCurrent
-from ..seabed.vectors import dot
+from ..model.component import Input, Parameter, seconds, terminal
+from ..physics.craft.kinematics import Vector3, cross, to_body, to_ned
+from ..physics.sea.parameters import MeetsCurrent
+from ..physics.seabed.vectors import dot
 from .sensor import ALWAYS_THERE, Derived, Measured, Value, full_circle, half_circle
 from .sounding import Sounding
 

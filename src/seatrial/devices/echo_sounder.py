@@ -6,8 +6,8 @@ import math
 from collections.abc import Sequence
 from typing import ClassVar
 
-from ..component import Parameter, terminal
-from ..seabed.cone import first_return
+from ..model.component import Parameter, terminal
+from ..physics.seabed.cone import first_return
 from .sensor import Measured, Value, require_unit
 from .sounding import Sounding
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from ..component import Input, Output, Parameter
+from ..model.component import Input, Output, Parameter
 from .pulse_range import PulseRange
 
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from ..component import Component, Input
 from ..errors import InputError
-from ..faults.catalogue import FAILURES
-from ..faults.text import Written, read_text
+from ..model.component import Component, Input
+from ..model.faults.catalogue import FAILURES
+from ..model.faults.text import Written, read_text
 
 SLOWER = 10
 """How many times slower a slow device is."""
@@ -17,7 +17,7 @@ class Fallible(Component):
     """Base of the devices that fail on demand, by their input ``fault``.
 
     It is ``none``, one of `FAILURES`, or, of a sensor, a fault of what it measures
-    (`seatrial.faults.text`). What each of them does is in `Sensor` and `Actuator`; with ``none``
+    (`seatrial.model.faults.text`). What each of them does is in `Sensor` and `Actuator`; with ``none``
     it is as if there were no such input. It acts from the device's next measurement, or step, on.
     """
 

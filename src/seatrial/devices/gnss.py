@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import ClassVar
 
-from ..component import Input, Parameter, terminal
-from ..craft.kinematics import cross, to_ned
+from ..model.component import Input, Parameter, terminal
+from ..physics.craft.kinematics import cross, to_ned
 from .sensor import Measured, Sensor, Value
 
 _NED = ("north", "east", "down")

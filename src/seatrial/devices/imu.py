@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from ..component import Input, Parameter, terminal
-from ..craft.kinematics import specific_force
-from ..unit_table import STANDARD_GRAVITY
+from ..model.component import Input, Parameter, terminal
+from ..model.unit_table import STANDARD_GRAVITY
+from ..physics.craft.kinematics import specific_force
 from .sensor import ALWAYS_THERE, Measured, Sensor
 
 _DEG = math.radians(1.0)

@@ -8,9 +8,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..component import NS, Input, Parameter, terminal
-from ..craft.kinematics import Vector3, to_ned
 from ..errors import InputError
+from ..model.component import NS, Input, Parameter, terminal
+from ..physics.craft.kinematics import Vector3, to_ned
 from .sensor import Derived, Measured, Sensor, Value
 
 COUNT = 6

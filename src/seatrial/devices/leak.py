@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import ClassVar
 
-from ..component import Input, Parameter, terminal
+from ..model.component import Input, Parameter, terminal
 from .sensor import ALWAYS_THERE, Derived, Measured, Sensor, Value
 
 

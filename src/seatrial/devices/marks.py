@@ -7,10 +7,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..component import Input, Output, Parameter, terminal
 from ..errors import InputError
-from ..sampled import Sampled
-from ..waypoints import NED, Waypoints
+from ..model.component import Input, Output, Parameter, terminal
+from ..model.sampled import Sampled
+from ..model.waypoints import NED, Waypoints
 
 _REMEMBERED_S = 10.0
 

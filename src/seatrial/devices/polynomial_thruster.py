@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from ..component import Input, Output, Parameter
 from ..errors import InputError
-from ..thrust_curve import ThrustCurve
+from ..model.component import Input, Output, Parameter
+from ..physics.thrust_curve import ThrustCurve
 from .actuator import Actuator
 
 _DEGREE = 16

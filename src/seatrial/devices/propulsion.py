@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from ..component import Input, Output, terminal
-from ..thrusters import COUNT, FixedThrusters
+from ..model.component import Input, Output, terminal
+from ..physics.thrusters import COUNT, FixedThrusters
 
 _THRUSTS = tuple(f"t{number}" for number in range(1, COUNT + 1))
 

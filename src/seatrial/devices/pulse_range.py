@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from ..component import Component, Parameter
 from ..errors import InputError
+from ..model.component import Component, Parameter
 
 
 class PulseRange(Component):

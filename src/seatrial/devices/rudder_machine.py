@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from ..component import Input, Output, Parameter, terminal
 from ..errors import InputError
+from ..model.component import Input, Output, Parameter, terminal
 from .actuator import Actuator
 from .fault import SHARE_WRONG
 

@@ -6,8 +6,8 @@ import math
 from collections.abc import Sequence
 from typing import ClassVar
 
-from ..component import Parameter, terminal
-from ..seabed.vectors import Vector, dot
+from ..model.component import Parameter, terminal
+from ..physics.seabed.vectors import Vector, dot
 from .sensor import Derived, Measured, Value, full_circle
 from .sounding import Sounding
 

@@ -6,11 +6,11 @@ import math
 from collections.abc import Sequence
 from typing import Any, ClassVar, Literal
 
-from ..component import NS, Noise, Output, Parameter
 from ..errors import InputError, unknown
-from ..faults.operators import Bias, Deviation, Drift, Moment, Operator, Scale
-from ..faults.text import Written
-from ..sampled import Sampled
+from ..model.component import NS, Noise, Output, Parameter
+from ..model.faults.operators import Bias, Deviation, Drift, Moment, Operator, Scale
+from ..model.faults.text import Written
+from ..model.sampled import Sampled
 from .delays import last_due
 from .fault import SHARE_WRONG, SLOWER, Fallible
 
@@ -124,7 +124,7 @@ class Sensor(Noise, Fallible, Sampled):
     ============ ===================================================================
 
     A fault of one measured output, such as ``bias of=heading value=0.1 at=12``, acts on y before
-    it is quantised, with the equation that it has on a signal (`seatrial.faults.operators`).
+    it is quantised, with the equation that it has on a signal (`seatrial.model.faults.operators`).
 
     Lost, garbage and wrong ones take the same way as all others: what was measured before the
     failure still arrives. Before there is a measurement, stuck is as off. What is overtaken by

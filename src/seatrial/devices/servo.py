@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-from ..component import NS, Input, Output, Parameter
 from ..errors import InputError
-from ..sampled import Sampled
+from ..model.component import NS, Input, Output, Parameter
+from ..model.sampled import Sampled
 from .actuator import Actuator
 from .fault import SHARE_WRONG
 from .pulse_range import AngleRange, PulseRange

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..component import Input, Output
+from ..model.component import Input, Output
 from .pulse_range import AngleRange, PulseRange
 
 

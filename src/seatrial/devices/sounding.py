@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ..component import Input, Parameter
-from ..craft.kinematics import Vector3, to_ned
-from ..seabed.parameters import OverSeabed
+from ..model.component import Input, Parameter
+from ..physics.craft.kinematics import Vector3, to_ned
+from ..physics.seabed.parameters import OverSeabed
 from .sensor import Sensor
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from ..component import Input, Output, Parameter
+from ..model.component import Input, Output, Parameter
 from .actuator import Actuator
 
 

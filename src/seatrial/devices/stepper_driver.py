@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from ..component import Input, Output, Parameter
 from ..errors import InputError
-from ..sampled import Sampled
+from ..model.component import Input, Output, Parameter
+from ..model.sampled import Sampled
 
 
 class StepperDriver(Sampled):

@@ -7,7 +7,7 @@ on a Basic ESC.
 
 import math
 
-from ..unit_table import STANDARD_GRAVITY
+from ..model.unit_table import STANDARD_GRAVITY
 
 # fmt: off
 PULSE = (

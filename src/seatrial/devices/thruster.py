@@ -6,7 +6,7 @@ import math
 from bisect import bisect_right
 from collections.abc import Sequence
 
-from ..component import Input, Output, Parameter
+from ..model.component import Input, Output, Parameter
 from .actuator import Actuator
 from .pulse_range import PulseRange
 from .t200 import CURRENT, FORCE, PULSE, SPEED

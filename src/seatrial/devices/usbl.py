@@ -6,8 +6,8 @@ import math
 from collections.abc import Sequence
 from typing import ClassVar
 
-from ..component import NS, Input, Parameter, terminal
-from ..craft.kinematics import Vector3, to_body, to_ned
+from ..model.component import NS, Input, Parameter, terminal
+from ..physics.craft.kinematics import Vector3, to_body, to_ned
 from .sensor import Derived, Measured, Sensor, Value, full_circle
 
 _DEG = math.radians(1.0)

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from ..component import NS
 from ..errors import InputError, unknown
+from ..model.component import NS
 from .instance import Variable
 
 PERIODIC = ("constant", "fixed", "tunable")

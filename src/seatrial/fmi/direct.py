@@ -7,10 +7,10 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property, partial
 from typing import Any
 
-from ..component import Component
 from ..errors import DiscardError, InputError, SimulationError
-from ..plant import Plant
-from ..ports import Input, Parameter, ScalarPort
+from ..model.component import Component
+from ..model.plant import Plant
+from ..model.ports import Input, Parameter, ScalarPort
 from .compiled_functions import compiled_function
 from .dependencies.found import Through, feedthrough_of
 from .instance import ByType, Reader, Value, Variable, Variables, Writer

@@ -8,9 +8,9 @@ from functools import partial
 from typing import Any, NamedTuple
 
 from ..errors import SimulationError
-from .fmuinstance import FmuInstance
 from .instance import Reader, Value, Variable, Writer
-from .loaded import LoadedFmu
+from .loading.fmuinstance import FmuInstance
+from .loading.loaded import LoadedFmu
 
 MOST_UPDATES = 1_000
 """Iterations of one event."""

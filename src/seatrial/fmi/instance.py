@@ -9,9 +9,9 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Protocol
 
-from ..ports import Scalar
-from ..terminals import Terminal
-from ..units import Unit
+from ..model.ports import Scalar
+from ..model.terminals import Terminal
+from ..model.units import Unit
 
 Value = Scalar | bytes
 """Of a signal: a component has numbers and text, other people's FMUs bytes too."""

@@ -17,9 +17,9 @@ from typing import Any
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from ..errors import InputError, unknown
-from ..terminals import Terminal
+from ..model.terminals import Terminal
 from .instance import Variable, Variables
-from .xmlfile import read_xml
+from .loading.xmlfile import read_xml
 
 PLACE = "terminalsAndIcons/terminalsAndIcons.xml"
 """Of the file, in an FMU."""

@@ -6,8 +6,8 @@ import ctypes
 from collections.abc import Sequence
 from typing import Any, ClassVar
 
-from .fmuinstance import FmuInstance
 from .instance import Reader, Variable, Writer
+from .loading.fmuinstance import FmuInstance
 from .messages import ACCEPTED, OK, WARNING
 
 _NAMES = {float: "Real", int: "Integer", bool: "Boolean", str: "String"}

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any, ClassVar
 
-from ..component import Component, Input, Logging, Output, Parameter, Reachable, terminal
 from ..errors import InputError
+from ..model.component import Component, Input, Logging, Output, Parameter, Reachable, terminal
 from .endpoints.budget import Budget
 from .endpoints.endpoint import Endpoint, report
 from .endpoints.url import check_urls, open_endpoints, other_end

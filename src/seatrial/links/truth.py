@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ..component import Component, Input, Parameter, terminal
-from ..craft.kinematics import specific_force, to_ned
 from ..errors import SimulationError
+from ..model.component import Component, Input, Parameter, terminal
+from ..physics.craft.kinematics import specific_force, to_ned
 from .geodesy import Ned
 
 MOTION = terminal(

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from ..api.written import as_duration
-from ..cosim.rig import duration_ns
 from ..errors import InputError
-from ..trials.course import Course, course
-from ..trials.criteria import Criterion, parse
-from ..trials.expressions import FloatArray
+from ..system.rig import duration_ns
+from ..trial.criteria.course import Course, course
+from ..trial.criteria.criteria import Criterion, parse
+from ..trial.criteria.expressions import FloatArray
 from .text_plot import plot
 
 During = tuple[float | str, float | str] | float | str | None

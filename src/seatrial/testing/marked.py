@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from ..api.written import as_engine, as_settings
-from ..cosim.system import Engine
+from ..system.system import Engine
 
 if TYPE_CHECKING:
-    from ..trials.trial import Trial
+    from ..trial.files.trial import Trial
 
 _LISTS = {"vehicles": "choices.vehicle", "autopilots": "choices.autopilot", "seeds": "seed"}
 """What a list of the mark sets, one of it at a time."""
@@ -31,7 +31,7 @@ class Variant:
 
     def loaded(self, folder: Path) -> Trial:
         """Return the trial; a file is looked for in ``folder`` first. Raises InputError."""
-        from ..trials.trial import load_trial
+        from ..trial.files.trial import load_trial
 
         beside = folder / self.name
         name = str(beside) if self.name.endswith(".toml") and beside.is_file() else self.name

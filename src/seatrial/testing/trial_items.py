@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from ..api.written import as_engine
-from ..cosim.files import read_toml
 from ..errors import InputError, SeatrialError
+from ..system.files import read_toml
 from .trial_run import TrialRun, run_folder
 
 if TYPE_CHECKING:
-    from ..trials.trial import Trial
+    from ..trial.files.trial import Trial
 
 
 def is_trial_file(path: Path) -> bool:
@@ -31,8 +31,8 @@ class TrialFile(pytest.File):
 
     def collect(self) -> Iterator[TrialItem]:
         """Yield a test for each run. Raises InputError for what is wrong in the file."""
-        from ..trials.campaign import load_campaign
-        from ..trials.trial import load_trial
+        from ..trial.files.campaign import load_campaign
+        from ..trial.files.trial import load_trial
 
         try:
             if "trials" in read_toml(self.path)[0]:

@@ -14,13 +14,13 @@ import pytest
 
 from ..api.results import TrialResult, run_loaded
 from ..api.signals import Signals
-from ..cosim.system import Engine
 from ..errors import SeatrialError
-from ..trials.run_folder import is_as_expected
+from ..system.system import Engine
+from ..trial.records.run_folder import is_as_expected
 from .holding import During, failure_of, hold_or_fail
 
 if TYPE_CHECKING:
-    from ..trials.trial import Trial
+    from ..trial.files.trial import Trial
 
 
 class TrialRun:

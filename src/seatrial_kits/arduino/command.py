@@ -10,9 +10,9 @@ from typing import Annotated, Any
 import typer
 
 from seatrial.cli.templates import checked_name, texts, write
-from seatrial.cosim.profile import load_profile
 from seatrial.errors import InputError
 from seatrial.printable import printable
+from seatrial.system.profile.profile import load_profile
 
 from .build import build_host
 from .component import Arduino

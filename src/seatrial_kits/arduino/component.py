@@ -7,14 +7,14 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, ClassVar
 
-from seatrial.component import NS, Component
-from seatrial.craft.kinematics import to_body
 from seatrial.errors import InputError
 from seatrial.links.earth_field import earth_field
 from seatrial.links.endpoints.endpoint import Endpoint, report
 from seatrial.links.endpoints.url import other_end
 from seatrial.links.parameter_validation import start_us
 from seatrial.links.text import Inbox, Outbox
+from seatrial.model.component import NS, Component
+from seatrial.physics.craft.kinematics import to_body
 
 from .board import DUTY, EDGE, EEPROM, RESET, UART, WIDTH, Board, Event, Inputs
 from .build import build_host

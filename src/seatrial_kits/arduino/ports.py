@@ -5,10 +5,18 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from seatrial.component import Component, Input, Output, Parameter, Reachable, Terminal, terminal
 from seatrial.links.parameter_validation import start_us
 from seatrial.links.safe_state_bytes import UNSET, check_safe_state
-from seatrial.unit_table import STANDARD_GRAVITY
+from seatrial.model.component import (
+    Component,
+    Input,
+    Output,
+    Parameter,
+    Reachable,
+    Terminal,
+    terminal,
+)
+from seatrial.model.unit_table import STANDARD_GRAVITY
 
 from .mcus import MCUS
 from .sketch import read_flags

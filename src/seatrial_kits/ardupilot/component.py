@@ -6,7 +6,6 @@ import math
 from pathlib import Path
 from typing import Any
 
-from seatrial.component import Component
 from seatrial.errors import InputError, SimulationError
 from seatrial.links.endpoints.endpoint import report
 from seatrial.links.endpoints.udp import UdpListener
@@ -16,7 +15,8 @@ from seatrial.links.parameter_validation import start_us
 from seatrial.links.program import Program, check_program
 from seatrial.links.vehicle_sensors import read_instruments
 from seatrial.links.watchdog import Watchdog
-from seatrial_kits.mavlink.parameters_servo import read_servos
+from seatrial.model.component import Component
+from seatrial_kits.mavlink.parameters.servo import read_servos
 
 from .earth import Earth
 from .firmware import arguments, by_hand

@@ -5,13 +5,21 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from seatrial.component import Input, Logging, Output, Parameter, Reachable, Terminal, terminal
 from seatrial.errors import InputError
 from seatrial.links.endpoints.url import check_urls
 from seatrial.links.parameter_validation import start_us
 from seatrial.links.truth import MOTION, TrueMotion
 from seatrial.links.vehicle_sensors import read_instruments
-from seatrial_kits.mavlink.parameters_servo import read_servos
+from seatrial.model.component import (
+    Input,
+    Logging,
+    Output,
+    Parameter,
+    Reachable,
+    Terminal,
+    terminal,
+)
+from seatrial_kits.mavlink.parameters.servo import read_servos
 
 from .packet import MOST_CHANNELS
 from .reply import RANGES, read_fields

@@ -5,9 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
-from seatrial.component import NS, Component, Input, Logging, Noise, Output, Parameter, terminal
 from seatrial.errors import InputError, SimulationError, unknown
 from seatrial.links.text import Inbox, Outbox, chunk
+from seatrial.model.component import (
+    NS,
+    Component,
+    Input,
+    Logging,
+    Noise,
+    Output,
+    Parameter,
+    terminal,
+)
 
 from .bus_state import restore, saved
 from .controller import Controller

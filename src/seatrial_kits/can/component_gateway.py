@@ -5,9 +5,17 @@ from __future__ import annotations
 from collections import deque
 from typing import Any, ClassVar
 
-from seatrial.component import NS, Component, Input, Output, Parameter, Reachable, terminal
 from seatrial.errors import InputError
 from seatrial.links.endpoints.endpoint import report
+from seatrial.model.component import (
+    NS,
+    Component,
+    Input,
+    Output,
+    Parameter,
+    Reachable,
+    terminal,
+)
 
 from .frame import Frame
 from .gateway import Gateway

@@ -5,8 +5,16 @@ from __future__ import annotations
 import re
 from typing import Any, ClassVar, NamedTuple
 
-from seatrial.component import NS, Component, Input, Noise, Output, Parameter, terminal
 from seatrial.errors import InputError
+from seatrial.model.component import (
+    NS,
+    Component,
+    Input,
+    Noise,
+    Output,
+    Parameter,
+    terminal,
+)
 
 from .bits import INTERMISSION, length
 from .frame import FD_LENGTHS, Frame

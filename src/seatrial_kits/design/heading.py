@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 
 from seatrial.control.heading_autopilot import HeadingAutopilot
-from seatrial.cosim.parameters import Vehicle, load_vehicle
-from seatrial.craft.manoeuvring_ship import ManoeuvringShip
 from seatrial.errors import InputError
-from seatrial.model import Vector
-from seatrial.trials.parametrised import parametrise
+from seatrial.model.expressions import Vector
+from seatrial.physics.craft.manoeuvring_ship import ManoeuvringShip
+from seatrial.system.parameters import Vehicle, load_vehicle
+from seatrial.trial.files.parametrised import parametrise
 
 SHIP, AUTOPILOT = "manoeuvring-ship", "heading-autopilot"
 GAINS = np.geomspace(1e-5, 1e2, 1401)

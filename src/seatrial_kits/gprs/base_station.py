@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from typing import Any, ClassVar
 
-from seatrial.component import NS, Input, Output, Parameter, terminal
 from seatrial.errors import InputError
 from seatrial.links.text import Inbox, Outbox
-from seatrial.waypoints import MOST, Waypoints
+from seatrial.model.component import NS, Input, Output, Parameter, terminal
+from seatrial.model.waypoints import MOST, Waypoints
 
 from . import segments
 from .sentences import LONGEST, Mark, Report, decode, encode, read_sides

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any, ClassVar
 
-from seatrial.component import NS
 from seatrial.links.text import Inbox, Outbox
+from seatrial.model.component import NS
 
 from .at_commands import Command, Line, read_line, result
 from .connection import Connection

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from seatrial.component import Component, Input, Output, Parameter, terminal
 from seatrial.errors import InputError
+from seatrial.model.component import Component, Input, Output, Parameter, terminal
 
 BEST = 31
 """Best signal quality that AT+CSQ counts: -51 dBm or more; each less is 2 dB."""

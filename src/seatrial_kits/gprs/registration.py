@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, ClassVar
 
-from seatrial.component import NS
+from seatrial.model.component import NS
 
 from . import segments
 from .at_commands import Command, result

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from seatrial.model import Vector
+from seatrial.model.expressions import Vector
 
 from .output_error import Estimate, autocovariance
 

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from types import SimpleNamespace
 from typing import Any
 
-from seatrial.component import Input, Output, Parameter
-from seatrial.model import Model
-from seatrial.plant import Plant, State
+from seatrial.model.component import Input, Output, Parameter
+from seatrial.model.expressions import Model
+from seatrial.model.plant import Plant, State
 
 
 class AxisMotion(Plant):

@@ -13,8 +13,8 @@ from rich.table import Table
 
 from seatrial.cli.answer import answer
 from seatrial.cli.show import console
-from seatrial.trials.output import claim_folder
-from seatrial.trials.report import REPORT
+from seatrial.trial.reports.report import REPORT
+from seatrial.trial.running.output import claim_folder
 
 from .studies.page import RatioRow, physical_rows, ratio_rows, write_page
 from .studies.planar_experiment import PlanarExperiment, read_experiment

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.errors import InputError
-from seatrial.model import Vector
+from seatrial.model.expressions import Vector
 
 _LEAST_REYNOLDS = 1e3
 """Below, log10 Re - 2 of the friction line goes towards 0."""

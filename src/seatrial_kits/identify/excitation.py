@@ -7,8 +7,8 @@ from typing import ClassVar
 
 from numpy.random import Generator
 
-from seatrial.component import Noise, Output, Parameter
-from seatrial.sampled import Sampled
+from seatrial.model.component import Noise, Output, Parameter
+from seatrial.model.sampled import Sampled
 
 _LEVELS = 100
 _MOTORS = MappingProxyType(

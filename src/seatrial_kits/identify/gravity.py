@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from seatrial.model import Vector
+from seatrial.model.expressions import Vector
 
 Reads = Literal[
     "specific-force", "gravity-less-acceleration", "gravity-plus-acceleration", "acceleration"

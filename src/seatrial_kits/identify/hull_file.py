@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from pydantic import Field
 
-from seatrial.cosim.files import FileModel, Source, find_file, read_toml, validated
 from seatrial.errors import InputError
-from seatrial.units import quantity
+from seatrial.model.units import quantity
+from seatrial.system.files import FileModel, Source, find_file, read_toml, validated
 
 from .damping import Derivative, HullForm, damping
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from seatrial.model import Vector
+from seatrial.model.expressions import Vector
 
 from .axis_motion import AxisMotion, AxisRotation
 from .prediction import LONGEST_SUBSTEP, STARTS, UNKNOWNS, Reading, delayed, predict

@@ -8,9 +8,9 @@ from typing import Any
 
 import casadi as ca
 
-from seatrial.component import Input, Output, Parameter
-from seatrial.model import Model
-from seatrial.plant import Plant, State
+from seatrial.model.component import Input, Output, Parameter
+from seatrial.model.expressions import Model
+from seatrial.model.plant import Plant, State
 
 _UVR = ("u", "v", "r")
 

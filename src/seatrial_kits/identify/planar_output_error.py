@@ -10,8 +10,8 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from seatrial.model import Vector
-from seatrial.ports import Parameter
+from seatrial.model.expressions import Vector
+from seatrial.model.ports import Parameter
 
 from .output_error import covariances
 from .planar_motion import PlanarMotion

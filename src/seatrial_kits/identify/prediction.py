@@ -10,8 +10,8 @@ from typing import Any, Literal
 import casadi as ca
 import numpy as np
 
-from seatrial.model import Model, Vector
-from seatrial.ports import Parameter
+from seatrial.model.expressions import Model, Vector
+from seatrial.model.ports import Parameter
 
 from .axis_motion import AxisMotion
 from .sensitivity import sensitive_period

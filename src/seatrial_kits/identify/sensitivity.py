@@ -7,7 +7,7 @@ from typing import Any
 
 import casadi as ca
 
-from seatrial.model import Model
+from seatrial.model.expressions import Model
 
 
 def sensitive_period(

@@ -11,7 +11,7 @@ from typing import Literal
 
 import numpy as np
 
-from seatrial.model import Vector
+from seatrial.model.expressions import Vector
 
 from .prediction import delayed
 

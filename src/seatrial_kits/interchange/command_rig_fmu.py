@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import Any
 
 from seatrial.cli.show import console, print_notes
-from seatrial.cosim.assembly import assemble
-from seatrial.cosim.rig import Rig
-from seatrial.cosim.system import Engine, System
-from seatrial.cosim.unread import leave_out_unread
 from seatrial.errors import InputError
 from seatrial.shipped import available
-from seatrial.trials.rig_changes import changed_rig, set_values
+from seatrial.system.assembly import assemble
+from seatrial.system.rig import Rig
+from seatrial.system.system import Engine, System
+from seatrial.system.unread import leave_out_unread
+from seatrial.trial.files.rig_changes import changed_rig, set_values
 from seatrial_kits.native.engine import carry_natively
 
 from .rig_fmu.native import build_native_rig, why_not_native

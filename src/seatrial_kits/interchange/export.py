@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from seatrial.component import seconds
-from seatrial.cosim.assembly import assemble
-from seatrial.cosim.system import System
 from seatrial.errors import InputError
-from seatrial.trials.rig_changes import changed_rig, set_values
-from seatrial.trials.trial import Trial, is_trial, load_trial
+from seatrial.model.component import seconds
+from seatrial.system.assembly import assemble
+from seatrial.system.system import System
+from seatrial.trial.files.rig_changes import changed_rig, set_values
+from seatrial.trial.files.trial import Trial, is_trial, load_trial
 
 from .osp.writing import write_osp
 from .ssp.describing import Experiment

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from seatrial.cosim.shape_ports import MESHES, mesh_name
-from seatrial.trials import quaternions
-from seatrial.trials.expressions import FloatArray
-from seatrial.trials.run_folder import Run, viewed
+from seatrial.system.shape.ports import MESHES, mesh_name
+from seatrial.trial.criteria.expressions import FloatArray
+from seatrial.trial.records import quaternions
+from seatrial.trial.records.run_folder import Run, viewed
 
 from .meshes import mesh_of
 from .motion import Frame, Motion

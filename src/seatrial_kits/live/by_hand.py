@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from seatrial.trials.trial import Trial
+from seatrial.trial.files.trial import Trial
 
 
 class ByHand:

@@ -26,17 +26,17 @@ from seatrial.cli.run_options import LiveControl, Open, Port
 from seatrial.cli.show import console, print_notes, print_reachable
 from seatrial.cli.stopping import stoppable
 from seatrial.cli.watch import Watch
-from seatrial.component import NS
-from seatrial.cosim.flattening import load_rig
-from seatrial.cosim.rig import duration_ns
-from seatrial.cosim.system import Engine
 from seatrial.errors import InputError
 from seatrial.links.hardware import allow_devices, allow_network
-from seatrial.trials.hooks import Hooks
-from seatrial.trials.run import Result
-from seatrial.trials.supervision import run_supervised
-from seatrial.trials.trial import Trial, choices_in
-from seatrial.trials.trial_file import RecordEntry, TrialFile
+from seatrial.model.component import NS
+from seatrial.system.flattening import load_rig
+from seatrial.system.rig import duration_ns
+from seatrial.system.system import Engine
+from seatrial.trial.files.trial import Trial, choices_in
+from seatrial.trial.files.trial_file import RecordEntry, TrialFile
+from seatrial.trial.running.hooks import Hooks
+from seatrial.trial.running.run import Result
+from seatrial.trial.running.supervision import run_supervised
 
 from .command_play import show_address, show_refused
 

@@ -13,7 +13,7 @@ from seatrial.cli.answer import answer
 from seatrial.cli.run_options import Open, Port
 from seatrial.cli.show import console
 from seatrial.cli.stopping import stoppable
-from seatrial.trials.run_folder import load_run
+from seatrial.trial.records.run_folder import load_run
 
 
 def play(

@@ -8,8 +8,8 @@ from collections.abc import Callable
 from typing import Any
 
 from seatrial.errors import InputError
-from seatrial.faults.catalogue import KINDS
-from seatrial.trials.readable import person_scale
+from seatrial.model.faults.catalogue import KINDS
+from seatrial.trial.reports.readable import person_scale
 
 from .by_hand import ByHand
 from .helm import Helm
@@ -186,7 +186,7 @@ class Controls:
 
 def _settings(text: str) -> dict[str, Any]:
     """Return settings written as ``value = 0.5, grows_over = "2 s"``, quotes or none."""
-    from seatrial.cosim.fault_entry import read_fault
+    from seatrial.system.fault_entry import read_fault
 
     if not text.strip():
         return {}

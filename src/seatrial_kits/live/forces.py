@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from seatrial.cosim.paths import split_path
+from seatrial.system.paths import split_path
 
 from .motion import Frame, Motion
 

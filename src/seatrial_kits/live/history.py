@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from seatrial.trials.expressions import FloatArray
-from seatrial.trials.run_folder import Run
+from seatrial.trial.criteria.expressions import FloatArray
+from seatrial.trial.records.run_folder import Run
 
 _MOST_ROWS = 4000
 

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from seatrial.errors import InputError
-from seatrial.trials.criteria import Criterion, parse
-from seatrial.trials.expressions import FloatArray
-from seatrial.trials.formulas import Temporal
+from seatrial.trial.criteria.criteria import Criterion, parse
+from seatrial.trial.criteria.expressions import FloatArray
+from seatrial.trial.criteria.formulas import Temporal
 
 _MOST_ROWS = 800
 """Of the record that a light is of."""

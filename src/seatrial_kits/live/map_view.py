@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from seatrial.links.geodesy import Origin
-from seatrial.trials.expressions import FloatArray
-from seatrial.trials.scene import waypoints
+from seatrial.trial.criteria.expressions import FloatArray
+from seatrial.trial.records.scene import waypoints
 
 from .motion import Frame, Motion
 from .scene import TRACKS

@@ -1,4 +1,4 @@
-"""Triangles of the parts of a vehicle's shape (`cosim.shape`), in the part's own axes."""
+"""Triangles of the parts of a vehicle's shape (`system.shape.shape`), in the part's own axes."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from seatrial.trials.expressions import FloatArray
+from seatrial.trial.criteria.expressions import FloatArray
 
 _AROUND = 20
 """Corners of a circle."""

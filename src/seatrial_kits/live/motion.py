@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from seatrial.trials import quaternions
-from seatrial.trials.expressions import FloatArray
-from seatrial.trials.run_folder import Run
-from seatrial.trials.scene import Craft, crafts
+from seatrial.trial.criteria.expressions import FloatArray
+from seatrial.trial.records import quaternions
+from seatrial.trial.records.run_folder import Run
+from seatrial.trial.records.scene import Craft, crafts
 
 _FRD = np.array([0.0, 1.0, 0.0, 0.0])
 """Quaternion (w, x, y, z) that takes ahead, starboard, down to ahead, left, up."""

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from seatrial.errors import InputError
-from seatrial.trials.event_marks import events_of
-from seatrial.trials.run_folder import Run
+from seatrial.trial.records.run_folder import Run
+from seatrial.trial.reports.event_marks import events_of
 
 from .cameras import Cameras
 from .charts import Charts

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from seatrial.trials.expressions import FloatArray
-from seatrial.trials.run_folder import viewed
-from seatrial.trials.scene import waypoints
-from seatrial.trials.sea_section import Surroundings, surroundings_of
+from seatrial.trial.criteria.expressions import FloatArray
+from seatrial.trial.records.run_folder import viewed
+from seatrial.trial.records.scene import waypoints
+from seatrial.trial.reports.sea_section import Surroundings, surroundings_of
 
 from .bodies import Bodies, extent
 from .bottom import bottom, obstacles
@@ -38,7 +38,7 @@ _MOST_BED = 400.0
 class Scene:
     """All that is seen of a run. `show` moves it to a frame; ``scene`` is that of viser.
 
-    The world is east, north, up, m, as in `trials.scene`. ``cells`` are those of the water.
+    The world is east, north, up, m, as in `trial.records.scene`. ``cells`` are those of the water.
     """
 
     def __init__(

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from seatrial.errors import InputError
-from seatrial.trials.trial import Trial
+from seatrial.trial.files.trial import Trial
 
 from .by_hand import ByHand
 from .live_page import LivePage

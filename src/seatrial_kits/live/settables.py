@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from seatrial.cosim.master import Master
-from seatrial.cosim.system import System
 from seatrial.fmi.instance import Variable
+from seatrial.sim.master import Master
+from seatrial.system.system import System
 
 _HELM = ("mode", "armed", "manual")
 """Members of the terminal ``orders`` by which a person takes a pilot's helm."""

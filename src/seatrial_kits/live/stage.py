@@ -19,8 +19,8 @@ from viser._viser import InitialCameraConfig
 from viser.infra._async_message_buffer import AsyncMessageBuffer
 
 from seatrial.errors import InputError
-from seatrial.trials.report import Played
-from seatrial.trials.run_folder import Run
+from seatrial.trial.records.run_folder import Run
+from seatrial.trial.reports.report import Played
 
 from .cameras import BEGIN
 from .playback import motion_of

@@ -19,16 +19,16 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
-from seatrial.component import seconds
-from seatrial.cosim.actions import action
-from seatrial.cosim.clock import Pacer
-from seatrial.cosim.fault_entry import FaultEntry
-from seatrial.cosim.fault_schedule import Fault
-from seatrial.cosim.faults import resolved
-from seatrial.cosim.files import validated
-from seatrial.cosim.master import Master
 from seatrial.errors import InputError, SimulationError
-from seatrial.trials.lost_links import watched
+from seatrial.model.component import seconds
+from seatrial.sim.actions import action
+from seatrial.sim.clock import Pacer
+from seatrial.sim.fault_schedule import Fault
+from seatrial.sim.faults import resolved
+from seatrial.sim.master import Master
+from seatrial.system.fault_entry import FaultEntry
+from seatrial.system.files import validated
+from seatrial.trial.running.lost_links import watched
 
 from .settables import orders_of, settables_of
 
@@ -40,7 +40,7 @@ _ORIGIN = "the page"
 
 @dataclass
 class Tap:
-    """Observer of a run, see `trials.hooks.Observer`. ``pipe`` leads to the page."""
+    """Observer of a run, see `trial.running.hooks.Observer`. ``pipe`` leads to the page."""
 
     pipe: Connection
     may_command: bool

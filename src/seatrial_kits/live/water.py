@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from seatrial.sea.waves import Waves
-from seatrial.trials.expressions import FloatArray
+from seatrial.physics.sea.waves import Waves
+from seatrial.trial.criteria.expressions import FloatArray
 
 from .meshes import IntArray
 

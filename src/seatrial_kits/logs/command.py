@@ -10,7 +10,7 @@ import typer
 from seatrial.cli.answer import answer
 from seatrial.cli.show import console, print_notes
 from seatrial.errors import InputError
-from seatrial.trials.run_folder import load_run
+from seatrial.trial.records.run_folder import load_run
 
 from .mcap_file import write_mcap
 from .parquet_file import write_parquet

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from seatrial.component import NS
-from seatrial.trials.run_folder import Run
-from seatrial.trials.scene import WORLD, Craft, crafts, waypoints
+from seatrial.model.component import NS
+from seatrial.trial.records.run_folder import Run
+from seatrial.trial.records.scene import WORLD, Craft, crafts, waypoints
 
 _BODY = (0.30, 0.50, 0.75, 0.8)
 _AHEAD = (0.90, 0.45, 0.10, 1.0)

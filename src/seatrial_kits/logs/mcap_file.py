@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Any
 
 from seatrial import __version__
-from seatrial.cosim.paths import split_path
 from seatrial.errors import InputError
 from seatrial.fmi.cache import write_named
-from seatrial.trials.run_folder import MANIFEST, Run
+from seatrial.system.paths import split_path
+from seatrial.trial.records.run_folder import MANIFEST, Run
 
 from .foxglove import write_scene
 from .record import Column, columns, nanoseconds

@@ -9,7 +9,7 @@ from typing import Any
 
 from seatrial.errors import InputError
 from seatrial.fmi.cache import write_named
-from seatrial.trials.run_folder import Run
+from seatrial.trial.records.run_folder import Run
 
 from .record import columns, nanoseconds
 

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from seatrial.component import NS
 from seatrial.errors import InputError
-from seatrial.trials.run_folder import Run
+from seatrial.model.component import NS
+from seatrial.trial.records.run_folder import Run
 
 
 @dataclass(frozen=True)

@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from seatrial.component import NS
 from seatrial.errors import InputError
-from seatrial.trials.run_folder import Run
-from seatrial.trials.scene import WORLD, Craft, crafts, rows
+from seatrial.model.component import NS
+from seatrial.trial.records.run_folder import Run
+from seatrial.trial.records.scene import WORLD, Craft, crafts, rows
 
 from .record import Column, columns, nanoseconds
 

@@ -18,19 +18,19 @@ from seatrial.links.parameter_validation import (
     whole_number,
 )
 from seatrial.links.unconnected import is_connected
-from seatrial.sampled import Sampled
+from seatrial.model.sampled import Sampled
 
+from .missions.pause import stand_still
 from .modes import MANUAL_MODES, dialect
 from .node import Node
 from .outputs import SHARED, Outputs
-from .parameter_file import ParameterFile
-from .parameter_table import ParameterTable
-from .parameters import vehicle_parameters
-from .parameters_servo import read_servos
-from .parameters_tunable import MOST_TUNABLES, tunable_parameters
-from .pause import stand_still
+from .parameters.file import ParameterFile
+from .parameters.parameters import vehicle_parameters
+from .parameters.servo import read_servos
+from .parameters.table import ParameterTable
+from .parameters.tunable import MOST_TUNABLES, tunable_parameters
 from .ports import NAMED_VALUES, VEHICLE_TYPES, MavlinkPorts
-from .service_failures import UNITS, failing_units
+from .services.failures import UNITS, failing_units
 from .settings import Settings
 from .signing import Signing, read_key
 from .state_file import StateFile

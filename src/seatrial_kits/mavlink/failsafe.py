@@ -5,9 +5,9 @@ from __future__ import annotations
 from seatrial.errors import InputError, unknown
 
 from .modes import Dialect
-from .service import CRITICAL
-from .service_arming import ArmingService
-from .service_modes import ModeService
+from .services.arming import ArmingService
+from .services.modes import ModeService
+from .services.service import CRITICAL
 from .settings import Settings
 from .vehicle import Vehicle
 

@@ -10,40 +10,40 @@ from seatrial.links.geodesy import Ned
 
 from .codec import Message
 from .failsafe import Failsafe
-from .parameter_pack import packed
-from .parameter_table import ParameterTable
-from .plan import Plans
-from .service import Builder, Handler, Receiver, Service
-from .service_arming import ArmingService
-from .service_battery import BatteryService
-from .service_clock import ClockService
-from .service_commands import CommandService
-from .service_failures import FailureService
-from .service_fence import FenceService
-from .service_files import Files, FileService
-from .service_guided import GuidedService
-from .service_home import HomeService
-from .service_joystick import JoystickService
-from .service_log import LogService
-from .service_manual_control import ManualControlService
-from .service_missions import MissionService
-from .service_modes import ModeService
-from .service_parameters import ParameterService
-from .service_presence import PresenceService
-from .service_rally import RallyService
-from .service_refusals import RefusalService
-from .service_stations import StationService
-from .service_streams import StreamService
-from .service_transfer import TransferService
+from .missions.plan import Plans
+from .parameters.pack import packed
+from .parameters.table import ParameterTable
+from .services.arming import ArmingService
+from .services.battery import BatteryService
+from .services.clock import ClockService
+from .services.commands import CommandService
+from .services.failures import FailureService
+from .services.fence import FenceService
+from .services.files import Files, FileService
+from .services.guided import GuidedService
+from .services.home import HomeService
+from .services.joystick import JoystickService
+from .services.log import LogService
+from .services.manual_control import ManualControlService
+from .services.missions import MissionService
+from .services.modes import ModeService
+from .services.parameters import ParameterService
+from .services.presence import PresenceService
+from .services.rally import RallyService
+from .services.refusals import RefusalService
+from .services.service import Builder, Handler, Receiver, Service
+from .services.stations import StationService
+from .services.streams import StreamService
+from .services.transfer import TransferService
 from .settings import Settings
-from .telemetry_board import BoardTelemetry
-from .telemetry_estimator import EstimatorTelemetry
-from .telemetry_motion import MotionTelemetry
-from .telemetry_motors import MotorTelemetry
-from .telemetry_navigation import NavigationTelemetry
-from .telemetry_odometry import OdometryTelemetry
-from .telemetry_sensors import SensorTelemetry
-from .telemetry_system import SystemTelemetry
+from .telemetry.board import BoardTelemetry
+from .telemetry.estimator import EstimatorTelemetry
+from .telemetry.motion import MotionTelemetry
+from .telemetry.motors import MotorTelemetry
+from .telemetry.navigation import NavigationTelemetry
+from .telemetry.odometry import OdometryTelemetry
+from .telemetry.sensors import SensorTelemetry
+from .telemetry.system import SystemTelemetry
 from .transport import Sender, Transport
 from .vehicle import Vehicle
 

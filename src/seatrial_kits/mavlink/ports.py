@@ -6,19 +6,27 @@ from typing import ClassVar
 
 from pymavlink.dialects.v20 import all as mavlink
 
-from seatrial.component import Input, Logging, Output, Parameter, Reachable, Terminal, terminal
 from seatrial.links.endpoints.url import check_urls
 from seatrial.links.parameter_validation import start_us
 from seatrial.links.truth import MOTION, TrueMotion
 from seatrial.links.unconnected import NOT_CONNECTED
-from seatrial.sampled import Sampled
-from seatrial.terminals import ORDERED
+from seatrial.model.component import (
+    Input,
+    Logging,
+    Output,
+    Parameter,
+    Reachable,
+    Terminal,
+    terminal,
+)
+from seatrial.model.sampled import Sampled
+from seatrial.model.terminals import ORDERED
 
 from .failsafe import ACTIONS
 from .outputs import SHARED
-from .parameters_simulation import FASTEST, SLOWEST
-from .parameters_tunable import MOST_TUNABLES, tunable_parameters
-from .service_failures import UNITS, failing_units
+from .parameters.simulation import FASTEST, SLOWEST
+from .parameters.tunable import MOST_TUNABLES, tunable_parameters
+from .services.failures import UNITS, failing_units
 from .settings import LIMITS
 from .vehicle import CHANNELS, FIXES
 

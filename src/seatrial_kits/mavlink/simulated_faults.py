@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Mapping
 
-from seatrial.faults.text import fault_text
+from seatrial.model.faults.text import fault_text
 
-from .parameter_definition import INT8, INT32, REAL32, Definition, fixed
+from .parameters.definition import INT8, INT32, REAL32, Definition, fixed
 from .settings import Settings
 
 _METRES_PER_DEGREE = math.radians(1.0) * 6_378_137.0

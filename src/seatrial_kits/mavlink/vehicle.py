@@ -10,7 +10,7 @@ from pymavlink.dialects.v20 import all as mavlink
 
 from seatrial.links.geodesy import Ned, Origin
 from seatrial.links.truth import Truth
-from seatrial.unit_table import STANDARD_GRAVITY
+from seatrial.model.unit_table import STANDARD_GRAVITY
 
 from .modes import Dialect, Mode
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from seatrial.component import Component
 from seatrial.errors import InputError, SimulationError
-from seatrial.fmi.source import ComponentSource
-from seatrial.plant import Plant
+from seatrial.fmi.building.source import ComponentSource
+from seatrial.model.component import Component
+from seatrial.model.plant import Plant
 
 from . import equations
 from .tables import words_of

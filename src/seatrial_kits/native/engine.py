@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from seatrial.cosim.part import Part
-from seatrial.cosim.system import System
 from seatrial.errors import InputError
+from seatrial.fmi.building.source import ComponentSource, find_source
 from seatrial.fmi.direct import DirectInstance
-from seatrial.fmi.source import ComponentSource, find_source
+from seatrial.system.part import Part
+from seatrial.system.system import System
 
 
 def carry_natively(
@@ -61,7 +61,7 @@ def in_python(system: System) -> dict[str, list[str]]:
 def _carry(system: System, part: Part) -> str:
     """Let a native FMU carry a component; return why if there is none."""
     from seatrial.fmi.compiler import require_compiler
-    from seatrial.fmi.load import load_fmu, open_instance
+    from seatrial.fmi.loading.load import load_fmu, open_instance
 
     from .cached import native_fmu
 

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 import casadi as ca
 
-from seatrial.component import Component
 from seatrial.errors import InputError, SimulationError
-from seatrial.plant import Plant
-from seatrial.ports import Port
+from seatrial.model.component import Component
+from seatrial.model.plant import Plant
+from seatrial.model.ports import Port
 
 from .tables import table, tables
 

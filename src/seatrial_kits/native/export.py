@@ -13,16 +13,16 @@ from xml.etree.ElementTree import Element, SubElement, tostring
 import fmpy
 
 from seatrial import __version__
-from seatrial.component import Component
+from seatrial.fmi.building.description import describe
+from seatrial.fmi.building.packing import described_files, zipped
+from seatrial.fmi.building.source import ComponentSource
 from seatrial.fmi.cache import write_named
 from seatrial.fmi.compiler import HERE, SEMANTICS, TARGETS, TUPLES, library
-from seatrial.fmi.description import describe
 from seatrial.fmi.forwarding.sources import SEAL
-from seatrial.fmi.packing import described_files, zipped
-from seatrial.fmi.source import ComponentSource
 from seatrial.fmi.version3.description import build_description
 from seatrial.fmi.version3.sources import front_sources
-from seatrial.plant import Plant
+from seatrial.model.component import Component
+from seatrial.model.plant import Plant
 
 from .carriers import checked, refuse
 from .equations import header as plant_header

@@ -9,14 +9,14 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from seatrial.component import Component
 from seatrial.errors import InputError, SimulationError
-from seatrial.faults.catalogue import FAILURES
+from seatrial.fmi.building.source import ComponentSource
 from seatrial.fmi.direct import DirectInstance
 from seatrial.fmi.instance import Instance
-from seatrial.fmi.load import load_fmu, open_instance
-from seatrial.fmi.source import ComponentSource
-from seatrial.ports import ScalarPort
+from seatrial.fmi.loading.load import load_fmu, open_instance
+from seatrial.model.component import Component
+from seatrial.model.faults.catalogue import FAILURES
+from seatrial.model.ports import ScalarPort
 
 from .tables import is_built_in, words_of
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import sys
 
-from seatrial.component import Component, Noise
 from seatrial.devices.fault import Fallible
-from seatrial.faults.catalogue import KINDS
-from seatrial.faults.text import MEASURED
+from seatrial.model.component import Component, Noise
+from seatrial.model.faults.catalogue import KINDS
+from seatrial.model.faults.text import MEASURED
 
 from .tables import quoted, table, tables
 from .translation.intrinsics import FAULTS, SETTINGS

@@ -6,10 +6,10 @@ import itertools
 import json
 from collections.abc import Sequence
 
-from seatrial.component import Component, Parameter
-from seatrial.faults.catalogue import FAILURES
-from seatrial.plant import Plant
-from seatrial.ports import Input, Port, ScalarPort
+from seatrial.model.component import Component, Parameter
+from seatrial.model.faults.catalogue import FAILURES
+from seatrial.model.plant import Plant
+from seatrial.model.ports import Input, Port, ScalarPort
 
 _HEADER = """\
 /* Sizes and tables of a component: by value reference, and what is its own. */

@@ -25,13 +25,13 @@ from collections.abc import Sequence
 
 from pymavlink.dialects.v20 import all as mavlink
 
-from seatrial.component import NS
-from seatrial.craft.kinematics import cross, to_body, to_ned
 from seatrial.links.earth_field import earth_field
 from seatrial.links.geodesy import Ned, Origin
 from seatrial.links.parameter_validation import start_us
 from seatrial.links.truth import Truth
-from seatrial.unit_table import STANDARD_GRAVITY
+from seatrial.model.component import NS
+from seatrial.model.unit_table import STANDARD_GRAVITY
+from seatrial.physics.craft.kinematics import cross, to_body, to_ned
 from seatrial_kits.mavlink.codec import Message
 from seatrial_kits.mavlink.scaling import compass_degrees, deg_e7, int16, int32, quaternion, uint16
 

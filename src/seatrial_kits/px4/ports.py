@@ -5,7 +5,12 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from seatrial.component import (
+from seatrial.errors import InputError, unknown
+from seatrial.links.endpoints.url import check_urls
+from seatrial.links.parameter_validation import start_us
+from seatrial.links.truth import MOTION, TrueMotion
+from seatrial.links.vehicle_sensors import read_instruments
+from seatrial.model.component import (
     Input,
     Logging,
     Noise,
@@ -15,12 +20,7 @@ from seatrial.component import (
     Terminal,
     terminal,
 )
-from seatrial.errors import InputError, unknown
-from seatrial.links.endpoints.url import check_urls
-from seatrial.links.parameter_validation import start_us
-from seatrial.links.truth import MOTION, TrueMotion
-from seatrial.links.vehicle_sensors import read_instruments
-from seatrial_kits.mavlink.parameters_servo import read_servos
+from seatrial_kits.mavlink.parameters.servo import read_servos
 
 CHANNELS = 16
 """Of HIL_ACTUATOR_CONTROLS."""

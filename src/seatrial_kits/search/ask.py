@@ -10,29 +10,29 @@ from typing import Any
 
 import numpy as np
 
-from seatrial.campaigns.asked import Asked, asked_of
-from seatrial.campaigns.columns import table_columns
-from seatrial.campaigns.ended import Ended
-from seatrial.campaigns.ended_log import EndedLog, ended_cases
-from seatrial.campaigns.evaluator import Plan
-from seatrial.campaigns.finding import ANSWER, Finding, read_answer
-from seatrial.campaigns.sampled_checks import check
-from seatrial.campaigns.sweep import Done, How, Sweep, index_of, refuse_other, workers_of
-from seatrial.campaigns.table import Tables, arrow
-from seatrial.cosim.files import FileModel
 from seatrial.errors import InputError, unknown
-from seatrial.trials.campaign import INDEX, Campaign
-from seatrial.trials.hooks import Hooks
-from seatrial.trials.measuring import Measured
-from seatrial.trials.output import claim_folder, write_json
-from seatrial.trials.questions import (
+from seatrial.system.files import FileModel
+from seatrial.trial.campaigns.asked import Asked, asked_of
+from seatrial.trial.campaigns.columns import table_columns
+from seatrial.trial.campaigns.ended import Ended
+from seatrial.trial.campaigns.ended_log import EndedLog, ended_cases
+from seatrial.trial.campaigns.evaluator import Plan
+from seatrial.trial.campaigns.finding import ANSWER, Finding, read_answer
+from seatrial.trial.campaigns.sampled_checks import check
+from seatrial.trial.campaigns.sweep import Done, How, Sweep, index_of, refuse_other, workers_of
+from seatrial.trial.campaigns.table import Tables, arrow
+from seatrial.trial.files.campaign import INDEX, Campaign
+from seatrial.trial.files.questions import (
     LimitsQuestion,
     Questions,
     RareQuestion,
     SensitivityQuestion,
     WorstCaseQuestion,
 )
-from seatrial.trials.resuming import cut_aside, has_index
+from seatrial.trial.running.hooks import Hooks
+from seatrial.trial.running.measuring import Measured
+from seatrial.trial.running.output import claim_folder, write_json
+from seatrial.trial.running.resuming import cut_aside, has_index
 
 from .asking import Asking, stopped
 from .limits_answer import limits_question

@@ -8,16 +8,16 @@ from typing import Any
 
 import numpy as np
 
-from seatrial.campaigns.asked import asked_of
-from seatrial.campaigns.finding import read_answer
-from seatrial.campaigns.sweep import index_of, refuse_other
-from seatrial.campaigns.table import RESULTS, read_rows
 from seatrial.errors import InputError
-from seatrial.trials.campaign import INDEX, Campaign
-from seatrial.trials.cases import Case
-from seatrial.trials.distributions import Law, number_and_unit
-from seatrial.trials.questions import Questions
-from seatrial.trials.run_schema import CAMPAIGN, checked_json
+from seatrial.trial.campaigns.asked import asked_of
+from seatrial.trial.campaigns.finding import read_answer
+from seatrial.trial.campaigns.sweep import index_of, refuse_other
+from seatrial.trial.campaigns.table import RESULTS, read_rows
+from seatrial.trial.files.campaign import INDEX, Campaign
+from seatrial.trial.files.cases import Case
+from seatrial.trial.files.distributions import Law, number_and_unit
+from seatrial.trial.files.questions import Questions
+from seatrial.trial.records.run_schema import CAMPAIGN, checked_json
 
 from .space import space_of
 

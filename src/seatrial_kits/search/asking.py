@@ -9,13 +9,13 @@ from pathlib import Path
 
 import numpy as np
 
-from seatrial.campaigns.asked import Asked
-from seatrial.campaigns.finding import Finding
-from seatrial.cosim.system import Engine
 from seatrial.errors import InputError, SimulationError, unknown
-from seatrial.trials.campaign import Campaign
-from seatrial.trials.hooks import Hooks
-from seatrial.trials.measuring import Measured
+from seatrial.system.system import Engine
+from seatrial.trial.campaigns.asked import Asked
+from seatrial.trial.campaigns.finding import Finding
+from seatrial.trial.files.campaign import Campaign
+from seatrial.trial.running.hooks import Hooks
+from seatrial.trial.running.measuring import Measured
 
 from .space import Space
 

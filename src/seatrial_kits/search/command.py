@@ -14,12 +14,12 @@ from seatrial.cli.show import console, print_verdicts, run_entry
 from seatrial.cli.statuses import FAILED
 from seatrial.cli.stopping import stoppable
 from seatrial.errors import InputError, SimulationError
-from seatrial.trials.campaign import Campaign, load_campaign
-from seatrial.trials.cases import Case
-from seatrial.trials.hooks import Hooks
-from seatrial.trials.playing import play
-from seatrial.trials.report import write_report
-from seatrial.trials.supervision import run_supervised
+from seatrial.trial.files.campaign import Campaign, load_campaign
+from seatrial.trial.files.cases import Case
+from seatrial.trial.reports.playing import play
+from seatrial.trial.reports.report import write_report
+from seatrial.trial.running.hooks import Hooks
+from seatrial.trial.running.supervision import run_supervised
 
 from .asked_run import asked_run
 from .command_ask import ask

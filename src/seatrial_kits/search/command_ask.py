@@ -10,10 +10,6 @@ from rich.box import SIMPLE
 from rich.markup import escape
 from rich.table import Table
 
-from seatrial.campaigns.ended import Ended
-from seatrial.campaigns.finding import Finding, Shown
-from seatrial.campaigns.page import write_table_page
-from seatrial.campaigns.sweep import How, keep_named
 from seatrial.cli.answer import answer
 from seatrial.cli.options import EngineName, Network, Out, engine_named
 from seatrial.cli.run_options import Cluster, Jobs, KeepName, NoReport, Resume
@@ -22,9 +18,13 @@ from seatrial.cli.stopping import stoppable
 from seatrial.cli.watch import Watch
 from seatrial.errors import InputError
 from seatrial.links.hardware import allow_network
-from seatrial.trials.campaign import load_campaign
-from seatrial.trials.cases import Case
-from seatrial.trials.hooks import Hooks
+from seatrial.trial.campaigns.ended import Ended
+from seatrial.trial.campaigns.finding import Finding, Shown
+from seatrial.trial.campaigns.page import write_table_page
+from seatrial.trial.campaigns.sweep import How, keep_named
+from seatrial.trial.files.campaign import load_campaign
+from seatrial.trial.files.cases import Case
+from seatrial.trial.running.hooks import Hooks
 
 from .ask import ask as ask_campaign
 

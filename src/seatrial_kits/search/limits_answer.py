@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from seatrial.campaigns.finding import Finding, Shown
 from seatrial.errors import InputError
-from seatrial.trials.questions import LimitsQuestion
+from seatrial.trial.campaigns.finding import Finding, Shown
+from seatrial.trial.files.questions import LimitsQuestion
 
 from .asking import Asking
 from .drawing import Axes, drawn

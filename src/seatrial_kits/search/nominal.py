@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 
 from seatrial.errors import InputError, unknown
-from seatrial.trials import run_schema
-from seatrial.trials.distributions import number_and_unit
-from seatrial.trials.run_folder import MANIFEST
-from seatrial.trials.run_schema import checked_json
-from seatrial.trials.supervision import run_supervised
-from seatrial.trials.trial import Trial
-from seatrial.units import conversion
+from seatrial.model.units import conversion
+from seatrial.trial.files.distributions import number_and_unit
+from seatrial.trial.files.trial import Trial
+from seatrial.trial.records import run_schema
+from seatrial.trial.records.run_folder import MANIFEST
+from seatrial.trial.records.run_schema import checked_json
+from seatrial.trial.running.supervision import run_supervised
 
 from .asking import Asking
 from .space import Space

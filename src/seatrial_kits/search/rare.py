@@ -8,9 +8,9 @@ from functools import partial
 
 import numpy as np
 
-from seatrial.campaigns.finding import Finding, Shown
 from seatrial.errors import InputError
-from seatrial.trials.questions import RareQuestion
+from seatrial.trial.campaigns.finding import Finding, Shown
+from seatrial.trial.files.questions import RareQuestion
 
 from .asking import Asking, Values
 from .drawing import drawn

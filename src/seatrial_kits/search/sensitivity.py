@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from seatrial.campaigns.finding import Finding, Shown
 from seatrial.errors import InputError, SimulationError, unknown
-from seatrial.trials.measuring import Measured
-from seatrial.trials.questions import SensitivityQuestion
+from seatrial.trial.campaigns.finding import Finding, Shown
+from seatrial.trial.files.questions import SensitivityQuestion
+from seatrial.trial.running.measuring import Measured
 
 from .asking import Asking, robustness_of
 from .drawing import Axes, drawn

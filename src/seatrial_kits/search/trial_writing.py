@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from seatrial.errors import InputError
-from seatrial.trials.trial import Trial
+from seatrial.trial.files.trial import Trial
 
 from .searching import needed
 

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from seatrial.campaigns.finding import Finding, Shown
-from seatrial.trials.questions import WorstCaseQuestion
+from seatrial.trial.campaigns.finding import Finding, Shown
+from seatrial.trial.files.questions import WorstCaseQuestion
 
 from .asking import Asking
 from .drawing import drawn

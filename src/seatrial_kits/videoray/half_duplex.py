@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from seatrial.component import NS
+from seatrial.model.component import NS
 
 BITS_PER_BYTE = 10
 """8N1: a start bit, 8 bits, a stop bit."""

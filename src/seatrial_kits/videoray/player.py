@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any, ClassVar
 
-from seatrial.component import NS, Component, Output, Parameter, terminal
 from seatrial.links.text import Outbox
+from seatrial.model.component import NS, Component, Output, Parameter, terminal
 
 from .stream_file import FROM_DEVICE, TO_DEVICE, read_stream
 

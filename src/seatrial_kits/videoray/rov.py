@@ -6,9 +6,9 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from seatrial.component import NS, Component
 from seatrial.errors import InputError
 from seatrial.links.text import Inbox, Outbox
+from seatrial.model.component import NS, Component
 
 from .auto_loop import AutoLoop
 from .drive import Drive, share_of_thrust

@@ -5,8 +5,16 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from seatrial.component import Component, Input, Logging, Output, Parameter, Terminal, terminal
-from seatrial.unit_table import STANDARD_GRAVITY
+from seatrial.model.component import (
+    Component,
+    Input,
+    Logging,
+    Output,
+    Parameter,
+    Terminal,
+    terminal,
+)
+from seatrial.model.unit_table import STANDARD_GRAVITY
 
 from .drive import SLEW_UNITS, THRUSTERS
 from .gains import GAINS

@@ -6,8 +6,8 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from seatrial.component import NS, Component
 from seatrial.links.text import Inbox, Outbox
+from seatrial.model.component import NS, Component
 
 from .frame import encode
 from .half_duplex import HalfDuplex

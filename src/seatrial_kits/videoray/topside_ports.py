@@ -5,8 +5,15 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from seatrial.component import Component, Input, Logging, Output, Parameter, terminal
-from seatrial.unit_table import STANDARD_GRAVITY
+from seatrial.model.component import (
+    Component,
+    Input,
+    Logging,
+    Output,
+    Parameter,
+    terminal,
+)
+from seatrial.model.unit_table import STANDARD_GRAVITY
 
 _XYZ = ("x", "y", "z")
 

@@ -11,8 +11,8 @@ from seatrial.errors import InputError
 from seatrial.links.endpoints.url import open_endpoint
 from seatrial.links.hardware import ALLOWED
 from seatrial.links.text import decode, encode
-from seatrial.trials.run import run_trial
-from seatrial.trials.trial import load_trial
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.running.run import run_trial
 from seatrial_kits.arduino.component import Arduino
 
 WAIT_S = 30.0

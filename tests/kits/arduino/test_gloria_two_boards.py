@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from seatrial.trials.run import run_trial
-from seatrial.trials.run_folder import Run, load_run
-from seatrial.trials.trial import load_trial
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.records.run_folder import Run, load_run
+from seatrial.trial.running.run import run_trial
 from tests.kits.arduino.bench import need
 
 WHOLE = (

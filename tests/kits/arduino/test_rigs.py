@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from seatrial.links.text import decode
-from seatrial.trials.run import Hooks, run_trial
-from seatrial.trials.trial import load_trial
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.running.run import Hooks, run_trial
 
 from .bench import need, write_sketch
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from seatrial.trials.run_folder import load_run
+from seatrial.trial.records.run_folder import load_run
 from tests.command import seatrial
 from tests.interop.firmware_matrix import NO_WIND, SEAS, VEHICLES
 

@@ -6,10 +6,10 @@ import math
 import pytest
 from pygeomag import GeoMag
 
-from seatrial.cosim.profile import load_profile
 from seatrial.errors import InputError
 from seatrial.links.parameter_validation import start_us
 from seatrial.links.vehicle_sensors import read_instruments
+from seatrial.system.profile.profile import load_profile
 from seatrial_kits.ardupilot.simulated import simulated, write_parameters
 
 STARTS = {"period": [0.2], "delay": [0.0]}

@@ -7,13 +7,13 @@ import pytest
 
 from seatrial.errors import InputError
 from seatrial.links.hardware import ALLOWED
-from seatrial.trials.run import run_trial
-from seatrial.trials.trial import load_trial
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.running.run import run_trial
 
 pytestmark = pytest.mark.interop
 
 LISTENER = '''
-from seatrial.component import Component, Input, Output
+from seatrial.model.component import Component, Input, Output
 from seatrial_kits.can.node import CanNode
 from seatrial_kits.can.operations import Transmit
 

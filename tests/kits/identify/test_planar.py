@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from seatrial.cosim.parameters import load_vehicle
 from seatrial.errors import InputError
-from seatrial.trials.run import run_trial
-from seatrial.trials.trial import load_trial
+from seatrial.system.parameters import load_vehicle
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.running.run import run_trial
 from seatrial_kits.identify.planar_output_error import (
     PARAMETERS,
     UNKNOWNS,

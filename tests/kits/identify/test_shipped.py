@@ -6,10 +6,10 @@ tolerances contain what the other axes do. Truth is vehicles/videoray.toml.
 
 import pytest
 
-from seatrial.cosim.files import available
 from seatrial.errors import InputError
-from seatrial.trials.run import run_trial
-from seatrial.trials.trial import load_trial
+from seatrial.system.files import available
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.running.run import run_trial
 from seatrial_kits.identify.studies.experiment import load_experiment
 from seatrial_kits.identify.studies.study import study
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from benchmarks.identification import CASES, synthetic
-from seatrial.cosim.parameters import load_vehicle
-from seatrial.craft.rov import Rov
 from seatrial.errors import InputError
+from seatrial.physics.craft.rov import Rov
+from seatrial.system.parameters import load_vehicle
 from seatrial_kits.identify.studies.experiment import load_experiment
 from seatrial_kits.identify.studies.page import write_page
 from seatrial_kits.identify.studies.study import study

@@ -5,16 +5,16 @@ from __future__ import annotations
 import zipfile
 from pathlib import Path
 
-from seatrial.cosim.assembly import assemble
-from seatrial.cosim.master import Master
-from seatrial.cosim.system import System
-from seatrial.fmi.export import build_fmu
-from seatrial.fmi.source import ComponentSource, find_source
-from seatrial.trials.trial import load_trial
+from seatrial.fmi.building.export import build_fmu
+from seatrial.fmi.building.source import ComponentSource, find_source
+from seatrial.sim.master import Master
+from seatrial.system.assembly import assemble
+from seatrial.system.system import System
+from seatrial.trial.files.trial import load_trial
 
 BOATS = '''
 """Two components with a closed form."""
-from seatrial.component import Component, Input, Output, Parameter
+from seatrial.model.component import Component, Input, Output, Parameter
 
 
 class Hull(Component):

@@ -9,11 +9,11 @@ from pathlib import Path
 import fmpy
 import pytest
 
-from seatrial.cosim.actions import action
-from seatrial.cosim.assembly import assemble
-from seatrial.cosim.flattening import load_rig
-from seatrial.cosim.master import Master
 from seatrial.errors import InputError
+from seatrial.sim.actions import action
+from seatrial.sim.master import Master
+from seatrial.system.assembly import assemble
+from seatrial.system.flattening import load_rig
 
 from ...fmi.native import SLAVES
 from .ssp_natives import build

@@ -11,10 +11,10 @@ from fmpy.validation import validate_fmu
 from pymavlink import mavutil
 
 from seatrial import Simulation
-from seatrial.cosim.assembly import assemble
-from seatrial.cosim.flattening import load_rig
 from seatrial.errors import InputError
-from seatrial.fmi.load import load_fmu, open_instance
+from seatrial.fmi.loading.load import load_fmu, open_instance
+from seatrial.system.assembly import assemble
+from seatrial.system.flattening import load_rig
 from seatrial_kits.interchange.rig_fmu.face import face_of
 from seatrial_kits.interchange.rig_fmu.frozen import rig_source
 from seatrial_kits.interchange.rig_fmu.python import build_python_rig

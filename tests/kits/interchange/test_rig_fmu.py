@@ -16,12 +16,12 @@ import fmpy
 import pytest
 from fmpy.validation import validate_fmu
 
-import seatrial.cosim.master
+import seatrial.sim.master
 from seatrial import Simulation
-from seatrial.cosim.assembly import assemble
-from seatrial.cosim.flattening import load_rig
 from seatrial.fmi.compiler import HERE, library_here
-from seatrial.fmi.load import load_fmu, open_instance
+from seatrial.fmi.loading.load import load_fmu, open_instance
+from seatrial.system.assembly import assemble
+from seatrial.system.flattening import load_rig
 from seatrial_kits.interchange.rig_fmu.native import build_native_rig, why_not_native
 from seatrial_kits.native.engine import carry_natively
 from tests.command import seatrial as command
@@ -42,9 +42,9 @@ SHIPPED = (
 TEXT = '''
 """A mass on a spring, a sampled controller, and a gain without a state."""
 
-from seatrial.component import Component, Input, Output, Parameter
-from seatrial.plant import Plant, State
-from seatrial.sampled import Sampled
+from seatrial.model.component import Component, Input, Output, Parameter
+from seatrial.model.plant import Plant, State
+from seatrial.model.sampled import Sampled
 
 
 class Mass(Plant):
@@ -468,7 +468,7 @@ def test_shipped_rigs(rig: str, choices: dict[str, str], tmp_path: Path) -> None
 def test_both_masters(rig: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Shipped rigs whose components all have C: the same bits under the master in C and in Python."""
     with Simulation(rig, engine="native") as compiled:
-        monkeypatch.setattr(seatrial.cosim.master, "is_compiled", lambda _system: False)
+        monkeypatch.setattr(seatrial.sim.master, "is_compiled", lambda _system: False)
         with Simulation(rig, engine="native") as python:
             names = [n for n, s in compiled.signals.items() if s.type is not str]
             for _ in range(100):
@@ -481,7 +481,7 @@ def test_both_masters(rig: str, monkeypatch: pytest.MonkeyPatch) -> None:
 STIFFENING = '''
 """A loop whose gain grows beyond one as time goes on."""
 
-from seatrial.component import Component, Input, Output
+from seatrial.model.component import Component, Input, Output
 
 
 class Stiffening(Component):

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.cosim.assembly import assemble
 from seatrial.errors import InputError
-from seatrial.trials.trial import load_trial
+from seatrial.system.assembly import assemble
+from seatrial.trial.files.trial import load_trial
 from seatrial_kits.interchange.ssp.reading import read_ssp
 
 from .ssp_files import (

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.cosim.assembly import assemble
-from seatrial.cosim.master import Master
 from seatrial.errors import InputError
+from seatrial.sim.master import Master
+from seatrial.system.assembly import assemble
 from seatrial_kits.interchange.ssp.reading import read_ssp
 
 from .ssp_natives import (

@@ -9,10 +9,10 @@ import pytest
 from fmpy.ssp.ssd import read_ssd
 from lxml import etree
 
-from seatrial.cosim.assembly import assemble
-from seatrial.cosim.flattening import load_rig
 from seatrial.errors import InputError
-from seatrial.fmi.load import load_fmu
+from seatrial.fmi.loading.load import load_fmu
+from seatrial.system.assembly import assemble
+from seatrial.system.flattening import load_rig
 from seatrial_kits.interchange.export import export_ssp
 from seatrial_kits.interchange.ssp.reading import read_ssp
 from seatrial_kits.interchange.ssp.shapes import Enumeration, Shapes

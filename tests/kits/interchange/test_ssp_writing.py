@@ -9,12 +9,12 @@ import pytest
 from fmpy.ssp.ssd import read_ssd, validate_tree
 from lxml import etree
 
-from seatrial.cosim.assembly import assemble
-from seatrial.cosim.flattening import load_rig
 from seatrial.errors import InputError
-from seatrial.fmi.export import build_fmu
-from seatrial.fmi.source import ComponentSource, find_source
-from seatrial.trials.trial import load_trial
+from seatrial.fmi.building.export import build_fmu
+from seatrial.fmi.building.source import ComponentSource, find_source
+from seatrial.system.assembly import assemble
+from seatrial.system.flattening import load_rig
+from seatrial.trial.files.trial import load_trial
 from seatrial_kits.interchange.export import export_ssp
 from seatrial_kits.interchange.ssp.reading import read_ssp
 from seatrial_kits.interchange.ssp.tools import findings
@@ -164,7 +164,7 @@ def test_a_package_written_again_is_the_same_system(rig: Path, tmp_path: Path) -
 
 SPEEDS = '''
 """A log and a display."""
-from seatrial.component import Component, Input, Output
+from seatrial.model.component import Component, Input, Output
 
 
 class Log(Component):

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.cosim.assembly import assemble
-from seatrial.cosim.master import Master
-from seatrial.cosim.packages import is_package, read_package
 from seatrial.errors import InputError
+from seatrial.sim.master import Master
+from seatrial.system.assembly import assemble
+from seatrial.system.packages import is_package, read_package
 from seatrial_kits.interchange.osp.reading import read_osp
 from seatrial_kits.interchange.ssp.reading import read_ssp
 from seatrial_kits.interchange.ssp.tools import findings

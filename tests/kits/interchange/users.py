@@ -2,8 +2,8 @@
 
 CHAIN = '''
 """Small components for rigs."""
-from seatrial.component import Component, Input, Output, Parameter
-from seatrial.sampled import Sampled
+from seatrial.model.component import Component, Input, Output, Parameter
+from seatrial.model.sampled import Sampled
 
 
 class Ramp(Component):

@@ -13,12 +13,12 @@ from pathlib import Path
 import pytest
 import zstandard
 
-from seatrial.trials.campaign_report import VIEWER, write_case_report
-from seatrial.trials.hooks import Hooks
-from seatrial.trials.report import write_report
-from seatrial.trials.run_folder import load_run
-from seatrial.trials.supervision import run_supervised
-from seatrial.trials.trial import load_trial
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.records.run_folder import load_run
+from seatrial.trial.reports.campaign_report import VIEWER, write_case_report
+from seatrial.trial.reports.report import write_report
+from seatrial.trial.running.hooks import Hooks
+from seatrial.trial.running.supervision import run_supervised
 from seatrial_kits.live.command import trial_of
 from seatrial_kits.live.session import Session
 from seatrial_kits.live.stage import played, viewer_js

@@ -15,9 +15,9 @@ from urllib.parse import urlsplit
 
 import pytest
 
-from seatrial.trials.dark import DARK
-from seatrial.trials.report import write_report
-from seatrial.trials.run_folder import load_run
+from seatrial.trial.records.run_folder import load_run
+from seatrial.trial.reports.dark import DARK
+from seatrial.trial.reports.report import write_report
 from seatrial_kits.live.stage import played
 
 from .browser import WAIT_MS, chromium, opened, other_site, served

@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 import trimesh
 
-from seatrial.cosim.parameters import load_vehicle
-from seatrial.cosim.shape import written
 from seatrial.errors import InputError
 from seatrial.shipped import available, shipped_folder
-from seatrial.trials.run import run_trial
-from seatrial.trials.run_folder import load_run
-from seatrial.trials.trial import load_trial
+from seatrial.system.parameters import load_vehicle
+from seatrial.system.shape.shape import written
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.records.run_folder import load_run
+from seatrial.trial.running.run import run_trial
 from seatrial_kits.live.meshes import Mesh, mesh_of
 
 VEHICLES = sorted(available("vehicles"))
@@ -167,7 +167,7 @@ def test_a_mesh_of_ones_own_goes_with_the_run(tmp_path: Path) -> None:
 
 
 def test_water_is_where_the_waves_are() -> None:
-    from seatrial.sea.waves import Waves
+    from seatrial.physics.sea.waves import Waves
     from seatrial_kits.live.water import Water
 
     rng = np.random.default_rng(2)
@@ -189,7 +189,7 @@ def test_still_water_lies_about_the_craft() -> None:
 def test_quaternions_are_those_of_scipy() -> None:
     from scipy.spatial.transform import Rotation
 
-    from seatrial.trials import quaternions
+    from seatrial.trial.records import quaternions
 
     angles = np.random.default_rng(3).uniform(-1.5, 1.5, (50, 3))
     ours = quaternions.of_euler(angles)

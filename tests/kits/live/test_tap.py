@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from seatrial.trials.hooks import Hooks
-from seatrial.trials.run import Result, run_trial
-from seatrial.trials.run_folder import load_run
-from seatrial.trials.trial import Trial, load_trial
+from seatrial.trial.files.trial import Trial, load_trial
+from seatrial.trial.records.run_folder import load_run
+from seatrial.trial.running.hooks import Hooks
+from seatrial.trial.running.run import Result, run_trial
 from seatrial_kits.live.by_hand import ByHand
 from seatrial_kits.live.history import History
 from seatrial_kits.live.tap import Tap

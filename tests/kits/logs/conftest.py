@@ -11,14 +11,14 @@ from typing import Any
 
 import pytest
 
-from seatrial.trials.run import run_trial
-from seatrial.trials.run_folder import Run, load_run
-from seatrial.trials.trial import load_trial
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.records.run_folder import Run, load_run
+from seatrial.trial.running.run import run_trial
 
 BUOY = '''
 """A buoy that publishes all there is."""
-from seatrial.component import Output
-from seatrial.sampled import Sampled
+from seatrial.model.component import Output
+from seatrial.model.sampled import Sampled
 
 
 class Buoy(Sampled):

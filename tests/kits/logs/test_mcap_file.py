@@ -11,7 +11,7 @@ import pytest
 from mcap.reader import make_reader
 
 from seatrial.errors import InputError
-from seatrial.trials.run_folder import Run
+from seatrial.trial.records.run_folder import Run
 from seatrial_kits.logs.mcap_file import write_mcap
 
 from .conftest import recorded

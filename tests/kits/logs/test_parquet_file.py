@@ -10,7 +10,7 @@ import pytest
 from pyarrow import parquet
 
 from seatrial.errors import InputError
-from seatrial.trials.run_folder import Run
+from seatrial.trial.records.run_folder import Run
 from seatrial_kits.logs.parquet_file import write_parquet
 
 from .conftest import recorded

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.trials.run_folder import Run
+from seatrial.trial.records.run_folder import Run
 from seatrial_kits.logs.record import columns
 
 

@@ -15,9 +15,9 @@ from mcap_ros2.reader import read_ros2_messages
 from scipy.spatial.transform import Rotation
 
 from seatrial.errors import InputError
-from seatrial.trials.run import run_trial
-from seatrial.trials.run_folder import Run, load_run
-from seatrial.trials.trial import load_trial
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.records.run_folder import Run, load_run
+from seatrial.trial.running.run import run_trial
 from seatrial_kits.logs.mcap_file import write_mcap
 from seatrial_kits.logs.ros2_bag import write_ros2_bag
 
@@ -26,9 +26,9 @@ CIRCLE = f'''
 """A craft that climbs in a turn to starboard, heeled."""
 import math
 
-from seatrial.component import Output
-from seatrial.sampled import Sampled
-from seatrial.terminals import MOTION
+from seatrial.model.component import Output
+from seatrial.model.sampled import Sampled
+from seatrial.model.terminals import MOTION
 
 
 class Circle(Sampled):

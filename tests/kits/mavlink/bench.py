@@ -8,7 +8,7 @@ from pymavlink.dialects.v20 import all as mavlink
 from seatrial.links.geodesy import Origin
 from seatrial_kits.mavlink.modes import dialect
 from seatrial_kits.mavlink.node import Node, Settings
-from seatrial_kits.mavlink.parameters import vehicle_parameters
+from seatrial_kits.mavlink.parameters.parameters import vehicle_parameters
 from seatrial_kits.mavlink.transport import Sender
 from seatrial_kits.mavlink.vehicle import Estimates, Identity, Vehicle
 

@@ -7,9 +7,9 @@ from hypothesis import Phase, example, given, settings
 from hypothesis import strategies as st
 from pymavlink.dialects.v20 import all as mavlink
 
-from seatrial.cosim.profile import load_profile
-from seatrial.units import quantity
-from seatrial_kits.mavlink.parameter_definition import REAL32
+from seatrial.model.units import quantity
+from seatrial.system.profile.profile import load_profile
+from seatrial_kits.mavlink.parameters.definition import REAL32
 
 from .bench import Bench
 from .moving import VEHICLES, Moving

@@ -10,8 +10,8 @@ import pytest
 from pymavlink import mavutil
 from pymavlink.dialects.v20 import all as mavlink
 
-from seatrial.cosim.profile import load_profile
 from seatrial.errors import InputError, SimulationError
+from seatrial.system.profile.profile import load_profile
 from seatrial_kits.mavlink.component import Mavlink
 from seatrial_kits.mavlink.transport import EndpointTransport
 

@@ -6,10 +6,10 @@ import pytest
 from pymavlink.dialects.v20 import all as mavlink
 
 from seatrial.errors import InputError
-from seatrial.faults.catalogue import FAILURES as FAULTS
-from seatrial.faults.catalogue import KINDS
-from seatrial.faults.text import read_text
-from seatrial_kits.mavlink.service_failures import UNITS, failing_units
+from seatrial.model.faults.catalogue import FAILURES as FAULTS
+from seatrial.model.faults.catalogue import KINDS
+from seatrial.model.faults.text import read_text
+from seatrial_kits.mavlink.services.failures import UNITS, failing_units
 
 from .bench import Bench
 from .test_component import connect, received, started, until  # noqa: F401  fixtures

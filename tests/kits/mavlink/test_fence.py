@@ -8,7 +8,7 @@ from pymavlink.dialects.v20 import all as mavlink
 from scipy.spatial import ConvexHull, Delaunay, QhullError
 
 from seatrial.errors import InputError
-from seatrial_kits.mavlink.fence_zones import Zone, is_allowed
+from seatrial_kits.mavlink.missions.fence_zones import Zone, is_allowed
 
 from .bench import Bench
 from .ground import FENCE, RALLY, listed, north_of, one, upload

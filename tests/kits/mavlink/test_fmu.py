@@ -11,14 +11,14 @@ from pathlib import Path
 import pytest
 from pymavlink import mavutil
 
-from seatrial.fmi.bundle import bundled
+from seatrial.fmi.building.bundle import bundled
+from seatrial.fmi.building.export import cached_fmu
+from seatrial.fmi.building.source import find_source
 from seatrial.fmi.direct import DirectInstance
-from seatrial.fmi.export import cached_fmu
-from seatrial.fmi.isolated import IsolatedInstance
-from seatrial.fmi.load import load_fmu, open_instance
-from seatrial.fmi.source import find_source
-from seatrial.trials.run import run_trial
-from seatrial.trials.trial import load_trial
+from seatrial.fmi.isolation.isolated import IsolatedInstance
+from seatrial.fmi.loading.load import load_fmu, open_instance
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.running.run import run_trial
 from seatrial_kits.mavlink.component import Mavlink
 
 WAIT_S = 30.0

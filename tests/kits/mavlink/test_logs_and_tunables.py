@@ -11,16 +11,16 @@ from pathlib import Path
 import pytest
 from pymavlink import mavutil
 
-from seatrial.cosim.assembly import assemble
-from seatrial.cosim.flattening import load_rig
-from seatrial.cosim.master import Master
 from seatrial.errors import InputError
-from seatrial.trials.run import run_trial
-from seatrial.trials.trial import load_trial
+from seatrial.sim.master import Master
+from seatrial.system.assembly import assemble
+from seatrial.system.flattening import load_rig
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.running.run import run_trial
 
 GAIN = '''
 """A controller."""
-from seatrial.component import Component, Output, Parameter
+from seatrial.model.component import Component, Output, Parameter
 
 
 class Controller(Component):

@@ -11,9 +11,15 @@ from hypothesis import strategies as st
 from pymavlink.dialects.v20 import all as mavlink
 
 from seatrial_kits.mavlink.modes import dialect
-from seatrial_kits.mavlink.parameter_definition import INT8, INT16, INT32, REAL32, Definition
-from seatrial_kits.mavlink.parameter_table import ParameterTable
-from seatrial_kits.mavlink.service_parameters import RATE, ParameterService
+from seatrial_kits.mavlink.parameters.definition import (
+    INT8,
+    INT16,
+    INT32,
+    REAL32,
+    Definition,
+)
+from seatrial_kits.mavlink.parameters.table import ParameterTable
+from seatrial_kits.mavlink.services.parameters import RATE, ParameterService
 from seatrial_kits.mavlink.settings import Settings
 from seatrial_kits.mavlink.vehicle import Identity, Vehicle
 

@@ -3,7 +3,7 @@ import math
 import pytest
 from pymavlink.dialects.v20 import all as mavlink
 
-from seatrial_kits.mavlink.plan import MOST_ITEMS
+from seatrial_kits.mavlink.missions.plan import MOST_ITEMS
 
 from .bench import ORIGIN, OTHER_STATION, STATION, Bench
 from .ground import (

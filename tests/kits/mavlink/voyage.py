@@ -12,11 +12,11 @@ from contextlib import contextmanager
 
 from pymavlink import mavutil, mavwp
 
-from seatrial.cosim.assembly import assemble
-from seatrial.cosim.flattening import load_rig
-from seatrial.cosim.master import Master
-from seatrial.cosim.profile import load_profile
 from seatrial.links.geodesy import Origin
+from seatrial.sim.master import Master
+from seatrial.system.assembly import assemble
+from seatrial.system.flattening import load_rig
+from seatrial.system.profile.profile import load_profile
 
 WAYPOINT, LOITER_TURNS, RETURN, JUMP, SPEED = 16, 18, 20, 177, 178
 _EVERY_S = 0.5

@@ -22,7 +22,7 @@ import math
 import random
 from typing import NamedTuple
 
-from seatrial.component import Component, Input, Output
+from seatrial.model.component import Component, Input, Output
 
 SCALE = 1.5
 LIMITS = (0.25, 0.5, 1.0, 4.0)

@@ -15,12 +15,12 @@ import fmpy
 import pytest
 from fmpy.validation import validate_fmu
 
-from seatrial.component import Component, Input, Parameter
 from seatrial.errors import InputError
+from seatrial.fmi.building.index import component_class, components
+from seatrial.fmi.building.source import find_source
 from seatrial.fmi.compiler import HERE, library_here
-from seatrial.fmi.index import component_class, components
-from seatrial.fmi.source import find_source
-from seatrial.plant import Plant, State
+from seatrial.model.component import Component, Input, Parameter
+from seatrial.model.plant import Plant, State
 from seatrial_kits.native.carriers import why_python
 from seatrial_kits.native.export import build_native_fmu
 from tests.command import seatrial

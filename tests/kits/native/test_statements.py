@@ -11,14 +11,14 @@ import pytest
 from fmpy.validation import validate_fmu
 
 import seatrial
-from seatrial.component import Component, Input, Noise, Output, Parameter
 from seatrial.errors import InputError, SimulationError
-from seatrial.faults.text import FAILURES, fault_text
+from seatrial.fmi.building.index import component_class, components
+from seatrial.fmi.building.source import find_source
 from seatrial.fmi.compiler import HERE, library_here
-from seatrial.fmi.index import component_class, components
-from seatrial.fmi.source import find_source
-from seatrial.plant import Plant
-from seatrial.sampled import Sampled
+from seatrial.model.component import Component, Input, Noise, Output, Parameter
+from seatrial.model.faults.text import FAILURES, fault_text
+from seatrial.model.plant import Plant
+from seatrial.model.sampled import Sampled
 from seatrial_kits.native.carriers import why_python
 from seatrial_kits.native.export import build_native_fmu
 from seatrial_kits.native.tables import is_built_in

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.cosim.profile import load_profile
+from seatrial.system.profile.profile import load_profile
 from seatrial_kits.px4.firmware import PORT, read_parameters
 from tests.command import SEATRIAL, seatrial
 

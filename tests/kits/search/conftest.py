@@ -2,11 +2,11 @@
 
 import pytest
 
-from seatrial.trials.campaign import load_campaign
+from seatrial.trial.files.campaign import load_campaign
 
 FORM = '''
 import math
-from seatrial.component import Component, Output, Parameter
+from seatrial.model.component import Component, Output, Parameter
 
 
 class Form(Component):

@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from seatrial.campaigns.sweep import How
+from seatrial.trial.campaigns.sweep import How
 from seatrial_kits.search.ask import ask
 from tests.campaigns.test_cluster import dask_of
 

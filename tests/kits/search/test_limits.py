@@ -9,10 +9,10 @@ import pandas as pd
 import pytest
 from scipy.interpolate import RegularGridInterpolator
 
-from seatrial.campaigns.page import write_table_page
-from seatrial.campaigns.sweep import How
 from seatrial.errors import InputError, SimulationError
-from seatrial.trials.hooks import Hooks
+from seatrial.trial.campaigns.page import write_table_page
+from seatrial.trial.campaigns.sweep import How
+from seatrial.trial.running.hooks import Hooks
 from seatrial_kits.search.ask import ask
 from seatrial_kits.search.limits import SURE, find_boundary
 

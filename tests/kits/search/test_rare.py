@@ -7,8 +7,8 @@ import pandas as pd
 import pytest
 from scipy.stats import chi2, norm
 
-from seatrial.campaigns.sweep import How
 from seatrial.errors import InputError, SimulationError
+from seatrial.trial.campaigns.sweep import How
 from seatrial_kits.search.ask import ask
 from seatrial_kits.search.subset import subset_simulation
 

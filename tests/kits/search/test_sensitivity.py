@@ -6,8 +6,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from seatrial.campaigns.sweep import How
 from seatrial.errors import InputError
+from seatrial.trial.campaigns.sweep import How
 from seatrial_kits.search.ask import ask
 from seatrial_kits.search.indices import morris, sobol
 

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.trials.run import run_trial
-from seatrial.trials.trial import load_trial
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.running.run import run_trial
 
 
 @pytest.mark.long

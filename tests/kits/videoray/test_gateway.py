@@ -95,7 +95,7 @@ def test_the_topside_drives_a_vehicle_over_a_terminal(tmp_path):
 
 
 def test_the_safe_state_of_the_profile_stops_the_thrusters():
-    from seatrial.cosim.profile import load_profile
+    from seatrial.system.profile.profile import load_profile
 
     safe_state = load_profile("videoray").parameters("links.topside-port")["safe_state"]
     assert bytes.fromhex(safe_state) == encode(NEUTRAL)

@@ -8,9 +8,9 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import minimize_scalar
 
 from seatrial.errors import InputError
-from seatrial.trials.run import run_trial
-from seatrial.trials.run_folder import load_run
-from seatrial.trials.trial import load_trial
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.records.run_folder import load_run
+from seatrial.trial.running.run import run_trial
 from seatrial_kits.videoray.plan.motion import plan_motion
 from seatrial_kits.videoray.plan.page import settings, write_plan
 

@@ -11,9 +11,9 @@ import pytest
 from pymavlink import mavutil
 
 from seatrial.links.serial_gateway import SerialGateway
-from seatrial.trials.run import Hooks, run_trial
-from seatrial.trials.run_folder import load_run
-from seatrial.trials.trial import load_trial
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.records.run_folder import load_run
+from seatrial.trial.running.run import Hooks, run_trial
 from seatrial_kits.videoray.topside import Pro4Topside
 from tests.interop.running import running, wait_for
 

@@ -8,8 +8,8 @@ from typing import Annotated
 import typer
 
 from seatrial.cli.show import console
-from seatrial.cosim.parameters import load_vehicle
 from seatrial.errors import InputError
+from seatrial.system.parameters import load_vehicle
 
 
 def skeg(

@@ -6,10 +6,10 @@ from typing import Any
 
 import casadi as ca
 
-from seatrial.component import Parameter
-from seatrial.craft.context import Context, wrench
-from seatrial.craft.marine_craft import MarineCraft
 from seatrial.errors import InputError
+from seatrial.model.component import Parameter
+from seatrial.physics.craft.context import Context, wrench
+from seatrial.physics.craft.marine_craft import MarineCraft
 
 
 def skeg(c: Context) -> Any:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from seatrial.component import Input, Parameter, terminal
 from seatrial.devices.sensor import ALWAYS_THERE, Measured, Sensor
+from seatrial.model.component import Input, Parameter, terminal
 
 
 class Inclinometer(Sensor):

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from seatrial.trials.plots import Line, Panel, time_figure
-from seatrial.trials.run_folder import Run
+from seatrial.trial.records.run_folder import Run
+from seatrial.trial.reports.plots import Line, Panel, time_figure
 
 DEGREES = 180.0 / math.pi
 

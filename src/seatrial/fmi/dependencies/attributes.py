@@ -11,9 +11,9 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from typing import Any
 
-from ...component import Component
-from ...ports import Port
-from ...terms import Terms
+from ...model.component import Component
+from ...model.ports import Port
+from ...model.terms import Terms
 from .reach import OPEN, carrying
 from .text import self_names, tree_of
 from .values import (

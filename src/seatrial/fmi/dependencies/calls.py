@@ -12,7 +12,7 @@ import types
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from ...plant import Plant
+from ...model.plant import Plant
 from .expressions import Expressions
 from .frame import Frame
 from .text import tree_of
@@ -143,7 +143,7 @@ class Calls(Expressions):
         name = node.func.attr
         if name in ("get", "set", "read", "write", "reader", "writer", "refresh", "advance"):
             static = inspect.getattr_static(self.cls, name, None)
-            if getattr(static, "__module__", "") == "seatrial.component":
+            if getattr(static, "__module__", "") == "seatrial.model.component":
                 port = _text(given[0]) if name in ("get", "set") and given else None
                 if port is None or port not in self.cls.ports:
                     raise self.undecided(node, f"self.{name} may mean any port")

@@ -5,8 +5,8 @@ from __future__ import annotations
 import itertools
 import math
 
-from ...plant import Plant
-from ...ports import Parameter
+from ...model.plant import Plant
+from ...model.ports import Parameter
 from .values import UndecidedError
 
 _MOST_CHOICES = 64

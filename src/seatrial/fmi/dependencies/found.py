@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from weakref import WeakKeyDictionary
 
-from ...component import Component
 from ...errors import InputError
-from ...plant import Plant
+from ...model.component import Component
+from ...model.plant import Plant
 from .equations import equations_depend
 from .interpreter import Interpreter
 from .values import UndecidedError

@@ -7,11 +7,11 @@ import difflib
 from collections.abc import Iterator
 from pathlib import Path
 
-from ...component import Component
 from ...errors import InputError
 from ...kits import is_ours
-from ...plant import Plant
-from ...ports import Output
+from ...model.component import Component
+from ...model.plant import Plant
+from ...model.ports import Output
 from .text import first_argument, methods, self_names, tree_of
 from .values import UndecidedError
 

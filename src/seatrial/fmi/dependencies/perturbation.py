@@ -7,11 +7,11 @@ import random
 from collections.abc import Iterable
 from typing import Any
 
-from ...component import Component, Input
 from ...errors import InputError
-from ...plant import Plant
-from ...ports import Port
-from ...sampled import Sampled
+from ...model.component import Component, Input
+from ...model.plant import Plant
+from ...model.ports import Port
+from ...model.sampled import Sampled
 from .found import found
 
 _POINTS = 12

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pythonfmu
 
-from ...component import Component
 from ...errors import InputError, unknown
+from ...model.component import Component
 from ..cache import cache_folder, write_named
 from ..compiler import FLAGS, HERE, TARGETS, TUPLES, library, library_here
 from .sources import forwarding_sources

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import fmpy
 
-from ...component import Component
+from ...model.component import Component
 from ..version3.sources import front_sources
 
 _OWN = Path(__file__).parent

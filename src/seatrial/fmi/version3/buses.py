@@ -11,10 +11,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from xml.etree.ElementTree import Element, SubElement
 
-from ...component import Component
 from ...errors import InputError
-from ...ports import ScalarPort
-from ..description import variability
+from ...model.component import Component
+from ...model.ports import ScalarPort
+from ..building.description import variability
 from ..lsbus import ANNOTATION, CAN, KINDS, MANIFEST
 from ..terminals import TOOL, xml_text
 

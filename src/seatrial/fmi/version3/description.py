@@ -11,8 +11,8 @@ from itertools import groupby
 from xml.etree.ElementTree import Element, SubElement
 
 from ...links.text import packed
-from ...ports import BYTES, Port, ScalarPort
-from ..osp import QUANTITIES
+from ...model.ports import BYTES, Port, ScalarPort
+from ..loading.osp import QUANTITIES
 from ..terminals import TOOL, xml_text
 from .buses import CanTerminal, add_bus_outputs, bus_variables
 

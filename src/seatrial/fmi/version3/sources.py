@@ -6,7 +6,7 @@ from pathlib import Path
 
 import fmpy
 
-from ...component import Component
+from ...model.component import Component
 from .buses import events_header
 
 _OWN = Path(__file__).parent

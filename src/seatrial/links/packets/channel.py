@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any, ClassVar
 
-from ...component import NS, Component, Input, Noise, Output, Parameter, terminal
 from ...errors import InputError
+from ...model.component import NS, Component, Input, Noise, Output, Parameter, terminal
 from ..text import Inbox, Outbox
 from .medium import Medium
 

@@ -7,8 +7,8 @@ from typing import Any, ClassVar
 
 from dronecan.transport import Transfer
 
-from seatrial.component import NS, Input, Output, Parameter, terminal
 from seatrial.links.geodesy import Origin
+from seatrial.model.component import NS, Input, Output, Parameter, terminal
 
 from .channels import AXES, MOST_CHANNELS, channels_of
 from .commands import messages

@@ -10,8 +10,16 @@ from typing import Any, ClassVar, NamedTuple
 
 from dronecan.transport import Transfer
 
-from seatrial.component import NS, Component, Input, Noise, Output, Parameter, terminal
 from seatrial.errors import InputError
+from seatrial.model.component import (
+    NS,
+    Component,
+    Input,
+    Noise,
+    Output,
+    Parameter,
+    terminal,
+)
 
 from ..node import CanNode
 from .allocation import Allocatee, Allocation

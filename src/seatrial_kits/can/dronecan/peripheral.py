@@ -7,11 +7,11 @@ from typing import Any, ClassVar
 
 from dronecan.transport import Transfer
 
-from seatrial.component import NS, Input, Output, Parameter, Terminal, terminal
 from seatrial.errors import InputError, unknown
 from seatrial.links.geodesy import Origin
 from seatrial.links.parameter_validation import start_us
 from seatrial.links.unconnected import NOT_CONNECTED
+from seatrial.model.component import NS, Input, Output, Parameter, Terminal, terminal
 
 from .channels import AXES, MOST_CHANNELS, channels_of
 from .commands import ArrayCommand, RawCommand, RPMCommand, commanded

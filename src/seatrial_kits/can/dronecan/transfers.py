@@ -7,7 +7,7 @@ from typing import Any
 
 from dronecan.transport import Transfer
 
-from seatrial.component import NS
+from seatrial.model.component import NS
 
 from ..frame import Frame
 from ..node import CanNode

@@ -9,8 +9,8 @@ from typing import Any, ClassVar
 from cantools.database.can import Database, Message
 from cantools.database.errors import Error
 
-from seatrial.component import NS, Component, Input, Output, Parameter, terminal
 from seatrial.errors import InputError
+from seatrial.model.component import NS, Component, Input, Output, Parameter, terminal
 
 from ..frame import Frame
 from ..node import CanNode

@@ -9,7 +9,7 @@ from pathlib import Path
 from cantools.database.can import Database, Message, Signal
 
 from seatrial.errors import InputError
-from seatrial.units import conversion, unit
+from seatrial.model.units import conversion, unit
 
 from .database import find_signal, raw_range
 

@@ -8,9 +8,9 @@ from typing import Any, Generic, Literal, Protocol, TypeVar
 
 from pydantic import Field, model_validator
 
-from seatrial.cosim.files import FileModel, Source, find_file, read_toml, validated
 from seatrial.errors import InputError
-from seatrial.units import quantity
+from seatrial.model.units import quantity
+from seatrial.system.files import FileModel, Source, find_file, read_toml, validated
 
 from ..gravity import Reads
 

@@ -10,11 +10,11 @@ from pathlib import Path
 
 import numpy as np
 
-from seatrial.cosim.files import FileModel
 from seatrial.errors import InputError, unknown
-from seatrial.trials.expressions import FloatArray
-from seatrial.trials.run_folder import MANIFEST, SIGNALS, read_manifest
-from seatrial.units import conversion
+from seatrial.model.units import conversion
+from seatrial.system.files import FileModel
+from seatrial.trial.criteria.expressions import FloatArray
+from seatrial.trial.records.run_folder import MANIFEST, SIGNALS, read_manifest
 
 from ..gravity import acceleration_along
 from ..output_error import AxisLog

@@ -7,9 +7,9 @@ from typing import Any, Literal, get_args
 
 from pydantic import Field, model_validator
 
-from seatrial.cosim.files import FileModel, Source, find_file, read_toml, validated
 from seatrial.errors import InputError, unknown
-from seatrial.units import quantity
+from seatrial.model.units import quantity
+from seatrial.system.files import FileModel, Source, find_file, read_toml, validated
 
 from .experiment import (
     AccelerationEntry,

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import numpy as np
 
-from seatrial.trials.expressions import FloatArray
-from seatrial.trials.figure import Figure
-from seatrial.trials.plots import Line, Panel, time_figure
-from seatrial.trials.readable import number, person_scale
-from seatrial.trials.report import REPORT, render
+from seatrial.trial.criteria.expressions import FloatArray
+from seatrial.trial.reports.figure import Figure
+from seatrial.trial.reports.plots import Line, Panel, time_figure
+from seatrial.trial.reports.readable import number, person_scale
+from seatrial.trial.reports.report import REPORT, render
 from seatrial.whole_file import write_whole
 
 from ..planar_output_error import PlanarLog

@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from seatrial.cosim.parameters import Vehicle, load_vehicle
 from seatrial.errors import InputError
-from seatrial.fmi.index import component_class
-from seatrial.trials.expressions import FloatArray
-from seatrial.trials.parametrised import parametrise
+from seatrial.fmi.building.index import component_class
+from seatrial.system.parameters import Vehicle, load_vehicle
+from seatrial.trial.criteria.expressions import FloatArray
+from seatrial.trial.files.parametrised import parametrise
 
 from ..assessment import LEAST_FIT, MASS_RATIO, Verdict, fit
 from ..gravity import acceleration_along

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from seatrial.errors import InputError
-from seatrial.trials.expressions import FloatArray
+from seatrial.trial.criteria.expressions import FloatArray
 
 from ..assessment import Verdict, Whiteness, fit, verdicts, whiteness
 from ..output_error import AxisLog, Estimate, output_error, simulated

@@ -6,9 +6,9 @@ import json
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-from seatrial.cosim.parameters import Entry, Vehicle, VehicleFile, load_vehicle
 from seatrial.errors import InputError, unknown
-from seatrial.trials.readable import number
+from seatrial.system.parameters import Entry, Vehicle, VehicleFile, load_vehicle
+from seatrial.trial.reports.readable import number
 from seatrial.whole_file import write_whole
 
 from .planar_study import PlanarStudy

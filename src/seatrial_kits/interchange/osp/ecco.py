@@ -7,10 +7,10 @@ from typing import Any
 
 from lxml import etree
 
-from seatrial.component import NS, seconds
-from seatrial.cosim.rig import EccoEntry
-from seatrial.cosim.system import System
 from seatrial.errors import InputError
+from seatrial.model.component import NS, seconds
+from seatrial.system.rig import EccoEntry
+from seatrial.system.system import System
 
 from ..ssp.documents import child, children, tag, where
 from .structure import NAMESPACE, End, content_of

@@ -7,16 +7,16 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from seatrial.component import NS
-from seatrial.cosim.files import Source
-from seatrial.cosim.flattening import rig_of
-from seatrial.cosim.packaged import OSP_FILE, PackagedSystem
-from seatrial.cosim.rig import duration_ns
 from seatrial.errors import InputError
-from seatrial.fmi.archive import content_hash
-from seatrial.fmi.load import load_fmu
-from seatrial.fmi.loaded import LoadedFmu
-from seatrial.units import conversion
+from seatrial.fmi.loading.archive import content_hash
+from seatrial.fmi.loading.load import load_fmu
+from seatrial.fmi.loading.loaded import LoadedFmu
+from seatrial.model.component import NS
+from seatrial.model.units import conversion
+from seatrial.system.files import Source
+from seatrial.system.flattening import rig_of
+from seatrial.system.packaged import OSP_FILE, PackagedSystem
+from seatrial.system.rig import duration_ns
 
 from ..ssp.layout import unused
 from .ecco import bonds_as_written, read_settings

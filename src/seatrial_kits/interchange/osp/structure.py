@@ -10,11 +10,11 @@ from urllib.parse import unquote, urlsplit
 
 from lxml import etree
 
-from seatrial.cosim.proxied import proxied_file
-from seatrial.cosim.rig import LONGEST_S
 from seatrial.errors import InputError, unknown
 from seatrial.fmi.instance import Value
-from seatrial.fmi.xmlfile import read_xml
+from seatrial.fmi.loading.xmlfile import read_xml
+from seatrial.sim.proxied import proxied_file
+from seatrial.system.rig import LONGEST_S
 
 from ..ssp.documents import boolean, child, children, needed, number, tag, where
 

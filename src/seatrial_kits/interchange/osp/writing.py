@@ -7,16 +7,16 @@ from typing import Any
 
 from lxml import etree
 
-from seatrial.component import seconds
-from seatrial.cosim.packaged import OSP_FILE
-from seatrial.cosim.part import Part
-from seatrial.cosim.system import Connection, System
 from seatrial.errors import InputError
+from seatrial.fmi.building.export import fmu_bytes
+from seatrial.fmi.building.source import find_source
 from seatrial.fmi.cache import write_named
-from seatrial.fmi.export import fmu_bytes
-from seatrial.fmi.load import load_fmu
-from seatrial.fmi.osp import osp_file, osp_xml
-from seatrial.fmi.source import find_source
+from seatrial.fmi.loading.load import load_fmu
+from seatrial.fmi.loading.osp import osp_file, osp_xml
+from seatrial.model.component import seconds
+from seatrial.system.packaged import OSP_FILE
+from seatrial.system.part import Part
+from seatrial.system.system import Connection, System
 
 from ..ssp.describing import Experiment, as_xml
 from ..ssp.layout import End, Level, flat, unused

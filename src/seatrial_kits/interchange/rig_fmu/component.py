@@ -7,21 +7,21 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, ClassVar
 
-from seatrial.component import NS, Component, Input, Output, Parameter
-from seatrial.cosim.algorithms import Algorithm
-from seatrial.cosim.files import Source
-from seatrial.cosim.master import Master, Snapshot
-from seatrial.cosim.part import Part
-from seatrial.cosim.rig import EccoEntry, IterationEntry, Rig, RigFile, Scope
-from seatrial.cosim.rollback import Checkpoint
-from seatrial.cosim.sums import SumInstance
-from seatrial.cosim.system import Bond, Connection, System
-from seatrial.cosim.values import Given
 from seatrial.errors import InputError
 from seatrial.fmi.direct import DirectInstance
 from seatrial.fmi.instance import Instance
-from seatrial.ports import Port
-from seatrial.terminals import Terminal
+from seatrial.model.component import NS, Component, Input, Output, Parameter
+from seatrial.model.ports import Port
+from seatrial.model.terminals import Terminal
+from seatrial.sim.algorithms import Algorithm
+from seatrial.sim.master import Master, Snapshot
+from seatrial.sim.rollback import Checkpoint
+from seatrial.system.files import Source
+from seatrial.system.part import Part
+from seatrial.system.rig import EccoEntry, IterationEntry, Rig, RigFile, Scope
+from seatrial.system.sums import SumInstance
+from seatrial.system.system import Bond, Connection, System
+from seatrial.system.values import Given
 
 Name = tuple[str, str]
 

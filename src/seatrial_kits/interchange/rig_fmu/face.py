@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
-from seatrial.cosim.joining import End, Group, Resolver
-from seatrial.cosim.network import Name, sources_by_target
-from seatrial.cosim.system import System
 from seatrial.fmi.instance import Variable, Variables
-from seatrial.ports import BYTES
-from seatrial.terminals import Terminal
+from seatrial.model.ports import BYTES
+from seatrial.model.terminals import Terminal
+from seatrial.sim.network import Name, sources_by_target
+from seatrial.system.joining import End, Group, Resolver
+from seatrial.system.system import System
 
 _KEPT_ROLES = ("seed", "wall-clock", "address", "run-folder", "exceeded", *BYTES)
 """Roles that mean the same for one component and for several in one."""

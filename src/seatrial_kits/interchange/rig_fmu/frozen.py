@@ -9,14 +9,14 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from seatrial.component import Component, seconds
-from seatrial.cosim.part import Part
-from seatrial.cosim.registry import ALGORITHMS
-from seatrial.cosim.system import Connection, System
 from seatrial.errors import InputError
+from seatrial.fmi.building.source import ComponentSource, find_source
 from seatrial.fmi.direct import DirectInstance
 from seatrial.fmi.instance import Variable
-from seatrial.fmi.source import ComponentSource, find_source
+from seatrial.model.component import Component, seconds
+from seatrial.system.part import Part
+from seatrial.system.registry import ALGORITHMS
+from seatrial.system.system import Connection, System
 
 from .component import rig_component
 from .face import Face
@@ -25,7 +25,7 @@ _SCRIPT = '''"""{name}: a rig as an FMU."""
 
 {imports}
 from seatrial_kits.interchange.rig_fmu.component import rig_component
-from seatrial.fmi.slave import Slave
+from seatrial.fmi.building.slave import Slave
 
 FROZEN = {text!r}
 CLASSES = {{{classes}}}

@@ -9,20 +9,20 @@ from pathlib import Path
 from typing import cast
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
-from seatrial.cosim.compiled import choice
-from seatrial.cosim.compiled import library as master_library
-from seatrial.cosim.compiled.structures import CALL
-from seatrial.cosim.master import Master
-from seatrial.cosim.part import Part
-from seatrial.cosim.sums import SumInstance
-from seatrial.cosim.system import System
 from seatrial.errors import InputError, SimulationError
+from seatrial.fmi.building.packing import zipped
 from seatrial.fmi.cache import write_named
 from seatrial.fmi.compiler import SEMANTICS, TARGETS, TUPLES, library
-from seatrial.fmi.packing import zipped
 from seatrial.fmi.terminals import PLACE, terminals_xml
 from seatrial.fmi.version3.description import arrays, build_description, version3
 from seatrial.fmi.version3.sources import front_sources
+from seatrial.sim.compiled import choice
+from seatrial.sim.compiled import library as master_library
+from seatrial.sim.compiled.structures import CALL
+from seatrial.sim.master import Master
+from seatrial.system.part import Part
+from seatrial.system.sums import SumInstance
+from seatrial.system.system import System
 
 from .description import describe_rig, scalars_of
 from .face import Face, face_of

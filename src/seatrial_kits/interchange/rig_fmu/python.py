@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from seatrial.component import Component
-from seatrial.cosim.registry import ALGORITHMS
-from seatrial.cosim.system import System
 from seatrial.errors import InputError, SimulationError
-from seatrial.fmi.export import build_fmu
+from seatrial.fmi.building.export import build_fmu
+from seatrial.model.component import Component
+from seatrial.system.registry import ALGORITHMS
+from seatrial.system.system import System
 from seatrial_kits.native.standalone.export import build_standalone_fmu
 
 from .face import face_of

@@ -6,9 +6,9 @@ import ctypes
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from seatrial.cosim.compiled.program import Program
-from seatrial.cosim.compiled.structures import GET, LOOP, STEP, STORE, WRITE, Operation
-from seatrial.cosim.network import Network
+from seatrial.sim.compiled.program import Program
+from seatrial.sim.compiled.structures import GET, LOOP, STEP, STORE, WRITE, Operation
+from seatrial.sim.network import Network
 from seatrial_kits.native.tables import quoted
 
 from .face import Face

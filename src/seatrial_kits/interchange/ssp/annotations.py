@@ -7,8 +7,8 @@ from typing import Any
 
 from lxml import etree
 
-from seatrial.cosim.rig import LONGEST_S
 from seatrial.errors import InputError
+from seatrial.system.rig import LONGEST_S
 
 from .documents import NAMESPACES, child, children, needed, number, tag, where
 from .notes import Notes

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from seatrial.errors import InputError
-from seatrial.units import Unit
+from seatrial.model.units import Unit
 
 from .definitions import Enumerations, measured
 from .documents import NAMESPACES, children, known, listed, needed, tag, where

@@ -8,7 +8,7 @@ from typing import Any
 from lxml import etree
 
 from seatrial.errors import InputError
-from seatrial.units import Unit, conversion, defined_unit
+from seatrial.model.units import Unit, conversion, defined_unit
 
 from .documents import NAMESPACES, child, known, listed, needed, number, where
 from .notes import Notes

@@ -10,13 +10,13 @@ from typing import Any
 from lxml import etree
 
 from seatrial import __version__
-from seatrial.component import seconds
-from seatrial.cosim.part import Part
-from seatrial.cosim.paths import joined
-from seatrial.cosim.system import Connection, System
 from seatrial.errors import InputError
 from seatrial.fmi.instance import Variable
-from seatrial.units import Unit, conversion, unit
+from seatrial.model.component import seconds
+from seatrial.model.units import Unit, conversion, unit
+from seatrial.system.part import Part
+from seatrial.system.paths import joined
+from seatrial.system.system import Connection, System
 
 from .annotations import write_oms, write_osp
 from .definitions import write_enumerations, write_units

@@ -6,14 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from seatrial.cosim.packaged import SSP_FILE
 from seatrial.errors import InputError, unknown
-from seatrial.fmi.bundle_name import bundle_name
-from seatrial.fmi.export import cached_fmu
-from seatrial.fmi.load import load_fmu
-from seatrial.fmi.options import FmuOptions, Interface
-from seatrial.fmi.source import table_source
-from seatrial.fmi.table_file import SUFFIXES
+from seatrial.fmi.building.bundle_name import bundle_name
+from seatrial.fmi.building.export import cached_fmu
+from seatrial.fmi.building.source import table_source
+from seatrial.fmi.building.table_file import SUFFIXES
+from seatrial.fmi.loading.load import load_fmu
+from seatrial.fmi.loading.options import FmuOptions, Interface
+from seatrial.system.packaged import SSP_FILE
 
 from .binding import Bound
 from .dictionaries import Dictionaries

@@ -7,10 +7,10 @@ from collections.abc import Callable, Container, Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Literal, NamedTuple
 
-from seatrial.cosim.part import Part
-from seatrial.cosim.paths import joined
-from seatrial.cosim.rig import Scope
-from seatrial.cosim.system import Connection, System
+from seatrial.system.part import Part
+from seatrial.system.paths import joined
+from seatrial.system.rig import Scope
+from seatrial.system.system import Connection, System
 
 Output = tuple[str, str]
 """An output: its part's name, its own."""

@@ -8,11 +8,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
-from seatrial.cosim.system import is_settable
 from seatrial.errors import InputError
 from seatrial.fmi.instance import Variable
-from seatrial.fmi.load import load_fmu
-from seatrial.fmi.loaded import LoadedFmu
+from seatrial.fmi.loading.load import load_fmu
+from seatrial.fmi.loading.loaded import LoadedFmu
+from seatrial.system.system import is_settable
 
 from .definitions import converted
 from .graph import Path_

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from seatrial.cosim.packaged import SSP_FILE
 from seatrial.errors import InputError
-from seatrial.fmi.archive import unpacked
-from seatrial.fmi.load import load_fmu
+from seatrial.fmi.loading.archive import unpacked
+from seatrial.fmi.loading.load import load_fmu
+from seatrial.system.packaged import SSP_FILE
 
 from .model import FMU, PACKAGE
 from .notes import Notes

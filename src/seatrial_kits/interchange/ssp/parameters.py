@@ -10,8 +10,8 @@ from typing import Any
 from lxml import etree
 
 from seatrial.errors import InputError
-from seatrial.ports import Scalar
-from seatrial.units import Unit
+from seatrial.model.ports import Scalar
+from seatrial.model.units import Unit
 
 from .definitions import Enumerations, Measure, measured, read_enumerations, read_units
 from .documents import (

@@ -7,15 +7,15 @@ import os
 from pathlib import Path
 from typing import Any
 
-from seatrial.component import NS, seconds
-from seatrial.cosim.files import Source
-from seatrial.cosim.flattening import rig_of
-from seatrial.cosim.packaged import PackagedSystem
-from seatrial.cosim.paths import joined
-from seatrial.cosim.values import storable
 from seatrial.errors import InputError
-from seatrial.fmi.archive import content_hash
-from seatrial.ports import Scalar
+from seatrial.fmi.loading.archive import content_hash
+from seatrial.model.component import NS, seconds
+from seatrial.model.ports import Scalar
+from seatrial.system.files import Source
+from seatrial.system.flattening import rig_of
+from seatrial.system.packaged import PackagedSystem
+from seatrial.system.paths import joined
+from seatrial.system.values import storable
 
 from .flat import Flat, FlatConnection
 from .graph import Node, Path_

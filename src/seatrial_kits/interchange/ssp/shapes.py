@@ -7,11 +7,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal, NamedTuple
 
-from seatrial.cosim.part import Part
-from seatrial.cosim.system import System
+from seatrial.fmi.building.source import find_source
 from seatrial.fmi.instance import Variable
-from seatrial.fmi.load import load_fmu
-from seatrial.fmi.source import find_source
+from seatrial.fmi.loading.load import load_fmu
+from seatrial.system.part import Part
+from seatrial.system.system import System
 
 from .model import Indices
 from .parameters import Value, type_name

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import unquote, urlsplit
 
-from seatrial.cosim.proxied import proxied_file
 from seatrial.errors import InputError
+from seatrial.sim.proxied import proxied_file
 
 from .documents import needed, where
 from .model import Source

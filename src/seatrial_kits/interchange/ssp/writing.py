@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 
-from seatrial.cosim.packaged import SSP_FILE
-from seatrial.cosim.part import Part
-from seatrial.cosim.system import Connection, System
 from seatrial.errors import InputError
+from seatrial.fmi.building.export import fmu_bytes
+from seatrial.fmi.building.packing import zipped
+from seatrial.fmi.building.source import find_source
 from seatrial.fmi.cache import write_named
-from seatrial.fmi.export import fmu_bytes
-from seatrial.fmi.packing import zipped
-from seatrial.fmi.source import find_source
+from seatrial.system.packaged import SSP_FILE
+from seatrial.system.part import Part
+from seatrial.system.system import Connection, System
 
 from .describing import Describer, Experiment, as_xml
 from .layout import flat, nested

@@ -7,14 +7,14 @@ from typing import ClassVar
 
 from pymavlink.dialects.v20 import all as mavlink
 
-from seatrial.component import Component, Input, Output, Parameter, terminal
 from seatrial.errors import InputError, SimulationError
 from seatrial.links.endpoints.budget import Budget
 from seatrial.links.endpoints.endpoint import Channel, Endpoint
 from seatrial.links.endpoints.url import check_urls, open_endpoints
 from seatrial.links.geodesy import Origin
-from seatrial.sampled import Sampled
-from seatrial.waypoints import NED, Place, Waypoints
+from seatrial.model.component import Component, Input, Output, Parameter, terminal
+from seatrial.model.sampled import Sampled
+from seatrial.model.waypoints import NED, Place, Waypoints
 
 from ..codec import Codec, Message
 from .conversation import ASK_AGAIN_S, Conversation

@@ -9,7 +9,7 @@ from pymavlink.dialects.v20 import all as mavlink
 
 from seatrial.errors import SimulationError
 from seatrial.links.geodesy import Origin
-from seatrial.waypoints import Place
+from seatrial.model.waypoints import Place
 
 from ..codec import Message
 from .conversation import Conversation, Wait

@@ -9,17 +9,17 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from seatrial.component import Component
 from seatrial.errors import InputError
-from seatrial.fmi.bundle import bundled
+from seatrial.fmi.building.bundle import bundled
+from seatrial.fmi.building.export import fmu_files
+from seatrial.fmi.building.packing import zipped
+from seatrial.fmi.building.source import ComponentSource
 from seatrial.fmi.cache import write_named
 from seatrial.fmi.compiler import TUPLES, library_here
-from seatrial.fmi.export import fmu_files
 from seatrial.fmi.forwarding.libraries import pythonfmu_libraries
 from seatrial.fmi.forwarding.sources import checked_sources
 from seatrial.fmi.libpython import find_libpython
-from seatrial.fmi.packing import zipped
-from seatrial.fmi.source import ComponentSource
+from seatrial.model.component import Component
 
 from .distribution import compiled, distributions, files_of, standard_library
 from .shared_objects import least_glibc, needed

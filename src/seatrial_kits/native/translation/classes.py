@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from seatrial.component import Component
 from seatrial.kits import is_ours
+from seatrial.model.component import Component
 
 from .domain import TranslationError
 

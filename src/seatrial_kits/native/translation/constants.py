@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from seatrial.kits import is_ours
-from seatrial.ports import Port
+from seatrial.model.ports import Port
 
 _PLAIN = (bool, int, float, str, bytes, range, frozenset, type(None))
 _CODE = (

@@ -6,11 +6,11 @@ import zlib
 from collections.abc import Callable
 from typing import Any
 
-from seatrial.component import Noise
 from seatrial.devices.fault import Fallible
-from seatrial.faults.catalogue import FAILURES
-from seatrial.faults.text import MEASURED, Written
-from seatrial.sea.parameters import MeetsCurrent, MeetsWaves, MeetsWind
+from seatrial.model.component import Noise
+from seatrial.model.faults.catalogue import FAILURES
+from seatrial.model.faults.text import MEASURED, Written
+from seatrial.physics.sea.parameters import MeetsCurrent, MeetsWaves, MeetsWind
 
 from .domain import (
     Choice,

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from seatrial.component import seconds
+from seatrial.model.component import seconds
 
 from .domain import Known, Num, Seq, Unconverted, described
 from .expressions import unpacked

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from seatrial.ports import Parameter, Port
+from seatrial.model.ports import Parameter, Port
 
 from ..tables import is_built_in, words_of
 from .domain import Choice, Known, OtherText, Seq, described

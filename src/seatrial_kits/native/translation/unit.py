@@ -7,8 +7,8 @@ from collections.abc import Iterator, Mapping
 from types import FunctionType, ModuleType
 from typing import Any
 
-from seatrial.component import Component as Base
 from seatrial.kits import is_ours
+from seatrial.model.component import Component as Base
 
 from . import loops  # noqa: F401  which registers its statements
 from .calls import call

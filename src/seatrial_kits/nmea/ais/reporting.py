@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from seatrial.component import NS
+from seatrial.model.component import NS
 
 from .station import AT_ANCHOR, KNOT, MOORED
 

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from seatrial.errors import InputError, unknown
+from seatrial.model.units import quantity
 from seatrial.reading import toml_content
-from seatrial.units import quantity
 
 from .station import STATUSES, UNDEFINED, Identity
 

@@ -7,12 +7,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from seatrial.component import NS, Component, Parameter
 from seatrial.errors import InputError
 from seatrial.links.geodesy import Origin
 from seatrial.links.packets.channel import RadioChannel
 from seatrial.links.packets.medium import Medium
 from seatrial.links.parameter_validation import start_us
+from seatrial.model.component import NS, Component, Parameter
 
 from .codec import to_air
 from .reporting import Schedule

@@ -7,7 +7,6 @@ import math
 from typing import Any
 from weakref import WeakKeyDictionary
 
-from seatrial.component import NS
 from seatrial.errors import InputError
 from seatrial.links.endpoints.endpoint import Channel, Endpoint, report
 from seatrial.links.endpoints.url import open_endpoints, other_end
@@ -17,7 +16,8 @@ from seatrial.links.parameter_validation import start_us
 from seatrial.links.satellites import sky
 from seatrial.links.text import Inbox, Outbox
 from seatrial.links.unconnected import is_connected
-from seatrial.sampled import Sampled
+from seatrial.model.component import NS
+from seatrial.model.sampled import Sampled
 
 from .codec import decode, encode
 from .lines import Lines

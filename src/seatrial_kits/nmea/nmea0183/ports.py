@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from seatrial.component import Input, Output, Parameter, Reachable, terminal
 from seatrial.links.endpoints.url import check_urls
 from seatrial.links.parameter_validation import start_us
 from seatrial.links.unconnected import NOT_CONNECTED
-from seatrial.sampled import Sampled
+from seatrial.model.component import Input, Output, Parameter, Reachable, terminal
+from seatrial.model.sampled import Sampled
 
 from .schedule import schedule
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from seatrial.component import NS
 from seatrial.errors import InputError, unknown
+from seatrial.model.component import NS
 
 from .sentences import SENTENCES
 

@@ -6,11 +6,11 @@ from collections.abc import Mapping, Sequence
 from functools import lru_cache, partial
 from typing import Any, ClassVar
 
-from seatrial.component import NS, Component
 from seatrial.errors import InputError
 from seatrial.links.geodesy import Ned, Origin
 from seatrial.links.parameter_validation import serial_number, start_us, whole_number
 from seatrial.links.text import Inbox
+from seatrial.model.component import NS, Component
 from seatrial_kits.can.node import CanNode
 from seatrial_kits.can.operations import Transmit
 

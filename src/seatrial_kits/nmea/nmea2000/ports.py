@@ -4,9 +4,16 @@ from __future__ import annotations
 
 from typing import Any, ClassVar
 
-from seatrial.component import Component, Input, Noise, Output, Parameter, terminal
 from seatrial.links.parameter_validation import start_us
 from seatrial.links.unconnected import NOT_CONNECTED
+from seatrial.model.component import (
+    Component,
+    Input,
+    Noise,
+    Output,
+    Parameter,
+    terminal,
+)
 
 from .address_claim import HIGHEST
 from .catalogue import check_intervals, check_sends

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from seatrial.component import NS
+from seatrial.model.component import NS
 
 from .catalogue import DATA
 from .codec import Message, numbers

@@ -14,15 +14,15 @@ from rich.live import Live
 from seatrial.cli.options import Hardware, Network
 from seatrial.cli.show import console
 from seatrial.cli.stopping import stoppable
-from seatrial.component import Component
-from seatrial.cosim.profile import Profile, load_profile
 from seatrial.errors import INTERRUPTED, InputError, SeatrialError, SimulationError
 from seatrial.links.hardware import allow_devices, allow_network
 from seatrial.links.serial_gateway import SerialGateway
-from seatrial.trials.call_trace import IN_REAL_TIME
-from seatrial.trials.forked import Forked
-from seatrial.trials.forked_child import Child
-from seatrial.trials.link import Frame
+from seatrial.model.component import Component
+from seatrial.system.profile.profile import Profile, load_profile
+from seatrial.trial.running.call_trace import IN_REAL_TIME
+from seatrial.trial.running.forked import Forked
+from seatrial.trial.running.forked_child import Child
+from seatrial.trial.running.link import Frame
 
 from ..frame import encode
 from ..station import NEUTRAL

@@ -11,7 +11,7 @@ from rich.panel import Panel
 from rich.table import Table
 from rich.text import Text
 
-from seatrial.component import Component
+from seatrial.model.component import Component
 
 from .pilot import HELP, Pilot
 

@@ -11,9 +11,9 @@ from rich.markup import escape
 
 from seatrial.cli.answer import answer
 from seatrial.cli.show import console
-from seatrial.trials.readable import number
-from seatrial.trials.report import REPORT
-from seatrial.units import quantity
+from seatrial.model.units import quantity
+from seatrial.trial.reports.readable import number
+from seatrial.trial.reports.report import REPORT
 
 from .motion import plan_motion
 from .page import TABLE, settings, verdicts, write_plan

@@ -10,10 +10,10 @@ import numpy as np
 
 from seatrial.control.nominal_trajectory import NominalTrajectory
 from seatrial.control.vessel_nominal import Nominal, Profile, VesselModel, nominal_motion
-from seatrial.cosim.parameters import load_vehicle
 from seatrial.errors import InputError
-from seatrial.model import Vector
-from seatrial.trials.parametrised import parametrise
+from seatrial.model.expressions import Vector
+from seatrial.system.parameters import load_vehicle
+from seatrial.trial.files.parametrised import parametrise
 
 VESSEL = "surface-vessel"
 AXES = ("surge", "yaw")

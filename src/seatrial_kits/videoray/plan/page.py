@@ -6,12 +6,12 @@ import csv
 import io
 from pathlib import Path
 
-from seatrial.model import Vector
-from seatrial.trials.figure import Figure
-from seatrial.trials.output import claim_folder
-from seatrial.trials.plots import COLOURS, layout
-from seatrial.trials.readable import number
-from seatrial.trials.report import REPORT, render
+from seatrial.model.expressions import Vector
+from seatrial.trial.reports.figure import Figure
+from seatrial.trial.reports.plots import COLOURS, layout
+from seatrial.trial.reports.readable import number
+from seatrial.trial.reports.report import REPORT, render
+from seatrial.trial.running.output import claim_folder
 from seatrial.whole_file import write_whole
 
 from .motion import MotionPlan

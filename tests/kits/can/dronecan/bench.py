@@ -13,7 +13,7 @@ import dronecan.node
 import dronecan.transport
 from dronecan.driver.common import AbstractDriver, CANFrame
 
-from seatrial.component import Component
+from seatrial.model.component import Component
 from seatrial_kits.can.component import CanBus
 from seatrial_kits.can.frame import Frame
 from seatrial_kits.can.node import CanNode

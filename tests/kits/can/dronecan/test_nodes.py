@@ -12,8 +12,8 @@ from scipy.spatial.transform import Rotation
 
 from seatrial.errors import InputError
 from seatrial.links.text import Outbox, decode
-from seatrial.trials.run import run_trial
-from seatrial.trials.trial import load_trial
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.running.run import run_trial
 from seatrial_kits.can.dronecan.autopilot import DroneCanAutopilot
 from seatrial_kits.can.dronecan.channels import channels_of
 from seatrial_kits.can.dronecan.navigation import euler, quaternion

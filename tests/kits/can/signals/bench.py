@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from seatrial.component import Component
+from seatrial.model.component import Component
 from seatrial_kits.can.component import CanBus
 from seatrial_kits.can.frame import Frame
 from seatrial_kits.can.node import CanNode

@@ -9,11 +9,11 @@ import can
 import canmatrix.formats
 import pytest
 
-from seatrial.cosim.profile import check_profile, load_profile
 from seatrial.errors import InputError
 from seatrial.shipped import shipped_folder
-from seatrial.trials.run import run_trial
-from seatrial.trials.trial import load_trial
+from seatrial.system.profile.profile import check_profile, load_profile
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.running.run import run_trial
 
 pytestmark = pytest.mark.interop
 

@@ -8,17 +8,17 @@ import pymap3d
 import pynmea2
 import pytest
 
-from seatrial.cosim.files import find_file
 from seatrial.links.text import decode
-from seatrial.trials.run import run_trial
-from seatrial.trials.trial import load_trial
+from seatrial.system.files import find_file
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.running.run import run_trial
 
 pytestmark = pytest.mark.interop
 
 PLOTTER = '''
 import pynmea2
 
-from seatrial.component import NS, Component, Output
+from seatrial.model.component import NS, Component, Output
 from seatrial.links.text import Outbox
 
 

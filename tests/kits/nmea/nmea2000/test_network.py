@@ -5,8 +5,8 @@ from itertools import pairwise
 
 import pytest
 
-from seatrial.cosim.profile import check_profile, load_profile
 from seatrial.errors import InputError
+from seatrial.system.profile.profile import check_profile, load_profile
 from seatrial_kits.can.frame import Frame
 from seatrial_kits.nmea.nmea2000.catalogue import ALL, DATA, NETWORK
 from seatrial_kits.nmea.nmea2000.codec import GLOBAL, Encoder, Message

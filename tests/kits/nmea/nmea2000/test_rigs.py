@@ -7,8 +7,8 @@ import sys
 import numpy as np
 import pytest
 
-from seatrial.trials.run import run_trial
-from seatrial.trials.trial import load_trial
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.running.run import run_trial
 
 pytestmark = [
     pytest.mark.interop,

@@ -1,0 +1,411 @@
+"""Bundle of an FMU: its script and the import closure of it, under names of their own.
+
+All FMUs of a process share one interpreter and one ``sys.modules``. So everything bundled lives
+in one package whose name carries the hash of its content, and the script's name carries it
+too: FMUs of different versions, or of different users with files of the same name, never run
+each other's code.
+
+A module that reads data files names them in a constant, ``DATA_FILES = ("polar.csv",)``; they
+lie beside it, it reads them from ``Path(__file__).with_name("polar.csv")``, and they travel.
+"""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+import importlib.metadata
+import importlib.util
+import io
+import re
+import sys
+import tokenize
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache, cached_property, lru_cache
+from pathlib import Path
+
+from ...errors import InputError
+from ...kits import OURS
+from .source import ComponentSource
+
+_COOKIE = re.compile(r"^[ \t\f]*#.*?coding[:=]")
+_NO_INIT = b'"""Part of pythonfmu (MIT licence, beside this file)."""\n'
+
+
+@dataclass(frozen=True)
+class Bundle:
+    """Files for an FMU's ``resources`` by relative path, and the name of its script."""
+
+    script: str
+    requirements: tuple[str, ...]
+    """Third-party distributions that the files import, as pip requirements."""
+    read: tuple[Path, ...]
+    """The modules and data files that it is made of, as they lie on disk."""
+    write: Callable[[], dict[str, bytes]]
+
+    @cached_property
+    def files(self) -> dict[str, bytes]:
+        """Contents by path; written when asked for, as a run in process needs the name alone."""
+        return self.write()
+
+
+def bundled(source: ComponentSource) -> Bundle:
+    """Bundle a component's slave script; see `bundle`."""
+    return bundle(source.stem, source.script, source.folder, source.package)
+
+
+def bundle(stem: str, source: bytes, folder: Path | None, package: str | None = None) -> Bundle:
+    """Bundle a slave script with all it imports from seatrial, pythonfmu and of its own.
+
+    ``source`` is the script's text, ``stem`` its name. Its own are the modules in ``folder``,
+    and those of the installed ``package``, wherever they are imported. Of seatrial's own
+    modules, imports inside functions are left out: what they bring is for builds and tools.
+
+    Raises InputError for a file that is not Python, an import that is found nowhere or a data
+    file that is not there.
+    """
+    local = _Local(folder, package)
+    modules, third_party = _closure(source, f"{stem}.py", local)
+    digest = hashlib.sha256()
+    data: dict[str, bytes] = {}
+    read = [path for path, _ in modules.values()]
+    for name, (path, text) in sorted(modules.items()):
+        digest.update(f"{name}\0{path.name}\0".encode() + text + b"\0")
+        package = name if path.name == "__init__.py" else name.rpartition(".")[0]
+        for file, content in _data_files(path, text):
+            digest.update(f"{file}\0{len(content)}\0".encode() + content)
+            data["/".join([*package.split("."), file] if package else [file])] = content
+            read.append(path.with_name(file))
+    needed = {name: _requirement(name) for name in sorted(third_party)}
+    requirements = tuple(needed.values())
+    digest.update(stem.encode() + b"\0" + source + "\0".join(requirements).encode())
+    tag = digest.hexdigest()[:12]
+
+    def write() -> dict[str, bytes]:
+        root = f"bundle_{tag}"
+        own = frozenset(name.partition(".")[0] for name in modules)
+        files = {f"{root}/__init__.py": _preflight(stem, needed)}
+        files |= {f"{root}/{place}": content for place, content in data.items()}
+        for name, (path, text) in modules.items():
+            end = "/__init__.py" if path.name == "__init__.py" else ".py"
+            place = name.replace(".", "/") + end
+            files[f"{root}/{place}"] = _renamed(text, str(path), own, root)
+        if "pythonfmu" in own:
+            files[f"{root}/pythonfmu/LICENSE"] = _pythonfmu_licence()
+        files[f"{stem}_{tag}.py"] = _renamed(source, f"{stem}.py", own, root)
+        files["slavemodule.txt"] = f"{stem}_{tag}".encode()
+        files["requirements.txt"] = "".join(f"{r}\n" for r in requirements).encode()
+        return files
+
+    return Bundle(f"{stem}_{tag}", requirements, tuple(read), write)
+
+
+class _Local:
+    """Finds the modules that travel: seatrial's, pythonfmu's and the component's own."""
+
+    def __init__(self, folder: Path | None, package: str | None) -> None:
+        self.folder = folder
+        self.ours = {name: _package(name) for name in (*OURS, "pythonfmu")}
+        self.roots = self.ours if package is None else {**self.ours, package: _package(package)}
+        self.find = cache(self._find)  # most modules import the same few others
+
+    def _find(self, name: str) -> Path | None:
+        """Return the file of module ``name``, None if it is not one that travels."""
+        top, *rest = name.split(".")
+        if top in self.roots:
+            return _package_file(self.roots[top], *rest)
+        return None if self.folder is None else _module_file(self.folder / top, *rest)
+
+    def is_namespace(self, name: str) -> bool:
+        """Say if ``name`` is a folder beside the script without an ``__init__.py``."""
+        if self.folder is None or "." in name:
+            return False
+        return (self.folder / name).is_dir() and self.find(name) is None
+
+
+def _module_file(base: Path, *rest: str) -> Path | None:
+    path = base.joinpath(*rest)
+    for candidate in (path / "__init__.py", path.with_suffix(".py")):
+        if candidate.is_file():
+            return candidate
+    return None
+
+
+# A rig asks for the same hundred modules once per component, and packages stay as installed.
+_package_file = lru_cache(maxsize=4096)(_module_file)
+
+
+def _package(name: str) -> Path:
+    """Return where an installed package lies: its folder, or its one module without ``.py``."""
+    spec = importlib.util.find_spec(name)
+    if spec is None or spec.origin is None:
+        raise InputError(
+            f"the package {name!r} cannot travel in an FMU: "
+            + ("it is not installed" if spec is None else "it needs an __init__.py")
+        )
+    origin = Path(spec.origin)
+    return origin.parent if spec.submodule_search_locations else origin.with_suffix("")
+
+
+def _closure(
+    source: bytes, file: str, local: _Local
+) -> tuple[dict[str, tuple[Path, bytes]], set[str]]:
+    """Return the travelling modules by name, and the third-party packages they import."""
+    modules: dict[str, tuple[Path, bytes]] = {}
+    third_party: set[str] = set()
+    todo = [(found, file) for found in _imports(source, file, "", False, everywhere=True)]
+    while todo:
+        (name, optional), importer = todo.pop()
+        path = local.find(name)
+        if path is None:
+            top = name.partition(".")[0]
+            if local.find(top) is None and top not in sys.stdlib_module_names and not optional:
+                _require_installed(top, importer, local)
+                third_party.add(top)
+            continue
+        if name in modules:
+            continue
+        text = path.read_bytes()
+        if name == "pythonfmu":
+            text = _NO_INIT  # its __init__ imports the builder, which an FMU does not need
+        modules[name] = (path, text)
+        package = path.name == "__init__.py"
+        own = name.partition(".")[0] not in local.ours
+        found = _imports(text, str(path), name, package, everywhere=own)
+        todo += [(one, str(path)) for one in found]
+        if "." in name:
+            todo.append(((name.rpartition(".")[0], False), str(path)))
+    return modules, third_party
+
+
+def _data_files(path: Path, source: bytes) -> list[tuple[str, bytes]]:
+    """Return name and content of the files that the module at ``path`` says it reads."""
+    found = []
+    for name in _data_names(source, str(path)):
+        file = path.with_name(name)
+        if not file.is_file():
+            raise InputError(f"{path}: DATA_FILES names {name!r}, and there is no such file there")
+        found.append((name, file.read_bytes()))
+    return found
+
+
+@lru_cache(maxsize=1024)
+def _data_names(source: bytes, file: str) -> tuple[str, ...]:
+    """Return what a module assigns to ``DATA_FILES`` at its top level."""
+    for node in _parsed(_text(source, file), file).body:
+        if not isinstance(node, (ast.Assign, ast.AnnAssign)):
+            continue
+        targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+        if not any(isinstance(t, ast.Name) and t.id == "DATA_FILES" for t in targets):
+            continue
+        try:
+            names = ast.literal_eval(node.value or "")
+        except (ValueError, TypeError, SyntaxError):
+            names = None
+        if not isinstance(names, (tuple, list)) or not all(map(_is_plain_name, names)):
+            raise InputError(
+                f"{file}, line {node.lineno}: DATA_FILES must be a tuple of names of files beside "
+                'the module, written out: ("polar.csv",)'
+            )
+        return tuple(names)
+    return ()
+
+
+def _is_plain_name(name: object) -> bool:
+    return isinstance(name, str) and Path(name).name == name != "" and not name.endswith(".py")
+
+
+def _require_installed(top: str, importer: str, local: _Local) -> None:
+    if local.is_namespace(top):
+        raise InputError(f"{importer}: imports {top!r}, a folder without an __init__.py; add one")
+    if importlib.util.find_spec(top) is None:
+        raise InputError(
+            f"{importer}: imports {top!r}, which is not installed"
+            + (f" and no module beside it in {local.folder}" if local.folder else "")
+        )
+
+
+@lru_cache(maxsize=1024)
+def _imports(
+    source: bytes, file: str, module: str, is_package: bool, *, everywhere: bool
+) -> tuple[tuple[str, bool], ...]:
+    """Return (module, may be missing) for every import, and for the names in ``from`` imports.
+
+    At module level only, unless ``everywhere``.
+    """
+    return tuple(_found_imports(source, file, module, is_package, everywhere))
+
+
+def _found_imports(
+    source: bytes, file: str, module: str, is_package: bool, everywhere: bool
+) -> Iterator[tuple[str, bool]]:
+    for node, optional in _statements(_parsed(_text(source, file), file), everywhere, False):
+        if isinstance(node, ast.Import):
+            yield from ((alias.name, optional) for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            base = node.module or ""
+            if node.level:
+                parts = module.split(".") if is_package else module.split(".")[:-1]
+                parts = parts[: len(parts) - node.level + 1]
+                base = ".".join([*parts, base] if base else parts)
+            yield base, optional
+            # A name may be a submodule; the closure drops those that are not.
+            yield from ((f"{base}.{alias.name}", optional) for alias in node.names)
+
+
+def _statements(tree: ast.AST, everywhere: bool, optional: bool) -> Iterator[tuple[ast.AST, bool]]:
+    """Yield every node, and if it stands where a missing module is caught."""
+    for node in ast.iter_child_nodes(tree):
+        function = isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda))
+        if function and not everywhere:
+            continue
+        yield node, optional
+        if isinstance(node, ast.If) and _is_type_checking(node.test):
+            for branch in node.orelse:
+                yield branch, optional
+                yield from _statements(branch, everywhere, optional)
+        elif isinstance(node, ast.Try) and any(_catches_import(h) for h in node.handlers):
+            for part in node.body:
+                yield part, True
+                yield from _statements(part, everywhere, True)
+            for other in (*node.handlers, *node.orelse, *node.finalbody):
+                yield from _statements(other, everywhere, optional)
+        else:
+            yield from _statements(node, everywhere, optional)
+
+
+def _is_type_checking(test: ast.expr) -> bool:
+    return ast.unparse(test) in ("TYPE_CHECKING", "typing.TYPE_CHECKING")
+
+
+def _catches_import(handler: ast.ExceptHandler) -> bool:
+    caught = ast.unparse(handler.type) if handler.type else "Exception"
+    return any(name in caught for name in ("ImportError", "ModuleNotFoundError", "Exception"))
+
+
+def _text(source: bytes, file: str) -> str:
+    """Return Python source as text with plain line ends, without mark and encoding comment."""
+    try:
+        encoding, _ = tokenize.detect_encoding(io.BytesIO(source).readline)
+        text = source.decode(encoding)
+    except (SyntaxError, UnicodeDecodeError) as error:
+        raise InputError(f"{file}: not Python: {error}") from None
+    text = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")
+    first, newline, rest = text.partition("\n")
+    second, newline2, rest2 = rest.partition("\n")
+    if _COOKIE.match(first):
+        return "#" + newline + rest
+    if _COOKIE.match(second):
+        return first + newline + "#" + newline2 + rest2
+    return text
+
+
+def _parsed(source: str, file: str) -> ast.Module:
+    try:
+        return ast.parse(source)
+    except (SyntaxError, ValueError) as error:
+        line = getattr(error, "lineno", None)
+        raise InputError(f"{file}{f', line {line}' if line else ''}: not Python: {error}") from None
+
+
+@lru_cache(maxsize=1024)  # most modules travel in many FMUs
+def _import_statements(text: str, file: str) -> tuple[ast.Import | ast.ImportFrom, ...]:
+    """Return all import statements of a module, the last one first."""
+    nodes = ast.walk(_parsed(text, file))
+    found = (node for node in nodes if isinstance(node, (ast.Import, ast.ImportFrom)))
+    return tuple(sorted(found, key=lambda n: (n.lineno, n.col_offset), reverse=True))
+
+
+def _renamed(source: bytes, file: str, own: frozenset[str], root: str) -> bytes:
+    """Return ``source`` with absolute imports of ``own`` packages made imports from ``root``."""
+    text = _text(source, file)
+    lines = [f"{line}\n" for line in text.split("\n")]
+    for node in _import_statements(text, file):
+        new = _renamed_statement(node, own, root)
+        if new is None:
+            continue
+        first, last = node.lineno - 1, (node.end_lineno or node.lineno) - 1
+        # Columns count bytes; what stands before and after on these lines stays.
+        before = lines[first].encode()[: node.col_offset].decode()
+        after = lines[last].encode()[node.end_col_offset :].decode()
+        filler = ["\n"] * (last - first)  # keep the line numbers of tracebacks
+        lines[first : last + 1] = [before + new + after, *filler]
+    return "".join(lines)[:-1].encode()
+
+
+def _renamed_statement(
+    node: ast.Import | ast.ImportFrom, own: frozenset[str], root: str
+) -> str | None:
+    if isinstance(node, ast.ImportFrom):
+        if node.level or (node.module or "").partition(".")[0] not in own:
+            return None
+        return ast.unparse(ast.ImportFrom(f"{root}.{node.module}", node.names, 0))
+    if not any(alias.name.partition(".")[0] in own for alias in node.names):
+        return None
+    parts = []
+    for alias in node.names:
+        top = alias.name.partition(".")[0]
+        if top not in own:
+            parts.append(ast.unparse(ast.Import([alias])))
+        elif alias.asname:
+            parts.append(f"import {root}.{alias.name} as {alias.asname}")
+        else:  # 'import a.b' binds 'a'
+            parts += [f"import {root}.{alias.name}", f"from {root} import {top}"]
+    return "; ".join(parts)
+
+
+@cache
+def _requirement(package: str) -> str:
+    """Return the pip requirement of an imported package, with seatrial's own bounds on it."""
+    bounds = _bounds()
+    if package in bounds:
+        return bounds[package]
+    distribution = min(_distributions().get(package, [package]))
+    return bounds.get(distribution.lower(), distribution)
+
+
+_OF_DEVELOPERS = ("dev", "docs", "fuzz")
+"""Extras whose bounds are none of seatrial's own."""
+
+
+@cache
+def _bounds() -> dict[str, str]:
+    """Return seatrial's own requirements by the names of the distributions."""
+    lines = [
+        line.partition(";")[0].strip()
+        for line in importlib.metadata.requires("seatrial") or []
+        if not any(f'extra == "{extra}"' in line for extra in _OF_DEVELOPERS)
+    ]
+    return {found[0].lower(): line for line in lines if (found := re.match(r"[\w.-]+", line))}
+
+
+@cache  # it reads the lists of files of everything that is installed
+def _distributions() -> Mapping[str, list[str]]:
+    return importlib.metadata.packages_distributions()
+
+
+def _preflight(stem: str, needed: dict[str, str]) -> bytes:
+    """Return the bundle's ``__init__``: it names what the target machine lacks."""
+    return f'''"""Code and data of the FMU {stem}; its name carries the hash of its content."""
+
+import importlib.util
+import sys
+
+_needed = {needed!r}
+_missing = {{p: r for p, r in _needed.items() if importlib.util.find_spec(p) is None}}
+if _missing:
+    _message = (
+        "the FMU {stem} needs the Python package(s) " + ", ".join(_missing) + " in "
+        + sys.prefix + ": install them with  python3 -m pip install "
+        + " ".join(chr(34) + r + chr(34) for r in _missing.values())
+    )
+    print(_message, file=sys.stderr)  # a host with logging off would lose it
+    raise ImportError(_message)
+'''.encode()
+
+
+def _pythonfmu_licence() -> bytes:
+    for file in importlib.metadata.files("pythonfmu") or []:
+        if file.name == "LICENSE":
+            return file.read_binary()
+    return b"MIT License; see the pythonfmu distribution.\n"

@@ -1,0 +1,1 @@
+"""FMUs as files: read without trust, built where they come as sources, loaded."""

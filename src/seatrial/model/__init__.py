@@ -1,0 +1,1 @@
+"""Components as they are written: ports, units, states, equations, noise, faults of signals."""

@@ -1,0 +1,1 @@
+"""Equations of craft and of their surroundings: sea, seabed, contact, foils, thrusters."""

@@ -1,0 +1,149 @@
+"""A remotely operated underwater vehicle on its tether."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from functools import partial
+from types import SimpleNamespace
+from typing import Any, ClassVar
+
+import casadi as ca
+
+from ...model.component import Input, Parameter, Terminal
+from ...model.plant import State
+from ...model.ports import Output
+from ...model.terminals import MOTION
+from ..thrusters import effect
+from .hydrodynamics import TERMS, read_terms
+from .propellers import Propellers, propellers
+from .six_dof import LOADS, SixDofCraft, six_dof_motion
+
+_NED = ("north", "east", "down")
+_EULER = ("phi", "theta", "psi")
+_UVW = ("u", "v", "w")
+_PQR = ("p", "q", "r")
+
+
+_TERMS = {**TERMS, "propellers": propellers}
+
+
+class Rov(Propellers, SixDofCraft):
+    """Underwater vehicle: `SixDofCraft` with eta that counts turns, and a current that may change.
+
+    Source 000, eqs 3.8 to 3.45, in the corrected form that docs/vehicles/videoray.md lists.
+    eta = (x, y, z, phi, theta, psi): body origin in {n} (x north, y east, z down), m, and Euler
+    angles ZYX, rad; nu = (u, v, w, p, q, r): velocity of the body origin over ground, m/s, and
+    angular rate, rad/s, in {b} (x bow, y starboard, z down). eta' = blkdiag(J1, J2) nu.
+    Singular at theta = +-90 degrees.
+
+    **Water.** ``current`` and its ``current_acceleration``, uniform in {n}; that the latter
+    carries the vehicle as it does the water is so for rho V = m with even density (3.34).
+
+    **Terms** (`hydrodynamics`), and ``propellers``; restoring is "submerged" or "floating", with
+    B = density gravity volume. Roll and pitch are stable if the centre of buoyancy is above the
+    CG (z_B < z_G). Propulsion acts by the thrusts of ``propellers`` or by terms of force and
+    moment, the tether by ``attachment_force``.
+
+    ``attitude`` has phi and psi in (-pi, pi]; in eta they count turns, so that they do not
+    jump.
+
+    Not modelled: the bottom, what the tether does beyond its force; of a "submerged" vehicle the
+    surface; without ``hull-lift`` and ``point-drag`` the wake, which lets the Munk moment turn the
+    vehicle from 0.06 m/s on.
+
+    Raises InputError at the start for a propeller's direction that is neither zero nor of
+    length 1 within 1e-6.
+    """
+
+    exercised: ClassVar = {
+        "terms": " ".join(_TERMS),
+        "restoring": "floating",
+        "propeller_direction_1": [1, 0, 0],
+    }
+
+    terms = Parameter(
+        "restoring coriolis damping",
+        "1",
+        "terms of the equations, by the names of seatrial.physics.craft.hydrodynamics, with spaces",
+        check=partial(read_terms, known=_TERMS),
+    )
+    restoring = Parameter(
+        "submerged", "1", "form of the restoring forces", choices=("submerged", "floating")
+    )
+    density = Parameter(1000.0, "kg/m3", "density of the water", min=0.0)
+    volume = Parameter(0.001, "m3", "volume of the displaced water", min=0.0)
+    center_of_buoyancy = Parameter(
+        0.0, "m", "centre of buoyancy from the body origin, body axes", axes="xyz"
+    )
+
+    current_acceleration = Input(
+        "m/s2", "acceleration of the water, uniform, {n}", axes=_NED, optional=True
+    )
+
+    eta = State(
+        ("m", "m", "m", "rad", "rad", "rad"),
+        "body origin in {n}; Euler angles, ZYX, turns counted",
+        axes=("x", "y", "z", *_EULER),
+    )
+    nu = State(
+        ("m/s", "m/s", "m/s", "rad/s", "rad/s", "rad/s"),
+        "velocity of the body origin over ground and angular velocity, body axes",
+        axes=(*_UVW, *_PQR),
+    )
+    position = Output("m", "body origin in north-east-down", axes="xyz", frame="n")
+    attitude = Output("rad", "Euler angles, ZYX; phi and psi in (-pi, pi]", axes=_EULER)
+    velocity = Output("m/s", "velocity of the body origin over ground, body axes", axes=_UVW)
+    rates = Output("rad/s", "angular velocity, body axes", axes=_PQR)
+    acceleration = Output(
+        "m/s2",
+        "inertial acceleration of the body origin, dv/dt + omega x v, body axes",
+        axes="xyz",
+        frame="b",
+    )
+
+    terminals: ClassVar = {
+        **SixDofCraft.terminals,
+        "motion": MOTION,
+        "thrusts": Terminal({axis: f"thrust.{axis}" for axis in Propellers.thrust.axes}),
+    }
+    feedthrough: ClassVar = {
+        **SixDofCraft.feedthrough,
+        **dict.fromkeys(("position", "attitude", "velocity", "rates"), ()),
+        "acceleration": (*LOADS, "thrust", "current", "current_acceleration"),
+    }
+
+    def start(self, t: float) -> None:
+        """Start; raises InputError as the class says and as `SixDofCraft` does."""
+        directions = zip(self.propeller_position, self.propeller_direction, strict=True)
+        for number, (position, direction) in enumerate(directions, 1):
+            if any(direction):
+                effect(self.name, f"propeller_direction_{number}", position, direction)
+        super().start(t)
+
+    def equations(
+        self, x: SimpleNamespace, u: SimpleNamespace, p: SimpleNamespace
+    ) -> tuple[Mapping[str, Any], Mapping[str, Any]]:
+        """Return the derivatives of eta and nu, the motion and that of the attachment."""
+        euler = x.eta[3:]
+        buoyancy = p.density * p.gravity * p.volume
+        p = SimpleNamespace(**vars(p), buoyancy=buoyancy)
+        changes, outputs = six_dof_motion(
+            x.eta[:3], euler, x.nu, u, p, u.current_acceleration, _TERMS
+        )
+        derivatives = {
+            "eta": ca.vertcat(changes.position, changes.attitude),
+            "nu": ca.vertcat(changes.velocity, changes.rates),
+        }
+        return derivatives, {
+            **outputs,
+            "position": x.eta[:3],
+            "attitude": ca.vertcat(_wrapped(euler[0]), euler[1], _wrapped(euler[2])),
+            "velocity": x.nu[:3],
+            "rates": x.nu[3:],
+        }
+
+
+def _wrapped(angle: Any) -> Any:
+    """Return ``angle`` in (-pi, pi]."""
+    return angle - math.tau * ca.ceil((angle - math.pi) / math.tau)

@@ -1,0 +1,170 @@
+"""Wind loads on craft: Isherwood, Blendermann, and areas with coefficients."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...errors import InputError, unknown
+from .isherwood import TABLE
+from .numbers import Array, require_positive
+
+AIR_DENSITY = 1.225
+"""kg/m3"""
+
+BLENDERMANN = {
+    "car_carrier": (0.95, 0.55, 0.6, 0.8, 1.2),
+    "cargo_loaded": (0.85, 0.65, 0.55, 0.4, 1.7),
+    "cargo_container_on_deck": (0.85, 0.55, 0.5, 0.4, 1.4),
+    "container_loaded": (0.9, 0.55, 0.55, 0.4, 1.4),
+    "destroyer": (0.85, 0.6, 0.65, 0.65, 1.1),
+    "diving_support": (0.9, 0.6, 0.8, 0.55, 1.7),
+    "drilling": (1, 0.85, 0.925, 0.1, 1.7),
+    "ferry": (0.9, 0.45, 0.5, 0.8, 1.1),
+    "fishing": (0.95, 0.7, 0.7, 0.4, 1.1),
+    "lng_tanker": (0.7, 0.6, 0.65, 0.5, 1.1),
+    "offshore_supply": (0.9, 0.55, 0.8, 0.55, 1.2),
+    "passenger_liner": (0.9, 0.4, 0.4, 0.8, 1.2),
+    "research": (0.85, 0.55, 0.65, 0.6, 1.4),
+    "speed_boat": (0.9, 0.55, 0.6, 0.6, 1.1),
+    "tanker_loaded": (0.7, 0.9, 0.55, 0.4, 3.1),
+    "tanker_ballast": (0.7, 0.75, 0.55, 0.4, 2.2),
+    "tender": (0.85, 0.55, 0.55, 0.65, 1.1),
+}
+"""By type: CD_t, CD_l,AF from ahead and from astern, delta, kappa (Blendermann 1994)."""
+
+
+def angle_of_attack(u: float, v: float) -> float:
+    """Return gamma, rad: of a craft moving at u, v, m/s in {b}, relative to the air.
+
+    0: wind from ahead; positive: from port, so that it pushes to starboard.
+    """
+    return -math.atan2(v, u)
+
+
+@dataclass(frozen=True)
+class Silhouette:
+    """What a ship shows to the wind. Raises InputError for an area or length not above 0."""
+
+    length: float
+    """Over all, m."""
+    frontal: float
+    """A_F, m2."""
+    lateral: float
+    """A_L, m2."""
+
+    def __post_init__(self) -> None:
+        require_positive(length=self.length, frontal=self.frontal, lateral=self.lateral)
+
+    def loads(self, coefficients: Array, speed: float, density: float = AIR_DENSITY) -> Array:
+        """Return X, Y, N, N, and K, N, N m, of C_X, C_Y, C_K, C_N at a relative ``speed``, m/s.
+
+        In the order X, Y, K, N; K about the water line.
+        """
+        height = self.lateral / self.length
+        scale = [self.frontal, self.lateral, self.lateral * height, self.lateral * self.length]
+        return np.asarray(0.5 * density * speed**2 * coefficients * scale)
+
+
+@dataclass(frozen=True)
+class Isherwood:
+    """Coefficients of merchant ships (Isherwood 1972), linear between rows of 10 degrees.
+
+    Without roll: C_K is 0.
+    """
+
+    shape: Silhouette
+    beam: float
+    """m"""
+    perimeter: float
+    """S of the lateral projection, without the water line, m."""
+    centroid: float
+    """C of the lateral area, from the bow, m."""
+    masts: int
+    """M, groups of masts."""
+    superstructure: float
+    """A_SS, lateral area of the superstructure, m2."""
+
+    def coefficients(self, gamma: float) -> Array:
+        """Return C_X, C_Y, C_K, C_N at the angle gamma, rad."""
+        turned = math.remainder(gamma, math.tau)
+        row, share = divmod(abs(math.degrees(turned)) / 10.0, 1.0)
+        above = TABLE[min(int(row) + 1, 18)]
+        a, b, c = np.split((1.0 - share) * TABLE[int(row)] + share * above, [7, 14])
+        ship, length = self.shape, self.shape.length
+        arguments = np.array(
+            [
+                1.0,
+                2.0 * ship.lateral / length**2,
+                2.0 * ship.frontal / self.beam**2,
+                length / self.beam,
+                self.perimeter / length,
+                self.centroid / length,
+            ]
+        )
+        side = math.copysign(1.0, turned)
+        return np.array(
+            [
+                -(a[:6] @ arguments + a[6] * self.masts),
+                side * (b[:6] @ arguments + b[6] * self.superstructure / ship.lateral),
+                0.0,
+                side * (c @ arguments),
+            ]
+        )
+
+
+@dataclass(frozen=True)
+class Blendermann:
+    """Coefficients by type of ship (Blendermann 1994). Raises InputError for an unknown type."""
+
+    shape: Silhouette
+    kind: str
+    """A key of `BLENDERMANN`."""
+    ahead: float
+    """s_L of the lateral area's centroid, ahead of midships, m."""
+    height: float
+    """s_H of it above the water line, m."""
+
+    def __post_init__(self) -> None:
+        if self.kind not in BLENDERMANN:
+            raise InputError(unknown("type of ship", self.kind, BLENDERMANN))
+
+    def coefficients(self, gamma: float) -> Array:
+        """Return C_X, C_Y, C_K, C_N at the angle gamma, rad."""
+        across, from_ahead, from_astern, delta, kappa = BLENDERMANN[self.kind]
+        gamma = math.remainder(gamma, math.tau)
+        along = from_ahead if abs(gamma) <= 0.5 * math.pi else from_astern
+        ship = self.shape
+        ratio = along * ship.frontal / ship.lateral / across
+        below = 1.0 - 0.5 * delta * (1.0 - ratio) * math.sin(2.0 * gamma) ** 2
+        side = across * math.sin(gamma) / below
+        lever = self.ahead / ship.length - 0.18 * (abs(gamma) - 0.5 * math.pi)
+        roll = kappa * self.height * ship.length / ship.lateral * side
+        return np.array([-along * math.cos(gamma) / below, side, roll, lever * side])
+
+
+@dataclass(frozen=True)
+class Areas:
+    """A small craft: X = -q' C_X A_F u, Y = -q' C_Y A_L v, q' = rho V/2; N = x Y, K = h Y."""
+
+    frontal: float
+    """A_F, m2."""
+    lateral: float
+    """A_L, m2."""
+    ahead: float = 0.0
+    """x of the lateral centroid, m."""
+    height: float = 0.0
+    """h of it above the origin, m."""
+    along: float = 0.7
+    """C_X: 0.5 to 0.9."""
+    across: float = 0.85
+    """C_Y: 0.7 to 1.0."""
+
+    def loads(self, u: float, v: float, density: float = AIR_DENSITY) -> Array:
+        """Return X, Y, K, N of the craft's velocity relative to the air, m/s in {b}."""
+        pressure = 0.5 * density * math.hypot(u, v)
+        side = -pressure * self.across * self.lateral * v
+        ahead = -pressure * self.along * self.frontal * u
+        return np.array([ahead, side, self.height * side, self.ahead * side])

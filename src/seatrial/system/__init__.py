@@ -1,0 +1,1 @@
+"""Rigs, vehicles and profiles as files, and the system that they make."""

@@ -1,0 +1,97 @@
+"""From a rig to the system that the master steps: load, give parameters, connect."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from ..errors import InputError, unknown
+from ..sim.bonds import bonds_of
+from .component_parameters import give_parameters, variants_of
+from .connecting import connect
+from .loading import load_part
+from .profile.profile import Profiles
+from .rig import Rig
+from .shape.ports import resolve_shapes
+from .system import Engine, System
+from .tuning import connect_tunables
+
+
+def assemble(
+    rig: Rig,
+    engine: Engine = "fmu",
+    *,
+    variant: str | None = None,
+    seed: int = 1,
+    progress: Callable[[str], None] = lambda _: None,
+) -> System:
+    """Load, or build, every FMU of ``rig``, and check its connections.
+
+    ``variant`` replaces the rig's; ``seed`` is what the components' own seeds derive from,
+    where a component has one. Raises InputError for anything in the files that does not fit.
+    """
+    system = System(rig, engine, seed, variant or rig.file.variant)
+    profiles: dict[str, Profiles] = {}
+    try:
+        for name, placed in rig.components.items():
+            progress(f"{name} ({placed.entry.what})")
+            system.parts[name] = load_part(rig, name, engine)
+            scope = placed.scope
+            if scope.path not in profiles:
+                profiles[scope.path] = Profiles(scope.file.profile, scope.read_from.path.parent)
+            give_parameters(system, system.parts[name], profiles[scope.path])
+        for setting in rig.settings:
+            system.set(*setting)
+        _refuse_idle_variant(system)
+        connect(system)
+        system.bonds = bonds_of(system)
+        for name, placed in rig.components.items():
+            connect_tunables(system, system.parts[name], profiles[placed.scope.path])
+        _yield_to_connections(system)
+        resolve_shapes(system)
+    except BaseException:
+        system.discard()
+        raise
+    system.notes += _undecided(system)
+    return system
+
+
+def _undecided(system: System) -> list[str]:
+    """Return notes on components whose outputs are taken to follow from all of their inputs."""
+    of_why: dict[str, list[str]] = {}
+    for part in system.parts.values():
+        if part.undecided:
+            of_why.setdefault(part.undecided, []).append(part.name)
+    return [
+        f"{', '.join(names)}: every output is taken to depend on every input at the same instant, "
+        f"because the code does not tell ({why}); a declared feedthrough may say less"
+        for why, names in of_why.items()
+    ]
+
+
+def _refuse_idle_variant(system: System) -> None:
+    """Raise InputError for a variant that none of the vehicles in the rig has."""
+    takers = [placed for placed in system.rig.components.values() if placed.entry.parameters]
+    if not system.variant:
+        return
+    where = f"{system.rig.read_from.path}: variant {system.variant!r}"
+    if not takers:
+        raise InputError(
+            f"{where}: no component takes parameters of a vehicle, so there is nothing to vary"
+        )
+    known = {variant for placed in takers for variant in variants_of(placed)}
+    if system.variant not in known:
+        raise InputError(f"{where}: {unknown('variant', system.variant, known)}")
+
+
+def _yield_to_connections(system: System) -> None:
+    """Drop what a vehicle's file gives to connected ports; refuse what this rig gives to them.
+
+    The vehicle's file speaks of all its rigs. What tunables set is where these start: it stays.
+    """
+    made = (*system.connections, *system.initial)
+    fed = {connection.target for connection in made} - system.tuned
+    for name, part in system.parts.items():
+        for variable in [v for v in part.given if part.given[v].mark and (name, v) in fed]:
+            del part.given[variable]
+        for variable in part.given:
+            system.refuse_connected(name, variable, part.given[variable].origin)

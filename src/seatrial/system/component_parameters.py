@@ -1,0 +1,133 @@
+"""Parameters of a rig's components: seed, vehicle, profile and the rig's own, in that order."""
+
+from __future__ import annotations
+
+import zlib
+from dataclasses import replace
+
+from ..errors import InputError
+from ..model.units import quantity
+from .parameters import ParameterSet, load_vehicle, split_reference
+from .part import Part
+from .paths import joined
+from .profile.profile import Profile, Profiles
+from .rig import Placed, Scope
+from .system import System, settable
+from .values import Given, from_entry, from_written
+
+
+def give_parameters(system: System, part: Part, profiles: Profiles) -> None:
+    """Give a component what its rig says, the later before the earlier.
+
+    These are the seed derived from the system's, the vehicle's parameter set, the section of an
+    electronics profile, the home of the rig around it, and the rig's own ``set``. Raises
+    InputError.
+    """
+    placed = system.rig.components[part.name]
+    entry, where = placed.entry, placed.where
+    part.home = _home(placed.scope, profiles)
+    _give_seed(part, system.seed)
+    _give_origin(part)
+    if entry.parameters:
+        _give_parameter_set(part, _parameter_set(system, placed))
+    if entry.profile is not None:
+        profile, section = profiles.find(entry.profile, f"{where}.profile")
+        _give_profile(part, section, profile, f"{where}.profile")
+        system.notes += [note for note in profile.notes(section) if note not in system.notes]
+        if section.startswith("links."):
+            _give_home(part, placed.scope)
+    for port, written in entry.set.items():
+        variable = part.instance.variables.get(port)
+        if variable is not None and variable.causality == "structuralParameter":
+            part.given.update(from_written(written, [variable], {}, f"{where}.set: {port}"))
+        else:
+            folder = placed.scope.read_from.path.parent
+            system.set(f"{part.name}.{port}", written, f"{where}.set", folder)
+
+
+def variants_of(placed: Placed) -> list[str]:
+    """Return the variants of the vehicle that gives a component its parameters."""
+    assert placed.entry.parameters is not None
+    name, _ = split_reference(placed.entry.parameters, placed.entry.fmu)
+    return list(load_vehicle(name, placed.scope.read_from.path.parent).file.variants)
+
+
+def _give_seed(part: Part, seed: int) -> None:
+    """Give each instance noise of its own, yet the same in every tool and run."""
+    for name in part.instance.variables.of_role("seed"):
+        inside = name.rpartition(".")[0]  # of a rig as one FMU: the component's path there
+        owner = joined(part.name, inside) if inside else part.name
+        own = zlib.crc32(f"{seed}/{owner}".encode())
+        part.given[name] = Given(float(own), f"derived from seed {seed}")
+
+
+def _give_origin(part: Part) -> None:
+    """Give the origin of {n} to whoever places something in the world, as `Part.home` has it."""
+    if part.home is None:
+        return
+    place = dict(zip(("latitude", "longitude", "altitude"), part.home, strict=True))
+    for name in part.instance.variables.of_role("home"):
+        part.given[name] = Given(place[name.rpartition(".")[2]], "home of the rig")
+
+
+def _give_parameter_set(part: Part, values: ParameterSet) -> None:
+    part.presets, part.outline = values.presets, values.outline
+    part.shape, part.vehicle = values.body, values.vehicle
+    for port, value in values.values.items():
+        scalars = settable(part.instance.variables, port, values.origin)
+        part.given.update(from_entry(value, scalars, values.origin, values.folder))
+
+
+def _give_profile(part: Part, section: str, profile: Profile, where: str) -> None:
+    variables = part.instance.variables
+    values = profile.parameters(section)
+    if section.startswith("actuators."):
+        # A channel says what its driver and what its actuator need: each takes its share.
+        values = {port: value for port, value in values.items() if port in variables}
+        if not values:
+            raise InputError(f"{where}: nothing in {section} is a parameter of {part.fmu}")
+    origin = f"hil_profiles/{profile.read_from.path.name} [{section}]"
+    source = profile.source(section)
+    for port, value in values.items():
+        scalars = settable(variables, port, f"{where}: {part.name}")
+        for name, given in from_written(value, scalars, {}, origin).items():
+            part.given[name] = replace(given, source=source)
+
+
+def _home(scope: Scope, profiles: Profiles) -> tuple[float, float, float] | None:
+    if scope.home is None:
+        return profiles.home()
+    latitude, longitude, altitude = scope.home
+    return quantity(latitude, "rad"), quantity(longitude, "rad"), quantity(altitude, "m")
+
+
+def _give_home(part: Part, scope: Scope) -> None:
+    """Move a link to the home of the rig that it is in, if that has one of its own."""
+    if scope.home is None:
+        return
+    origin = f"{scope.read_from.path.name}: home of {scope.path}"
+    for port, written in zip(("latitude", "longitude", "altitude"), scope.home, strict=True):
+        if port in part.instance.variables:
+            scalars = settable(part.instance.variables, port, origin)
+            part.given.update(from_written(written, scalars, {}, origin))
+
+
+def _parameter_set(system: System, placed: Placed) -> ParameterSet:
+    """Return the vehicle's values, of the system's variant; inside, if the vehicle has that."""
+    entry, scope = placed.entry, placed.scope
+    assert entry.parameters is not None
+    name, table = split_reference(entry.parameters, entry.fmu)
+    try:
+        vehicle = load_vehicle(name, scope.read_from.path.parent)
+        variant = scope.variant
+        if system.variant is not None and (
+            scope.path == "" or system.variant in vehicle.file.variants
+        ):
+            variant = system.variant
+        if entry.parameters.endswith("?") and table not in vehicle.tables:
+            where = vehicle.read_from.path
+            system.notes.append(f"{where} has no table {table}: {placed.name} has its own values")
+            return ParameterSet()
+        return vehicle.parameter_set(table, variant)
+    except InputError as error:
+        raise InputError(f"{placed.where}.parameters: {error}") from None

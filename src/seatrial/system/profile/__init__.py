@@ -1,0 +1,1 @@
+"""Electronics profiles."""

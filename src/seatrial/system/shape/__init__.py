@@ -1,0 +1,1 @@
+"""Shapes of vehicles, for pages and records in three dimensions."""

@@ -1,0 +1,324 @@
+"""A campaign run into its tables: cases to workers, what they leave in case order."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import shutil
+from collections import deque
+from collections.abc import Callable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from contextlib import closing
+from dataclasses import dataclass, field, replace
+from itertools import islice
+from pathlib import Path
+from typing import Any, get_args
+
+from ... import __version__
+from ...errors import InputError, unknown
+from ...shipped import provided_folders
+from ...system.system import Engine
+from ..files.campaign import INDEX, Campaign
+from ..files.case_list import Cases
+from ..files.cases import Case
+from ..files.stopping_rule import StoppingRule
+from ..records.run_schema import CAMPAIGN, checked_json
+from ..running.hooks import Hooks
+from ..running.measuring import Measured
+from ..running.output import claim_folder, write_json
+from ..running.resuming import cut_aside, has_index
+from .asked import Asked
+from .cluster import Cluster, check_address
+from .columns import columns_of
+from .ended import Ended
+from .ended_log import ENDED_LOG, EndedLog, ended_cases
+from .evaluator import Keep, Plan
+from .sampled_checks import check
+from .shipment import unpack_folder
+from .table import RESULTS, Tables, arrow, read_rows
+from .workers import Here, Task, Workers
+
+Done = Callable[[Case, Ended], None]
+_SLICE_S = 0.2
+"""A stop is noticed within this time."""
+
+
+@dataclass(frozen=True)
+class How:
+    """How a campaign is run: on this machine, ``jobs`` side by side, or on a cluster.
+
+    Raises InputError for a cluster of another host, unless that is allowed.
+    """
+
+    engine: Engine = "fmu"
+    jobs: int | None = None
+    cluster: str | None = None
+    keep: Keep | None = None
+    """In place of what the campaign says."""
+    resume: bool = False
+
+    def __post_init__(self) -> None:
+        if self.cluster is not None:
+            check_address(self.cluster)
+
+
+def keep_named(keep: str | None, origin: str) -> Keep | None:
+    """Return what ``keep`` names, None for None. Raises InputError, naming ``origin``."""
+    for known in get_args(Keep):
+        if keep == known:
+            return keep  # type: ignore[return-value]
+    if keep is None:
+        return None
+    raise InputError(f"{origin}: {unknown('choice', keep, get_args(Keep))}")
+
+
+@dataclass
+class Summary:
+    """What a campaign has come to."""
+
+    folder: Path
+    planned: int
+    ended: int = 0
+    failed: int = 0
+    """Cases that did not pass."""
+    broken: int = 0
+    """Of them those whose run could not go on."""
+    enough: bool = False
+    """The campaign's stopping rule was met before all cases had run."""
+    kept: list[dict[str, Any]] = field(default_factory=list)
+    """Entries of the cases whose folders stay, for the index."""
+
+    @property
+    def whole(self) -> bool:
+        """True if there is nothing left to run."""
+        return self.enough or self.ended == self.planned
+
+    def count(self, case: Case, ended: Ended) -> None:
+        """Count a case."""
+        measured = ended.measured
+        self.ended += 1
+        self.failed += not measured.passed
+        self.broken += measured.status == "failed"
+        if ended.folder:
+            self.kept.append(_entry(case, ended))
+
+
+def run_sweep(
+    campaign: Campaign,
+    out: Path | None,
+    how: How,
+    hooks: Hooks | None = None,
+    done: Done = lambda _case, _ended: None,
+) -> Summary:
+    """Run a campaign into ``results.parquet`` and ``timing.parquet`` below ``out``.
+
+    ``out`` must not hold anything yet; None makes a new folder ``runs/NAME-DATE-TIME``. With
+    ``how.resume`` it may be what this campaign has left. ``done`` is called for each case, in case
+    order. Stops, keeping what is there, once ``hooks.stop_requested``. The table of results
+    depends on the campaign's files alone, not on who runs it.
+
+    Raises InputError for bad input before the first case runs (see `sampled_checks`), StoppedError.
+    """
+    hooks = hooks or Hooks()
+    arrow()
+    cases, file = campaign.cases(), campaign.file
+    plan = Plan(how.engine, how.keep or file.keep or "all", file.samples)
+    index = index_of(campaign, how.engine, len(cases))
+    left = out if how.resume and out is not None and (out / INDEX).is_file() else None
+    kept: dict[int, Ended] = {}
+    if left is not None:
+        if has_index(left / INDEX, hooks.note):
+            refuse_other(left / INDEX, index)
+        if (left / RESULTS).is_file() and not (left / ENDED_LOG).is_file():
+            try:
+                return _summary(left, len(cases))
+            except InputError as error:
+                cut_aside(left / RESULTS, error, hooks.note)
+        kept = ended_cases(left, len(cases), hooks.note)
+    columns = columns_of(campaign)
+    plan = replace(plan, recorded=check(cases, plan, hooks))
+    with closing(workers_of(campaign, cases, plan, how, hooks)) as workers:
+        folder = left or claim_folder(out, campaign.read_from.name, INDEX)
+        write_json(folder / INDEX, {**index, "cases": []}, synced=True)
+        sweep = Sweep(cases, workers, folder, hooks, file.until)
+        with EndedLog(folder) as log, Tables(folder, columns) as tables:
+            sweep.run(log, tables, kept, done)
+    summary = sweep.summary
+    write_json(folder / INDEX, {**index, "cases": summary.kept}, synced=True)
+    if summary.whole:
+        log.path.unlink()
+    return summary
+
+
+def workers_of(
+    campaign: Campaign, cases: Cases | Asked, plan: Plan, how: How, hooks: Hooks
+) -> Workers:
+    """Return who runs the cases. Raises what `Cluster` raises."""
+    if how.cluster is None:
+        return Here(cases, plan, how.jobs, hooks)
+    asked = cases if isinstance(cases, Asked) else None
+    return Cluster(how.cluster, campaign, plan, asked)
+
+
+class Sweep:
+    """Cases under way: some wait, some run, some have ended before others that come first.
+
+    There may be more of them after a run: the next one begins there.
+    """
+
+    def __init__(
+        self,
+        cases: Cases | Asked,
+        workers: Workers,
+        folder: Path,
+        hooks: Hooks,
+        rule: StoppingRule | None = None,
+    ) -> None:
+        self._cases, self._rule = cases, rule
+        self._workers, self._folder, self._hooks = workers, folder, hooks
+        self._running: dict[Future[list[Ended | None]], Task] = {}
+        self._again: deque[Task] = deque()
+        self._early: dict[int, Ended] = {}
+        self._stopping = False
+        self._wall = math.inf
+        """Of a case, on average so far, s."""
+        self.summary = Summary(folder, len(self._cases))
+
+    def run(self, log: EndedLog, tables: Tables, kept: dict[int, Ended], done: Done) -> None:
+        """Run all cases but those ``kept``, and write each."""
+        planned = range(self.summary.ended, len(self._cases))
+        self.summary.planned = len(self._cases)
+        self._early = {n: kept[n] for n in planned if n in kept}
+        numbers = (n for n in planned if n not in kept)
+
+        def hand_on(number: int) -> None:
+            case, ended = self._cases[number], self._early.pop(number)
+            tables.add(case, ended)
+            self.summary.count(case, ended)
+            done(case, ended)
+
+        while True:
+            while not self.summary.enough and self.summary.ended in self._early:
+                hand_on(self.summary.ended)
+                self.summary.enough = self._is_enough()
+            self._stopping |= self.summary.enough or self._hooks.stop_requested() > 0
+            self._submit(numbers)
+            if not self._running:
+                break
+            for ended in self._ready():
+                log.add(ended)
+                self._early[ended.number] = ended
+        for number in sorted(self._early):  # of a stop: behind a case that has not ended
+            if self.summary.enough:
+                self._drop(self._early[number])
+            else:
+                hand_on(number)
+
+    # ------------------------------------------------------------------ inside
+
+    def _is_enough(self) -> bool:
+        summary = self.summary
+        return self._rule is not None and self._rule.met(summary.failed, summary.ended)
+
+    def _submit(self, numbers: Iterator[int]) -> None:
+        """Begin tasks for all places; once it is to stop, cancel what has not begun."""
+        if self._stopping:
+            for future in list(self._running):
+                if future.cancel() or self.summary.enough or self._hooks.stop_requested() > 1:
+                    del self._running[future]
+            return
+        places = self._workers.places - len(self._running)
+        for _ in range(places):
+            size = self._workers.size(self._wall)
+            task = self._again.popleft() if self._again else tuple(islice(numbers, size))
+            if not task:
+                return
+            self._running[self._workers.submit(task, self._folder)] = task
+
+    def _ready(self) -> Iterator[Ended]:
+        """Wait a moment, and yield what has ended."""
+        ready, _ = wait(self._running, _SLICE_S, FIRST_COMPLETED)
+        for future in ready:
+            task = self._running.pop(future)
+            if (error := future.exception()) is not None:
+                if not self._workers.lost(error):
+                    raise error
+                if len(task) == 1:
+                    yield Ended(task[0], Measured("failed", "each worker that ran it has died"))
+                self._again += [(number,) for number in task if len(task) > 1]
+                continue
+            for ended in filter(None, future.result()):
+                if ended.files is not None:
+                    unpack_folder(ended.files, self._folder)
+                known = math.isfinite(self._wall)
+                wall = ended.measured.wall
+                self._wall = 0.9 * self._wall + 0.1 * wall if known else wall
+                yield ended
+
+    def _drop(self, ended: Ended) -> None:
+        """Remove what a case has left that ran though those before it were enough."""
+        if ended.folder:
+            shutil.rmtree(self._folder / ended.folder, ignore_errors=True)
+
+
+def index_of(
+    campaign: Campaign, engine: Engine, count: int, question: Any = None
+) -> dict[str, Any]:
+    """Return the index of a campaign's folder, or of a question's, without its cases."""
+    file = campaign.file.model_dump(exclude={"title", "keep", "samples", "ask", "map"})
+    sources = [s.sha256 for t in campaign.trials for s in (t.read_from, t.rig.read_from)]
+    asked = [] if question is None else [question]
+    said = json.dumps([__version__, engine, file, sources, *asked], default=str)
+    drawn = campaign.file.map if question is None else None
+    return {
+        "name": campaign.read_from.name,
+        "file": _called(campaign.read_from.path),
+        "engine": engine,
+        "title": campaign.file.title,
+        "table": RESULTS,
+        "count": count,
+        "map": None if drawn is None else drawn.model_dump(),
+        "of": hashlib.sha256(said.encode()).hexdigest(),
+    }
+
+
+def _called(path: Path) -> str:
+    """Return what a command calls a campaign by, in the folder of its file or of its harness."""
+    of_user = path.parent.name == "campaigns" and path.parent.parent.name == "harness"
+    is_named = of_user or path.parent in provided_folders("harness/campaigns")
+    return path.stem if is_named else path.name
+
+
+def refuse_other(path: Path, index: dict[str, Any]) -> None:
+    """Raise InputError for the index of another campaign."""
+    if checked_json(path, CAMPAIGN).get("of") != index["of"]:
+        raise InputError(
+            f"{path}: it is of another campaign, or of this one before its files changed: name "
+            "the folder that this campaign has left, or another one without --resume"
+        )
+
+
+def _summary(folder: Path, planned: int) -> Summary:
+    """Return the summary of a folder whose campaign has come to its end."""
+    summary = Summary(folder, planned)
+    for row in read_rows(folder / RESULTS, ["passed", "status"]):
+        summary.ended += 1
+        summary.failed += not row["passed"]
+        summary.broken += row["status"] == "failed"
+    summary.enough = summary.ended < planned
+    return summary
+
+
+def _entry(case: Case, ended: Ended) -> dict[str, Any]:
+    measured = ended.measured
+    keys = ("name", "check", "passed", "detail", "worst", "unit", "robustness", "expected")
+    return {
+        "name": case.name,
+        "folder": ended.folder,
+        "trial": case.trial_name,
+        "set": case.set,
+        "passed": measured.passed,
+        "status": measured.status,
+        "verdicts": [{key: v[key] for key in keys} for v in measured.verdicts],
+    }

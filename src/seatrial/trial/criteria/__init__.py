@@ -1,0 +1,1 @@
+"""Criteria: their grammar, and margins over records."""

@@ -1,0 +1,250 @@
+"""Arithmetic over recorded signals, with units: what the predicates of a criterion compare.
+
+Every value is SI while it is computed. An angle is a unit of its own, as in FMI: a product of
+an angular velocity and a length is ``m.rad/s``, and ``/ 1 rad`` makes it a velocity.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import InputError
+from ...model.units import unit
+from ..reports.readable import person_unit, quantity_text
+
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+Value = float | FloatArray
+Values = Mapping[str, FloatArray]
+Units = Mapping[str, str]
+Exponents = dict[str, int]
+
+
+@dataclass(frozen=True)
+class Literal:
+    """A number with its unit; ``value`` is SI."""
+
+    value: float
+    unit: str
+
+    def leaves(self) -> Iterator[Literal | Signal]:
+        """Yield this literal."""
+        yield self
+
+    def exponents(self, units: Units) -> Exponents:
+        """Return the exponents of the base units."""
+        return unit(self.unit).exponents
+
+    def evaluate(self, values: Values) -> Value:
+        """Return the SI value."""
+        return self.value
+
+
+@dataclass(frozen=True)
+class Signal:
+    """A recorded signal."""
+
+    name: str
+
+    def leaves(self) -> Iterator[Literal | Signal]:
+        """Yield this signal."""
+        yield self
+
+    def exponents(self, units: Units) -> Exponents:
+        """Return the exponents of the base units."""
+        return unit(units[self.name]).exponents
+
+    def evaluate(self, values: Values) -> Value:
+        """Return the SI values."""
+        return values[self.name]
+
+
+@dataclass(frozen=True)
+class Operation:
+    """An operator or function applied to expressions."""
+
+    name: str
+    arguments: tuple[Expression, ...]
+
+    def leaves(self) -> Iterator[Literal | Signal]:
+        """Yield all literals and signals, from left to right."""
+        for argument in self.arguments:
+            yield from argument.leaves()
+
+    def exponents(self, units: Units) -> Exponents:
+        """Return the exponents of the base units.
+
+        Raises InputError if the arguments' units do not go together.
+        """
+        rule = _OPERATIONS[self.name].rule
+        return rule(self, [a.exponents(units) for a in self.arguments], units)
+
+    def evaluate(self, values: Values) -> Value:
+        """Return the SI values."""
+        result: Value = _OPERATIONS[self.name].function(
+            *[a.evaluate(values) for a in self.arguments]
+        )
+        return result
+
+
+Expression = Literal | Signal | Operation
+
+
+def signal_names(node: Expression) -> set[str]:
+    """Return the names of all signals that occur in ``node``."""
+    return {leaf.name for leaf in node.leaves() if isinstance(leaf, Signal)}
+
+
+def renamed(node: Expression, names: Mapping[str, str]) -> Expression:
+    """Return an expression with other names of signals."""
+    if isinstance(node, Signal):
+        return Signal(names[node.name])
+    if isinstance(node, Literal):
+        return node
+    return replace(node, arguments=tuple(renamed(argument, names) for argument in node.arguments))
+
+
+def written(node: Expression) -> str:
+    """Return an expression as a person could have written it; numbers in their unit."""
+    if isinstance(node, Signal):
+        return node.name
+    if isinstance(node, Literal):
+        measure = unit(node.unit)
+        return quantity_text((node.value - measure.offset) / measure.factor, node.unit, 6)
+    parts = [written(argument) for argument in node.arguments]
+    if node.name in FUNCTIONS:
+        bare = [
+            part[1:-1] if isinstance(argument, Operation) and argument.name in "+-*/" else part
+            for part, argument in zip(parts, node.arguments, strict=True)
+        ]
+        return f"{node.name}({', '.join(bare)})"
+    if node.name == "negative":
+        return f"-{parts[0]}"
+    return f"({f' {node.name} '.join(parts)})"
+
+
+def depth(node: Expression) -> int:
+    """Return how many levels the tree has."""
+    if isinstance(node, (Literal, Signal)):
+        return 1
+    return 1 + max(depth(part) for part in node.arguments)
+
+
+class _Leafy(Protocol):
+    def leaves(self) -> Iterator[Literal | Signal]: ...
+
+
+def unit_of(node: _Leafy, units: Units, exponents: Exponents) -> str:
+    """Return the unit in which a person would state values of ``node``.
+
+    That is the unit of its first literal that measures the same, else of such a signal (degrees
+    for radians), else the product of base units.
+    """
+    leaves = sorted(node.leaves(), key=lambda leaf: isinstance(leaf, Signal))
+    for leaf in leaves:
+        text = leaf.unit if isinstance(leaf, Literal) else person_unit(units[leaf.name])
+        if unit(text).exponents == exponents:
+            return text
+    return person_unit(_product_text(exponents))
+
+
+# ---------------------------------------------------------------------- units of operations
+
+
+def _same(node: Operation, exponents: list[Exponents], units: Units) -> Exponents:
+    first = node.arguments[0]
+    for argument, own in zip(node.arguments[1:], exponents[1:], strict=True):
+        check_same(f"{node.name!r}", (first, exponents[0]), (argument, own), units)
+    return exponents[0]
+
+
+def _product(node: Operation, exponents: list[Exponents], units: Units) -> Exponents:
+    return _combined(exponents[0], exponents[1], 1)
+
+
+def _quotient(node: Operation, exponents: list[Exponents], units: Units) -> Exponents:
+    return _combined(exponents[0], exponents[1], -1)
+
+
+def _root(node: Operation, exponents: list[Exponents], units: Units) -> Exponents:
+    if any(power % 2 for power in exponents[0].values()):
+        raise InputError(f"{unit_of(node.arguments[0], units, exponents[0])!r} has no square root")
+    return {base: power // 2 for base, power in exponents[0].items()}
+
+
+def _combined(a: Exponents, b: Exponents, sign: int) -> Exponents:
+    powers = {base: a.get(base, 0) + sign * b.get(base, 0) for base in a | b}
+    return {base: power for base, power in powers.items() if power}
+
+
+def _product_text(exponents: Exponents) -> str:
+    # Positive powers first: a leading one lets a person's unit stand in for rad.
+    powers = sorted(exponents.items(), key=lambda item: item[1] < 0)
+    return ".".join(b if p == 1 else f"{b}{p}" for b, p in powers) or "1"
+
+
+def check_same(
+    what: str,
+    a: tuple[Expression, Exponents],
+    b: tuple[Expression, Exponents],
+    units: Units,
+) -> None:
+    """Raise InputError, with both units, if two expressions do not measure the same."""
+    if a[1] != b[1]:
+        left, right = (_described(node, exponents, units) for node, exponents in (a, b))
+        raise InputError(f"{what} needs values of one kind, got {left} and {right}")
+
+
+def _described(node: Expression, exponents: Exponents, units: Units) -> str:
+    if isinstance(node, Signal):
+        return f"{node.name} in {units[node.name]!r}"
+    text = node.unit if isinstance(node, Literal) else unit_of(node, units, exponents)
+    return "a number without a unit" if text == "1" else f"a value in {text!r}"
+
+
+class _Rule(NamedTuple):
+    function: Callable[..., Any]
+    rule: Callable[[Operation, list[Exponents], Units], Exponents]
+
+
+def _greatest(*values: Value) -> Any:
+    return np.maximum.reduce(np.broadcast_arrays(*values))
+
+
+def _least(*values: Value) -> Any:
+    return np.minimum.reduce(np.broadcast_arrays(*values))
+
+
+_OPERATIONS = {
+    "+": _Rule(np.add, _same),
+    "-": _Rule(np.subtract, _same),
+    "*": _Rule(np.multiply, _product),
+    "/": _Rule(np.divide, _quotient),
+    "negative": _Rule(np.negative, _same),
+    "abs": _Rule(np.abs, _same),
+    "max": _Rule(_greatest, _same),
+    "min": _Rule(_least, _same),
+    "sqrt": _Rule(np.sqrt, _root),
+}
+FUNCTIONS = ("abs", "max", "min", "sqrt")
+
+
+def literal(text: str, unit_text: str) -> Literal:
+    """Return the literal ``text`` in the unit ``unit_text``.
+
+    Raises InputError if that is no unit or the value is not finite.
+    """
+    measure = unit(unit_text)
+    try:
+        value = float(text) * measure.factor + measure.offset
+    except OverflowError:
+        value = math.inf
+    if not math.isfinite(value):
+        raise InputError(f"{text} {unit_text} is not a finite number")
+    return Literal(value, unit_text)

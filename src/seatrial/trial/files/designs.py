@@ -1,0 +1,126 @@
+"""Designs of campaigns: cases drawn from distributions, repeatable by a seed, or factorial."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Literal
+
+import numpy as np
+from pydantic import Field
+
+from ...errors import InputError
+from ...system.files import FileModel
+from .distributions import Distribution, read_distribution
+from .factorial import factorial_rows
+
+MOST_CASES = 1_000_000
+_TINY = 2.0**-40
+"""How near to 0 and 1 a probability comes: a normal distribution has no value there."""
+
+
+class Correlation(FileModel):
+    """How two keys of a design go together."""
+
+    between: list[str] = Field(min_length=2, max_length=2)
+    coefficient: float = Field(gt=-1.0, lt=1.0)
+
+
+class Design(FileModel):
+    """The cases that a campaign draws: each is one value of every key of ``vary``."""
+
+    kind: Literal[
+        "latin-hypercube", "sobol", "monte-carlo", "full-factorial", "fractional-factorial"
+    ]
+    count: int | None = Field(default=None, gt=0, le=MOST_CASES)
+    seed: int = Field(default=0, ge=0)
+    vary: dict[str, Distribution] = Field(min_length=1)
+    correlation: list[Correlation] = Field(default_factory=list)
+    resolution: int | None = Field(default=None, ge=3)
+    generators: str | None = None
+
+
+def drawn(design: Design, origin: str) -> list[dict[str, Any]]:
+    """Return the settings of each case of a design, by key.
+
+    Points are of the unit cube (independent; a Latin hypercube with one point in each of ``count``
+    strata of every key; Sobol's sequence, scrambled after Owen), and go through the inverse of each
+    distribution's cumulative one. Correlation is that of the normal scores (a Gaussian copula):
+    between normal keys it is Pearson's. Factorial designs have every combination of the levels, or
+    a fraction of them (`factorial_rows`). Raises InputError.
+    """
+    if design.kind.endswith("-factorial"):
+        _refuse(design, ("count", "seed", "correlation"), origin)
+        fraction = design.resolution, design.generators
+        if design.kind == "full-factorial":
+            _refuse(design, ("resolution", "generators"), origin)
+            return factorial_rows(design.vary, None, MOST_CASES, origin)
+        return factorial_rows(design.vary, fraction, MOST_CASES, origin)
+    _refuse(design, ("resolution", "generators"), origin)
+    if design.count is None:
+        raise InputError(f"{origin}: count: {design.kind} needs it")
+    laws = {
+        key: read_distribution(entry, f"{origin}: vary: {key}")
+        for key, entry in design.vary.items()
+    }
+    lower = lower_factor(design, origin)
+    points = np.clip(_points(design, design.count, origin), _TINY, 1.0 - _TINY)
+    if design.correlation:
+        from scipy import special  # dear to import, and no other command needs it
+
+        points = special.ndtr(special.ndtri(points) @ lower.T)
+    columns = [law.drawn(points[:, i]) for i, law in enumerate(laws.values())]
+    return [dict(zip(laws, row, strict=True)) for row in zip(*columns, strict=True)]
+
+
+def _refuse(design: Design, keys: Sequence[str], origin: str) -> None:
+    """Raise InputError if one of ``keys`` is given, which this kind of design does not take."""
+    for key in keys:
+        if key in design.model_fields_set:
+            raise InputError(f"{origin}: {key}: not of {design.kind}")
+
+
+def _points(design: Design, count: int, origin: str) -> np.ndarray:
+    """Return points of the unit cube, a row for each case."""
+    dimensions, random = len(design.vary), np.random.default_rng(design.seed)
+    if design.kind == "monte-carlo":
+        return random.random((count, dimensions))
+    from scipy.stats import qmc  # half a second, of every command if it stood above
+
+    if design.kind == "latin-hypercube":
+        return np.asarray(qmc.LatinHypercube(dimensions, seed=random).random(count))
+    if count & (count - 1):
+        below = 1 << (count.bit_length() - 1)
+        raise InputError(
+            f"{origin}: count: Sobol's sequence needs a power of 2, such as {below} or "
+            f"{2 * below}, found {count}"
+        )
+    return np.asarray(qmc.Sobol(dimensions, seed=random).random(count))
+
+
+def lower_factor(design: Design, origin: str) -> np.ndarray:
+    """Return Cholesky's factor of the correlation matrix."""
+    keys, matrix = list(design.vary), np.eye(len(design.vary))
+    if design.correlation and design.kind == "latin-hypercube":
+        raise InputError(
+            f"{origin}: correlation: it would break the strata of a latin-hypercube; "
+            "take sobol or monte-carlo"
+        )
+    seen = set[frozenset[str]]()
+    for entry in design.correlation:
+        pair = frozenset(entry.between)
+        if len(pair) < 2 or not pair <= set(keys) or pair in seen:
+            raise InputError(
+                f"{origin}: correlation: between: two different keys of vary ({', '.join(keys)}), "
+                f"each pair once, found {entry.between}"
+            )
+        seen.add(pair)
+        i, j = (keys.index(key) for key in entry.between)
+        matrix[i, j] = matrix[j, i] = entry.coefficient
+    try:
+        return np.linalg.cholesky(matrix)
+    except np.linalg.LinAlgError:
+        least = np.linalg.eigvalsh(matrix)[0]
+        raise InputError(
+            f"{origin}: correlation: the matrix is not positive definite, its least eigenvalue "
+            f"is {least:.3g}: these coefficients contradict each other"
+        ) from None

@@ -1,0 +1,45 @@
+"""End of a campaign: once an interval of the probability of failure is narrow enough."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from ...system.files import FileModel
+
+_LOOKED_EVERY = 50
+"""Cases between two looks, in case order: where it ends does not depend on who runs them."""
+
+
+class StoppingRule(FileModel):
+    """Until when a campaign draws cases, at most those of its design."""
+
+    half_width: float = Field(gt=0.0, lt=0.5)
+    """Of the interval of the probability of failure."""
+    confidence: float = Field(default=0.95, gt=0.0, lt=1.0)
+    interval: Literal["wilson", "clopper-pearson"] = "wilson"
+    least: int = Field(default=100, gt=0)
+    """Cases before the first look."""
+
+    def met(self, failed: int, count: int) -> bool:
+        """Say if the first ``count`` cases, of which some have ``failed``, are enough."""
+        if count < self.least or count % _LOOKED_EVERY:
+            return False
+        low, high = failure_interval(failed, count, self.confidence, self.interval)
+        return (high - low) / 2.0 <= self.half_width
+
+
+def failure_interval(
+    failed: int, count: int, confidence: float = 0.95, interval: str = "wilson"
+) -> tuple[float, float]:
+    """Return a confidence interval of the probability of failure.
+
+    Wilson's score interval, or the exact one of Clopper and Pearson, which covers at least as often
+    as it says.
+    """
+    from scipy.stats import binomtest  # half a second, of every command if it stood above
+
+    method = "exact" if interval == "clopper-pearson" else "wilson"
+    found = binomtest(failed, count).proportion_ci(confidence, method=method)
+    return float(found.low), float(found.high)

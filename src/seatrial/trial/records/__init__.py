@@ -1,0 +1,1 @@
+"""Runs on disk: their files, read, compared, and placed in the world."""

@@ -1,0 +1,1 @@
+"""Trials run: prepared, stepped, supervised, recorded."""

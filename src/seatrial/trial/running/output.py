@@ -1,0 +1,84 @@
+"""Folders that commands claim for what they write, and JSON files in them."""
+
+from __future__ import annotations
+
+import contextlib
+import datetime
+import itertools
+import json
+import os
+from pathlib import Path
+from typing import Any
+
+from ...errors import InputError
+from ...whole_file import write_whole
+
+_RESERVE = 4096
+"""Bytes kept for how a run ends."""
+
+
+def claim_folder(out: Path | None, name: str, index: str, base: Path = Path()) -> Path:
+    """Create the folder of a run for this process alone, and return it.
+
+    None makes a new one, ``runs/NAME-DATE-TIME``; else ``out`` must not hold anything yet.
+    ``index`` is the file that claims the folder; ``base`` is where relative paths start. Raises
+    InputError.
+    """
+    try:
+        if out is None:
+            return _new_folder(base, name)
+        folder = base / out
+        folder.mkdir(parents=True, exist_ok=True)
+        if any(folder.iterdir()):
+            raise FileExistsError
+        (folder / index).open("x").close()
+    except (FileExistsError, NotADirectoryError):
+        message = f"{out} exists and is not an empty folder; name another with --out"
+        raise InputError(message) from None
+    except OSError as error:
+        raise InputError(f"cannot create {out or 'runs'}: {error.strerror}") from None
+    return folder
+
+
+def _new_folder(base: Path, name: str) -> Path:
+    stamp = datetime.datetime.now().strftime("%Y%m%d-%H%M%S")
+    for count in itertools.count(1):
+        folder = base / "runs" / (f"{name}-{stamp}" + (f"-{count}" if count > 1 else ""))
+        try:
+            folder.mkdir(parents=True)
+        except FileExistsError:
+            continue
+        return folder
+    raise AssertionError("unreachable")
+
+
+def write_json(path: Path, content: Any, *, synced: bool = False) -> None:
+    """Write a JSON file as `write_whole` does. Raises OSError with the file's name."""
+    write_whole(path, _text(content) + "\n", synced=synced)
+
+
+def write_json_with_reserve(path: Path, content: Any) -> None:
+    """Write a JSON file with space for `write_json_into_reserve`, white space at its end."""
+    write_whole(path, _text(content) + " " * _RESERVE + "\n")
+
+
+def write_json_into_reserve(path: Path, content: Any) -> None:
+    """Write a JSON file, in the place of the one that is there if the disk cannot hold two.
+
+    Raises OSError with the file's name.
+    """
+    try:
+        write_json(path, content)
+    except OSError as error:
+        data = (_text(content) + "\n").encode()
+        with contextlib.suppress(OSError), path.open("r+b") as file:
+            size = file.seek(0, os.SEEK_END)
+            if len(data) <= size:
+                file.seek(0)
+                file.write(data.ljust(size))
+                return
+        raise error
+
+
+def _text(content: Any) -> str:
+    return json.dumps(content, indent=1, ensure_ascii=False)

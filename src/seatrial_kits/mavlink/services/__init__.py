@@ -1,0 +1,1 @@
+"""Microservices of MAVLink: each answers its messages."""

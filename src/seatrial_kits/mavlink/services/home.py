@@ -1,0 +1,114 @@
+"""Home, to which the vehicle returns, and the origin, from which positions count."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import ClassVar
+
+from pymavlink.dialects.v20 import all as mavlink
+
+from seatrial.links.geodesy import Ned
+
+from ..codec import Message
+from ..frames import GLOBAL_FRAMES, is_near
+from ..scaling import deg_e7, int32, microseconds
+from ..transport import Sender
+from .service import ACCEPTED, DENIED, FAILED, WARNING, Builder, Command, Handler, Receiver, Service
+
+
+class HomeService(Service):
+    """HOME_POSITION and GPS_GLOBAL_ORIGIN out; DO_SET_HOME, SET_HOME_POSITION,
+    GET_HOME_POSITION and SET_GPS_GLOBAL_ORIGIN in.
+
+    Home is the origin until it is set; the setting station is answered with the new one, as
+    are all others. The origin belongs to the trial and stays: requests to set it get it.
+    """
+
+    streams: ClassVar = {mavlink.MAVLINK_MSG_ID_HOME_POSITION: 2.0}
+
+    @property
+    def commands(self) -> Mapping[int, Handler]:
+        """Commands that it carries out."""
+        return {
+            mavlink.MAV_CMD_DO_SET_HOME: self._set_home,
+            mavlink.MAV_CMD_GET_HOME_POSITION: self._send_home,
+        }
+
+    @property
+    def messages(self) -> Mapping[int, Builder]:
+        """Messages that it can build."""
+        return {
+            mavlink.MAVLINK_MSG_ID_HOME_POSITION: self._home,
+            mavlink.MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN: self._origin,
+        }
+
+    @property
+    def receivers(self) -> Mapping[int, Receiver]:
+        """Messages that it takes in."""
+        return {
+            mavlink.MAVLINK_MSG_ID_SET_HOME_POSITION: self._take_home,
+            mavlink.MAVLINK_MSG_ID_SET_GPS_GLOBAL_ORIGIN: self._refuse_origin,
+        }
+
+    def _take_home(self, message: Message, sender: Sender, now: float) -> None:
+        self._move(message.latitude * 1e-7, message.longitude * 1e-7, message.altitude * 1e-3, now)
+
+    def _refuse_origin(self, message: Message, sender: Sender, now: float) -> None:
+        self.vehicle.report(WARNING, "The origin stays: it belongs to the trial")
+        self.transport.send(sender.link, self._origin(now)[0])
+
+    def _set_home(self, command: Command, sender: Sender, now: float) -> int:
+        how = command.parameters[0]
+        if how not in (0.0, 1.0):
+            return FAILED
+        if how == 1.0:
+            if not self.vehicle.estimates.position_valid:
+                return FAILED
+            self._moved(self.vehicle.estimates.position_n, now)
+            return ACCEPTED
+        if command.frame not in GLOBAL_FRAMES:
+            return DENIED
+        latitude, longitude, altitude = command.parameters[4:]
+        return ACCEPTED if self._move(latitude, longitude, altitude, now) else FAILED
+
+    def _move(self, latitude: float, longitude: float, altitude: float, now: float) -> bool:
+        """Move home to degrees and m above the sea; return whether that is a place near enough."""
+        if not (abs(latitude) <= 90.0 and abs(longitude) <= 180.0 and math.isfinite(altitude)):
+            return False
+        position = self.vehicle.origin.position(latitude, longitude, altitude)
+        if is_near(*position):
+            self._moved(position, now)
+        return is_near(*position)
+
+    def _moved(self, position: Ned, now: float) -> None:
+        self.vehicle.home_n = position
+        self.transport.broadcast(self._home(now)[0])
+
+    def _send_home(self, command: Command, sender: Sender, now: float) -> int:
+        self.transport.send(sender.link, self._home(now)[0])
+        return ACCEPTED
+
+    def _home(self, now: float) -> list[Message]:
+        latitude, longitude, altitude = self.vehicle.origin.geodetic(self.vehicle.home_n)
+        return [
+            mavlink.MAVLink_home_position_message(
+                deg_e7(latitude),
+                deg_e7(longitude),
+                int32(altitude * 1e3),
+                *self.vehicle.home_n,
+                [1.0, 0.0, 0.0, 0.0],
+                0.0,
+                0.0,
+                0.0,
+                microseconds(now),
+            )
+        ]
+
+    def _origin(self, now: float) -> list[Message]:
+        latitude, longitude, altitude = self.vehicle.origin.geodetic((0.0, 0.0, 0.0))
+        return [
+            mavlink.MAVLink_gps_global_origin_message(
+                deg_e7(latitude), deg_e7(longitude), int32(altitude * 1e3), microseconds(now)
+            )
+        ]

@@ -1,0 +1,1 @@
+"""Messages that a vehicle sends of itself."""
