@@ -47,7 +47,7 @@ def assembled(carrier: str, rig: Rig) -> System:
     """Return a rig with all components on one carrier."""
     system = assemble(rig, "fmu" if carrier == FMUS else "direct")
     if carrier in (NATIVE, COMPILED):
-        from seatrial.fmi.building.source import find_source
+        from seatrial.fmi.components.source import find_source
         from seatrial.fmi.loading.load import load_fmu, open_instance
         from seatrial_kits.native.cached import native_fmu
 

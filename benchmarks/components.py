@@ -16,8 +16,8 @@ from time import process_time
 
 import fmpy
 
-from seatrial.fmi.building.index import component_class
-from seatrial.fmi.building.source import find_source
+from seatrial.fmi.components.index import component_class
+from seatrial.fmi.components.source import find_source
 from seatrial.model.component import Component
 from seatrial_kits.native.cached import native_fmu
 

@@ -30,8 +30,8 @@ from pathlib import Path
 from typing import Any
 
 from seatrial.trial.campaigns import sweep
+from seatrial.trial.campaigns.campaign import load_campaign
 from seatrial.trial.campaigns.ended import Ended
-from seatrial.trial.files.campaign import load_campaign
 from seatrial.trial.running.measuring import Measured
 
 from .campaign import CAMPAIGN

@@ -13,7 +13,7 @@ import pytest
 from hypothesis import settings
 
 from seatrial.fmi.building.bundle import bundled
-from seatrial.fmi.building.source import shipped_sources
+from seatrial.fmi.components.source import shipped_sources
 from seatrial.model.units import unit
 from tests.fmi.native import build_native_fmu
 

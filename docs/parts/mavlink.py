@@ -8,7 +8,7 @@ from parts import part
 from parts.markdown import shown_number, table
 from seatrial_kits.mavlink import node  # noqa: F401  brings all services
 from seatrial_kits.mavlink.modes import dialect
-from seatrial_kits.mavlink.services.service import Service
+from seatrial_kits.mavlink.service import Service
 
 
 @part("mavlink-streams")

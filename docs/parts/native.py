@@ -6,7 +6,7 @@ import re
 
 from parts import part
 from parts.markdown import table
-from seatrial.fmi.building.index import component_class, components
+from seatrial.fmi.components.index import component_class, components
 from seatrial.model.plant import Plant
 from seatrial_kits.native.carriers import why_python
 

@@ -12,7 +12,7 @@ from parts import part
 from parts.markdown import table
 from seatrial.cli.commands import commands, loaded
 from seatrial.cli.main import app
-from seatrial.fmi.building.source import shipped_sources
+from seatrial.fmi.components.source import shipped_sources
 from seatrial.kits import Kit, is_ours, kits
 
 

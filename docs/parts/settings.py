@@ -7,7 +7,7 @@ from functools import partial
 
 from parts import part
 from parts.markdown import shown_unit, shown_value, table
-from seatrial.fmi.building.source import shipped_sources
+from seatrial.fmi.components.source import shipped_sources
 from seatrial.model.ports import Parameter
 from seatrial.shipped import shipped_folder
 from seatrial.system.parameters import Entry, load_vehicle

@@ -7,11 +7,11 @@ from functools import partial
 
 from parts import elsewhere, part
 from parts.markdown import table
+from seatrial.model.readable import number
 from seatrial.shipped import available
-from seatrial.trial.files.campaign import load_campaign, run_campaign
+from seatrial.trial.campaigns.campaign import load_campaign, run_campaign
 from seatrial.trial.files.trial import load_trial
 from seatrial.trial.records.run_folder import load_run
-from seatrial.trial.reports.readable import number
 from seatrial.trial.running.run import run_trial
 from seatrial_kits.design.heading import design_heading
 from seatrial_kits.design.heading_page import rows as design_rows

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from parts import elsewhere, part
 from parts.markdown import table
-from seatrial.trial.files.campaign import Case, load_campaign, run_campaign
+from seatrial.trial.campaigns.campaign import Case, load_campaign, run_campaign
 from seatrial.trial.running.run import Result
 
 

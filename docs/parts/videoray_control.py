@@ -10,9 +10,9 @@ from parts import elsewhere, part
 from parts.markdown import table
 from parts.settings import parameters, variants
 from parts.ships import verdicts
-from seatrial.trial.files.campaign import load_campaign, run_campaign
+from seatrial.model.readable import number
+from seatrial.trial.campaigns.campaign import load_campaign, run_campaign
 from seatrial.trial.records.run_folder import load_run
-from seatrial.trial.reports.readable import number
 
 part("videoray-surface-parameters")(partial(parameters, "videoray-surface"))
 part("videoray-surface-variants")(partial(variants, "videoray-surface"))

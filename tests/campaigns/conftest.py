@@ -2,7 +2,7 @@
 
 import pytest
 
-from seatrial.trial.files.campaign import load_campaign
+from seatrial.trial.campaigns.campaign import load_campaign
 
 COMPONENT = '''
 import os, time

@@ -13,9 +13,9 @@ import pandas as pd
 import pytest
 
 from seatrial.errors import InputError
+from seatrial.trial.campaigns.campaign import load_campaign
 from seatrial.trial.campaigns.shipment import packed, unpacked
 from seatrial.trial.campaigns.sweep import How, run_sweep
-from seatrial.trial.files.campaign import load_campaign
 
 pytestmark = [
     pytest.mark.interop,

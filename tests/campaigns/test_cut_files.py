@@ -8,9 +8,9 @@ import pandas as pd
 import pytest
 
 from seatrial.errors import InputError
+from seatrial.trial.campaigns.campaign import run_campaign
 from seatrial.trial.campaigns.ended import Ended
 from seatrial.trial.campaigns.sweep import How, run_sweep
-from seatrial.trial.files.campaign import run_campaign
 from seatrial.trial.running.hooks import Hooks
 from seatrial.trial.running.measuring import Measured
 from tests.cli.test_stop import SEATRIAL

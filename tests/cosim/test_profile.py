@@ -6,7 +6,7 @@ import pytest
 from seatrial.devices.servo import Servo
 from seatrial.devices.thruster import Thruster
 from seatrial.errors import InputError
-from seatrial.fmi.building.index import component_class
+from seatrial.fmi.components.index import component_class
 from seatrial.system.profile.profile import Profiles, check_profile, load_profile
 
 GOOD = """\

@@ -14,8 +14,8 @@ from pathlib import Path
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.fmi.isolation import sandbox
 from seatrial.fmi.isolation.pipe import FAILURE, RESULT, frame
+from seatrial.fmi.loading import sandbox
 from seatrial.trial.files.trial import load_trial
 from seatrial.trial.running.run import run_trial
 

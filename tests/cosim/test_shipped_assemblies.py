@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.fmi.building.index import component_class
+from seatrial.fmi.components.index import component_class
 from seatrial.system.assembly import assemble
 from seatrial.system.flattening import load_rig
 from seatrial.system.system import System

@@ -18,7 +18,7 @@ import typer
 from seatrial.cli.survey import survey_folder
 from seatrial.errors import InputError
 from seatrial.fmi.building.export import build_fmu
-from seatrial.fmi.building.source import named_sources
+from seatrial.fmi.components.source import named_sources
 from seatrial.sim.survey import surveying
 from seatrial.sim.survey.surveying import Surveyed, fmus_in, survey
 from seatrial.sim.survey.ways import WAYS

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from seatrial.fmi.building.index import component_class
+from seatrial.fmi.components.index import component_class
 from seatrial.system.parameters import load_vehicle
 
 DATA = Path(__file__).parents[1] / "reference"

@@ -5,7 +5,7 @@ import copy
 import numpy as np
 import pytest
 
-from seatrial.fmi.building.index import component_class, components
+from seatrial.fmi.components.index import component_class, components
 from seatrial.model.component import Component, Output
 from seatrial.physics.craft.manoeuvring_ship import ManoeuvringShip
 from seatrial.physics.craft.marine_craft import MarineCraft

@@ -7,7 +7,7 @@ import pytest
 from seatrial.control.guidance_orders import TARGETS
 from seatrial.control.sailing_guidance import SailingGuidance
 from seatrial.control.velocity_filter import VelocityFilter
-from seatrial.fmi.building.source import shipped_sources
+from seatrial.fmi.components.source import shipped_sources
 from seatrial.fmi.dependencies.found import feedthrough_of
 from seatrial.model.component import Component
 from seatrial.model.faults.catalogue import FAILURES as FAULTS

@@ -11,7 +11,7 @@ from seatrial.devices.servo import Servo
 from seatrial.devices.servo_driver import ServoDriver
 from seatrial.devices.thruster import Thruster
 from seatrial.errors import InputError
-from seatrial.fmi.building.source import shipped_sources
+from seatrial.fmi.components.source import shipped_sources
 
 from .running import started
 

@@ -9,7 +9,7 @@ import math
 import numpy as np
 import pytest
 
-from seatrial.fmi.building.index import component_class
+from seatrial.fmi.components.index import component_class
 from seatrial.system.parameters import load_vehicle
 from seatrial.system.profile.profile import load_profile
 

@@ -13,7 +13,7 @@ from fmpy.fmi2 import FMU2Slave
 
 from seatrial.fmi.building.bundle import bundle
 from seatrial.fmi.building.export import cached_fmu
-from seatrial.fmi.building.source import ComponentSource, find_source
+from seatrial.fmi.components.source import ComponentSource, find_source
 
 from . import boats
 

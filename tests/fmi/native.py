@@ -8,8 +8,8 @@ from pathlib import Path
 
 import fmpy
 
+from seatrial.fmi.files.terminals import PLACE
 from seatrial.fmi.instance import Instance
-from seatrial.fmi.terminals import PLACE
 
 SLAVES = Path(__file__).parent / "slaves"
 

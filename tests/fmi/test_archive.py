@@ -15,8 +15,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from seatrial.errors import InputError
-from seatrial.fmi.loading import archive
-from seatrial.fmi.loading.archive import content_hash, unpacked
+from seatrial.fmi.files import archive
+from seatrial.fmi.files.archive import content_hash, unpacked
 from seatrial.fmi.loading.load import load_fmu
 
 

@@ -16,7 +16,7 @@ import pytest
 from seatrial.errors import InputError, SimulationError
 from seatrial.fmi.building.bundle import bundle, bundled
 from seatrial.fmi.building.export import build_fmu, fmu_bytes
-from seatrial.fmi.building.source import find_source, shipped_sources
+from seatrial.fmi.components.source import find_source, shipped_sources
 from seatrial.fmi.loading.load import load_fmu, open_instance
 
 from . import boats
@@ -70,7 +70,7 @@ def test_builds_are_identical_whatever_the_folder_process_and_hash_seed(
     own = fmu_bytes(source(here, "Counter"))
     assert fmu_bytes(source(there, "Counter")) == own
     code = (
-        "import sys; from pathlib import Path; from seatrial.fmi.building.source import find_source; "
+        "import sys; from pathlib import Path; from seatrial.fmi.components.source import find_source; "
         "from seatrial.fmi.building.export import build_fmu; "
         "build_fmu(find_source('counter.py:Counter', Path(sys.argv[1])), Path(sys.argv[2]))"
     )
@@ -120,7 +120,7 @@ def test_a_missing_package_is_named_with_its_cure(write, tmp_path: Path) -> None
         'class Boat(Component):\n    """Needs a package."""\n',
     )
     build = (
-        "import sys; from pathlib import Path; from seatrial.fmi.building.source import find_source; "
+        "import sys; from pathlib import Path; from seatrial.fmi.components.source import find_source; "
         "from seatrial.fmi.building.export import build_fmu; "
         "build_fmu(find_source('boat.py:Boat', Path(sys.argv[1])), Path(sys.argv[2]))"
     )

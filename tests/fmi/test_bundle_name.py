@@ -13,7 +13,7 @@ from seatrial.fmi.building import bundle_name as module
 from seatrial.fmi.building.bundle import bundle
 from seatrial.fmi.building.bundle_name import bundle_name
 
-SOURCE = b"import boat\nimport colorsys\nfrom seatrial.fmi.building.slave import Slave\n"
+SOURCE = b"import boat\nimport colorsys\nfrom seatrial.fmi.slave import Slave\n"
 
 
 @pytest.fixture

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from seatrial.fmi.building.index import component_class, components
 from seatrial.fmi.compiled_functions import compiled_function
+from seatrial.fmi.components.index import component_class, components
 from seatrial.fmi.direct import DirectInstance
 from seatrial.model.plant import Plant
 

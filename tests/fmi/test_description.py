@@ -11,7 +11,7 @@ from fmpy.validation import validate_fmu
 
 from seatrial.errors import InputError
 from seatrial.fmi.building.export import build_fmu
-from seatrial.fmi.building.source import shipped_sources
+from seatrial.fmi.components.source import shipped_sources
 
 from .conftest import built_once, source
 

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from seatrial.errors import DiscardError, SimulationError
-from seatrial.fmi.building.scalars import INTEGERS
+from seatrial.fmi.files.options import FmuOptions
+from seatrial.fmi.files.scalars import INTEGERS
 from seatrial.fmi.loading.load import load_fmu, open_instance
-from seatrial.fmi.loading.options import FmuOptions
 
 from .native import changed, read, started, without_events
 

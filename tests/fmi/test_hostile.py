@@ -15,7 +15,7 @@ from lxml import etree
 
 from benchmarks.big_models import description
 from seatrial.errors import InputError
-from seatrial.fmi.loading import xmlfile
+from seatrial.fmi.files import xmlfile
 from seatrial.fmi.loading.load import load_fmu, open_instance
 
 from .native import SLAVES, changed, described_fmu, read, started

@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.fmi.building import index
-from seatrial.fmi.building.index import component_class, components
-from seatrial.fmi.building.source import shipped_sources
+from seatrial.fmi.components import index
+from seatrial.fmi.components.index import component_class, components
+from seatrial.fmi.components.source import shipped_sources
 from seatrial.model.component import Component
 from tests.packages import installed
 

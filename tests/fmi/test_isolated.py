@@ -14,9 +14,9 @@ import pytest
 
 from seatrial.errors import DiscardError, InputError, SimulationError
 from seatrial.fmi.building.export import build_fmu
+from seatrial.fmi.interfaces.loaded import LoadedFmu
 from seatrial.fmi.isolation.isolated import IsolatedInstance
 from seatrial.fmi.loading.load import load_fmu, open_instance
-from seatrial.fmi.loading.loaded import LoadedFmu
 
 from . import crashing
 from .conftest import source

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from seatrial.errors import InputError, SimulationError
-from seatrial.fmi.building.source import ComponentSource
+from seatrial.fmi.components.source import ComponentSource
 from seatrial.fmi.direct import DirectInstance
 from seatrial.fmi.loading.load import load_fmu, open_instance
 

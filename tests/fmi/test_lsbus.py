@@ -11,8 +11,8 @@ from typer.testing import CliRunner
 
 from seatrial import Simulation
 from seatrial.errors import InputError, SimulationError
+from seatrial.fmi.files.terminals import PLACE
 from seatrial.fmi.loading.load import load_fmu
-from seatrial.fmi.terminals import PLACE
 from seatrial.trial.files.trial import load_trial
 from seatrial.trial.running.run import run_trial
 from seatrial_kits.can.frame import Frame

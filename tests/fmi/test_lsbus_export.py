@@ -23,11 +23,11 @@ from lxml import etree
 from seatrial import Simulation
 from seatrial.errors import InputError
 from seatrial.fmi.building.export import build_fmu
-from seatrial.fmi.building.index import components
-from seatrial.fmi.building.source import ComponentSource, find_source
 from seatrial.fmi.compiler import HERE, library_here
+from seatrial.fmi.components.index import components
+from seatrial.fmi.components.source import ComponentSource, find_source
+from seatrial.fmi.files.terminals import PLACE
 from seatrial.fmi.loading.load import load_fmu
-from seatrial.fmi.terminals import PLACE
 from seatrial.fmi.version3.buses import can_terminals
 from seatrial.fmi.version3.sources import front_sources
 from seatrial.model.component import Component, Input, Output, terminal

@@ -14,11 +14,11 @@ from benchmarks.big_models import RIG, TRIAL, description, write_fmu
 from seatrial.cli.fmu import fmu_app
 from seatrial.cli.main import app
 from seatrial.errors import InputError
+from seatrial.fmi.files.osp import osp_file
+from seatrial.fmi.files.terminals import MemberReader
 from seatrial.fmi.instance import Variables
 from seatrial.fmi.loading.conformance import problems
 from seatrial.fmi.loading.load import load_fmu
-from seatrial.fmi.loading.osp import osp_file
-from seatrial.fmi.terminals import MemberReader
 from seatrial.trial.files.trial import load_trial
 from seatrial.trial.running.run import run_trial
 from seatrial_kits.interchange.osp.groups import Groups

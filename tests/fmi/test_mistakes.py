@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.fmi.building.index import component_class, components
+from seatrial.fmi.components.index import component_class, components
 from seatrial.fmi.dependencies.checked import check
 from seatrial.fmi.dependencies.perturbation import refuse_dependent
 from seatrial.model.component import Component, Input, Output, Parameter

@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from seatrial.errors import InputError, SimulationError
+from seatrial.fmi.files.options import FmuOptions
 from seatrial.fmi.instance import Instance
 from seatrial.fmi.isolation.isolated import IsolatedInstance
 from seatrial.fmi.loading.load import load_fmu, open_instance
-from seatrial.fmi.loading.options import FmuOptions
 
 from .models import build_model_fmu
 from .native import changed, read, started

@@ -10,8 +10,8 @@ from lxml import etree
 
 from seatrial.errors import InputError
 from seatrial.fmi.direct import DirectInstance
+from seatrial.fmi.files.osp import osp_xml
 from seatrial.fmi.loading.load import load_fmu
-from seatrial.fmi.loading.osp import osp_xml
 from seatrial.model.terminals import Terminal
 
 from . import boats

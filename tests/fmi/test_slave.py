@@ -11,7 +11,7 @@ import pytest
 from fmpy.fmi1 import FMICallException
 
 from seatrial.fmi.building.export import build_fmu
-from seatrial.fmi.building.source import ComponentSource
+from seatrial.fmi.components.source import ComponentSource
 
 from .conftest import Raw
 

@@ -13,12 +13,12 @@ from typer.testing import CliRunner
 
 from seatrial.cli.fmu import fmu_app
 from seatrial.errors import InputError, SeatrialError
-from seatrial.fmi.building.source import find_source
 from seatrial.fmi.compiler import HERE, library_here
+from seatrial.fmi.components.source import find_source
+from seatrial.fmi.files.options import INTERFACES, FmuOptions
 from seatrial.fmi.instance import Instance
 from seatrial.fmi.isolation.isolated import IsolatedInstance
 from seatrial.fmi.loading.load import load_fmu, open_instance
-from seatrial.fmi.loading.options import INTERFACES, FmuOptions
 from seatrial_kits.native.export import build_native_fmu as exported
 
 from .models import build_model_fmu

@@ -13,8 +13,8 @@ from pyarrow import parquet
 
 from seatrial.errors import InputError, SimulationError
 from seatrial.fmi.building.export import build_fmu
-from seatrial.fmi.building.source import TableSource, find_source
-from seatrial.fmi.building.table_file import frozen_table
+from seatrial.fmi.components.source import TableSource, find_source
+from seatrial.fmi.components.table_file import frozen_table
 from seatrial.fmi.direct import DirectInstance
 from seatrial.fmi.instance import Instance
 from seatrial.fmi.loading.conformance import problems

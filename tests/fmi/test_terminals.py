@@ -13,10 +13,10 @@ from lxml import etree
 
 from seatrial.errors import InputError
 from seatrial.fmi.building.export import build_fmu
-from seatrial.fmi.building.source import ComponentSource, shipped_sources
+from seatrial.fmi.components.source import ComponentSource, shipped_sources
 from seatrial.fmi.direct import DirectInstance
+from seatrial.fmi.files.terminals import PLACE
 from seatrial.fmi.loading.load import load_fmu
-from seatrial.fmi.terminals import PLACE
 from seatrial.model.terminals import Terminal
 
 from . import boats

@@ -22,8 +22,8 @@ from pymavlink import mavutil
 
 from seatrial.errors import InputError, SimulationError
 from seatrial.fmi.building.export import build_fmu
-from seatrial.fmi.building.source import ComponentSource, find_source
 from seatrial.fmi.compiler import HERE, checked_platforms, library_here
+from seatrial.fmi.components.source import ComponentSource, find_source
 from seatrial.fmi.loading.load import load_fmu, open_instance
 from seatrial.fmi.version3.sources import front_sources
 from seatrial.links.text import encode, packed, unpacked

@@ -8,7 +8,7 @@ import tempfile
 from pathlib import Path
 
 from seatrial.errors import InputError, SimulationError
-from seatrial.fmi.building.source import table_source
+from seatrial.fmi.components.source import table_source
 
 
 def one(data: bytes) -> None:

@@ -10,7 +10,7 @@ from seatrial.errors import InputError
 from seatrial.system.flattening import load_rig
 from seatrial.system.parameters import load_vehicle
 from seatrial.system.profile.profile import load_profile
-from seatrial.trial.files.campaign import load_campaign
+from seatrial.trial.campaigns.campaign import load_campaign
 from seatrial.trial.files.trial import load_trial
 from seatrial_kits.identify.studies.planar_experiment import read_experiment
 

@@ -11,10 +11,10 @@ from typing import Any
 
 import fmpy
 
-from seatrial.fmi.building.index import component_class, components
-from seatrial.fmi.building.source import find_source
 from seatrial.fmi.cache import cache_folder
 from seatrial.fmi.compiler import library_here
+from seatrial.fmi.components.index import component_class, components
+from seatrial.fmi.components.source import find_source
 from seatrial.model.component import Component
 from seatrial.model.faults.text import FAILURES, fault_text
 from seatrial.model.plant import Plant

@@ -14,7 +14,7 @@ from fmpy import extract, read_model_description
 
 from seatrial.cli.doctor import preload_line
 from seatrial.fmi.building.export import build_fmu
-from seatrial.fmi.building.source import shipped_sources
+from seatrial.fmi.components.source import shipped_sources
 from seatrial.fmi.direct import DirectInstance
 
 STEPS, H, FORCE = 50, 0.01, 40.0

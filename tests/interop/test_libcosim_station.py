@@ -16,7 +16,7 @@ from pymavlink.dialects.v20 import all as mavlink
 
 from seatrial.fmi.building.bundle import bundled
 from seatrial.fmi.building.export import cached_fmu
-from seatrial.fmi.building.source import find_source
+from seatrial.fmi.components.source import find_source
 from seatrial.fmi.loading.load import load_fmu
 
 from .running import HOST, free_port

@@ -18,9 +18,9 @@ from typing import Any
 import pytest
 from scipy.integrate import solve_ivp
 
+from seatrial.fmi.files.options import INTERFACES, FmuOptions, Interface
 from seatrial.fmi.instance import Instance
 from seatrial.fmi.loading.load import load_fmu, open_instance
-from seatrial.fmi.loading.options import INTERFACES, FmuOptions, Interface
 
 pytestmark = pytest.mark.interop
 FOLDER = os.environ.get("SEATRIAL_REFERENCE_FMUS", "")

@@ -16,7 +16,7 @@ import pytest
 from seatrial import kits as of_kits
 from seatrial.cli.commands import commands
 from seatrial.errors import InputError
-from seatrial.fmi.building.index import component_class, components
+from seatrial.fmi.components.index import component_class, components
 from seatrial.kits import KINDS, kits, read_kit
 from seatrial.moved import MOVED
 from seatrial.plugins import offered, service

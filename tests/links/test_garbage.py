@@ -6,7 +6,7 @@ import random
 
 import pytest
 
-from seatrial.fmi.building.index import component_class, components
+from seatrial.fmi.components.index import component_class, components
 from seatrial.links.text import Outbox
 from seatrial.model.component import Component
 from seatrial_kits.can.frame import Frame

@@ -15,7 +15,7 @@ import pytest
 
 import seatrial
 from seatrial.errors import InputError
-from seatrial.fmi.building.index import component_class, shipped_names
+from seatrial.fmi.components.index import component_class, shipped_names
 from seatrial.kits import OURS
 from seatrial.links.endpoints.url import TRANSPORTS, open_endpoint
 from seatrial.links.hardware import (

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from itertools import product
 from typing import NamedTuple
 
-from seatrial.fmi.building.index import component_class, components
+from seatrial.fmi.components.index import component_class, components
 from seatrial.links.endpoints.url import TRANSPORTS
 from seatrial_kits.can.gateway_url import FORMS
 

@@ -11,9 +11,9 @@ from scipy.linalg import expm
 
 from seatrial.errors import InputError, SimulationError
 from seatrial.trial.files.trial import Trial, load_trial
-from seatrial.trial.records.convergence import Convergence, load_convergence, run_convergence
 from seatrial.trial.records.run_folder import load_run
 from seatrial.trial.reports.report import write_report
+from seatrial.trial.running.convergence import Convergence, load_convergence, run_convergence
 from seatrial.trial.running.run import Hooks
 
 from ..cosim.bodies import TEXT as BODIES

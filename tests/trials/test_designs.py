@@ -10,7 +10,7 @@ import pytest
 from scipy.stats import qmc
 
 from seatrial.errors import InputError
-from seatrial.trial.files.designs import Design, drawn
+from seatrial.trial.campaigns.designs import Design, drawn
 
 
 def numbers(key: str = "a", **content: Any) -> np.ndarray:

@@ -16,8 +16,8 @@ from .written import as_engine
 if TYPE_CHECKING:
     import pandas
 
+    from ..trial.campaigns.campaign import Campaign
     from ..trial.campaigns.sweep import How
-    from ..trial.files.campaign import Campaign
     from ..trial.running.hooks import Hooks
 
 Done = Callable[[object, object], None]
@@ -155,8 +155,8 @@ def run_campaign(
     `load_campaign_result`.
     """
     from ..links.hardware import confined
+    from ..trial.campaigns.campaign import load_campaign
     from ..trial.campaigns.sweep import How, keep_named
-    from ..trial.files.campaign import load_campaign
 
     loaded, kept = load_campaign(str(campaign)), keep_named(keep, "keep")
     target = None if out is None else Path(out)
@@ -193,7 +193,7 @@ def _warning() -> Hooks:
 def _run(
     campaign: Campaign, out: Path | None, engine: str, jobs: int | None, resume: bool, done: Done
 ) -> Path:
-    from ..trial.files.campaign import run_campaign as run
+    from ..trial.campaigns.campaign import run_campaign as run
 
     folder, results = run(
         campaign,
@@ -227,10 +227,10 @@ def ask_campaign(
     """
     from ..links.hardware import confined
     from ..plugins import service
+    from ..trial.campaigns.campaign import load_campaign
+    from ..trial.campaigns.cases import Case
     from ..trial.campaigns.ended import Ended
     from ..trial.campaigns.sweep import How
-    from ..trial.files.campaign import load_campaign
-    from ..trial.files.cases import Case
 
     finished = 0
 

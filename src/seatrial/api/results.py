@@ -82,8 +82,8 @@ class TrialResult:
     @property
     def passed(self) -> bool:
         """True if the run came to its end and every criterion is as expected: exit status 0."""
+        from ..trial.records.ending import is_whole
         from ..trial.records.run_folder import is_as_expected
-        from ..trial.running.ending import is_whole
 
         counted = len(self.verdicts) == len(self.manifest["criteria"])
         return (

@@ -11,12 +11,12 @@ from rich.markup import escape
 from rich.table import Table
 
 from ..errors import InputError
+from ..model.readable import number, person_scale
 from ..trial.files.trial import load_trial
 from ..trial.records.accuracy import Accuracy, by_port, order_text, spread_text
-from ..trial.records.convergence import Convergence, run_convergence
 from ..trial.reports.playing import play
-from ..trial.reports.readable import number, person_scale
 from ..trial.reports.report import write_report
+from ..trial.running.convergence import Convergence, run_convergence
 from ..trial.running.hooks import Hooks
 from ..trial.running.run import Result
 from .answer import answer

@@ -14,18 +14,18 @@ from rich.markup import escape
 from rich.table import Table
 
 from ..errors import InputError, unknown, unmatched
-from ..fmi.building.description import summary
 from ..fmi.building.export import build_fmu
-from ..fmi.building.source import ComponentSource, find_source, named_sources, shipped_sources
 from ..fmi.cache import write_named
 from ..fmi.compiler import TARGETS, checked_platforms
+from ..fmi.components.source import ComponentSource, find_source, named_sources, shipped_sources
+from ..fmi.description import summary
 from ..fmi.direct import DirectInstance
+from ..fmi.files.osp import osp_file, osp_xml
 from ..fmi.forwarding.libraries import why_unchecked
 from ..fmi.instance import Value, Variable
+from ..fmi.interfaces.loaded import LoadedFmu
 from ..fmi.loading.built import build_needed, compiler_of
 from ..fmi.loading.load import load_fmu, open_instance
-from ..fmi.loading.loaded import LoadedFmu
-from ..fmi.loading.osp import osp_file, osp_xml
 from ..plugins import service
 from ..system.parameters import load_vehicle, split_reference
 from ..system.system import settable

@@ -7,7 +7,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from ..printable import printable
-from ..trial.running.ending import is_whole
+from ..trial.records.ending import is_whole
 from ..trial.running.run import Result
 from ..whole_file import write_whole
 

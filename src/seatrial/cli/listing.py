@@ -11,7 +11,7 @@ import typer
 from rich.markup import escape
 
 from ..errors import InputError, unmatched
-from ..fmi.building.source import named_sources
+from ..fmi.components.source import named_sources
 from ..reading import toml_content
 from ..shipped import available
 from .answer import answer

@@ -9,13 +9,13 @@ from typing import Annotated, Any
 import typer
 from rich.markup import escape
 
-from ..fmi.building.index import component_class
+from ..fmi.components.index import component_class
 from ..model.ports import Parameter
+from ..model.readable import from_si, number, person_unit
 from ..system.profile.file import Actuator, Home, Identity
 from ..system.profile.kinds import GROUPS, keys
 from ..system.profile.profile import NO_SOURCE, Profile, check_profile
 from ..system.tunables import Tunable
-from ..trial.reports.readable import from_si, number, person_unit
 from .show import console, print_notes
 
 profile_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)

@@ -11,14 +11,14 @@ from rich.markup import escape
 from rich.segment import Segment
 from rich.table import Table
 
+from ..model.readable import number
 from ..printable import printable
-from ..trial.reports.readable import number
-from ..trial.running.ending import is_whole
+from ..trial.records.ending import is_whole
 from .answer import answer
 
 if TYPE_CHECKING:
+    from ..trial.campaigns.cases import Case
     from ..trial.criteria.verdict import Verdict
-    from ..trial.files.cases import Case
     from ..trial.running.run import Result
 
 

@@ -8,11 +8,11 @@ import typer
 from rich.markup import escape
 
 from ..errors import InputError, SimulationError
+from ..trial.campaigns.campaign import Campaign
+from ..trial.campaigns.cases import Case
 from ..trial.campaigns.ended import Ended
 from ..trial.campaigns.page import write_table_page
 from ..trial.campaigns.sweep import How, Summary, run_sweep
-from ..trial.files.campaign import Campaign
-from ..trial.files.cases import Case
 from ..trial.running.hooks import Hooks
 from .answer import answer
 from .show import console, print_notes

@@ -10,9 +10,9 @@ from pathlib import Path
 from rich.markup import escape
 from rich.table import Table
 
+from ..fmi.files.proposals import proposed_terminals
+from ..fmi.files.terminals import scalars_of
 from ..fmi.instance import Variables
-from ..fmi.loading.proposals import proposed_terminals
-from ..fmi.terminals import scalars_of
 from ..model.terminals import Terminal
 from .show import console, print_table
 

@@ -17,7 +17,7 @@ class Fallible(Component):
     """Base of the devices that fail on demand, by their input ``fault``.
 
     It is ``none``, one of `FAILURES`, or, of a sensor, a fault of what it measures
-    (`seatrial.model.faults.text`). What each of them does is in `Sensor` and `Actuator`; with ``none``
+    (`model.faults.text`). What each of them does is in `Sensor` and `Actuator`; with ``none``
     it is as if there were no such input. It acts from the device's next measurement, or step, on.
     """
 

@@ -1,9 +1,9 @@
 """Safe states held by the keeper of this process, to be sent if it ends without doing so.
 
 A link that can move something holds here what stops that, and the descriptor through which it
-goes. The keeper (`trial.running.keeper`), if there is one, gets both over a socket that this process
-inherited, and sends the data if the process ends without having released them, whatever ends it.
-It ends the process itself if that hangs.
+goes. The keeper (`trial.running.keeper`), if there is one, gets both over a socket that this
+process inherited, and sends the data if the process ends without having released them, whatever
+ends it. It ends the process itself if that hangs.
 """
 
 from __future__ import annotations

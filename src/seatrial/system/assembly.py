@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ..errors import InputError, unknown
-from ..sim.bonds import bonds_of
+from .bonds import bonds_of
 from .component_parameters import give_parameters, variants_of
 from .connecting import connect
 from .loading import load_part
 from .profile.profile import Profiles
 from .rig import Rig
-from .shape.ports import resolve_shapes
+from .shape_ports import resolve_shapes
 from .system import Engine, System
 from .tuning import connect_tunables
 

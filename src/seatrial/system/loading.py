@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 from ..errors import InputError
 from ..fmi.building.bundle_name import bundle_name
-from ..fmi.building.source import find_source
+from ..fmi.components.source import find_source
 from ..fmi.dependencies.checked import checked
 from ..fmi.direct import DirectInstance
+from ..fmi.files.options import FmuOptions
 from ..fmi.instance import Instance
-from ..fmi.loading.options import FmuOptions
 from ..model.component import seconds
 from .part import Part
 from .rig import ComponentEntry, Rig, Scope, duration_ns
@@ -21,7 +21,7 @@ from .system import Engine
 from .values import from_written
 
 if TYPE_CHECKING:
-    from ..fmi.loading.loaded import LoadedFmu
+    from ..fmi.interfaces.loaded import LoadedFmu
 
 _TIMEOUT_S = 60.0
 """Longest wall time of a call of an isolated component, where the rig says nothing else."""

@@ -11,7 +11,7 @@ from pydantic import Field
 
 from ..errors import InputError, unknown
 from .files import FileModel, Source, file_bytes, find_file, parsed_toml, validated
-from .shape.shape import Shape, ShapePart
+from .shape import Shape, ShapePart
 
 Mark = Literal["stated", "corrected", "assumed", "identified"]
 

@@ -12,7 +12,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from ..errors import InputError
-from ..fmi.loading.options import Interface
+from ..fmi.files.options import Interface
 from ..model.component import NS
 from ..model.units import quantity
 from .files import FileModel, Source, validated

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from ..api.written import as_duration
 from ..links.text import Inbox, encode
+from ..model.readable import number
 from ..system.rig import duration_ns
-from ..trial.reports.readable import number
 
 if TYPE_CHECKING:
     from ..api.simulation import Simulation

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..model.readable import number
 from ..trial.criteria.course import Course
-from ..trial.reports.readable import number
 
 WIDTH, HEIGHT = 64, 9
 _SHARE = 0.1

@@ -31,7 +31,7 @@ class TrialFile(pytest.File):
 
     def collect(self) -> Iterator[TrialItem]:
         """Yield a test for each run. Raises InputError for what is wrong in the file."""
-        from ..trial.files.campaign import load_campaign
+        from ..trial.campaigns.campaign import load_campaign
         from ..trial.files.trial import load_trial
 
         try:

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from ..api.written import as_duration
+from ..model.readable import number
 from ..system.rig import duration_ns
-from ..trial.reports.readable import number
 
 if TYPE_CHECKING:
     from ..api.simulation import Simulation

@@ -11,7 +11,7 @@ from rich.box import SIMPLE
 from rich.table import Table
 
 from seatrial.cli.show import console
-from seatrial.trial.reports.readable import number
+from seatrial.model.readable import number
 
 from .heading import HeadingDesign, design_heading
 from .heading_page import rows, stability, write_design

@@ -10,7 +10,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from seatrial.cli.show import console
-from seatrial.trial.reports.readable import number
+from seatrial.model.readable import number
 
 from .hull_file import estimate_damping
 

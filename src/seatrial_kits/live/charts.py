@@ -9,8 +9,8 @@ import numpy as np
 from viser import uplot
 
 from seatrial.errors import InputError
+from seatrial.model.readable import from_si, person_scale
 from seatrial.trial.criteria.expressions import FloatArray
-from seatrial.trial.reports.readable import from_si, person_scale
 
 _MOST = 6
 _POINTS = 600

@@ -9,7 +9,7 @@ from typing import Any
 
 from seatrial.errors import InputError
 from seatrial.model.faults.catalogue import KINDS
-from seatrial.trial.reports.readable import person_scale
+from seatrial.model.readable import person_scale
 
 from .by_hand import ByHand
 from .helm import Helm

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 
 from seatrial.errors import InputError
+from seatrial.model.readable import number
 from seatrial.trial.criteria.expressions import FloatArray
 from seatrial.trial.records.run_folder import load_run
-from seatrial.trial.reports.readable import number
 
 from .by_hand import ByHand
 from .cameras import Cameras

@@ -1,4 +1,4 @@
-"""Triangles of the parts of a vehicle's shape (`system.shape.shape`), in the part's own axes."""
+"""Triangles of the parts of a vehicle's shape (`system.shape`), in the part's own axes."""
 
 from __future__ import annotations
 

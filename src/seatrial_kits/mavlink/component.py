@@ -20,7 +20,6 @@ from seatrial.links.parameter_validation import (
 from seatrial.links.unconnected import is_connected
 from seatrial.model.sampled import Sampled
 
-from .missions.pause import stand_still
 from .modes import MANUAL_MODES, dialect
 from .node import Node
 from .outputs import SHARED, Outputs
@@ -29,6 +28,7 @@ from .parameters.parameters import vehicle_parameters
 from .parameters.servo import read_servos
 from .parameters.table import ParameterTable
 from .parameters.tunable import MOST_TUNABLES, tunable_parameters
+from .pause import stand_still
 from .ports import NAMED_VALUES, VEHICLE_TYPES, MavlinkPorts
 from .services.failures import UNITS, failing_units
 from .settings import Settings

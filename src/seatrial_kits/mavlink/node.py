@@ -9,14 +9,15 @@ from pathlib import Path
 from seatrial.links.geodesy import Ned
 
 from .codec import Message
-from .failsafe import Failsafe
 from .missions.plan import Plans
 from .parameters.pack import packed
 from .parameters.table import ParameterTable
+from .service import Builder, Handler, Receiver, Service
 from .services.arming import ArmingService
 from .services.battery import BatteryService
 from .services.clock import ClockService
 from .services.commands import CommandService
+from .services.failsafe import Failsafe
 from .services.failures import FailureService
 from .services.fence import FenceService
 from .services.files import Files, FileService
@@ -31,7 +32,6 @@ from .services.parameters import ParameterService
 from .services.presence import PresenceService
 from .services.rally import RallyService
 from .services.refusals import RefusalService
-from .services.service import Builder, Handler, Receiver, Service
 from .services.stations import StationService
 from .services.streams import StreamService
 from .services.transfer import TransferService

@@ -22,10 +22,10 @@ from seatrial.model.component import (
 from seatrial.model.sampled import Sampled
 from seatrial.model.terminals import ORDERED
 
-from .failsafe import ACTIONS
 from .outputs import SHARED
 from .parameters.simulation import FASTEST, SLOWEST
 from .parameters.tunable import MOST_TUNABLES, tunable_parameters
+from .services.failsafe import ACTIONS
 from .services.failures import UNITS, failing_units
 from .settings import LIMITS
 from .vehicle import CHANNELS, FIXES

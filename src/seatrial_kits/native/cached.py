@@ -13,9 +13,9 @@ from typing import Any
 import seatrial.fmi
 from seatrial.errors import InputError
 from seatrial.fmi.building.bundle_name import bundle_name
-from seatrial.fmi.building.source import ComponentSource
 from seatrial.fmi.cache import cache_folder, write_named
 from seatrial.fmi.compiler import FLAGS, HERE, library_here, require_compiler
+from seatrial.fmi.components.source import ComponentSource
 from seatrial.fmi.forwarding.sources import SEAL
 
 from .carriers import checked, refuse
@@ -65,7 +65,7 @@ def _tool_tag() -> str:
     """Return a tag of what besides the component decides an FMU's bytes."""
     digest = hashlib.sha256(repr((FLAGS, HERE, sys.version_info[:2])).encode())
     folder, fmi = Path(__file__).parent, Path(str(seatrial.fmi.__file__)).parent
-    described = [fmi / "building/description.py", SEAL, *fmi.glob("dependencies/*.py")]
+    described = [fmi / "description.py", SEAL, *fmi.glob("dependencies/*.py")]
     for file in sorted([*described, *folder.rglob("*.py"), *folder.rglob("*.[ch]")]):
         digest.update(file.read_bytes())
     return digest.hexdigest()

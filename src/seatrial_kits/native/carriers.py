@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from seatrial.errors import InputError, SimulationError
-from seatrial.fmi.building.source import ComponentSource
+from seatrial.fmi.components.source import ComponentSource
 from seatrial.model.component import Component
 from seatrial.model.plant import Plant
 

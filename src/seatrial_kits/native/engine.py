@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from seatrial.errors import InputError
-from seatrial.fmi.building.source import ComponentSource, find_source
+from seatrial.fmi.components.source import ComponentSource, find_source
 from seatrial.fmi.direct import DirectInstance
 from seatrial.system.part import Part
 from seatrial.system.system import System

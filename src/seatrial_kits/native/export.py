@@ -13,11 +13,11 @@ from xml.etree.ElementTree import Element, SubElement, tostring
 import fmpy
 
 from seatrial import __version__
-from seatrial.fmi.building.description import describe
 from seatrial.fmi.building.packing import described_files, zipped
-from seatrial.fmi.building.source import ComponentSource
 from seatrial.fmi.cache import write_named
 from seatrial.fmi.compiler import HERE, SEMANTICS, TARGETS, TUPLES, library
+from seatrial.fmi.components.source import ComponentSource
+from seatrial.fmi.description import describe
 from seatrial.fmi.forwarding.sources import SEAL
 from seatrial.fmi.version3.description import build_description
 from seatrial.fmi.version3.sources import front_sources

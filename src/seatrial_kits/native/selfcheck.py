@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from seatrial.errors import InputError, SimulationError
-from seatrial.fmi.building.source import ComponentSource
+from seatrial.fmi.components.source import ComponentSource
 from seatrial.fmi.direct import DirectInstance
 from seatrial.fmi.instance import Instance
 from seatrial.fmi.loading.load import load_fmu, open_instance

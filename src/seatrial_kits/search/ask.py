@@ -13,22 +13,22 @@ import numpy as np
 from seatrial.errors import InputError, unknown
 from seatrial.system.files import FileModel
 from seatrial.trial.campaigns.asked import Asked, asked_of
+from seatrial.trial.campaigns.campaign import INDEX, Campaign
 from seatrial.trial.campaigns.columns import table_columns
 from seatrial.trial.campaigns.ended import Ended
 from seatrial.trial.campaigns.ended_log import EndedLog, ended_cases
 from seatrial.trial.campaigns.evaluator import Plan
 from seatrial.trial.campaigns.finding import ANSWER, Finding, read_answer
-from seatrial.trial.campaigns.sampled_checks import check
-from seatrial.trial.campaigns.sweep import Done, How, Sweep, index_of, refuse_other, workers_of
-from seatrial.trial.campaigns.table import Tables, arrow
-from seatrial.trial.files.campaign import INDEX, Campaign
-from seatrial.trial.files.questions import (
+from seatrial.trial.campaigns.questions import (
     LimitsQuestion,
     Questions,
     RareQuestion,
     SensitivityQuestion,
     WorstCaseQuestion,
 )
+from seatrial.trial.campaigns.sampled_checks import check
+from seatrial.trial.campaigns.sweep import Done, How, Sweep, index_of, refuse_other, workers_of
+from seatrial.trial.campaigns.table import Tables, arrow
 from seatrial.trial.running.hooks import Hooks
 from seatrial.trial.running.measuring import Measured
 from seatrial.trial.running.output import claim_folder, write_json

@@ -10,13 +10,13 @@ import numpy as np
 
 from seatrial.errors import InputError
 from seatrial.trial.campaigns.asked import asked_of
+from seatrial.trial.campaigns.campaign import INDEX, Campaign
+from seatrial.trial.campaigns.cases import Case
+from seatrial.trial.campaigns.distributions import Law, number_and_unit
 from seatrial.trial.campaigns.finding import read_answer
+from seatrial.trial.campaigns.questions import Questions
 from seatrial.trial.campaigns.sweep import index_of, refuse_other
 from seatrial.trial.campaigns.table import RESULTS, read_rows
-from seatrial.trial.files.campaign import INDEX, Campaign
-from seatrial.trial.files.cases import Case
-from seatrial.trial.files.distributions import Law, number_and_unit
-from seatrial.trial.files.questions import Questions
 from seatrial.trial.records.run_schema import CAMPAIGN, checked_json
 
 from .space import space_of

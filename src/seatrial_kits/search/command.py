@@ -14,8 +14,8 @@ from seatrial.cli.show import console, print_verdicts, run_entry
 from seatrial.cli.statuses import FAILED
 from seatrial.cli.stopping import stoppable
 from seatrial.errors import InputError, SimulationError
-from seatrial.trial.files.campaign import Campaign, load_campaign
-from seatrial.trial.files.cases import Case
+from seatrial.trial.campaigns.campaign import Campaign, load_campaign
+from seatrial.trial.campaigns.cases import Case
 from seatrial.trial.reports.playing import play
 from seatrial.trial.reports.report import write_report
 from seatrial.trial.running.hooks import Hooks

@@ -18,12 +18,12 @@ from seatrial.cli.stopping import stoppable
 from seatrial.cli.watch import Watch
 from seatrial.errors import InputError
 from seatrial.links.hardware import allow_network
+from seatrial.trial.campaigns.campaign import load_campaign
+from seatrial.trial.campaigns.cases import Case
 from seatrial.trial.campaigns.ended import Ended
 from seatrial.trial.campaigns.finding import Finding, Shown
 from seatrial.trial.campaigns.page import write_table_page
 from seatrial.trial.campaigns.sweep import How, keep_named
-from seatrial.trial.files.campaign import load_campaign
-from seatrial.trial.files.cases import Case
 from seatrial.trial.running.hooks import Hooks
 
 from .ask import ask as ask_campaign

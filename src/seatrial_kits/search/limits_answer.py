@@ -8,7 +8,7 @@ import numpy as np
 
 from seatrial.errors import InputError
 from seatrial.trial.campaigns.finding import Finding, Shown
-from seatrial.trial.files.questions import LimitsQuestion
+from seatrial.trial.campaigns.questions import LimitsQuestion
 
 from .asking import Asking
 from .drawing import Axes, drawn

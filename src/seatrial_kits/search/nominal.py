@@ -10,7 +10,7 @@ import numpy as np
 
 from seatrial.errors import InputError, unknown
 from seatrial.model.units import conversion
-from seatrial.trial.files.distributions import number_and_unit
+from seatrial.trial.campaigns.distributions import number_and_unit
 from seatrial.trial.files.trial import Trial
 from seatrial.trial.records import run_schema
 from seatrial.trial.records.run_folder import MANIFEST

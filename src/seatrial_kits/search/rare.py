@@ -10,7 +10,7 @@ import numpy as np
 
 from seatrial.errors import InputError
 from seatrial.trial.campaigns.finding import Finding, Shown
-from seatrial.trial.files.questions import RareQuestion
+from seatrial.trial.campaigns.questions import RareQuestion
 
 from .asking import Asking, Values
 from .drawing import drawn

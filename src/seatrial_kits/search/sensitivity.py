@@ -10,7 +10,7 @@ import numpy as np
 
 from seatrial.errors import InputError, SimulationError, unknown
 from seatrial.trial.campaigns.finding import Finding, Shown
-from seatrial.trial.files.questions import SensitivityQuestion
+from seatrial.trial.campaigns.questions import SensitivityQuestion
 from seatrial.trial.running.measuring import Measured
 
 from .asking import Asking, robustness_of

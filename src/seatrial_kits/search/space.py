@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from seatrial.errors import InputError, unknown
-from seatrial.trial.files.campaign import Campaign
-from seatrial.trial.files.designs import lower_factor
-from seatrial.trial.files.distributions import Law, read_distribution
+from seatrial.trial.campaigns.campaign import Campaign
+from seatrial.trial.campaigns.designs import lower_factor
+from seatrial.trial.campaigns.distributions import Law, read_distribution
 
 _TAILS = np.array([0.00135, 0.99865])
 """Probabilities at which a distribution without an end is cut: three standard deviations."""

@@ -6,7 +6,7 @@ import zipfile
 from pathlib import Path
 
 from seatrial.fmi.building.export import build_fmu
-from seatrial.fmi.building.source import ComponentSource, find_source
+from seatrial.fmi.components.source import ComponentSource, find_source
 from seatrial.sim.master import Master
 from seatrial.system.assembly import assemble
 from seatrial.system.system import System

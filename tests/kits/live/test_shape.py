@@ -14,7 +14,7 @@ import trimesh
 from seatrial.errors import InputError
 from seatrial.shipped import available, shipped_folder
 from seatrial.system.parameters import load_vehicle
-from seatrial.system.shape.shape import written
+from seatrial.system.shape import written
 from seatrial.trial.files.trial import load_trial
 from seatrial.trial.records.run_folder import load_run
 from seatrial.trial.running.run import run_trial

@@ -13,7 +13,7 @@ from pymavlink import mavutil
 
 from seatrial.fmi.building.bundle import bundled
 from seatrial.fmi.building.export import cached_fmu
-from seatrial.fmi.building.source import find_source
+from seatrial.fmi.components.source import find_source
 from seatrial.fmi.direct import DirectInstance
 from seatrial.fmi.isolation.isolated import IsolatedInstance
 from seatrial.fmi.loading.load import load_fmu, open_instance

@@ -9,9 +9,9 @@ from pymavlink.dialects.v20 import all as mavlink
 
 from seatrial.errors import InputError
 from seatrial.links.interruption import Interruption
-from seatrial_kits.mavlink.missions.pause import POLL_S, stand_still
 from seatrial_kits.mavlink.parameters.file import ParameterFile
 from seatrial_kits.mavlink.parameters.parameters import vehicle_parameters
+from seatrial_kits.mavlink.pause import POLL_S, stand_still
 
 from .bench import Bench
 from .ground import WAYPOINT, item

@@ -16,9 +16,9 @@ import pytest
 from fmpy.validation import validate_fmu
 
 from seatrial.errors import InputError
-from seatrial.fmi.building.index import component_class, components
-from seatrial.fmi.building.source import find_source
 from seatrial.fmi.compiler import HERE, library_here
+from seatrial.fmi.components.index import component_class, components
+from seatrial.fmi.components.source import find_source
 from seatrial.model.component import Component, Input, Parameter
 from seatrial.model.plant import Plant, State
 from seatrial_kits.native.carriers import why_python

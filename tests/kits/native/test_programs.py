@@ -13,8 +13,8 @@ from typing import Any
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.fmi.building.source import ComponentSource
 from seatrial.fmi.compiler import HERE, SEMANTICS
+from seatrial.fmi.components.source import ComponentSource
 from seatrial.model.component import Component
 from seatrial_kits.native.export import build_native_fmu
 from seatrial_kits.native.translation.domain import TranslationError

@@ -13,7 +13,7 @@ from pymavlink import mavutil
 
 from seatrial.errors import InputError
 from seatrial.fmi.building.export import build_fmu
-from seatrial.fmi.building.source import ComponentSource, find_source
+from seatrial.fmi.components.source import ComponentSource, find_source
 from seatrial_kits.native.standalone.distribution import distributions, files_of
 from seatrial_kits.native.standalone.export import build_standalone_fmu
 from seatrial_kits.native.standalone.shared_objects import least_glibc

@@ -12,9 +12,9 @@ from fmpy.validation import validate_fmu
 
 import seatrial
 from seatrial.errors import InputError, SimulationError
-from seatrial.fmi.building.index import component_class, components
-from seatrial.fmi.building.source import find_source
 from seatrial.fmi.compiler import HERE, library_here
+from seatrial.fmi.components.index import component_class, components
+from seatrial.fmi.components.source import find_source
 from seatrial.model.component import Component, Input, Noise, Output, Parameter
 from seatrial.model.faults.text import FAILURES, fault_text
 from seatrial.model.plant import Plant

@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.fmi.building.source import ComponentSource, find_source
 from seatrial.fmi.compiler import HERE, library_here
+from seatrial.fmi.components.source import ComponentSource, find_source
 from seatrial_kits.native import cached, export, selfcheck
 from seatrial_kits.native.carriers import why_python
 from seatrial_kits.native.translation.constants import fingerprint

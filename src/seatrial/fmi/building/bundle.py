@@ -26,7 +26,7 @@ from pathlib import Path
 
 from ...errors import InputError
 from ...kits import OURS
-from .source import ComponentSource
+from ..components.source import ComponentSource
 
 _COOKIE = re.compile(r"^[ \t\f]*#.*?coding[:=]")
 _NO_INIT = b'"""Part of pythonfmu (MIT licence, beside this file)."""\n'

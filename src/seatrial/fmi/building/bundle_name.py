@@ -17,8 +17,8 @@ from pathlib import Path
 
 from ... import __version__
 from ..cache import cache_folder, write_named
+from ..components.source import ComponentSource
 from .bundle import bundled
-from .source import ComponentSource
 
 _SETTLED_NS = 2 * 10**9
 """A file that was just written may be written again within the grain of its stamps."""

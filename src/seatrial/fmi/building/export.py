@@ -17,15 +17,15 @@ from ... import __version__
 from ...errors import InputError
 from ..cache import cache_folder, write_named
 from ..compiler import HERE
+from ..components.source import ComponentSource
 from ..dependencies.checked import refuse_mistakes
+from ..description import describe
 from ..forwarding.libraries import Compiler, bare_libraries, checked_libraries
+from ..slave import START_VALUES
 from .bundle import bundled
-from .description import describe
 from .packing import described_files, zipped
-from .slave import START_VALUES
-from .source import ComponentSource
 
-_DESCRIBING = ("building/description", "building/export", "building/packing", "terminals")
+_DESCRIBING = ("description", "building/export", "building/packing", "files/terminals")
 
 
 def build_fmu(

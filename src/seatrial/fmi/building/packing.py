@@ -9,7 +9,7 @@ from xml.etree.ElementTree import Element, indent, tostring
 
 from ...model.component import Component
 from ..direct import DirectInstance
-from ..terminals import PLACE, terminals_element, xml_text
+from ..files.terminals import PLACE, terminals_element, xml_text
 from ..version3.buses import add_bus_terminals, can_terminals, manifest
 from ..version3.description import arrays, version3
 

@@ -10,8 +10,8 @@ from pathlib import Path
 
 from ... import __version__
 from ...model.component import Component
-from ..building.source import ComponentSource
 from ..cache import cache_folder, write_named
+from ..components.source import ComponentSource
 from .found import Through, feedthrough_of, found
 from .names import refuse_mistyped
 from .perturbation import refuse_dependent

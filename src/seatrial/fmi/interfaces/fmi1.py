@@ -10,9 +10,9 @@ from typing import Any, ClassVar
 from fmpy import fmi1
 
 from ..instance import Reader, Variable, Writer
-from ..loading.loaded import LoadedFmu
 from ..messages import ACCEPTED, listening_callbacks1, stop_listening1
-from ..typed import TypedAccess
+from .loaded import LoadedFmu
+from .typed import TypedAccess
 
 TRUE, FALSE = fmi1.fmi1True, fmi1.fmi1False
 _STANDALONE = "application/x-fmu-sharedlibrary"

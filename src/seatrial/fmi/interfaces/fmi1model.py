@@ -7,8 +7,8 @@ from typing import Any, ClassVar
 
 from fmpy import fmi1
 
-from ..eventful import MOST_UPDATES
 from ..messages import listening_callbacks1
+from .eventful import MOST_UPDATES
 from .fmi1 import FALSE, TRUE, Fmi1Access
 from .modelexchange import ModelInstance
 

@@ -9,11 +9,11 @@ from typing import Any, ClassVar
 
 from fmpy import fmi2
 
+from ..files.lenient import Missing
 from ..instance import Variable
-from ..loading.lenient import Missing
-from ..loading.loaded import LoadedFmu
 from ..messages import ACCEPTED, DISCARD, OK, listening_callbacks, stop_listening
-from ..typed import TypedAccess
+from .loaded import LoadedFmu
+from .typed import TypedAccess
 
 _LAST_SUCCESSFUL_TIME, _TERMINATED = 2, 3
 """Of fmi2StatusKind."""

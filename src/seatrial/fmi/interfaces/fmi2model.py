@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 
 from fmpy import fmi2
 
-from ..eventful import MOST_UPDATES
+from .eventful import MOST_UPDATES
 from .fmi2 import Fmi2Access
 from .modelexchange import ModelInstance
 

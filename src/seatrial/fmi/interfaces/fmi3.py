@@ -8,11 +8,11 @@ from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar
 
 from ...errors import SimulationError
-from ..arrays import ArrayCall
-from ..eventful import MOST_UPDATES, EventfulInstance
+from ..files.arrays import ArrayCall
 from ..instance import Reader, Value, Variable, Writer
-from ..loading.loaded import LoadedFmu
 from ..messages import ACCEPTED
+from .eventful import MOST_UPDATES, EventfulInstance
+from .loaded import LoadedFmu
 
 _LARGEST_FLOAT32 = 3.4028235677973366e38  # what rounds to a greater one is infinite
 

@@ -15,13 +15,13 @@ from typing import Any
 
 from ...errors import SimulationError
 from ...model.component import NS
-from ..busport import BusPort
 from ..clocks import Clock, Timetable
+from ..files.busport import BusPort
 from ..instance import Reader, Value, Variable, Writer
-from ..loading.loaded import LoadedFmu
 from ..messages import WARNING
 from .fmi3intervals import Intervals
 from .fmi3slave import Fmi3Slave
+from .loaded import LoadedFmu
 
 _HELD = "held here"
 _Calls = list[tuple[list[str], Callable[..., Any]]]

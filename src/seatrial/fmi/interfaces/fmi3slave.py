@@ -10,11 +10,11 @@ from typing import Any, ClassVar
 from fmpy import fmi3
 
 from ...errors import SimulationError
-from ..arrays import ArrayCall
+from ..files.arrays import ArrayCall
 from ..instance import Variable
-from ..loading.loaded import LoadedFmu
 from ..messages import ACCEPTED
 from .fmi3 import Fmi3Access
+from .loaded import LoadedFmu
 
 _MOST_RETURNS = 10_000
 """Early returns from one step."""

@@ -7,10 +7,10 @@ from collections.abc import Callable, Sequence
 from typing import Any, ClassVar
 
 from ...errors import SimulationError
-from ..eventful import EventfulInstance
 from ..instance import Variable
-from ..loading.loaded import LoadedFmu
 from ..messages import ACCEPTED, DISCARD
+from .eventful import EventfulInstance
+from .loaded import LoadedFmu
 
 TOLERANCE = 1e-8
 """Relative tolerance of the solver where neither the rig nor the FMU says one."""

@@ -18,12 +18,12 @@ from typing import Any
 
 from ...errors import DiscardError, InputError, SimulationError
 from ..instance import Reader, Value, Writer
+from ..interfaces.loaded import LoadedFmu
+from ..interfaces.origins import with_origins
 from ..loading.built import with_library
-from ..loading.loaded import LoadedFmu
-from ..loading.origins import with_origins
+from ..loading.sandbox import MEMORY_GIB, PARENT, sandbox_command, sandbox_environment
 from .pipe import CALL, ENDED, INTERVAL, READ, RESULT, STEP, WRITE, Codec, Frames, frame
 from .process import EndedError, WorkerProcess
-from .sandbox import MEMORY_GIB, PARENT, sandbox_command, sandbox_environment
 from .worker import shortened
 
 _BOOT_S = 60.0

@@ -1,7 +1,7 @@
 """The process of an isolated component: it answers the frames of `IsolatedInstance`.
 
-Started as ``python -m seatrial.fmi.isolation.worker REQUESTS ANSWERS PARENT NAME``: two descriptors, the
-process to end with, and the component's name for those who list processes.
+Started as ``python -m seatrial.fmi.isolation.worker REQUESTS ANSWERS PARENT NAME``: two
+descriptors, the process to end with, and the component's name for those who list processes.
 """
 
 from __future__ import annotations
@@ -25,9 +25,10 @@ from typing import Any
 
 from ...errors import InputError, SeatrialError, SimulationError
 from ...links.safe_state import inherited
+from ..files.options import FmuOptions
 from ..instance import Instance, Reader
 from ..loading.load import load_fmu, open_instance
-from ..loading.options import FmuOptions
+from ..loading.sandbox import MEMORY
 from .orphan import end_with
 from .pipe import (
     CALL,
@@ -43,7 +44,6 @@ from .pipe import (
     Frames,
     frame,
 )
-from .sandbox import MEMORY
 
 _PR_SET_PDEATHSIG = 1
 _C_LINE_BUFFERED = 1

@@ -21,9 +21,9 @@ import fmpy
 from ...errors import InputError
 from ...whole_file import unused
 from ..cache import cache_folder, write_named
-from ..isolation.sandbox import build_sandbox
+from ..interfaces.loaded import LoadedFmu
 from ..on_demand import compilers_of
-from .loaded import LoadedFmu
+from .sandbox import build_sandbox
 from .sources import Build, read_build
 
 _HEADERS = Path(fmpy.__file__).parent / "c-code"

@@ -11,8 +11,8 @@ from itertools import islice
 from fmpy.model_description import ValidationError, read_model_description
 from lxml import etree
 
-from .loaded import LoadedFmu
-from .xmlfile import read_xml
+from ..files.xmlfile import read_xml
+from ..interfaces.loaded import LoadedFmu
 
 LARGEST_CHECKED = 256 * 2**20
 """Bytes of a model description; of a larger one FMPy's checker would hold some 5 GB and more."""

@@ -13,6 +13,13 @@ from typing import Any
 from fmpy.model_description import ValidationError, read_model_description
 
 from ...errors import InputError
+from ..files.archive import content_hash, unpacked
+from ..files.lsbus import port_terminals, read_buses, with_ports, without_own
+from ..files.modelfile import read_model
+from ..files.options import DEFAULTS, FmuOptions, Interface
+from ..files.osp import read_osp
+from ..files.terminals import read_terminals
+from ..files.variables import described, views_of
 from ..instance import Instance
 from ..interfaces.fmi1 import Fmi1Slave
 from ..interfaces.fmi1model import Fmi1Model
@@ -21,15 +28,8 @@ from ..interfaces.fmi2model import Fmi2Model
 from ..interfaces.fmi3clocks import Fmi3ClockedSlave
 from ..interfaces.fmi3model import Fmi3Model
 from ..interfaces.fmi3slave import Fmi3Slave
-from ..lsbus import port_terminals, read_buses, with_ports, without_own
-from ..terminals import read_terminals
-from .archive import content_hash, unpacked
+from ..interfaces.loaded import LoadedFmu
 from .built import with_library
-from .loaded import LoadedFmu
-from .modelfile import read_model
-from .options import DEFAULTS, FmuOptions, Interface
-from .osp import read_osp
-from .variables import described, views_of
 
 _NEEDED = "co-simulation or model exchange of FMI 1.0, 2.0 or 3.0 is needed"
 _INTERFACES = {

@@ -18,8 +18,8 @@ from typing import Any
 import fmpy
 
 from ...errors import InputError
-from .loaded import LoadedFmu
-from .xmlfile import read_xml
+from ..files.xmlfile import read_xml
+from ..interfaces.loaded import LoadedFmu
 
 _LONGEST = 200
 _C = (".c",)

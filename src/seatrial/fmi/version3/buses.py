@@ -14,9 +14,9 @@ from xml.etree.ElementTree import Element, SubElement
 from ...errors import InputError
 from ...model.component import Component
 from ...model.ports import ScalarPort
-from ..building.description import variability
-from ..lsbus import ANNOTATION, CAN, KINDS, MANIFEST
-from ..terminals import TOOL, xml_text
+from ..description import variability
+from ..files.lsbus import ANNOTATION, CAN, KINDS, MANIFEST
+from ..files.terminals import TOOL, xml_text
 
 _FIRST = 0xFFF << 20
 _MEMBERS = 8

@@ -12,8 +12,8 @@ from xml.etree.ElementTree import Element, SubElement
 
 from ...links.text import packed
 from ...model.ports import BYTES, Port, ScalarPort
-from ..loading.osp import QUANTITIES
-from ..terminals import TOOL, xml_text
+from ..files.osp import QUANTITIES
+from ..files.terminals import TOOL, xml_text
 from .buses import CanTerminal, add_bus_outputs, bus_variables
 
 MORE_THAN_ONE = 1 << 20

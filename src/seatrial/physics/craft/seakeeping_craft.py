@@ -67,8 +67,8 @@ class SeakeepingCraft(MarineCraft):
     terms = Parameter(
         "restoring coriolis damping radiation wave-loads",
         "1",
-        "terms of the equations, by the names of seatrial.physics.craft.hydrodynamics, with spaces; and "
-        "radiation",
+        "terms of the equations, by the names of seatrial.physics.craft.hydrodynamics, with "
+        "spaces; and radiation",
         check=partial(read_terms, known=_TERMS),
     )
     panel_file = Parameter(

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from ...fmi.loading.loaded import LoadedFmu
+from ...fmi.interfaces.loaded import LoadedFmu
 from ...model.component import NS
 
 _MOST_STEPS = 1000

@@ -8,10 +8,10 @@ from functools import partial
 from pathlib import Path
 
 from ...errors import InputError, SimulationError
+from ...fmi.files.options import FmuOptions
+from ...fmi.interfaces.loaded import LoadedFmu
 from ...fmi.loading.built import with_library
 from ...fmi.loading.load import load_fmu
-from ...fmi.loading.loaded import LoadedFmu
-from ...fmi.loading.options import FmuOptions
 from .agreement import LIMITS, SOLVERS, Difference, difference
 from .child import in_child
 from .experiment import Experiment, experiment_of

@@ -12,9 +12,9 @@ from typing import Any
 
 from ...errors import SimulationError
 from ...fmi.instance import Variable
+from ...fmi.interfaces.loaded import LoadedFmu
 from ...fmi.loading.built import with_library
 from ...fmi.loading.load import open_instance
-from ...fmi.loading.loaded import LoadedFmu
 from ...model.component import NS
 from ...system.assembly import assemble
 from ...system.flattening import load_rig

@@ -11,14 +11,14 @@ from pydantic import BeforeValidator, create_model
 from pydantic_core import PydanticCustomError
 
 from ...errors import InputError, unknown
-from ...fmi.building.index import component_class, components
+from ...fmi.components.index import component_class, components
 from ...model.ports import Parameter
 from ...model.units import quantity, unit
 from ..files import FileModel
 from ..tunables import TunableEntry
 
 GROUPS = ("sensors", "links")
-"""Groups of tables whose ``kind`` is a component of the index (`fmi.building.index`)."""
+"""Groups of tables whose ``kind`` is a component of the index (`fmi.components.index`)."""
 
 SHARED = (
     *("system_id", "component_id", "vehicle_type", "autopilot_type", "firmware_version", "uid"),

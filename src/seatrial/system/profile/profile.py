@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import InputError, unknown
-from ...fmi.building.index import component_class
+from ...fmi.components.index import component_class
 from ...model.ports import Parameter
 from ..files import FileModel, Source, find_file, read_toml, validated
 from ..tunables import Tunable, TunableEntry, read_tunables

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from ...errors import InputError, unknown
-from ..files.campaign import Campaign, TrialEntry
-from ..files.cases import Case, case_name
-from ..files.questions import Questions
 from ..files.trial import Trial
+from .campaign import Campaign, TrialEntry
+from .cases import Case, case_name
+from .questions import Questions
 
 
 @dataclass

@@ -17,8 +17,8 @@ from typing import Any
 
 from ...errors import InputError
 from ...links.hardware import check_host, resolved
-from ..files.campaign import Campaign
 from .asked import Asked, asked_of
+from .campaign import Campaign
 from .ended import Ended
 from .evaluator import Evaluator, Plan, still
 from .shipment import pack_folder, packed, unpacked

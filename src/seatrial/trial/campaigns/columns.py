@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from ...errors import InputError, unknown
-from ..files.campaign import Campaign
-from ..files.case_list import FAULTS, Block
-from ..files.cases import Case
-from ..files.distributions import number_and_unit
 from ..files.map_entry import MOST_PANELS, MOST_VALUES
 from ..files.trial import Trial
+from .campaign import Campaign
+from .case_list import FAULTS, Block
+from .cases import Case
+from .distributions import number_and_unit
 from .ended import Ended
 
 Kind = Literal["integer", "number", "truth", "text"]

@@ -14,14 +14,14 @@ from typing import Any, Literal, overload
 
 from ...errors import InputError, SimulationError
 from ...system.system import Engine
-from ..files.case_list import Cases
-from ..files.cases import case_folder
 from ..files.trial import Trial
 from ..running.hooks import Hooks, StoppedError
 from ..running.measuring import Measured, measured_of
 from ..running.run import Result
 from ..running.supervision import Order, Outcome, Supervisor
 from .asked import Asked
+from .case_list import Cases
+from .cases import case_folder
 from .ended import Ended
 
 Keep = Literal["all", "failed", "none"]

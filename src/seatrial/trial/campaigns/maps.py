@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from ..files.distributions import number_and_unit
 from ..files.map_entry import MOST_PANELS, MOST_VALUES, MapEntry, MapPoint
 from ..reports.figure import Figure
 from ..reports.plots import COLOURS, layout
+from .distributions import number_and_unit
 from .table import read_rows
 
 ROBUSTNESS = "robustness of "

@@ -12,7 +12,7 @@ from ...shipped import content_of, shipped_folder
 from ...system.files import find_file, read_toml
 from ...system.parameters import split_reference
 from ...system.rig import Rig
-from ..files.campaign import Campaign
+from .campaign import Campaign
 
 _SHIPPED = ("fmus", "harness", "hil_profiles", "vehicles")
 _NAMED = re.compile(r".+?\.(?:fmu|py|toml)(?=[.:]|$)")

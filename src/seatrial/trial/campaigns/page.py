@@ -14,16 +14,16 @@ from markupsafe import Markup
 
 from ...errors import InputError
 from ...whole_file import write_whole
-from ..files.campaign import INDEX
-from ..files.stopping_rule import failure_interval
 from ..records import run_schema
 from ..records.run_schema import checked_json
 from ..reports.campaign_report import LIBRARY, share_library
 from ..reports.figure import Figure
 from ..reports.plots import COLOURS, layout
 from ..reports.report import REPORT, render
+from .campaign import INDEX
 from .finding import ANSWER, Finding, read_answer
 from .maps import campaign_map, map_figure, said_of
+from .stopping_rule import failure_interval
 from .table import RESULTS, read_rows, units_of
 
 SHOWN = 500

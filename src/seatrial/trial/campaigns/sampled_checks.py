@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from ..files.case_list import Block, Cases
-from ..files.distributions import number_and_unit
 from ..running.hooks import Hooks
 from .asked import Asked
+from .case_list import Block, Cases
+from .distributions import number_and_unit
 from .evaluator import Evaluator, Plan
 
 MOST = 200

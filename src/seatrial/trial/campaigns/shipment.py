@@ -14,7 +14,7 @@ from pathlib import Path, PurePosixPath
 
 from ... import __version__
 from ...errors import InputError
-from ..files.campaign import Campaign, load_campaign
+from .campaign import Campaign, load_campaign
 from .needed import needed_files
 
 MOST_BYTES = 200_000_000

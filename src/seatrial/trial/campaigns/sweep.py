@@ -19,16 +19,15 @@ from ... import __version__
 from ...errors import InputError, unknown
 from ...shipped import provided_folders
 from ...system.system import Engine
-from ..files.campaign import INDEX, Campaign
-from ..files.case_list import Cases
-from ..files.cases import Case
-from ..files.stopping_rule import StoppingRule
 from ..records.run_schema import CAMPAIGN, checked_json
 from ..running.hooks import Hooks
 from ..running.measuring import Measured
 from ..running.output import claim_folder, write_json
 from ..running.resuming import cut_aside, has_index
 from .asked import Asked
+from .campaign import INDEX, Campaign
+from .case_list import Cases
+from .cases import Case
 from .cluster import Cluster, check_address
 from .columns import columns_of
 from .ended import Ended
@@ -36,6 +35,7 @@ from .ended_log import ENDED_LOG, EndedLog, ended_cases
 from .evaluator import Keep, Plan
 from .sampled_checks import check
 from .shipment import unpack_folder
+from .stopping_rule import StoppingRule
 from .table import RESULTS, Tables, arrow, read_rows
 from .workers import Here, Task, Workers
 

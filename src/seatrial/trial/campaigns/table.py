@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import InputError
-from ..files.cases import Case
+from .cases import Case
 from .columns import Column
 from .ended import Ended
 

@@ -10,10 +10,10 @@ from pathlib import Path
 from queue import SimpleQueue
 from typing import Protocol
 
-from ..files.case_list import Cases
 from ..running.hooks import Hooks
 from ..running.pool import cores
 from .asked import Asked
+from .case_list import Cases
 from .ended import Ended
 from .evaluator import Evaluator, Plan
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..reports.readable import from_si
+from ...model.readable import from_si
 from .criteria import Criterion
 from .expressions import FloatArray, Units, unit_of, written
 from .predicates import Comparison

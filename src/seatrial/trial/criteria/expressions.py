@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InputError
+from ...model.readable import person_unit, quantity_text
 from ...model.units import unit
-from ..reports.readable import person_unit, quantity_text
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]

@@ -14,7 +14,7 @@ from typing import Any, Literal, NamedTuple, cast
 import numpy as np
 
 from ...errors import InputError
-from ..reports.readable import distinct, from_si
+from ...model.readable import distinct, from_si
 from . import expressions as ex
 from .expressions import BoolArray, Expression, FloatArray, Operation, Signal, Units, Values
 from .said import last_said, said_at

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..reports.readable import distinct, from_si, number, quantity_text
+from ...model.readable import distinct, from_si, number, quantity_text
 from .expressions import BoolArray, Expression, FloatArray, Signal, Units, unit_of
 from .predicates import Limit, Record
 from .robustness import HALF_NS

@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from ..reports.readable import from_si, number, quantity_text
+from ...model.readable import from_si, number, quantity_text
 from . import formulas
 from .expressions import FloatArray, Units
 from .formulas import PREDICATES, Formula, Temporal

@@ -13,8 +13,8 @@ from rich.markup import escape
 from rich.table import Table
 
 from ...model.component import NS
+from ...model.readable import number
 from ..criteria.expressions import FloatArray
-from ..reports.readable import number
 from .run_folder import SIGNALS, Run, load_run
 
 _SETTINGS = ("seatrial", "engine", "variant", "seed", "start", "stop", "step", "algorithm")

@@ -15,7 +15,7 @@ from ...errors import InputError
 from ...reading import json_content
 from ...system.rig import LONGEST_S
 from ..criteria.expressions import FloatArray
-from ..running.ending import is_whole
+from .ending import is_whole
 
 SIGNALS = "signals.csv"
 MANIFEST = "manifest.json"

@@ -22,7 +22,7 @@ from pydantic import (
 from ...errors import InputError
 from ...model.ports import VIEWS
 from ...reading import json_content
-from ...system.shape.shape import Drawn, carried
+from ...system.shape import Drawn, carried
 from ..files.map_entry import MapEntry
 
 Number = Annotated[float, Strict(), Field(allow_inf_nan=False)]

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from html import escape
 from typing import Any
 
+from ...model.readable import number, person_scale
 from ..records.accuracy import Accuracy, by_port, order_text, spread_text
-from ..records.convergence import Convergence
+from ..running.convergence import Convergence
 from .figure import Figure
 from .plots import COLOURS, layout
-from .readable import number, person_scale
 
 _PLOTTED = 6
 

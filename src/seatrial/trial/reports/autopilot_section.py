@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from ...model.readable import number
 from ..criteria.expressions import FloatArray
 from ..records.run_folder import Run, viewed
 from .figure import Figure
-from .readable import number
 
 _BELIEVED = "#8d5fc4"
 _HOVER = "north %{y:.4g} m, east %{x:.4g} m"

@@ -10,6 +10,7 @@ from typing import Any
 from urllib.parse import quote
 
 from ...errors import InputError
+from ...model.readable import quantity_text
 from ...whole_file import write_whole
 from ..records import run_schema
 from ..records.run_folder import Run, load_run, read_manifest
@@ -17,7 +18,6 @@ from ..records.run_schema import checked_json
 from .decks import Pad, deck, pads
 from .plotly_js import plotly_js
 from .plots import deck_figure
-from .readable import quantity_text
 from .report import REPORT, Play, Played, render, write_report
 from .sailing import PolarPoint, polar_figure, polar_point
 

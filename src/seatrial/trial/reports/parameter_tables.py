@@ -6,9 +6,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from ...model.readable import number, person_scale
 from ...system.paths import split_axis
 from ..records.run_folder import Run
-from .readable import number, person_scale
 
 _MOST_ROWS = 500
 """Of one component; a table of more is not read but searched, and the manifest has them all."""

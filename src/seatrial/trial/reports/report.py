@@ -11,12 +11,13 @@ from typing import Any
 import numpy as np
 
 from ...kits import lacking
+from ...model.readable import from_si, number, person_scale
 from ...plugins import Registry
 from ...system.paths import split_axis, split_path
 from ...whole_file import write_whole
 from ..criteria.expressions import FloatArray
-from ..records.convergence import load_convergence
 from ..records.run_folder import Run, load_run
+from ..running.convergence import load_convergence
 from ..running.lost_links import lost_links
 from .accuracy_section import accuracy_section
 from .autopilot_section import add_estimate, autopilot_rows
@@ -27,7 +28,6 @@ from .event_marks import events_of, happenings
 from .parameter_tables import parameter_tables, value_text
 from .plotly_js import plotly_js
 from .plots import MAX_POINTS, Line, Mark, Panel, deck_figure, time_figure, track_figure
-from .readable import from_si, number, person_scale
 from .sailing import add_wind_and_marks
 from .sea_section import sea_figures
 from .templates import environment

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from ..records.ending import is_whole
 from ..records.run_folder import Run, viewed
-from ..running.ending import is_whole
 from .figure import Figure
 from .plots import COLOURS, layout
 

@@ -10,9 +10,9 @@ from jinja2 import Environment, FileSystemBytecodeCache, FileSystemLoader, Stric
 from jinja2.bccache import Bucket
 
 from ...fmi.cache import cache_folder
+from ...model.readable import number
 from ...whole_file import write_whole
 from .packed import packed
-from .readable import number
 
 
 class _Compiled(FileSystemBytecodeCache):

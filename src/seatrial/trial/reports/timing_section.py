@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from html import escape
 from typing import Any
 
+from ...model.readable import number
 from .figure import Figure
 from .plots import COLOURS, layout
-from .readable import number
 
 _UNITS = ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns"))
 _PATTERNS = ("", "/", "x", ".")

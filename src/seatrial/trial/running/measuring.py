@@ -12,7 +12,7 @@ from ...sim.recorder import Watched
 from ...system.system import Engine
 from ..criteria.verdict import Verdict
 from ..files.trial import Trial
-from .ending import is_whole
+from ..records.ending import is_whole
 from .hooks import Hooks
 from .preparation import Prepared, prepare
 from .run import Result

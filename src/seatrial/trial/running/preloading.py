@@ -7,7 +7,7 @@ import importlib
 from collections.abc import Sequence
 
 from ...errors import InputError
-from ...fmi.building.source import ComponentSource, find_source
+from ...fmi.components.source import ComponentSource, find_source
 from ...kits import is_ours
 from ...system.system import Engine
 from ..files.trial import Trial

@@ -11,11 +11,11 @@ from pathlib import Path
 
 from ...sim.master import Master
 from ...system.part import Part
-from ...system.shape.ports import MESHES
+from ...system.shape_ports import MESHES
 from ...system.system import Engine, System
 from ..criteria.verdict import Verdict
 from ..files.trial import Trial
-from .ending import is_whole
+from ..records.ending import is_whole
 from .hooks import Hooks, StoppedError
 from .output import claim_folder
 from .preparation import prepare

@@ -12,14 +12,14 @@ from ...model.component import seconds
 from ...sim.actions import action
 from ...sim.master import Master
 from ...sim.recorder import Recorder, Watched
-from ..criteria.termination import TerminationConditions
 from ..criteria.verdict import Verdict
 from ..files.trial import Trial
-from .ending import ended_by
+from ..records.ending import ended_by
 from .hooks import Hooks
 from .lost_links import LostLinks
 from .pacing import Pace
 from .preparation import Prepared
+from .termination import TerminationConditions
 
 _SHOWN_EVERY_S = 0.1
 """Wall time between two calls of the progress hook."""

@@ -20,9 +20,9 @@ from ...system.system import Engine
 from ..criteria.predicates import Limit
 from ..criteria.verdict import Verdict
 from ..files.trial import Trial
+from ..records.ending import is_whole
 from ..records.run_folder import MANIFEST, written_status
 from .call_trace import AT_ANY_PACE, HUNG, IN_REAL_TIME, CallTrace, Limits
-from .ending import is_whole
 from .forked import Forked
 from .hooks import Hooks, StoppedError
 from .keeper import ASKED_S

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from seatrial.errors import InputError
-from seatrial.fmi.building.index import component_class
+from seatrial.fmi.components.index import component_class
 from seatrial.system.parameters import Vehicle, load_vehicle
 from seatrial.trial.criteria.expressions import FloatArray
 from seatrial.trial.files.parametrised import parametrise

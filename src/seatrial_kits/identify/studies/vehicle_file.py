@@ -7,8 +7,8 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from seatrial.errors import InputError, unknown
+from seatrial.model.readable import number
 from seatrial.system.parameters import Entry, Vehicle, VehicleFile, load_vehicle
-from seatrial.trial.reports.readable import number
 from seatrial.whole_file import write_whole
 
 from .planar_study import PlanarStudy

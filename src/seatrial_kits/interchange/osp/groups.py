@@ -10,10 +10,10 @@ from typing import Any
 from lxml import etree
 
 from seatrial.errors import InputError, unknown
-from seatrial.fmi.loading.loaded import LoadedFmu
-from seatrial.fmi.loading.osp import osp_file
-from seatrial.fmi.loading.xmlfile import read_xml
-from seatrial.fmi.terminals import attribute
+from seatrial.fmi.files.osp import osp_file
+from seatrial.fmi.files.terminals import attribute
+from seatrial.fmi.files.xmlfile import read_xml
+from seatrial.fmi.interfaces.loaded import LoadedFmu
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from seatrial.errors import InputError, unknown
 from seatrial.fmi.instance import Variable
-from seatrial.fmi.loading.loaded import LoadedFmu
+from seatrial.fmi.interfaces.loaded import LoadedFmu
 
 from .groups import Group, Groups, pairs
 from .structure import Connection, End, Structure, Sum, Transformation

@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from seatrial.errors import InputError
-from seatrial.fmi.loading.archive import content_hash
+from seatrial.fmi.files.archive import content_hash
+from seatrial.fmi.interfaces.loaded import LoadedFmu
 from seatrial.fmi.loading.load import load_fmu
-from seatrial.fmi.loading.loaded import LoadedFmu
 from seatrial.model.component import NS
 from seatrial.model.units import conversion
 from seatrial.system.files import Source

@@ -11,8 +11,8 @@ from urllib.parse import unquote, urlsplit
 from lxml import etree
 
 from seatrial.errors import InputError, unknown
+from seatrial.fmi.files.xmlfile import read_xml
 from seatrial.fmi.instance import Value
-from seatrial.fmi.loading.xmlfile import read_xml
 from seatrial.sim.proxied import proxied_file
 from seatrial.system.rig import LONGEST_S
 

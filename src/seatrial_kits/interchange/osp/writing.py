@@ -9,10 +9,10 @@ from lxml import etree
 
 from seatrial.errors import InputError
 from seatrial.fmi.building.export import fmu_bytes
-from seatrial.fmi.building.source import find_source
 from seatrial.fmi.cache import write_named
+from seatrial.fmi.components.source import find_source
+from seatrial.fmi.files.osp import osp_file, osp_xml
 from seatrial.fmi.loading.load import load_fmu
-from seatrial.fmi.loading.osp import osp_file, osp_xml
 from seatrial.model.component import seconds
 from seatrial.system.packaged import OSP_FILE
 from seatrial.system.part import Part

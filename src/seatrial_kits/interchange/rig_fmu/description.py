@@ -9,7 +9,7 @@ from typing import Any
 from xml.etree.ElementTree import Element, SubElement
 
 from seatrial import __version__
-from seatrial.fmi.building.description import annotate, unit_definitions
+from seatrial.fmi.description import annotate, unit_definitions
 from seatrial.fmi.instance import Variable
 from seatrial.model.ports import Input, Port, ScalarPort
 from seatrial.model.units import unit

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from seatrial.errors import InputError
-from seatrial.fmi.building.source import ComponentSource, find_source
+from seatrial.fmi.components.source import ComponentSource, find_source
 from seatrial.fmi.direct import DirectInstance
 from seatrial.fmi.instance import Variable
 from seatrial.model.component import Component, seconds
@@ -25,7 +25,7 @@ _SCRIPT = '''"""{name}: a rig as an FMU."""
 
 {imports}
 from seatrial_kits.interchange.rig_fmu.component import rig_component
-from seatrial.fmi.building.slave import Slave
+from seatrial.fmi.slave import Slave
 
 FROZEN = {text!r}
 CLASSES = {{{classes}}}

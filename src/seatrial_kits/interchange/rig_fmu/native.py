@@ -13,7 +13,7 @@ from seatrial.errors import InputError, SimulationError
 from seatrial.fmi.building.packing import zipped
 from seatrial.fmi.cache import write_named
 from seatrial.fmi.compiler import SEMANTICS, TARGETS, TUPLES, library
-from seatrial.fmi.terminals import PLACE, terminals_xml
+from seatrial.fmi.files.terminals import PLACE, terminals_xml
 from seatrial.fmi.version3.description import arrays, build_description, version3
 from seatrial.fmi.version3.sources import front_sources
 from seatrial.sim.compiled import choice

@@ -12,7 +12,7 @@ import fmpy
 from lxml import etree
 
 from seatrial.errors import InputError
-from seatrial.fmi.loading.xmlfile import read_xml
+from seatrial.fmi.files.xmlfile import read_xml
 
 from .notes import Notes
 

@@ -9,10 +9,10 @@ from pathlib import Path
 from seatrial.errors import InputError, unknown
 from seatrial.fmi.building.bundle_name import bundle_name
 from seatrial.fmi.building.export import cached_fmu
-from seatrial.fmi.building.source import table_source
-from seatrial.fmi.building.table_file import SUFFIXES
+from seatrial.fmi.components.source import table_source
+from seatrial.fmi.components.table_file import SUFFIXES
+from seatrial.fmi.files.options import FmuOptions, Interface
 from seatrial.fmi.loading.load import load_fmu
-from seatrial.fmi.loading.options import FmuOptions, Interface
 from seatrial.system.packaged import SSP_FILE
 
 from .binding import Bound

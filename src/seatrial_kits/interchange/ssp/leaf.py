@@ -10,8 +10,8 @@ from functools import cached_property
 
 from seatrial.errors import InputError
 from seatrial.fmi.instance import Variable
+from seatrial.fmi.interfaces.loaded import LoadedFmu
 from seatrial.fmi.loading.load import load_fmu
-from seatrial.fmi.loading.loaded import LoadedFmu
 from seatrial.system.system import is_settable
 
 from .definitions import converted

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from seatrial.errors import InputError
-from seatrial.fmi.loading.archive import unpacked
+from seatrial.fmi.files.archive import unpacked
 from seatrial.fmi.loading.load import load_fmu
 from seatrial.system.packaged import SSP_FILE
 

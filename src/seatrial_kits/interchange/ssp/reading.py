@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from seatrial.errors import InputError
-from seatrial.fmi.loading.archive import content_hash
+from seatrial.fmi.files.archive import content_hash
 from seatrial.model.component import NS, seconds
 from seatrial.model.ports import Scalar
 from seatrial.system.files import Source

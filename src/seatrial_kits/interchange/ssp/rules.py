@@ -12,7 +12,7 @@ from urllib.parse import unquote
 from lxml import etree
 
 from seatrial.errors import InputError
-from seatrial.fmi.loading.xmlfile import read_xml
+from seatrial.fmi.files.xmlfile import read_xml
 
 from .documents import NAMESPACES, children, schema_problems, tag
 from .model import FMU

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal, NamedTuple
 
-from seatrial.fmi.building.source import find_source
+from seatrial.fmi.components.source import find_source
 from seatrial.fmi.instance import Variable
 from seatrial.fmi.loading.load import load_fmu
 from seatrial.system.part import Part

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from seatrial.errors import InputError, unknown
-from seatrial.fmi.loading.xmlfile import read_xml
+from seatrial.fmi.files.xmlfile import read_xml
 
 from . import rules
 from .documents import NAMESPACES, where

@@ -11,7 +11,7 @@ from pymavlink.dialects.v20 import all as mavlink
 
 from seatrial.links.geodesy import Ned
 
-from ..services.service import INFO, WARNING
+from ..service import INFO, WARNING
 from ..settings import FASTEST, Settings
 from ..vehicle import Vehicle
 from .conditions import DelayedItems

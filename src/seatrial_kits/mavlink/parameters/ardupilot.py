@@ -6,10 +6,10 @@ from collections.abc import Mapping
 
 from pymavlink.dialects.v20 import all as mavlink
 
-from ..services.joystick import joystick_parameters
 from ..settings import Settings
 from ..vehicle import Identity
 from .definition import INT8, INT16, INT32, REAL32, Definition, choice, fixed, real, whole
+from .joystick import joystick_parameters
 from .listed import ardupilot_listed
 from .servo import Servo
 

@@ -6,10 +6,7 @@ from collections.abc import Callable, Mapping
 
 from pymavlink.dialects.v20 import all as mavlink
 
-from ..settings import COMPASS_CHECK, GPS_CHECK, Settings
-from ..transport import Sender, Transport
-from ..vehicle import Vehicle
-from .service import (
+from ..service import (
     ACCEPTED,
     CRITICAL,
     FAILED,
@@ -20,6 +17,9 @@ from .service import (
     Handler,
     Service,
 )
+from ..settings import COMPASS_CHECK, GPS_CHECK, Settings
+from ..transport import Sender, Transport
+from ..vehicle import Vehicle
 
 FORCE = 21196.0
 """Parameter 2 of COMPONENT_ARM_DISARM that arms against all checks."""

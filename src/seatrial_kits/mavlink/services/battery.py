@@ -9,12 +9,12 @@ from typing import ClassVar
 from pymavlink.dialects.v20 import all as mavlink
 
 from ..codec import Message
-from ..failsafe import Failsafe, check_action
 from ..scaling import UNKNOWN_U16, clamped, int16, int32, uint16
+from ..service import Builder, Service
 from ..settings import Settings
 from ..transport import Transport
 from ..vehicle import Vehicle
-from .service import Builder, Service
+from .failsafe import Failsafe, check_action
 
 LOW_S = 10.0
 """Time for which a battery must be low: the voltage also falls under a short load."""

@@ -8,8 +8,8 @@ from pymavlink.dialects.v20 import all as mavlink
 
 from ..codec import Message
 from ..scaling import microseconds
+from ..service import Receiver, Service
 from ..transport import Sender
-from .service import Receiver, Service
 
 
 class ClockService(Service):

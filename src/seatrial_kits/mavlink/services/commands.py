@@ -8,9 +8,9 @@ from pymavlink.dialects.v20 import all as mavlink
 
 from ..codec import Message
 from ..frames import GLOBAL_FRAMES, LOCAL_FRAMES
+from ..service import ACCEPTED, UNSUPPORTED, Command, Handler, Receiver, Service
 from ..transport import Sender, Transport
 from ..vehicle import Vehicle
-from .service import ACCEPTED, UNSUPPORTED, Command, Handler, Receiver, Service
 
 _NOT_GIVEN = 0x7FFFFFFF
 """An integer coordinate that stands for not a number."""

@@ -8,11 +8,11 @@ from pymavlink.dialects.v20 import all as mavlink
 
 from seatrial.errors import InputError, unknown
 
+from ..parameters.simulated_faults import simulated_faults
+from ..service import ACCEPTED, DENIED, INFO, UNSUPPORTED, WARNING, Command, Handler, Service, whole
 from ..settings import Settings
-from ..simulated_faults import simulated_faults
 from ..transport import Sender, Transport
 from ..vehicle import Vehicle
-from .service import ACCEPTED, DENIED, INFO, UNSUPPORTED, WARNING, Command, Handler, Service, whole
 
 _MOST = 8
 """Motors, and servos, with an instance each."""

@@ -9,15 +9,15 @@ from typing import ClassVar
 from pymavlink.dialects.v20 import all as mavlink
 
 from ..codec import Message
-from ..failsafe import Failsafe, check_action
 from ..missions.fence_zones import Zone, is_allowed, zones_of
 from ..missions.plan import Plan
 from ..missions.plan_items import Item
 from ..scaling import milliseconds
+from ..service import ACCEPTED, DENIED, NOTICE, Builder, Command, Handler, Service
 from ..settings import Settings
 from ..transport import Sender, Transport
 from ..vehicle import Vehicle
-from .service import ACCEPTED, DENIED, NOTICE, Builder, Command, Handler, Service
+from .failsafe import Failsafe, check_action
 
 INSIDE_S = 1.0
 """Time inside after which a breach is over: a position that scatters breaches a fence once."""

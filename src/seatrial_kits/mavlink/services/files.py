@@ -9,9 +9,9 @@ from typing import NamedTuple
 from pymavlink.dialects.v20 import all as mavlink
 
 from ..codec import Message
+from ..service import Receiver, Service
 from ..transport import Sender, Transport
 from ..vehicle import Vehicle
-from .service import Receiver, Service
 
 # Sequence, session, opcode, size, requested opcode, burst complete, padding, offset; then data.
 _HEADER = struct.Struct("<HBBBBBxI")

@@ -15,11 +15,7 @@ from ..codec import Message
 from ..frames import GLOBAL_FRAMES, LOCAL_FRAMES, global_position, is_near
 from ..missions.runner import OWN_SPEED
 from ..scaling import milliseconds, turned, yaw
-from ..settings import FASTEST, Settings
-from ..transport import Sender, Transport
-from ..vehicle import Target, Vehicle
-from .modes import ModeService
-from .service import (
+from ..service import (
     ACCEPTED,
     DENIED,
     FAILED,
@@ -31,6 +27,10 @@ from .service import (
     Service,
     whole,
 )
+from ..settings import FASTEST, Settings
+from ..transport import Sender, Transport
+from ..vehicle import Target, Vehicle
+from .modes import ModeService
 
 _IGNORE_XY, _IGNORE_Z = 0x3, 0x4
 _IGNORE_VX_VY, _IGNORE_VZ = 0x18, 0x20

@@ -13,8 +13,18 @@ from seatrial.links.geodesy import Ned
 from ..codec import Message
 from ..frames import GLOBAL_FRAMES, is_near
 from ..scaling import deg_e7, int32, microseconds
+from ..service import (
+    ACCEPTED,
+    DENIED,
+    FAILED,
+    WARNING,
+    Builder,
+    Command,
+    Handler,
+    Receiver,
+    Service,
+)
 from ..transport import Sender
-from .service import ACCEPTED, DENIED, FAILED, WARNING, Builder, Command, Handler, Receiver, Service
 
 
 class HomeService(Service):

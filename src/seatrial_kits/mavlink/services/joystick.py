@@ -7,69 +7,21 @@ from collections.abc import Mapping
 from pymavlink.dialects.v20 import all as mavlink
 
 from ..codec import Message
-from ..parameters.definition import INT8, REAL32, Definition, whole
+from ..parameters.joystick import (
+    ARM,
+    BUTTONS,
+    DISARM,
+    LESS_GAIN,
+    MODES,
+    MORE_GAIN,
+    SHIFT,
+    TOGGLE_ARMED,
+    TOGGLE_GAIN,
+)
+from ..service import INFO, Command, Handler, Receiver, Service
 from ..settings import Settings
 from ..transport import Sender, Transport
 from ..vehicle import Vehicle
-from .service import INFO, Command, Handler, Receiver, Service
-
-BUTTONS = 16
-"""Buttons with a function."""
-
-_NONE, _SHIFT, _TOGGLE_ARMED, _ARM, _DISARM = 0, 1, 2, 3, 4
-_MODES = {
-    5: "manual",
-    6: "stabilize",
-    7: "depth-hold",
-    8: "hold",
-    9: "auto",
-    10: "loiter",
-    11: "guided",
-}
-_TOGGLE_GAIN, _MORE_GAIN, _LESS_GAIN = 41, 42, 43
-FUNCTIONS = (
-    *(_NONE, _SHIFT, _TOGGLE_ARMED, _ARM, _DISARM),
-    *_MODES,
-    *(_TOGGLE_GAIN, _MORE_GAIN, _LESS_GAIN),
-)
-"""ArduSub's numbers of the functions that there are here."""
-_DEFAULTS = {1: 5, 2: 7, 3: 6, 4: _DISARM, 5: _SHIFT, 6: _ARM, 11: _MORE_GAIN, 12: _LESS_GAIN}
-"""ArduSub's functions by button; its others belong to lights, cameras and trims."""
-
-
-def joystick_parameters(settings: Settings) -> list[Definition]:
-    """Return BTNn_FUNCTION, BTNn_SFUNCTION (with the shift button) and JS_GAIN_..., of a submarine.
-
-    The gain starts at 1: the full range of the axes is that of the vehicle.
-    """
-    found = []
-    for button in range(BUTTONS):
-        found.append(_function(f"BTN{button}_FUNCTION", button, _DEFAULTS.get(button, _NONE)))
-        found.append(_function(f"BTN{button}_SFUNCTION", button + BUTTONS, _NONE))
-    for definition in found:
-        assert definition.apply is not None
-        definition.apply(settings, definition.default)
-    return [
-        *found,
-        _gain("JS_GAIN_DEFAULT", "gain_start", settings, 0.1, 1.0),
-        _gain("JS_GAIN_MIN", "gain_least", settings, 0.1, 0.8),
-        _gain("JS_GAIN_MAX", "gain_most", settings, 0.2, 1.0),
-        whole("JS_GAIN_STEPS", "gain_steps", settings, 1, 10),
-    ]
-
-
-def _function(name: str, place: int, default: int) -> Definition:
-    def apply(settings: Settings, value: float) -> None:
-        settings.buttons[place] = round(value)
-
-    return Definition(name, INT8, default, numbers=FUNCTIONS, apply=apply)
-
-
-def _gain(name: str, setting: str, settings: Settings, low: float, high: float) -> Definition:
-    def apply(settings: Settings, value: float) -> None:
-        setattr(settings, setting, value)
-
-    return Definition(name, REAL32, getattr(settings, setting), low, high, apply=apply)
 
 
 class JoystickService(Service):
@@ -106,21 +58,21 @@ class JoystickService(Service):
             return
         before, self._pressed = self._pressed, message.buttons
         held = [n for n in range(BUTTONS) if self._pressed >> n & 1]
-        shifted = any(self._settings.buttons[n] == _SHIFT for n in held)
+        shifted = any(self._settings.buttons[n] == SHIFT for n in held)
         for button in held:
             if not before >> button & 1:
                 function = self._settings.buttons[button + BUTTONS * shifted]
                 self._carry_out(function, sender, now)
 
     def _carry_out(self, function: int, sender: Sender, now: float) -> None:
-        if function in _MODES:
-            mode = self.vehicle.dialect.mode(_MODES[function])
+        if function in MODES:
+            mode = self.vehicle.dialect.mode(MODES[function])
             assert mode is not None
             self._order(mavlink.MAV_CMD_DO_SET_MODE, (1.0, float(mode.custom_mode)), sender, now)
-        elif function in (_TOGGLE_ARMED, _ARM, _DISARM):
-            arms = function == _ARM or (function == _TOGGLE_ARMED and not self.vehicle.armed)
+        elif function in (TOGGLE_ARMED, ARM, DISARM):
+            arms = function == ARM or (function == TOGGLE_ARMED and not self.vehicle.armed)
             self._order(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, (float(arms), 0.0), sender, now)
-        elif function in (_TOGGLE_GAIN, _MORE_GAIN, _LESS_GAIN):
+        elif function in (TOGGLE_GAIN, MORE_GAIN, LESS_GAIN):
             self._gain = self._changed(function)
             self.vehicle.report(INFO, f"#Gain is {100 * self._gain:2.0f}%")
 
@@ -134,8 +86,8 @@ class JoystickService(Service):
         """Return the gain after a press of a button."""
         least, steps = self._settings.gain_least, self._settings.gain_steps
         most = max(self._settings.gain_most, least)
-        if function == _TOGGLE_GAIN:
+        if function == TOGGLE_GAIN:
             return 0.5 if self.gain > 0.5 else 1.0
         step = (most - least) / (steps - 1) if steps > 1 else 0.0
-        wanted = self.gain + (step if function == _MORE_GAIN else -step)
+        wanted = self.gain + (step if function == MORE_GAIN else -step)
         return min(max(wanted, least), most)

@@ -9,9 +9,9 @@ from pathlib import Path
 from pymavlink.dialects.v20 import all as mavlink
 
 from ..codec import Message
+from ..service import WARNING, Receiver, Service
 from ..transport import Sender, Transport
 from ..vehicle import Vehicle
-from .service import WARNING, Receiver, Service
 
 BLOCK = 90
 """Bytes of the log in one LOG_DATA."""

@@ -8,12 +8,12 @@ from collections.abc import Callable, Mapping
 from pymavlink.dialects.v20 import all as mavlink
 
 from ..codec import Message
-from ..failsafe import Failsafe
 from ..modes import MANUAL_MODES
+from ..service import NOTICE, Receiver, Service
 from ..settings import Settings
 from ..transport import Sender, Transport
 from ..vehicle import MANUAL_RELEASED, Vehicle
-from .service import NOTICE, Receiver, Service
+from .failsafe import Failsafe
 
 _MIDDLE_US, _TRAVEL_US = 1500, 400
 _IGNORE, _RELEASE = 0xFFFF, 0

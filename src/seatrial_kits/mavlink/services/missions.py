@@ -16,11 +16,7 @@ from ..missions.plan_checks import STORED, check_place
 from ..missions.plan_items import Item, from_message
 from ..missions.runner import Leg, MissionRunner
 from ..modes import Mode
-from ..settings import Settings
-from ..transport import Sender, Transport
-from ..vehicle import Target, Vehicle
-from .modes import ModeService
-from .service import (
+from ..service import (
     ACCEPTED,
     DENIED,
     FAILED,
@@ -32,6 +28,10 @@ from .service import (
     Service,
     whole,
 )
+from ..settings import Settings
+from ..transport import Sender, Transport
+from ..vehicle import Target, Vehicle
+from .modes import ModeService
 
 _NO_MISSION = 0xFFFF
 _GUIDED_ITEM = 2

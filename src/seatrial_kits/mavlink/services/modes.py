@@ -9,9 +9,7 @@ from pymavlink.dialects.v20 import all as mavlink
 
 from ..codec import Message
 from ..modes import POSITION_MODES, Mode
-from ..transport import Sender, Transport
-from ..vehicle import Vehicle
-from .service import (
+from ..service import (
     ACCEPTED,
     DENIED,
     FAILED,
@@ -25,6 +23,8 @@ from .service import (
     Service,
     whole,
 )
+from ..transport import Sender, Transport
+from ..vehicle import Vehicle
 
 Requirement = Callable[[Mode], str | None]
 """Returns why a mode cannot be entered now, None if nothing prevents it."""

@@ -12,9 +12,9 @@ from pymavlink.dialects.v20 import all as mavlink
 from ..codec import Message
 from ..parameters.definition import INT8, INT16, INT32, REAL32
 from ..parameters.table import ParameterTable
+from ..service import WARNING, Receiver, Service
 from ..transport import Sender, Transport
 from ..vehicle import Vehicle
-from .service import WARNING, Receiver, Service
 
 RATE = 100.0
 """Parameters of a list that a link gets per second: 4 kB/s, enough for a slow radio link."""

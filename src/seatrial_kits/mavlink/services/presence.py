@@ -9,9 +9,9 @@ from pymavlink.dialects.v20 import all as mavlink
 
 from ..codec import Message
 from ..modes import MANUAL_MODES
+from ..service import ACCEPTED, Builder, Command, Handler, Service
 from ..transport import Sender, Transport
 from ..vehicle import Vehicle
-from .service import ACCEPTED, Builder, Command, Handler, Service
 
 INTERVAL_S = 1.0
 """Of HEARTBEAT."""

@@ -7,9 +7,9 @@ import math
 from seatrial.links.geodesy import Ned
 
 from ..missions.plan import Plan
+from ..service import Service
 from ..transport import Transport
 from ..vehicle import Vehicle
-from .service import Service
 
 
 class RallyService(Service):

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from pymavlink.dialects.v20 import all as mavlink
 
 from ..codec import Message
+from ..service import DENIED, FAILED, WARNING, Command, Handler, Receiver, Service
 from ..transport import Sender
-from .service import DENIED, FAILED, WARNING, Command, Handler, Receiver, Service
 
 _NOTHING = "Nothing is on board for that command"
 _ABSENT: Mapping[int, int] = {

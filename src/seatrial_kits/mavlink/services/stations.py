@@ -9,11 +9,11 @@ from dataclasses import dataclass, field
 from pymavlink.dialects.v20 import all as mavlink
 
 from ..codec import Message
-from ..failsafe import Failsafe
+from ..service import INFO, Receiver, Service
 from ..settings import Settings
 from ..transport import Sender, Transport
 from ..vehicle import Vehicle
-from .service import INFO, Receiver, Service
+from .failsafe import Failsafe
 
 _MOST = 32
 _BEATS = 3

@@ -8,9 +8,7 @@ from dataclasses import dataclass, field
 from pymavlink.dialects.v20 import all as mavlink
 
 from ..codec import Message
-from ..transport import Sender, Transport
-from ..vehicle import Vehicle
-from .service import (
+from ..service import (
     ACCEPTED,
     DENIED,
     FAILED,
@@ -22,6 +20,8 @@ from .service import (
     Service,
     whole,
 )
+from ..transport import Sender, Transport
+from ..vehicle import Vehicle
 
 _SHORTEST_US, _LONGEST_US = 1_000, 60_000_000
 """Of an interval: below it is refused, above it is this."""

@@ -11,9 +11,9 @@ from pymavlink.dialects.v20 import all as mavlink
 from ..codec import Message
 from ..missions.plan import MOST_ITEMS, Plan, Plans
 from ..missions.plan_items import Item, from_message, to_message
+from ..service import WARNING, Receiver, Service
 from ..transport import Sender, Transport
 from ..vehicle import Vehicle
-from .service import WARNING, Receiver, Service
 
 RETRY_S = 1.0
 """Silence after which an item is requested again."""

@@ -13,7 +13,7 @@ from seatrial.model.unit_table import STANDARD_GRAVITY
 
 from ..codec import Message
 from ..scaling import deg_e7, int16, microseconds, milliseconds
-from ..services.service import Builder, Service
+from ..service import Builder, Service
 from ..transport import Transport
 from ..vehicle import Vehicle
 

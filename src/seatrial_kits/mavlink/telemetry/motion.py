@@ -22,7 +22,7 @@ from ..scaling import (
     quaternion,
     uint16,
 )
-from ..services.service import Builder, Service
+from ..service import Builder, Service
 
 _NO_QUATERNION = [math.nan, 0.0, 0.0, 0.0]
 

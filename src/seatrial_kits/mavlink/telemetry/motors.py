@@ -10,7 +10,7 @@ from pymavlink.dialects.v20 import all as mavlink
 
 from ..codec import Message
 from ..scaling import uint16
-from ..services.service import Builder, Service
+from ..service import Builder, Service
 from ..transport import Transport
 from ..vehicle import Vehicle
 

@@ -12,7 +12,7 @@ from seatrial.links.geodesy import Ned
 
 from ..codec import Message
 from ..scaling import deg_e7, int16, milliseconds, uint16
-from ..services.service import Builder, Service
+from ..service import Builder, Service
 from ..transport import Transport
 from ..vehicle import Vehicle
 

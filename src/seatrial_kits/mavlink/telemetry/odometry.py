@@ -12,7 +12,7 @@ from seatrial.physics.craft.kinematics import to_body
 
 from ..codec import Message
 from ..scaling import deg_e7, int16, int32, microseconds, quaternion
-from ..services.service import Builder, Service
+from ..service import Builder, Service
 
 _UNKNOWN = [math.nan] * 21
 

@@ -25,7 +25,7 @@ from ..scaling import (
     turned,
     uint16,
 )
-from ..services.service import Builder, Service
+from ..service import Builder, Service
 from ..vehicle import NO_FIX
 
 _ACCELERATION, _RATES, _PRESSURE = 0x7, 0x38, 0x200

@@ -9,8 +9,8 @@ from pymavlink.dialects.v20 import all as mavlink
 
 from ..codec import Message
 from ..scaling import UNKNOWN_U16, clamped, int16, microseconds, milliseconds, uint16
+from ..service import Builder, Service
 from ..services.manual_control import shown_channels
-from ..services.service import Builder, Service
 
 
 class SystemTelemetry(Service):

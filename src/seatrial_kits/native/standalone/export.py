@@ -13,9 +13,9 @@ from seatrial.errors import InputError
 from seatrial.fmi.building.bundle import bundled
 from seatrial.fmi.building.export import fmu_files
 from seatrial.fmi.building.packing import zipped
-from seatrial.fmi.building.source import ComponentSource
 from seatrial.fmi.cache import write_named
 from seatrial.fmi.compiler import TUPLES, library_here
+from seatrial.fmi.components.source import ComponentSource
 from seatrial.fmi.forwarding.libraries import pythonfmu_libraries
 from seatrial.fmi.forwarding.sources import checked_sources
 from seatrial.fmi.libpython import find_libpython

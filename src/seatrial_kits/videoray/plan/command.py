@@ -11,8 +11,8 @@ from rich.markup import escape
 
 from seatrial.cli.answer import answer
 from seatrial.cli.show import console
+from seatrial.model.readable import number
 from seatrial.model.units import quantity
-from seatrial.trial.reports.readable import number
 from seatrial.trial.reports.report import REPORT
 
 from .motion import plan_motion

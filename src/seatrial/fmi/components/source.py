@@ -27,7 +27,7 @@ from .table_file import SUFFIXES, frozen_table
 _SCRIPT = '''"""{name}: {class_name} as an FMU."""
 
 from {module} import {class_name}
-from seatrial.fmi.building.slave import Slave
+from seatrial.fmi.slave import Slave
 
 
 class {class_name}Fmu(Slave):
@@ -103,8 +103,8 @@ class ComponentSource:
 
 _TABLE_SCRIPT = '''"""{name}: a table of values over time as an FMU."""
 
-from seatrial.fmi.building.slave import Slave
-from seatrial.fmi.building.table import table_component
+from seatrial.fmi.slave import Slave
+from seatrial.fmi.components.table import table_component
 
 Table = table_component({text!r})
 
@@ -143,7 +143,7 @@ class TableSource(ComponentSource):
     def imported(self, alias: str) -> str:
         """Return the lines of a script that give the class a name."""
         return (
-            f"from seatrial.fmi.building.table import table_component\n"
+            f"from seatrial.fmi.components.table import table_component\n"
             f"{alias} = table_component({self.text!r})"
         )
 
@@ -156,7 +156,7 @@ def table_source(path: Path, types: Mapping[str, type] | None = None) -> TableSo
     stem = re.sub(r"\W", "_", f"table_{path.stem}", flags=re.ASCII)
     of = hashlib.sha256(text.encode()).hexdigest()[:12]
     return TableSource(
-        path.name, stem, "seatrial.fmi.building.table", f"Table_{of}", str(path), None, text
+        path.name, stem, "seatrial.fmi.components.table", f"Table_{of}", str(path), None, text
     )
 
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from ..errors import InputError, unknown
 from ..fmi.instance import Variables
-from ..system.paths import joined
-from ..system.system import Bond, Connection, System
-from ..system.values import port_names, port_scalars
+from .paths import joined
+from .system import Bond, Connection, System
+from .values import port_names, port_scalars
 
 
 @dataclass(frozen=True)

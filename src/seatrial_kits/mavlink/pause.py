@@ -8,11 +8,11 @@ from collections.abc import Callable
 from seatrial.links.interruption import Interruption
 from seatrial.links.watchdog import Waiting
 
-from ..node import Node
-from ..parameters.simulation import SPEEDUP
-from ..parameters.table import ParameterTable
-from ..services.service import NOTICE, WARNING
-from ..settings import Settings
+from .node import Node
+from .parameters.simulation import SPEEDUP
+from .parameters.table import ParameterTable
+from .service import NOTICE, WARNING
+from .settings import Settings
 
 POLL_S = 0.02
 

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from ...errors import InputError
 from ...kits import OURS
-from ..loading.loaded import LoadedFmu
+from ..interfaces.loaded import LoadedFmu
 
 PARENT = 1
 """Process that a sandboxed one ends with, as it sees it: bubblewrap's, which ends with ours."""

@@ -7,10 +7,10 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any, NamedTuple
 
-from ..errors import SimulationError
-from .instance import Reader, Value, Variable, Writer
-from .loading.fmuinstance import FmuInstance
-from .loading.loaded import LoadedFmu
+from ...errors import SimulationError
+from ..instance import Reader, Value, Variable, Writer
+from .fmuinstance import FmuInstance
+from .loaded import LoadedFmu
 
 MOST_UPDATES = 1_000
 """Iterations of one event."""

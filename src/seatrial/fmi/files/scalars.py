@@ -17,7 +17,7 @@ from ...model.ports import BYTES
 from ...model.units import Unit, defined_unit
 from ..clocks import Clock, clock_types, read_clock
 from ..instance import Value, Variable
-from ..terminals import TOOL
+from .terminals import TOOL
 
 INTEGERS = {
     f"{sign}Int{bits}": (0, 2**bits - 1) if sign else (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1)

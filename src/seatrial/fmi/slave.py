@@ -25,8 +25,8 @@ import numpy as np
 from pythonfmu.enums import Fmi2Status
 from pythonfmu.fmi2slave import Fmi2Slave
 
-from ...errors import INTERRUPTED, InputError, SimulationError
-from ...model.component import Component
+from ..errors import INTERRUPTED, InputError, SimulationError
+from ..model.component import Component
 
 START_VALUES = "start_values.json"
 """File in an FMU's resources: start values by port name, baked in when it was built."""

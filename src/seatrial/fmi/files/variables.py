@@ -11,11 +11,11 @@ from fmpy.model_description import ModelDescription
 
 from ...errors import InputError, unknown
 from ...model.ports import VIEWS
-from ..building.scalars import MOST_SCALARS, Entry, ScalarReader, elements, ticking
 from ..clocks import Clock, Clocks
 from ..instance import Variable, Variables
 from .modelfile import ModelFile
 from .options import DEFAULTS, FmuOptions
+from .scalars import MOST_SCALARS, Entry, ScalarReader, elements, ticking
 
 Dependencies = Mapping[str, Sequence[str]]
 """By the name of an output, the names of inputs."""

@@ -7,8 +7,8 @@ import struct
 from collections.abc import Iterator
 from typing import Any
 
-from ..errors import InputError, SimulationError
-from ..links.text import Chunk, Inbox, Outbox
+from ...errors import InputError, SimulationError
+from ...links.text import Chunk, Inbox, Outbox
 from .lsbus import BusTerminal
 
 _HEADER = struct.Struct("<II")

@@ -19,7 +19,7 @@ from xml.etree.ElementTree import Element, SubElement
 from ...errors import InputError
 from ...model.terminals import Terminal
 from ..instance import Variables
-from ..terminals import MemberReader, Scalars, attribute, by_term, xml_text
+from .terminals import MemberReader, Scalars, attribute, by_term, xml_text
 from .xmlfile import read_xml
 
 _NAMESPACE = "https://open-simulation-platform.com/OspModelDescription/1.0.1"

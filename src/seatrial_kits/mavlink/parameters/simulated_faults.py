@@ -7,8 +7,8 @@ from collections.abc import Collection, Mapping
 
 from seatrial.model.faults.text import fault_text
 
-from .parameters.definition import INT8, INT32, REAL32, Definition, fixed
-from .settings import Settings
+from ..settings import Settings
+from .definition import INT8, INT32, REAL32, Definition, fixed
 
 _METRES_PER_DEGREE = math.radians(1.0) * 6_378_137.0
 """Of latitude, on a sphere with the equator's radius; of longitude at the equator."""

@@ -9,9 +9,9 @@ from typing import ClassVar
 
 from pymavlink.dialects.v20 import all as mavlink
 
-from ..codec import Message
-from ..transport import Sender, Transport
-from ..vehicle import Vehicle
+from .codec import Message
+from .transport import Sender, Transport
+from .vehicle import Vehicle
 
 
 @dataclass(frozen=True)

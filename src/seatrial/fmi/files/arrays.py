@@ -8,9 +8,9 @@ from typing import Any
 
 from fmpy.fmi3 import fmi3Binary, fmi3Byte
 
-from ..links.text import packed, unpacked
-from .instance import Variable
-from .loading.variables import Array
+from ...links.text import packed, unpacked
+from ..instance import Variable
+from .variables import Array
 
 _CTYPES: dict[str, Any] = {
     "Float32": ctypes.c_float,

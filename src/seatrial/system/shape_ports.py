@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from ...errors import InputError, unknown
-from ..part import Part
-from ..system import System
+from ..errors import InputError, unknown
+from .part import Part
 from .shape import FORMATS, mesh_file, written
+from .system import System
 
 MESHES = "meshes"
 """Folder of a run that has the files its vehicles' shapes show."""

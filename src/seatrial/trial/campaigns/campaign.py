@@ -14,6 +14,8 @@ from ...errors import InputError, unknown
 from ...system.fault_entry import FaultEntry
 from ...system.files import FileModel, Source, find_file, read_toml, validated
 from ...system.system import Engine
+from ..files.map_entry import MapEntry
+from ..files.trial import Trial, load_trial
 from ..running.hooks import Hooks
 from ..running.output import claim_folder, write_json
 from ..running.resuming import has_index, kept_results
@@ -22,10 +24,8 @@ from ..running.supervised import Page
 from .case_list import FAULTS, Block, Cases
 from .cases import Case, case_folders, run_cases
 from .designs import Design, drawn
-from .map_entry import MapEntry
 from .questions import Questions
 from .stopping_rule import StoppingRule
-from .trial import Trial, load_trial
 
 INDEX = "campaign.json"
 _UNWRITTEN = 0.01

@@ -6,9 +6,9 @@ import ctypes
 from collections.abc import Sequence
 from typing import Any, ClassVar
 
-from .instance import Reader, Variable, Writer
-from .loading.fmuinstance import FmuInstance
-from .messages import ACCEPTED, OK, WARNING
+from ..instance import Reader, Variable, Writer
+from ..messages import ACCEPTED, OK, WARNING
+from .fmuinstance import FmuInstance
 
 _NAMES = {float: "Real", int: "Integer", bool: "Boolean", str: "String"}
 

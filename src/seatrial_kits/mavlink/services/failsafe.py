@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from seatrial.errors import InputError, unknown
 
-from .modes import Dialect
-from .services.arming import ArmingService
-from .services.modes import ModeService
-from .services.service import CRITICAL
-from .settings import Settings
-from .vehicle import Vehicle
+from ..modes import Dialect
+from ..service import CRITICAL
+from ..settings import Settings
+from ..vehicle import Vehicle
+from .arming import ArmingService
+from .modes import ModeService
 
 ACTIONS = ("none", "disarm", "hold", "loiter", "return", "surface")
 

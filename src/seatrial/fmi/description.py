@@ -11,11 +11,11 @@ from pythonfmu.default_experiment import DefaultExperiment
 from pythonfmu.enums import Fmi2Causality, Fmi2Initial, Fmi2Variability
 from pythonfmu.variables import Boolean, Integer, Real, String
 
-from ...errors import InputError
-from ...model.component import Component, Input, Parameter
-from ...model.ports import Port, ScalarPort
-from ...model.units import unit
-from ..dependencies.found import feedthrough_of
+from ..errors import InputError
+from ..model.component import Component, Input, Parameter
+from ..model.ports import Port, ScalarPort
+from ..model.units import unit
+from .dependencies.found import feedthrough_of
 from .slave import Slave
 
 _VARIABLES = {float: Real, int: Integer, bool: Boolean, str: String}

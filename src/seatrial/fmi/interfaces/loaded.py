@@ -13,11 +13,11 @@ from fmpy.model_description import ModelDescription
 
 from ...model.terminals import Terminal
 from ..clocks import Clocks
+from ..files.lsbus import BusTerminal
+from ..files.modelfile import ModelFile
+from ..files.options import DEFAULTS, INTERFACES, FmuOptions, Interface
+from ..files.variables import Array
 from ..instance import Variables
-from ..lsbus import BusTerminal
-from .modelfile import ModelFile
-from .options import DEFAULTS, INTERFACES, FmuOptions, Interface
-from .variables import Array
 
 
 @dataclass(frozen=True)

@@ -10,12 +10,12 @@ from typing import Any, ClassVar
 
 from ...errors import INTERRUPTED, DiscardError, FatalError, InputError, SimulationError
 from ...model.serialisation import is_c_text
+from ..files.lenient import Missing, lenient
+from ..files.unloadable import reason
 from ..instance import ByType, Reader, Value, Variable, Writer
 from ..messages import ACCEPTED, DISCARD, FATAL, Messages, word
-from .lenient import Missing, lenient
 from .loaded import LoadedFmu
 from .origins import with_origins
-from .unloadable import reason
 
 _INTERRUPTIONS = INTERRUPTED, f"{KeyboardInterrupt()!r}"
 """How our own FMUs say that one was interrupted: a component, or pythonfmu beside it (fatal)."""

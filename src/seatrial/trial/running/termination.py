@@ -8,10 +8,10 @@ import numpy as np
 
 from ...model.units import unit
 from ...sim.master import Master
+from ..criteria.formulas import Formula
+from ..criteria.predicates import Comparison, Kind, Record
+from ..criteria.robustness import Evaluation
 from ..files.trial import Trial
-from .formulas import Formula
-from .predicates import Comparison, Kind, Record
-from .robustness import Evaluation
 
 
 class TerminationConditions:

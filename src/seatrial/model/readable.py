@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 
-from ...model.units import conversion, unit
+from .units import conversion, unit
 
 
 def person_unit(text: str) -> str:

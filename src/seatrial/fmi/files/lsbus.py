@@ -12,13 +12,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from ..errors import InputError
-from ..model.terminals import Terminal
-from .clocks import Clock, Clocks
-from .instance import Variable, Variables
-from .loading.modelfile import ModelFile
-from .loading.xmlfile import read_xml
+from ...errors import InputError
+from ...model.terminals import Terminal
+from ..clocks import Clock, Clocks
+from ..instance import Variable, Variables
+from .modelfile import ModelFile
 from .terminals import PLACE, TOOL, attribute
+from .xmlfile import read_xml
 
 KINDS = ("org.fmi-ls-bus.network-terminal", "org.fmi-standard.fmi-ls-bus.network-terminal")
 """The second stands in drafts."""

@@ -16,10 +16,10 @@ from pathlib import Path
 from typing import Any
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
-from ..errors import InputError, unknown
-from ..model.terminals import Terminal
-from .instance import Variable, Variables
-from .loading.xmlfile import read_xml
+from ...errors import InputError, unknown
+from ...model.terminals import Terminal
+from ..instance import Variable, Variables
+from .xmlfile import read_xml
 
 PLACE = "terminalsAndIcons/terminalsAndIcons.xml"
 """Of the file, in an FMU."""

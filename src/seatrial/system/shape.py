@@ -10,8 +10,8 @@ from typing import Annotated, Any, Self
 from pydantic import AfterValidator, BaseModel, Field, StringConstraints, model_validator
 from pydantic_core import PydanticCustomError
 
-from ...errors import InputError, unknown
-from ..files import FileModel
+from ..errors import InputError, unknown
+from .files import FileModel
 
 FORMATS = (".glb", ".stl")
 _MOST_BYTES = 20_000_000

@@ -11,18 +11,18 @@ import numpy as np
 
 from ...errors import InputError, SimulationError
 from ...model.component import seconds
+from ...model.readable import number
 from ...system.rig import Rig, Scope, duration_ns
 from ...system.system import Engine
 from ..files.trial import Trial
-from ..reports.readable import number
-from ..running.hooks import Hooks
-from ..running.output import write_json
-from ..running.run import Result
-from ..running.supervision import Supervisor
-from . import run_schema
-from .accuracy import Accuracy, accuracy, ranked
-from .run_folder import Run, load_run
-from .run_schema import checked_json
+from ..records import run_schema
+from ..records.accuracy import Accuracy, accuracy, ranked
+from ..records.run_folder import Run, load_run
+from ..records.run_schema import checked_json
+from .hooks import Hooks
+from .output import write_json
+from .run import Result
+from .supervision import Supervisor
 
 CONVERGENCE = "convergence.json"
 

@@ -10,9 +10,9 @@ from itertools import accumulate
 from typing import Any, overload
 
 from ...system.fault_entry import FaultEntry
+from ..files.fault_keys import changed_faults, named_keys
+from ..files.trial import Trial
 from .cases import Case, case_name
-from .fault_keys import changed_faults, named_keys
-from .trial import Trial
 
 FAULTS = "faults"
 """Key by which a case says which faults it has."""

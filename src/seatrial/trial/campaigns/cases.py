@@ -10,12 +10,12 @@ from pathlib import Path
 from typing import Any
 
 from ...system.system import Engine
+from ..files.trial import Trial
 from ..running.hooks import Hooks
 from ..running.pool import Pool, cores
 from ..running.resuming import set_aside
 from ..running.run import Result
 from ..running.supervised import Page
-from .trial import Trial
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,1 @@
+"""Sources of components: the index, classes of files, tables of values."""

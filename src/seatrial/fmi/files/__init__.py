@@ -1,0 +1,1 @@
+"""What FMU files say: archives, model descriptions, terminals, variables."""

@@ -1,1 +1,0 @@
-"""Shapes of vehicles, for pages and records in three dimensions."""
