@@ -15,10 +15,10 @@ from collections.abc import Callable
 
 import numpy as np
 
-from seatrial.physics.craft.cable import Cable
-from seatrial.physics.craft.cable_shape import static_shape
-from seatrial.physics.craft.cable_solver import Chain, implicit_step
-from seatrial.physics.craft.tether import Tether
+from seatrial.physics.cable.cable import Cable
+from seatrial.physics.cable.cable_shape import static_shape
+from seatrial.physics.cable.cable_solver import Chain, implicit_step
+from seatrial.physics.cable.tether import Tether
 from seatrial.system.parameters import load_vehicle
 
 from .pages import write_measured

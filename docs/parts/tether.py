@@ -16,10 +16,10 @@ from parts.markdown import table
 from parts.settings import parameters
 from parts.ships import verdicts
 from seatrial.model.units import quantity
-from seatrial.physics.craft.cable import Cable
-from seatrial.physics.craft.cable_shape import hanging_shape, static_shape
-from seatrial.physics.craft.cable_solver import Chain, implicit_step
-from seatrial.physics.craft.tether import Tether
+from seatrial.physics.cable.cable import Cable
+from seatrial.physics.cable.cable_shape import hanging_shape, static_shape
+from seatrial.physics.cable.cable_solver import Chain, implicit_step
+from seatrial.physics.cable.tether import Tether
 from seatrial.system.parameters import load_vehicle
 
 part("tether-parameters")(partial(parameters, "tether"))

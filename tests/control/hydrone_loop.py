@@ -7,12 +7,12 @@ from importlib.resources import files
 import numpy as np
 
 from seatrial.control.station_keeping import StationKeeping
+from seatrial.devices.actuators.propulsion import Propulsion
+from seatrial.devices.actuators.thruster import Thruster
 from seatrial.devices.compass import Compass
 from seatrial.devices.gnss import Gnss
 from seatrial.devices.imu import Imu
-from seatrial.devices.propulsion import Propulsion
 from seatrial.devices.sensor import Measured
-from seatrial.devices.thruster import Thruster
 from seatrial.physics.craft.marine_craft import MarineCraft
 from seatrial.system.profile.profile import load_profile
 

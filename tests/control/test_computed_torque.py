@@ -5,8 +5,8 @@ import csv
 import numpy as np
 import pytest
 
-from seatrial.control.computed_torque import ComputedTorque
-from seatrial.control.flat_tracking import FlatTracking
+from seatrial.control.tracking.computed_torque import ComputedTorque
+from seatrial.control.tracking.flat_tracking import FlatTracking
 
 from .vessel_loop import CASES, REFERENCE, assert_columns, follow, started, table
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from seatrial.control.dynamic_positioning import DynamicPositioning
-from seatrial.devices.force_actuator import ForceActuator
+from seatrial.devices.actuators.force_actuator import ForceActuator
 from seatrial.physics.craft.thruster_ship import ThrusterShip
 from seatrial.system.parameters import load_vehicle
 from tests.devices.running import started

@@ -7,13 +7,17 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from seatrial.control.flat_outputs import (
+from seatrial.control.tracking.flat_outputs import (
     controllability_matrix,
     flat_output,
     kronecker_indices,
     tracking_gain,
 )
-from seatrial.control.flat_tracking import FlatTracking, vessel_flat_output, vessel_jacobians
+from seatrial.control.tracking.flat_tracking import (
+    FlatTracking,
+    vessel_flat_output,
+    vessel_jacobians,
+)
 from seatrial.errors import InputError
 from seatrial.physics.craft.surface_vessel import SurfaceVessel
 

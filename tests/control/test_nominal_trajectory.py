@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from seatrial.control.nominal_trajectory import NominalTrajectory
-from seatrial.control.vessel_nominal import Profile
+from seatrial.control.tracking.nominal_trajectory import NominalTrajectory
+from seatrial.control.tracking.vessel_nominal import Profile
 from seatrial.errors import InputError
 from seatrial.physics.craft.surface_vessel import SurfaceVessel
 

@@ -1,8 +1,8 @@
 import pytest
 
-from seatrial.control.pulse_allocation import PulseAllocation
-from seatrial.devices.propulsion import Propulsion
-from seatrial.devices.thruster import Thruster
+from seatrial.control.allocation.pulse_allocation import PulseAllocation
+from seatrial.devices.actuators.propulsion import Propulsion
+from seatrial.devices.actuators.thruster import Thruster
 from seatrial.errors import InputError
 from tests.devices.running import started
 

@@ -2,7 +2,7 @@ import math
 
 import pytest
 
-from seatrial.control.sail_control import SailControl
+from seatrial.control.sailing.sail_control import SailControl
 from seatrial.errors import InputError
 from seatrial.physics.foils import sail_naca0015
 from tests.devices.running import started

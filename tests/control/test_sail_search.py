@@ -6,7 +6,7 @@ from importlib.resources import files
 import numpy as np
 import pytest
 
-from seatrial.control.sail_search import best_setting, setting
+from seatrial.control.sailing.sail_search import best_setting, setting
 from seatrial.physics.foils import sail_naca0015
 
 TABLE = sail_naca0015("verbatim", "table")

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scipy.interpolate import RectBivariateSpline
 
-from seatrial.control.sail_control import SailControl
-from seatrial.control.sail_search import best_setting
-from seatrial.control.sail_surface import smooth_setting
+from seatrial.control.sailing.sail_control import SailControl
+from seatrial.control.sailing.sail_search import best_setting
+from seatrial.control.sailing.sail_surface import smooth_setting
 from seatrial.errors import InputError
 from seatrial.physics.foils import sail_naca0015
 

@@ -2,7 +2,7 @@ import math
 
 import pytest
 
-from seatrial.control.sailing_course import laid, side, turn, turned
+from seatrial.control.sailing.course import laid, side, turn, turned
 
 DEG = math.radians(1.0)
 

@@ -3,7 +3,7 @@ import math
 
 import pytest
 
-from seatrial.control.sailing_guidance import SailingGuidance
+from seatrial.control.sailing.guidance import SailingGuidance
 from seatrial.errors import InputError
 from tests.devices.running import started
 

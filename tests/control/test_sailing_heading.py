@@ -11,8 +11,8 @@ from importlib.resources import files
 import numpy as np
 import pytest
 
-from seatrial.control.sailing_heading_backstepping import SailingHeadingBackstepping
-from seatrial.control.sailing_heading_pid import SailingHeadingPid
+from seatrial.control.sailing.heading_backstepping import SailingHeadingBackstepping
+from seatrial.control.sailing.heading_pid import SailingHeadingPid
 from seatrial.model.units import conversion
 from tests.devices.running import started
 

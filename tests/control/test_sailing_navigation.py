@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from seatrial.control.sailing_navigation import SailingNavigation
+from seatrial.control.sailing.navigation import SailingNavigation
 from seatrial.devices.anemometer import Anemometer
 from tests.devices.running import started
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from seatrial.control.station_keeping import HEADING_ONLY, HOLD, IDLE, RETURN, StationKeeping
-from seatrial.devices.thruster import Thruster
+from seatrial.devices.actuators.thruster import Thruster
 from seatrial.errors import InputError
 
 from ..devices.running import started

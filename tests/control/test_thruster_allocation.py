@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from seatrial.control.thruster_allocation import ThrusterAllocation
-from seatrial.devices.propulsion import Propulsion
+from seatrial.control.allocation.thruster_allocation import ThrusterAllocation
+from seatrial.devices.actuators.propulsion import Propulsion
 from tests.devices.running import started
 
 

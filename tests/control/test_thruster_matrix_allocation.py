@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from seatrial.control.thruster_matrix_allocation import ThrusterMatrixAllocation
-from seatrial.devices.polynomial_thruster import PolynomialThruster
-from seatrial.devices.propulsion import Propulsion
+from seatrial.control.allocation.thruster_matrix_allocation import ThrusterMatrixAllocation
+from seatrial.devices.actuators.polynomial_thruster import PolynomialThruster
+from seatrial.devices.actuators.propulsion import Propulsion
 from seatrial.errors import InputError
 from tests.devices.running import started
 

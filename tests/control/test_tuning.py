@@ -9,7 +9,7 @@ from seatrial.control.heading_autopilot import HeadingAutopilot
 from seatrial.control.heading_hold import HeadingHold
 from seatrial.control.reference_filter import HeadingReference
 from seatrial.control.rudder_helm import RudderHelm
-from seatrial.control.sailing_heading_pid import SailingHeadingPid
+from seatrial.control.sailing.heading_pid import SailingHeadingPid
 from seatrial.control.speed_hold import SpeedHold
 from tests.devices.running import started
 

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from seatrial.control.integrated_velocity import IntegratedVelocity
-from seatrial.control.velocity_filter import VelocityFilter
+from seatrial.control.tracking.integrated_velocity import IntegratedVelocity
+from seatrial.control.tracking.velocity_filter import VelocityFilter
 from seatrial.physics.craft.kinematics import to_body
 
 T, GRAVITY = 0.1, 9.81

@@ -3,8 +3,8 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.devices.servo import Servo
-from seatrial.devices.thruster import Thruster
+from seatrial.devices.actuators.servo import Servo
+from seatrial.devices.actuators.thruster import Thruster
 from seatrial.errors import InputError
 from seatrial.fmi.components.index import component_class
 from seatrial.system.profile.profile import Profiles, check_profile, load_profile

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from seatrial.physics.craft.cable import Cable
+from seatrial.physics.cable.cable import Cable
 
 STILL = np.zeros((3, 1))
 STREAM = np.array([[0.5], [0.0], [0.0]])

@@ -1,6 +1,6 @@
 """The Mariner, built from its parameter file, with its rudder machine and PD control."""
 
-from seatrial.devices.rudder_machine import RudderMachine
+from seatrial.devices.actuators.rudder_machine import RudderMachine
 from seatrial.fmi.direct import DirectInstance
 from seatrial.physics.craft.manoeuvring_ship import ManoeuvringShip
 from seatrial.system.parameters import load_vehicle

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from seatrial.physics.craft.cable_solver import linearised
+from seatrial.physics.cable.cable_solver import linearised
 
 from .cables import NEUTRAL, STILL, cable
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from seatrial.physics.craft.cable_shape import hanging_shape, static_shape
+from seatrial.physics.cable.cable_shape import hanging_shape, static_shape
 
 from .cables import END_FORCE, NEUTRAL, STILL, STREAM, arc_in_current, cable, catenary
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from seatrial.physics.craft.cable_shape import static_shape
-from seatrial.physics.craft.cable_solver import Chain, implicit_step
+from seatrial.physics.cable.cable_shape import static_shape
+from seatrial.physics.cable.cable_solver import Chain, implicit_step
 
 from .cables import NEUTRAL, STILL, STREAM, cable
 

@@ -10,8 +10,8 @@ from scipy.integrate import solve_ivp
 from seatrial.errors import InputError
 from seatrial.fmi.dependencies.found import feedthrough_of
 from seatrial.model.units import unit
-from seatrial.physics.craft.cable_shape import hanging_shape
-from seatrial.physics.craft.tether import Tether
+from seatrial.physics.cable.cable_shape import hanging_shape
+from seatrial.physics.cable.tether import Tether
 from seatrial.sim.master import Master
 from seatrial.system.assembly import assemble
 from seatrial.system.flattening import load_rig

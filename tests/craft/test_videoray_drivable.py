@@ -15,9 +15,9 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from seatrial.control.allocation.thruster_allocation import ThrusterAllocation
 from seatrial.control.depth_hold import DepthHold
 from seatrial.control.heading_hold import HeadingHold
-from seatrial.control.thruster_allocation import ThrusterAllocation
 from seatrial.model.units import quantity
 from seatrial.physics.craft.context import Context
 from seatrial.physics.craft.hull_lift import hull_lift

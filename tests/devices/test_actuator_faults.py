@@ -5,13 +5,13 @@ import math
 import numpy as np
 import pytest
 
-from seatrial.devices.actuator import INTERVAL_NS, LATE_NS
-from seatrial.devices.angle_servo import AngleServo
-from seatrial.devices.force_actuator import ForceActuator
-from seatrial.devices.linear_thruster import LinearThruster
-from seatrial.devices.rudder_machine import RudderMachine
-from seatrial.devices.servo import Servo
-from seatrial.devices.thruster import Thruster
+from seatrial.devices.actuators.actuator import INTERVAL_NS, LATE_NS
+from seatrial.devices.actuators.angle_servo import AngleServo
+from seatrial.devices.actuators.force_actuator import ForceActuator
+from seatrial.devices.actuators.linear_thruster import LinearThruster
+from seatrial.devices.actuators.rudder_machine import RudderMachine
+from seatrial.devices.actuators.servo import Servo
+from seatrial.devices.actuators.thruster import Thruster
 from seatrial.errors import InputError, SimulationError
 from seatrial.model.faults.catalogue import FAILURES as FAULTS
 

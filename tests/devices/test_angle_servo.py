@@ -2,7 +2,7 @@ import math
 
 import pytest
 
-from seatrial.devices.angle_servo import AngleServo
+from seatrial.devices.actuators.angle_servo import AngleServo
 from seatrial.errors import InputError
 
 from .running import run, started

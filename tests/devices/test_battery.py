@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
+from seatrial.devices.actuators.thruster import Thruster
 from seatrial.devices.battery import Battery
-from seatrial.devices.thruster import Thruster
 from seatrial.errors import InputError
 
 from .running import run, started

@@ -5,8 +5,8 @@ import random
 import pytest
 
 from seatrial.control.guidance_orders import TARGETS
-from seatrial.control.sailing_guidance import SailingGuidance
-from seatrial.control.velocity_filter import VelocityFilter
+from seatrial.control.sailing.guidance import SailingGuidance
+from seatrial.control.tracking.velocity_filter import VelocityFilter
 from seatrial.fmi.components.source import shipped_sources
 from seatrial.fmi.dependencies.found import feedthrough_of
 from seatrial.model.component import Component

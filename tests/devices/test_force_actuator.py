@@ -2,7 +2,7 @@ import math
 
 import pytest
 
-from seatrial.devices.force_actuator import ForceActuator
+from seatrial.devices.actuators.force_actuator import ForceActuator
 
 from .running import run, started
 

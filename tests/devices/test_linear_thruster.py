@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from seatrial.devices.linear_thruster import LinearThruster
+from seatrial.devices.actuators.linear_thruster import LinearThruster
 from seatrial.errors import InputError
 
 from .running import run, started

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from seatrial.devices.polynomial_thruster import companion_exponential
+from seatrial.devices.actuators.polynomial_thruster import companion_exponential
 
 T200 = (108700.0, 9258.0, 89.0)
 

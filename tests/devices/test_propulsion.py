@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from seatrial.devices.propulsion import Propulsion
+from seatrial.devices.actuators.propulsion import Propulsion
 from seatrial.errors import InputError
 
 from .running import started

@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from seatrial.devices.esc import Esc
-from seatrial.devices.servo import Servo
-from seatrial.devices.servo_driver import ServoDriver
-from seatrial.devices.thruster import Thruster
+from seatrial.devices.actuators.esc import Esc
+from seatrial.devices.actuators.servo import Servo
+from seatrial.devices.actuators.servo_driver import ServoDriver
+from seatrial.devices.actuators.thruster import Thruster
 from seatrial.errors import InputError
 from seatrial.fmi.components.source import shipped_sources
 

@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from seatrial.devices.rudder_machine import RudderMachine
+from seatrial.devices.actuators.rudder_machine import RudderMachine
 from seatrial.errors import InputError
 
 from .running import run, started

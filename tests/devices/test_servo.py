@@ -2,7 +2,7 @@ import math
 
 import pytest
 
-from seatrial.devices.servo import Servo
+from seatrial.devices.actuators.servo import Servo
 from seatrial.errors import InputError
 
 from .running import run, started

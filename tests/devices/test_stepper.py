@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from seatrial.devices.stepper import Stepper, slipped
-from seatrial.devices.stepper_driver import StepperDriver
+from seatrial.devices.actuators.stepper import Stepper, slipped
+from seatrial.devices.actuators.stepper_driver import StepperDriver
 from seatrial.errors import InputError
 
 from .running import started

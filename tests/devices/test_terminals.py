@@ -4,6 +4,8 @@ import itertools
 
 import pytest
 
+from seatrial.devices.actuators.force_actuator import ForceActuator
+from seatrial.devices.actuators.propulsion import Propulsion
 from seatrial.devices.ahrs import Ahrs
 from seatrial.devices.anemometer import Anemometer
 from seatrial.devices.compass import Compass
@@ -11,19 +13,17 @@ from seatrial.devices.ctd import Ctd
 from seatrial.devices.depth import Depth
 from seatrial.devices.dvl import Dvl
 from seatrial.devices.echo_sounder import Altimeter, EchoSounder
-from seatrial.devices.force_actuator import ForceActuator
 from seatrial.devices.gnss import Gnss
 from seatrial.devices.imu import Imu
 from seatrial.devices.lbl import Lbl
-from seatrial.devices.propulsion import Propulsion
 from seatrial.devices.usbl import Usbl
 from seatrial.model.component import Component
+from seatrial.physics.cable.tether import Tether
 from seatrial.physics.craft.manoeuvring_ship import ManoeuvringShip
 from seatrial.physics.craft.marine_craft import MarineCraft
 from seatrial.physics.craft.rov import Rov
 from seatrial.physics.craft.sailboat import Sailboat
 from seatrial.physics.craft.surface_vessel import SurfaceVessel
-from seatrial.physics.craft.tether import Tether
 from seatrial.physics.craft.thruster_ship import ThrusterShip
 from seatrial.physics.environment.downwash import Downwash
 from seatrial.physics.environment.step_disturbance import StepDisturbance

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.devices.thruster import Thruster
+from seatrial.devices.actuators.thruster import Thruster
 from seatrial.errors import InputError
 
 from .running import run, started

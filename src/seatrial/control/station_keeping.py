@@ -9,9 +9,9 @@ from typing import ClassVar
 from ..errors import InputError
 from ..model.component import Input, Output, Parameter, terminal
 from ..model.sampled import Sampled
+from .allocation.twin_thrusters import TwinThrusters
 from .estimates import is_lost
 from .guidance_orders import SENSED
-from .twin_thrusters import TwinThrusters
 
 IDLE, HOLD, RETURN, HEADING_ONLY = range(4)
 """Values of the output ``mode``."""

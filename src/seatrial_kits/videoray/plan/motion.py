@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from seatrial.control.nominal_trajectory import NominalTrajectory
-from seatrial.control.vessel_nominal import Nominal, Profile, VesselModel, nominal_motion
+from seatrial.control.tracking.nominal_trajectory import NominalTrajectory
+from seatrial.control.tracking.vessel_nominal import Nominal, Profile, VesselModel, nominal_motion
 from seatrial.errors import InputError
 from seatrial.model.expressions import Vector
 from seatrial.system.parameters import load_vehicle

@@ -1,0 +1,1 @@
+"""Forces shared out among thrusters."""

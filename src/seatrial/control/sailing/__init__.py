@@ -1,0 +1,1 @@
+"""Sails and courses of sailing robots."""

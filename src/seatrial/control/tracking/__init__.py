@@ -1,0 +1,1 @@
+"""Velocities and trajectories of vessels held."""

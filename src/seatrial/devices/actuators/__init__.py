@@ -1,0 +1,1 @@
+"""Actuators and what drives them."""

@@ -1,0 +1,77 @@
+"""Lumped thrusters of a ship: a force and a moment that follow demands."""
+
+from __future__ import annotations
+
+import math
+from typing import ClassVar
+
+from ...model.component import Input, Output, Parameter, terminal
+from .actuator import Actuator
+
+_SLOW_LAG = 1.0
+"""Least lag of one that is slow, s: an ideal one has none that could be longer."""
+
+
+class ForceActuator(Actuator):
+    """Surge force, sway force and yaw moment, each with a limit and a first-order lag.
+
+        T y' = clip(demand, capacity) - y,    clip(x, a) = x held between -a and a
+
+    exact for a demand held over the step. With ``time_constant`` T = 0 it is ideal: the output
+    is the limited demand at the same instant. X, Y in N and N in N.m in body axes (x bow,
+    y starboard, z down), about the body origin; the moment is positive to starboard.
+
+    Failures are those of `Actuator`, for all three axes together: a wrong one has half of its
+    forces; a slow one has ten times its lag, and at least 1 s.
+
+    Defaults are the ideal thrusters of source 003, with what it calls 100 % as capacity.
+
+    Not modelled: single thrusters and how a demand is allocated to them; the capacity of one
+    axis does not depend on what the others use.
+    """
+
+    exercised: ClassVar = {"capacity": [2.0, 2.0, 2.0]}
+
+    time_constant = Parameter(0.0, "s", "lag of forces behind demands, 0 for none", min=0.0)
+    capacity = Parameter(
+        (2.5e5, 2.5e5, 1e7), ("N", "N", "N.m"), "largest forces and moment", axes="XYN", min=0.0
+    )
+
+    demand = Input(("N", "N", "N.m"), "forces and moment asked for, body axes", axes="XYN")
+    force = Output("N", "force on the ship, body axes", axes="xy", frame="b")
+    moment = Output("N.m", "yaw moment on the ship, positive to starboard")
+
+    terminals: ClassVar = {"wrench": terminal("force", "moment")}
+
+    def start(self, t: float) -> None:
+        """Start without force."""
+        self._load = [0.0, 0.0, 0.0]
+        self.begin_at(0.0, 0.0, 0.0)
+
+    def step(self, t: float, h: float) -> None:
+        """Follow the demand as it is."""
+        goals = self._goals(self.take(t, self.demand, *self._range()))
+        lag = self._lag()
+        kept = math.exp(-h / lag) if lag > 0.0 else 0.0
+        self._load = [
+            goal + (load - goal) * kept for goal, load in zip(goals, self._load, strict=True)
+        ]
+
+    def outputs(self, t: float) -> None:
+        """Publish force and moment."""
+        if self._lag() > 0.0:
+            x, y, self.moment = self._load
+        else:
+            x, y, self.moment = self._goals(self.received(t, self.demand, *self._range()))
+        self.force = x, y
+
+    def _goals(self, received: list[float] | None) -> list[float]:
+        pairs = zip(received or (0.0, 0.0, 0.0), self.capacity, strict=True)
+        return [self.effect * min(max(demand, -most), most) for demand, most in pairs]
+
+    def _range(self) -> tuple[list[float], list[float]]:
+        return [-most for most in self.capacity], list(self.capacity)
+
+    def _lag(self) -> float:
+        lag: float = self.slowness * self.time_constant
+        return max(lag, _SLOW_LAG) if self.fault == "slow" else lag
