@@ -1,4 +1,4 @@
-"""How large the core, the kits and an installation are: lines, files, packages, what a run loads.
+"""Sizes of the core, the kits and an installation: lines, files, packages, what a run loads.
 
 ``python -m benchmarks.size`` prints it; run it before and after a change.
 """
