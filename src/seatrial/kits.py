@@ -44,6 +44,8 @@ KINDS: Mapping[str, tuple[str, ...]] = {
     "algorithms": (),
     "commands": ("call", "help"),
     "components": ("class", "title"),
+    "criteria": (),
+    "faults": (),
     "sections": (),
     "services": (),
     "terms": (),
@@ -52,9 +54,10 @@ KINDS: Mapping[str, tuple[str, ...]] = {
 """Kinds of parts, and the keys of each: where it is, and what it is for; none: the place alone.
 
 algorithms: coupling algorithms. commands: of ``seatrial``. components: as ``fmus/index.toml`` has
-them. sections: functions that return further sections of a run's report. services: functions that
-the core calls if they are there. terms: of the hydrodynamics of a vehicle. transports: kinds of
-links.
+them. criteria: functions of criteria, `trial.criteria.expressions.Rule`. faults: of signals,
+`model.faults.catalogue.Kind`. sections: functions that return further sections of a run's report.
+services: functions that the core calls if they are there. terms: of the hydrodynamics of a vehicle.
+transports: kinds of links.
 """
 _TOP = ("api", "examples", "libraries", "needs", "title")
 

@@ -44,6 +44,22 @@ def test_its_trial_runs_with_its_vehicle_sensor_and_term(
     assert "FAIL  it goes straight in the end" in done.stdout
 
 
+def test_its_fault_and_its_function_of_criteria(site: Path, tmp_path: Path) -> None:
+    run = ("run", "skiff-straight", "--engine", "direct", "--out", "run", "--no-report")
+    done = seatrial(
+        site, tmp_path, *run, "--fault", "inclinometer.tilt=coarse, at=10 s, value=1 deg"
+    )
+    assert done.returncode == 0, done.stderr
+    assert "PASS  it keeps its speed" in done.stdout
+    rows = (tmp_path / "run/signals.csv").read_text().splitlines()
+    place = rows[0].split(",").index("inclinometer.tilt.heel")
+    heels = [float(row.split(",")[place]) for row in rows[1:]]
+    assert any(heel % 0.0174 for heel in heels[:100])
+    assert {round(heel * 57.29577951308232, 9) for heel in heels[101:]} <= {-1.0, 0.0, 1.0}
+    refused = seatrial(site, tmp_path, *run, "--fault", "inclinometer.tilt=coarse, value=0 deg")
+    assert "a step above 0 is needed, found 0" in refused.stderr
+
+
 def test_its_command_is_listed_and_agrees_with_the_equation(site: Path, tmp_path: Path) -> None:
     assert "skeg" in seatrial(site, tmp_path, "--help").stdout
     done = seatrial(site, tmp_path, "skeg", "2.0")

@@ -8,7 +8,7 @@ from typing import Any
 from ..errors import InputError
 from ..fmi.instance import Variable
 from ..model.component import NS
-from ..model.faults.catalogue import KINDS
+from ..model.faults.catalogue import kinds
 from ..model.units import quantity
 from ..system.fault_entry import FaultEntry
 from ..system.rig import duration_ns
@@ -70,7 +70,7 @@ class Settings:
 
     def probability(self) -> float:
         """Return the probability."""
-        default = KINDS[self.entry.what].settings["probability"].default
+        default = kinds()[self.entry.what].settings["probability"].default
         if self.entry.probability is None and default is not None:
             return default
         found = self.number("probability")
@@ -90,7 +90,7 @@ class Settings:
 
     def every(self) -> int:
         """Return how often new numbers come, ns."""
-        default = KINDS[self.entry.what].settings["every"].default or 0.0
+        default = kinds()[self.entry.what].settings["every"].default or 0.0
         return self.duration("every", round(default * NS))
 
     def coefficients(self) -> tuple[float, ...]:
@@ -117,7 +117,7 @@ class Settings:
     def numbers(self) -> dict[str, list[float]]:
         """Return all settings as numbers, one for each scalar, as a device takes them."""
         found, count = {}, range(len(self._scalars))
-        for key, setting in KINDS[self.entry.what].settings.items():
+        for key, setting in kinds()[self.entry.what].settings.items():
             if key in ("every", "wraps"):
                 if getattr(self.entry, key) is not None:
                     raise self.refused(key, "a sensor has its own: leave it out")

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, cast
 
 from ..errors import InputError, unknown
 from ..fmi.instance import Variable
 from ..model.component import NS, seconds
 from ..model.faults import operators
-from ..model.faults.catalogue import FAILURES, KINDS
+from ..model.faults.catalogue import FAILURES, kinds
 from ..model.faults.operators import Draw, Operator, drawing
 from ..model.faults.text import fault_text
 from ..system.fault_entry import FaultEntry, check_entry
@@ -103,14 +103,14 @@ def _what_it_acts_on(
     origin: str,
 ) -> str:
     """Return on which of `catalogue.On` the fault acts here. Raises InputError."""
-    kind = KINDS[entry.what]
+    kind = kinds()[entry.what]
     component, scalars = found[0]
     if not scalars:
         device = system.parts[component].instance.variables.of_role("fault")
         for on in ("measurement" if entry.of else "device", "component"):
             if on in kind.on and (on == "component" or len(device) == 1):
                 return on
-        whole = [name for name, one in KINDS.items() if "component" in one.on]
+        whole = [name for name, one in kinds().items() if "component" in one.on]
         if len(device) == 1:
             whole = [*FAILURES, *whole]
         hint = "; with `of`, one of its measurements" if "measurement" in kind.on and device else ""
@@ -124,7 +124,7 @@ def _what_it_acts_on(
         inputs = system.parts[component].instance.variables.of_role("fault")
         role = "device" if len(inputs) == 1 else "bus"
         if role not in kind.on:
-            takes = ", ".join(name for name, one in KINDS.items() if role in one.on)
+            takes = ", ".join(name for name, one in kinds().items() if role in one.on)
             raise InputError(f"{origin}.what: {place} takes {takes}, found {entry.what}")
         return role
     for on in ("signal", "stream"):
@@ -164,7 +164,7 @@ def _of_signals(
     acts = []
     for index, variable in enumerate(scalars):
         draw = drawing(system.seed, f"{number}/{entry.what}/{component}.{variable.name}")
-        make = _stream if "stream" in KINDS[entry.what].on else _signal
+        make = _stream if "stream" in kinds()[entry.what].on else _signal
         acts.append((component, variable.name, make(settings, index, variable, draw)))
     return acts
 
@@ -176,6 +176,10 @@ _OF_ANY = ("fixed", "stuck", "dropout", "delay")
 def _signal(settings: Settings, index: int, variable: Variable, draw: Draw) -> Operator:
     """Return the operator of one scalar. Raises InputError."""
     what = settings.entry.what
+    if (make := kinds()[what].make) is not None:
+        if variable.type is not float:
+            raise settings.refused("what", f"{what} is of real numbers, {variable.name} is none")
+        return cast(Operator, make(settings, index, draw))
     if (
         variable.type not in (float, int)
         and what not in _OF_ANY

@@ -7,7 +7,7 @@ from typing import Any
 from pydantic import Field
 
 from ..errors import InputError, unknown
-from ..model.faults.catalogue import KINDS
+from ..model.faults.catalogue import kinds
 from .files import FileModel
 
 
@@ -54,16 +54,16 @@ _COMMON = ("what", "where", "at", "for_", "grows_over")
 
 def check_entry(entry: FaultEntry, where: str) -> None:
     """Raise InputError for a fault that there is not, and for settings that it does not take."""
-    kind = KINDS.get(entry.what)
+    kind = kinds().get(entry.what)
     if kind is None:
-        raise InputError(f"{where}.what: {unknown('fault', entry.what, KINDS)}")
+        raise InputError(f"{where}.what: {unknown('fault', entry.what, kinds())}")
     taken = [*kind.settings, *(["of"] if "measurement" in kind.on else [])]
     for key in entry.settings:
         if key not in taken:
             takes = f"takes {', '.join(taken)}" if taken else "takes no settings"
             raise InputError(f"{where}.{key}: {entry.what} {takes}")
     if entry.grows_over is not None and not kind.grows:
-        growing = ", ".join(name for name, each in KINDS.items() if each.grows)
+        growing = ", ".join(name for name, each in kinds().items() if each.grows)
         raise InputError(
             f"{where}.grows_over: {entry.what} acts at once; those that grow: {growing}"
         )

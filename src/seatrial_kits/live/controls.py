@@ -8,7 +8,7 @@ from collections.abc import Callable
 from typing import Any
 
 from seatrial.errors import InputError
-from seatrial.model.faults.catalogue import KINDS
+from seatrial.model.faults.catalogue import kinds
 from seatrial.model.readable import person_scale
 
 from .by_hand import ByHand
@@ -145,7 +145,7 @@ class Controls:
         manifest = described["manifest"]
         places = [*manifest["components"], *sorted(manifest["signals"])]
         with self._gui.add_folder("Faults", expand_by_default=False):
-            what = self._gui.add_dropdown("what", tuple(KINDS))
+            what = self._gui.add_dropdown("what", tuple(kinds()))
             where = self._gui.add_dropdown("where", tuple(places))
             settings = self._gui.add_text("settings", "", hint="as in a trial: value = 0.5")
             meaning = self._gui.add_html("")
@@ -153,7 +153,7 @@ class Controls:
             acting = self._gui.add_folder("acting")
 
         def explain(_: Any) -> None:
-            kind = KINDS[what.value]
+            kind = kinds()[what.value]
             takes = ", ".join(kind.settings) or "no settings"
             meaning.content = (
                 f'<div style="font-size:.8em;padding:0 .8em">{kind.title}<br>takes: {takes}</div>'

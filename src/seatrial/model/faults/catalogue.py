@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
+
+from ...plugins import Registry
 
 On = Literal["signal", "stream", "device", "measurement", "bus", "component"]
 """An output, input or parameter; a text port of chunks; a device of ours; what a sensor of ours
@@ -34,6 +37,12 @@ class Kind:
     settings: dict[str, Setting]
     grows: bool = False
     """Whether it takes ``grows_over``: its share s rises from 0 to 1 in that time."""
+    make: Callable[..., Any] | None = None
+    """Of a kit's fault of signals: its operator, of settings, index of the scalar, and numbers.
+
+    Called as ``make(settings, index, draw)``, with `sim.fault_settings.Settings` and
+    `operators.Draw`; returns an `operators.Operator`.
+    """
 
 
 _EVERY = Setting("duration", "new numbers come so often, counted from its begin", 0.1)
@@ -254,7 +263,15 @@ COMPONENTS = {
 }
 
 KINDS: dict[str, Kind] = {**SIGNALS, **STREAMS, **DEVICES, **COMPONENTS}
-"""All faults by their names."""
+"""All faults of the core by their names."""
+OF_KITS = Registry("seatrial.faults", "fault", {})
+"""Faults of signals that kits add: each a `Kind` that makes its operator."""
+
+
+def kinds() -> Mapping[str, Kind]:
+    """Return all faults by their names, those of kits last. Raises InputError."""
+    return {**KINDS, **{name: OF_KITS.load(name) for name in OF_KITS.names()}}
+
 
 FAILURES = ("off", "stuck", "garbage", "wrong", "slow", "delayed", "intermittent")
 """What a whole device does: MAVLink's FAILURE_TYPE from 1, in its order."""

@@ -170,7 +170,7 @@ TERMS: dict[str, Term] = {
     WIND: wind_loads,
 }
 """Terms by the name that a vehicle's file writes."""
-OF_KITS = Registry("seatrial.model.terms", "term", {})
+OF_KITS = Registry("seatrial.terms", "term", {})
 """Terms that kits add."""
 
 

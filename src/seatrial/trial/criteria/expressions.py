@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from ...errors import InputError
 from ...model.readable import person_unit, quantity_text
 from ...model.units import unit
+from ...plugins import Registry
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -82,14 +83,12 @@ class Operation:
 
         Raises InputError if the arguments' units do not go together.
         """
-        rule = _OPERATIONS[self.name].rule
+        rule = rule_of(self.name).rule
         return rule(self, [a.exponents(units) for a in self.arguments], units)
 
     def evaluate(self, values: Values) -> Value:
         """Return the SI values."""
-        result: Value = _OPERATIONS[self.name].function(
-            *[a.evaluate(values) for a in self.arguments]
-        )
+        result: Value = rule_of(self.name).function(*[a.evaluate(values) for a in self.arguments])
         return result
 
 
@@ -118,7 +117,7 @@ def written(node: Expression) -> str:
         measure = unit(node.unit)
         return quantity_text((node.value - measure.offset) / measure.factor, node.unit, 6)
     parts = [written(argument) for argument in node.arguments]
-    if node.name in FUNCTIONS:
+    if node.name not in _OPERATORS:
         bare = [
             part[1:-1] if isinstance(argument, Operation) and argument.name in "+-*/" else part
             for part, argument in zip(parts, node.arguments, strict=True)
@@ -157,7 +156,8 @@ def unit_of(node: _Leafy, units: Units, exponents: Exponents) -> str:
 # ---------------------------------------------------------------------- units of operations
 
 
-def _same(node: Operation, exponents: list[Exponents], units: Units) -> Exponents:
+def same_kind(node: Operation, exponents: list[Exponents], units: Units) -> Exponents:
+    """Return the exponents of values of one kind. Raises InputError for different ones."""
     first = node.arguments[0]
     for argument, own in zip(node.arguments[1:], exponents[1:], strict=True):
         check_same(f"{node.name!r}", (first, exponents[0]), (argument, own), units)
@@ -208,9 +208,13 @@ def _described(node: Expression, exponents: Exponents, units: Units) -> str:
     return "a number without a unit" if text == "1" else f"a value in {text!r}"
 
 
-class _Rule(NamedTuple):
+class Rule(NamedTuple):
+    """An operator or function: NumPy's arithmetic, and what becomes of the units."""
+
     function: Callable[..., Any]
     rule: Callable[[Operation, list[Exponents], Units], Exponents]
+    arguments: int | None = None
+    """How many it takes; None: any number."""
 
 
 def _greatest(*values: Value) -> Any:
@@ -222,17 +226,31 @@ def _least(*values: Value) -> Any:
 
 
 _OPERATIONS = {
-    "+": _Rule(np.add, _same),
-    "-": _Rule(np.subtract, _same),
-    "*": _Rule(np.multiply, _product),
-    "/": _Rule(np.divide, _quotient),
-    "negative": _Rule(np.negative, _same),
-    "abs": _Rule(np.abs, _same),
-    "max": _Rule(_greatest, _same),
-    "min": _Rule(_least, _same),
-    "sqrt": _Rule(np.sqrt, _root),
+    "+": Rule(np.add, same_kind),
+    "-": Rule(np.subtract, same_kind),
+    "*": Rule(np.multiply, _product),
+    "/": Rule(np.divide, _quotient),
+    "negative": Rule(np.negative, same_kind),
+    "abs": Rule(np.abs, same_kind, 1),
+    "max": Rule(_greatest, same_kind),
+    "min": Rule(_least, same_kind),
+    "sqrt": Rule(np.sqrt, _root, 1),
 }
-FUNCTIONS = ("abs", "max", "min", "sqrt")
+_OPERATORS = ("+", "-", "*", "/", "negative")
+OF_KITS = Registry("seatrial.criteria", "function of criteria", {})
+"""Functions that kits add: each a `Rule`."""
+
+
+def functions() -> list[str]:
+    """Return the names of all functions."""
+    return sorted({*_OPERATIONS, *OF_KITS.names()} - {*_OPERATORS})
+
+
+def rule_of(name: str) -> Rule:
+    """Return an operator or function. Raises InputError for one of a kit that is not to be had."""
+    if name in _OPERATIONS:
+        return _OPERATIONS[name]
+    return cast(Rule, OF_KITS.load(name))
 
 
 def literal(text: str, unit_text: str) -> Literal:

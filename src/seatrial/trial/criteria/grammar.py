@@ -64,7 +64,7 @@ quantity: NUMBER UNIT?
 COMPARE: "<=" | ">=" | "<" | ">"
 SIGN: "+" | "-"
 TIMES: "*" | "/"
-FUNCTION: /(abs|max|min|sqrt)(?=\s*\()/
+FUNCTION: /(@FUNCTIONS@)(?=\s*\()/
 OVER: /(always|eventually|once|historically)\b/
 BETWEEN: /(until|since)\b/
 VERB: /(says|is)\b/
@@ -94,7 +94,6 @@ _EXPECTED = {
     "COMPARE": "a comparison (< <= > >=)",
     "SIGN": "an operator (+ - * /)",
     "TIMES": "an operator (+ - * /)",
-    "FUNCTION": "a function (abs, max, min, sqrt)",
     "OVER": "'always', 'eventually', 'once', 'historically'",
     "BETWEEN": "'until', 'since'",
     "VERB": "'says', 'is'",
@@ -125,7 +124,8 @@ def tree(text: str) -> Formula | Settling:
 def _parser() -> Lark:
     # The tables made of a grammar are kept: lark makes them again for another grammar or version.
     kept = cache_folder("grammars") / f"criteria-{sys.implementation.cache_tag}"
-    return Lark(GRAMMAR, parser="lalr", transformer=_Builder(), cache=str(kept))
+    grammar = GRAMMAR.replace("@FUNCTIONS@", "|".join(map(re.escape, ex.functions())))
+    return Lark(grammar, parser="lalr", transformer=_Builder(), cache=str(kept))
 
 
 def _syntax(text: str, error: UnexpectedInput) -> str:
@@ -138,7 +138,8 @@ def _syntax(text: str, error: UnexpectedInput) -> str:
     accepted: set[str] = error.interactive_parser.accepts()  # type: ignore[no-untyped-call]
     if "NUMBER" in accepted:
         accepted.discard("SIGN")
-    expected = sorted({_EXPECTED.get(n, repr(n.strip("_").lower())) for n in accepted})
+    said = {**_EXPECTED, "FUNCTION": f"a function ({', '.join(ex.functions())})"}
+    expected = sorted({said.get(n, repr(n.strip("_").lower())) for n in accepted})
     return f"column {position + 1}: found {found}, expected one of: {', '.join(expected)}"
 
 
@@ -238,8 +239,10 @@ class _Builder(Transformer[Token, "Formula | Settling"]):
 
     def call(self, function: Token, *arguments: Any) -> ex.Operation:
         name = str(function)
-        if name in ("abs", "sqrt") and len(arguments) != 1:
-            raise InputError(f"{name} takes one value, got {len(arguments)}")
+        taken = ex.rule_of(name).arguments
+        if taken is not None and len(arguments) != taken:
+            values = "one value" if taken == 1 else f"{taken} values"
+            raise InputError(f"{name} takes {values}, got {len(arguments)}")
         return _shallow(ex.Operation(name, tuple(_expression(a) for a in arguments)))
 
     def signal(self, name: Token) -> ex.Signal:
