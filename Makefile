@@ -54,7 +54,7 @@ test-long: $(INSTALLED) $(NODE_TOOLS)
 	$(PYTEST) -m long
 
 # Each vehicle in each sea with each fault under ArduPilot's own programs, which SEATRIAL_ARDUPILOT
-# names the folder of: an hour, once per release. The table goes into docs/autopilots.md.
+# names the folder of: an hour, once per release. The table goes into docs/kits/ardupilot/autopilots.md.
 test-firmware: $(INSTALLED)
 	$(BIN)/python -m tests.interop.firmware_matrix --write
 

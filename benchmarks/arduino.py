@@ -3,7 +3,7 @@
 Seconds of the sketch's time per second of processor time, the board's program included: Gloria's
 autopilot on a board alone that receives HDT and RMC, and in the rig that sails; the median over
 rounds and its range. Each round also adds up numbers in a loop, since machines and hours differ.
-``--write`` puts the table into docs/links/arduino.md.
+``--write`` puts the table into docs/kits/arduino/arduino.md.
 """
 
 from __future__ import annotations
@@ -115,7 +115,7 @@ def main() -> None:
     )
     print(text)
     if options.write:
-        write_measured("links/arduino.md", text)
+        write_measured("kits/arduino/arduino.md", text)
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@
 Random data frames of 8 bytes from ten nodes on a bus of 250 kbit/s that is full, in steps of 10 ms:
 frames per second of processor time, the median over rounds and its range. Machines differ and so do
 the hours of one machine; so each round also adds up numbers in a loop, and the table has how many
-such additions a frame costs. ``--write`` puts the table into docs/links/can.md.
+such additions a frame costs. ``--write`` puts the table into docs/kits/can/can.md.
 """
 
 from __future__ import annotations
@@ -168,7 +168,9 @@ def main() -> None:
     )
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--frames", type=int, default=10_000)
-    parser.add_argument("--write", action="store_true", help="put the table into docs/links/can.md")
+    parser.add_argument(
+        "--write", action="store_true", help="put the table into docs/kits/can/can.md"
+    )
     options = parser.parse_args()
     unit = addition() * 1e9
     text = (
@@ -178,7 +180,7 @@ def main() -> None:
     text += table(options.rounds, options.frames)
     print(text)
     if options.write:
-        write_measured("links/can.md", text)
+        write_measured("kits/can/can.md", text)
 
 
 if __name__ == "__main__":

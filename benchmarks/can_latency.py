@@ -1,7 +1,7 @@
 """Latency on a CAN bus against its load: ``python -m benchmarks.can_latency``.
 
 Runs the trial ``can-load`` at 10 to 120 % of load, and shows the statistics that each run leaves.
-``--write`` puts the table into docs/links/can.md and draws docs/images/can-latency.svg. Simulated
+``--write`` puts the table into docs/kits/can/can.md and draws docs/images/can-latency.svg. Simulated
 time: the same figures on every machine.
 """
 
@@ -139,7 +139,7 @@ def main() -> None:
     text = table(runs)
     print(text)
     if options.write:
-        write_measured("links/can.md", text, "latencies")
+        write_measured("kits/can/can.md", text, "latencies")
         IMAGE.write_text(figure(runs), "utf-8")
 
 

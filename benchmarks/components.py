@@ -2,7 +2,7 @@
 
 Steps of 10 ms with all real inputs set before and all real outputs read after, in a host of C and
 of the object in process, in turn; the least of some rounds. ``--write`` puts the table into
-docs/native.md.
+docs/kits/native/native.md.
 """
 
 from __future__ import annotations
@@ -86,7 +86,7 @@ class Subject:
 def main() -> None:
     """Measure, print, and write the page if that is asked for."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--write", action="store_true", help="write docs/native.md")
+    parser.add_argument("--write", action="store_true", help="write docs/kits/native/native.md")
     write = parser.parse_args().write
     rows = [
         "| CPU time of a step of 10 ms, µs | native | Python, in process | ratio |",
@@ -109,7 +109,7 @@ def main() -> None:
         f"Python {platform.python_version()}."
     )
     if write:
-        write_measured("native.md", "\n".join([*rows, "", measured]))
+        write_measured("kits/native/native.md", "\n".join([*rows, "", measured]))
 
 
 if __name__ == "__main__":

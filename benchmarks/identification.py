@@ -1,6 +1,6 @@
 """Errors of identification on synthetic logs: output error, source 000's method, and a bound.
 
-``python -m benchmarks.identification`` prints the table of docs/how-to/identification.md,
+``python -m benchmarks.identification`` prints the table of docs/kits/identify/identification.md,
 ``--write`` puts it there. The logs are made by SciPy's DOP853 from the equations of motion;
 nothing of the package simulates them.
 """
@@ -21,7 +21,7 @@ from scipy.integrate import solve_ivp
 from seatrial_kits.identify.output_error import AxisLog, Estimate, output_error
 from seatrial_kits.identify.source_method import integrated, least_squares_axis, source_method
 
-PAGE = Path(__file__).parents[1] / "docs" / "how-to" / "identification.md"
+PAGE = Path(__file__).parents[1] / "docs/kits/identify/identification.md"
 MARK = re.compile(r"(<!-- made by benchmarks/identification\.py -->\n).*?(<!-- end -->)", re.DOTALL)
 PERIOD, DURATION, HOLD, AMPLITUDE = 0.1, 120.0, 10, 0.3
 LONGEST_DELAY = 7

@@ -41,7 +41,7 @@ pytestmark = pytest.mark.interop
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
 DESIGN = DOCS / "design.md"
-HOW_TO, LINKS, REFERENCE = DOCS / "how-to", DOCS / "links", DOCS / "reference"
+HOW_TO, KITS, REFERENCE = DOCS / "how-to", DOCS / "kits", DOCS / "reference"
 FILES, RESULTS = REFERENCE / "files.md", REFERENCE / "results.md"
 CRITERIA, PROFILE = HOW_TO / "state-criteria.md", HOW_TO / "write-a-profile.md"
 DINGHY = [
@@ -62,18 +62,19 @@ COMPONENT = [
     for name in ("write-a-component", "write-a-sensor", "write-a-plant", "build-an-fmu")
 ]
 """The pages of a user's own components."""
-LONG = {HOW_TO / "identification.md", DOCS / "vehicles/guidance.md"}
+LONG = {KITS / "identify/identification.md", DOCS / "vehicles/guidance.md"}
 """Pages whose examples take minutes."""
 ELSEWHERE = {
-    LINKS / "arduino.md",  # a fixture of the sketch's own tests
-    DOCS / "autopilots.md",  # tests/kits/ardupilot: time stands still until a firmware comes
-    DOCS / "px4.md",  # tests/kits/px4: the same
-    LINKS / "ground-stations.md",  # sessions of MAVSDK and MAVProxy, in tests/interop
+    KITS / "arduino/arduino.md",  # a fixture of the sketch's own tests
+    KITS
+    / "ardupilot/autopilots.md",  # tests/kits/ardupilot: time stands still until a firmware comes
+    KITS / "px4/px4.md",  # tests/kits/px4: the same
+    KITS / "mavlink/ground-stations.md",  # sessions of MAVSDK and MAVProxy, in tests/interop
     HOW_TO / "test-with-pytest.md",  # tests/testing
     DOCS / "tutorials/ci.md",  # tests/testing: a project of its own
     REFERENCE / "cli.md",  # made from the commands' own help
     DOCS / "performance.md",  # a benchmark
-    HOW_TO / "watch-a-run.md",  # tests/kits/live: pages that wait for a browser
+    KITS / "live/watch-a-run.md",  # tests/kits/live: pages that wait for a browser
 }
 """Pages whose examples other tests run, or none."""
 MADE = {HOW_TO / "panel-codes.md": ("barge_capytaine.nc", "vehicles/barge.nc")}
@@ -227,7 +228,7 @@ def test_examples_run(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 
 def file_models() -> set[type[BaseModel]]:
     """Return every model of a file that a module of seatrial names."""
-    for path in (ROOT / "src/seatrial").rglob("*.py"):
+    for path in (ROOT / "src").rglob("*.py"):
         if "BaseModel" in (text := path.read_text("utf-8")) or "FileModel" in text:
             module = path.relative_to(ROOT / "src").with_suffix("")
             importlib.import_module(".".join(module.parts))
@@ -247,7 +248,7 @@ def file_models() -> set[type[BaseModel]]:
 def key_tables() -> dict[type[BaseModel], dict[str, str]]:
     """Return, per model that a page names, the default that it says for each key."""
     tables = {}
-    for page in [*HOW_TO.glob("*.md"), *REFERENCE.glob("*.md")]:
+    for page in [*HOW_TO.glob("*.md"), *KITS.rglob("*.md"), *REFERENCE.glob("*.md")]:
         for name in re.findall(r"<!-- keys of (\S+) -->", page.read_text("utf-8")):
             module, _, model = name.rpartition(".")
             cls = getattr(importlib.import_module(module), model)

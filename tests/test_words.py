@@ -79,7 +79,9 @@ BY_RIGHT = (
         r"[Ll]eft stick|stick's way",
         "of a gamepad",
     ),
-    Right("stick", "docs/links/videoray-stream.md", r"left stick|stick down", "of a gamepad"),
+    Right(
+        "stick", "docs/kits/videoray/videoray-stream.md", r"left stick|stick down", "of a gamepad"
+    ),
 )
 
 

@@ -2,7 +2,7 @@
 
 ``python -m tests.interop.firmware_matrix`` runs each vehicle in each sea with each fault, where
 SEATRIAL_ARDUPILOT names the folder of ``ardurover`` and ``ardusub``; ``--write`` puts the table
-into docs/autopilots.md, ``--only TEXT`` runs the cases whose name has it. Each run has a network of
+into docs/kits/ardupilot/autopilots.md, ``--only TEXT`` runs the cases whose name has it. Each run has a network of
 its own. Finished cases are kept in ``--folder`` and not run again.
 """
 
@@ -210,8 +210,8 @@ def main() -> None:
         list(pool.map(one, wanted))
     print(table(results))
     if given.write:
-        write_measured("autopilots.md", table(results), "firmware")
-        write_measured("autopilots.md", times(runs), "times")
+        write_measured("kits/ardupilot/autopilots.md", table(results), "firmware")
+        write_measured("kits/ardupilot/autopilots.md", times(runs), "times")
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""The session of docs/links/ground-stations.md, typed into a MAVProxy at a running trial."""
+"""The session of docs/kits/mavlink/ground-stations.md, typed into a MAVProxy at a running trial."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pathlib import Path
 from .mavproxy import MavProxy, mavproxy
 from .running import HOST, free_port, running, wait_for
 
-PAGE = Path(__file__).parents[2] / "docs" / "links" / "ground-stations.md"
+PAGE = Path(__file__).parents[2] / "docs/kits/mavlink/ground-stations.md"
 FACTOR = 5.0
 MISSION_S = 240.0
 """Wall time for what a boat needs half a minute of simulated time for."""

@@ -1,4 +1,4 @@
-"""The session of docs/links/ground-stations.md is what MAVProxy really prints."""
+"""The session of docs/kits/mavlink/ground-stations.md is what MAVProxy really prints."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The program of docs/links/ground-stations.md, as it stands, with the trial made of FMUs."""
+"""The program of docs/kits/mavlink/ground-stations.md, as it stands, with the trial made of FMUs."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from .running import HOST, free_port, running, wait_for
 
-PAGE = Path(__file__).parents[2] / "docs" / "links" / "ground-stations.md"
+PAGE = Path(__file__).parents[2] / "docs/kits/mavlink/ground-stations.md"
 METRE = 90e-7 * np.pi / 180.0 * 6.378e6
 """What the page takes for one, on a sphere."""
 

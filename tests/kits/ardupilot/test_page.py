@@ -1,4 +1,4 @@
-"""The commands of docs/autopilots.md, as they are there, with stand-ins for the firmware."""
+"""The commands of docs/kits/ardupilot/autopilots.md, as they are there, with stand-ins for the firmware."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.command import seatrial
 from tests.interop.running import free_port
 
 ROOT = Path(__file__).parents[3]
-PAGE = ROOT / "docs" / "autopilots.md"
+PAGE = ROOT / "docs/kits/ardupilot/autopilots.md"
 COMMANDS = re.findall(r"^\$ (seatrial .*)$", PAGE.read_text("utf-8"), re.MULTILINE)
 HULL, OTHERS = COMMANDS[:3], COMMANDS[3:]
 """From nothing to a hull under ArduPilot, and what follows."""

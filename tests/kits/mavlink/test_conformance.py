@@ -1,6 +1,6 @@
 """Answers of the component against those recorded of ArduPilot's firmware.
 
-Each difference has a row in docs/links/mavlink-conformance.md, and each row has a difference.
+Each difference has a row in docs/kits/mavlink/mavlink-conformance.md, and each row has a difference.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from tests.interop.ardupilot_answers import REFERENCE, STATION, Dialogue, reques
 
 from .bench import Bench
 
-PAGE = Path(__file__).parents[3] / "docs" / "links" / "mavlink-conformance.md"
+PAGE = Path(__file__).parents[3] / "docs/kits/mavlink/mavlink-conformance.md"
 STEP_S, SPEED = 0.1, 3.0
 
 

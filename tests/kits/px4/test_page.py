@@ -1,4 +1,4 @@
-"""The commands of docs/px4.md, as they are there, with a stand-in for the firmware."""
+"""The commands of docs/kits/px4/px4.md, as they are there, with a stand-in for the firmware."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tests.command import seatrial
 
 from .test_assembly import NAME, ROOT, at, instance, program  # noqa: F401  a fixture
 
-PAGE = (ROOT / "docs" / "px4.md").read_text("utf-8")
+PAGE = (ROOT / "docs/kits/px4/px4.md").read_text("utf-8")
 COMMANDS = re.findall(r"^\$ (seatrial .*)$", PAGE, re.MULTILINE)
 SQUARE, STARTED, WAITS = COMMANDS
 
