@@ -1,8 +1,8 @@
 """Latency on a CAN bus against its load: ``python -m benchmarks.can_latency``.
 
 Runs the trial ``can-load`` at 10 to 120 % of load, and shows the statistics that each run leaves.
-``--write`` puts the table into docs/kits/can/can.md and draws docs/images/can-latency.svg. Simulated
-time: the same figures on every machine.
+``--write`` puts the table into docs/kits/can/can.md and draws docs/images/can-latency.svg.
+Simulated time: the same figures on every machine.
 """
 
 from __future__ import annotations

@@ -175,7 +175,7 @@ FACTS = (
     ),
     Fact(rules.experiment, {}, {"fmpy": "ignores the default experiment's times and step"}),
 )
-"""All measured with the versions that docs/kits/interchange/ssp.md names; OMSimulator's are read, not run."""
+"""Measured with the versions that docs/kits/interchange/ssp.md names; OMSimulator's are read."""
 
 
 def takes_systems(tool: str) -> bool:
