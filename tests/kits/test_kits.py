@@ -125,6 +125,8 @@ def test_a_command_of_two_is_refused(kit: Callable[..., Path]) -> None:
         ),
         (SONAR + '[algorithms]\nx = "no place"\n', r"algorithms\.x: 'module:attribute' is needed"),
         ("title =\n", r"not TOML"),
+        (SONAR + 'commands = "sweep"\n', r"commands: a table is needed, found 'sweep'"),
+        (SONAR + "libraries = 1\n", r"libraries: a table of texts is needed, found 1"),
     ],
 )
 def test_a_kit_that_cannot_be_used_is_left_out_and_named(
@@ -140,6 +142,15 @@ def test_a_kit_that_cannot_be_used_is_left_out_and_named(
     assert offered("sonar.sweep") is None
     with pytest.raises(InputError, match=r"needs the kit 'sonar', which is not installed; the kit"):
         service("sonar.sweep")
+
+
+def test_what_needs_a_kit_that_is_left_out_is_left_out(kit: Callable[..., Path]) -> None:
+    kit("array", SONAR + 'needs = ["sonar"]\n')
+    kit("sonar", SONAR + 'needs = ["lidar"]\n')
+    assert kits().left_out == {
+        "array": "it needs the kit sonar, which is not there",
+        "sonar": "it needs the kit lidar, which is not there",
+    }
 
 
 def test_the_entry_point_of_a_removed_kit_is_no_error(
