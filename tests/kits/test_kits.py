@@ -14,7 +14,7 @@ from pkgutil import resolve_name
 import pytest
 
 from seatrial import kits as of_kits
-from seatrial.cli.commands import commands
+from seatrial.cli.commands import commands, loaded
 from seatrial.errors import InputError
 from seatrial.fmi.index import component_class, components
 from seatrial.kits import KINDS, kits, read_kit
@@ -107,7 +107,8 @@ def test_a_command_of_two_is_refused(kit: Callable[..., Path]) -> None:
     with pytest.raises(
         InputError, match=r"the command 'run' is seatrial\.cli\.run:run and, of the"
     ):
-        commands()
+        loaded("run")
+    assert loaded("doctor").name == "doctor"
 
 
 @pytest.mark.parametrize(
