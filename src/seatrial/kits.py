@@ -135,9 +135,9 @@ def _kits(path: tuple[str, ...]) -> Kits:
             found[point.name] = kit
         except InputError as error:
             left_out[point.name] = str(error)
-    for name, kit in list(found.items()):
-        if lacking := [each for each in kit.needs if each not in found]:
-            left_out[name] = f"it needs the kit {lacking[0]}, which is not there"
+    while needing := {n: e for n, kit in found.items() for e in kit.needs if e not in found}:
+        for name, needed in needing.items():
+            left_out[name] = f"it needs the kit {needed}, which is not there"
             del found[name]
     return Kits(tuple(found.values()), left_out)
 
@@ -172,6 +172,9 @@ def read_kit(name: str, folder: Path) -> Kit:
         raise InputError(f"{path}: title: a text is needed, found {title!r}")
     if not (isinstance(needs, list) and all(isinstance(each, str) for each in needs)):
         raise InputError(f"{path}: needs: names of kits are needed, found {needs!r}")
+    for key in KINDS:
+        if not isinstance(content.get(key, {}), dict):
+            raise InputError(f"{path}: {key}: a table is needed, found {content[key]!r}")
     entries = {
         kind: tuple(_entry(path, name, kind, key, value) for key, value in table.items())
         for kind, table in content.items()
@@ -220,8 +223,3 @@ def is_target(text: str) -> bool:
     return (
         bool(colon) and attribute.isidentifier() and all(map(str.isidentifier, module.split(".")))
     )
-
-
-def entry_of(kind: str, name: str) -> Entry | None:
-    """Return a part of a kit, or None if no kit has it."""
-    return next((entry for entry in kits().entries(kind) if entry.name == name), None)

@@ -14,7 +14,7 @@ from pkgutil import resolve_name
 import pytest
 
 from seatrial import kits as of_kits
-from seatrial.cli.commands import commands
+from seatrial.cli.commands import commands, loaded
 from seatrial.errors import InputError
 from seatrial.fmi.components.index import component_class, components
 from seatrial.kits import KINDS, kits, read_kit
@@ -107,7 +107,8 @@ def test_a_command_of_two_is_refused(kit: Callable[..., Path]) -> None:
     with pytest.raises(
         InputError, match=r"the command 'run' is seatrial\.cli\.run:run and, of the"
     ):
-        commands()
+        loaded("run")
+    assert loaded("doctor").name == "doctor"
 
 
 @pytest.mark.parametrize(
@@ -125,6 +126,8 @@ def test_a_command_of_two_is_refused(kit: Callable[..., Path]) -> None:
         ),
         (SONAR + '[algorithms]\nx = "no place"\n', r"algorithms\.x: 'module:attribute' is needed"),
         ("title =\n", r"not TOML"),
+        (SONAR + 'commands = "sweep"\n', r"commands: a table is needed, found 'sweep'"),
+        (SONAR + "libraries = 1\n", r"libraries: a table of texts is needed, found 1"),
     ],
 )
 def test_a_kit_that_cannot_be_used_is_left_out_and_named(
@@ -140,6 +143,15 @@ def test_a_kit_that_cannot_be_used_is_left_out_and_named(
     assert offered("sonar.sweep") is None
     with pytest.raises(InputError, match=r"needs the kit 'sonar', which is not installed; the kit"):
         service("sonar.sweep")
+
+
+def test_what_needs_a_kit_that_is_left_out_is_left_out(kit: Callable[..., Path]) -> None:
+    kit("array", SONAR + 'needs = ["sonar"]\n')
+    kit("sonar", SONAR + 'needs = ["lidar"]\n')
+    assert kits().left_out == {
+        "array": "it needs the kit sonar, which is not there",
+        "sonar": "it needs the kit lidar, which is not there",
+    }
 
 
 def test_the_entry_point_of_a_removed_kit_is_no_error(

@@ -57,15 +57,10 @@ COMMANDS = {
 
 
 def commands() -> dict[str, Command]:
-    """Return every command by name. Raises InputError for a name that two kits have."""
+    """Return every command by name; of a name that two have, the first: `loaded` refuses it."""
     found = dict(COMMANDS)
     for entry in kits().entries("commands"):
-        if entry.name in found:
-            other = found[entry.name].place
-            raise InputError(
-                f"the command {entry.name!r} is {other} and, of the kit {entry.kit}, {entry.target}"
-            )
-        found[entry.name] = Command(entry.target, entry.text)
+        found.setdefault(entry.name, Command(entry.target, entry.text))
     return {name: found[name] for name in sorted(found, key=_place)}
 
 
@@ -100,8 +95,16 @@ class LazyGroup(TyperGroup):
 
 
 def loaded(name: str) -> Any:
-    """Return the command ``name`` with its options, imported."""
+    """Return the command ``name`` with its options, imported.
+
+    Raises InputError for a name that two have; other commands are not affected.
+    """
     entry = commands()[name]
+    for other in kits().entries("commands"):
+        if other.name == name and other.target != entry.place:
+            raise InputError(
+                f"the command {name!r} is {entry.place} and, of the kit {other.kit}, {other.target}"
+            )
     with ending_at_once():
         found = resolve_name(entry.place)
     parent = typer.Typer(rich_markup_mode=None)
