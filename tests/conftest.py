@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import os
+import re
 import signal
 from collections.abc import Callable
 from functools import cache
@@ -23,6 +24,22 @@ if hasattr(signal, "SIGHUP"):
 # A busy machine is no failure; other examples are tried in every run.
 settings.register_profile("any-machine", settings(), deadline=None, max_examples=30)
 settings.load_profile("any-machine")
+
+
+_ROOT = Path(__file__).parents[1]
+_OF_KITS = re.compile(
+    r"^(?:from|import) (?:seatrial_kits|(?:tests|\.)\.kits)\.(\w+)[. ]", re.MULTILINE
+)
+
+
+def pytest_ignore_collect(collection_path: Path) -> bool | None:
+    """Leave out the tests of the core that use a kit which is not here."""
+    if collection_path.suffix != ".py":
+        return None
+    for kit in _OF_KITS.findall(collection_path.read_text("utf-8")):
+        if not (_ROOT / "src/seatrial_kits" / kit).is_dir():
+            return True
+    return None
 
 
 def pytest_collection_finish() -> None:

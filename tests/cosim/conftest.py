@@ -12,7 +12,7 @@ from seatrial.system.assembly import assemble
 from seatrial.system.flattening import load_rig
 from seatrial.system.system import System
 
-from ..kits.interchange import users
+from .. import users
 from . import bodies
 
 

@@ -142,7 +142,7 @@ def test_a_shipped_algorithm_is_not_replaced_by_a_package(write, package) -> Non
     package("pirate", {"seatrial.algorithms": {"jacobi": "pirate:Jacobi"}})
     both = (
         r"r\.toml: algorithm: algorithm 'jacobi' comes from seatrial itself "
-        r"\(seatrial\.cosim\.algorithms:Jacobi\) and from the package pirate \(pirate:Jacobi\)"
+        r"\(seatrial\.sim\.algorithms:Jacobi\) and from the package pirate \(pirate:Jacobi\)"
     )
     with pytest.raises(InputError, match=both):
         load_rig(str(rig_with(write, "jacobi")))

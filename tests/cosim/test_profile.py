@@ -284,6 +284,21 @@ def test_mistake_names_file_key_and_remedy(mistake, load):
         assert text in message
 
 
+def test_a_link_of_a_kit_that_is_not_here_hinders_who_asks_for_it_alone(write):
+    path = write("boat.toml", GOOD.replace('"mavlink"', '"sonar-of-ours"'))
+    profile = load_profile(str(path))
+    assert profile.parameters("sensors.gnss")
+    assert "links.ground" not in profile.sections()
+    for ask in (
+        profile.parameters,
+        lambda section: Profiles(str(path), path.parent).find(section, "x"),
+    ):
+        with pytest.raises(
+            InputError, match=r"links\.ground\.kind: unknown kind of link 'sonar-of-ours'"
+        ):
+            ask("links.ground")
+
+
 def test_every_mistake_is_reported(load):
     with pytest.raises(InputError) as caught:
         load('altitude = "120 cm"\ndate = 2026-02-05', 'altitude = "120 kg"\ndate = 3')

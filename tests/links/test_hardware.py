@@ -181,9 +181,9 @@ def test_nothing_else_opens_sockets_or_ports():
     between_processes = {  # sockets that no program outside can reach
         "seatrial/links/own_terminals.py",
         "seatrial/links/safe_state.py",
-        "seatrial/trials/forked.py",
-        "seatrial/trials/keeper.py",
-        "seatrial/trials/link.py",
+        "seatrial/trial/running/forked.py",
+        "seatrial/trial/running/keeper.py",
+        "seatrial/trial/running/link.py",
     }
     opened_before = {"seatrial/links/safe_state_keeper.py", "seatrial_kits/can/safe_state.py"}
     of_tests = {"seatrial_kits/mavlink/testing.py"}  # the other end, on the loopback only

@@ -13,7 +13,6 @@ from seatrial.shipped import provided_folders
 from seatrial.system.files import available
 from seatrial.trial.files.trial import load_trial
 from seatrial.trial.running.run import Hooks, run_trial
-from tests.kits.arduino.bench import need
 
 FILES = {
     path.stem: tomllib.loads(path.read_text("utf-8"))
@@ -66,6 +65,8 @@ def begun(name: str, engine: str, folder: Path) -> list[bytes]:
     """Return the rows of a trial's record until it ends or `COMPARED_S` have passed."""
     trial, polls = load_trial(name), itertools.count()
     if has_sketch(name):
+        from tests.kits.arduino.bench import need  # not of the core: there may be no such kit
+
         need("host")
     enough = COMPARED_S * NS // trial.rig.step_ns
     hooks = Hooks(stop_requested=lambda: next(polls) > enough)

@@ -18,9 +18,9 @@ from seatrial.trial.files.trial import load_trial
 from seatrial_kits.interchange.export import export_ssp
 from seatrial_kits.interchange.ssp.reading import read_ssp
 from seatrial_kits.interchange.ssp.tools import findings
+from tests import users
 
 from ...fmi.native import changed
-from . import users
 from .ssp_files import BOATS, rows
 
 RIG = """

@@ -1,1 +1,1 @@
-"""What FMU files say: archives, model descriptions, terminals, variables."""
+"""Files of FMUs: archives, model descriptions, terminals, variables."""

@@ -12,6 +12,7 @@ from pydantic_core import PydanticCustomError
 
 from ...errors import InputError, unknown
 from ...fmi.components.index import component_class, components
+from ...kits import kits
 from ...model.ports import Parameter
 from ...model.units import quantity, unit
 from ..files import FileModel
@@ -42,12 +43,17 @@ def keys(group: str, kind: str) -> dict[str, Parameter]:
     }
 
 
-def of_a_kind(group: str, written: Any) -> tuple[dict[str, Any], list[str]]:
-    """Return the tables of a group whose kind is known, and what is wrong with the others."""
+def of_a_kind(group: str, written: Any) -> tuple[dict[str, Any], list[str], dict[str, str]]:
+    """Return the tables of a group whose kind is known, mistakes, and strange links by section.
+
+    A link of an unknown kind may be one of a kit that is not here: a rig may do without it.
+    """
     what, kinds = group.removesuffix("s"), components().names()
     if not isinstance(written, dict):
-        return {}, [f"{group}: a table per {what} is needed, found {written!r}"]
-    good, mistakes = {}, []
+        return {}, [f"{group}: a table per {what} is needed, found {written!r}"], {}
+    good: dict[str, Any] = {}
+    mistakes: list[str] = []
+    strange: dict[str, str] = {}
     for name, table in written.items():
         kind = table.get("kind") if isinstance(table, dict) else None
         if not NAME.fullmatch(name) or hasattr(FileModel, name):
@@ -57,8 +63,12 @@ def of_a_kind(group: str, written: Any) -> tuple[dict[str, Any], list[str]]:
             good[name] = table
             continue
         message = unknown(f"kind of {what}", kind, kinds) if kind else "this key is missing"
-        mistakes.append(f"{group}.{name}.kind: {message}")
-    return good, mistakes
+        message = f"{group}.{name}.kind: {message}"
+        if group == "links" and isinstance(kind, str):
+            strange[f"{group}.{name}"] = message + kits().hint()
+        else:
+            mistakes.append(message)
+    return good, mistakes, strange
 
 
 def section_model(group: str, name: str, kind: str) -> type[FileModel]:

@@ -8,6 +8,7 @@ that has a unit is written with it (``"1100 us"``, ``"0.3 deg"``) and read into 
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -32,6 +33,8 @@ class Profile:
 
     file: ProfileFile
     read_from: Source
+    strange: Mapping[str, str] = field(default_factory=dict)
+    """Links of unknown kinds, by section: the mistake that whoever asks for one is given."""
     _checked: dict[str, FileModel] = field(default_factory=dict, compare=False, repr=False)
 
     def sections(self) -> list[str]:
@@ -116,6 +119,11 @@ class Profile:
         said = f"{where} has defaults for what [identity] and [home] do not say: "
         return [said + ", ".join(absent)] if absent else []
 
+    def lacks(self, section: str) -> str:
+        """Return why a section cannot be had that `sections` does not have."""
+        why = self.strange.get(section) or unknown("section", section, self.sections())
+        return f"{self.read_from.path}: {why}"
+
     def _shared(self) -> dict[str, Any]:
         identity, home = self.file.identity, self.file.home
         return {
@@ -147,8 +155,7 @@ class Profile:
 
     def _section(self, section: str) -> Any:
         if section not in self.sections():
-            path = self.read_from.path
-            raise InputError(f"{path}: {unknown('section', section, self.sections())}")
+            raise InputError(self.lacks(section))
         group, _, name = section.partition(".")
         if group == "actuators":
             return self.file.actuators[name]
@@ -166,10 +173,10 @@ def load_profile(name: str | Path, relative_to: Path | None = None) -> Profile:
     """
     path = find_file("hil_profiles", str(name), relative_to)
     content, read_from = read_toml(path)
-    file, _, mistakes = _parsed(content, path)
+    file, _, mistakes, strange = _parsed(content, path)
     if file is None or mistakes:
         raise InputError("\n".join(mistakes))
-    return Profile(file, read_from)
+    return Profile(file, read_from, strange)
 
 
 def check_profile(name: str | Path, relative_to: Path | None = None) -> Profile:
@@ -179,7 +186,8 @@ def check_profile(name: str | Path, relative_to: Path | None = None) -> Profile:
     """
     path = find_file("hil_profiles", str(name), relative_to)
     content, read_from = read_toml(path)
-    file, groups, mistakes = _parsed(content, path)
+    file, groups, mistakes, strange = _parsed(content, path)
+    mistakes += [f"{path}: {mistake}" for mistake in strange.values()]
     profile = None if file is None else Profile(file, read_from)
     for group, tables in groups.items():
         for section, table in tables.items():
@@ -227,8 +235,7 @@ class Profiles:
             )
         profile = self._load(name if colon else str(self._own))
         if section not in profile.sections():
-            path = profile.read_from.path
-            raise InputError(f"{where}: {path}: {unknown('section', section, profile.sections())}")
+            raise InputError(f"{where}: {profile.lacks(section)}")
         return profile, section
 
     def _load(self, name: str) -> Profile:
@@ -239,21 +246,25 @@ class Profiles:
 
 def _parsed(
     content: dict[str, Any], path: Path
-) -> tuple[ProfileFile | None, dict[str, dict[str, Any]], list[str]]:
+) -> tuple[ProfileFile | None, dict[str, dict[str, Any]], list[str], dict[str, str]]:
     """Return a profile as far as it can be read without its components' classes.
 
-    The file, None if a key of it does not fit; the tables of known kinds, by group; mistakes.
+    The file, None if a key of it does not fit; the tables of known kinds, by group; mistakes;
+    links of unknown kinds, as `Profile.strange`.
     """
     mistakes: list[str] = []
     groups: dict[str, dict[str, Any]] = {}
+    strange: dict[str, str] = {}
     for group in GROUPS:
-        groups[group], wrong = of_a_kind(group, content.get(group, {}))
+        groups[group], wrong, unknown_kinds = of_a_kind(group, content.get(group, {}))
         mistakes += [f"{path}: {mistake}" for mistake in wrong]
+        strange |= unknown_kinds
     try:
         file = validated(ProfileFile, {**content, **groups}, path)
     except InputError as error:
-        return None, groups, [*mistakes, str(error)]
-    return file, groups, [*mistakes, *(f"{path}: {m}" for m in _channel_mistakes(file))]
+        return None, groups, [*mistakes, str(error)], strange
+    mistakes += [f"{path}: {mistake}" for mistake in _channel_mistakes(file)]
+    return file, groups, mistakes, strange
 
 
 def _read_section(path: Path, group: str, name: str, table: dict[str, Any]) -> FileModel:
