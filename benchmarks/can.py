@@ -168,9 +168,7 @@ def main() -> None:
     )
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--frames", type=int, default=10_000)
-    parser.add_argument(
-        "--write", action="store_true", help="write docs/kits/can/can.md"
-    )
+    parser.add_argument("--write", action="store_true", help="write docs/kits/can/can.md")
     options = parser.parse_args()
     unit = addition() * 1e9
     text = (

@@ -24,6 +24,7 @@ def test_the_wheel_alone_runs_a_trial(downloads: bool, tmp_path: Path) -> None:
     with zipfile.ZipFile(wheel) as archive:
         names = archive.namelist()
     for shipped in (
+        "docs/core.md",
         "fmus/index.toml",
         "harness/trials/hydrone-landing.toml",
         "hil_profiles/hydrone.toml",

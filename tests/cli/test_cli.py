@@ -253,6 +253,17 @@ def test_a_word_lists_what_begins_with_it_by_vehicle(tmp_path: Path) -> None:
     assert "no name or title matches 'xyzzy'" in done.stderr
 
 
+def test_pages_of_the_documentation(tmp_path: Path) -> None:
+    listing = seatrial("docs", cwd=tmp_path).stdout
+    for line in ("core  ", "vehicles/otter  ", "how-to/write-a-kit  "):
+        assert line in listing
+    page = (Path(__file__).parents[2] / "docs/vehicles/otter.md").read_text("utf-8")
+    assert seatrial("docs", "otter", cwd=tmp_path).stdout.rstrip() == page.rstrip()
+    done = seatrial("docs", "xyzzy", cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.startswith("seatrial: no page matches 'xyzzy'; (known: core, ")
+
+
 def test_it_runs_as_a_module(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "seatrial", "--version"]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)

@@ -49,6 +49,10 @@ COMMANDS = {
         "seatrial.cli.doctor:doctor",
         "Show what works on this machine, what is missing, and how to fix it.",
     ),
+    "docs": Command(
+        "seatrial.cli.pages:docs",
+        "List the pages of the documentation, or print the page that is named.",
+    ),
     "fmu": Command("seatrial.cli.fmu:fmu_app", "List, build, check, describe and survey FMUs."),
     "profile": Command(
         "seatrial.cli.profile:profile_app", "Check and describe profiles of electronics."

@@ -8,6 +8,7 @@ _CORE = {
     "compare": "seatrial compare runs/landing runs/quick",
     "convergence": "seatrial convergence hydrone-open-landing",
     "describe": "seatrial describe sil --vehicle otter --autopilot mavlink",
+    "docs": "seatrial docs otter",
     "doctor": "seatrial doctor",
     "fmu": "seatrial fmu build marine-craft --parameters hydrone",
     "fmu build": "seatrial fmu build marine-craft --parameters hydrone -o fmus",
