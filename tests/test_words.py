@@ -11,6 +11,8 @@ from typing import NamedTuple
 
 import pytest
 
+from tests.kit import needs_kits
+
 ROOT = Path(__file__).resolve().parents[1]
 PLACES = ("src", "tests", "docs", "examples", "harness", "hil_profiles", "fmus", "benchmarks")
 PAGES = ("README.md", "CONTRIBUTING.md", "Makefile", "pyproject.toml")
@@ -143,6 +145,7 @@ def test_no_replaced_word_is_back() -> None:
     assert not found, "\n".join(map(str, found))
 
 
+@needs_kits("arduino", "gprs", "mavlink", "videoray")
 @pytest.mark.parametrize("right", BY_RIGHT, ids=lambda right: f"{right.words}-{right.files}")
 def test_what_stays_by_right_is_there(right: Right) -> None:
     lines = ((name, line) for name in files() if fnmatch(name, right.files)

@@ -18,6 +18,7 @@ from pythonfmu import FmuBuilder
 from seatrial import InputError, Simulation, SimulationError
 from seatrial.links.hardware import ALLOWED
 from tests.command import seatrial
+from tests.kit import needs_kits
 
 Rig = Callable[..., str]
 
@@ -236,6 +237,7 @@ def test_a_closed_simulation_and_a_state_of_another_are_refused(rig: Rig) -> Non
 MAVLINK = {"autopilot": "mavlink"}
 
 
+@needs_kits("mavlink")
 @pytest.mark.parametrize(
     ("link", "said"),
     [
@@ -255,6 +257,7 @@ def test_nothing_but_programs_on_this_machine_is_reached(
     assert os.environ[ALLOWED] == "1"
 
 
+@needs_kits("mavlink")
 def test_links_on_this_machine_work(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv(ALLOWED, raising=False)
     links = {"autopilot.mavlink.links": "udpin:127.0.0.1:0"}

@@ -8,6 +8,7 @@ import seatrial
 from seatrial.errors import InputError
 from seatrial.trial.campaigns.cluster import check_address
 from tests.command import SEATRIAL
+from tests.kit import needs_kits
 
 HERE = ("127.0.0.1:8786", "localhost:8786", "tcp://127.1.2.3:1", "tls://[::1]:8786")
 ELSEWHERE = ("10.0.0.1:8786", "tcp://192.0.2.1:8786", "tls://[2001:db8::1]:8786", "0.0.0.0:8786")
@@ -35,6 +36,7 @@ def test_what_is_no_address(address):
         check_address(address)
 
 
+@needs_kits("search")
 def test_the_commands_and_python_refuse_it(tmp_path):
     (tmp_path / "c.toml").write_text('trials = ["hydrone-landing"]\n', "utf-8")
     for command in (("run", "c.toml"), ("campaign", "c.toml", "--ask", "limits")):

@@ -19,6 +19,7 @@ from seatrial.trial.campaigns.stopping_rule import StoppingRule, failure_interva
 from seatrial.trial.campaigns.sweep import How, run_sweep
 from seatrial.trial.files.trial import load_trial
 from tests.cli.test_stop import SEATRIAL, wait_for
+from tests.kit import needs_kits
 
 GRID = (
     'keep = "failed"\nfigures = ["case.y"]\n[grid]\n"case.number" = ["1 m", "2 m", "3 m", "4 m"]\n'
@@ -78,6 +79,7 @@ def test_a_death_is_survived_by_running_again(written, tmp_path):
     assert len(list((tmp_path / "seen").glob("2-die-once-*"))) == 2
 
 
+@needs_kits("search")
 def test_a_kept_case_and_a_rerun_have_the_same_bytes(written, tmp_path):
     written(GRID)
     command = [

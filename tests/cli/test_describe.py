@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from tests.command import seatrial
+from tests.kit import needs_kits
 
 
 def test_every_connection_is_shown_and_what_is_open(tmp_path) -> None:
@@ -19,6 +20,7 @@ def test_every_connection_is_shown_and_what_is_open(tmp_path) -> None:
     assert ["hull:", "rov"] in lines
 
 
+@needs_kits("mavlink")
 def test_a_trials_rig_is_described_with_its_choices(tmp_path) -> None:
     done = seatrial("describe", "mariner-mission", cwd=tmp_path)
     assert "vehicle = mariner" in done.stdout

@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 
 from tests.command import SEATRIAL, seatrial
+from tests.kit import needs_kits
 
 from .gateway import SAFE, TALKER, Launched, Start
 from .test_stop import wait_for
@@ -103,6 +104,7 @@ def start(write, tmp_path: Path, launched: Launched) -> Start:
     return start
 
 
+@needs_kits("can")
 @pytest.mark.parametrize("engine", ["direct", pytest.param("fmu", marks=pytest.mark.interop)])
 @pytest.mark.parametrize(
     "port",

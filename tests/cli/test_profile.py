@@ -11,6 +11,9 @@ from seatrial.system.profile.kinds import GROUPS, keys
 from seatrial.system.profile.profile import load_profile
 from tests.command import seatrial
 from tests.cosim.test_profile import GOOD
+from tests.kit import needs_kits
+
+pytestmark = needs_kits("arduino", "ardupilot", "can", "mavlink", "nmea", "px4", "videoray")
 
 
 @pytest.mark.parametrize("name", sorted(available("hil_profiles")))

@@ -13,6 +13,7 @@ import can
 import pytest
 
 from tests.command import SEATRIAL
+from tests.kit import needs_kits
 
 from .gateway import ENDS, SAFE, Vehicle
 from .test_stop import child_of, children_of, has_ended, wait_for
@@ -154,6 +155,7 @@ gateway = {{ fmu = "can-gateway", set = {{ link = "{link}", safe_state = "09F10D
 """
 
 
+@needs_kits("can")
 @pytest.mark.parametrize(
     ("whose", "number"),
     [
@@ -191,6 +193,7 @@ def test_a_can_bus_gets_its_frames(whose: str, number: int, write, tmp_path: Pat
         vehicle.close()
 
 
+@needs_kits("can")
 def test_clients_of_a_can_gateway_get_its_frames(write, tmp_path: Path) -> None:
     write("rig.toml", CAN_RIG.format(link="slcan-tcp:127.0.0.1:0"))
     write("trial.toml", 'rig = "rig.toml"\nstop = "1000 s"\n')

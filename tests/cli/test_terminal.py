@@ -13,6 +13,7 @@ import pytest
 from seatrial.cli.show import SafeConsole
 from seatrial.printable import printable
 from tests.command import Done, seatrial
+from tests.kit import needs_kits
 from tests.trials.conftest import write_run_folder
 
 EVIL = "\x1b]0;gone\x07\x1b[2J\r\x08\x7f\x9b31m\u202edrawkcab\u2066\u2028\x85"
@@ -66,6 +67,7 @@ def test_titles_in_listings(tmp_path: Path) -> None:
     assert_harmless(seatrial("list", cwd=tmp_path))
 
 
+@needs_kits("mavlink", "nmea")
 def test_a_profile_of_others(tmp_path: Path) -> None:
     text = (ROOT / "hil_profiles" / "mariner.toml").read_text("utf-8")
     text = re.sub(r"^(title|source) = .*$", lambda m: f"{m[1]} = {TOML}", text, flags=re.M)

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from seatrial.trial.campaigns.shipment import pack_folder, unpack_folder
+from tests.kit import needs_kits
 
 SEATRIAL = str(Path(sys.executable).with_name("seatrial"))
 RIG = 'step = "100 ms"\n[components]\nsail = { fmu = "sail-control" }\n'
@@ -25,6 +26,7 @@ COMMANDS = (
 )
 
 
+@needs_kits("logs")
 @pytest.mark.parametrize("umask", [0o027, 0o002])
 def test_the_umask_decides(tmp_path: Path, umask: int) -> None:
     tmp_path.chmod(0o777)

@@ -10,6 +10,9 @@ from seatrial import Simulation
 from seatrial.errors import SimulationError
 from seatrial.trial.files.trial import load_trial
 from seatrial.trial.running.run import run_trial
+from tests.kit import needs_kits
+
+pytestmark = needs_kits("mavlink")
 
 GROWING = '''
 from seatrial.model.component import Component, Input, Output, Parameter

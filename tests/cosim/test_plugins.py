@@ -12,6 +12,7 @@ import pytest
 from seatrial.errors import InputError
 from seatrial.links.endpoints.url import check_urls, open_endpoint
 from seatrial.system.flattening import load_rig
+from tests.kit import needs_kits
 from tests.packages import installed
 
 MODULE = '''
@@ -90,6 +91,7 @@ print(master.signals[master.names.index(("decay", "x"))], *master.notes(), sep="
 """
 
 
+@needs_kits("nmea")
 def test_a_rig_runs_with_an_algorithm_and_a_transport_of_a_package(
     write, tmp_path: Path, direct
 ) -> None:

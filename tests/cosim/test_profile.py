@@ -8,6 +8,9 @@ from seatrial.devices.actuators.thruster import Thruster
 from seatrial.errors import InputError
 from seatrial.fmi.components.index import component_class
 from seatrial.system.profile.profile import Profiles, check_profile, load_profile
+from tests.kit import needs_kits
+
+pytestmark = needs_kits("arduino", "ardupilot", "can", "mavlink", "nmea", "px4", "videoray")
 
 GOOD = """\
 title = "A boat"

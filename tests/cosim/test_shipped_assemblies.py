@@ -13,6 +13,9 @@ from seatrial.system.assembly import assemble
 from seatrial.system.flattening import load_rig
 from seatrial.system.system import System
 from seatrial.system.values import port_scalars
+from tests.kit import needs_kits
+
+pytestmark = needs_kits("arduino", "ardupilot", "can", "mavlink", "nmea", "px4", "videoray")
 
 BY_HAND = Path(__file__).parents[1] / "reference" / "connections"
 RENAMED = {

@@ -12,6 +12,7 @@ from fmpy.validation import validate_fmu
 from seatrial.errors import InputError
 from seatrial.fmi.building.export import build_fmu
 from seatrial.fmi.components.source import shipped_sources
+from tests.kit import needs_kits
 
 from .conftest import built_once, source
 
@@ -54,6 +55,7 @@ def test_each_axis_has_its_unit(tmp_path: Path) -> None:
     assert units["nu_start.r"] == "rad/s"
 
 
+@needs_kits("can")
 def test_a_port_may_have_no_unit(tmp_path: Path) -> None:
     path = built_once(shipped_sources()["can-signals"], tmp_path / "can-signals.fmu")
     assert validate_fmu(str(path)) == []

@@ -32,8 +32,12 @@ from seatrial.fmi.version3.buses import can_terminals
 from seatrial.fmi.version3.sources import front_sources
 from seatrial.model.component import Component, Input, Output, terminal
 from tests.fmi.native import changed
+from tests.kit import needs_kits
 
-pytestmark = pytest.mark.skipif(HERE != "linux64", reason="loads libraries of Linux")
+pytestmark = [
+    needs_kits("can"),
+    pytest.mark.skipif(HERE != "linux64", reason="loads libraries of Linux"),
+]
 
 SCHEMAS = Path(fmpy.__file__).parent / "schema" / "fmi3"
 MANIFEST = "extra/org.fmi-standard.fmi-ls-bus/fmi-ls-manifest.xml"

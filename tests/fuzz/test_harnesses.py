@@ -22,7 +22,12 @@ SLOW = {"archives": 15, "panels": 15, "dronecan": 20, "run_folder": 10, "toml": 
 
 
 def harness(name: str) -> Callable[[bytes], None]:
-    one: Callable[[bytes], None] = import_module(f"{__package__}.fuzz_{name}").one
+    try:
+        one: Callable[[bytes], None] = import_module(f"{__package__}.fuzz_{name}").one
+    except ModuleNotFoundError as error:
+        if str(error.name).startswith("seatrial_kits."):
+            pytest.skip(str(error))
+        raise
     return one
 
 

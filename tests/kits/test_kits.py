@@ -21,6 +21,7 @@ from seatrial.kits import KINDS, kits, read_kit
 from seatrial.moved import MOVED
 from seatrial.plugins import offered, service
 from seatrial.shipped import provided_file
+from tests.kit import needs_kits
 from tests.packages import installed
 
 ROOT = Path(__file__).parents[2]
@@ -61,6 +62,7 @@ def test_every_part_of_a_kit_is_there() -> None:
                 assert callable(resolve_name(entry.target)), entry
 
 
+@needs_kits("can", "mavlink", "native", "search")
 def test_the_contract_has_what_the_manifests_need() -> None:
     (contract,) = [
         c for c in PROJECT["tool"]["importlinter"]["contracts"] if c["type"] == "independence"
@@ -166,6 +168,7 @@ def test_the_entry_point_of_a_removed_kit_is_no_error(
     assert "kits: sonar is left out: its package seatrial_kits.sonar is not" in done.stdout
 
 
+@needs_kits("can", "mavlink", "native", "search")
 def test_a_kit_without_metadata_is_named(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -184,6 +187,7 @@ def test_a_manifest_that_is_not_there(tmp_path: Path) -> None:
         read_kit("x", tmp_path)
 
 
+@needs_kits("can", "mavlink", "native", "search")
 def test_old_import_paths_are_the_same_modules() -> None:
     modules = "\n".join(
         f"import importlib\nassert importlib.import_module({f'seatrial.{old}'!r}) is "

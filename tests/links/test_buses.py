@@ -6,6 +6,9 @@ from seatrial.shipped import provided_folders
 from seatrial.system.assembly import assemble
 from seatrial.system.files import read_toml
 from seatrial.system.flattening import load_rig
+from tests.kit import needs_kits
+
+pytestmark = needs_kits("can", "nmea")
 
 RIGS = [p for folder in provided_folders("harness/rigs") for p in sorted(folder.rglob("*.toml"))]
 

@@ -13,6 +13,7 @@ from seatrial.shipped import provided_folders
 from seatrial.system.files import available
 from seatrial.trial.files.trial import load_trial
 from seatrial.trial.running.run import Hooks, run_trial
+from tests.kit import needs_kits
 
 FILES = {
     path.stem: tomllib.loads(path.read_text("utf-8"))
@@ -89,6 +90,7 @@ def test_whole_trials_as_fmus(name: str, tmp_path: Path) -> None:
     assert result.status == "complete", result.error
 
 
+@needs_kits("mavlink")
 @pytest.mark.parametrize("name", one_per_rig(PACED))
 def test_with_nobody_connected_they_leave_the_same_bytes_too(name: str, tmp_path: Path) -> None:
     trial = load_trial(name)

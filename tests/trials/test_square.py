@@ -15,6 +15,9 @@ from seatrial.trial.records.run_folder import load_run
 from seatrial.trial.running.run import run_trial
 from tests.command import seatrial
 from tests.interop.running import free_port
+from tests.kit import needs_kits
+
+pytestmark = needs_kits("ardupilot")
 
 ROOT = Path(__file__).parents[2]
 SHORT = """

@@ -21,6 +21,7 @@ from seatrial.trial.files.trial import load_trial
 from seatrial.trial.running.hooks import Hooks
 from seatrial.trial.running.measuring import measure_trial
 from seatrial.trial.running.supervision import Supervisor, run_supervised
+from tests.kit import needs_kits
 
 from ..command import seatrial, seatrial_process
 from ..fmi import crashing
@@ -287,6 +288,7 @@ def test_a_failed_run_stays_one_if_its_report_cannot_be_made(trial, write, tmp_p
     assert "1 of 2 cases pass" in done.stdout
 
 
+@needs_kits("interchange")
 def test_a_component_of_a_package_can_be_isolated(native_fmu, tmp_path: Path) -> None:
     with zipfile.ZipFile(tmp_path / "boat.ssp", "w") as package:
         package.writestr("SystemStructure.ssd", PACKAGE)

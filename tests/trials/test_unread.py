@@ -8,6 +8,7 @@ import pytest
 
 from seatrial.trial.files.trial import load_trial
 from seatrial.trial.running.run import run_trial
+from tests.kit import needs_kits
 
 TRIAL = """\
 rig  = "sil"
@@ -61,6 +62,7 @@ def test_a_trial_keeps_what_it_names(tmp_path: Path, more: str) -> None:
     assert "vehicle.imu" in manifest["components"]
 
 
+@needs_kits("nmea")
 def test_what_the_whole_rig_shows_and_what_reaches_outside_stays(tmp_path: Path) -> None:
     """A bare vehicle shows its hull's motion; a link writes to programs that no rig has."""
     (tmp_path / "vehicle.toml").write_text(

@@ -117,6 +117,15 @@ def _ours() -> list[Path]:
 def _python() -> list[Path]:
     """Return the folders of the interpreter, of installed packages and of seatrial."""
     user = [site.getusersitepackages()] if site.ENABLE_USER_SITE else []
-    folders = [sys.prefix, sys.base_prefix, *site.getsitepackages(), *user]
-    wanted = [*map(Path, folders), *_ours()]
+    installed = [Path(folder) for folder in (*site.getsitepackages(), *user)]
+    wanted = [Path(sys.prefix), Path(sys.base_prefix), *installed, *_named(installed), *_ours()]
     return [path for path in dict.fromkeys(wanted) if path.is_dir() and path != Path("/usr")]
+
+
+def _named(folders: Iterable[Path]) -> Iterator[Path]:
+    """Yield the folders that path files in these name: more packages are installed there."""
+    for folder in folders:
+        for file in sorted(folder.glob("*.pth")):
+            for line in file.read_text("utf-8", "replace").splitlines():
+                if line.strip() and not line.startswith(("#", "import ", "import\t")):
+                    yield folder / line.strip()
