@@ -89,7 +89,7 @@ def kits_here() -> tuple[bool, str]:
     )
     wrong = [f"{name} is left out: {why}" for name, why in installed.left_out.items()]
     wrong += [f"{name} is new: install seatrial again for its entry point" for name in unwritten]
-    return not wrong, "; ".join(wrong) or ", ".join(kit.name for kit in installed.found)
+    return not wrong, "; ".join(wrong) or ", ".join(kit.name for kit in installed.found) or "none"
 
 
 def _cache() -> tuple[bool, str]:
