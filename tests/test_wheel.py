@@ -30,7 +30,12 @@ def test_the_wheel_alone_runs_a_trial(downloads: bool, tmp_path: Path) -> None:
         "hil_profiles/hydrone.toml",
     ):
         assert f"seatrial/_shipped/{shipped}" in names
-    for name in ("py.typed", "vehicles/hydrone.toml", "vehicles/gloria.toml", "sail_naca0015.csv"):
+    for name in (
+        "py.typed",
+        "vehicles/hydrone.toml",
+        "vehicles/gloria.toml",
+        "physics/sail_naca0015.csv",
+    ):
         assert f"seatrial/{name}" in names
     for template in sorted((ROOT / "src/seatrial/templates").rglob("*")):
         assert template.is_dir() or template.relative_to(ROOT / "src").as_posix() in names
