@@ -160,7 +160,9 @@ def _numbered(table: dict[str, Any], where: str) -> dict[str, Any]:
     """Return a component's table with each list of like parts written out, part by part.
 
     The entries of part 2 have its number, ``position_2``, and the part's source and mark unless
-    they have their own. Raises InputError for an entry that is there twice.
+    they have their own. Where parts have a ``kind``, their names begin with the singular of the
+    list, ``foil_position_2`` of ``foils``, which itself becomes the text of the kinds in order.
+    Raises InputError for an entry that is there twice, and for a kind that some parts lack.
     """
     entries: dict[str, Any] = {}
     for key, value in table.items():
@@ -168,11 +170,19 @@ def _numbered(table: dict[str, Any], where: str) -> dict[str, Any]:
         if not parts or not all(isinstance(part, dict) for part in parts):
             entries[key] = value
             continue
+        kinds = [str(part["kind"]) for part in parts if "kind" in part]
+        if kinds and len(kinds) < len(parts):
+            lacking = next(n for n, part in enumerate(parts, 1) if "kind" not in part)
+            raise InputError(f"{where}: {key}: part {lacking} has no kind, and others have one")
+        prefix = f"{key.removesuffix('s')}_" if kinds else ""
         for number, part in enumerate(parts, 1):
             shared = {k: part[k] for k in ("source", "mark") if k in part}
-            for name in (k for k in part if k not in shared):
-                entry, own = part[name], f"{name}_{number}"
+            for name in (k for k in part if k not in shared and k != "kind"):
+                entry, own = part[name], f"{prefix}{name}_{number}"
                 if own in table or own in entries:
                     raise InputError(f"{where}: {key}: {own} is there twice")
                 entries[own] = {**shared, **entry} if isinstance(entry, dict) else entry
+        if kinds:
+            first = {k: parts[0].get(k, "") for k in ("source", "mark")}
+            entries[key] = {"value": " ".join(kinds), "source": first["source"], "mark": first["mark"] or "stated"}
     return entries
