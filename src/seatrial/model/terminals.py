@@ -4,12 +4,14 @@ The words, so that components of different makers meet:
 
 ============  ==================================================================================
 motion        truth of a craft: position, velocity, attitude, rates, acceleration
+water         velocity of a craft through the water: nu_r
 wrench        force, moment (N and N.m, body axes, at the body origin)
 attachment    point, velocity, force: of a tether or a tow, all in {n}
 reading       of a sensor: position_n, velocity_n, position_valid; heading, heading_valid; heel,
               pitch, roll_pitch, roll_rate, yaw_rate, gyro, gyro_valid, accelerometer, imu_valid;
               wind_speed, wind_angle, wind_valid; depth, depth_valid, of the vehicle; water_depth,
-              water_depth_valid, below a transducer; pressure; rudder
+              water_depth_valid, below a transducer; water_speed, water_speed_valid; pressure;
+              rudder
 sensors       the same members, of who reads them
 truth         members of motion, of who reads them
 actuators     pulses by channel, ch1 ... ch16; or by name, angles and shares

@@ -11,7 +11,15 @@ import casadi as ca
 from ...errors import InputError
 from ...model.component import Input, Parameter
 from ...model.plant import State
-from .planar import ThreeDofCraft, attachment, carried, kinematics, motion_outputs, sea_load
+from .planar import (
+    ThreeDofCraft,
+    attachment,
+    carried,
+    kinematics,
+    motion_outputs,
+    sea_load,
+    water_outputs,
+)
 from .wave_hull import HullCoefficients
 
 _SURGE_TERMS = ("u", "uu", "uuu", "vv", "rr", "rv", "dd", "udd", "vd", "uvd")
@@ -141,6 +149,7 @@ class ManoeuvringShip(ThreeDofCraft):
         nu_dot = (_linear if p.model == "linear" else _cubic)(nu_r, u.rudder, p) + carrying
         nu_dot += ca.vertcat(0, u.disturbance) + _pulled(pull + sea_load(u), p)
         motion = {**motion_outputs(x.eta, x.nu, nu_dot), **attached}
+        motion |= water_outputs(x.eta, nu_r, u, p)
         return {"eta": kinematics(x.eta, x.nu), "nu": nu_dot}, motion
 
 

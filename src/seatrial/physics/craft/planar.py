@@ -22,18 +22,21 @@ from ...model.terminals import ATTACHMENT, MOTION
 from ..sea.loads import Response
 from ..sea.numbers import GRAVITY
 from .seaway import Places, Seaway, WindySeaway
+from .symbolic import rotation_matrix
+from .through_water import ThroughWater, flow_outputs
 from .wave_hull import HullCoefficients, WaveHull
 
 _NED = ("north", "east", "down")
 
 
-class PlanarCraft(WaveHull, Seaway):
+class PlanarCraft(ThroughWater, WaveHull, Seaway):
     """Base of craft in the horizontal plane: publishes their motion as sensors expect it.
 
     The waves of a trial act by the loads on the hull's sections in the plane, its current on the
     motion through the water (`carried`). Waves do not heave or pitch it.
 
-    The subclass declares its states eta and nu and returns `motion_outputs` among its outputs.
+    The subclass declares its states eta and nu and returns `motion_outputs` and `water_outputs`
+    among its outputs.
 
     A tether or a tow pulls with ``attachment_force`` f, {n}, at ``attachment_place`` r, body axes;
     see `attachment`. What it pulls up or down is lost: there is no heave.
@@ -63,7 +66,11 @@ class PlanarCraft(WaveHull, Seaway):
     attachment_point = Output("m", "attachment of a tether or tow, {n}", axes=_NED)
     attachment_velocity = Output("m/s", "velocity of the attachment over ground, {n}", axes=_NED)
 
-    terminals: ClassVar = {"motion": MOTION, "attachment": ATTACHMENT}
+    terminals: ClassVar = {
+        "motion": MOTION,
+        "attachment": ATTACHMENT,
+        **ThroughWater.water_terminals,
+    }
     feedthrough: ClassVar = dict.fromkeys(
         ("position", "attitude", "velocity", "rates", "attachment_point", "attachment_velocity"), ()
     )
@@ -152,6 +159,14 @@ def motion_outputs(eta: Any, nu: Any, nu_dot: Any) -> dict[str, Any]:
         "rates": rates,
         "acceleration": ca.vertcat(u_dot, v_dot, 0) + ca.cross(rates, velocity),
     }
+
+
+def water_outputs(eta: Any, nu_r: Any, u: SimpleNamespace, p: SimpleNamespace) -> dict[str, Any]:
+    """Return the outputs of `ThroughWater` from CasADi columns eta and nu_r, in the order of nu."""
+    _x, _y, phi, psi = _four(eta)
+    u_r, v_r, roll, yaw = _four(nu_r)
+    R = rotation_matrix(ca.vertcat(phi, 0, psi))
+    return flow_outputs(R, ca.vertcat(u_r, v_r, 0, roll, 0, yaw), u, p)
 
 
 def kinematics(eta: Any, nu: Any) -> Any:

@@ -24,6 +24,7 @@ from .planar import (
     motion_outputs,
     planar_coriolis,
     sea_load,
+    water_outputs,
 )
 from .seaway import Places
 from .wave_hull import HullCoefficients
@@ -234,6 +235,7 @@ class Sailboat(PlanarCraft):
         apparent_wind = ca.vertcat(ca.sqrt(a * a + b * b), ca.atan2(b, a))
         return {"eta": eta_dot, "nu": nu_dot}, {
             **motion_outputs(x.eta, x.nu, nu_dot),
+            **water_outputs(x.eta, x.nu - nu_c, u, p),
             **attached,
             **foils,
             "sail_torque": foils["sail_load"][3] - p.sail_axis[0] * foils["sail_load"][1],

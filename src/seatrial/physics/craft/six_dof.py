@@ -28,6 +28,7 @@ from .inertia import require_positive_definite
 from .morison import Morison
 from .seaway import Places, Seaway
 from .symbolic import euler_rate_matrix, rotation_matrix, skew
+from .through_water import ThroughWater, flow_outputs
 
 _NED = ("north", "east", "down")
 _TENSOR = ("xx", "yy", "zz", "xy", "xz", "yz")
@@ -44,7 +45,7 @@ _INERTIAS = (
 )
 
 
-class SixDofCraft(CoupledDamping, HullPoints, HullLift, Morison, Seaway):
+class SixDofCraft(ThroughWater, CoupledDamping, HullPoints, HullLift, Morison, Seaway):
     """Base of craft in six degrees of freedom: M nu_r' = tau + the terms of `hydrodynamics`.
 
     nu_r is nu less the velocity of the water in body axes. ``terms`` names the terms that act;
@@ -127,6 +128,7 @@ class SixDofCraft(CoupledDamping, HullPoints, HullLift, Morison, Seaway):
     terminals: ClassVar = {
         "wrench": terminal("force", "moment", rule="plug"),
         "attachment": ATTACHMENT,
+        **ThroughWater.water_terminals,
     }
     feedthrough: ClassVar = dict.fromkeys(("attachment_point", "attachment_velocity"), ())
 
@@ -207,7 +209,7 @@ def six_dof_motion(
     water_acceleration: Any = _STILL,
     known: Mapping[str, Term] = TERMS,
 ) -> tuple[SimpleNamespace, dict[str, Any]]:
-    """Return the rates of change of the states, and the outputs of the acceleration and attachment.
+    """Return the rates of change of the states, and the outputs that follow from the motion.
 
     ``position`` is the body origin in {n}, m, ``attitude`` the Euler angles, rad, ``nu`` as
     above; ``water_acceleration`` is that of the current v_c in {n}, m/s2; ``known`` are the terms
@@ -247,7 +249,7 @@ def six_dof_motion(
         rates=nu_r_dot[3:],
     )
     attached = attachment_motion(R, position, velocity, rates, p)
-    return changes, {**attached, "acceleration": acceleration}
+    return changes, {**attached, **flow_outputs(R, nu_r, u, p), "acceleration": acceleration}
 
 
 def _pressure_gradient(c: Context, met: Any, acceleration: Any) -> Any:

@@ -20,6 +20,7 @@ from .planar import (
     motion_outputs,
     planar_coriolis,
     sea_load,
+    water_outputs,
 )
 from .wave_hull import HullCoefficients
 
@@ -96,4 +97,5 @@ class SurfaceVessel(LoadedCraft):
         coriolis = signs * planar_coriolis((p.mass * nu_r)[:2], nu_r)
         nu_dot = (tau + load - p.damping * nu_r - coriolis) / p.mass + carrying
         motion = {**motion_outputs(x.eta, x.nu, nu_dot), **attached}
+        motion |= water_outputs(x.eta, nu_r, u, p)
         return {"eta": kinematics(x.eta, x.nu), "nu": nu_dot}, motion

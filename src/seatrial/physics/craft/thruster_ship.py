@@ -22,6 +22,7 @@ from .planar import (
     motion_outputs,
     planar_coriolis,
     sea_load,
+    water_outputs,
 )
 from .wave_hull import HullCoefficients
 
@@ -98,6 +99,7 @@ class ThrusterShip(LoadedCraft):
         nu_dot = ca.ldl_solve(tau - planar_coriolis((M @ nu_r)[:2], nu_r), *ca.ldl(M)) + carrying
         derivatives = {"eta": kinematics(x.eta, x.nu), "nu": nu_dot}
         motion = {**motion_outputs(x.eta, x.nu, nu_dot), **attached}
+        motion |= water_outputs(x.eta, nu_r, u, p)
         if p.model == "nonlinear":
             return derivatives, motion
         loads = [getattr(u, name) for name in LOADS]
