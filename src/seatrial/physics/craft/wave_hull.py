@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -38,6 +40,9 @@ class HullCoefficients:
 class WaveHull(Component):
     """Mix-in: one slender hull or two alike, by 11 sections evenly spaced from stern to bow.
 
+    ``side_spacing`` adds a pair of side hulls with sections of their own, a trimaran's; their
+    water line is that of the others, and what their sections are of, ``section_form`` too.
+
     ``drift_head`` and ``drift_beam`` are mean drift forces by frequency, of a panel code or
     measured; the slow drift of an irregular sea follows by Newman's approximation.
     """
@@ -53,6 +58,14 @@ class WaveHull(Component):
     section_beam = Parameter(0.0, "m", "beam of one hull at the water line", axes=_AXES, min=0.0)
     section_draught = Parameter(0.0, "m", "draught", axes=_AXES, min=0.0)
     section_area = Parameter(0.0, "m2", "area of one hull under water", axes=_AXES, min=0.0)
+    side_spacing = Parameter(
+        0.0, "m", "between the centre planes of a pair of side hulls; 0: none", min=0.0
+    )
+    side_length = Parameter(0.0, "m", "length of a side hull at the water line", min=0.0)
+    side_middle = Parameter(0.0, "m", "middle of that length ahead of the body origin")
+    side_beam = Parameter(0.0, "m", "beam of one side hull", axes=_AXES, min=0.0)
+    side_draught = Parameter(0.0, "m", "draught of one side hull", axes=_AXES, min=0.0)
+    side_area = Parameter(0.0, "m2", "area of one side hull under water", axes=_AXES, min=0.0)
     section_form = Parameter(
         "box", "1", "sections are boxes, or arcs about their middle", choices=("box", "arc")
     )
@@ -95,7 +108,7 @@ class WaveHull(Component):
     def hull_loads(
         self, own: HullCoefficients, density: float, gravity: float, waterplane: float | None
     ) -> HullInWaves:
-        """Return the strips of the hull, with the coefficients of the craft.
+        """Return the strips of the hulls, with the coefficients of the craft.
 
         Added mass and damping in heave are shared out over the strips by beam squared, in sway
         by length.
@@ -107,58 +120,125 @@ class WaveHull(Component):
                 f"{self.name}: it meets waves, and its hull is not given: hull_length, "
                 "section_beam, section_draught and section_area"
             )
-        edges = np.linspace(-0.5, 0.5, _STRIPS + 1) * self.hull_length
-        x, dx = 0.5 * (edges[:-1] + edges[1:]), self.hull_length / _STRIPS
-        stations = np.linspace(-0.5, 0.5, STATIONS) * self.hull_length
-        beam, draught, area = (
-            np.interp(x, stations, np.array(values))
-            for values in (self.section_beam, self.section_draught, self.section_area)
-        )
-        for name, values in (("beam", beam), ("draught", draught), ("area", area)):
-            if not values.max() > 0.0:
-                raise InputError(f"{self.name}: section_{name} is 0 everywhere: give the hull's")
-        half = 0.5 * self.hull_spacing
-        hulls = (-half, half) if half else (0.0,)
-        plane = float(beam.sum()) * dx * len(hulls)
+        bodies = [self._sections("section", self.hull_length, self.hull_middle, self.hull_spacing)]
+        if self.side_spacing > 0.0:
+            if not self.side_length > 0.0:
+                raise InputError(f"{self.name}: side_spacing is given, and side_length is 0")
+            bodies.append(
+                self._sections("side", self.side_length, self.side_middle, self.side_spacing)
+            )
+        plane = sum(body.plane for body in bodies)
         if waterplane is not None and not abs(plane - waterplane) <= _LARGEST_ERROR * waterplane:
             raise InputError(
                 f"{self.name}: the sections have a waterplane of {plane:.4g} m2, and "
                 f"waterplane_area is {waterplane:.4g} m2: in long waves the craft would not "
                 "follow the surface"
             )
-        even = np.full(_STRIPS, 1.0 / (self.hull_length * len(hulls)))
-        broad = np.square(beam) / (np.square(beam).sum() * dx * len(hulls))
+        shares = _Shares(own, bodies)
+        form = {"round": self.section_form == "arc", "density": density, "gravity": gravity}
+        return HullInWaves([shares.in_waves(body, self.hull_waterline, form) for body in bodies])
+
+    def _sections(self, prefix: str, length: float, middle: float, spacing: float) -> _Sections:
+        """Return the strips of one hull or two alike. Raises InputError for sections of 0."""
+        edges = np.linspace(-0.5, 0.5, _STRIPS + 1) * length
+        x, dx = 0.5 * (edges[:-1] + edges[1:]), length / _STRIPS
+        stations = np.linspace(-0.5, 0.5, STATIONS) * length
+        names = [f"{prefix}_{name}" for name in ("beam", "draught", "area")]
+        beam, draught, area = (np.interp(x, stations, np.array(getattr(self, n))) for n in names)
+        for name, values in zip(names, (beam, draught, area), strict=True):
+            if not values.max() > 0.0:
+                raise InputError(f"{self.name}: {name} is 0 everywhere: give the hull's")
+        return _Sections(x, dx, beam, draught, area, length, middle, 0.5 * spacing)
+
+
+@dataclass(frozen=True, eq=False)
+class _Sections:
+    """Strips of one hull, or of two alike ``half`` off the centre plane; m and m2."""
+
+    x: Array
+    dx: float
+    beam: Array
+    draught: Array
+    area: Array
+    length: float
+    middle: float
+    half: float
+
+    @property
+    def hulls(self) -> tuple[float, ...]:
+        """y of the centre planes, m."""
+        return (-self.half, self.half) if self.half else (0.0,)
+
+    @property
+    def plane(self) -> float:
+        """Waterplane, m2."""
+        return float(self.beam.sum()) * self.dx * len(self.hulls)
+
+
+class _Shares:
+    """What each strip of several hulls has of the craft's own coefficients."""
+
+    def __init__(self, own: HullCoefficients, bodies: list[_Sections]) -> None:
+        self.own = own
+        self.square = sum(np.square(b.beam).sum() * b.dx * len(b.hulls) for b in bodies)
+        self.length = sum(b.length * len(b.hulls) for b in bodies)
+        self.lever = sum(
+            float((np.square(b.x) * self.broad(b)).sum()) * b.dx * len(b.hulls) for b in bodies
+        )
+        self.aside = sum(
+            np.square(b.beam).sum() * b.dx * len(b.hulls) / self.square * b.half**2 for b in bodies
+        )
+
+    def broad(self, body: _Sections) -> Array:
+        """Return the share of each metre by beam squared, 1/m."""
+        return np.asarray(np.square(body.beam) / self.square)
+
+    def in_waves(self, body: _Sections, waterline: float, form: Mapping[str, Any]) -> _OneInWaves:
+        """Return one hull, or two alike, in waves."""
+        own, broad = self.own, self.broad(body)
+        even = np.full(_STRIPS, 1.0 / self.length)
         strips = Strips(
-            x,
-            beam,
-            area,
-            draught,
+            body.x,
+            body.beam,
+            body.area,
+            body.draught,
             a33=own.heave[0] * broad,
             b33=own.heave[1] * broad,
             a22=own.sway[0] * even,
             b22=own.sway[1] * even,
             a42=own.roll_by_sway_mass * even,
             b42=0.0 * even,
-            hulls=hulls,
-            round=self.section_form == "arc",
-            density=density,
-            gravity=gravity,
+            hulls=body.hulls,
+            **form,
         )
-        lever = float((np.square(x) * broad).sum()) * dx * len(hulls)
         in_pitch = replace(
-            strips, a33=own.pitch[0] / lever * broad, b33=own.pitch[1] / lever * broad
+            strips, a33=own.pitch[0] / self.lever * broad, b33=own.pitch[1] / self.lever * broad
         )
         in_roll = strips
-        if half:
+        if body.half:
             in_roll = replace(
-                strips, a33=own.roll[0] / half**2 * broad, b33=own.roll[1] / half**2 * broad
+                strips, a33=own.roll[0] / self.aside * broad, b33=own.roll[1] / self.aside * broad
             )
-        middle = np.array([self.hull_middle, 0.0, -self.hull_waterline])
-        return HullInWaves(strips, in_pitch, in_roll, (0.0, 0.0) if half else own.roll, middle)
+        middle = np.array([body.middle, 0.0, -waterline])
+        return _OneInWaves(
+            strips, in_pitch, in_roll, (0.0, 0.0) if self.aside else own.roll, middle
+        )
 
 
 @dataclass(frozen=True, eq=False)
 class HullInWaves:
+    """Wave loads of several hulls on their craft, about its body origin."""
+
+    hulls: list[_OneInWaves]
+
+    def forces(self, omega: Array, k: Array, chi: Numbers) -> Complex:
+        """Return X, Y, Z, K, M, N per metre of amplitude, (6, components); see `Strips`."""
+        first, *others = (hull.forces(omega, k, chi) for hull in self.hulls)
+        return sum(others, first)
+
+
+@dataclass(frozen=True, eq=False)
+class _OneInWaves:
     """Wave loads of strips on a craft, about its body origin, with its own coefficients."""
 
     strips: Strips
