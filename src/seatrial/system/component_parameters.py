@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from ..errors import InputError
 from ..model.units import quantity
+from .assumed import give_assumed
 from .parameters import ParameterSet, load_vehicle, split_reference
 from .part import Part
 from .paths import joined
@@ -76,6 +77,7 @@ def _give_parameter_set(part: Part, values: ParameterSet) -> None:
     for port, value in values.values.items():
         scalars = settable(part.instance.variables, port, values.origin)
         part.given.update(from_entry(value, scalars, values.origin, values.folder))
+    give_assumed(part)
 
 
 def _give_profile(part: Part, section: str, profile: Profile, where: str) -> None:

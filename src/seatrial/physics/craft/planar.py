@@ -72,7 +72,11 @@ class PlanarCraft(ThroughWater, WaveHull, Seaway):
         **ThroughWater.water_terminals,
     }
     feedthrough: ClassVar = dict.fromkeys(
-        ("position", "attitude", "velocity", "rates", "attachment_point", "attachment_velocity"), ()
+        (
+            *("position", "attitude", "velocity", "rates"),
+            *("attachment_point", "attachment_velocity", "nu_r", "flow"),
+        ),
+        (),
     )
 
     def wave_response(self) -> Response | None:

@@ -156,6 +156,10 @@ class Sailboat(PlanarCraft):
         **PlanarCraft.terminals,
         "angles": terminal("rudder", "sail", "flap"),
     }
+    feedthrough: ClassVar = {
+        **PlanarCraft.feedthrough,
+        **dict.fromkeys(("nu_r", "flow"), ("current",)),
+    }
 
     def start(self, t: float) -> None:
         """Start from the start values; raises InputError if M is not positive definite."""

@@ -130,7 +130,10 @@ class SixDofCraft(ThroughWater, CoupledDamping, HullPoints, HullLift, Morison, S
         "attachment": ATTACHMENT,
         **ThroughWater.water_terminals,
     }
-    feedthrough: ClassVar = dict.fromkeys(("attachment_point", "attachment_velocity"), ())
+    feedthrough: ClassVar = {
+        **dict.fromkeys(("attachment_point", "attachment_velocity"), ()),
+        **dict.fromkeys(("nu_r", "flow"), ("current",)),
+    }
 
     def start(self, t: float) -> None:
         """Start from the start values; raises InputError if M is not positive definite."""
