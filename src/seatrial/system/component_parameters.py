@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from ..errors import InputError
 from ..model.units import quantity
-from .parameters import ParameterSet, load_vehicle, split_reference
+from .parameters import OWN, ParameterSet, load_vehicle, split_reference
 from .part import Part
 from .paths import joined
 from .profile.profile import Profile, Profiles
@@ -29,7 +29,10 @@ def give_parameters(system: System, part: Part, profiles: Profiles) -> None:
     _give_seed(part, system.seed)
     _give_origin(part)
     if entry.parameters:
-        _give_parameter_set(part, _parameter_set(system, placed))
+        values = _parameter_set(system, placed)
+        if entry.parameters.endswith(OWN):
+            values = values.own(part.instance.variables, part.fmu, f"{where}.parameters")
+        _give_parameter_set(part, values)
     if entry.profile is not None:
         profile, section = profiles.find(entry.profile, f"{where}.profile")
         _give_profile(part, section, profile, f"{where}.profile")
