@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from ..errors import InputError, unknown
 from .bonds import bonds_of
-from .component_parameters import give_parameters, variants_of
+from .component_parameters import followed, give_parameters, variants_of
 from .connecting import connect
 from .loading import load_part
 from .profile.profile import Profiles
@@ -39,8 +39,9 @@ def assemble(
             if scope.path not in profiles:
                 profiles[scope.path] = Profiles(scope.file.profile, scope.read_from.path.parent)
             give_parameters(system, system.parts[name], profiles[scope.path])
-        for setting in rig.settings:
-            system.set(*setting)
+        for scope, setting in rig.settings:
+            written = followed(system, scope, setting.written, f"{setting.origin}: {setting.key}")
+            system.set(*setting._replace(written=written))
         _refuse_idle_variant(system)
         connect(system)
         system.bonds = bonds_of(system)

@@ -11,6 +11,7 @@ from pydantic import Field
 
 from ..errors import InputError, unknown
 from ..fmi.instance import Variables
+from ..vehicle_folders import owner
 from .derived import Entries
 from .entries import Entry, WrittenEntry, written_out
 from .files import FileModel, Source, file_bytes, find_file, parsed_toml, validated
@@ -19,6 +20,9 @@ from .values import port_scalars
 
 OWN = ":own"
 """Ends a reference of which a component takes only what it has a parameter for."""
+
+_OF_FOLDERS = ("rig", "rigs")
+"""Tables of rigs, which the vehicle's file of a folder has beside the numbers."""
 
 
 class Outline(FileModel):
@@ -91,6 +95,8 @@ class Vehicle:
 
     file: VehicleFile
     read_from: Source
+    idle: tuple[str, ...] = ()
+    """Rigs in the file that have no effect there: it is not in a vehicle's folder."""
 
     def parameter_set(self, table: str, variant: str | None) -> ParameterSet:
         """Return the values for the component ``table`` in ``variant`` (None: the default).
@@ -104,7 +110,8 @@ class Vehicle:
         if table not in file.components and not values:
             raise InputError(f"{path}: {unknown('component table', table, file.components)}")
         suffix = f", variant {chosen}" if chosen else ""
-        origin = f"vehicles/{path.name} [{table}]{suffix}"
+        shown = f"{path.parent.name}/{path.name}" if owner(path) else path.name
+        origin = f"vehicles/{shown} [{table}]{suffix}"
         body = Body(file.shape[table], path, table, self.tables) if table in file.shape else None
         return ParameterSet(
             values,
@@ -164,6 +171,8 @@ def load_vehicle(name: str, relative_to: Path | None = None) -> Vehicle:
 def _vehicle(path: Path, data: bytes) -> Vehicle:
     content, read_from = parsed_toml(path, data)
     known = {"title", "source", "default", "outline", "shape", "variants", "presets"}
+    idle = () if owner(path) else tuple(key for key in _OF_FOLDERS if key in content)
+    content = {key: value for key, value in content.items() if key not in _OF_FOLDERS}
     tables = {key: value for key, value in content.items() if key not in known}
     for key, value in tables.items():
         if not isinstance(value, dict):
@@ -176,7 +185,7 @@ def _vehicle(path: Path, data: bytes) -> Vehicle:
         **top,
         "components": {n: written_out(table, f"{path}: {n}") for n, table in tables.items()},
     }
-    vehicle = Vehicle(validated(VehicleFile, content, path, ours="components"), read_from)
+    vehicle = Vehicle(validated(VehicleFile, content, path, ours="components"), read_from, idle)
     for table in vehicle.file.shape:
         if table not in vehicle.tables:
             raise InputError(f"{path}: shape: {unknown('component table', table, vehicle.tables)}")

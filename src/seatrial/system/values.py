@@ -108,9 +108,11 @@ def from_written(
     """Return what a rig, a trial or the command line says of a port, as scalars.
 
     Numbers are in the port's unit; text is a quantity (``"10 deg"``), the name of a preset, or
-    the value of a text, enumeration or binary port; a list has one element per axis. Raises
-    InputError.
+    the value of a text, enumeration or binary port; a list has one element per axis. An entry is
+    what an expression amounts to. Raises InputError.
     """
+    if isinstance(written, Entry):
+        return from_entry(written, scalars, origin)
     if isinstance(written, str) and scalars[0].type is not str:
         if written in presets:
             return from_entry(presets[written], scalars, f"{origin}, preset {written!r}")
@@ -122,6 +124,9 @@ def from_written(
     _check_count(len(values), scalars, origin)
     given = {}
     for variable, value in zip(scalars, values, strict=True):
+        if isinstance(value, Entry):
+            given.update(from_entry(value, [variable], origin))
+            continue
         resolved = _scalar(variable, value, origin)
         _check_limits(variable, resolved, origin)
         given[variable.name] = Given(resolved, origin)
