@@ -38,6 +38,12 @@ def provided_folders(kind: str) -> list[Path]:
     return [folder for folder in folders if folder.is_dir()]
 
 
+def is_provided(path: Path) -> bool:
+    """Return whether a file is of the harness of the core or of a kit, and not a user's."""
+    folders = [shipped_folder("harness"), *(content_of(kit) for kit in kits().found)]
+    return any(path.resolve().is_relative_to(folder.resolve()) for folder in folders)
+
+
 def provided_place(kind: str, name: str) -> Place | None:
     """Return where a name stands that the core or a kit brings; None if there is none.
 

@@ -11,7 +11,7 @@ from ..model.units import quantity
 from ..vehicle_folders import FOLDERS, VEHICLE
 from .derived import computed
 from .entries import Entry
-from .expressions import is_expression
+from .expressions import is_expression, names_in
 from .parameters import OWN, ParameterSet, Vehicle, load_vehicle, split_reference
 from .part import Part
 from .paths import joined
@@ -54,11 +54,17 @@ def give_parameters(system: System, part: Part, profiles: Profiles) -> None:
             system.set(f"{part.name}.{port}", written, f"{where}.set", folder)
 
 
-def variants_of(placed: Placed) -> list[str]:
-    """Return the variants of the vehicle that gives a component its parameters."""
-    assert placed.entry.parameters is not None
-    name, _ = split_reference(placed.entry.parameters, placed.entry.fmu)
-    return list(load_vehicle(name, placed.scope.read_from.path.parent).file.variants)
+def vehicles_of(placed: Placed) -> list[Vehicle]:
+    """Return the vehicles that give a component parameters, and values that its rig sets."""
+    entry, folder = placed.entry, placed.scope.read_from.path.parent
+    names: dict[str, None] = {}
+    if entry.parameters:
+        names.setdefault(split_reference(entry.parameters, entry.fmu)[0])
+    for written in entry.set.values():
+        for text in written if isinstance(written, list) else [written]:
+            if is_expression(text):
+                names |= {name.partition(".")[0]: None for name in names_in(text)}
+    return [load_vehicle(name, folder) for name in names]
 
 
 def _give_seed(part: Part, seed: int) -> None:

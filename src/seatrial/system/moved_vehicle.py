@@ -68,7 +68,7 @@ def old_files(name: str, root: Path) -> list[Old]:
 def folder_files(name: str, root: Path) -> dict[str, str]:
     """Return the texts of the folder's files by name, from the files of before.
 
-    Raises InputError for one that is not TOML, or cannot be told apart line by line.
+    Raises InputError for one that is not TOML, or whose tables cannot be moved line by line.
     """
     folder = root / FOLDERS / name
     files: dict[str, str] = {}
