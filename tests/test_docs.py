@@ -558,7 +558,9 @@ def test_solvers_agree_as_the_page_says(phase: str) -> None:
         for name, entry in vehicle.parameter_set(table, "source").values.items():
             component.set(name, entry.value)
     downwash.set("phase", phase)
-    downwash.set("pad", vehicle.file.presets["downwash"]["pad"]["diagonal-aft"].value)
+    downwash.set(
+        "pad", vehicle.parameter_set("downwash", None).presets["pad"]["diagonal-aft"].value
+    )
 
     def load(t: float, x: Any) -> dict[str, Any]:
         force, moment = downwash.wrench(t, x.attitude.tolist())

@@ -27,13 +27,14 @@ def test_the_wheel_alone_runs_a_trial(downloads: bool, tmp_path: Path) -> None:
         "docs/core.md",
         "fmus/index.toml",
         "harness/trials/hydrone-landing.toml",
+        "harness/vehicles/hydrone/vehicle.toml",
+        "harness/vehicles/hydrone/pilot.toml",
         "hil_profiles/hydrone.toml",
+        "vehicles/tether.toml",
     ):
         assert f"seatrial/_shipped/{shipped}" in names
     for name in (
         "py.typed",
-        "vehicles/hydrone.toml",
-        "vehicles/gloria.toml",
         "physics/sail_naca0015.csv",
     ):
         assert f"seatrial/{name}" in names

@@ -35,7 +35,7 @@ def hydrone_pads() -> str:
         ("landing point", "x, m", "y, m", "z, m", "source"),
         [
             (f"`{name}`", *(shown_number(v) for v in e.value), e.source)
-            for name, e in load_vehicle("hydrone").file.presets["downwash"]["pad"].items()
+            for name, e in load_vehicle("hydrone").entries(None).presets("downwash")["pad"].items()
             if isinstance(e.value, list)
         ],
     )
@@ -390,7 +390,7 @@ def hydrone_station() -> str:
 def hydrone_static() -> str:
     """Equilibria under the standing HUAUV, variant source, by trim."""
     rows = []
-    for pad, entry in load_vehicle("hydrone").file.presets["downwash"]["pad"].items():
+    for pad, entry in load_vehicle("hydrone").entries(None).presets("downwash")["pad"].items():
         assert isinstance(entry.value, list)
         z, roll, pitch = _static(*entry.value[:2])
         rows.append((pad, fixed(z, 5), fixed(roll, 3), fixed(pitch, 3)))

@@ -54,12 +54,12 @@ def cli() -> str:
     group.commands = {name: loaded(name) for name in commands()}  # with their options
     text = get_docs_for_click(obj=group, ctx=typer.Context(group), name="seatrial")
     text = text.strip().replace("&#x27;", "'")
-    titles = dict(re.findall(r"^#+ `([\w ]+)`\n\n(.*?)\n\n", text, re.DOTALL | re.MULTILINE))
+    titles = dict(re.findall(r"^#+ `([\w -]+)`\n\n(.*?)\n\n", text, re.DOTALL | re.MULTILINE))
     lines, command = [], ""
     for line in text.splitlines():
-        if heading := re.match(r"#+ `([\w ]+)`", line):
+        if heading := re.match(r"#+ `([\w -]+)`", line):
             command = heading[1]
-        if listed := re.match(r"\* `(\w+)`: ", line):  # cut short by Typer
+        if listed := re.match(r"\* `([\w-]+)`: ", line):  # cut short by Typer
             line = listed[0] + titles.get(f"{command} {listed[1]}", line[listed.end() :])
         lines.append(line)
     return "\n" + "\n".join(lines[1:]).strip() + "\n"

@@ -10,7 +10,8 @@ from parts.markdown import shown_unit, shown_value, table
 from seatrial.fmi.components.source import shipped_sources
 from seatrial.model.ports import Parameter
 from seatrial.shipped import shipped_folder
-from seatrial.system.parameters import Entry, load_vehicle
+from seatrial.system.entries import Entry
+from seatrial.system.parameters import load_vehicle
 from seatrial.system.profile.kinds import keys
 
 _SENSORS = ("ahrs", "anemometer", "compass", "depth", "gnss", "imu")
@@ -69,13 +70,13 @@ def _meaning(port: Parameter) -> str:
 
 def parameters(vehicle: str) -> str:
     """Parameters that all variants share."""
-    file = load_vehicle(vehicle).file
-    varied = {(t, n) for c in file.variants.values() for t, entries in c.items() for n in entries}
+    of = _entries(vehicle)
+    varied = _varied(vehicle)
     return table(
         ("component", "parameter", "value", "unit", "mark", "source"),
         [
             (table, f"`{name}`", shown_value(e.value), shown_unit(e.unit), e.mark, e.source)
-            for table, entries in file.components.items()
+            for table, entries in next(iter(of.values())).items()
             for name, e in entries.items()
             if (table, name) not in varied
         ],
@@ -84,18 +85,10 @@ def parameters(vehicle: str) -> str:
 
 def variants(vehicle: str) -> str:
     """Parameters in which the variants differ."""
-    file = load_vehicle(vehicle).file
-    places = dict.fromkeys(
-        (table, name)
-        for changes in file.variants.values()
-        for table, entries in changes.items()
-        for name in entries
-    )
     rows = []
-    for component, name in places:
-        for variant, changes in file.variants.items():
-            shared: dict[str, Entry] = file.components.get(component, {})
-            e = changes.get(component, {}).get(name, shared.get(name))
+    for component, name in _varied(vehicle):
+        for variant, tables in _entries(vehicle).items():
+            e = tables.get(component, {}).get(name)
             if e is None:  # the component's default
                 continue
             value = shown_value(e.value)
@@ -104,6 +97,32 @@ def variants(vehicle: str) -> str:
             )
     head = ("component", "parameter", "variant", "value", "unit", "mark", "source")
     return table(head, rows)
+
+
+def _entries(vehicle: str) -> dict[str, dict[str, dict[str, Entry]]]:
+    """Return all entries by variant and table."""
+    loaded = load_vehicle(vehicle)
+    return {
+        variant: {table: loaded.entries(variant or None).table(table) for table in loaded.tables}
+        for variant in loaded.file.variants or ("",)
+    }
+
+
+def _varied(vehicle: str) -> list[tuple[str, str]]:
+    """Return table and name of what variants say, and of what follows from that."""
+    said = {
+        (table, name): None
+        for changes in load_vehicle(vehicle).file.variants.values()
+        for table, entries in changes.items()
+        for name in entries
+    }
+    first, *others = _entries(vehicle).values()
+    for place, entries in first.items():
+        for name, e in entries.items():
+            values = [tables[place].get(name, e).value for tables in others]
+            if any(value != e.value for value in values):
+                said.setdefault((place, name))
+    return list(said)
 
 
 for _vehicle in ("hydrone", "gloria", "mariner", "videoray", "otter", "bluerov2"):

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from .errors import InputError
 from .kits import OURS, Kit, kits
+from .vehicle_folders import FOLDERS, Place, place_in, places_in
 
 _PACKAGE = Path(__file__).parent
 _CHECKOUT = _PACKAGE.parents[1]
@@ -18,8 +19,6 @@ def shipped_folder(name: str) -> Path:
     installed = _PACKAGE / "_shipped" / name
     if installed.is_dir():
         return installed
-    if name == "vehicles":
-        return _PACKAGE / name
     return _CHECKOUT / name
 
 
@@ -39,28 +38,48 @@ def provided_folders(kind: str) -> list[Path]:
     return [folder for folder in folders if folder.is_dir()]
 
 
-def searched_folders(kind: str) -> list[Path]:
-    """Return the folders where files of ``kind`` are looked for, in order."""
-    folders = [Path.cwd() / kind, *provided_folders(kind)]
-    return [folder for folder in dict.fromkeys(folders) if folder.is_dir()]
+def is_provided(path: Path) -> bool:
+    """Return whether a file is of the harness of the core or of a kit, and not a user's."""
+    folders = [shipped_folder("harness"), *(content_of(kit) for kit in kits().found)]
+    return any(path.resolve().is_relative_to(folder.resolve()) for folder in folders)
 
 
-def provided_file(kind: str, name: str) -> Path | None:
-    """Return the file of a name that the core or a kit brings; None if there is none.
+def provided_place(kind: str, name: str) -> Place | None:
+    """Return where a name stands that the core or a kit brings; None if there is none.
 
     Raises InputError for a name that two of them have.
     """
-    files = [folder / f"{name}.toml" for folder in provided_folders(kind)]
-    found = [file for file in files if file.is_file()]
+    files = [Place(folder / f"{name}.toml") for folder in provided_folders(kind)]
+    found = [place for place in files if place.path.is_file()]
+    inside = (place_in(folder, kind, name) for folder in provided_folders(FOLDERS))
+    found += [place for place in inside if place is not None]
     if len(found) > 1:
         raise InputError(f"{name!r} is ambiguous: {' and '.join(map(str, found))}; give a path")
     return found[0] if found else None
 
 
+def provided_file(kind: str, name: str) -> Path | None:
+    """Return the file of a name that the core or a kit brings, as `provided_place` does."""
+    place = provided_place(kind, name)
+    return None if place is None else place.path
+
+
 def available(kind: str) -> dict[str, Path]:
     """Return the files of ``kind`` by name, the ones that `find_file` of `system.files` returns."""
-    found: dict[str, Path] = {}
-    for folder in searched_folders(kind):
-        for path in sorted(folder.glob("*.toml")):
-            found.setdefault(path.stem, path)
+    return {name: place.path for name, place in available_places(kind).items()}
+
+
+def available_places(kind: str) -> dict[str, Place]:
+    """Return where the names of ``kind`` stand, in files of their own or in vehicles' folders."""
+    found: dict[str, Place] = {}
+    here = Path.cwd()
+    for files, folders in (
+        ([here / kind], [here / FOLDERS]),
+        (provided_folders(kind), provided_folders(FOLDERS)),
+    ):
+        for path in (path for folder in files for path in sorted(folder.glob("*.toml"))):
+            found.setdefault(path.stem, Place(path))
+        for folder in folders:
+            for name, place in places_in(folder, kind).items():
+                found.setdefault(name, place)
     return dict(sorted(found.items()))

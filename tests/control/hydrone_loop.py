@@ -1,8 +1,6 @@
 """The Hydrone under its autopilot: hull, thrusters, sensors and controller in one loop."""
 
 import math
-import tomllib
-from importlib.resources import files
 
 import numpy as np
 
@@ -14,9 +12,9 @@ from seatrial.devices.gnss import Gnss
 from seatrial.devices.imu import Imu
 from seatrial.devices.sensor import Measured
 from seatrial.physics.craft.marine_craft import MarineCraft
+from seatrial.system.parameters import load_vehicle
 from seatrial.system.profile.profile import load_profile
 
-VEHICLE = tomllib.loads((files("seatrial") / "vehicles/hydrone.toml").read_text("utf-8"))
 SENSORS = {"gnss": Gnss, "imu": Imu, "compass": Compass}
 STEP_MS = 10
 TRUTH = ("position", "attitude", "velocity", "rates")
@@ -29,8 +27,8 @@ def set_all(component, values):
 
 
 def hull(position, heading, current):
-    entries = VEHICLE["marine-craft"] | VEHICLE["variants"]["physical"]["marine-craft"]
-    craft = set_all(MarineCraft("hull"), {name: e["value"] for name, e in entries.items()})
+    entries = load_vehicle("hydrone").parameter_set("marine-craft", "physical").values
+    craft = set_all(MarineCraft("hull"), {name: e.value for name, e in entries.items()})
     starts = {"position_start": [*position, 0.0], "attitude_start": [0.0, 0.0, heading]}
     return set_all(craft, {**starts, "current": current})
 

@@ -5,8 +5,6 @@ equations of source 001, corrected.
 """
 
 import math
-import tomllib
-from importlib.resources import files
 
 import numpy as np
 import pytest
@@ -14,9 +12,10 @@ import pytest
 from seatrial.control.sailing.heading_backstepping import SailingHeadingBackstepping
 from seatrial.control.sailing.heading_pid import SailingHeadingPid
 from seatrial.model.units import conversion
+from seatrial.system.parameters import load_vehicle
 from tests.devices.running import started
 
-GLORIA = tomllib.loads((files("seatrial") / "vehicles/gloria.toml").read_text("utf-8"))
+GLORIA = load_vehicle("gloria")
 DEG = math.radians(1.0)
 UNLIMITED = {"rudder_limit": 1e9}
 HULL = {"rudder_place": [-0.562, 0.039], "rudder_area": 0.00792, "water_density": 1000.0}
@@ -24,14 +23,13 @@ HULL = {"rudder_place": [-0.562, 0.039], "rudder_area": 0.00792, "water_density"
 
 def gloria(cls, table, **changes):
     """Return the controller with the boat's parameters, variant source."""
-    entries = {**GLORIA[table], **GLORIA["variants"]["source"].get(table, {})}
     values = {}
-    for name, entry in entries.items():
-        factor = conversion(entry["unit"], cls.ports[name].unit)[0] if "unit" in entry else None
-        value = entry["value"]
-        if isinstance(value, list):
-            value = [factor * v for v in value]
-        values[name] = value if factor is None or isinstance(value, list) else factor * value
+    for name, entry in GLORIA.parameter_set(table, "source").values.items():
+        value = entry.value
+        if cls.ports[name].type is float:
+            factor = conversion(entry.unit, cls.ports[name].unit)[0]
+            value = [factor * v for v in value] if isinstance(value, list) else factor * value
+        values[name] = value
     return started(cls, **{**values, **changes})
 
 

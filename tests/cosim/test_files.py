@@ -38,6 +38,9 @@ KINDS = ["harness/rigs", "harness/trials", "harness/campaigns", "hil_profiles", 
 def test_in_an_empty_folder_the_shipped_files_are_found(kind: str) -> None:
     files = [path for folder in provided_folders(kind) for path in folder.glob("*.toml")]
     on_disk = {path.stem: path for path in files}
+    if kind == "vehicles":
+        folders = shipped_folder("harness") / "vehicles"
+        on_disk |= {path.parent.name: path for path in folders.glob("*/vehicle.toml")}
     assert on_disk
     assert available(kind) == on_disk
     assert {name: find_file(kind, name) for name in on_disk} == on_disk
@@ -57,7 +60,8 @@ def test_a_users_file_wins_over_the_shipped_one_of_the_same_name(kind: str, writ
     assert found[shipped[0]] == own
     assert all(found[name].parent != own.parent for name in shipped[1:])
     own.unlink()
-    assert find_file(kind, shipped[0]).is_relative_to(shipped_folder(kind.partition("/")[0]))
+    top = "harness" if kind == "vehicles" else kind.partition("/")[0]
+    assert find_file(kind, shipped[0]).is_relative_to(shipped_folder(top))
 
 
 def test_the_users_content_is_what_is_read(write) -> None:

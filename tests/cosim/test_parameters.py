@@ -10,8 +10,9 @@ from seatrial.errors import InputError
 from seatrial.fmi.direct import DirectInstance
 from seatrial.model.component import Component, Input, Output, Parameter
 from seatrial.model.units import conversion
+from seatrial.system.entries import Entry
 from seatrial.system.files import available
-from seatrial.system.parameters import Entry, Vehicle, load_vehicle
+from seatrial.system.parameters import Vehicle, load_vehicle
 from seatrial.system.values import Given, from_entry, from_written, port_scalars
 
 HEAD = 'title = "Boat"\nsource = "drawing 7"\n'
@@ -166,7 +167,7 @@ def test_mistakes_in_an_entry_name_their_place(load, place: str, changes, messag
         (HEAD.replace("source", "suorce"), r"suorce: unknown key 'suorce'; did you mean 'source'"),
         ('source = "s"\n', r"boat\.toml: title: this key is missing"),
         ('title = "t"\n', r"boat\.toml: source: this key is missing"),
-        (HEAD + "[hull]\nmass = 3\n", r"boat\.toml: hull\.mass: Input should be a valid dictionary"),
+        (HEAD + "[hull]\nmass = 3\n", r"boat\.toml: hull\.mass\.source: this key is missing"),
         (HEAD + "[[hull]]\nmass = 3\n", r"boat\.toml: hull: unknown key 'hull'"),
         (HEAD + "[components.hull]\nmass = " + entry(), r"boat\.toml: components\.hull\.mass: unknown key"),
         (HEAD + "default = 1\n", r"boat\.toml: default: Input should be a valid string, found 1"),
@@ -362,6 +363,22 @@ def test_a_table_with_a_question_mark_may_be_lacking(direct, write) -> None:
         direct.system(rig.format(".keel"))
 
 
+def test_a_reference_to_own_takes_what_the_component_has(direct, write) -> None:
+    """The table is another component's: what this one has no parameter for stays there."""
+    bias_of_2_cm = entry(value="2", unit='"cm"')
+    shared = f"[shared]\nmass = {entry()}\nbias = {bias_of_2_cm}\n[other]\nmass = {entry()}\n"
+    write("mine.toml", HEAD + shared)
+    rig = 'a = {{ fmu = "users.py:Scale", parameters = "mine.toml.{}" }}'
+    assert bias(direct, rig.format("shared:own")) == pytest.approx(0.02, rel=1e-15)
+    with pytest.raises(InputError, match="unknown port 'mass'"):
+        direct.system(rig.format("shared"))
+    nothing = (
+        r"components\.a\.parameters: nothing in .* \[other\] is a parameter of users\.py:Scale"
+    )
+    with pytest.raises(InputError, match=nothing):
+        direct.system(rig.format("other:own"))
+
+
 # ---------------------------------------------------------------------- lists of like parts
 
 THRUSTERS = (
@@ -399,7 +416,7 @@ def test_parts_of_a_list_are_numbered_and_share_source_and_mark(load) -> None:
     [
         (THRUSTERS.replace("gain", "position_2"), r"propulsion: thrusters: position_2 is there twice"),
         (THRUSTERS.replace('mark = "stated"\n\n[[', "\n[["), r"propulsion\.\w+_1\.mark: this key is missing"),
-        (THRUSTERS.replace("{ value = [0, 0, 1] }", "3"), r"propulsion\.direction_2: Input should be"),
+        (THRUSTERS.replace("{ value = [0, 0, 1] }", "true"), r"propulsion\.direction_2\.value: Input should be"),
     ],
 )  # fmt: skip
 def test_mistakes_in_a_list_name_their_place(load, text: str, message: str) -> None:
@@ -410,12 +427,20 @@ def test_mistakes_in_a_list_name_their_place(load, text: str, message: str) -> N
 # ---------------------------------------------------------------------- what is shipped
 
 
+def follows(entry: object) -> bool:
+    """Return whether an entry follows from others; what it amounts to is tested by itself."""
+    value = entry["value"] if isinstance(entry, dict) else entry
+    return any(
+        str(each).startswith("=") for each in (value if isinstance(value, list) else [value])
+    )
+
+
 @pytest.mark.parametrize("name", sorted(available("vehicles")))
 def test_shipped_vehicles_have_every_value_with_unit_and_source(name: str) -> None:
     """Read with tomllib alone; each table gives in each variant what its file says."""
     vehicle = load_vehicle(name)
     raw = tomllib.loads(vehicle.read_from.path.read_text("utf-8"))
-    drawn = {"variants", "presets", "outline", "shape"}
+    drawn = {"variants", "presets", "outline", "shape", "rig", "rigs"}
     tables = {k for k, v in raw.items() if isinstance(v, dict)} - drawn
     assert tables
     for variant in [None, *raw.get("variants", {})]:
@@ -423,7 +448,10 @@ def test_shipped_vehicles_have_every_value_with_unit_and_source(name: str) -> No
         for table in tables:
             expected = {**raw[table], **changed.get(table, {})}
             chosen = vehicle.parameter_set(table, variant).values
-            assert {n: e.model_dump(exclude_unset=True) for n, e in chosen.items()} == expected
+            given = {n: e for n, e in expected.items() if not follows(e)}
+            assert list(chosen) == list(expected)
+            assert {n: chosen[n].model_dump(exclude_unset=True) for n in given} == given
             for value in chosen.values():
                 assert value.source.strip()
-                assert conversion(value.unit, value.unit) == (1.0, 0.0)
+                units = value.unit if isinstance(value.unit, list) else [value.unit]
+                assert all(conversion(unit, unit) == (1.0, 0.0) for unit in units)

@@ -1,16 +1,15 @@
 """The Hydrone, built from its parameter file, and runs of it that several tests look at."""
 
-import tomllib
 from functools import cache
-from importlib.resources import files
 
 import numpy as np
 import pytest
 
 from seatrial.physics.craft.marine_craft import MarineCraft
 from seatrial.physics.environment.downwash import Downwash
+from seatrial.system.parameters import load_vehicle
 
-PARAMETERS = tomllib.loads((files("seatrial") / "vehicles/hydrone.toml").read_text())
+VEHICLE = load_vehicle("hydrone")
 DAMPING = (
     *("linear_damping_force", "linear_damping_moment"),
     *("quadratic_damping_force", "quadratic_damping_moment"),
@@ -21,9 +20,8 @@ class Hydrone:
     """Builds and runs the Hydrone with its HUAUV."""
 
     def __init__(self):
-        self.parameters = PARAMETERS
-        pads = PARAMETERS["presets"]["downwash"]["pad"]
-        self.pads = {name: entry["value"] for name, entry in pads.items()}
+        pads = VEHICLE.parameter_set("downwash", None).presets["pad"]
+        self.pads = {name: entry.value for name, entry in pads.items()}
 
     def craft(self, variant, **changes):
         return self._set(MarineCraft("craft"), "marine-craft", variant, changes)
@@ -36,9 +34,8 @@ class Hydrone:
         return self._set(Downwash("downwash"), "downwash", variant, {**scenario, **changes})
 
     def _set(self, component, table, variant, changes):
-        shared, own = self.parameters[table], self.parameters["variants"][variant][table]
-        for name, entry in {**shared, **own}.items():
-            component.set(name, entry["value"])
+        for name, entry in VEHICLE.parameter_set(table, variant).values.items():
+            component.set(name, entry.value)
         for name, value in changes.items():
             component.set(name, value)
         return component

@@ -13,6 +13,7 @@ from seatrial.model.component import Parameter
 from seatrial.model.units import conversion
 from seatrial.physics.craft.kinematics import rotation
 from seatrial.physics.craft.marine_craft import MarineCraft
+from seatrial.system.parameters import load_vehicle
 
 WEIGHT = 10 * 9.81  # N, of the HUAUV
 HEAVE = 1025 * 9.81 * 0.5  # N/m
@@ -277,8 +278,8 @@ def test_port_and_starboard_mirror_each_other_to_the_bit(hydrone, variant):
 
 def coarse(hydrone, h):
     craft = AnyStep("craft")
-    for table in (hydrone.parameters, hydrone.parameters["variants"]["source"]):
-        set_all(craft, {name: entry["value"] for name, entry in table["marine-craft"].items()})
+    entries = load_vehicle("hydrone").parameter_set("marine-craft", "source").values
+    set_all(craft, {name: entry.value for name, entry in entries.items()})
     craft.set("max_step", h)
     return craft
 

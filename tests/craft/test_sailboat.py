@@ -7,7 +7,6 @@ equations of source 001, corrected.
 import csv
 import math
 import tomllib
-from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
@@ -17,8 +16,9 @@ from seatrial.errors import InputError
 from seatrial.model.units import conversion
 from seatrial.physics.craft.kinematics import to_ned
 from seatrial.physics.craft.sailboat import Sailboat
+from seatrial.system.parameters import load_vehicle
 
-GLORIA = tomllib.loads((files("seatrial") / "vehicles/gloria.toml").read_text())
+GLORIA = tomllib.loads(load_vehicle("gloria").read_from.path.read_text("utf-8"))
 REFERENCE = Path(__file__).parents[1] / "reference"
 STEADY = list(csv.DictReader((REFERENCE / "gloria_steady_fixed_sail.csv").open()))
 M = np.array([[29.92, 0, 0, 0], [0, 51.025, 0, 2.72], [0, 0, 23.899, 0], [0, 2.72, 0, 28.541]])

@@ -100,7 +100,9 @@ def test_a_name_of_two_kits_is_refused(kit: Callable[..., Path]) -> None:
         component_class("compass")
     (folder / "content" / "vehicles").mkdir(parents=True)
     (folder / "content" / "vehicles" / "otter.toml").write_text("")
-    with pytest.raises(InputError, match=r"'otter' is ambiguous: .*otter\.toml and .*otter\.toml"):
+    with pytest.raises(
+        InputError, match=r"'otter' is ambiguous: .*otter\.toml and .*otter.vehicle\.toml"
+    ):
         provided_file("vehicles", "otter")
 
 

@@ -65,7 +65,7 @@ def _parameter(value: Any, unit: str, **where: str) -> dict[str, Any]:
 
 
 def _manifest(phase: str, scenario: str, signals: Mapping[str, str]) -> dict[str, Any]:
-    stated = {"from": "vehicles/hydrone.toml [marine-craft]", "mark": "stated"}
+    stated = {"from": "vehicles/hydrone/vehicle.toml [marine-craft]", "mark": "stated"}
     pad = dict(zip("xyz", PADS[scenario], strict=True))
     return {
         "format": 1,

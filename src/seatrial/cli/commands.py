@@ -39,6 +39,10 @@ COMMANDS = {
         "seatrial.cli.describe:describe",
         "Show a rig's components, rigs inside it, every connection, and what is left open.",
     ),
+    "move-vehicle": Command(
+        "seatrial.cli.move_vehicle:move",
+        "Move the files of a vehicle below the current folder into harness/vehicles/NAME.",
+    ),
     "new": Command("seatrial.cli.new:new_app", "Write the files of a vehicle of your own."),
     "report": Command("seatrial.cli.report:report", "Write the report of a run again."),
     "compare": Command(

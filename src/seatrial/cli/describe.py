@@ -4,18 +4,19 @@ from __future__ import annotations
 
 from fnmatch import fnmatchcase
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 from rich.markup import escape
 
 from ..errors import InputError, unmatched
+from ..model.readable import number
 from ..plugins import offered
 from ..system.assembly import assemble
 from ..system.flattening import load_rig
 from ..system.forgotten import forgotten
 from ..system.packages import is_package, read_package
-from ..system.paths import joined
+from ..system.paths import joined, split_axis
 from ..system.rig import Rig, Scope
 from ..system.system import Joint, System
 from ..system.unread import leave_out_unread
@@ -98,7 +99,7 @@ def _print_rig(system: System, pattern: str, every: bool) -> None:
     python = {} if pattern or in_python is None else in_python(system)
     width = max((len(joint.source) for joint in joints), default=0)
     lines = [f"{joint.source:{width}} -> {joint.target}{_transformed(joint)}" for joint in joints]
-    alone = forgotten(system)
+    alone, derived = forgotten(system), _derived(system, pattern)
     lists = {
         f"{len(lines)} connections": lines,
         "not made": system.open,
@@ -114,6 +115,7 @@ def _print_rig(system: System, pattern: str, every: bool) -> None:
         "in Python, also with --engine native": [
             f"{', '.join(names)}: {why}" for why, names in python.items()
         ],
+        "values that follow from others": [_derived_line(row) for row in derived],
         "shows": [
             f"{name} = {value!r}"
             for name, value in top.file.shows.items()
@@ -138,9 +140,30 @@ def _print_rig(system: System, pattern: str, every: bool) -> None:
         "unfed_forces": lists["forces and commands that nothing feeds"],
         "unfed_inputs": lists["inputs that nothing feeds"],
         "in_python": {name: why for why, names in python.items() for name in names},
+        "derived": derived,
     }
     for title, lines in lists.items():
         _print_list(title, lines, len(lines) if every else MOST_SHOWN)
+
+
+def _derived(system: System, pattern: str) -> list[dict[str, Any]]:
+    """Return what files say by expressions, port by port, with value, unit and expression."""
+    ports: dict[tuple[str, str], dict[str, Any]] = {}
+    for name, part in system.parts.items():
+        for variable, given in part.given.items():
+            port = f"{name}.{split_axis(variable)[0]}"
+            if given.expression and _matches(pattern, port, f"{name}.{variable}"):
+                unit = part.instance.variables[variable].unit
+                row = {"port": port, "value": [], "unit": unit, "expression": given.expression}
+                ports.setdefault((port, given.expression), row)["value"].append(given.value)
+    return list(ports.values())
+
+
+def _derived_line(row: dict[str, Any]) -> str:
+    texts = [number(v, 6) if isinstance(v, float) else str(v) for v in row["value"]]
+    value = f"[{', '.join(texts)}]" if len(texts) > 1 else texts[0]
+    unit = "" if row["unit"] in ("", "1") else f" {row['unit']}"
+    return f"{row['port']} = {value}{unit}: {row['expression']}"
 
 
 def _matches(pattern: str, *names: str) -> bool:

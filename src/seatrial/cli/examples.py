@@ -17,6 +17,7 @@ _CORE = {
     "fmu list": "seatrial fmu list",
     "fmu survey": "seatrial fmu survey folder-of-fmus",
     "list": "seatrial list otter",
+    "move-vehicle": "seatrial move-vehicle my-boat",
     "new": "seatrial new vehicle my-boat",
     "new vehicle": "seatrial new vehicle my-boat",
     "profile": "seatrial profile describe gloria",

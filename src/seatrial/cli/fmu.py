@@ -27,7 +27,7 @@ from ..fmi.interfaces.loaded import LoadedFmu
 from ..fmi.loading.built import build_needed, compiler_of
 from ..fmi.loading.load import load_fmu, open_instance
 from ..plugins import service
-from ..system.parameters import load_vehicle, split_reference
+from ..system.parameters import OWN, load_vehicle, split_reference
 from ..system.system import settable
 from ..system.values import from_entry
 from .answer import answer
@@ -310,6 +310,8 @@ def _start_values(
     vehicle, table = split_reference(parameters, source.name)
     chosen = load_vehicle(vehicle).parameter_set(table, variant)
     variables = DirectInstance(source.component_class()(source.name)).variables
+    if parameters.endswith(OWN):
+        chosen = chosen.own(variables, source.name, "--parameters")
     values = {}
     for port, entry in chosen.values.items():
         scalars = settable(variables, port, chosen.origin)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
-from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -13,7 +12,8 @@ from rich.markup import escape
 from ..errors import InputError, unmatched
 from ..fmi.components.source import named_sources
 from ..reading import toml_content
-from ..shipped import available
+from ..shipped import available_places
+from ..vehicle_folders import Place
 from .answer import answer
 from .show import console
 
@@ -50,7 +50,7 @@ def list_all(
 ) -> None:
     """List trials, campaigns, rigs, vehicles, profiles, experiments and FMUs by name."""
     listed = {
-        kind: {name: _title(path) for name, path in available(folder).items()}
+        kind: {name: _title(place) for name, place in available_places(folder).items()}
         for kind, folder in _KINDS.items()
     }
     listed["FMUs"] = {name: source.title for name, source in named_sources().items()}
@@ -89,8 +89,9 @@ def _vehicle_of(name: str, vehicles: Iterable[str]) -> str:
     return max(begun, key=len, default=_ANY)
 
 
-def _title(path: Path) -> str:
+def _title(place: Place) -> str:
     try:
-        return str(toml_content(path.read_bytes(), str(path)).get("title", ""))
+        content = place.content(toml_content(place.path.read_bytes(), str(place.path)))
+        return str(content.get("title", "")) if isinstance(content, dict) else ""
     except (InputError, OSError):
         return "(cannot be read)"

@@ -185,6 +185,19 @@ def quantity(text: str | float | int, target: str | Unit) -> float:
     return value
 
 
+def split_quantity(text: str) -> tuple[float, str] | None:
+    """Return number and unit of a text such as ``"10 deg"``; None for any other text."""
+    match = _NUMBER.fullmatch(text)
+    if match is None or not match[2]:
+        return None
+    try:
+        unit(match[2])
+    except InputError:
+        return None
+    value = float(match[1])
+    return (value, match[2]) if math.isfinite(value) else None
+
+
 def _written(text: str, target: str | Unit) -> float:
     match = _NUMBER.match(text)
     if match is None:

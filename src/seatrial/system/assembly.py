@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ..errors import InputError, unknown
+from ..shipped import is_provided
+from ..vehicle_folders import FOLDERS
 from .bonds import bonds_of
-from .component_parameters import give_parameters, variants_of
+from .component_parameters import followed, give_parameters, vehicles_of
 from .connecting import connect
 from .loading import load_part
 from .profile.profile import Profiles
@@ -39,8 +41,9 @@ def assemble(
             if scope.path not in profiles:
                 profiles[scope.path] = Profiles(scope.file.profile, scope.read_from.path.parent)
             give_parameters(system, system.parts[name], profiles[scope.path])
-        for setting in rig.settings:
-            system.set(*setting)
+        for scope, setting in rig.settings:
+            written = followed(system, scope, setting.written, f"{setting.origin}: {setting.key}")
+            system.set(*setting._replace(written=written))
         _refuse_idle_variant(system)
         connect(system)
         system.bonds = bonds_of(system)
@@ -52,7 +55,22 @@ def assemble(
         system.discard()
         raise
     system.notes += _undecided(system)
+    system.notes += _in_several_folders(rig)
     return system
+
+
+def _in_several_folders(rig: Rig) -> list[str]:
+    """Return notes on a user's vehicles whose rigs have files of their own."""
+    names: dict[str, None] = {}
+    for scope in rig.top.all():
+        path = scope.read_from.path
+        is_of_vehicle = path.parent.name in ("vehicles", "pilots")
+        if is_of_vehicle and path.parent.parent.name == "rigs" and not is_provided(path):
+            names.setdefault(path.stem)
+    return [
+        f"{name}: its files can be in one folder, {FOLDERS}/{name}: seatrial move-vehicle {name}"
+        for name in names
+    ]
 
 
 def _undecided(system: System) -> list[str]:
@@ -70,15 +88,15 @@ def _undecided(system: System) -> list[str]:
 
 def _refuse_idle_variant(system: System) -> None:
     """Raise InputError for a variant that none of the vehicles in the rig has."""
-    takers = [placed for placed in system.rig.components.values() if placed.entry.parameters]
     if not system.variant:
         return
+    vehicles = [v for placed in system.rig.components.values() for v in vehicles_of(placed)]
     where = f"{system.rig.read_from.path}: variant {system.variant!r}"
-    if not takers:
+    if not vehicles:
         raise InputError(
             f"{where}: no component takes parameters of a vehicle, so there is nothing to vary"
         )
-    known = {variant for placed in takers for variant in variants_of(placed)}
+    known = {variant for vehicle in vehicles for variant in vehicle.file.variants}
     if system.variant not in known:
         raise InputError(f"{where}: {unknown('variant', system.variant, known)}")
 

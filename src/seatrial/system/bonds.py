@@ -41,7 +41,7 @@ def bonds_of(system: System) -> list[Bond]:
     taken: dict[tuple[str, str], str] = {}
     for scope in system.rig.top.all():
         for name, inputs in scope.file.bonds.items():
-            where = f"{scope.read_from.path}: bonds.{name}"
+            where = f"{scope.read_from.where}: bonds.{name}"
             flow, effort = (
                 _end(system, by_target, joined(scope.path, written), where) for written in inputs
             )

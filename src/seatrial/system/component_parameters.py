@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import zlib
 from dataclasses import replace
+from typing import Any
 
 from ..errors import InputError
 from ..model.units import quantity
+from ..vehicle_folders import FOLDERS, VEHICLE
 from .assumed import give_assumed
-from .parameters import ParameterSet, load_vehicle, split_reference
+from .derived import computed
+from .entries import Entry
+from .expressions import is_expression, names_in
+from .parameters import OWN, ParameterSet, Vehicle, load_vehicle, split_reference
 from .part import Part
 from .paths import joined
 from .profile.profile import Profile, Profiles
@@ -30,14 +35,18 @@ def give_parameters(system: System, part: Part, profiles: Profiles) -> None:
     _give_seed(part, system.seed)
     _give_origin(part)
     if entry.parameters:
-        _give_parameter_set(part, _parameter_set(system, placed))
+        values = _parameter_set(system, placed)
+        if entry.parameters.endswith(OWN):
+            values = values.own(part.instance.variables, part.fmu, f"{where}.parameters")
+        _give_parameter_set(part, values)
     if entry.profile is not None:
         profile, section = profiles.find(entry.profile, f"{where}.profile")
         _give_profile(part, section, profile, f"{where}.profile")
         system.notes += [note for note in profile.notes(section) if note not in system.notes]
         if section.startswith("links."):
             _give_home(part, placed.scope)
-    for port, written in entry.set.items():
+    for port, said in entry.set.items():
+        written = followed(system, placed.scope, said, f"{where}.set: {port}")
         variable = part.instance.variables.get(port)
         if variable is not None and variable.causality == "structuralParameter":
             part.given.update(from_written(written, [variable], {}, f"{where}.set: {port}"))
@@ -46,11 +55,17 @@ def give_parameters(system: System, part: Part, profiles: Profiles) -> None:
             system.set(f"{part.name}.{port}", written, f"{where}.set", folder)
 
 
-def variants_of(placed: Placed) -> list[str]:
-    """Return the variants of the vehicle that gives a component its parameters."""
-    assert placed.entry.parameters is not None
-    name, _ = split_reference(placed.entry.parameters, placed.entry.fmu)
-    return list(load_vehicle(name, placed.scope.read_from.path.parent).file.variants)
+def vehicles_of(placed: Placed) -> list[Vehicle]:
+    """Return the vehicles that give a component parameters, and values that its rig sets."""
+    entry, folder = placed.entry, placed.scope.read_from.path.parent
+    names: dict[str, None] = {}
+    if entry.parameters:
+        names.setdefault(split_reference(entry.parameters, entry.fmu)[0])
+    for written in entry.set.values():
+        for text in written if isinstance(written, list) else [written]:
+            if is_expression(text):
+                names |= {name.partition(".")[0]: None for name in names_in(text)}
+    return [load_vehicle(name, folder) for name in names]
 
 
 def _give_seed(part: Part, seed: int) -> None:
@@ -121,11 +136,8 @@ def _parameter_set(system: System, placed: Placed) -> ParameterSet:
     name, table = split_reference(entry.parameters, entry.fmu)
     try:
         vehicle = load_vehicle(name, scope.read_from.path.parent)
-        variant = scope.variant
-        if system.variant is not None and (
-            scope.path == "" or system.variant in vehicle.file.variants
-        ):
-            variant = system.variant
+        variant = _variant(system, scope, vehicle)
+        _note_idle_rigs(system, vehicle)
         if entry.parameters.endswith("?") and table not in vehicle.tables:
             where = vehicle.read_from.path
             system.notes.append(f"{where} has no table {table}: {placed.name} has its own values")
@@ -133,3 +145,38 @@ def _parameter_set(system: System, placed: Placed) -> ParameterSet:
         return vehicle.parameter_set(table, variant)
     except InputError as error:
         raise InputError(f"{placed.where}.parameters: {error}") from None
+
+
+def _note_idle_rigs(system: System, vehicle: Vehicle) -> None:
+    path, name = vehicle.read_from.path, vehicle.read_from.name
+    note = f"{path}: its rigs have no effect there, but in {FOLDERS}/{name}/{VEHICLE}"
+    if vehicle.idle and note not in system.notes:
+        system.notes.append(note)
+
+
+def _variant(system: System, scope: Scope, vehicle: Vehicle) -> str | None:
+    """Return the variant of a vehicle: the system's, inside if the vehicle has that."""
+    if system.variant is not None and (scope.path == "" or system.variant in vehicle.file.variants):
+        return system.variant
+    return scope.variant
+
+
+def followed(system: System, scope: Scope, written: Any, where: str) -> Any:
+    """Return what a rig sets with each expression in it as the entry that it amounts to.
+
+    Names begin with that of a vehicle: ``"= otter.marine-craft.mass"``. Raises InputError.
+    """
+    if isinstance(written, list):
+        return [followed(system, scope, each, where) for each in written]
+    if not is_expression(written):
+        return written
+
+    def look_up(name: str) -> Entry:
+        vehicle_name, _, rest = name.partition(".")
+        vehicle = load_vehicle(vehicle_name, scope.read_from.path.parent)
+        return vehicle.entries(_variant(system, scope, vehicle)).named(rest)
+
+    try:
+        return computed(written, look_up)
+    except InputError as error:
+        raise InputError(f"{where}: {written!r}: {error}") from None

@@ -40,7 +40,7 @@ class _Making:
 
     def connect(self, scope: Scope, written: str, entry: ConnectionEntry) -> None:
         """Make one connection as written in the file of ``scope``."""
-        where = f'{scope.read_from.path}: connections."{written}"'
+        where = f'{scope.read_from.where}: connections."{written}"'
         # A mark on one side makes both optional: not every autopilot has what a vehicle shows.
         names = written.removesuffix("?"), entry.to.removesuffix("?")
         mark = "" if names == (written, entry.to) else "?"

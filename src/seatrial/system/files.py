@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -13,7 +13,8 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from ..errors import InputError, unknown
 from ..kits import kits
 from ..reading import toml_content
-from ..shipped import available, provided_file, shipped_folder
+from ..shipped import available, provided_folders, provided_place, shipped_folder
+from ..vehicle_folders import FOLDERS, PILOT, VEHICLE, Place, owner, place_in, stem
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -26,47 +27,73 @@ class FileModel(BaseModel):
 
 @dataclass(frozen=True)
 class Source:
-    """A file as it was read: its name for messages and manifests, its path, its hash."""
+    """A file as it was read: its name for messages and manifests, its path, its hash.
+
+    ``table`` is where in the file, joined by dots, if not the whole of it.
+    """
 
     name: str
     path: Path
     sha256: str
+    table: str = ""
+
+    @property
+    def where(self) -> str:
+        """File and table, for messages."""
+        return f"{self.path} [{self.table}]" if self.table else str(self.path)
 
 
 def find_file(kind: str, name: str, relative_to: Path | None = None) -> Path:
-    """Return the TOML file that ``name`` means.
+    """Return the TOML file that ``name`` means, or is in; see `find_place`."""
+    return find_place(kind, name, relative_to).path
+
+
+def find_place(kind: str, name: str, relative_to: Path | None = None) -> Place:
+    """Return where ``name`` stands: in a file of its own, or in one of a vehicle's folder.
 
     A path (with ``.toml``) wins, relative to ``relative_to`` or the current folder. A bare name
-    is looked for in ``KIND`` (such as ``harness/rigs``) beside the user's file that says it,
-    then below the current folder, then among the files of the core and of kits. Raises InputError
-    with near misses, and for a name that two of the latter have.
+    is looked for in ``KIND`` (such as ``harness/rigs``) and in ``harness/vehicles`` beside the
+    user's file that says it, then below the current folder, then among the files of the core and
+    of kits. Raises InputError with near misses, and for a name that stands twice.
     """
     if name.endswith(".toml"):
         path = ((relative_to or Path.cwd()) / name).resolve()
         if not path.is_file():
             raise InputError(f"there is no file {path}")
-        return path
-    for folder in (*_beside(kind, relative_to), Path.cwd() / kind):
-        path = folder / f"{name}.toml"
-        if path.is_file():
-            return path
-    if (provided := provided_file(kind, name)) is not None:
+        is_rig = kind == "harness/rigs" and path.name == VEHICLE
+        return Place(path, ("rig",) if is_rig else ())
+    if (near := _near(kind, name, relative_to)) is not None:
+        return near
+    for root in (*_beside(relative_to), Path.cwd()):
+        file, inside = root / kind / f"{name}.toml", place_in(root / FOLDERS, kind, name)
+        if file.is_file() and inside is not None:
+            raise InputError(f"{name!r} is there twice: {file} and {inside}; remove one")
+        if file.is_file() or inside is not None:
+            return inside or Place(file)
+    if (provided := provided_place(kind, name)) is not None:
         return provided
     what = kind.rpartition("/")[2].rstrip("s") if "/" in kind else kind.rstrip("s")
-    inside, slash, _ = name.rpartition("/")
-    known = [f"{inside}{slash}{each}" for each in available(f"{kind}{slash}{inside}")]
+    inner, slash, _ = name.rpartition("/")
+    known = [f"{inner}{slash}{each}" for each in available(f"{kind}{slash}{inner}")]
     raise InputError(
         unknown(what, name, known) + "; or give a path ending in .toml" + kits().hint()
     )
 
 
-def _beside(kind: str, naming: Path | None) -> list[Path]:
-    """Return the folder of ``kind`` in the harness that the naming file stands in, if a user's."""
-    top, _, below = kind.partition("/")
+def _near(kind: str, name: str, naming: Path | None) -> Place | None:
+    """Return where a name stands for a file of a vehicle's folder that is in no harness."""
+    folder = None if naming is None else naming.resolve()
+    if folder is None or not any((folder / file).is_file() for file in (VEHICLE, PILOT)):
+        return None
+    is_in_harness = _beside(folder) or folder.parent in provided_folders(FOLDERS)
+    return None if is_in_harness else place_in(folder.parent, kind, name)
+
+
+def _beside(naming: Path | None) -> list[Path]:
+    """Return the folder with the harness that the naming file stands in, if it is a user's."""
     for parent in naming.resolve().parents if naming is not None else ():
         if parent.name == "harness" and parent != shipped_folder("harness").resolve():
-            folder = parent / below if top == "harness" else parent.parent / kind
-            return [folder] if folder.is_dir() else []
+            return [parent.parent]
     return []
 
 
@@ -76,6 +103,20 @@ def read_toml(path: Path) -> tuple[dict[str, Any], Source]:
     Raises InputError naming the file, and line and column if it is not TOML.
     """
     return parsed_toml(path, file_bytes(path))
+
+
+def read_place(place: Place) -> tuple[dict[str, Any], Source]:
+    """Return the content of a rig's file, or of the table of a vehicle's, and its source.
+
+    Raises InputError as `read_toml` does, and for a table that is not there or none.
+    """
+    file, read_from = read_toml(place.path)
+    content = place.content(file)
+    if not isinstance(content, dict):
+        raise InputError(f"{place}: a table is needed, found {content!r}")
+    if owner(place.path) and not place.table:
+        content = {key: value for key, value in content.items() if key != "rigs"}
+    return content, replace(read_from, name=stem(place), table=".".join(place.table))
 
 
 def file_bytes(path: Path) -> bytes:
@@ -89,10 +130,10 @@ def file_bytes(path: Path) -> bytes:
 def parsed_toml(path: Path, data: bytes) -> tuple[dict[str, Any], Source]:
     """Return what ``data`` of a file say in TOML; see `read_toml`."""
     content = toml_content(data, str(path))
-    return content, Source(path.stem, path, hashlib.sha256(data).hexdigest())
+    return content, Source(stem(Place(path)), path, hashlib.sha256(data).hexdigest())
 
 
-def validated(model: type[Model], content: Any, path: Path, *, ours: str = "") -> Model:
+def validated(model: type[Model], content: Any, path: Path | str, *, ours: str = "") -> Model:
     """Return ``content`` as ``model``; raise InputError naming each key that does not fit.
 
     ``ours`` is a key at the top of ``content`` that the file does not have.

@@ -9,7 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import InputError, unknown
-from .files import Source, find_file, read_toml, validated
+from ..vehicle_folders import Place, owner, stem
+from .files import Source, find_place, read_place, validated
+from .own_references import with_owner
 from .paths import joined
 from .rig import ComponentEntry, Rig, RigFile, Scope, check_rig_file
 
@@ -26,12 +28,12 @@ def load_rig(
     ``choices`` replace the defaults of its file. Raises InputError for anything wrong in the
     files, a choice that nothing uses, and a rig that contains itself.
     """
-    path = find_file("harness/rigs", name, relative_to)
+    place = find_place("harness/rigs", name, relative_to)
     reading = _Reading(dict(choices or {}))
-    top = reading.scope(path, "", _Around(reading.given), ())
+    top = reading.scope(place, "", _Around(reading.given), ())
     idle = [name for name in reading.given if name not in reading.used]
     if idle:
-        raise InputError(f"{path}: {unknown('choice', idle[0], sorted(reading.used))}")
+        raise InputError(f"{place}: {unknown('choice', idle[0], sorted(reading.used))}")
     return Rig(top.file, top.read_from, top)
 
 
@@ -50,8 +52,8 @@ def rig_of(
 def _scope_of(
     content: Any, place: str, read_from: Source, folder: Path, inside: Mapping[str, Any]
 ) -> Scope:
-    file = validated(RigFile, content, read_from.path)
-    check_rig_file(file, read_from.path)
+    file = validated(RigFile, content, read_from.where)
+    check_rig_file(file, read_from.where)
     inner = {
         name: _scope_of(inside[path], path, read_from, folder, inside)
         for name, part in file.components.items()
@@ -91,37 +93,35 @@ class _Reading:
     given: dict[str, str]
     used: set[str] = field(default_factory=set)
 
-    def scope(self, path: Path, place: str, around: _Around, chain: tuple[Path, ...]) -> Scope:
-        """Return the rig of a file at ``place``, with what the rigs around it give."""
-        if path in chain or len(chain) > _DEEPEST:
-            names = " -> ".join(p.stem for p in (*chain, path))
+    def scope(self, at: Place, path: str, around: _Around, chain: tuple[Place, ...]) -> Scope:
+        """Return the rig that stands at ``at`` as ``path``, with what the rigs around it give."""
+        if at in chain or len(chain) > _DEEPEST:
+            names = " -> ".join(stem(place) for place in (*chain, at))
             raise InputError(f"{chain[-1]}: a rig contains itself: {names}")
-        content, read_from = read_toml(path)
+        content, read_from = read_place(at)
         choices = {**_declared(content), **around.choices}
         choices = {name: _chosen(text, choices) for name, text in choices.items()}
         self.used |= _declared(content).keys() | _used(content)
-        file = validated(RigFile, _chosen(content, choices), path)
-        _refuse_unchosen(file, path)
-        check_rig_file(file, path)
+        where = read_from.where
+        chosen = with_owner(_chosen(content, choices), owner(at.path), where)
+        file = validated(RigFile, chosen, where)
+        _refuse_unchosen(file, where)
+        check_rig_file(file, where)
         tolerance = around.tolerance if file.tolerance is None else file.tolerance
         around = replace(around, tolerance=tolerance)
         inner = {
             name: self._inner(
-                part,
-                joined(place, name),
-                around.inside(part, choices, where),
-                where,
-                (*chain, path),
+                part, joined(path, name), around.inside(part, choices, key), key, (*chain, at)
             )
             for name, part in file.components.items()
-            for where in [f"{path}: components.{name}"]
+            for key in [f"{where}: components.{name}"]
             if part.rig
         }
         return Scope(
-            place,
+            path,
             file,
             read_from,
-            path.parent,
+            at.path.parent,
             choices,
             inner,
             around.variant or file.variant,
@@ -133,18 +133,18 @@ class _Reading:
     def _inner(
         self,
         entry: ComponentEntry,
-        place: str,
+        path: str,
         around: _Around,
         where: str,
-        chain: tuple[Path, ...],
+        chain: tuple[Place, ...],
     ) -> Scope:
         try:
-            file = find_file("harness/rigs", entry.rig, chain[-1].parent)
+            at = find_place("harness/rigs", entry.rig, chain[-1].path.parent)
         except InputError as error:
             raise InputError(f"{where}.rig: {error}") from None
         before = set(self.used)
         self.used = set()
-        scope = self.scope(file, place, around, chain)
+        scope = self.scope(at, path, around, chain)
         for name in entry.choices:
             if name not in self.used:
                 raise InputError(f"{where}.choices: {unknown('choice', name, sorted(self.used))}")
@@ -186,12 +186,12 @@ def _chosen(value: Any, choices: Mapping[str, str]) -> Any:
     return value
 
 
-def _refuse_unchosen(file: RigFile, path: Path) -> None:
+def _refuse_unchosen(file: RigFile, where: str) -> None:
     for name, entry in file.components.items():
         for key in _MUST_BE_KNOWN:
             unchosen = _CHOICE.search(getattr(entry, key) or "")
             if unchosen:
                 raise InputError(
-                    f"{path}: components.{name}.{key}: the choice {unchosen[1]!r} has no value; "
+                    f"{where}: components.{name}.{key}: the choice {unchosen[1]!r} has no value; "
                     f"give it one in [choices], or on the command line: --choose {unchosen[1]}=..."
                 )

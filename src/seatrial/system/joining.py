@@ -104,7 +104,7 @@ class Resolver:
     def shown(self) -> Iterator[tuple[str, Group]]:
         """Yield what the rig at the top shows, by name, of what it has with its choices."""
         for name, written in self._top.file.shows.items():
-            where = f"{self._top.read_from.path}: shows.{name}"
+            where = f"{self._top.read_from.where}: shows.{name}"
             group = self._put_together(self._top, name, written, where)
             if group is not None:
                 yield name, group
@@ -125,7 +125,7 @@ class Resolver:
                 return None
             found = unknown("name", shown, shows) if shows else "it shows nothing"
             raise InputError(f"{where}: {name} does not show {shown!r}: {found}")
-        inside = f"{scope.read_from.path}: shows.{shown}"
+        inside = f"{scope.read_from.where}: shows.{shown}"
         group = self._put_together(scope, shown, shows[shown], inside)
         if group is None and not optional:
             raise InputError(f"{where}: {name} does not show {shown!r} with these choices")

@@ -2,30 +2,27 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 from pydantic import Field
 
 from ..errors import InputError, unknown
+from ..fmi.instance import Variables
+from ..vehicle_folders import owner
+from .derived import Entries
+from .entries import Entry, WrittenEntry, written_out
 from .files import FileModel, Source, file_bytes, find_file, parsed_toml, validated
 from .shape import Shape, ShapePart
+from .values import port_scalars
 
-Mark = Literal["stated", "corrected", "assumed", "identified"]
+OWN = ":own"
+"""Ends a reference of which a component takes only what it has a parameter for."""
 
-
-class Entry(FileModel):
-    """One value: a number, a list of numbers for a port with axes, or a text.
-
-    ``unit`` is that of all numbers, or a list with one for each.
-    """
-
-    value: float | int | str | list[float | int]
-    unit: str | list[str] = "1"
-    source: str
-    mark: Mark
+_OF_FOLDERS = ("rig", "rigs")
+"""Tables of rigs, which the vehicle's file of a folder has beside the numbers."""
 
 
 class Outline(FileModel):
@@ -46,9 +43,9 @@ class VehicleFile(FileModel):
     """Drawn by reports; the components have no such parameters."""
     shape: dict[str, Shape] = Field(default_factory=dict)
     """What is drawn in three dimensions of the component with a table, by table."""
-    variants: dict[str, dict[str, dict[str, Entry]]] = Field(default_factory=dict)
-    presets: dict[str, dict[str, dict[str, Entry]]] = Field(default_factory=dict)
-    components: dict[str, dict[str, Entry]] = Field(default_factory=dict)
+    variants: dict[str, dict[str, dict[str, WrittenEntry]]] = Field(default_factory=dict)
+    presets: dict[str, dict[str, dict[str, WrittenEntry]]] = Field(default_factory=dict)
+    components: dict[str, dict[str, WrittenEntry]] = Field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -76,6 +73,21 @@ class ParameterSet:
     folder: Path | None = None
     """Of the file, which names of files in it are relative to."""
 
+    def own(self, variables: Variables, fmu: str, where: str) -> ParameterSet:
+        """Return those that a component has, of a table of another one: without its body.
+
+        Raises InputError, saying ``where``, if it has none of them.
+        """
+        ports = {port: port_scalars(variables, port) for port in self.values}
+        own = {
+            port: self.values[port]
+            for port, scalars in ports.items()
+            if scalars and scalars[0].causality == "parameter"
+        }
+        if not own:
+            raise InputError(f"{where}: nothing in {self.origin} is a parameter of {fmu}")
+        return replace(self, values=own, outline=None, body=None, vehicle=None)
+
 
 @dataclass(frozen=True)
 class Vehicle:
@@ -83,6 +95,8 @@ class Vehicle:
 
     file: VehicleFile
     read_from: Source
+    idle: tuple[str, ...] = ()
+    """Rigs in the file that have no effect there: it is not in a vehicle's folder."""
 
     def parameter_set(self, table: str, variant: str | None) -> ParameterSet:
         """Return the values for the component ``table`` in ``variant`` (None: the default).
@@ -91,24 +105,39 @@ class Vehicle:
         """
         file, path = self.file, self.read_from.path
         chosen = variant or file.default
-        if chosen is not None and chosen not in file.variants:
-            raise InputError(f"{path}: {unknown('variant', chosen, file.variants)}")
-        changes = file.variants[chosen].get(table, {}) if chosen else {}
-        if table not in file.components and not changes:
+        entries = self.entries(chosen)
+        values = entries.table(table)
+        if table not in file.components and not values:
             raise InputError(f"{path}: {unknown('component table', table, file.components)}")
-        values = {**file.components.get(table, {}), **changes}
         suffix = f", variant {chosen}" if chosen else ""
-        origin = f"vehicles/{path.name} [{table}]{suffix}"
+        shown = f"{path.parent.name}/{path.name}" if owner(path) else path.name
+        origin = f"vehicles/{shown} [{table}]{suffix}"
         body = Body(file.shape[table], path, table, self.tables) if table in file.shape else None
         return ParameterSet(
             values,
-            file.presets.get(table, {}),
+            entries.presets(table),
             origin,
             file.outline,
             body,
             (path, table),
             path.parent,
         )
+
+    def entries(self, variant: str | None) -> Entries:
+        """Return the entries of all tables in ``variant`` (None: the default)."""
+        file, path = self.file, self.read_from.path
+        chosen = variant or file.default
+        if chosen is not None and chosen not in file.variants:
+            raise InputError(f"{path}: {unknown('variant', chosen, file.variants)}")
+        changes = file.variants[chosen] if chosen else {}
+        tables = {
+            name: {**file.components.get(name, {}), **changes.get(name, {})}
+            for name in {**file.components, **changes}
+        }
+        presets = {
+            f"{t}.{port}": p for t, ports in file.presets.items() for port, p in ports.items()
+        }
+        return Entries(tables, presets, str(path))
 
     @property
     def tables(self) -> tuple[str, ...]:
@@ -120,10 +149,10 @@ class Vehicle:
 def split_reference(written: str, fmu: str) -> tuple[str, str]:
     """Return (vehicle, table) of ``hydrone``, ``hydrone.TABLE``, ``x.toml`` or ``x.toml.TABLE``.
 
-    The table is by default the name of the FMU, or the class of ``my_boat.py:Class``. A question
-    mark at the end, of a table that the file may lack, belongs to neither.
+    The table is by default the name of the FMU, or the class of ``my_boat.py:Class``. What ends a
+    reference belongs to neither: a question mark, of a table that the file may lack, and `OWN`.
     """
-    written = written.removesuffix("?")
+    written = written.removesuffix("?").removesuffix(OWN)
     table = fmu.rpartition(":")[2] if ".py:" in fmu else fmu
     path, toml, rest = written.partition(".toml")
     if toml and (not rest or rest.startswith(".")):
@@ -142,51 +171,31 @@ def load_vehicle(name: str, relative_to: Path | None = None) -> Vehicle:
 def _vehicle(path: Path, data: bytes) -> Vehicle:
     content, read_from = parsed_toml(path, data)
     known = {"title", "source", "default", "outline", "shape", "variants", "presets"}
-    components = {key: value for key, value in content.items() if key not in known}
-    top: dict[str, Any] = {key: value for key, value in content.items() if key in known}
-    for key, value in components.items():
+    idle = () if owner(path) else tuple(key for key in _OF_FOLDERS if key in content)
+    content = {key: value for key, value in content.items() if key not in _OF_FOLDERS}
+    tables = {key: value for key, value in content.items() if key not in known}
+    for key, value in tables.items():
         if not isinstance(value, dict):
             raise InputError(f"{path}: {key}: {unknown('key', key, known)}")
-    components = {name: _numbered(table, f"{path}: {name}") for name, table in components.items()}
-    content = {**top, "components": components}
-    vehicle = Vehicle(validated(VehicleFile, content, path, ours="components"), read_from)
+    top: dict[str, Any] = {key: value for key, value in content.items() if key in known}
+    for key in ("variants", "presets"):
+        if key in top:
+            top[key] = _written_out(top[key], 2, f"{path}: {key}")
+    content = {
+        **top,
+        "components": {n: written_out(table, f"{path}: {n}") for n, table in tables.items()},
+    }
+    vehicle = Vehicle(validated(VehicleFile, content, path, ours="components"), read_from, idle)
     for table in vehicle.file.shape:
         if table not in vehicle.tables:
             raise InputError(f"{path}: shape: {unknown('component table', table, vehicle.tables)}")
     return vehicle
 
 
-def _numbered(table: dict[str, Any], where: str) -> dict[str, Any]:
-    """Return a component's table with each list of like parts written out, part by part.
-
-    The entries of part 2 have its number, ``position_2``, and the part's source and mark unless
-    they have their own. Where parts have a ``kind``, their names begin with the singular of the
-    list, ``foil_position_2`` of ``foils``, which itself becomes the text of the kinds in order.
-    Raises InputError for an entry that is there twice, and for a kind that some parts lack.
-    """
-    entries: dict[str, Any] = {}
-    for key, value in table.items():
-        parts = value if isinstance(value, list) else []
-        if not parts or not all(isinstance(part, dict) for part in parts):
-            entries[key] = value
-            continue
-        kinds = [str(part["kind"]) for part in parts if "kind" in part]
-        if kinds and len(kinds) < len(parts):
-            lacking = next(n for n, part in enumerate(parts, 1) if "kind" not in part)
-            raise InputError(f"{where}: {key}: part {lacking} has no kind, and others have one")
-        prefix = f"{key.removesuffix('s')}_" if kinds else ""
-        for number, part in enumerate(parts, 1):
-            shared = {k: part[k] for k in ("source", "mark") if k in part}
-            for name in (k for k in part if k not in shared and k != "kind"):
-                entry, own = part[name], f"{prefix}{name}_{number}"
-                if own in table or own in entries:
-                    raise InputError(f"{where}: {key}: {own} is there twice")
-                entries[own] = {**shared, **entry} if isinstance(entry, dict) else entry
-        if kinds:
-            first = {k: parts[0].get(k, "") for k in ("source", "mark")}
-            entries[key] = {
-                "value": " ".join(kinds),
-                "source": first["source"],
-                "mark": first["mark"] or "stated",
-            }
-    return entries
+def _written_out(value: Any, depth: int, where: str) -> Any:
+    """Return the tables of entries so deep inside ``value`` as they are meant."""
+    if not isinstance(value, dict):
+        return value
+    if depth == 0:
+        return written_out(value, where)
+    return {key: _written_out(each, depth - 1, f"{where}.{key}") for key, each in value.items()}

@@ -230,7 +230,7 @@ class Placed:
     @property
     def where(self) -> str:
         """File and key, for messages."""
-        return f"{self.scope.read_from.path}: components.{self.name}"
+        return f"{self.scope.read_from.where}: components.{self.name}"
 
 
 @dataclass(frozen=True)
@@ -244,7 +244,7 @@ class Rig:
     @property
     def step_ns(self) -> int:
         """Communication step, ns."""
-        where = f"{self.read_from.path}: step"
+        where = f"{self.read_from.where}: step"
         if self.file.step is None:
             raise InputError(f"{where}: this key is missing: a rig that runs alone needs it")
         return duration_ns(self.file.step, where)
@@ -262,8 +262,8 @@ class Rig:
                 content[table] = {**(before.get(table) or {}), **changes[table]}
             elif "algorithm" in changes and not _takes(content["algorithm"], takes):
                 content.pop(table, None)
-        file = validated(RigFile, content, self.read_from.path)
-        check_rig_file(file, self.read_from.path)
+        file = validated(RigFile, content, self.read_from.where)
+        check_rig_file(file, self.read_from.where)
         return Rig(file, self.read_from, replace(self.top, file=file))
 
     def isolating(self, chosen: Mapping[str, Isolated]) -> Rig:
@@ -280,14 +280,14 @@ class Rig:
         return dict(_placed(self.top))
 
     @property
-    def settings(self) -> list[Setting]:
+    def settings(self) -> list[tuple[Scope, Setting]]:
         """What rigs set in the rigs inside them, the inner first."""
         return [
-            Setting(f"{joined(scope.path, name)}.{key}", written, f"{path}: {place}", path.parent)
+            (scope, Setting(f"{joined(scope.path, name)}.{key}", written, origin, folder))
             for scope in self.top.all()
-            for path in [scope.read_from.path]
+            for folder in [scope.read_from.path.parent]
             for name, entry in scope.file.components.items()
-            for place in [f"components.{name}.set"]
+            for origin in [f"{scope.read_from.where}: components.{name}.set"]
             if entry.rig
             for key, written in entry.set.items()
         ]
@@ -305,7 +305,7 @@ def _isolating(scope: Scope, chosen: Mapping[str, Isolated]) -> Scope:
         path = joined(scope.path, name)
         if path in chosen:
             entry = entry.model_copy(update={"isolated": chosen[path]})
-            _check_component(name, entry, f"{scope.read_from.path}: components.{name}")
+            _check_component(name, entry, f"{scope.read_from.where}: components.{name}")
         components[name] = entry
     file = scope.file.model_copy(update={"components": components})
     inner = {name: _isolating(each, chosen) for name, each in scope.inner.items()}
@@ -320,17 +320,17 @@ def _placed(scope: Scope) -> Iterator[tuple[str, Placed]]:
             yield joined(scope.path, name), Placed(entry, scope, name)
 
 
-def check_rig_file(file: RigFile, path: Path) -> None:
+def check_rig_file(file: RigFile, where: str) -> None:
     """Raise InputError for what no single key of a rig's file can tell."""
     for name, component in file.components.items():
-        _check_component(name, component, f"{path}: components.{name}")
+        _check_component(name, component, f"{where}: components.{name}")
     for name in file.shows:
         if not _IDENTIFIER.fullmatch(name) or name in file.components:
             what = "is a component too" if name in file.components else "is no identifier"
-            raise InputError(f"{path}: shows.{name}: {name!r} {what}")
-    if file.step is not None and duration_ns(file.step, f"{path}: step") <= 0:
-        raise InputError(f"{path}: step: must be positive, found {file.step!r}")
-    _check_algorithm(path, file)
+            raise InputError(f"{where}: shows.{name}: {name!r} {what}")
+    if file.step is not None and duration_ns(file.step, f"{where}: step") <= 0:
+        raise InputError(f"{where}: step: must be positive, found {file.step!r}")
+    _check_algorithm(where, file)
 
 
 _OF_FMUS = ("parameters", "profile", "isolated", "timeout", "interface", "tolerance", "locals")
@@ -369,7 +369,7 @@ def _takes(algorithm: Any, attribute: str) -> bool:
         return True
 
 
-def _check_algorithm(path: Path, file: RigFile) -> None:
+def _check_algorithm(where: str, file: RigFile) -> None:
     try:
         ALGORITHMS.target(file.algorithm)
         # What a package brings is imported at once only where a setting depends on it.
@@ -384,7 +384,7 @@ def _check_algorithm(path: Path, file: RigFile) -> None:
                 'by power bonds, such as "ecco"'
             )
     except InputError as error:
-        raise InputError(f"{path}: algorithm: {error}") from None
+        raise InputError(f"{where}: algorithm: {error}") from None
 
 
 def duration_ns(text: str, where: str) -> int:

@@ -12,8 +12,9 @@ from ..errors import InputError, unknown
 from ..fmi.instance import Value, Variable, Variables
 from ..model.ports import Scalar
 from ..model.serialisation import is_c_text
-from ..model.units import conversion, quantity
-from .parameters import Entry
+from ..model.units import Unit, conversion, quantity
+from .derived import measures
+from .entries import Computed, Entry
 
 
 @dataclass(frozen=True)
@@ -24,6 +25,8 @@ class Given:
     origin: str
     source: str = ""
     mark: str = ""
+    expression: str = ""
+    """Of which it is the value, if a file has one in its place."""
 
 
 class Setting(NamedTuple):
@@ -77,12 +80,14 @@ def from_entry(
     said = placed(entry.value, scalars, folder)
     values = said if isinstance(said, list) else [said] * len(scalars)
     _check_count(len(values), scalars, origin)
-    units = entry.unit if isinstance(entry.unit, list) else [entry.unit] * len(scalars)
+    units = measures(entry, len(scalars))
     _check_count(len(units), scalars, f"{origin}: units")
+    expression = entry.expression if isinstance(entry, Computed) else ""
     given = {}
     for variable, value, unit in zip(scalars, values, units, strict=True):
-        if variable.type is not float and unit != "1":
-            raise InputError(f"{origin}: {variable.name} has no unit, found {unit!r}")
+        named = unit.text if isinstance(unit, Unit) else unit
+        if variable.type is not float and named != "1":
+            raise InputError(f"{origin}: {variable.name} has no unit, found {named!r}")
         if variable.type is float and not isinstance(value, str):
             resolved: Value = _converted(float(value), unit, variable, origin)
         elif variable.type is float:
@@ -90,7 +95,7 @@ def from_entry(
         else:
             resolved = _scalar(variable, value, origin)
         _check_limits(variable, resolved, origin)
-        given[variable.name] = Given(resolved, origin, entry.source, entry.mark)
+        given[variable.name] = Given(resolved, origin, entry.source, entry.mark, expression)
     return given
 
 
@@ -103,9 +108,11 @@ def from_written(
     """Return what a rig, a trial or the command line says of a port, as scalars.
 
     Numbers are in the port's unit; text is a quantity (``"10 deg"``), the name of a preset, or
-    the value of a text, enumeration or binary port; a list has one element per axis. Raises
-    InputError.
+    the value of a text, enumeration or binary port; a list has one element per axis. An entry is
+    what an expression amounts to. Raises InputError.
     """
+    if isinstance(written, Entry):
+        return from_entry(written, scalars, origin)
     if isinstance(written, str) and scalars[0].type is not str:
         if written in presets:
             return from_entry(presets[written], scalars, f"{origin}, preset {written!r}")
@@ -117,6 +124,9 @@ def from_written(
     _check_count(len(values), scalars, origin)
     given = {}
     for variable, value in zip(scalars, values, strict=True):
+        if isinstance(value, Entry):
+            given.update(from_entry(value, [variable], origin))
+            continue
         resolved = _scalar(variable, value, origin)
         _check_limits(variable, resolved, origin)
         given[variable.name] = Given(resolved, origin)
@@ -185,7 +195,7 @@ def _text(variable: Variable, value: Any, origin: str) -> str:
     return value
 
 
-def _converted(value: float, unit: str, variable: Variable, origin: str) -> float:
+def _converted(value: float, unit: str | Unit, variable: Variable, origin: str) -> float:
     try:
         factor, offset = conversion(unit, variable.measure)
     except InputError as error:

@@ -87,7 +87,7 @@ def design_heading(
     if derivative_times is None:
         derivative_times = [0.0, *_own_derivative_time(vehicle, variant, time_unit)]
     return HeadingDesign(
-        vehicle=vehicle.read_from.path.stem,
+        vehicle=vehicle.read_from.name,
         variant=variant or vehicle.file.default,
         time_unit=time_unit,
         A=A,
@@ -151,7 +151,7 @@ def _roots(function: Callable[[float], float]) -> list[float]:
 
 
 def _ship(vehicle: Vehicle, variant: str | None) -> ManoeuvringShip:
-    ship = ManoeuvringShip(vehicle.read_from.path.stem)
+    ship = ManoeuvringShip(vehicle.read_from.name)
     parametrise(ship, vehicle, SHIP, variant)
     return ship
 

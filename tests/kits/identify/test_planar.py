@@ -196,9 +196,7 @@ def test_mistakes_are_explained(pool, old, new, message):
 
 def test_a_delay_between_two_samples_is_refused(pool):
     vehicle = VEHICLE.replace("value = 200", "value = 250")
-    with pytest.raises(
-        InputError, match=r"the delay in my-rov\.toml, variant plain: 0\.25 s is no"
-    ):
+    with pytest.raises(InputError, match=r"the delay in my-rov, variant plain: 0\.25 s is no"):
         planar_study(read_experiment(str(pool(vehicle=vehicle))))
 
 

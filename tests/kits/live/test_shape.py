@@ -12,7 +12,7 @@ import pytest
 import trimesh
 
 from seatrial.errors import InputError
-from seatrial.shipped import available, shipped_folder
+from seatrial.shipped import available
 from seatrial.system.parameters import load_vehicle
 from seatrial.system.shape import written
 from seatrial.trial.files.trial import load_trial
@@ -115,7 +115,7 @@ def test_a_wrong_shape_names_file_and_key(tmp_path: Path, shape: str, says: str)
 
 
 def _vehicle(folder: Path, shape: str) -> Path:
-    text = (shipped_folder("vehicles") / "hydrone.toml").read_text("utf-8")
+    text = load_vehicle("hydrone").read_from.path.read_text("utf-8")
     before, _, _ = text.partition("\n# What is drawn")
     path = folder / "mine.toml"
     path.write_text(f"{before}\n[shape]\n{shape}\n", "utf-8")

@@ -12,6 +12,7 @@ from ...shipped import content_of, shipped_folder
 from ...system.files import find_file, read_toml
 from ...system.parameters import split_reference
 from ...system.rig import Rig
+from ...vehicle_folders import FOLDERS
 from .campaign import Campaign
 
 _SHIPPED = ("fmus", "harness", "hil_profiles", "vehicles")
@@ -60,8 +61,13 @@ def _of_components(rig: Rig) -> Iterator[Path]:
 def _found(kind: str, name: str, folder: Path) -> Iterator[Path]:
     path, here = find_file(kind, name, folder).resolve(), Path.cwd().resolve()
     yield path
-    if not name.endswith(".toml") and path.parent == here / kind != shipped_folder(kind).resolve():
+    is_below = path.parent in (here / kind, here / FOLDERS / name)
+    if is_below and not name.endswith(".toml") and not _is_shipped(path):
         yield here
+
+
+def _is_shipped(path: Path) -> bool:
+    return any(path.is_relative_to(shipped_folder(each).resolve()) for each in _SHIPPED)
 
 
 def _named_elsewhere(path: Path) -> Iterator[Path]:

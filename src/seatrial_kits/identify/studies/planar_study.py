@@ -131,7 +131,7 @@ def _known(experiment: PlanarExperiment, vehicle: Vehicle) -> tuple[PlanarKnown,
         time_constant=thruster.time_constant,
     )
     variant = result.variant or vehicle.file.default
-    name = vehicle.read_from.path.name + (f", variant {variant}" if variant else "")
+    name = vehicle.read_from.name + (f", variant {variant}" if variant else "")
     return known, float(craft.mass), name
 
 

@@ -5,10 +5,12 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 from seatrial.errors import InputError, unknown
 from seatrial.model.readable import number
-from seatrial.system.parameters import Entry, Vehicle, VehicleFile, load_vehicle
+from seatrial.system.entries import DerivedEntry, Entry, WrittenEntry
+from seatrial.system.parameters import Vehicle, VehicleFile, load_vehicle
 from seatrial.whole_file import write_whole
 
 from .planar_study import PlanarStudy
@@ -160,7 +162,8 @@ def write_vehicle(study: Study | PlanarStudy, vehicle: Vehicle | None, path: Pat
     tables = identified_entries(study)
     if vehicle is None:
         title = f"Identified from {study.log_path.name}"
-        file = VehicleFile(title=title, source=title, components=tables)
+        components: dict[str, dict[str, WrittenEntry]] = {t: {**e} for t, e in tables.items()}
+        file = VehicleFile(title=title, source=title, components=components)
     else:
         chosen = study.experiment.file.result.variant or vehicle.file.default
         changes = dict(vehicle.file.variants.get(chosen, {})) if chosen else {}
@@ -187,15 +190,18 @@ def _lines(file: VehicleFile) -> Iterator[str]:
             yield from _table(f"presets.{_key(table)}.{_key(port)}", presets)
 
 
-def _table(head: str, entries: Mapping[str, Entry]) -> Iterator[str]:
+def _table(head: str, entries: Mapping[str, WrittenEntry]) -> Iterator[str]:
     yield from ("", f"[{head}]")
     for name, entry in entries.items():
-        value, unit = (
-            f"[{', '.join(map(_scalar, v))}]" if isinstance(v, list) else _scalar(v)
-            for v in (entry.value, entry.unit)
-        )
-        origin = f"source = {_text(entry.source)}, mark = {_text(entry.mark)}"
-        yield f"{_key(name)} = {{ value = {value}, unit = {unit}, {origin} }}"
+        written = entry.model_dump(exclude_none=True)
+        if isinstance(entry, DerivedEntry) and not entry.source:
+            del written["source"]
+        keys = ", ".join(f"{key} = {_value(value)}" for key, value in written.items())
+        yield f"{_key(name)} = {{ {keys} }}"
+
+
+def _value(value: str | float | int | list[Any]) -> str:
+    return f"[{', '.join(map(_scalar, value))}]" if isinstance(value, list) else _scalar(value)
 
 
 def _scalar(value: str | float | int) -> str:

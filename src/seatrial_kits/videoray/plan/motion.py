@@ -114,7 +114,7 @@ def plan_motion(
     velocity = np.array([row.velocity for row in rows])
     m11, _m22, m33 = model.mass
     return MotionPlan(
-        vehicle=vehicle.read_from.path.stem,
+        vehicle=vehicle.read_from.name,
         variant=variant or vehicle.file.default,
         surge=planned[0],
         yaw=planned[1],
