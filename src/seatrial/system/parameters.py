@@ -184,5 +184,9 @@ def _numbered(table: dict[str, Any], where: str) -> dict[str, Any]:
                 entries[own] = {**shared, **entry} if isinstance(entry, dict) else entry
         if kinds:
             first = {k: parts[0].get(k, "") for k in ("source", "mark")}
-            entries[key] = {"value": " ".join(kinds), "source": first["source"], "mark": first["mark"] or "stated"}
+            entries[key] = {
+                "value": " ".join(kinds),
+                "source": first["source"],
+                "mark": first["mark"] or "stated",
+            }
     return entries

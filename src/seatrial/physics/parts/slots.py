@@ -90,7 +90,11 @@ class PropulsorSlots(Component):
         (1.0, 0.0, 0.0), "1", "direction of the thrust ahead, unit vector, body axes", axes="xyz"
     )
     propulsor_thrust = _p(
-        (1.0, 1.0), "N", "largest thrust at rest, ahead and astern", axes=("ahead", "astern"), min=0.0
+        (1.0, 1.0),
+        "N",
+        "largest thrust at rest, ahead and astern",
+        axes=("ahead", "astern"),
+        min=0.0,
     )
     propulsor_exponent = _p(
         1.0, "1", "thrust by order: sign(s) |s|^exponent of the largest", min=1.0, max=3.0
@@ -106,7 +110,9 @@ class PropulsorSlots(Component):
         axes=("ahead", "astern"),
         min=0.0,
     )
-    propulsor_wake = _p(0.0, "1", "wake fraction w: the propeller meets (1 - w) of the flow", max=1.0)
+    propulsor_wake = _p(
+        0.0, "1", "wake fraction w: the propeller meets (1 - w) of the flow", max=1.0
+    )
     propulsor_deduction = _p(0.0, "1", "thrust deduction t: (1 - t) of the thrust acts", max=1.0)
     propulsor_hand = _p(
         1.0, "1", "1: turns clockwise seen from astern, as it drives ahead; -1: the other way"
