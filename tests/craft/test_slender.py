@@ -89,15 +89,19 @@ def test_without_cross_pairs_the_matrix_lacks_eight_elements():
     found = load(nu, "coriolis", coriolis="without-cross-pairs", inertia=(1, 2, 3, 0, 0, 0))
     m = 20.0
     rigid = np.array(
-        [m * (q * w - r * v), m * (r * u - p * w), m * (p * v - q * u)]
-        + [(3 - 2) * q * r, (1 - 3) * p * r, (2 - 1) * p * q]
+        [
+            *(m * (q * w - r * v), m * (r * u - p * w), m * (p * v - q * u)),
+            *((3 - 2) * q * r, (1 - 3) * p * r, (2 - 1) * p * q),
+        ]
     )
     a, b = ADDED[1:3], TURNED
     # C_A of Fossen, with a_u, a_v, a_w along and those of the pairs (u, q), (w, q), (u, r), (v, r) out.
     added = np.array(
-        [0, -a[1] * w * p, a[0] * v * p]
-        + [(a[1] - a[0]) * v * w + (b[2] - b[1]) * q * r]
-        + [(b[0] - b[2]) * p * r, (b[1] - b[0]) * p * q]
+        [
+            *(0, -a[1] * w * p, a[0] * v * p),
+            (a[1] - a[0]) * v * w + (b[2] - b[1]) * q * r,
+            *((b[0] - b[2]) * p * r, (b[1] - b[0]) * p * q),
+        ]
     )
     np.testing.assert_allclose(found, -(rigid + added), atol=1e-12)
 

@@ -1,5 +1,7 @@
 """Motion through the water does not know of a uniform current, whatever the parts."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -60,7 +62,7 @@ def off(carried, still, t, water):
 
 @settings(max_examples=8, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(
-    water=st.tuples(*[st.floats(-1.5, 1.5)] * 3),
+    water=st.tuples(*[st.floats(-1.5, 1.5)] * 2, st.just(0.0)),  # the wind has no third component
     orders=st.lists(st.floats(-1, 1), min_size=8, max_size=8),
     angles=st.lists(st.floats(-0.8, 0.8), min_size=8, max_size=8),
 )
@@ -76,7 +78,7 @@ def test_a_current_carries_every_part(water, orders, angles):
 
 def test_fixed_steps_lose_this_with_the_fourth_power_of_the_step():
     # Velocities in turning axes are not carried along exactly by a Runge-Kutta step.
-    water = np.array([0.9, -0.7, 0.2])
+    water = np.array([0.9, -0.7, 0.0])
     orders, angles = (
         [0.6, 0.7, 0.5, 0.8, 0.9, 0.6, 0.7, 0.8],
         [0.3, 0.5, -0.4, 0.2, 0.3, 0.2, 0.4, 0.5],
@@ -97,7 +99,7 @@ def test_fixed_steps_lose_this_with_the_fourth_power_of_the_step():
         for h in (0.01, 0.005, 0.0025)
     ]
     assert errors[0] < 1e-7
-    for coarse, fine in zip(errors, errors[1:], strict=False):
+    for coarse, fine in pairwise(errors):
         assert 12 < coarse / fine < 20
 
 
