@@ -18,8 +18,8 @@ _STILL = 1e-20
 class Slender(Component):
     """Mix-in: coefficients of `body_lift` and `fading_damping`."""
 
-    body_lift_area = Parameter(1.0, "m2", "reference area S in body-lift", min=1e-9)
-    body_lift_span = Parameter(1.0, "m", "span b in body-lift: aspect ratio b^2 / S", min=1e-9)
+    body_lift_area = Parameter(0.01, "m2", "reference area S in body-lift", min=1e-9)
+    body_lift_span = Parameter(0.1, "m", "span b in body-lift: aspect ratio b^2 / S", min=1e-9)
     body_lift_drag = Parameter(0.0, "1", "C_D0 in body-lift: drag without lift, on S", min=0.0)
     body_lift_efficiency = Parameter(0.7, "1", "Oswald's efficiency in body-lift", min=1e-9)
     fading_damping_force = Parameter(

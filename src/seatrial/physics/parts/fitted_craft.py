@@ -59,6 +59,9 @@ class FittedCraft(Coefficients, MarineCraft):
     exercised: ClassVar = {
         "terms": " ".join(TERMS),
         "restoring": "floating",
+        "mass": 40.0,
+        "buoyancy": 400.0,
+        "inertia": [1.0, 6.0, 6.0, 0.0, 0.0, 0.0],
         "propulsors": " ".join(PROPULSORS),
         "foils": " ".join(FOILS),
         "ballasts": " ".join(BALLASTS),
@@ -112,6 +115,12 @@ class FittedCraft(Coefficients, MarineCraft):
     feedthrough: ClassVar = {
         **MarineCraft.feedthrough,
         "acceleration": (*MarineCraft.feedthrough["acceleration"], *_ORDERS, "wind"),
+        "propulsor_force": ("propulsor_order", "propulsor_angle", "current"),
+        "propulsor_power": ("propulsor_order", "propulsor_angle", "current"),
+        "propulsor_rate": ("propulsor_order",),
+        "propulsor_turned": ("propulsor_angle",),
+        "foil_turned": ("foil_angle",),
+        "ballast_share": ("ballast_order",),
     }
 
     def start(self, t: float) -> None:
