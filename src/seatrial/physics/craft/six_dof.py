@@ -27,6 +27,7 @@ from .hydrodynamics import TERMS, Term, read_terms, symmetric
 from .inertia import require_positive_definite
 from .morison import Morison
 from .seaway import Places, Seaway
+from .slender import Slender
 from .symbolic import euler_rate_matrix, rotation_matrix, skew
 from .through_water import ThroughWater, flow_outputs
 
@@ -45,7 +46,7 @@ _INERTIAS = (
 )
 
 
-class SixDofCraft(ThroughWater, CoupledDamping, HullPoints, HullLift, Morison, Seaway):
+class SixDofCraft(ThroughWater, CoupledDamping, HullPoints, HullLift, Morison, Slender, Seaway):
     """Base of craft in six degrees of freedom: M nu_r' = tau + the terms of `hydrodynamics`.
 
     nu_r is nu less the velocity of the water in body axes. ``terms`` names the terms that act;
@@ -81,7 +82,7 @@ class SixDofCraft(ThroughWater, CoupledDamping, HullPoints, HullLift, Morison, S
         "full",
         "1",
         "momentum in the Coriolis terms",
-        choices=("full", "diagonal", "without-munk"),
+        choices=("full", "diagonal", "without-munk", "without-cross-pairs"),
     )
     mass = Parameter(1.0, "kg", "mass of the craft, without added mass", min=0.0)
     inertia = Parameter(
@@ -105,9 +106,15 @@ class SixDofCraft(ThroughWater, CoupledDamping, HullPoints, HullLift, Morison, S
     quadratic_damping_moment = Parameter(
         0.0, "N.m.s2/rad2", "quadratic damping", axes=_PQR, min=0.0
     )
-    crossflow_length = Parameter(0.0, "m", "length of the hull in crossflow-drag", min=0.0)
-    crossflow_draught = Parameter(0.0, "m", "draught of the hull in crossflow-drag", min=0.0)
-    crossflow_coefficient = Parameter(0.0, "1", "drag coefficient in crossflow-drag", min=0.0)
+    crossflow_length = Parameter(
+        0.0, "m", "length of the hull in crossflow-drag, station-drag", min=0.0
+    )
+    crossflow_draught = Parameter(
+        0.0, "m", "draught of the hull in crossflow-drag, station-drag", min=0.0
+    )
+    crossflow_coefficient = Parameter(
+        0.0, "1", "drag coefficient in crossflow-drag, station-drag", min=0.0
+    )
     gravity = Parameter(9.81, "m/s2", "acceleration of gravity", min=0.0)
     attachment_place = Parameter(
         0.0, "m", "attachment of a tether or tow from the body origin, body axes", axes="xyz"
@@ -203,6 +210,15 @@ def mass_matrix(p: SimpleNamespace) -> Any:
     return ca.vertcat(ca.horzcat(force, coupling), ca.horzcat(coupling.T, moment))
 
 
+def craft_context(
+    position: Any, attitude: Any, nu: Any, u: SimpleNamespace, p: SimpleNamespace
+) -> Context:
+    """Return what terms and parts are functions of; arguments as of `six_dof_motion`."""
+    R = rotation_matrix(attitude)
+    nu_r = velocity_through_water(R, nu, u)
+    return Context(position, attitude, R, nu, nu_r, mass_matrix(p), u, p)
+
+
 def six_dof_motion(
     position: Any,
     attitude: Any,
@@ -211,12 +227,13 @@ def six_dof_motion(
     p: SimpleNamespace,
     water_acceleration: Any = _STILL,
     known: Mapping[str, Term] = TERMS,
+    parts: Any = None,
 ) -> tuple[SimpleNamespace, dict[str, Any]]:
     """Return the rates of change of the states, and the outputs that follow from the motion.
 
     ``position`` is the body origin in {n}, m, ``attitude`` the Euler angles, rad, ``nu`` as
     above; ``water_acceleration`` is that of the current v_c in {n}, m/s2; ``known`` are the terms
-    that the craft may name. The rates are named
+    that the craft may name, ``parts`` the load (6,) of parts of its own. The rates are named
     ``position``, ``attitude``, ``velocity`` and ``rates``.
 
     With nu_r = nu - (R^T v_c, 0), uniform, d(R^T v_c)/dt = R^T v_c' - omega x (R^T v_c), so
@@ -227,24 +244,22 @@ def six_dof_motion(
     current changes with the craft's depth, v_c' = a + dv_c/dz z'; the pressure gradient is of
     rho V a alone, a the acceleration of the water where it is (see `_pressure_gradient`).
     """
-    R = rotation_matrix(attitude)
-    velocity, rates = nu[:3], nu[3:]
+    context = craft_context(position, attitude, nu, u, p)
+    R, velocity, rates = context.R, nu[:3], nu[3:]
     at_sea = hasattr(u, "water_velocity")
     met = _STILL
     if at_sea:
         met = u.water_acceleration + ca.vertcat(u.water_shear * (R @ velocity)[2], 0)
         water_acceleration = water_acceleration + met
-    nu_r = velocity_through_water(R, nu, u)
-    relative = nu_r[:3]
-    M = mass_matrix(p)
-    context = Context(position, attitude, R, nu, nu_r, M, u, p)
     tau = external_load(R, u, p)
     for term in read_terms(p.terms, known):
         tau = tau + term(context)
+    if parts is not None:
+        tau = tau + parts
     if at_sea and not p.restoring.startswith("surface"):
         tau = tau + _pressure_gradient(context, R.T @ met, R.T @ u.water_acceleration)
-    nu_r_dot = ca.ldl_solve(tau, *ca.ldl(M))
-    acceleration = nu_r_dot[:3] + ca.cross(rates, relative) + R.T @ water_acceleration
+    nu_r_dot = ca.ldl_solve(tau, *ca.ldl(context.M))
+    acceleration = nu_r_dot[:3] + ca.cross(rates, context.nu_r[:3]) + R.T @ water_acceleration
     changes = SimpleNamespace(
         position=R @ velocity,
         attitude=euler_rate_matrix(attitude) @ rates,

@@ -1,0 +1,1 @@
+"""Bodies of simple shape: mass, inertia and added mass from main dimensions."""

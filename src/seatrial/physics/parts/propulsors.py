@@ -1,0 +1,44 @@
+"""Propulsors of a craft, by their kinds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import casadi as ca
+
+from ..craft.context import Context
+from .coefficients import Part
+from .flow import through_water
+from .screws import four_quadrant, propeller, wageningen_b
+from .thrust import Drive, Push, azimuth, jet, thruster, tunnel
+
+PUSHES: dict[str, Callable[[Context, Drive], Push]] = {
+    "thruster": thruster,
+    "azimuth": azimuth,
+    "outboard": azimuth,
+    "tunnel": tunnel,
+    "propeller": propeller,
+    "wageningen-b": wageningen_b,
+    "four-quadrant": four_quadrant,
+    "jet": jet,
+}
+
+
+def pushes(
+    c: Context, parts: Sequence[Part], orders: Sequence[Any], angles: Sequence[Any]
+) -> list[Push]:
+    """Return what the propulsors do at their orders (-1 to 1) and angles, rad."""
+    return [
+        PUSHES[kind](
+            c, Drive(slot, order, _turned(slot.axis, angle), through_water(c, slot.position))
+        )
+        for (kind, slot), order, angle in zip(parts, orders, angles, strict=True)
+    ]
+
+
+def _turned(axis: Any, angle: Any) -> Any:
+    """Return ``axis`` turned about z by ``angle``, from x to y."""
+    x, y, z = ca.vertsplit(axis)
+    cos, sin = ca.cos(angle), ca.sin(angle)
+    return ca.vertcat(cos * x - sin * y, sin * x + cos * y, z)
