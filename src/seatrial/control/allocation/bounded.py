@@ -21,14 +21,14 @@ def weighted_least_squares(
     B = ``matrix`` (m by n), tau = ``wanted`` (m), W = diag(``weights``) (m), eps = ``effort``
     (n, positive, so that x is unique). ``low`` is not above ``high``; alike, they fix an x.
 
-    The active-set method of Härkegård (2002) for control allocation (Fossen 2021, section 11.2):
+    The active-set method of Härkegård (2002) for control allocation (Fossen 2021, ch. 11):
     x moves to the least squares of the variables that are free, up to the first bound in its way,
     which becomes active; there, of the active bounds from which the gradient leads inwards, the
     one with the steepest is released. Each step takes no chance: the same numbers give the same x.
     """
     stacked = np.vstack([weights[:, None] * matrix, np.diag(np.sqrt(effort))])
     goal = np.concatenate([weights * wanted, np.zeros(len(effort))])
-    x = np.clip(0.0, low, high)
+    x: Array = np.clip(np.zeros_like(low), low, high)
     free = low < high
     steps = 10 * (len(x) + 1)  # each bound comes and goes a few times at most
     for _ in range(steps):
@@ -59,7 +59,8 @@ def _to_the_least(stacked: Array, goal: Array, x: Array, free: npt.NDArray[np.bo
 def _share_within(x: Array, move: Array, low: Array, high: Array) -> tuple[float, Any]:
     """Return the largest share of a move, up to 1, within the bounds, and the bound it meets."""
     ends = np.where(move > 0.0, high, low) - x
-    shares = np.divide(ends, move, out=np.full_like(x, np.inf), where=move != 0.0)
+    with np.errstate(over="ignore"):  # next to no move meets no bound
+        shares = np.divide(ends, move, out=np.full_like(x, np.inf), where=move != 0.0)
     first = int(np.argmin(shares)) if len(x) else 0
     if not len(x) or shares[first] >= 1.0:
         return 1.0, None
