@@ -56,6 +56,8 @@ class PartAllocation(AllocatedParts, Sampled):
     X ahead, Y to starboard, Z down positive, N; K starboard down, M bow up, N to starboard
     positive, N.m; about the body origin. Angles rad: a propulsor's about z from x to y.
 
+    ``speed`` is a log's, or in its place guidance's over ground; not connected, it is 0.
+
     Not modelled: moments of shafts, flow that a part meets from another, stall.
 
     Raises InputError at the start for an axis that is no unit vector, or is not horizontal where
@@ -110,6 +112,7 @@ class PartAllocation(AllocatedParts, Sampled):
     terminals: ClassVar = {
         "demand": terminal(*_DEMAND),
         "wanted": terminal("speed"),
+        "sensors": terminal(water_speed="speed"),
         "propulsor_orders": Terminal({p: f"propulsor_order.{p}" for p in _PROPULSORS}),
         "propulsor_angles": Terminal({p: f"propulsor_angle.{p}" for p in _PROPULSORS}),
         "foil_angles": Terminal({f: f"foil_angle.{f}" for f in _FOILS}),
