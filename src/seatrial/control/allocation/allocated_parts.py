@@ -17,6 +17,8 @@ TURNING = ("azimuth", "outboard", "jet")
 """Kinds of propulsors that turn, if their range lets them."""
 BY_SPEED = ("propeller", "wageningen-b", "four-quadrant", "jet")
 """Kinds whose order is a share of the shaft speed: at rest their thrust goes by its square."""
+_NO_THRUST = tuple(PropulsorSlots.ports["propulsor_thrust_1"].start)
+"""Value of a thrust that nobody gave; the craft needs none where coefficients give it."""
 STEERING = ("fin", "linear-fin", "rudder")
 """Kinds of foils in the water."""
 
@@ -81,6 +83,11 @@ class AllocatedParts(PropulsorSlots, FoilSlots):
                 raise InputError(
                     f"{self.name}.propulsor_angle_limit_{number + 1} is {least!r} to {most!r} rad: "
                     "it must rise"
+                )
+            if self._kinds[number] in BY_SPEED and self.propulsor_thrust[number] == _NO_THRUST:
+                raise InputError(
+                    f"{self.name}.propulsor_thrust_{number + 1} is not given: allocation to a "
+                    f"{self._kinds[number]} takes its bollard thrust, N, ahead and astern"
                 )
             if self._turns(number) and abs(axis[2]) > 1e-6:
                 raise InputError(

@@ -61,8 +61,9 @@ class PartAllocation(AllocatedParts, Sampled):
     Not modelled: moments of shafts, flow that a part meets from another, stall.
 
     Raises InputError at the start for an axis that is no unit vector, or is not horizontal where
-    it turns, for angles out of order, for ``axes`` that name none though there are parts, and
-    for one that the parts cannot give, or only together with another one.
+    it turns, for angles out of order, for a propeller or jet without ``propulsor_thrust``, for
+    ``axes`` that name none though there are parts, and for one that the parts cannot give, or
+    only together with another one.
     """
 
     exercised: ClassVar = {
@@ -79,6 +80,7 @@ class PartAllocation(AllocatedParts, Sampled):
         "propulsor_axis_6": [0.0, 0.0, 1.0],
         "propulsor_thrust_1": [8.0, 2.0],
         "propulsor_thrust_2": [8.0, 2.0],
+        "propulsor_thrust_4": [2.0, 1.0],
         "propulsor_angle_limit_1": [-1e9, 1e9],
         "propulsor_angle_limit_2": [-0.7, 0.7],
         "propulsor_fading_speed_3": 4.0,
@@ -109,6 +111,9 @@ class PartAllocation(AllocatedParts, Sampled):
     propulsor_angle = Output("rad", "angle of each propulsor about z", axes=_PROPULSORS)
     foil_angle = Output("rad", "angle of each foil", axes=_FOILS)
 
+    feedthrough: ClassVar = dict.fromkeys(
+        ("propulsor_order", "propulsor_angle", "foil_angle"), (*_DEMAND, "speed")
+    )
     terminals: ClassVar = {
         "demand": terminal(*_DEMAND),
         "wanted": terminal("speed"),
