@@ -9,6 +9,7 @@ from seatrial.devices.actuators.actuator import INTERVAL_NS, LATE_NS
 from seatrial.devices.actuators.angle_servo import AngleServo
 from seatrial.devices.actuators.force_actuator import ForceActuator
 from seatrial.devices.actuators.linear_thruster import LinearThruster
+from seatrial.devices.actuators.motor import Motor
 from seatrial.devices.actuators.rudder_machine import RudderMachine
 from seatrial.devices.actuators.servo import Servo
 from seatrial.devices.actuators.thruster import Thruster
@@ -20,12 +21,14 @@ from .running import run, started
 ALL = {
     Thruster: ("pulse", lambda x: 1.5e-3 + 0.4e-3 * x, "thrust"),
     LinearThruster: ("command", lambda x: x, "thrust"),
+    Motor: ("command", lambda x: x, "order"),
     ForceActuator: ("demand", lambda x: [1e5 * x, -1e5 * x, 1e6 * x], "force.x"),
     Servo: ("pulse", lambda x: 1.5e-3 + 0.4e-3 * x, "angle"),
     AngleServo: ("command", lambda x: x, "angle"),
     RudderMachine: ("command", lambda x: 0.5 * x, "angle"),
 }
-THRUSTERS, SHAFTS = (Thruster, LinearThruster, ForceActuator), (Servo, AngleServo, RudderMachine)
+THRUSTERS = (Thruster, LinearThruster, Motor, ForceActuator)
+SHAFTS = (Servo, AngleServo, RudderMachine)
 BROKEN_MS, REPAIRED_MS = 6_000, 12_000
 
 
@@ -127,10 +130,11 @@ def test_slow_is_a_lag_ten_times_as_long(cls):
         assert at(failed, BROKEN_MS + t) == pytest.approx(expected, rel=1e-6)
 
 
-def test_an_ideal_actuator_that_is_slow_has_a_lag_of_a_second():
-    failed = failing(ForceActuator, "slow", wanted=lambda t: float(t >= BROKEN_MS))
+@pytest.mark.parametrize(("cls", "full"), [(ForceActuator, 1e5), (Motor, 1.0)])
+def test_an_ideal_actuator_that_is_slow_has_a_lag_of_a_second(cls, full):
+    failed = failing(cls, "slow", wanted=lambda t: float(t >= BROKEN_MS))
     assert at(failed, BROKEN_MS) == 0.0
-    assert at(failed, BROKEN_MS + 1000) == pytest.approx(1e5 * (1.0 - math.exp(-1.0)), rel=1e-9)
+    assert at(failed, BROKEN_MS + 1000) == pytest.approx(full * (1.0 - math.exp(-1.0)), rel=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from seatrial.devices.actuators.esc import Esc
+from seatrial.devices.actuators.esc_driver import EscDriver
 from seatrial.devices.actuators.servo import Servo
 from seatrial.devices.actuators.servo_driver import ServoDriver
 from seatrial.devices.actuators.thruster import Thruster
@@ -75,7 +76,23 @@ def test_a_driver_is_the_inverse_of_its_servo(pulses, angles, place, reverse):
     assert abs(servo.get("angle") - held) < 1e-12 * (high - low + abs(low) + abs(high))
 
 
-@pytest.mark.parametrize("cls", [Esc, ServoDriver, Servo, Thruster])
+@given(
+    ranges(0.5e-3, 2.5e-3).filter(lambda p: p[1] - p[0] > 1e-4 and p[2] - p[1] > 1e-4),
+    st.floats(-1.5, 1.5),
+    st.sampled_from([0.0, 1.0]),
+)
+def test_a_speed_controller_gives_the_share_that_its_driver_is_given(pulses, wanted, reverse):
+    values = {**dict(zip(UNEVEN, pulses, strict=True)), "reversed": reverse}
+    pulse = started(EscDriver, **values, share=wanted).get("pulse")
+    assert share(pulse, **values) == pytest.approx(min(max(wanted, -1.0), 1.0), abs=1e-11)
+
+
+def test_a_share_within_the_dead_band_stops():
+    pulse = started(EscDriver, share=0.05).get("pulse")
+    assert share(pulse, dead_band=25e-6) == 0.0
+
+
+@pytest.mark.parametrize("cls", [Esc, EscDriver, ServoDriver, Servo, Thruster])
 def test_pulses_that_do_not_rise_are_refused(cls):
     with pytest.raises(InputError, match="pulse_min, pulse_neutral and pulse_max must rise"):
         started(cls, pulse_min=1.5e-3)

@@ -44,6 +44,8 @@ class DynamicPositioning(WaveFiltered, Sampled):
     With ``wave_frequency`` the measured position, heading, velocity and rate go through a notch
     (`WaveFiltered`), so that thrusters do not answer what waves do.
 
+    A ship without the truth about its motion has it from its sensors (`SensedMotion`).
+
     Inputs: position and station in {n} (x north, y east), m; headings rad clockwise from
     north, any number of turns; velocity in body axes as a Doppler log or an observer gives it,
     m/s; rates rad/s. ``demand`` in body axes, N and N.m about the body origin, the moment
@@ -81,7 +83,10 @@ class DynamicPositioning(WaveFiltered, Sampled):
 
     demand = Output(_UNITS, "forces and moment asked of the thrusters, body axes", axes="XYN")
 
-    terminals: ClassVar = {"truth": terminal("position", "attitude", "velocity", "rates")}
+    terminals: ClassVar = {
+        "truth": terminal("position", "attitude", "velocity", "rates"),
+        "held": terminal(surge="demand__X", sway="demand__Y", yaw_moment="demand__N"),
+    }
 
     def reset(self, t: float) -> None:
         """Start with no integral and thrusters at rest."""

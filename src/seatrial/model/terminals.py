@@ -21,8 +21,11 @@ deflections   manual control: surge, sway, yaw, heave, -1 to 1, and armed
 wanted        within a pilot: engaged, direct, speed_engaged, heading_engaged, sail_engaged,
               direct_yaw, direct_sheet, speed, speed_wanted, heading_wanted, yaw_rate_wanted,
               depth_wanted
-held          what an autopilot asks: surge, yaw_moment, heave, rudder
-demand        what is asked of an allocation: surge, sway, yaw_moment, heave
+held          what an autopilot asks: surge, sway, yaw_moment, heave, pitch_moment, rudder
+demand        what is asked of an allocation: surge, sway, heave, roll_moment, pitch_moment,
+              yaw_moment
+propulsor_*   of a craft with parts: propulsor_orders and propulsor_angles, p1 ... p8
+foil_angles   the same of its foils, f1 ... f8
 estimate      nu, wind
 serial        down (towards the vehicle), up
 bus           tx, rx: of a node, and n1 ... n12 of a CAN bus

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from typing import ClassVar
 
 from ...model.component import Input, Output, Parameter, terminal
-from .actuator import Actuator
-
-_SLOW_LAG = 1.0
-"""Least lag of one that is slow, s: an ideal one has none that could be longer."""
+from .lagged import LaggedActuator
 
 
-class ForceActuator(Actuator):
+class ForceActuator(LaggedActuator):
     """Surge force, sway force and yaw moment, each with a limit and a first-order lag.
 
         T y' = clip(demand, capacity) - y,    clip(x, a) = x held between -a and a
@@ -32,7 +28,6 @@ class ForceActuator(Actuator):
 
     exercised: ClassVar = {"capacity": [2.0, 2.0, 2.0]}
 
-    time_constant = Parameter(0.0, "s", "lag of forces behind demands, 0 for none", min=0.0)
     capacity = Parameter(
         (2.5e5, 2.5e5, 1e7), ("N", "N", "N.m"), "largest forces and moment", axes="XYN", min=0.0
     )
@@ -45,33 +40,13 @@ class ForceActuator(Actuator):
 
     def start(self, t: float) -> None:
         """Start without force."""
-        self._load = [0.0, 0.0, 0.0]
-        self.begin_at(0.0, 0.0, 0.0)
+        self.begin_lagged(3)
 
     def step(self, t: float, h: float) -> None:
         """Follow the demand as it is."""
-        goals = self._goals(self.take(t, self.demand, *self._range()))
-        lag = self._lag()
-        kept = math.exp(-h / lag) if lag > 0.0 else 0.0
-        self._load = [
-            goal + (load - goal) * kept for goal, load in zip(goals, self._load, strict=True)
-        ]
+        self.follow(t, h, self.demand, self.capacity)
 
     def outputs(self, t: float) -> None:
         """Publish force and moment."""
-        if self._lag() > 0.0:
-            x, y, self.moment = self._load
-        else:
-            x, y, self.moment = self._goals(self.received(t, self.demand, *self._range()))
+        x, y, self.moment = self.lagged(t, self.demand, self.capacity)
         self.force = x, y
-
-    def _goals(self, received: list[float] | None) -> list[float]:
-        pairs = zip(received or (0.0, 0.0, 0.0), self.capacity, strict=True)
-        return [self.effect * min(max(demand, -most), most) for demand, most in pairs]
-
-    def _range(self) -> tuple[list[float], list[float]]:
-        return [-most for most in self.capacity], list(self.capacity)
-
-    def _lag(self) -> float:
-        lag: float = self.slowness * self.time_constant
-        return max(lag, _SLOW_LAG) if self.fault == "slow" else lag

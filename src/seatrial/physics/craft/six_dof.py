@@ -267,7 +267,11 @@ def six_dof_motion(
         rates=nu_r_dot[3:],
     )
     attached = attachment_motion(R, position, velocity, rates, p)
-    return changes, {**attached, **flow_outputs(R, nu_r, u, p), "acceleration": acceleration}
+    return changes, {
+        **attached,
+        **flow_outputs(R, context.nu_r, u, p),
+        "acceleration": acceleration,
+    }
 
 
 def _pressure_gradient(c: Context, met: Any, acceleration: Any) -> Any:

@@ -1,0 +1,145 @@
+"""Parts of a body as control allocation takes them: what each gives at most, and its limits."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ...errors import InputError
+from ...model.component import Parameter
+from ...physics.parts.lift import lift_slope
+from ...physics.parts.slots import COUNT, FOILS, PROPULSORS, FoilSlots, PropulsorSlots, read_kinds
+from .bounded import Array
+from .part_wrenches import AXES, capacities, given_alone, lift_wrench, read_axes, thrust_wrench
+
+TURNING = ("azimuth", "outboard", "jet")
+"""Kinds of propulsors that turn, if their range lets them."""
+BY_SPEED = ("propeller", "wageningen-b", "four-quadrant", "jet")
+"""Kinds whose order is a share of the shaft speed: at rest their thrust goes by its square."""
+_NO_THRUST = tuple(PropulsorSlots.ports["propulsor_thrust_1"].start)
+"""Value of a thrust that nobody gave; the craft needs none where coefficients give it."""
+STEERING = ("fin", "linear-fin", "rudder")
+"""Kinds of foils in the water."""
+
+
+class AllocatedParts(PropulsorSlots, FoilSlots):
+    """Mix-in: wrenches at share 1 of propulsors and foils, a column each, rows by ``axes``.
+
+    Share 1 of a propulsor is the larger of its thrusts ahead and astern, that of a foil its
+    largest angle, per pascal of dynamic pressure.
+    """
+
+    axes = Parameter(
+        "", "1", f"axes that are asked for, some of {', '.join(AXES)}", check=read_axes
+    )
+
+    def read_parts(self) -> None:
+        """Work out what each part gives; raises InputError for parts and axes that do not fit."""
+        self._kinds = read_kinds(self.propulsors, "propulsor", PROPULSORS)
+        self._check_propulsors()
+        thrusts = self.propulsor_thrust
+        used = [number for number in range(len(self._kinds)) if max(thrusts[number]) > 0.0]
+        self._turning = [number for number in used if self._turns(number)]
+        self._fixed = [number for number in used if number not in self._turning]
+        kinds = read_kinds(self.foils, "foil", FOILS)
+        self._foils = [number for number, kind in enumerate(kinds) if kind in STEERING]
+        self._ranges = [list(ends) for ends in self.propulsor_angle_limit]
+        self._angles = [self._at_rest(number) for number in range(COUNT)]
+        self._reaches = [_reach(*thrust) for thrust in thrusts]
+        by_speed = [kind in BY_SPEED for kind in self._kinds]
+        exponents = zip(by_speed, self.propulsor_exponent, strict=False)
+        self._exponents = [2.0 if squared else exponent for squared, exponent in exponents]
+        self._rows = read_axes(self.axes)
+        wrenches = [
+            _side_by_side([self._thrust(n, self._angles[n]) for n in self._fixed]),
+            _side_by_side([self._lift(number) for number in self._foils]),
+            _side_by_side([self._thrust(n, 0.0) for n in self._turning]),
+            _side_by_side([self._thrust(n, 0.5 * math.pi) for n in self._turning]),
+        ]
+        self._check_axes(np.hstack(wrenches))
+        # Lists: a state compares as a whole.
+        asked = [columns[self._rows].tolist() for columns in wrenches]
+        self._columns, self._tail, self._along, self._abeam = asked
+
+    def order_of(self, number: int, share: float) -> float:
+        """Return the order that gives a share of the larger thrust of a propulsor."""
+        astern, ahead = self._reaches[number]
+        side = ahead if share > 0.0 else astern
+        if share == 0.0 or side == 0.0:
+            return 0.0
+        return math.copysign(min(abs(share) / side, 1.0) ** (1.0 / self._exponents[number]), share)
+
+    def _check_propulsors(self) -> None:
+        for number in range(len(self._kinds)):
+            axis, (least, most) = self.propulsor_axis[number], self.propulsor_angle_limit[number]
+            length = math.hypot(*axis)
+            if abs(length - 1.0) > 1e-6:
+                raise InputError(
+                    f"{self.name}.propulsor_axis_{number + 1} is {axis}, of length {length:.6g}: "
+                    "give a unit vector"
+                )
+            if least > most:
+                raise InputError(
+                    f"{self.name}.propulsor_angle_limit_{number + 1} is {least!r} to {most!r} rad: "
+                    "it must rise"
+                )
+            if self._kinds[number] in BY_SPEED and self.propulsor_thrust[number] == _NO_THRUST:
+                raise InputError(
+                    f"{self.name}.propulsor_thrust_{number + 1} is not given: allocation to a "
+                    f"{self._kinds[number]} takes its bollard thrust, N, ahead and astern"
+                )
+            if self._turns(number) and abs(axis[2]) > 1e-6:
+                raise InputError(
+                    f"{self.name}.propulsor_axis_{number + 1} is {axis}: a propulsor that turns "
+                    "about z has a horizontal one"
+                )
+
+    def _check_axes(self, columns: Array) -> None:
+        """Raise InputError unless the parts give each of ``axes`` without the others."""
+        if columns.size and not self._rows:
+            raise InputError(f"{self.name}.axes names none: give some of {', '.join(AXES)}")
+        most = capacities(columns)
+        there = np.flatnonzero(most > 1e-9 * most.max())
+        for row, gives in zip(self._rows, given_alone(columns, self._rows), strict=True):
+            if not gives:
+                how = "only together with another one" if row in there else "not at all"
+                raise InputError(
+                    f"{self.name}.axes is {self.axes!r}, but its parts ("
+                    f"{', '.join([*self._kinds, *self.foils.split()]) or 'none'}) give {AXES[row]} "
+                    f"{how}: they give {', '.join(AXES[i] for i in there) or 'nothing'}"
+                )
+
+    def _turns(self, number: int) -> bool:
+        """Return whether a propulsor turns."""
+        least, most = self.propulsor_angle_limit[number]
+        return self._kinds[number] in TURNING and bool(least < most)
+
+    def _at_rest(self, number: int) -> float:
+        """Return the angle of a propulsor at the start: the one of its range nearest to 0."""
+        turns = number < len(self._kinds) and self._kinds[number] in TURNING
+        least, most = self._ranges[number]
+        return float(min(max(0.0, least), most)) if turns else 0.0
+
+    def _thrust(self, number: int, angle: float) -> Array:
+        """Return the wrench of a propulsor at share 1."""
+        position, axis = self.propulsor_position[number], self.propulsor_axis[number]
+        most: float = max(self.propulsor_thrust[number])
+        return most * thrust_wrench(position, axis, angle)
+
+    def _lift(self, number: int) -> Array:
+        """Return the wrench of a foil at share 1, per pascal."""
+        area, slope = self.foil_area[number], lift_slope(self.foil_aspect_ratio[number])
+        most: float = area * slope * self.foil_angle_limit[number]
+        return most * lift_wrench(self.foil_position[number], self.foil_roll[number])
+
+
+def _reach(ahead: float, astern: float) -> tuple[float, float]:
+    """Return the largest thrusts astern and ahead as shares of the larger one."""
+    most = max(ahead, astern)
+    return (astern / most, ahead / most) if most > 0.0 else (0.0, 0.0)
+
+
+def _side_by_side(wrenches: list[Array]) -> Array:
+    """Return wrenches as columns, six rows of none if there is none."""
+    return np.stack(wrenches, axis=1) if wrenches else np.zeros((len(AXES), 0))
