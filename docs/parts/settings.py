@@ -10,7 +10,7 @@ from parts.markdown import shown_unit, shown_value, table
 from seatrial.fmi.components.source import shipped_sources
 from seatrial.model.ports import Parameter
 from seatrial.shipped import shipped_folder
-from seatrial.system.entries import Entry
+from seatrial.system.entries import Resolved
 from seatrial.system.parameters import load_vehicle
 from seatrial.system.profile.kinds import keys
 
@@ -99,7 +99,7 @@ def variants(vehicle: str) -> str:
     return table(head, rows)
 
 
-def _entries(vehicle: str) -> dict[str, dict[str, dict[str, Entry]]]:
+def _entries(vehicle: str) -> dict[str, dict[str, dict[str, Resolved]]]:
     """Return all entries by variant and table."""
     loaded = load_vehicle(vehicle)
     return {

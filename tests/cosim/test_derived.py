@@ -9,7 +9,7 @@ import pytest
 from seatrial.errors import InputError
 from seatrial.fmi.direct import DirectInstance
 from seatrial.model.component import Component, Parameter
-from seatrial.system.entries import Computed, Entry
+from seatrial.system.entries import Computed, Entry, Resolved
 from seatrial.system.parameters import Vehicle, load_vehicle
 from seatrial.system.values import Given, from_entry, port_scalars
 
@@ -60,7 +60,7 @@ def load(write):
 def value(load):
     """Return a function that gives the entry ``x`` of a table of its own, as written."""
 
-    def value(written: str, variant: str | None = None) -> Entry:
+    def value(written: str, variant: str | None = None) -> Resolved:
         text = BOAT.replace("[hold]", f"[own]\nx = {written}\nnear = 4\n[hold]")
         text = text.replace("near = 4", 'near = { value = 4, source = "s", mark = "stated" }')
         return load(text).parameter_set("own", variant).values["x"]
@@ -80,7 +80,7 @@ class Craft(Component):
 VARIABLES = DirectInstance(Craft("craft")).variables
 
 
-def given(entry: Entry, port: str) -> dict[str, Given]:
+def given(entry: Resolved, port: str) -> dict[str, Given]:
     return from_entry(entry, port_scalars(VARIABLES, port), "here")
 
 

@@ -11,7 +11,7 @@ from ..model.units import quantity
 from ..vehicle_folders import FOLDERS, VEHICLE
 from .assumed import give_assumed
 from .derived import computed
-from .entries import Entry
+from .entries import Resolved
 from .expressions import is_expression, names_in
 from .parameters import OWN, ParameterSet, Vehicle, load_vehicle, split_reference
 from .part import Part
@@ -171,7 +171,7 @@ def followed(system: System, scope: Scope, written: Any, where: str) -> Any:
     if not is_expression(written):
         return written
 
-    def look_up(name: str) -> Entry:
+    def look_up(name: str) -> Resolved:
         vehicle_name, _, rest = name.partition(".")
         vehicle = load_vehicle(vehicle_name, scope.read_from.path.parent)
         return vehicle.entries(_variant(system, scope, vehicle)).named(rest)

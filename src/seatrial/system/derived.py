@@ -7,7 +7,7 @@ from typing import Any
 
 from ..errors import InputError, unknown
 from ..model.units import Unit, split_quantity
-from .entries import Computed, DerivedEntry, Entry, Mark, WrittenEntry
+from .entries import Computed, DerivedEntry, Entry, Mark, Resolved, WrittenEntry
 from .expressions import Value, bare_name, evaluate, is_expression
 from .quantities import amount, dimension, in_unit
 
@@ -34,17 +34,17 @@ class Entries:
         self._where = where
         self._open: list[tuple[str, str]] = []
 
-    def table(self, name: str) -> dict[str, Entry]:
+    def table(self, name: str) -> dict[str, Resolved]:
         """Return the entries of a component's table."""
         return {key: self._resolved(name, key) for key in self._tables.get(name, {})}
 
-    def presets(self, table: str) -> dict[str, dict[str, Entry]]:
+    def presets(self, table: str) -> dict[str, dict[str, Resolved]]:
         """Return the named values of a component's ports, by port and name."""
         beginning = f"presets.{table}."
         places = [place for place in self._tables if place.startswith(beginning)]
         return {place.removeprefix(beginning): self.table(place) for place in places}
 
-    def named(self, name: str, table: str = "") -> Entry:
+    def named(self, name: str, table: str = "") -> Resolved:
         """Return the entry, or the element of one, that ``name`` means inside ``table``."""
         for place, key, axis in self._readings(name, table):
             if key in self._tables[place]:
@@ -52,7 +52,7 @@ class Entries:
                 return entry if axis is None else _element(entry, axis, name)
         raise InputError(self._lacks(name, table))
 
-    def _resolved(self, table: str, key: str) -> Entry:
+    def _resolved(self, table: str, key: str) -> Resolved:
         entry, here = self._tables[table][key], (table, key)
         if isinstance(entry, Entry):
             return entry
@@ -94,7 +94,7 @@ class Entries:
         return f"{unknown('entry', name, known)}{hint}"
 
 
-def derived(entry: DerivedEntry, look_up: Callable[[str], Entry]) -> Computed:
+def derived(entry: DerivedEntry, look_up: Callable[[str], Resolved]) -> Computed:
     """Return the value of an entry with expressions, whose names ``look_up`` has.
 
     Raises InputError for what cannot be computed, or does not measure what its unit says.
@@ -112,14 +112,16 @@ def derived(entry: DerivedEntry, look_up: Callable[[str], Entry]) -> Computed:
     return found.model_copy(update={"source": source, "mark": mark})
 
 
-def computed(text: str, look_up: Callable[[str], Entry], constant: Mark | None = None) -> Computed:
+def computed(
+    text: str, look_up: Callable[[str], Resolved], constant: Mark | None = None
+) -> Computed:
     """Return the value of an expression; that of a name alone is its entry's, untouched.
 
     ``constant`` is the mark of one without a name. Raises InputError.
     """
     marks: list[Mark] = []
 
-    def entry(name: str) -> Entry:
+    def entry(name: str) -> Resolved:
         found = look_up(name)
         marks.append(found.mark)
         return found
@@ -147,7 +149,7 @@ def computed(text: str, look_up: Callable[[str], Entry], constant: Mark | None =
 def _of_list(
     elements: list[float | int | str],
     units: str | list[str] | None,
-    look_up: Callable[[str], Entry],
+    look_up: Callable[[str], Resolved],
     constant: Mark | None,
 ) -> Computed:
     """Return a list of which some elements are expressions, others numbers or quantities."""
@@ -172,7 +174,7 @@ def _of_list(
 def _of_element(
     element: float | int | str,
     unit: str | None,
-    look_up: Callable[[str], Entry],
+    look_up: Callable[[str], Resolved],
     constant: Mark | None,
 ) -> Computed:
     if is_expression(element):
@@ -208,7 +210,7 @@ def _converted(found: Computed, unit: str | list[str]) -> Computed:
     return found.model_copy(update={"value": value, "unit": unit, "by_name": True})
 
 
-def measures(entry: Entry, count: int) -> list[str | Unit]:
+def measures(entry: Resolved, count: int) -> list[str | Unit]:
     """Return the units of an entry's values, of which there are ``count``."""
     units = entry.unit if isinstance(entry.unit, list) else [entry.unit] * count
     if isinstance(entry, Computed) and not entry.by_name:
@@ -216,7 +218,7 @@ def measures(entry: Entry, count: int) -> list[str | Unit]:
     return list(units)
 
 
-def _amounts(entry: Entry, name: str) -> Value:
+def _amounts(entry: Resolved, name: str) -> Value:
     if isinstance(entry.value, str):
         raise InputError(f"{name} is a text, {entry.value!r}")
     values = entry.value if isinstance(entry.value, list) else [entry.value]
@@ -227,7 +229,7 @@ def _amounts(entry: Entry, name: str) -> Value:
     return amounts if isinstance(entry.value, list) else amounts[0]
 
 
-def _element(entry: Entry, axis: str, name: str) -> Entry:
+def _element(entry: Resolved, axis: str, name: str) -> Resolved:
     """Return an element of a list: by its axis, or by its number from 1 on."""
     if not isinstance(entry.value, list):
         raise InputError(f"{name}: {name.rpartition('.')[0]} is no list, found {entry.value!r}")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import Discriminator, Tag
+from pydantic import BaseModel, Discriminator, Tag
 
 from ..errors import InputError
 from ..model.units import split_quantity
@@ -16,16 +16,22 @@ SHARED = ("source", "mark")
 """Keys that a table or a part gives for those of its entries that lack them."""
 
 
-class Entry(FileModel):
+class Resolved(BaseModel):
     """One value: a number, a list of numbers for a port with axes, or a text.
 
     ``unit`` is that of all numbers, or a list with one for each.
     """
 
+    model_config = FileModel.model_config
+
     value: float | int | str | list[float | int]
     unit: str | list[str] = "1"
     source: str
     mark: Mark
+
+
+class Entry(Resolved, FileModel):
+    """One value as a file has it."""
 
 
 class DerivedEntry(FileModel):
@@ -52,7 +58,7 @@ WrittenEntry = Annotated[
 """An entry as a file has it."""
 
 
-class Computed(Entry):
+class Computed(Resolved):
     """The value of an expression, which it keeps."""
 
     expression: str

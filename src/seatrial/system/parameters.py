@@ -13,7 +13,7 @@ from ..errors import InputError, unknown
 from ..fmi.instance import Variables
 from ..vehicle_folders import owner
 from .derived import Entries
-from .entries import Entry, WrittenEntry, written_out
+from .entries import Resolved, WrittenEntry, written_out
 from .files import FileModel, Source, file_bytes, find_file, parsed_toml, validated
 from .shape import Shape, ShapePart
 from .values import port_scalars
@@ -63,8 +63,8 @@ class Body:
 class ParameterSet:
     """Values for one component, by port name, and presets for whole ports."""
 
-    values: dict[str, Entry] = field(default_factory=dict)
-    presets: dict[str, dict[str, Entry]] = field(default_factory=dict)
+    values: dict[str, Resolved] = field(default_factory=dict)
+    presets: dict[str, dict[str, Resolved]] = field(default_factory=dict)
     origin: str = ""
     outline: Outline | None = None
     body: Body | None = None

@@ -14,7 +14,7 @@ from ..model.ports import Scalar
 from ..model.serialisation import is_c_text
 from ..model.units import Unit, conversion, quantity
 from .derived import measures
-from .entries import Computed, Entry
+from .entries import Computed, Resolved
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ def port_names(variables: Variables) -> list[str]:
 
 
 def from_entry(
-    entry: Entry, scalars: Sequence[Variable], origin: str, folder: Path | None = None
+    entry: Resolved, scalars: Sequence[Variable], origin: str, folder: Path | None = None
 ) -> dict[str, Given]:
     """Return a parameter file's entry as scalars; ``folder`` is that of the file.
 
@@ -102,7 +102,7 @@ def from_entry(
 def from_written(
     written: Any,
     scalars: Sequence[Variable],
-    presets: Mapping[str, Entry],
+    presets: Mapping[str, Resolved],
     origin: str,
 ) -> dict[str, Given]:
     """Return what a rig, a trial or the command line says of a port, as scalars.
@@ -111,7 +111,7 @@ def from_written(
     the value of a text, enumeration or binary port; a list has one element per axis. An entry is
     what an expression amounts to. Raises InputError.
     """
-    if isinstance(written, Entry):
+    if isinstance(written, Resolved):
         return from_entry(written, scalars, origin)
     if isinstance(written, str) and scalars[0].type is not str:
         if written in presets:
@@ -124,7 +124,7 @@ def from_written(
     _check_count(len(values), scalars, origin)
     given = {}
     for variable, value in zip(scalars, values, strict=True):
-        if isinstance(value, Entry):
+        if isinstance(value, Resolved):
             given.update(from_entry(value, [variable], origin))
             continue
         resolved = _scalar(variable, value, origin)
