@@ -93,11 +93,11 @@ def test_a_fin_separates_to_a_plate_and_has_no_steps():
     # At 90 degrees a plate of low aspect ratio: 1.17 on its area, and the profile drag.
     across = load(fin(), (0, -1.0, 0, 0, 0, 0))
     assert across[1] == pytest.approx(DENSITY / 2 * 0.02 * (1.17 + 0.01), rel=1e-12)
-    angles = np.radians(np.arange(-90, 90.1, 0.25))
+    angles = np.radians(np.arange(-90, 90.1, 0.5))
     part = fin()
     force = np.array([load(part, (math.cos(a), math.sin(a), 0, 0, 0, 0))[:2] for a in angles])
     steps = np.abs(np.diff(force, axis=0)).max()
-    assert steps < 0.02 * np.abs(force).max()
+    assert steps < 0.03 * np.abs(force).max()
 
 
 def test_a_fin_meets_the_flow_of_its_own_place():

@@ -4,13 +4,13 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from seatrial.physics.craft.kinematics import rotation
 from seatrial.physics.parts.fitted_craft import FittedCraft
 
-from .fitting import craft
+from .fitting import craft, state
 
 MODEST = {
     **{f"propulsor_position_{k}": (-0.8 + 0.1 * k, 0.05 * k - 0.2, 0.1) for k in range(1, 9)},
@@ -30,6 +30,9 @@ MODEST = {
 }
 """Beside the values of ``exercised``: all kinds, with forces that a body of 40 kg stands."""
 START = np.array([0.8, 0.1, -0.05])
+WATER = np.array([0.9, -0.7, 0.0])
+ORDERS = [0.6, 0.7, 0.5, 0.8, 0.9, 0.6, 0.7, 0.8]
+ANGLES = [0.3, 0.5, -0.4, 0.2, 0.3, 0.2, 0.4, 0.5]
 
 
 def fitted(**values):
@@ -60,33 +63,51 @@ def off(carried, still, t, water):
     return max(np.abs(each).max() for each in (places, through, rest))
 
 
-@settings(max_examples=8, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+UNIT = st.floats(-1, 1)
+
+
+@settings(max_examples=100, deadline=None)
 @given(
-    water=st.tuples(*[st.floats(-1.5, 1.5)] * 2, st.just(0.0)),  # the wind has no third component
-    orders=st.lists(st.floats(-1, 1), min_size=8, max_size=8),
-    angles=st.lists(st.floats(-0.8, 0.8), min_size=8, max_size=8),
+    water=st.tuples(UNIT, UNIT, st.just(0.0)),  # the wind has no third component
+    orders=st.lists(UNIT, min_size=8, max_size=8),
+    angles=st.lists(UNIT, min_size=8, max_size=8),
+    attitude=st.tuples(UNIT, UNIT, UNIT),
+    nu=st.lists(UNIT, min_size=6, max_size=6),
 )
-def test_a_current_carries_every_part(water, orders, angles):
-    water, t = np.array(water), np.array([0.0, 0.5, 1.0])
-    exact = {"rtol": 1e-12, "atol": 1e-13}
-    still = fitted(velocity_start=START)
-    still = still.reference(t, lambda t, x: inputs(orders, angles, np.zeros(3)), **exact)
-    carried = fitted(velocity_start=START + water)
-    carried = carried.reference(t, lambda t, x: inputs(orders, angles, water), **exact)
-    assert off(carried.x, still.x, t, water) < 1e-9
+def test_in_a_current_the_rates_of_change_are_those_in_still_water(
+    water, orders, angles, attitude, nu
+):
+    # With v = v_r + R^T w: v' = v_r' - omega x R^T w, and the place moves by w more.
+    water, R, part = np.array(water), np.array(rotation(*attitude)), fitted()
+    lags = {"lagged_order": orders, "lagged_angle": angles, "lagged_foil": angles}
+    slopes = []
+    for stream in (0 * water, water):
+        for name, value in inputs(orders, angles, stream).items():
+            part.set(name, value)
+        moving = np.concatenate([np.add(nu[:3], R.T @ stream), nu[3:]])
+        slopes.append(part.derivatives(state(part, moving, attitude, **lags)))
+    still, carried = slopes
+    still[:3] += water
+    still[6:9] -= np.cross(nu[3:], R.T @ water)
+    np.testing.assert_allclose(carried, still, rtol=1e-11, atol=1e-11)
+
+
+def test_a_current_carries_a_craft_with_all_parts():
+    t, exact = np.array([0.0, 0.5, 1.0]), {"rtol": 1e-12, "atol": 1e-13}
+    still, carried = (
+        fitted(velocity_start=START + stream).reference(
+            t, lambda t, x, stream=stream: inputs(ORDERS, ANGLES, stream), **exact
+        )
+        for stream in (0 * WATER, WATER)
+    )
+    assert off(carried.x, still.x, t, WATER) < 1e-9
 
 
 def test_fixed_steps_lose_this_with_the_fourth_power_of_the_step():
     # Velocities in turning axes are not carried along exactly by a Runge-Kutta step.
-    water = np.array([0.9, -0.7, 0.0])
-    orders, angles = (
-        [0.6, 0.7, 0.5, 0.8, 0.9, 0.6, 0.7, 0.8],
-        [0.3, 0.5, -0.4, 0.2, 0.3, 0.2, 0.4, 0.5],
-    )
-
     def states(velocity, moving, h):
         component = fitted(velocity_start=velocity, max_step=0.01)
-        for name, value in inputs(orders, angles, moving).items():
+        for name, value in inputs(ORDERS, ANGLES, moving).items():
             component.set(name, value)
         component.initialise()
         component.begin()
@@ -95,7 +116,7 @@ def test_fixed_steps_lose_this_with_the_fourth_power_of_the_step():
         return component._x.copy()
 
     errors = [
-        off(states(START + water, water, h)[None], states(START, 0 * water, h)[None], [1.0], water)
+        off(states(START + WATER, WATER, h)[None], states(START, 0 * WATER, h)[None], [1.0], WATER)
         for h in (0.01, 0.005, 0.0025)
     ]
     assert errors[0] < 1e-7

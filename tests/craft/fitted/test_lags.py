@@ -132,6 +132,10 @@ def test_the_terminals_have_a_member_for_each_place():
         ({"ballasts": "tank"}, "ballast_mass_1 is 0.0, of a tank"),
         ({"ballasts": "moving-mass", "ballast_mass_1": 1}, "ballast_travel_1"),
         (
+            {"ballasts": "buoyancy-engine", "ballast_volume_1": 0.05},
+            "ballast_volume_1 is 0.05, .* less than the craft's 0.03902 m3",
+        ),
+        (
             {"restoring": "surface-linear", "ballasts": "buoyancy-engine", "ballast_volume_1": 1},
             "restoring is 'surface-linear', submerged or floating is needed",
         ),

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from .fitting import DENSITY, craft, load, padded, shown
+from .fitting import DENSITY, craft, load, padded, shown, state
 
 PLACE = (-1.0, 0.4, 0.2)
 LAW = {
@@ -33,6 +33,15 @@ def test_a_thruster_follows_its_law_at_its_place_along_its_axis(order, thrust):
     assert shows("propulsor_force") == pytest.approx(0.9 * thrust)
     share = math.copysign(min(abs(order), 1), order)
     assert shows("propulsor_rate") == pytest.approx(share * (150 if order > 0 else 140))
+
+
+def test_the_slope_of_a_linear_law_at_no_order_is_its_thrust():
+    part = craft(propulsors="thruster", propulsor_thrust_1=(50.0, 50.0))
+    linear = part.linearise(state(part))
+    force = linear.y_names.index("propulsor_force.p1")
+    assert linear.D[force, linear.u_names.index("propulsor_order.p1")] == pytest.approx(50.0)
+    assert np.isfinite(linear.A).all()
+    assert np.isfinite(linear.D).all()
 
 
 @pytest.mark.parametrize("kind", ["azimuth", "outboard"])

@@ -77,6 +77,11 @@ def _ballast(part: Part, refused: _Refuse, values: SimpleNamespace) -> None:
         raise refused(
             "volume", f"restoring is {values.restoring!r}, submerged or floating is needed"
         )
+    if kind == "buoyancy-engine":
+        engines = (p.slot.volume for p in fitted(values, "ballast") if p.kind == kind)
+        own = values.buoyancy / (values.density * values.gravity)
+        if not sum(engines) < own:
+            raise refused("volume", f"with other engines less than the craft's {own:.4g} m3")
     if kind == "moving-mass":
         _require_unit("axis", s.axis, refused)
 

@@ -35,11 +35,11 @@ class FittedCraft(Coefficients, MarineCraft):
 
     **Propulsors** (`thrust`, `screws`) push along their axis, turned by their angle about z, from
     x to y. An order is a share, held to -1 to 1: of the largest thrust (thruster, azimuth,
-    outboard, tunnel, jet) or shaft speed (propeller, wageningen-b, four-quadrant). It is limited
-    before it lags. An angle range of a full turn or more is endless, from -1e9 to 1e9 say: it turns
-    the shortest way and counts its turns. **Foils** (`fins`, `rudder`, `sail`) have positive
-    angles as there. **Ballast** (`ballast`) changes mass, CG, inertia and buoyancy as it fills or
-    moves.
+    outboard, tunnel, jet) or shaft speed (propeller, wageningen-b, four-quadrant), where
+    ``propulsor_thrust_k`` is not read. It is limited before it lags. An angle range of a full turn
+    or more is endless, from -1e9 to 1e9 say: it turns the shortest way and counts its turns.
+    **Foils** (`fins`, `rudder`, `sail`) have positive angles as there. **Ballast** (`ballast`)
+    changes mass, CG, inertia and buoyancy as it fills or moves; `mass_matrix` is that without it.
 
     **Lags** (`lags`): value' = (order - value) / time constant, held within the rate limit; with
     neither, the order acts at once. ``lagged_*`` are the states of that, and keep their start

@@ -16,7 +16,7 @@ from ..craft.context import Context, wrench
 from .flow import STILL
 
 _SMALL = 1e-12
-"""Of an order, below which its root has no slope."""
+"""Of an order, below which powers of it are linear."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ def thruster(c: Context, drive: Drive) -> Push:
 
     Shaft speed sgn(s) |s|^(k/2) of the largest, as thrust goes with its square. The power is that
     of an actuator disk of the diameter, |T| (u/2 + sqrt(u^2/4 + |T| / (2 rho A))), u the speed of
-    advance along the thrust: the least that gives this thrust; blades take 1.5 to 2 times as much.
+    advance along the thrust: the least that gives this thrust. No reaction of the shaft.
     """
     return _by_law(c, drive, 1)
 
@@ -98,7 +98,7 @@ def jet(c: Context, drive: Drive) -> Push:
     """
     p, s = c.parameters, drive.slot
     area = math.pi / 4 * s.diameter**2
-    at_rest = ca.fabs(drive.order) ** s.exponent * s.thrust[0]
+    at_rest = ca.fabs(_power_of(drive.order, s.exponent)) * s.thrust[0]
     speed = ca.sqrt(at_rest / (p.density * area) + STILL**2)
     flux = p.density * area * speed
     kept = ca.if_else(drive.order < 0, -s.thrust[1] / s.thrust[0], 1)
@@ -112,9 +112,8 @@ def jet(c: Context, drive: Drive) -> Push:
 def _by_law(c: Context, drive: Drive, left: Any) -> Push:
     """Return the push of a thrust law of which the share ``left`` is not lost to the flow."""
     s = drive.slot
-    size = ca.fabs(drive.order) ** s.exponent
-    ahead = drive.order > 0
-    at_rest = size * ca.if_else(ahead, s.thrust[0], -s.thrust[1])
+    largest = ca.if_else(drive.order > 0, s.thrust[0], s.thrust[1])
+    at_rest = _power_of(drive.order, s.exponent) * largest
     thrust = at_rest * left
     force = (1 - s.deduction) * thrust
     area = math.pi / 4 * s.diameter**2
@@ -134,5 +133,10 @@ def _left(drive: Drive, squared: Any) -> Any:
 
 def _law_rate(drive: Drive) -> Any:
     s = drive.slot
-    size = ca.fmax(ca.fabs(drive.order), _SMALL) ** (s.exponent / 2)
-    return ca.sign(drive.order) * size * ca.if_else(drive.order > 0, s.speed[0], s.speed[1])
+    largest = ca.if_else(drive.order > 0, s.speed[0], s.speed[1])
+    return _power_of(drive.order, s.exponent / 2) * largest
+
+
+def _power_of(order: Any, exponent: Any) -> Any:
+    """Return sgn(s) |s|^k, in a form with the right slope at 0 for k = 1."""
+    return order * ca.fmax(ca.fabs(order), _SMALL) ** (exponent - 1)
