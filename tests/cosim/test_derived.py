@@ -193,7 +193,7 @@ def test_vectors_are_taken_element_by_element(value) -> None:
     assert value('"= marine-craft.place"').value == [10.0, 0.0, -0.3]
     scaled = value('"= -2 * marine-craft.place / near"')
     assert scaled.value == pytest.approx([-0.5 * x for x in place], rel=1e-15)
-    assert scaled.unit == ["m", "m", "m"]
+    assert scaled.unit == "m"
     summed = value('"= marine-craft.place - 3 * marine-craft.place"')
     assert summed.value == pytest.approx([-2 * x for x in place], rel=1e-15)
 
@@ -204,7 +204,7 @@ def test_elements_of_a_list_may_be_expressions(value) -> None:
     assert found.unit == ["m", "cm", "m"]
     assert [g.value for g in given(found, "place").values()] == pytest.approx([0.5, -0.3, 0.0])
     same = value('{ value = ["= -marine-craft.length", "1 m", 7], unit = "mm" }')
-    assert (same.value, same.unit) == ([-2000.0, 1000.0, 7], ["mm", "mm", "mm"])
+    assert (same.value, same.unit) == ([-2000.0, 1000.0, 7], "mm")
     assert same.source == "[= -marine-craft.length, 1 m, 7]"
 
 

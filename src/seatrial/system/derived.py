@@ -7,7 +7,15 @@ from typing import Any
 
 from ..errors import InputError, unknown
 from ..model.units import Unit, split_quantity
-from .entries import Computed, DerivedEntry, Entry, Mark, Resolved, WrittenEntry
+from .entries import (
+    Computed,
+    DerivedEntry,
+    Entry,
+    Mark,
+    Resolved,
+    WrittenEntry,
+    common_unit,
+)
 from .expressions import Value, bare_name, evaluate, is_expression
 from .quantities import amount, dimension, in_unit
 
@@ -135,7 +143,8 @@ def computed(
     else:
         amounts, by_name = evaluate(text, lambda name: _amounts(entry(name), name)), False
         if isinstance(amounts, tuple):
-            value, unit = [each.value for each in amounts], [each.unit for each in amounts]
+            value = [each.value for each in amounts]
+            unit = common_unit([each.unit for each in amounts])
         else:
             value, unit = amounts.value, amounts.unit
     mark = max(marks, key=_MARKS.index) if marks else constant
@@ -163,7 +172,7 @@ def _of_list(
     measured: Any = [known if f.value == 0 and f.unit == "1" else f.unit for f in found]
     return Computed(
         value=values,
-        unit=measured,
+        unit=common_unit(measured),
         source=_list_text(elements),
         mark=max(marks, key=_MARKS.index),
         expression=_list_text(elements),

@@ -143,8 +143,14 @@ def _bare(value: Any) -> dict[str, Any]:
         units = [each[1] for each in found if each is not None]
         if units and all(one or _is_zero(each) for one, each in zip(found, value, strict=True)):
             elements = [one or (0.0, units[0]) for one in found]
-            return {"value": [each[0] for each in elements], "unit": [each[1] for each in elements]}
+            units = [each[1] for each in elements]
+            return {"value": [each[0] for each in elements], "unit": common_unit(units)}
     return {"value": value}
+
+
+def common_unit(units: list[str]) -> str | list[str]:
+    """Return the unit that all of a list have, or the list."""
+    return units[0] if len(set(units)) == 1 else units
 
 
 def _is_zero(value: Any) -> bool:
