@@ -1,5 +1,6 @@
 """Vehicle files from main particulars: beside published figures, whole, and able to run."""
 
+import json
 import math
 from pathlib import Path
 
@@ -190,6 +191,13 @@ def test_the_file_is_printed_with_formula_and_trial(tmp_path):
     for said in ("measured by", "towing test", "bollard pull", "turning circle", "[hull]"):
         assert said in done.stdout
     assert not list(tmp_path.iterdir())
+
+
+def test_programs_get_the_entries_and_the_file(tmp_path):
+    result = json.loads(command(*TORPEDO, "--json", cwd=tmp_path).stdout)["result"]
+    mass = next(entry for entry in result["entries"] if entry["name"] == "mass")
+    assert (mass["value"], mass["unit"], mass["mark"]) == (31.9, "kg", "stated")
+    assert result["file"] == vehicle_text(propose("torpedo", KINDS["torpedo"]))
 
 
 def test_what_is_given_is_kept(tmp_path):
