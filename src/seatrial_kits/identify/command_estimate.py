@@ -41,6 +41,9 @@ def estimate(
     side_length: Annotated[str | None, _particular("Of a side hull of a trimaran.")] = None,
     side_beam: Annotated[str | None, _particular("Of a side hull of a trimaran.")] = None,
     spacing: Annotated[str | None, _particular("Of the outer hulls, centre to centre.")] = None,
+    frontal_area: Annotated[str | None, _particular("Of an open rov, seen from ahead.")] = None,
+    side_area: Annotated[str | None, _particular("Of an open rov, seen from abeam.")] = None,
+    top_area: Annotated[str | None, _particular("Of an open rov, seen from above.")] = None,
     draught: Annotated[str | None, _particular("Of the main hull.")] = None,
     height: Annotated[str | None, _particular("Of a rov, or from keel to deck.")] = None,
     cg_height: Annotated[str | None, _particular("Of the CG above the keel.")] = None,
@@ -55,6 +58,7 @@ def estimate(
     written = {
         "length": length, "diameter": diameter, "beam": beam, "hull_beam": hull_beam,
         "side_length": side_length, "side_beam": side_beam, "spacing": spacing,
+        "frontal_area": frontal_area, "side_area": side_area, "top_area": top_area,
         "draught": draught, "height": height, "cg_height": cg_height, "mass": mass,
         "speed": speed, "density": density,
     }  # fmt: skip
@@ -87,14 +91,7 @@ def _propose(found: Proposal, out: Path | None) -> None:
         ],
         "file": text,
     }  # fmt: skip
-    table = Table(box=SIMPLE, padding=(0, 1, 0, 0), title=f"{found.kind}", title_justify="left")
-    table.add_column("", no_wrap=True)
-    for column in ("value", "unit", "formula and range", "measured by"):
-        table.add_column(column)
-    for v in found.all_values():
-        shown = v.value if isinstance(v.value, str) else _numbers(v.value)
-        table.add_row(v.name, escape(shown), v.unit, escape(v.source), v.measured_by)
-    print_table(table)
+    print_table(_table(found))
     print_notes(found.notes)
     if out is None:
         for line in text.splitlines():
@@ -105,9 +102,24 @@ def _propose(found: Proposal, out: Path | None) -> None:
     console.print(f"wrote {escape(str(out))}", soft_wrap=True)
 
 
-def _numbers(value: float | tuple[float, ...]) -> str:
-    each = value if isinstance(value, tuple) else (value,)
-    return ", ".join(number(item + 0.0, 4) for item in each)
+def _table(found: Proposal) -> Table:
+    """Return the numbers with their formulas; texts are in the file alone."""
+    table = Table(box=SIMPLE, padding=(0, 1, 0, 0), title=found.kind, title_justify="left")
+    table.add_column("", no_wrap=True)
+    table.add_column("value")
+    table.add_column("formula and range")
+    table.add_column("measured by", no_wrap=True)
+    for v in found.all_values():
+        if not isinstance(v.value, str):
+            table.add_row(v.name, _shown(v.value, v.unit), escape(v.source), v.measured_by)
+    return table
+
+
+def _shown(value: float | tuple[float, ...], unit: str) -> str:
+    """Return the value with its unit, without products of inertia: a proposal has none."""
+    each = value[:3] if isinstance(value, tuple) else (value,)
+    numbers = ", ".join(number(item + 0.0, 4) for item in each)
+    return numbers if unit == "1" else f"{numbers} {unit}"
 
 
 def _damping(hull: str) -> None:

@@ -100,21 +100,32 @@ def drag_coefficient(depth: float, a: float, b: float) -> float:
 
 
 def turning_drag(
-    length: float, beam: float, height: float, density: float
+    length: float, beam: float, height: float, density: float, covers: tuple[float, float, float]
 ) -> tuple[float, float, float]:
     """Return the quadratic drag of turning about x, y, z, kg.m2, by strips of the four sides.
 
-    About z: rho / 2 height (C_y length^4 + C_x beam^4) / 32, C of `drag_coefficient`.
+    About z: rho / 2 height (c_y C_y length^4 + c_x C_x beam^4) / 32, C of `drag_coefficient`, c the
+    shares of the faces that are filled.
     """
-    x = drag_coefficient(length, beam, height)
-    y = drag_coefficient(beam, length, height)
-    z = drag_coefficient(height, length, beam)
+    x = covers[0] * drag_coefficient(length, beam, height)
+    y = covers[1] * drag_coefficient(beam, length, height)
+    z = covers[2] * drag_coefficient(height, length, beam)
     a = 0.5 * density / 32.0
     return (
         a * length * (z * beam**4 + y * height**4),
         a * beam * (z * length**4 + x * height**4),
         a * height * (y * length**4 + x * beam**4),
     )
+
+
+def projected(covers: tuple[float, float, float]) -> tuple[float, float, float]:
+    """Return the factors of the added mass along x, y, z of a body that fills its box in part.
+
+    ``covers`` c are the shares of the faces across x, y, z that are filled: c_x^2 c_y c_z along x,
+    and so on; that of the added inertia is c_x c_y c_z (Eidsvik 2015).
+    """
+    product = covers[0] * covers[1] * covers[2]
+    return product * covers[0], product * covers[1], product * covers[2]
 
 
 def inertia(mass: float, length: float, beam: float, height: float) -> tuple[float, float, float]:

@@ -14,6 +14,8 @@ from .surroundings import GRAVITY
 
 _BLOCK = {"monohull": 0.6, "catamaran": 0.45, "trimaran": 0.45, "barge": 0.95}
 """C_B where mass and draught are not both given."""
+_WATERPLANE = {"catamaran": 0.75, "trimaran": 0.75}
+"""C_W at least, of slender hulls with transoms (Fossen, otter)."""
 _FROUDE = 0.25
 
 
@@ -41,6 +43,11 @@ class Floating:
     def main_draught(self) -> float:
         """Of the main hull, m."""
         return self.hulls[0].draught
+
+    @property
+    def said_draught(self) -> float:
+        """The main hull's as it is given, or to four digits."""
+        return self.particulars.get("draught", float(f"{self.main_draught:.4g}"))
 
     @property
     def height(self) -> float:
@@ -83,7 +90,7 @@ def floating(particulars: Particulars) -> Floating:
     """
     places = _PLACES[particulars.kind](particulars)
     block, draught, mass = _afloat(particulars, sum(p.volume for p in places))
-    waterplane = waterplane_coefficient(block)
+    waterplane = max(waterplane_coefficient(block), _WATERPLANE.get(particulars.kind, 0.0))
     hulls = tuple(
         FloatingHull(p.length, p.beam, p.depth * draught, block, waterplane, p.across)
         for p in places

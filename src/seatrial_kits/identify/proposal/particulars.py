@@ -19,11 +19,16 @@ UNITS = {
     "height": "m",
     "cg_height": "m",
     "spacing": "m",
+    "frontal_area": "m2",
+    "side_area": "m2",
+    "top_area": "m2",
     "mass": "kg",
     "speed": "m/s",
     "density": "kg/m3",
 }
 """Unit of each particular."""
+AREAS = ("frontal_area", "side_area", "top_area")
+"""Of what is seen from ahead, abeam and above."""
 _SURFACE = ("mass", "draught", "height", "cg_height", "speed", "density")
 
 
@@ -37,7 +42,7 @@ class Kind:
 
 KINDS = {
     "torpedo": Kind(("length", "diameter"), ("mass", "speed", "density")),
-    "rov": Kind(("length", "beam", "height", "mass"), ("speed", "density")),
+    "rov": Kind(("length", "beam", "height", "mass"), (*AREAS, "speed", "density")),
     "monohull": Kind(("length", "beam"), _SURFACE),
     "catamaran": Kind(("length", "beam", "hull_beam"), (*_SURFACE, "spacing")),
     "trimaran": Kind(

@@ -1,22 +1,26 @@
 """Formulas of hulls that float: form, hydrostatics, added mass by strips, resistance, cross-flow.
 
-The body origin is amidships in the water line, x ahead, z down; lengths in m.
+The body origin is amidships in the water line, x ahead, z down; lengths in m, density
+in kg/m3.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 
 import numpy as np
 
-from seatrial.model.expressions import Vector
-
 from . import sections
+from .box import section_inertia
 
-_GAUSS = np.polynomial.legendre.leggauss(40)
-GRAVITY = 9.81
+_GAUSS = np.polynomial.legendre.leggauss(20)
+_PLACES = np.concatenate([_GAUSS[0] - 1.0, _GAUSS[0] + 1.0]) / 2.0
+_WEIGHTS = np.tile(_GAUSS[1], 2) / 2.0
+"""Of each half of the length: a water line may have a kink amidships."""
+CLARKE_FROM = 5.0
+"""L/B from which on `clarke` is taken: KVLCC2 has 5.5."""
 _HOERNER = (
     (0.0108623, 1.96608), (0.176606, 1.96573), (0.353025, 1.89756), (0.451863, 1.78718),
     (0.472838, 1.58374), (0.492877, 1.27862), (0.493252, 1.21082), (0.558473, 1.08356),
@@ -70,9 +74,8 @@ class FloatingHull:
 
     def over_length(self, of: Callable[[float, float], float]) -> float:
         """Return the integral of ``of(x, b)`` over the length."""
-        nodes, weights = _GAUSS
         half = self.length / 2.0
-        both = zip(nodes, weights, self.beams(nodes.tolist()), strict=True)
+        both = zip(_PLACES, _WEIGHTS, self.beams(_PLACES.tolist()), strict=True)
         return half * sum(float(w) * of(float(s) * half, b) for s, w, b in both)
 
 
@@ -125,45 +128,61 @@ def surge_mass(mass: float, length: float, density: float) -> float:
     return float(2.7 * density * (mass / density) ** (5.0 / 3.0) / length**2)
 
 
-def added_mass(
-    hulls: Sequence[FloatingHull],
-    density: float,
-    roll_section: Callable[[float, float, float], float] = sections.roll_inertia,
-) -> AddedMass:
-    """Return the added mass by strips of `sections`, hulls without influence on one another.
+def clarke(hull: FloatingHull, density: float) -> tuple[float, float]:
+    """Return the added mass in sway, kg, and in yaw, kg.m2.
 
-    Surge by Soeding; sway at low, heave, roll and pitch at high frequency. ``roll_section`` gives
-    the added inertia of a section by beam, draught and density.
+        -Y_v' = pi (T/L)^2 (1 + 0.16 C_B B/T - 5.1 (B/L)^2)                   on rho/2 L^3
+        -N_r' = pi (T/L)^2 (1/12 + 0.017 C_B B/T - 0.33 B/L)                  on rho/2 L^5
+
+    Derivatives by acceleration, a regression over models of ships (Clarke, Gedling & Hine 1983).
+    The second is 0 about L/B = 4.
     """
-    total = np.zeros(6)
-    for hull in hulls:
-        total += _of(hull, density, roll_section)
-    return AddedMass(*total.tolist())
+    L, B, T, C_B = hull.length, hull.beam, hull.draught, hull.block
+    scale = math.pi * (T / L) ** 2 * 0.5 * density * L**3
+    sway = 1.0 + 0.16 * C_B * B / T - 5.1 * (B / L) ** 2
+    yaw = 1.0 / 12.0 + 0.017 * C_B * B / T - 0.33 * B / L
+    return scale * sway, scale * L**2 * yaw
 
 
-def _of(
-    hull: FloatingHull, density: float, roll_section: Callable[[float, float, float], float]
-) -> Vector:
+def added_mass(hull: FloatingHull, density: float, *, box: bool = False) -> AddedMass:
+    """Return the added mass of one hull about amidships on the body's centre line.
+
+    Surge by Soeding; heave, roll and pitch by strips of `sections` at high frequency; sway and yaw
+    by `clarke`, or by strips at low frequency of a hull with L/B below `CLARKE_FROM`, and of a
+    ``box``, whose sections roll as rectangles.
+    """
     T, sigma = hull.draught, hull.fullness
 
     def heave(x: float, b: float) -> float:
         return sections.heave_mass(b, T, sigma, density)
 
-    def sway(x: float, b: float) -> float:
+    def across(x: float, b: float) -> float:
         return sections.sway_mass(b, T, sigma, density)
 
+    def roll(x: float, b: float) -> float:
+        if box:
+            return section_inertia(b, 2.0 * T, density) / 2.0
+        return sections.roll_inertia(b, T, density)
+
     up = hull.over_length(heave)
-    roll = hull.over_length(lambda x, b: roll_section(b, T, density))
-    return np.array(
-        [
-            surge_mass(density * hull.volume, hull.length, density),
-            hull.over_length(sway),
-            up,
-            roll + up * hull.across**2,
-            hull.over_length(lambda x, b: x**2 * heave(x, b)),
-            hull.over_length(lambda x, b: x**2 * sway(x, b)),
-        ]
+    if box or hull.length < CLARKE_FROM * hull.beam:
+        sway = hull.over_length(across)
+        yaw = hull.over_length(lambda x, b: x**2 * across(x, b))
+    else:
+        sway, yaw = clarke(hull, density)
+    return AddedMass(
+        surge_mass(density * hull.volume, hull.length, density),
+        sway,
+        up,
+        hull.over_length(roll) + up * hull.across**2,
+        hull.over_length(lambda x, b: x**2 * heave(x, b)),
+        yaw,
     )
+
+
+def together(each: Sequence[AddedMass]) -> AddedMass:
+    """Return the added mass of hulls without influence on one another."""
+    return AddedMass(*map(sum, zip(*(astuple(one) for one in each), strict=True)))
 
 
 def wetted_surface(hull: FloatingHull) -> float:

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from ..damping import friction_line
-from . import box, sections, ship
+from . import box, ship
 from .floating import Floating, floating
 from .particulars import Particulars
 from .surface_parts import surface_parts
@@ -25,14 +25,17 @@ from .value import (
 )
 
 _TERMS = "restoring coriolis damping crossflow-drag hull-lift wave-loads wind-loads"
-_SLENDER = (4.0, 20.0)
-_MASS = Formula(
-    "strips, Lewis forms, heave, roll, pitch at high, sway, yaw at low frequency; surge: Soeding",
-    "length / beam of a hull", *_SLENDER,
-)  # fmt: skip
+_STRIPS = "surge: Soeding; heave, roll, pitch: strips, Lewis forms at high frequency; sway, yaw: "
+_SHIP = Formula(_STRIPS + "Clarke et al. 1983", "length / beam of a hull", ship.CLARKE_FROM)
+_BROAD = Formula(_STRIPS + "strips at low frequency", "length / beam of a hull", 4.0, 20.0)
 _RADII = Formula("radii of gyration 0.4 B, 0.25 L, 0.25 L about the CG (Fossen, otter; ITTC)")
 _BOX = Formula("even box of length, beam and height")
-_WATERPLANE = Formula("C_W = (1 + 2 C_B) / 3, water line 1 - |2 x / L|^n", "C_B", 0.35, 1.0)
+_WATERPLANE = Formula(
+    "C_W = (1 + 2 C_B) / 3, 0.75 at least of hulls with transoms; water line 1 - |2 x / L|^n",
+    "C_B",
+    0.35,
+    1.0,
+)
 _GM = Formula("BM of the waterplane, Morrish's centre of buoyancy")
 _LIFT = Formula(
     "wing of low aspect ratio (Jones; Clarke et al. 1983)", "draught / length", 0.0, 0.1
@@ -67,16 +70,14 @@ def surface_proposal(particulars: Particulars) -> Proposal:
 
 
 def _added(body: Floating) -> ship.AddedMass:
-    return ship.added_mass(body.hulls, body.density, _box_roll if body.is_box else _round_roll)
+    return ship.together(
+        [ship.added_mass(hull, body.density, box=body.is_box) for hull in body.hulls]
+    )
 
 
-def _round_roll(beam: float, draught: float, density: float) -> float:
-    return sections.roll_inertia(beam, draught, density)
-
-
-def _box_roll(beam: float, draught: float, density: float) -> float:
-    """Return half of the added inertia of the doubled rectangle."""
-    return box.section_inertia(beam, 2.0 * draught, density) / 2.0
+def _added_by(body: Floating) -> Formula:
+    main = body.hulls[0]
+    return _BROAD if body.is_box or main.length < ship.CLARKE_FROM * main.beam else _SHIP
 
 
 def _inertia(body: Floating) -> tuple[float, float, float]:
@@ -89,7 +90,7 @@ def _inertia(body: Floating) -> tuple[float, float, float]:
 
 def _mass(body: Floating) -> list[Value]:
     p, a, none = body.particulars, _added(body), (0.0, 0.0, 0.0)
-    main = body.hulls[0]
+    main, by = body.hulls[0], _added_by(body)
     ratio = main.length / main.beam
     by_block = Formula(f"C_B {body.block:.3g} of this kind")
     radii = _BOX if body.is_box else _RADII
@@ -98,8 +99,8 @@ def _mass(body: Floating) -> list[Value]:
         given_or(p, "mass", body.mass, "kg", by_block),
         estimated("inertia", (*_inertia(body), *none), "kg.m2", radii, DECAY),
         estimated("center_of_gravity", (0.0, 0.0, body.z_G), "m", at_line, INCLINING),
-        estimated("added_mass", (a.surge, a.sway, a.heave, *none), "kg", _MASS, DECAY, ratio),
-        estimated("added_inertia", (a.roll, a.pitch, a.yaw, *none), "kg.m2", _MASS, DECAY, ratio),
+        estimated("added_mass", (a.surge, a.sway, a.heave, *none), "kg", by, DECAY, ratio),
+        estimated("added_inertia", (a.roll, a.pitch, a.yaw, *none), "kg.m2", by, DECAY, ratio),
     ]
 
 
@@ -152,15 +153,14 @@ def _damping(body: Floating, ahead: float) -> list[Value]:
         if hull.length == main.length
     )
     slim = main.draught / main.length
-    strips = Formula("strips of the hull")
     return [
         estimated(
             "quadratic_damping_force", (ahead, 0.0, 0.0), "N.s2/m2", friction, TOWING, froude
         ),
         estimated("linear_damping_force", (0.0, 0.0, heave), "N.s/m", _RATIOS, DECAY),
         estimated("linear_damping_moment", (roll, pitch, 0.0), "N.m.s/rad", _RATIOS, DECAY),
-        estimated("crossflow_length", main.length, "m", strips, TURNING),
-        estimated("crossflow_draught", main.draught, "m", strips, TURNING),
+        Value("crossflow_length", main.length, "m", "length of a hull", TURNING),
+        Value("crossflow_draught", body.said_draught, "m", "draught of a hull", TURNING),
         estimated("crossflow_coefficient", C_d, "1", _HOERNER, TURNING, wide),
         estimated("lift", (lift, 0.0), "kg/m", _LIFT, ZIGZAG, slim),
         estimated("lift_arm", main.length / 2.0, "m", _LIFT, ZIGZAG),

@@ -47,7 +47,7 @@ def _thruster(
 
 def _rudder(body: Floating) -> Part:
     length, draught = body.particulars["length"], body.main_draught
-    area = Formula("1.5 % of length times draught (Waertsilae Encyclopedia)")
+    area = Formula("1.5 % of length times draught (Wärtsilä Encyclopedia of Marine Technology)")
     return Part(
         "foils",
         "rudder",

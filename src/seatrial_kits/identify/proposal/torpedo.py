@@ -32,7 +32,7 @@ def bare_hull_drag(friction: float, length: float, diameter: float, density: flo
     ``friction`` is C_f.
     """
     slim = diameter / length
-    form = 1.0 + 1.5 * slim**1.5 + 7.0 * slim**3
+    form = 1.0 + 1.5 * slim * math.sqrt(slim) + 7.0 * slim**3
     return 0.5 * density * wetted_area(length, diameter) * friction * form
 
 

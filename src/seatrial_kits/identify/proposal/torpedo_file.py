@@ -53,7 +53,7 @@ def torpedo_proposal(particulars: Particulars) -> Proposal:
         *_mass(particulars),
         *_damping(particulars, drag, bare),
     )
-    capsule = {"radius": diameter / 2.0, "length": length - diameter}
+    capsule = {"radius": diameter / 2.0, "length": round(length - diameter, 9)}
     return Proposal(
         particulars.kind,
         length,
@@ -131,8 +131,8 @@ def _damping(particulars: Particulars, ahead: float, bare: float) -> list[Value]
             "quadratic_damping_moment", (0.0, turning, 0.0), "N.m.s2/rad2", _STRIPS, DECAY, ratio
         ),
         estimated("linear_damping_moment", (rolled, 0.0, 0.0), "N.m.s/rad", roll_by, DECAY),
-        estimated("crossflow_length", length, "m", _STRIPS, TURNING, ratio),
-        estimated("crossflow_draught", diameter, "m", _STRIPS, TURNING, ratio),
+        Value("crossflow_length", length, "m", _STRIPS.text, TURNING),
+        Value("crossflow_draught", diameter, "m", _STRIPS.text, TURNING),
         estimated("crossflow_coefficient", 1.1, "1", across, TURNING),
         estimated("lift", (lift, lift), "kg/m", _LIFT, TURNING, ratio),
         estimated("lift_arm", 0.15 * length, "m", center, TURNING),
