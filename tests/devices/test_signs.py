@@ -23,7 +23,7 @@ SECTIONS = {
         for section in load_profile(vehicle).sections()
         if section.startswith("sensors.") and section != "sensors.camera"
     ]
-    for vehicle in ("hydrone", "videoray", "gloria", "mariner", "otter", "bluerov2")
+    for vehicle in ("hydrone", "videoray", "gloria", "mariner", "kvlcc2", "otter", "bluerov2")
 }
 EACH = [(vehicle, section) for vehicle, sections in SECTIONS.items() for section in sections]
 ERRORS = ("_noise", "_bias", "_instability", "_resolution", "delay", "dropout", "deviation")
@@ -76,6 +76,7 @@ TURNS = {
         "rov", "bluerov2", 10.0, force_1=[20, 0, 0], moment_1=[0, 0, 1], **{"eta_start.z": 5}
     ),
     "mariner": lambda: turn("manoeuvring-ship", "mariner", 400.0, rudder=-0.1),
+    "kvlcc2": lambda: turn("mmg-ship", "kvlcc2", 400.0, rudder=-0.1, propeller_order=1.0),
     "gloria": lambda: turn("sailboat", "gloria", 1.0, rudder=-0.05, **{"eta_start.psi": 1, "nu_start.u": 1.5}),
     "surface": lambda: turn("surface-vessel", "videoray-surface/physical", 60.0, command=[0.02, 0.019]),
     "ship": lambda: turn(
