@@ -18,7 +18,7 @@ from .turning import along_and_across, heading_change
 _WITHIN = 0.95
 
 
-def williamson(record: Record) -> Figures:
+def williamson(record: Record, order: float | None = None) -> Figures:
     """Return the figures of a Williamson turn: back on the own track on the reciprocal course.
 
     The heading changes by some 70 deg to one side, then by 250 deg to the other. ``turn_time``
@@ -26,7 +26,7 @@ def williamson(record: Record) -> Figures:
     track then, positive to the side of the first helm, and ``advance`` that along it, m. Raises
     InputError for a record that starts in a turn or never heads back.
     """
-    order = order_time(record)
+    order = order_time(record) if order is None else order
     check_approach(record, order)
     side, found = side_of(record, order), Collector("Williamson turn")
     at = crossing(heading_change(record, order, side), -math.pi, order, record.end)
@@ -40,7 +40,7 @@ def williamson(record: Record) -> Figures:
     return found.figures()
 
 
-def turn_on_the_spot(record: Record) -> Figures:
+def turn_on_the_spot(record: Record, order: float | None = None) -> Figures:
     """Return the figures of a turn on the spot.
 
     ``rate_of_turn`` rad/s, the steady one, positive to starboard; ``time_90`` and ``time_360``
@@ -48,7 +48,7 @@ def turn_on_the_spot(record: Record) -> Figures:
     the order after a full turn, and ``largest_drift`` that until then. Raises InputError without a
     heading change of 90 deg.
     """
-    order = order_time(record)
+    order = order_time(record) if order is None else order
     side, found = side_of(record, order), Collector("turn on the spot")
     psi = heading_change(record, order, side)
     for name, angle in (("time_90", math.pi / 2.0), ("time_360", math.tau)):

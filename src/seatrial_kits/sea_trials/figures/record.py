@@ -52,11 +52,7 @@ class Record:
     power: Any = None
 
     def __post_init__(self) -> None:
-        columns = {
-            field.name: np.asarray(getattr(self, field.name), np.float64)
-            for field in fields(self)
-            if getattr(self, field.name) is not None
-        }
+        columns = {name: np.asarray(values, np.float64) for name, values in self.columns().items()}
         _check_shapes(columns)
         _check_time(columns["time"])
         _check_helm(columns.get("helm"))
@@ -85,6 +81,11 @@ class Record:
     def end(self) -> float:
         """Time of the last row, s."""
         return float(self.time[-1])
+
+    def columns(self) -> dict[str, Array]:
+        """Return what was measured, by name."""
+        found = {field.name: getattr(self, field.name) for field in fields(self)}
+        return {name: values for name, values in found.items() if values is not None}
 
     def spline(self, name: str) -> CubicSpline:
         """Return the spline of another column; raises InputError if it was not measured."""

@@ -18,7 +18,7 @@ _INSTANTS = 2001
 """Instants of the last turn over which the steady figures are means."""
 
 
-def turning_circle(record: Record) -> Figures:
+def turning_circle(record: Record, order: float | None = None) -> Figures:
     """Return the figures of a turning circle.
 
     x along the heading at the order, y across it towards the turn, m, both of the water; psi the
@@ -38,9 +38,10 @@ def turning_circle(record: Record) -> Figures:
     current_north, ...  `current_of_circle`, where the record has two turns
     =================== ====================================================================
 
-    Raises InputError for a record that starts in a turn, or without a heading change of 90 deg.
+    ``order`` is the time of the helm order, s; None: `order_time`. Raises InputError for a record
+    that starts in a turn, or without a heading change of 90 deg.
     """
-    order = order_time(record)
+    order = order_time(record) if order is None else order
     check_approach(record, order)
     side, found = side_of(record, order), Collector("turning circle")
     current = current_of_circle(record, order, side)

@@ -15,11 +15,12 @@ MOST = 4
 """Overshoots that are reported."""
 
 
-def zig_zag(record: Record, heading: float) -> Figures:
+def zig_zag(record: Record, heading: float, order: float | None = None) -> Figures:
     """Return the figures of a zig-zag, its helm reversed at heading changes of +-``heading``.
 
-    ``heading`` in rad, above 0. psi is the heading change since the first order, positive to its
-    side; the k-th reversal is where psi reaches +heading (k odd) or -heading (k even).
+    ``heading`` in rad, above 0; ``order`` is the time of the first order, s, None: `order_time`.
+    psi is the heading change since the first order, positive to its side; the k-th reversal is
+    where psi reaches +heading (k odd) or -heading (k even).
 
     ===================== ==================================================================
     initial_turning_time  from the order to the first reversal, s; initial_turning_track the
@@ -36,7 +37,7 @@ def zig_zag(record: Record, heading: float) -> Figures:
     a turn, a ``heading`` not above 0, and a record that does not reach the first reversal.
     """
     check_heading(heading)
-    order = order_time(record)
+    order = order_time(record) if order is None else order
     check_approach(record, order)
     side, found = side_of(record, order), Collector("zig-zag")
     reversals = _reversals(record, heading, order, side)
@@ -52,14 +53,16 @@ def zig_zag(record: Record, heading: float) -> Figures:
     return found.figures()
 
 
-def initial_turning(record: Record, heading: float = math.radians(10.0)) -> Figures:
+def initial_turning(
+    record: Record, heading: float = math.radians(10.0), order: float | None = None
+) -> Figures:
     """Return distance run, m, and time, s, when the heading has changed by ``heading``, rad.
 
-    IMO MSC.137(76) wants a change of 10 deg with 10 deg of helm. Raises InputError for a record
-    that starts in a turn or whose heading does not change by that.
+    IMO MSC.137(76) wants a change of 10 deg with 10 deg of helm. ``order`` as for `zig_zag`. Raises
+    InputError for a record that starts in a turn or whose heading does not change by that.
     """
     check_heading(heading)
-    order = order_time(record)
+    order = order_time(record) if order is None else order
     check_approach(record, order)
     psi = heading_change(record, order, side_of(record, order))
     found, at = Collector("initial turning"), crossing(psi, heading, order, record.end)
