@@ -23,7 +23,17 @@ SECTIONS = {
         for section in load_profile(vehicle).sections()
         if section.startswith("sensors.") and section != "sensors.camera"
     ]
-    for vehicle in ("hydrone", "videoray", "gloria", "mariner", "otter", "bluerov2")
+    for vehicle in (
+        "hydrone",
+        "videoray",
+        "gloria",
+        "mariner",
+        "otter",
+        "bluerov2",
+        "remus100",
+        "wam-v",
+        "supply-ship",
+    )
 }
 EACH = [(vehicle, section) for vehicle, sections in SECTIONS.items() for section in sections]
 ERRORS = ("_noise", "_bias", "_instability", "_resolution", "delay", "dropout", "deviation")
