@@ -16,12 +16,13 @@ from seatrial.system.profile.profile import load_profile
 from .running import started
 
 G = 9.81
-# A camera measures what there is beside the vehicle: tests/devices/test_camera.py.
+# A camera measures what there is beside the vehicle, tests/devices/test_camera.py; a log measures
+# the water, tests/devices/test_acoustic_sensors.py.
 SECTIONS = {
     vehicle: [
         section
         for section in load_profile(vehicle).sections()
-        if section.startswith("sensors.") and section != "sensors.camera"
+        if section.startswith("sensors.") and section not in ("sensors.camera", "sensors.log")
     ]
     for vehicle in (
         "hydrone",
