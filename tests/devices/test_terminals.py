@@ -20,7 +20,6 @@ from seatrial.devices.usbl import Usbl
 from seatrial.model.component import Component
 from seatrial.physics.cable.tether import Tether
 from seatrial.physics.craft.manoeuvring_ship import ManoeuvringShip
-from seatrial.physics.parts.mmg_ship import MmgShip
 from seatrial.physics.craft.marine_craft import MarineCraft
 from seatrial.physics.craft.rov import Rov
 from seatrial.physics.craft.sailboat import Sailboat
@@ -28,6 +27,7 @@ from seatrial.physics.craft.surface_vessel import SurfaceVessel
 from seatrial.physics.craft.thruster_ship import ThrusterShip
 from seatrial.physics.environment.downwash import Downwash
 from seatrial.physics.environment.step_disturbance import StepDisturbance
+from seatrial.physics.parts.mmg_ship import MmgShip
 
 CRAFT = (MarineCraft, Rov, Sailboat, ManoeuvringShip, MmgShip, ThrusterShip, SurfaceVessel)
 SENSORS = (Ahrs, Altimeter, Anemometer, Compass, Ctd, Depth, Dvl, EchoSounder, Gnss, Imu, Lbl, Usbl)
