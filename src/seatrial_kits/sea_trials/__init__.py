@@ -1,0 +1,1 @@
+"""Standard sea trials: manoeuvres as trials, their figures, criteria of the IMO."""

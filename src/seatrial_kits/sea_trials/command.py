@@ -1,0 +1,155 @@
+"""``seatrial trials``: figures of sea trials, from runs and from logs."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.box import SIMPLE
+from rich.markup import escape
+from rich.table import Table
+
+from seatrial.cli.answer import answer
+from seatrial.cli.show import console
+from seatrial.errors import InputError, unknown
+from seatrial.model.readable import number, person_scale
+from seatrial.model.units import quantity
+from seatrial.trial.records.run_folder import load_run
+
+from .evaluation import FIGURES, Done, criteria_name, figures_of
+from .figures.criteria import Verdict, imo
+from .figures.result import Figures
+from .log_file import read_columns, read_log
+from .run_record import done_in
+
+trials_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
+CRITERIA = ("imo",)
+_FAILED = 1
+
+
+@trials_app.callback()
+def _trials() -> None:
+    """Find figures of standard sea trials."""
+
+
+@trials_app.command()
+def figures(
+    log: Annotated[Path, typer.Argument(help="A run folder, or a CSV file of a real trial.")],
+    manoeuvre: Annotated[
+        str | None, typer.Option("--manoeuvre", help=f"Of a CSV file: {', '.join(FIGURES)}.")
+    ] = None,
+    columns: Annotated[
+        list[str] | None,
+        typer.Option("--columns", metavar="WHAT=NAME[:UNIT],...", help="Columns of a CSV file."),
+    ] = None,
+    length: Annotated[str | None, typer.Option(help="Length between perpendiculars.")] = None,
+    heading: Annotated[str | None, typer.Option(help="Heading change of a zig-zag.")] = None,
+    depth: Annotated[str | None, typer.Option(help="Depth that a step leads to.")] = None,
+    order: Annotated[
+        list[str] | None, typer.Option("--order", help="Time of an order, once for each.")
+    ] = None,
+    compare: Annotated[
+        Path | None, typer.Option("--compare", metavar="RUN", help="A run to put beside it.")
+    ] = None,
+    criteria: Annotated[str | None, typer.Option("--criteria", help="imo: MSC.137(76).")] = None,
+) -> None:
+    """Show the figures of a manoeuvre; status 1 if a criterion does not hold."""
+    if criteria is not None and criteria not in CRITERIA:
+        raise InputError(f"--criteria: {unknown('set', criteria, CRITERIA)}")
+    done = _with(_read(log, manoeuvre, columns or []), length, heading, depth, order or [])
+    found = figures_of(done)
+    beside = None if compare is None else figures_of(done_in(load_run(compare)))
+    verdicts = [] if criteria is None else _verdicts(done, found)
+    answer.result = {**found.as_dict(), "criteria": [_verdict(each) for each in verdicts]}
+    if beside is not None:
+        answer.result["compared"] = beside.as_dict()
+    _print(found, beside, done.length)
+    for each in verdicts:
+        style, word = ("green", "PASS") if each.passed else ("red", "FAIL")
+        console.print(
+            f"[{style}]{word}[/]  {each.ability}: {number(each.value)} {each.unit}, limit "
+            f"{number(each.limit)}, margin {number(each.margin)}",
+            soft_wrap=True,
+        )
+    if not all(each.passed for each in verdicts):
+        raise typer.Exit(_FAILED)
+
+
+def _read(log: Path, manoeuvre: str | None, columns: list[str]) -> Done:
+    if log.is_dir():
+        if manoeuvre is not None or columns:
+            raise InputError("--manoeuvre and --columns are for CSV files: a run has its own")
+        return done_in(load_run(log))
+    if manoeuvre is None:
+        raise InputError(f"--manoeuvre: one of {', '.join(FIGURES)} is needed")
+    return Done(manoeuvre, read_log(log, read_columns(columns)))
+
+
+def _with(
+    done: Done, length: str | None, heading: str | None, depth: str | None, orders: list[str]
+) -> Done:
+    """Return a manoeuvre with what the command line adds. Raises InputError."""
+    texts = {"length": (length, "m"), "heading": (heading, "rad"), "depth": (depth, "m")}
+    values = {}
+    for name, (text, unit) in texts.items():
+        if text is not None:
+            values[name] = _quantity(name, text, unit)
+    if values.get("length", 1.0) <= 0.0:
+        raise InputError(f"--length: a length above 0 is needed, found {length!r}")
+    times = tuple(_quantity("order", text, "s") for text in orders)
+    return replace(done, **values, orders=times or done.orders)  # type: ignore[arg-type]
+
+
+def _quantity(name: str, text: str, unit: str) -> float:
+    try:
+        return quantity(text, unit)
+    except InputError as error:
+        raise InputError(f"--{name}: {error}") from None
+
+
+def _verdicts(done: Done, found: Figures) -> list[Verdict]:
+    if done.length is None:
+        raise InputError("--criteria: the length of the ship is needed: --length")
+    at = done.record.start if done.first is None else done.first
+    speed = found.get("approach_speed", float(done.record.speed(at)))
+    verdicts = imo({criteria_name(done): found}, done.length, speed)
+    if not verdicts:
+        raise InputError(f"--criteria: MSC.137(76) has none of {criteria_name(done)}")
+    return verdicts
+
+
+def _verdict(verdict: Verdict) -> dict[str, object]:
+    return {**asdict(verdict), "margin": verdict.margin, "passed": verdict.passed}
+
+
+def _print(found: Figures, beside: Figures | None, length: float | None) -> None:
+    table = Table(box=SIMPLE, padding=(0, 1, 0, 0), title=found.manoeuvre, title_justify="left")
+    table.add_column("")
+    table.add_column("value", justify="right")
+    table.add_column("unit")
+    table.add_column("in lengths", justify="right")
+    if beside is not None:
+        table.add_column("run", justify="right")
+        table.add_column("difference", justify="right")
+    for name, figure in found.found.items():
+        in_lengths = number(figure.value / length) if length and figure.unit == "m" else ""
+        factor, unit = person_scale(figure.unit)
+        row = [name, number(factor * figure.value), unit]
+        row.append(in_lengths)
+        if beside is not None and name in beside:
+            other = beside[name]
+            row += [number(factor * other), _difference(figure.value, other)]
+        table.add_row(*map(escape, row))
+    console.print(table)
+    for name, reason in found.missing.items():
+        console.print(f"{name} cannot be had: {reason}", soft_wrap=True)
+    for note in found.notes:
+        console.print(f"note: {note}", soft_wrap=True)
+
+
+def _difference(value: float, other: float) -> str:
+    """Return by how much the run differs, as a share of the log's figure."""
+    return "" if math.isclose(value, 0.0) else f"{100.0 * (other / value - 1.0):+.1f} %"

@@ -1,0 +1,125 @@
+"""Figures of a manoeuvre by its kind, whatever the record comes from."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from seatrial.errors import InputError, unknown
+
+from .figures.course_stability import loop, pull_out, spiral
+from .figures.handling import turn_on_the_spot, williamson
+from .figures.nomoto import nomoto
+from .figures.record import Array, Record
+from .figures.result import Figure, Figures
+from .figures.straight import acceleration, stopping
+from .figures.turning import turning_circle
+from .figures.vertical import depth_step
+from .figures.zigzag import initial_turning, zig_zag
+
+
+@dataclass(frozen=True)
+class Done:
+    """A manoeuvre that was done: its record, and what its figures need. SI, angles in rad."""
+
+    kind: str
+    record: Record
+    orders: tuple[float, ...] = ()
+    """Times of the orders, s; none: found from helm."""
+    heading: float = math.radians(10.0)
+    """Heading change of a zig-zag and of initial turning."""
+    share: float = 0.2
+    """Share of the approach speed at which a vessel that coasts has stopped."""
+    depth: float | None = None
+    """Depth that a step leads to, m."""
+    length: float | None = None
+    """Length of the ship, m."""
+
+    @property
+    def first(self) -> float | None:
+        """Time of the first order, s, if it is known."""
+        return self.orders[0] if self.orders else None
+
+    def needed(self, number: int = 0) -> float:
+        """Return the time of an order; raises InputError if it is not known."""
+        if number >= len(self.orders):
+            raise InputError(f"{self.kind}: the time of the order is needed")
+        return self.orders[number]
+
+
+def figures_of(done: Done) -> Figures:
+    """Return the figures of a manoeuvre; raises InputError as they do, and for an unknown kind."""
+    if done.kind not in FIGURES:
+        raise InputError(unknown("manoeuvre", done.kind, FIGURES))
+    return FIGURES[done.kind](done)
+
+
+def criteria_name(done: Done) -> str:
+    """Return the name under which `imo` has the figures: that of the trial."""
+    if done.kind != "zig-zag":
+        return done.kind
+    return f"zig-zag-{math.degrees(done.heading):g}"
+
+
+def _zig_zag(done: Done) -> Figures:
+    figures = zig_zag(done.record, done.heading, done.first)
+    names = ("nomoto_K", "nomoto_T", "nomoto_delta_0", "nomoto_residual")
+    try:
+        model = nomoto(_after(done.record, done.first))
+    except InputError as error:
+        return replace(figures, missing={**figures.missing, **dict.fromkeys(names, str(error))})
+    values = (model.K, model.T, model.delta_0, model.residual)
+    units = ("1/s", "s", "rad", "rad")
+    found = {n: Figure(v, u) for n, v, u in zip(names, values, units, strict=True)}
+    if done.length is not None:
+        speed = float(done.record.speed(done.record.start if done.first is None else done.first))
+        gain, lag = model.nondimensional(done.length, speed)
+        found |= {"nomoto_K'": Figure(gain, "1"), "nomoto_T'": Figure(lag, "1")}
+    return replace(figures, found={**figures.found, **found})
+
+
+def _after(record: Record, order: float | None) -> Record:
+    """Return the record from the last row before the order on."""
+    if order is None:
+        return record
+    rows = slice(max(int(np.searchsorted(record.time, order)) - 1, 0), None)
+    columns = {name: value[rows] for name, value in record.columns().items()}
+    return Record(**columns)
+
+
+def _spiral(done: Done) -> Figures:
+    found = loop(*spiral_curve(done))
+    values = {"loop_height": Figure(found.height, "1"), "loop_width": Figure(found.width, "rad")}
+    return Figures("spiral", values)
+
+
+def spiral_curve(done: Done) -> tuple[Array, Array]:
+    """Return helm, rad, and r' of the steps of a spiral. Raises InputError without a length."""
+    if done.length is None:
+        raise InputError("spiral: the length of the ship is needed, for r' = r L / U")
+    return spiral(_after(done.record, done.first), done.length)
+
+
+def _depth_step(done: Done) -> Figures:
+    if done.depth is None:
+        raise InputError("depth step: the depth that it leads to is needed")
+    return depth_step(done.record, done.needed(), done.depth)
+
+
+FIGURES: Mapping[str, Callable[[Done], Figures]] = {
+    "turning-circle": lambda done: turning_circle(done.record, done.first),
+    "zig-zag": _zig_zag,
+    "initial-turning": lambda done: initial_turning(done.record, done.heading, done.first),
+    "pull-out": lambda done: pull_out(_after(done.record, done.needed(0)), done.needed(1)),
+    "spiral": _spiral,
+    "crash-stop": lambda done: stopping(done.record, done.needed()),
+    "stopping": lambda done: stopping(done.record, done.needed(), done.share),
+    "acceleration": lambda done: acceleration(done.record, done.needed()),
+    "williamson": lambda done: williamson(done.record, done.first),
+    "turn-on-the-spot": lambda done: turn_on_the_spot(done.record, done.first),
+    "depth-step": _depth_step,
+}
+"""Manoeuvres, and their figures."""

@@ -1,0 +1,1 @@
+"""Figures of standard manoeuvres: pure functions of a record."""

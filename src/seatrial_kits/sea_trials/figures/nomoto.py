@@ -1,0 +1,171 @@
+"""Nomoto's first-order model of steering from a record, by least squares, with its uncertainty."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from seatrial.errors import InputError
+
+from .record import Array, Record
+
+_PARAMETERS = 5
+_ITERATIONS, _CONVERGED = 50, 1e-9
+
+
+@dataclass(frozen=True)
+class Nomoto:
+    """T r' + r = K (delta + delta_0), r in rad/s and delta in rad, positive to starboard.
+
+    ``deviations`` are standard deviations of K, T and delta_0; an interval of 1.96 of them
+    contains the value with a probability of 95 %, as far as the vessel is of first order.
+    """
+
+    K: float
+    """1/s."""
+    T: float
+    """s."""
+    delta_0: float
+    """Helm that is missing for a straight course, rad."""
+    residual: float
+    """Root mean square of the heading less that of the model, rad."""
+    deviations: tuple[float, float, float]
+
+    def nondimensional(self, length: float, speed: float) -> tuple[float, float]:
+        """Return K' = K L / U and T' = T U / L of a length, m, and a speed, m/s."""
+        return self.K * length / speed, self.T * speed / length
+
+
+def nomoto(record: Record) -> Nomoto:
+    """Return Nomoto's model of a record with helm angle, best a zig-zag.
+
+    A first estimate comes from the equation integrated twice over time, so that the heading need
+    not be differentiated; it is linear in c_0, c_1, 1/T, K/T and K delta_0 / T:
+
+        psi(t) = c_0 + c_1 t + (K iint delta + K delta_0 t^2 / 2 - int psi) / T
+
+    Noise of the heading enters int psi. The heading that the equation gives with the helm alone,
+
+        psi(t) = psi_0 + r_0 T (1 - exp(-t/T)) + K g(t) + K delta_0 h(t),
+
+    g and h the responses to the helm and to 1, has none: its least squares by Gauss and Newton
+    give K, T and delta_0. Helm is linear between rows. The covariance is that of least squares
+    with residuals whose autocorrelation, to lags of the square root of the rows with Bartlett's
+    weights, is that found; corners of the helm between rows are not in it.
+
+    Raises InputError without helm, with a helm that never changes, and where no positive T fits.
+    """
+    if record.helm is None or not np.ptp(record.helm):
+        raise InputError("Nomoto's model needs a helm that changes")
+    time = record.time - record.start
+    T = _first_estimate(record, time)
+    for _ in range(_ITERATIONS):
+        basis, slopes = _responses(time, record.helm, T)
+        linear = _solved(basis, record.heading)
+        design = np.column_stack((basis, slopes @ linear))
+        change = float(_solved(design, record.heading - basis @ linear)[-1])
+        T = max(T + change, T / 2.0)
+        if abs(change) < _CONVERGED * T:
+            break
+    else:
+        raise InputError("Nomoto's model: no T fits the record; is the vessel of first order?")
+    residual = record.heading - basis @ linear
+    deviations = _deviations(_covariance(design, residual), linear)
+    rms = float(np.sqrt(np.mean(residual**2)))
+    return Nomoto(float(linear[2]), T, float(linear[3] / linear[2]), rms, deviations)
+
+
+def _deviations(covariance: Array, linear: Array) -> tuple[float, float, float]:
+    """Return the standard deviations of K, T and delta_0, the latter K delta_0 / K."""
+    gain, offset = linear[2:]
+    ratio = np.array([-offset / gain**2, 1.0 / gain])
+    variances = covariance[2, 2], covariance[4, 4], ratio @ covariance[2:4, 2:4] @ ratio
+    K, T, delta_0 = (math.sqrt(each) for each in variances)
+    return K, T, delta_0
+
+
+def _solved(design: Array, wanted: Array) -> Array:
+    """Return the least-squares solution; raises InputError where it is not unique."""
+    scale = np.sqrt((design**2).sum(axis=0))
+    solution, _, rank, _ = np.linalg.lstsq(design / scale, wanted, rcond=None)
+    if rank < design.shape[1]:
+        raise InputError("Nomoto's model: the record does not distinguish K, T and delta_0")
+    return np.asarray(solution / scale)
+
+
+def _first_estimate(record: Record, time: Array) -> float:
+    inverse = float(_solved(_design(record, time), record.heading)[2])
+    if inverse <= 0.0:
+        raise InputError(f"Nomoto's model: 1/T is {inverse:.3g} 1/s, above 0 is needed")
+    return 1.0 / inverse
+
+
+def _responses(time: Array, helm: Array, T: float) -> tuple[Array, Array]:
+    """Return the columns (n, 4) of the heading for psi_0, r_0, K, K delta_0, and their d/dT."""
+    columns, slopes = [np.ones_like(time)], [np.zeros_like(time)]
+    decay = np.exp(-time / T)
+    columns.append(T * (1.0 - decay))
+    slopes.append(1.0 - decay * (1.0 + time / T))
+    step = time - T * (1.0 - decay)
+    heading, slope = _helm_response(time, helm, T)
+    columns += [heading, step]
+    slopes += [slope, -slopes[1]]
+    return np.column_stack(columns), np.column_stack(slopes)
+
+
+def _helm_response(time: Array, helm: Array, T: float) -> tuple[Array, Array]:
+    """Return the heading (n,) by T r' + r = delta from rest, and its derivative by T.
+
+    From the equation psi = int delta - T r; its derivative by T, q, obeys T q'' + q' = -r', so
+    that T q' + q = -r.
+    """
+    once = _integral(time, helm)
+    rate = _lagged(time, helm, T)
+    return once - T * rate, _lagged(time, -rate, T)
+
+
+def _integral(time: Array, values: Array) -> Array:
+    steps = np.diff(time)
+    return np.concatenate(([0.0], np.cumsum(steps * (values[1:] + values[:-1]) / 2.0)))
+
+
+def _lagged(time: Array, values: Array, T: float) -> Array:
+    """Return y (n,) of T y' + y = values from 0, exact for values that are linear between rows."""
+    steps = np.diff(time)
+    decay, slopes = np.exp(-steps / T), np.diff(values) / steps
+    driven = (values[:-1] - T * slopes) * (1.0 - decay) + slopes * steps
+    lagged, result = 0.0, [0.0]
+    for share, added in zip(decay.tolist(), driven.tolist(), strict=True):
+        lagged = lagged * share + added
+        result.append(lagged)
+    return np.array(result)
+
+
+def _design(record: Record, time: Array) -> Array:
+    """Return the columns (n, 5) of the equation integrated twice."""
+    integral = CubicSpline(time, record.heading).antiderivative()
+    steps, helm = np.diff(time), record.helm
+    once = _integral(time, helm)
+    # Twice, with helm linear over each row: once h + h^2 (2 delta_k + delta_k+1) / 6.
+    grown = steps * once[:-1] + steps**2 * (2.0 * helm[:-1] + helm[1:]) / 6.0
+    twice = np.concatenate(([0.0], np.cumsum(grown)))
+    return np.column_stack((np.ones_like(time), time, -integral(time), twice, time**2 / 2.0))
+
+
+def _covariance(design: Array, residual: Array) -> Array:
+    """Return the covariance (5, 5) of a least-squares estimate with correlated residuals."""
+    scale = np.sqrt((design**2).sum(axis=0))
+    design = design / scale
+    rows = len(residual)
+    lags = math.isqrt(rows)
+    scatter = np.zeros((_PARAMETERS, _PARAMETERS))
+    for lag in range(lags + 1):
+        correlation = float(residual[lag:] @ residual[: rows - lag]) / (rows - _PARAMETERS)
+        product = design[lag:].T @ design[: rows - lag]
+        weight = 1.0 - lag / (lags + 1)
+        scatter += weight * correlation * (product if lag == 0 else product + product.T)
+    inverse = np.linalg.inv(design.T @ design)
+    return np.asarray(inverse @ scatter @ inverse / np.outer(scale, scale))

@@ -1,0 +1,221 @@
+"""Standard manoeuvres, as orders to the pilot of any vehicle."""
+
+from __future__ import annotations
+
+import math
+from typing import ClassVar
+
+from seatrial.control.guidance_orders import MANUAL_AXES, NED
+from seatrial.model.component import Input, Output, Parameter, terminal
+from seatrial.model.sampled import Sampled
+
+from .orders import AT_REST, DEEP, KINDS, SETTLED, SLOW, Numbers, Order, is_turned
+from .steadiness import halves
+
+_SLOWEST = 0.02
+"""m/s; a change of speed within which a craft is steady, whatever its speed."""
+_RATE = math.radians(0.02)
+"""rad/s; the same of the rate of turn."""
+_HEADING = math.radians(1.0)
+"""Change of the mean heading within which the approach is straight, rad."""
+_DEPTH = 0.05
+"""Change of the mean depth within which it is steady, m."""
+_SPEED_SHARE, _RATE_SHARE = 0.01, 0.02
+_WATCHED = ("speed", "heading", "rate", "depth")
+
+
+class Manoeuvre(Sampled):
+    """A standard manoeuvre: an approach until all is steady, then helm and speed by a sequence.
+
+    **Approach.** The pilot holds the heading that it has (its mode ``stabilize``, depth too in
+    ``depth-hold``, by ``approach_mode``) with the manual control ``speed`` ahead, so that the
+    order changes nothing but the helm. It is steady when the means over both halves of the last
+    ``window`` differ by no more than 1 % of the speed or 0.02 m/s, and 1 deg of the heading.
+
+    **Orders.** Then the mode is manual: manual yaw is the helm order,
+
+        helm_order = side clip(helm / full_helm),
+
+    manual surge the speed order. ``helm`` is the rudder angle where the pilot's full deflection is
+    ``full_helm``; with differential thrust or azimuth the same share of their full deflection.
+
+    ================ =====================================================================
+    turning-circle   helm until the heading has changed by ``turn``
+    zig-zag          helm to alternate sides at changes of +-``heading_change``, five times
+    initial-turning  helm until the heading has changed by 10 deg more than ``heading_change``
+    pull-out         as turning-circle, then helm amidships until the rate is steady
+    spiral           helm to -helm and back in steps of helm / ``steps``, each until the rate
+                     is steady
+    crash-stop       full astern, helm amidships, until the speed along the bow is 0
+    stopping         no thrust until the speed is ``slow`` of that of the approach
+    acceleration     from rest, full ahead until the speed is steady
+    williamson       helm until ``heading_change``, then opposite until 190 deg the other way
+    turn-on-the-spot from rest, helm until the heading has changed by ``turn``
+    depth-step       guided at ``guided_speed``: the depth of the approach, ``depth_start``,
+                     changes by ``depth_change``, until it is steady
+    ================ =====================================================================
+
+    Steady is a rate of turn whose means differ by 2 % or 0.02 deg/s, or a depth whose means do by
+    0.05 m. The last order stays when the manoeuvre is ``done``. Orders are given at instants, up to
+    one ``period`` after the heading is reached. Heading clockwise from north, rad; ``side`` 1 to
+    starboard, -1 to port. The speed along the bow is that over ground.
+
+    Not modelled: a helmsman's lateness; a speed trial, a station-keeping box and a vertical
+    zig-zag, which are trials of other rigs.
+    """
+
+    exercised: ClassVar = {"window": 1.0, "turn": 0.3, "speed": 0.5}
+
+    period = Parameter(0.1, "s", "sample period", min=1e-6)
+    kind = Parameter("turning-circle", "1", "the manoeuvre", choices=tuple(KINDS))
+    helm = Parameter(math.radians(35.0), "rad", "helm of the manoeuvre", min=0.0)
+    full_helm = Parameter(math.radians(35.0), "rad", "helm of full deflection", min=1e-6)
+    side = Parameter("starboard", "1", "side of the first order", choices=("starboard", "port"))
+    speed = Parameter(1.0, "1", "speed order of the approach, share of full", min=-1.0, max=1.0)
+    heading_change = Parameter(
+        math.radians(10.0), "rad", "heading change that ends a leg", min=1e-6, max=math.pi
+    )
+    turn = Parameter(math.radians(810.0), "rad", "heading change of turns", min=1e-6)
+    steps = Parameter(5.0, "1", "steps of a spiral from amidships to helm", min=1.0)
+    slow = Parameter(0.2, "1", "share of the approach speed that ends stopping", min=0.0, max=1.0)
+    window = Parameter(60.0, "s", "how long all is steady before it goes on", min=1e-3)
+    approach_mode = Parameter(
+        "stabilize", "1", "the pilot's mode in the approach", choices=("stabilize", "depth-hold")
+    )
+    depth_start = Parameter(0.0, "m", "depth of the approach of a depth step", min=0.0)
+    depth_change = Parameter(5.0, "m", "step of the depth, positive down")
+    guided_speed = Parameter(0.0, "m/s", "speed of a depth step")
+
+    heading = Input("rad", "heading, clockwise from north")
+    velocity_n = Input("m/s", "velocity over ground, north-east-down", axes=NED)
+    depth = Input("m", "depth, positive down", optional=True)
+
+    mode = Output("1", "the pilot's mode", type=str, start="stabilize")
+    armed = Output("1", "whether the pilot acts", type=bool)
+    manual = Output("1", "manual control, -1 to 1", axes=MANUAL_AXES)
+    target_kind = Output("1", "guided: a heading", type=str, start="heading")
+    target_valid = Output("1", "guided: there is a set-point", type=bool)
+    target_heading = Output("rad", "guided: heading of the approach")
+    target_speed = Output("m/s", "guided: speed along the bow")
+    target_position = Output("m", "guided: its down is the depth wanted", axes=NED)
+    phase = Output("1", "0 approach, then the number of the order", type=int)
+    helm_order = Output("1", "helm ordered, share of full, positive to turn to starboard")
+    speed_order = Output("1", "speed ordered, share of full")
+    order_time = Output("s", "time of the first order, -1 before", start=-1.0)
+    done = Output("1", "whether the manoeuvre is over", type=bool)
+
+    terminals: ClassVar = {
+        "orders": terminal(
+            "mode",
+            "armed",
+            "manual",
+            "target_kind",
+            "target_valid",
+            "target_heading",
+            "target_position",
+            "target_speed",
+        ),
+        "sensors": terminal("heading", "velocity_n", "depth"),
+    }
+
+    # ------------------------------------------------------------------ running
+
+    def reset(self, t: float) -> None:
+        """Begin the approach."""
+        self._samples = max(2, round(self.window / self.period))
+        self._windows: dict[str, list[float]] = {name: [] for name in _WATCHED}
+        self._turned = self._before = 0.0
+        self._number, self._done, self._begun = 0, False, False
+        self._ordered_at, self._course, self._fast = -1.0, 0.0, 0.0
+
+    def sample(self, t: float, k: int) -> None:
+        """Give the order that is in force."""
+        self.armed, self.phase, self.done = True, self._number, self._done
+        self.order_time = self._ordered_at
+        self.helm_order, self.speed_order = self._helm_and_speed()
+        diving = self.kind == "depth-step"
+        self.mode = "guided" if diving else "manual" if self._number else self.approach_mode
+        self.manual = [self.speed_order, 0.0, self.helm_order, 0.0]
+        self.target_valid, self.target_kind = diving, "heading"
+        self.target_heading, self.target_speed = self._course, self.guided_speed
+        step = self.depth_change if self._number else 0.0
+        self.target_position = [0.0, 0.0, self.depth_start + step]
+
+    def update(self, t: float, k: int) -> None:
+        """Take the measurements, and go on to the next order if this one has come to its end."""
+        self._measure()
+        if self._done or not self._is_over():
+            return
+        if self._number == len(self._sequence()):
+            self._done = True
+            return
+        if self._number == 0:
+            self._ordered_at = t + self.period
+            self._turned -= self._mean("heading")
+            self._fast = self._mean("speed")
+        self._number += 1
+        self._windows = {name: [] for name in _WATCHED}
+
+    # ------------------------------------------------------------------ orders
+
+    def _sequence(self) -> list[Order]:
+        numbers = Numbers(self.heading_change, self.turn, round(self.steps), self.slow)
+        return KINDS[self.kind](numbers)
+
+    def _order(self) -> Order | None:
+        return self._sequence()[self._number - 1] if self._number else None
+
+    def _helm_and_speed(self) -> tuple[float, float]:
+        order = self._order()
+        approach = 0.0 if self.kind in AT_REST else self.speed
+        if order is None:
+            return 0.0, approach
+        share = min(self.helm / self.full_helm, 1.0) * self._side() * order.helm
+        return share + 0.0, approach if order.speed is None else order.speed
+
+    def _side(self) -> float:
+        return 1.0 if self.side == "starboard" else -1.0
+
+    # ------------------------------------------------------------------ measurements
+
+    def _measure(self) -> None:
+        if not self._begun:
+            self._begun, self._before, self._course = True, self.heading, self.heading
+        change = math.remainder(self.heading - self._before, math.tau)
+        self._before = self.heading
+        self._turned += change
+        latest = (self._speed(), self._turned, change / self.period, self.depth)
+        for name, value in zip(_WATCHED, latest, strict=True):
+            self._windows[name] = [*self._windows[name][1 - self._samples :], value]
+
+    def _speed(self) -> float:
+        north, east, _ = self.velocity_n
+        speed: float = north * math.cos(self.heading) + east * math.sin(self.heading)
+        return speed
+
+    def _is_over(self) -> bool:
+        """Return whether the approach or the order has come to its end."""
+        order = self._order()
+        if order is None:
+            return self._is_steady("heading", 0.0, _HEADING) and self._is_moving_steadily()
+        if order.until == SLOW:
+            share = self.slow if order.speed == 0.0 else 0.0
+            return self._speed() <= share * self._fast
+        if order.until == SETTLED:
+            return self._is_moving_steadily() and self._is_steady("rate", _RATE_SHARE, _RATE)
+        if order.until == DEEP:
+            return self._is_steady("depth", 0.0, _DEPTH)
+        return is_turned(order, self._side() * self._turned)
+
+    def _is_moving_steadily(self) -> bool:
+        return self._is_steady("speed", _SPEED_SHARE, _SLOWEST)
+
+    def _is_steady(self, name: str, share: float, least: float) -> bool:
+        means = halves(self._windows[name], self._samples)
+        return means is not None and means.agree(share, least)
+
+    def _mean(self, name: str) -> float:
+        """Return the mean of a measurement over the second half of the window."""
+        means = halves(self._windows[name], self._samples)
+        assert means is not None
+        return means.second

@@ -1,0 +1,171 @@
+"""Orders of manoeuvres to a vessel of first order: rate and speed follow helm and thrust."""
+
+import math
+from itertools import groupby
+
+import numpy as np
+import pytest
+
+from seatrial_kits.sea_trials.figures.record import Record
+from seatrial_kits.sea_trials.figures.zigzag import zig_zag
+from seatrial_kits.sea_trials.manoeuvre import Manoeuvre
+from seatrial_kits.sea_trials.orders import EXECUTES, KINDS
+
+STEP, FULL_SPEED, SPEED_LAG = 0.1, 4.0, 8.0
+GAIN, LAG = 0.15, 4.0
+"""Rate of turn at full helm, rad/s, and its time constant, s."""
+
+
+class Trial:
+    """A manoeuvre of a vessel that starts at rest, and what was ordered and done."""
+
+    def __init__(self, longest=900.0, noise=0.0, **settings):
+        self.component = Manoeuvre("manoeuvre")
+        for name, value in {"window": 20.0, **settings}.items():
+            self.component.set(name, value)
+        self.component.initialise()
+        self.component.begin()
+        self.rows, self.ended = [], None
+        self.run(longest, np.random.default_rng(0), noise)
+
+    def run(self, longest, random, noise):
+        north = east = rate = speed = depth = 0.0
+        heading = 3.1  # a turn to starboard wraps at once
+        for k in range(round(longest / STEP)):
+            read = self.component.get
+            helm, ahead = read("helm_order"), read("speed_order")
+            self.rows.append((k * STEP, north, east, heading, helm, ahead, read("phase"), speed))
+            if read("done"):
+                self.ended = k * STEP
+                return
+            north += STEP * speed * math.cos(heading)
+            east += STEP * speed * math.sin(heading)
+            heading += STEP * rate
+            rate += STEP * (GAIN * helm - rate) / LAG
+            speed += STEP * (FULL_SPEED * ahead - speed) / SPEED_LAG
+            if read("mode") == "guided":
+                depth += STEP * 0.2 * (read("target_position")[2] - depth)
+            self.component.set("heading", math.remainder(heading, math.tau)
+                               + noise * random.standard_normal())  # fmt: skip
+            velocity = speed * math.cos(heading), speed * math.sin(heading), 0.0
+            self.component.set("velocity_n", list(velocity))
+            self.component.set("depth", depth)
+            self.component.advance(k * STEP, STEP)
+        self.depth = depth
+
+    def column(self, name):
+        names = ("time", "north", "east", "heading", "helm", "ahead", "phase", "speed")
+        return np.array([row[names.index(name)] for row in self.rows])
+
+    def helms(self):
+        """Return the helms that were ordered, each once, after the approach."""
+        helm, phase = self.column("helm"), self.column("phase")
+        return [float(value) for value, _ in groupby(helm[phase > 0])]
+
+    def turned(self):
+        """Return the heading change since the order, rad."""
+        heading = self.column("heading")[self.column("phase") > 0]
+        return heading - heading[0]
+
+
+def test_the_approach_is_steady_and_straight():
+    trial = Trial(kind="turning-circle", turn=1.0)
+    order = trial.component.get("order_time")
+    speed = trial.column("speed")
+    row = round(order / STEP)
+    # 20 s in which the mean rises by 1 %: later than the 4.6 time constants to 99 %.
+    assert 4.0 * SPEED_LAG < order < 90.0
+    assert abs(speed[row] / speed[row - 100] - 1.0) < 0.01
+    assert trial.column("helm")[row - 1] == 0.0
+    assert trial.column("helm")[row] == 1.0
+
+
+@pytest.mark.parametrize(("side", "sign"), [("starboard", 1.0), ("port", -1.0)])
+def test_a_turning_circle_turns_to_its_side(side, sign):
+    trial = Trial(kind="turning-circle", side=side, helm=math.radians(17.5))
+    assert trial.helms() == [sign * 0.5]
+    assert sign * trial.turned()[-1] == pytest.approx(math.radians(810.0), abs=0.02)
+
+
+def test_a_zig_zag_has_the_executes_of_its_definition():
+    angle = math.radians(20.0)
+    trial = Trial(kind="zig-zag", helm=angle, heading_change=angle)
+    share = 20.0 / 35.0
+    assert trial.helms() == pytest.approx([share * (-1) ** n for n in range(EXECUTES)])
+    rec = Record(*(trial.column(name) for name in ("time", "north", "east", "heading", "helm")))
+    found = zig_zag(rec, angle)
+    orders = trial.column("time")[np.flatnonzero(np.diff(trial.column("helm"))) + 1]
+    for number in range(1, EXECUTES):
+        reversal = orders[number] - orders[0]
+        assert 0.0 <= reversal - found[f"reversal_{number}_time"] < 2.0 * STEP
+        assert found[f"overshoot_{number}"] > 0.0
+
+
+def test_noise_of_the_compass_does_not_end_the_approach_for_ever():
+    trial = Trial(kind="initial-turning", noise=math.radians(0.5))
+    assert trial.ended is not None
+
+
+def test_a_pull_out_ends_with_helm_amidships_and_no_rate():
+    trial = Trial(kind="pull-out", turn=3.0)
+    assert trial.helms() == [1.0, 0.0]
+    heading = trial.column("heading")
+    assert abs(heading[-1] - heading[-11]) < math.radians(0.05)
+
+
+def test_a_spiral_goes_from_side_to_side_and_back():
+    trial = Trial(kind="spiral", steps=2.0, longest=2000.0)
+    assert trial.helms() == [1.0, 0.5, 0.0, -0.5, -1.0, -0.5, 0.0, 0.5, 1.0]
+    assert trial.ended is not None
+
+
+def test_a_crash_stop_ends_at_rest_and_coasting_at_a_fifth_of_the_speed():
+    crash, coasting = Trial(kind="crash-stop"), Trial(kind="stopping")
+    assert crash.column("ahead")[-1] == -1.0
+    assert crash.column("speed")[-1] == pytest.approx(0.0, abs=0.12)
+    order = round(coasting.component.get("order_time") / STEP)
+    share = coasting.column("speed")[-1] / coasting.column("speed")[order]
+    assert share == pytest.approx(0.2, abs=0.01)
+
+
+def test_an_acceleration_begins_at_rest_and_ends_at_full_speed():
+    trial = Trial(kind="acceleration")
+    order = round(trial.component.get("order_time") / STEP)
+    assert not trial.column("speed")[: order + 1].any()
+    assert trial.column("speed")[-1] == pytest.approx(FULL_SPEED, rel=0.02)
+
+
+def test_a_williamson_turn_ends_beyond_the_reciprocal_heading():
+    trial = Trial(kind="williamson", heading_change=math.radians(70.0))
+    assert trial.helms() == [1.0, -1.0]
+    assert trial.turned().max() > math.radians(70.0)
+    assert trial.turned()[-1] == pytest.approx(-math.radians(190.0), abs=0.03)
+
+
+def test_a_turn_on_the_spot_has_no_speed():
+    trial = Trial(kind="turn-on-the-spot")
+    assert not trial.column("speed").any()
+    assert trial.turned()[-1] >= math.radians(809.0)
+
+
+def test_a_depth_step_is_guided_to_its_depth():
+    trial = Trial(kind="depth-step", depth_start=2.0, depth_change=5.0)
+    assert trial.component.get("mode") == "guided"
+    assert list(trial.component.get("target_position")) == [0.0, 0.0, 7.0]
+    assert trial.ended is not None
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_manoeuvre_comes_to_its_end(kind):
+    assert Trial(kind=kind, turn=2.0, steps=1.0, depth_change=1.0).ended is not None
+
+
+def test_a_manoeuvre_goes_on_from_a_saved_state():
+    trial = Trial(kind="zig-zag", longest=70.0)
+    again = Manoeuvre("again")
+    again.set_state(trial.component.get_state())
+    assert again.get("phase") == trial.component.get("phase") > 0
+    for component in (trial.component, again):
+        component.set("heading", 1.0)
+        component.advance(70.0, STEP)
+    assert again.get("helm_order") == trial.component.get("helm_order")
