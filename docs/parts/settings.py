@@ -129,6 +129,7 @@ for _vehicle in (
     "hydrone",
     "gloria",
     "mariner",
+    "kvlcc2",
     "videoray",
     "otter",
     "bluerov2",

@@ -26,8 +26,10 @@ from ..craft.planar import (
 from ..craft.wave_hull import HullCoefficients
 from .mmg import SURGE_TERMS, SWAY_TERMS, flow_of, hull_load, propeller_load, rudder_load
 
-_INERTIAS = ("mass", "inertia", "center_of_gravity", "added_mass", "added_inertia")
-_INERTIAS += ("length", "draught", "water_density")
+_INERTIAS = (
+    *("mass", "inertia", "center_of_gravity", "added_mass", "added_inertia"),
+    *("length", "draught", "water_density"),
+)
 _BY_SIGN = ("positive", "negative")
 
 
