@@ -19,7 +19,7 @@ from seatrial.model.readable import number, person_scale
 from seatrial.model.units import quantity
 from seatrial.trial.records.run_folder import load_run
 
-from .evaluation import FIGURES, Done, criteria_name, figures_of
+from .evaluation import FIGURES, Done, approach_speed_of, criteria_name, figures_of
 from .figures.criteria import Verdict, imo
 from .figures.result import Figures
 from .log_file import read_columns, read_log
@@ -113,9 +113,7 @@ def _quantity(name: str, text: str, unit: str) -> float:
 def _verdicts(done: Done, found: Figures) -> list[Verdict]:
     if done.length is None:
         raise InputError("--criteria: the length of the ship is needed: --length")
-    at = done.record.start if done.first is None else done.first
-    speed = found.get("approach_speed", float(done.record.speed(at)))
-    verdicts = imo({criteria_name(done): found}, done.length, speed)
+    verdicts = imo({criteria_name(done): found}, done.length, approach_speed_of(done, found))
     if not verdicts:
         raise InputError(f"--criteria: MSC.137(76) has none of {criteria_name(done)}")
     return verdicts
