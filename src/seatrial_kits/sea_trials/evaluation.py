@@ -37,6 +37,8 @@ class Done:
     """Depth that a step leads to, m."""
     length: float | None = None
     """Length of the ship, m."""
+    beam: float | None = None
+    """Beam of its outline, m."""
 
     @property
     def first(self) -> float | None:
