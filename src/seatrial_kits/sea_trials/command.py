@@ -23,6 +23,7 @@ from .evaluation import FIGURES, Done, approach_speed_of, criteria_name, figures
 from .figures.criteria import Verdict, imo
 from .figures.result import Figures
 from .log_file import read_columns, read_log
+from .page import DATA, evaluated, run_folders, write_pages
 from .run_record import done_in
 
 trials_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
@@ -57,8 +58,7 @@ def figures(
     criteria: Annotated[str | None, typer.Option("--criteria", help="imo: MSC.137(76).")] = None,
 ) -> None:
     """Show the figures of a manoeuvre; status 1 if a criterion does not hold."""
-    if criteria is not None and criteria not in CRITERIA:
-        raise InputError(f"--criteria: {unknown('set', criteria, CRITERIA)}")
+    _check_criteria(criteria)
     done = _with(_read(log, manoeuvre, columns or []), length, heading, depth, order or [])
     found = figures_of(done)
     beside = None if compare is None else figures_of(done_in(load_run(compare)))
@@ -76,6 +76,34 @@ def figures(
         )
     if not all(each.passed for each in verdicts):
         raise typer.Exit(_FAILED)
+
+
+@trials_app.command()
+def page(
+    runs: Annotated[list[Path], typer.Argument(help="Run folders, or the folder of a campaign.")],
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", help="Folder of the page (default: the first).")
+    ] = None,
+    criteria: Annotated[str | None, typer.Option("--criteria", help="imo: MSC.137(76).")] = None,
+) -> None:
+    """Write one page, and one JSON file, of a vehicle's sea trials; status 1 as for figures."""
+    _check_criteria(criteria)
+    trials = [evaluated(folder, criteria) for folder in run_folders(runs)]
+    folder = runs[0] if out is None else out
+    folder.mkdir(parents=True, exist_ok=True)
+    path = write_pages(trials, folder)
+    failed = [verdict.ability for trial in trials for verdict in trial.verdicts
+              if not verdict.passed]  # fmt: skip
+    answer.result = {"page": str(path), "json": str(path.with_name(DATA)), "failed": failed}
+    console.print(f"page: {path}", soft_wrap=True)
+    if failed:
+        console.print(f"FAIL  {', '.join(failed)}", soft_wrap=True)
+        raise typer.Exit(_FAILED)
+
+
+def _check_criteria(criteria: str | None) -> None:
+    if criteria is not None and criteria not in CRITERIA:
+        raise InputError(f"--criteria: {unknown('set', criteria, CRITERIA)}")
 
 
 def _read(log: Path, manoeuvre: str | None, columns: list[str]) -> Done:

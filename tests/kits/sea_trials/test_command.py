@@ -81,3 +81,30 @@ def test_bad_options_are_refused(tmp_path, arguments, message):
     done = figures(str(FOLDER / f"{TURN}.csv"), "--columns", NAMES, *arguments, cwd=tmp_path)
     assert done.returncode == 2
     assert message in done.stderr
+
+
+def test_one_page_of_all_trials_of_a_vehicle(run, tmp_path):
+    done = seatrial("trials", "page", str(run.parent), "-o", "page", "--criteria", "imo",
+                    cwd=tmp_path)  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    page = (tmp_path / "page/sea-trials.html").read_text("utf-8")
+    for text in ("Sea trials of otter", "turning-circle, starboard", "turning: advance", "margin"):
+        assert text in page
+    (trial,) = json.loads((tmp_path / "page/sea-trials.json").read_text("utf-8"))
+    assert trial["trial"] == "turning-circle"
+    (advance, diameter) = trial["criteria"]
+    assert advance["value"] == pytest.approx(trial["figures"]["advance"]["value"] / 2.066)
+    assert advance["margin"] == pytest.approx(4.5 - advance["value"])
+    assert diameter["limit"] == 5.0
+
+
+def test_a_report_has_the_manoeuvre(run):
+    text = (run / "report.html").read_text("utf-8")
+    for title in ("Turning circle: figures", "Turning circle: track"):
+        assert title in text
+
+
+def test_a_folder_without_runs_has_no_page(tmp_path):
+    done = seatrial("trials", "page", ".", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "neither a run folder nor one with run folders" in done.stderr
