@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Annotated
@@ -19,6 +18,7 @@ from seatrial.model.readable import number, person_scale
 from seatrial.model.units import quantity
 from seatrial.trial.records.run_folder import load_run
 
+from .drawing import shown_number
 from .evaluation import FIGURES, Done, approach_speed_of, criteria_name, figures_of
 from .figures.criteria import Verdict, imo
 from .figures.result import Figures
@@ -163,11 +163,11 @@ def _print(found: Figures, beside: Figures | None, length: float | None) -> None
     for name, figure in found.found.items():
         in_lengths = number(figure.value / length) if length and figure.unit == "m" else ""
         factor, unit = person_scale(figure.unit)
-        row = [name, number(factor * figure.value), unit]
+        row = [name, shown_number(factor * figure.value), unit]
         row.append(in_lengths)
         if beside is not None and name in beside:
             other = beside[name]
-            row += [number(factor * other), _difference(figure.value, other)]
+            row += [shown_number(factor * other), _difference(figure.value, other)]
         table.add_row(*map(escape, row))
     console.print(table)
     for name, reason in found.missing.items():
@@ -178,4 +178,4 @@ def _print(found: Figures, beside: Figures | None, length: float | None) -> None
 
 def _difference(value: float, other: float) -> str:
     """Return by how much the run differs, as a share of the log's figure."""
-    return "" if math.isclose(value, 0.0) else f"{100.0 * (other / value - 1.0):+.1f} %"
+    return "" if shown_number(value) == "0" else f"{100.0 * (other / value - 1.0):+.1f} %"

@@ -23,6 +23,7 @@ _SLENDER = 6.0
 """Length by beam of an outline whose beam is not known."""
 _ROW = 22
 """Height of a row of figures, pixels."""
+_ROUNDING = 1e-6
 _DEGREES = math.degrees(1.0)
 
 
@@ -43,11 +44,16 @@ def rows_of(found: Figures, length: float | None) -> list[tuple[str, str, str]]:
     rows = []
     for name, figure in found.found.items():
         factor, unit = person_scale(figure.unit)
-        shown = f"{number(factor * figure.value)} {unit if unit != '1' else ''}".rstrip()
+        shown = f"{shown_number(factor * figure.value)} {unit if unit != '1' else ''}".rstrip()
         in_lengths = length is not None and figure.unit == "m"
         ratio = f"{number(figure.value / length)} L" if in_lengths and length else ""
         rows.append((name.replace("_", " "), shown, ratio))
     return [*rows, *((name.replace("_", " "), "–", why) for name, why in found.missing.items())]
+
+
+def shown_number(value: float) -> str:
+    """Return a figure as text; what is smaller than a millionth is rounding, and 0."""
+    return number(value if abs(value) >= _ROUNDING else 0.0)
 
 
 def table(rows: Sequence[tuple[str, str, str]]) -> Figure:
