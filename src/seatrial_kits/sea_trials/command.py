@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Annotated
@@ -19,10 +18,12 @@ from seatrial.model.readable import number, person_scale
 from seatrial.model.units import quantity
 from seatrial.trial.records.run_folder import load_run
 
-from .evaluation import FIGURES, Done, criteria_name, figures_of
+from .drawing import shown_number
+from .evaluation import FIGURES, Done, approach_speed_of, criteria_name, figures_of
 from .figures.criteria import Verdict, imo
 from .figures.result import Figures
 from .log_file import read_columns, read_log
+from .page import DATA, evaluated, run_folders, write_pages
 from .run_record import done_in
 
 trials_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
@@ -57,8 +58,7 @@ def figures(
     criteria: Annotated[str | None, typer.Option("--criteria", help="imo: MSC.137(76).")] = None,
 ) -> None:
     """Show the figures of a manoeuvre; status 1 if a criterion does not hold."""
-    if criteria is not None and criteria not in CRITERIA:
-        raise InputError(f"--criteria: {unknown('set', criteria, CRITERIA)}")
+    _check_criteria(criteria)
     done = _with(_read(log, manoeuvre, columns or []), length, heading, depth, order or [])
     found = figures_of(done)
     beside = None if compare is None else figures_of(done_in(load_run(compare)))
@@ -76,6 +76,34 @@ def figures(
         )
     if not all(each.passed for each in verdicts):
         raise typer.Exit(_FAILED)
+
+
+@trials_app.command()
+def page(
+    runs: Annotated[list[Path], typer.Argument(help="Run folders, or the folder of a campaign.")],
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", help="Folder of the page (default: the first).")
+    ] = None,
+    criteria: Annotated[str | None, typer.Option("--criteria", help="imo: MSC.137(76).")] = None,
+) -> None:
+    """Write one page, and one JSON file, of a vehicle's sea trials; status 1 as for figures."""
+    _check_criteria(criteria)
+    trials = [evaluated(folder, criteria) for folder in run_folders(runs)]
+    folder = runs[0] if out is None else out
+    folder.mkdir(parents=True, exist_ok=True)
+    path = write_pages(trials, folder)
+    failed = [verdict.ability for trial in trials for verdict in trial.verdicts
+              if not verdict.passed]  # fmt: skip
+    answer.result = {"page": str(path), "json": str(path.with_name(DATA)), "failed": failed}
+    console.print(f"page: {path}", soft_wrap=True)
+    if failed:
+        console.print(f"FAIL  {', '.join(failed)}", soft_wrap=True)
+        raise typer.Exit(_FAILED)
+
+
+def _check_criteria(criteria: str | None) -> None:
+    if criteria is not None and criteria not in CRITERIA:
+        raise InputError(f"--criteria: {unknown('set', criteria, CRITERIA)}")
 
 
 def _read(log: Path, manoeuvre: str | None, columns: list[str]) -> Done:
@@ -113,9 +141,7 @@ def _quantity(name: str, text: str, unit: str) -> float:
 def _verdicts(done: Done, found: Figures) -> list[Verdict]:
     if done.length is None:
         raise InputError("--criteria: the length of the ship is needed: --length")
-    at = done.record.start if done.first is None else done.first
-    speed = found.get("approach_speed", float(done.record.speed(at)))
-    verdicts = imo({criteria_name(done): found}, done.length, speed)
+    verdicts = imo({criteria_name(done): found}, done.length, approach_speed_of(done, found))
     if not verdicts:
         raise InputError(f"--criteria: MSC.137(76) has none of {criteria_name(done)}")
     return verdicts
@@ -137,11 +163,11 @@ def _print(found: Figures, beside: Figures | None, length: float | None) -> None
     for name, figure in found.found.items():
         in_lengths = number(figure.value / length) if length and figure.unit == "m" else ""
         factor, unit = person_scale(figure.unit)
-        row = [name, number(factor * figure.value), unit]
+        row = [name, shown_number(factor * figure.value), unit]
         row.append(in_lengths)
         if beside is not None and name in beside:
             other = beside[name]
-            row += [number(factor * other), _difference(figure.value, other)]
+            row += [shown_number(factor * other), _difference(figure.value, other)]
         table.add_row(*map(escape, row))
     console.print(table)
     for name, reason in found.missing.items():
@@ -152,4 +178,4 @@ def _print(found: Figures, beside: Figures | None, length: float | None) -> None
 
 def _difference(value: float, other: float) -> str:
     """Return by how much the run differs, as a share of the log's figure."""
-    return "" if math.isclose(value, 0.0) else f"{100.0 * (other / value - 1.0):+.1f} %"
+    return "" if shown_number(value) == "0" else f"{100.0 * (other / value - 1.0):+.1f} %"

@@ -37,6 +37,8 @@ class Done:
     """Depth that a step leads to, m."""
     length: float | None = None
     """Length of the ship, m."""
+    beam: float | None = None
+    """Beam of its outline, m."""
 
     @property
     def first(self) -> float | None:
@@ -64,6 +66,13 @@ def criteria_name(done: Done) -> str:
     return f"zig-zag-{math.degrees(done.heading):g}"
 
 
+def approach_speed_of(done: Done, figures: Figures) -> float:
+    """Return the speed at the first order, m/s: through the water where the figures have it."""
+    if "approach_speed" in figures:
+        return figures["approach_speed"]
+    return float(done.record.speed(done.record.start if done.first is None else done.first))
+
+
 def _zig_zag(done: Done) -> Figures:
     figures = zig_zag(done.record, done.heading, done.first)
     names = ("nomoto_K", "nomoto_T", "nomoto_delta_0", "nomoto_residual")
@@ -75,7 +84,7 @@ def _zig_zag(done: Done) -> Figures:
     units = ("1/s", "s", "rad", "rad")
     found = {n: Figure(v, u) for n, v, u in zip(names, values, units, strict=True)}
     if done.length is not None:
-        speed = float(done.record.speed(done.record.start if done.first is None else done.first))
+        speed = approach_speed_of(done, figures)
         gain, lag = model.nondimensional(done.length, speed)
         found |= {"nomoto_K'": Figure(gain, "1"), "nomoto_T'": Figure(lag, "1")}
     return replace(figures, found={**figures.found, **found})

@@ -60,6 +60,7 @@ def done_in(run: Run) -> Done:
         share=float(values["slow"]),
         depth=depth,
         length=_length(_entry(run, craft)),
+        beam=_entry(run, craft).get("outline", {}).get("beam"),
     )
 
 

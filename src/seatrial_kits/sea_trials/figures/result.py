@@ -37,6 +37,9 @@ class Figures(Mapping[str, float]):
             raise InputError(f"{self.manoeuvre}: {unknown('figure', name, tuple(self.found))}")
         return self.found[name].value
 
+    def __contains__(self, name: object) -> bool:
+        return name in self.found
+
     def __iter__(self) -> Iterator[str]:
         return iter(self.found)
 
