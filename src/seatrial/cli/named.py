@@ -51,9 +51,9 @@ def with_vehicle(name: str, changes: dict[str, Any]) -> tuple[str, dict[str, Any
 def _trial_under(autopilot: str) -> str:
     """Return the trial for every vehicle that has an autopilot, else the one of its pilot."""
     for name, path in available("harness/trials").items():
-        if name.startswith(_FOR_EVERY) and autopilot:
-            if _content(path).get("choices", {}).get("autopilot") == autopilot:
-                return name
+        is_for_every = name.startswith(_FOR_EVERY)
+        if is_for_every and _content(path).get("choices", {}).get("autopilot") == autopilot:
+            return name
     return _SETTING_OUT
 
 
