@@ -61,7 +61,8 @@ def run(
     trial: Annotated[
         str,
         typer.Argument(
-            help="A trial, campaign or vehicle: a name, a file or a package.", autocompletion=runnable
+            help="A trial, campaign or vehicle: a name, a file or a package.",
+            autocompletion=runnable,
         ),
     ],
     settings: Settings = None,
