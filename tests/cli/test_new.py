@@ -1,5 +1,6 @@
-"""seatrial new vehicle: the files run as they are."""
+"""seatrial new: the files run as they are."""
 
+import csv
 import math
 import tomllib
 
@@ -7,39 +8,29 @@ import pytest
 
 from seatrial import Simulation
 from seatrial.cli.new import KINDS
+from seatrial.cli.templates import texts, write
+from seatrial.system.assembly import assemble
+from seatrial.system.flattening import load_rig
+from seatrial.system.profile.profile import check_profile, load_profile
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.running.run import run_trial
 from tests.command import seatrial
 from tests.kits.arduino.bench import need
 
 NAME = "my-boat_2"
-WRITTEN = {
-    "usv": {
-        f"vehicles/{NAME}.toml",
-        f"harness/rigs/vehicles/{NAME}.toml",
-        f"harness/rigs/pilots/{NAME}.toml",
-        f"harness/trials/{NAME}.toml",
-        f"harness/trials/{NAME}-mission.toml",
-        f"harness/trials/{NAME}-sketch.toml",
-        f"harness/firmware/{NAME}/{NAME}.ino",
-        f"harness/rigs/ardupilot/{NAME}.toml",
-        f"hil_profiles/{NAME}.parm",
-        f"hil_profiles/{NAME}.toml",
-    },
-    "rov": {
-        f"vehicles/{NAME}.toml",
-        f"harness/rigs/vehicles/{NAME}.toml",
-        f"harness/rigs/pilots/{NAME}.toml",
-        f"harness/trials/{NAME}.toml",
-        f"harness/trials/{NAME}-mission.toml",
-        f"harness/rigs/ardupilot/{NAME}.toml",
-        f"hil_profiles/{NAME}.parm",
-        f"hil_profiles/{NAME}.toml",
-    },
-}
+VEHICLE, PILOT = (f"harness/vehicles/{NAME}/{file}.toml" for file in ("vehicle", "pilot"))
+PROFILE = f"hil_profiles/{NAME}.toml"
+WRITTEN = {VEHICLE, PILOT, PROFILE}
+ARDUPILOT = {f"harness/rigs/ardupilot/{NAME}.toml", f"hil_profiles/{NAME}.parm"}
+SKETCH = {f"harness/firmware/{NAME}/{NAME}.ino", f"harness/trials/{NAME}-sketch.toml"}
+SEA = {"sea.height": "0.3 m", "wind.speed": "6 m/s", "current.speed": "0.2 m/s"}
+BELOW = ("rov", "auv")
 every_kind = pytest.mark.parametrize("like", KINDS)
 
 
-def new(folder, like="usv", name=NAME):
-    return seatrial("new", "vehicle", name, "--like", like, cwd=folder)
+def new(folder, *arguments, like="usv", name=NAME):
+    kind = () if arguments == ("sketch-of",) else ("--like", like)
+    return seatrial("new", *(arguments or ("vehicle",)), name, *kind, cwd=folder)
 
 
 def files(folder):
@@ -51,108 +42,161 @@ def files(folder):
 
 
 def run(folder, *arguments):
-    return seatrial("run", *arguments, "--engine", "direct", "--out", "out", cwd=folder)
+    options = ("--engine", "direct", "--no-report", "--out", "out")
+    return seatrial("run", *arguments, *options, cwd=folder)
 
 
 @pytest.fixture
-def made(tmp_path, request):
-    """Return a folder with the files of a vehicle."""
-    done = new(tmp_path, getattr(request, "param", "usv"))
-    assert done.returncode == 0, done.stderr
+def made(tmp_path, request, monkeypatch):
+    """Return the current folder, with the files of a vehicle."""
+    monkeypatch.chdir(tmp_path)
+    write(texts(NAME, getattr(request, "param", "usv")), "", [("", "")])
     return tmp_path
 
 
 every_made = pytest.mark.parametrize("made", KINDS, indirect=True)
 
 
+def like_of(request):
+    return request.node.callspec.params["made"]
+
+
+def set_out(seconds, **changes):
+    """Return the vehicle's trial `under-way`, of so many seconds, in process."""
+    settings = {"choices.vehicle": NAME, "stop": f"{seconds} s", **changes}
+    return load_trial("under-way", changes=settings, origin="--set")
+
+
+def rows(folder):
+    with (folder / "signals.csv").open(encoding="utf-8") as file:
+        return [{k: float(v) for k, v in row.items()} for row in csv.DictReader(file)]
+
+
+# ---------------------------------------------------------------------- what is written
+
+
 @every_kind
-def test_it_writes_the_files_and_says_what_next(like, tmp_path):
-    done = new(tmp_path, like)
+def test_it_writes_three_files_and_says_what_next(like, tmp_path):
+    done = new(tmp_path, like=like)
     assert done.returncode == 0, done.stderr
     written = files(tmp_path)
-    assert written.keys() == WRITTEN[like]
+    assert written.keys() == WRITTEN
     for path, data in written.items():
         assert f"\n  {path}\n" in done.stdout
         assert b"@" not in data
-    for command in (f"run {NAME}", f"describe sil --vehicle {NAME}", f"run {NAME}-mission"):
+    for command in (f"run {NAME}", f"describe sil --vehicle {NAME}", f"new trials {NAME}"):
         assert f"  seatrial {command} " in done.stdout
 
 
 @every_made
 def test_every_number_is_marked_as_invented(made):
-    vehicle = tomllib.loads((made / f"vehicles/{NAME}.toml").read_text("utf-8"))
-    tables = [value for value in vehicle.values() if isinstance(value, dict)]
-    entries = [e for t in tables for e in t.values() if isinstance(e, dict)]
-    parts = vehicle["propulsion"]["thrusters"]
-    assert all(e["mark"] == "assumed" and "invented" in e["source"] for e in [*entries, *parts])
-    profile = tomllib.loads((made / f"hil_profiles/{NAME}.toml").read_text("utf-8"))
+    vehicle = tomllib.loads((made / VEHICLE).read_text("utf-8"))
+    numbers = {k: v for k, v in vehicle.items() if k not in ("rig", "outline", "shape")}
+    tables = [value for value in numbers.values() if isinstance(value, dict)]
+    assert tables
+    for table in tables:
+        assert table["mark"] == "assumed"
+        assert table["source"] == "invented"
+        entries = [e for e in table.values() if isinstance(e, dict)]
+        assert all("invented" in e.get("source", "invented") for e in entries)
+    profile = tomllib.loads((made / PROFILE).read_text("utf-8"))
     sections = [*profile["actuators"].values(), *profile["sensors"].values(), profile["home"]]
     assert all("invented" in s["source"] or "no sensor" in s["source"] for s in sections)
 
 
 @every_made
-def test_profile_and_rig_are_sound(made):
-    done = seatrial("profile", "check", NAME, cwd=made)
-    assert (done.returncode, done.stdout.count("note:")) == (0, 0), done.stderr
-    done = seatrial("describe", NAME, cwd=made)
-    assert done.returncode == 0, done.stderr
-    assert "vehicle.propulsion.force" in done.stdout
-    assert NAME in seatrial("list", cwd=made).stdout
-
-
-@pytest.mark.interop
-@every_made
-def test_describe_under_every_autopilot(made):
-    for autopilot in ("guidance", "mavlink"):
-        arguments = ("sil", "--vehicle", NAME, "--autopilot", autopilot)
-        done = seatrial("describe", *arguments, cwd=made)
-        assert done.returncode == 0, done.stderr
+def test_the_profile_is_sound(made):
+    profile = check_profile(NAME)
+    for section in profile.sections():
+        assert profile.notes(section) == []
 
 
 @every_made
-def test_it_runs_under_guidance(made):
-    done = run(made, NAME, "--set", "stop=5 s")
-    assert done.returncode == 1, done.stderr  # no waypoint is passed yet
-    assert "FAIL  all waypoints are passed" in done.stdout
-    assert done.stdout.count("PASS") >= 2
+def test_the_pilot_follows_the_body(made):
+    """A heavier body is a heavier one for its pilot; the file has each number once."""
+    path = made / VEHICLE
+    text = path.read_text("utf-8")
+    line = next(line for line in text.splitlines() if line.startswith("mass "))
+    path.write_text(text.replace(line, 'mass = "500 kg"'), "utf-8")
+    surge = tomllib.loads(text)["hull"]["added_mass"]["value"][0]
+    system = assemble(load_rig("sil", choices={"vehicle": NAME}), engine="direct")
+    given = system.parts["autopilot.pilot.speed_hold"].given
+    assert given["mass"].value == pytest.approx(500.0 + surge)
 
 
-def test_a_trial_of_another_autopilot_is_refused_with_the_rig_that_lacks_the_course(made):
-    done = run(made, NAME, "--autopilot", "mavlink")
-    assert done.returncode == 2
-    assert "set: unknown component 'course'; (known: mavlink, pilot)" in done.stderr
-    assert "in autopilot, the rig mavlink\n" in done.stderr
+# ---------------------------------------------------------------------- what runs
+
+
+@every_made
+def test_it_runs_in_waves_wind_and_current(made, request):
+    result = run_trial(set_out(4, **SEA), made / "out", engine="direct")
+    last = rows(result.folder)[-1]
+    assert abs(last["vehicle.hull.position.z"]) + abs(last["vehicle.hull.attitude.theta"]) > 1e-4
+    missed = any(note.endswith("wind: nothing in the rig meets it") for note in result.notes)
+    assert missed == (like_of(request) in BELOW)
 
 
 @pytest.mark.long
 @every_made
-def test_its_trial_passes(made):
-    done = run(made, NAME)
+def test_it_sets_out_to_the_east(made):
+    assert run(made, NAME).returncode == 0
+
+
+@pytest.mark.interop
+@every_made
+def test_all_engines_give_the_same_bytes(made):
+    found = [
+        run_trial(set_out(2, **SEA), made / engine, engine=engine).folder / "signals.csv"
+        for engine in ("direct", "fmu", "native")
+    ]
+    first, *others = (path.read_bytes() for path in found)
+    assert others == [first, first]
+
+
+@pytest.mark.long
+@every_made
+def test_its_course_is_passed(made, request):
+    assert new(made, "trials", like=like_of(request)).returncode == 0
+    done = run(made, f"{NAME}-course")
     assert done.returncode == 0, done.stdout
 
 
 @every_made
-def test_it_runs_for_ground_stations(made):
+def test_it_waits_for_a_ground_station(made):
+    links = ("--set", "autopilot.mavlink.links=", "--set", "stop=1 s")
+    done = run(made, NAME, "--autopilot", "mavlink", *links)
+    assert done.returncode == 0, done.stderr
+    assert "PASS  nobody arms it" in done.stdout
+
+
+def test_its_mission_runs_for_ground_stations(made):
+    assert new(made, "trials").returncode == 0
     links = ("--set", "autopilot.mavlink.links=")
     done = run(made, f"{NAME}-mission", *links, "--set", "stop=5 s", "--real-time", "1e6")
     assert done.returncode == 0, done.stderr
 
 
-def test_its_sketch_turns_it_east(made):
-    need("host")
-    done = run(made, f"{NAME}-sketch", "--set", "stop=21 s")
-    assert done.returncode == 0, done.stdout + done.stderr
-    checked = seatrial(
-        "sketch", "check", f"harness/firmware/{NAME}", "--profile", f"{NAME}:mega", cwd=made
-    )
-    assert "nothing is unsupported" in checked.stdout
+def test_a_vehicle_under_an_autopilot_without_a_trial_of_its_own_sets_out(made):
+    done = run(made, NAME, "--autopilot", "nmea0183", "--set", "stop=1 s")
+    assert "it gets under way to the east" in done.stdout
+
+
+def test_a_trial_of_the_same_name_comes_first(made):
+    path = made / f"harness/trials/{NAME}.toml"
+    path.parent.mkdir()
+    path.write_text(f'rig = "vehicles/{NAME}"\nstop = "1 s"\n', "utf-8")
+    done = run(made, NAME)
+    assert done.returncode == 0, done.stderr
+    assert "PASS" not in done.stdout
+
+
+# ---------------------------------------------------------------------- what moves it
 
 
 @pytest.mark.parametrize("made", ["rov"], indirect=True)
-def test_eight_thrusters_drive_it_as_manual_control_says(made, monkeypatch):
-    monkeypatch.chdir(made)
+def test_eight_thrusters_drive_it_as_manual_control_says(made):
     pilot, hull = "autopilot.pilot", "vehicle.hull"
-    settings = {f"{pilot}.guidance.mode": "manual", f"{hull}.eta_start.z": 3.0}
+    settings = {f"{pilot}.guidance.mode": "manual", f"{hull}.position_start.z": 3.0}
     for axis, moved in (("surge", "u"), ("sway", "v"), ("heave", "w")):
         given = {**settings, f"{pilot}.guidance.manual.{axis}": 0.3}
         with Simulation("sil", choices={"vehicle": NAME}, set=given) as simulation:
@@ -163,9 +207,111 @@ def test_eight_thrusters_drive_it_as_manual_control_says(made, monkeypatch):
         assert max(map(abs, speeds.values())) < 0.03
 
 
+@pytest.mark.parametrize(
+    ("made", "channel", "seconds"),
+    [("ship", "rudder.pulse", 20), ("auv", "rudder.pulse", 4)],
+    indirect=["made"],
+)
+def test_a_rudder_pulse_above_neutral_turns_it_to_starboard(made, channel, seconds):
+    """So do the parameter files of ArduPilot take it."""
+    with Simulation(f"vehicles/{NAME}") as simulation:
+        simulation.set(channel, 1.7e-3)
+        simulation.set("esc.pulse", 1.9e-3)
+        simulation.run(float(seconds))
+        assert simulation.get("hull.attitude.psi") > 0.01
+
+
+@pytest.mark.parametrize("made", ["azimuth"], indirect=True)
+def test_azimuths_turned_to_starboard_turn_it_to_port(made):
+    """A servo rests within its dead band, 0.2 deg."""
+    with Simulation(f"vehicles/{NAME}") as simulation:
+        for side in ("port", "starboard"):
+            simulation.set(f"{side}_esc.pulse", 1.7e-3)
+            simulation.set(f"{side}_gear.pulse", 1.7e-3)
+        simulation.run(4.0)
+        assert simulation.get("hull.propulsor_turned.p1") == pytest.approx(math.pi / 4, abs=5e-3)
+        assert simulation.get("hull.attitude.psi") < -0.05
+
+
+MOVING = {
+    "usv": {"propulsor_force.p1", "propulsor_force.p2"},
+    "rov": {f"propulsor_force.p{k}" for k in range(1, 9)},
+    "auv": {"foil_turned.f1", "foil_turned.f2", "propulsor_force.p1"},
+    "azimuth": {f"propulsor_{p}" for p in ("turned.p1", "turned.p2", *(f"force.p{k}" for k in (1, 2, 3)))},
+    "ship": {"foil_turned.f1", "propulsor_force.p1"},
+}  # fmt: skip
+
+
 @every_made
+def test_its_drawing_moves_with_its_parts(made, request):
+    shape = tomllib.loads((made / VEHICLE).read_text("utf-8"))["shape"]["hull"]
+    moved = [part[kind] for part in shape for kind in ("turn", "stretch") if kind in part]
+    assert {each["port"] for each in moved} == MOVING[like_of(request)]
+
+
+# ---------------------------------------------------------------------- ArduPilot and sketch
+
+
+@every_kind
+def test_what_ardupilot_needs_is_added(like, made, request):
+    (made / PILOT).unlink()
+    (made / PROFILE).unlink()
+    (made / VEHICLE).unlink()
+    write(texts(NAME, like), "", [("", "")])
+    done = new(made, "ardupilot", like=like)
+    assert done.returncode == 0, done.stderr
+    assert files(made).keys() == WRITTEN | ARDUPILOT
+    assert f"added to\n  {PROFILE}\n" in done.stdout
+    check_profile(NAME)
+    values = dict(
+        line.partition("#")[0].split()
+        for line in (made / f"hil_profiles/{NAME}.parm").read_text("utf-8").splitlines()
+        if line.partition("#")[0].strip()
+    )
+    channels = {actuator.channel for actuator in load_profile(NAME).file.actuators.values()}
+    driven = {n for n in range(1, 17) if f"SERVO{n}_FUNCTION" in values}
+    assert driven
+    assert driven <= channels
+    for n in driven:
+        ends = [float(values[f"SERVO{n}_{end}"]) for end in ("MIN", "TRIM", "MAX")]
+        assert ends == [1100.0, 1500.0, 1900.0]
+
+
+def test_its_sketch_turns_it_east(made):
+    need("host")
+    assert new(made, "sketch-of").returncode == 0
+    assert files(made).keys() == WRITTEN | SKETCH
+    done = run(made, f"{NAME}-sketch", "--set", "stop=21 s")
+    assert done.returncode == 0, done.stdout + done.stderr
+    checked = seatrial(
+        "sketch", "check", f"harness/firmware/{NAME}", "--profile", f"{NAME}:mega", cwd=made
+    )
+    assert "nothing is unsupported" in checked.stdout
+
+
+def test_what_is_there_already_is_not_added(made):
+    with (made / PROFILE).open("a", encoding="utf-8") as file:
+        file.write('[links.ardupilot]\nkind = "ardupilot"\n')
+    before = files(made)
+    done = new(made, "ardupilot")
+    assert done.returncode == 2
+    assert f"{PROFILE} has a table [links.ardupilot] already" in done.stderr
+    assert files(made) == before
+
+
+def test_there_must_be_a_profile_to_add_to(tmp_path):
+    done = new(tmp_path, "ardupilot")
+    assert done.returncode == 2
+    assert f"there is no {PROFILE} to add to: seatrial new vehicle {NAME} writes" in done.stderr
+    assert files(tmp_path) == {}
+
+
+# ---------------------------------------------------------------------- profiles cut short
+
+
+@pytest.mark.parametrize("made", ["usv", "auv"], indirect=True)
 def test_under_guidance_its_profile_needs_actuators_and_sensors_only(made):
-    path = made / f"hil_profiles/{NAME}.toml"
+    path = made / PROFILE
     text = path.read_text("utf-8")
     cut = text[text.index("[actuators.") : text.index("[links.")]
     lines = [line for line in cut.splitlines() if not line.startswith("source")]
@@ -173,38 +319,41 @@ def test_under_guidance_its_profile_needs_actuators_and_sensors_only(made):
     done = run(made, NAME, "--set", "stop=1 s")
     assert done.returncode == 1, done.stderr
     assert f"note: profile {NAME}: actuators." in done.stdout
-    done = run(made, f"{NAME}-mission", "--set", "stop=1 s")
+    done = run(made, NAME, "--autopilot", "mavlink", "--set", "stop=1 s")
     assert "unknown section 'links.ground'" in done.stderr
 
 
 def test_what_a_link_takes_by_default_is_a_note(made):
-    path = made / f"hil_profiles/{NAME}.toml"
+    path = made / PROFILE
     text = path.read_text("utf-8")
     path.write_text(text[: text.index("[identity]")] + text[text.index("[actuators.") :], "utf-8")
-    links = ("--set", "autopilot.mavlink.links=")
-    done = run(made, f"{NAME}-mission", *links, "--set", "stop=1 s", "--real-time", "1e6")
+    links = ("--set", "autopilot.mavlink.links=", "--set", "stop=1 s")
+    done = run(made, NAME, "--autopilot", "mavlink", *links)
     assert done.returncode == 0, done.stderr
     note = f"note: profile {NAME}: links.ground has defaults for what [identity] and [home] do not"
     assert note in done.stdout
     assert note in seatrial("profile", "check", NAME, cwd=made).stdout
 
 
+# ---------------------------------------------------------------------- what is refused
+
+
 def test_a_second_call_writes_nothing(made):
-    (made / f"vehicles/{NAME}.toml").write_text("mine", "utf-8")
-    (made / f"hil_profiles/{NAME}.toml").unlink()
+    (made / VEHICLE).write_text("mine", "utf-8")
+    (made / PROFILE).unlink()
     before = files(made)
     done = new(made)
     assert done.returncode == 2
-    assert f"nothing is written, for there is already harness/firmware/{NAME}/" in done.stderr
+    assert f"nothing is written, for there is already {PILOT}" in done.stderr
     assert files(made) == before
 
 
 def test_a_file_in_the_place_of_a_folder_is_refused(tmp_path):
-    (tmp_path / "vehicles").write_text("mine", "utf-8")
+    (tmp_path / "harness").write_text("mine", "utf-8")
     done = new(tmp_path)
     assert done.returncode == 2
-    assert "there is already vehicles\n" in done.stderr
-    assert files(tmp_path) == {"vehicles": b"mine"}
+    assert "there is already harness\n" in done.stderr
+    assert files(tmp_path) == {"harness": b"mine"}
 
 
 @pytest.mark.parametrize(
@@ -214,8 +363,7 @@ def test_a_file_in_the_place_of_a_folder_is_refused(tmp_path):
         ("", "NAME '': letters"),
         ("x" * 41, "40 at most"),
         ("{vehicle}", "NAME '{vehicle}': letters"),
-        ("hydrone", "seatrial ships harness/rigs/ardupilot/hydrone.toml, "),
-        ("fleet", "seatrial ships harness/trials/fleet.toml, which yours would hide"),
+        ("hydrone", "seatrial ships harness/vehicles/hydrone/pilot.toml, "),
     ],
 )
 def test_names_that_cannot_be(name, expected, tmp_path):
@@ -225,7 +373,8 @@ def test_names_that_cannot_be(name, expected, tmp_path):
     assert files(tmp_path) == {}
 
 
-def test_kinds_that_are_none(tmp_path):
-    done = new(tmp_path, "uvs")
+@pytest.mark.parametrize("command", ["vehicle", "trials", "ardupilot"])
+def test_kinds_that_are_none(command, tmp_path):
+    done = new(tmp_path, command, like="uvs")
     assert done.returncode == 2
-    assert "--like: unknown kind of vehicle 'uvs'; did you mean 'usv'?" in done.stderr
+    assert "--like: unknown kind of vehicle 'uvs'; did you mean 'usv' or" in done.stderr

@@ -50,7 +50,18 @@ class Layout:
 
 @cache
 def laid_out(graph: str) -> str:
-    """Return a graph in DOT with places, in Graphviz' JSON. Cases of a campaign share theirs."""
+    """Return a graph in DOT with places, in Graphviz' JSON. Cases of a campaign share theirs.
+
+    Where Graphviz loses an edge between clusters, as it does in some graphs, it ranks all nodes
+    together instead, ``newrank``.
+    """
+    found = _drawn(graph)
+    if all("pos" in edge for edge in json.loads(found).get("edges", ())):
+        return found
+    return _drawn(graph.replace("{", "{ newrank=true;", 1))
+
+
+def _drawn(graph: str) -> str:
     import pygraphviz
 
     found: bytes = pygraphviz.AGraph(string=graph).draw(format="json0", prog="dot")
